@@ -1,0 +1,127 @@
+"""The seams between the core services: what each of them may ask of the others, as Protocols.
+
+ES, SB, EVS, TIME and TBL need one another (SB reports through EVS, EVS sends through SB), yet none imports another.
+A mission makes one `Ports`, hands it to all of them, and fills it in once they exist. This module holds types only and
+imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Protocol
+
+
+class Caller(Protocol):
+    """The application that a task belongs to, as found in `Task.owner`."""
+
+    app_id: int
+    name: str
+    is_core: bool
+
+
+class SysLog(Protocol):
+    """The ES system log (CFE_ES_WriteToSysLog)."""
+
+    def write_to_sys_log(self, text: str) -> None:
+        """Add one line, stamped with the spacecraft time, and show it on the console."""
+
+
+class AppTable(Protocol):
+    """What ES knows of applications and their life."""
+
+    def get_app_id(self) -> int:
+        """AppId of the application that the current task belongs to (CFE_ES_GetAppID)."""
+
+    def get_app_name(self, app_id: int) -> str:
+        """Name of an application (CFE_ES_GetAppName)."""
+
+    def get_app_id_by_name(self, name: str) -> int:
+        """AppId of a named application (CFE_ES_GetAppIDByName)."""
+
+    def wait_for_system_state(self, state: int, timeout_ms: int) -> None:
+        """Block until the mission reached a system state (CFE_ES_WaitForSystemState)."""
+
+    def run_loop(self, status: int = 1) -> bool:
+        """Whether the calling application shall go on (CFE_ES_RunLoop)."""
+
+    def exit_app(self, status: int) -> None:
+        """End the calling application (CFE_ES_ExitApp)."""
+
+    def create_child_task(
+        self, name: str, entry: Callable[[], object], stack_size: int, priority: int, flags: int = 0
+    ) -> int:
+        """Start a task that belongs to the calling application (CFE_ES_CreateChildTask)."""
+
+    def increment_task_counter(self) -> None:
+        """Count one cycle of the calling task (CFE_ES_IncrementTaskCounter)."""
+
+
+class Bus(Protocol):
+    """The Software Bus as a service or an app uses it."""
+
+    def create_pipe(self, depth: int, name: str) -> int:
+        """Make a pipe (CFE_SB_CreatePipe)."""
+
+    def subscribe(self, msg_id: int, pipe_id: int) -> None:
+        """Route a MsgId to a pipe (CFE_SB_Subscribe)."""
+
+    def subscribe_ex(self, msg_id: int, pipe_id: int, qos: int, msg_limit: int) -> None:
+        """Route a MsgId to a pipe with a message limit (CFE_SB_SubscribeEx)."""
+
+    def unsubscribe(self, msg_id: int, pipe_id: int) -> None:
+        """Remove a route (CFE_SB_Unsubscribe)."""
+
+    def transmit_msg(self, packet: bytes, is_origination: bool = True) -> None:
+        """Send a packet to all subscribers (CFE_SB_TransmitMsg)."""
+
+    def receive_buffer(self, pipe_id: int, timeout_ms: int) -> bytes | None:
+        """Next packet of a pipe, or None (CFE_SB_ReceiveBuffer)."""
+
+
+class Events(Protocol):
+    """Event services (CFE_EVS_*)."""
+
+    def register(self, filters: Iterable[tuple[int, int]] = ()) -> None:
+        """Register the calling application with its (event id, mask) filters (CFE_EVS_Register)."""
+
+    def send_event(self, event_id: int, event_type: int, text: str) -> None:
+        """Send an event of the calling application (CFE_EVS_SendEvent)."""
+
+    def send_event_with_app_id(self, event_id: int, event_type: int, app_id: int, text: str) -> None:
+        """Send an event in the name of an application (CFE_EVS_SendEventWithAppID)."""
+
+    def cleanup_app(self, app_id: int) -> None:
+        """Forget an application that ended."""
+
+
+class SpacecraftClock(Protocol):
+    """Time services as the other services use them."""
+
+    def now(self) -> tuple[int, int]:
+        """Spacecraft time (TAI or UTC as configured) as (seconds, subseconds of 2**-32 s)."""
+
+    def stamp(self) -> int:
+        """The same as the 48-bit integer of a telemetry secondary header: seconds << 16 | upper subseconds."""
+
+    def text(self) -> str:
+        """The same as CFE_TIME_Print writes it: "1980-012-14:03:20.00000"."""
+
+
+class Cleanup(Protocol):
+    """A service that holds things for applications and gives them back when one ends."""
+
+    def cleanup_app(self, app_id: int) -> None:
+        """Release everything that an application holds."""
+
+
+class Ports:
+    """The services of one mission, as they see each other; filled in by `cfepy.mission`."""
+
+    __slots__ = ("es", "evs", "sb", "syslog", "tbl", "time")
+
+    es: AppTable
+    syslog: SysLog
+    sb: Bus
+    evs: Events
+    time: SpacecraftClock
+    tbl: Cleanup

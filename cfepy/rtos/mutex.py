@@ -1,0 +1,99 @@
+"""A recursive mutex with transitive priority inheritance: the kernel object under OS_MutSem."""
+
+from __future__ import annotations
+
+from cfepy.rtos.errors import DeadlockError
+from cfepy.rtos.kernel import Kernel
+from cfepy.rtos.task import Task, WaitList
+
+
+class Mutex:
+    """One task at a time; it is as urgent as the most urgent task that waits for it.
+
+    Args:
+        kernel: where the tasks live.
+        name: for reports.
+    """
+
+    __slots__ = ("count", "kernel", "name", "owner", "waits")
+
+    def __init__(self, kernel: Kernel, name: str = "mutex") -> None:
+        self.kernel = kernel
+        self.name = name
+        self.owner: Task | None = None
+        self.count = 0
+        self.waits = WaitList(f"mutex {name}")
+        self.waits.owner = lambda: self.owner
+
+    def take(self) -> None:
+        """Wait until the mutex is free or ours.
+
+        Raises:
+            DeadlockError: the owner waits, directly or through others, for a mutex that we hold.
+        """
+        kernel = self.kernel
+        task = kernel.current
+        if self.owner is None:
+            self.owner, self.count = task, 1
+            task.held.append(self)
+        elif self.owner is task:
+            self.count += 1
+        else:
+            self._wait(task)
+
+    def give(self) -> bool:
+        """Free the mutex, or undo one of several takes; False when it is not ours."""
+        kernel = self.kernel
+        task = kernel.current
+        if self.owner is not task:
+            return False
+        self.count -= 1
+        if self.count:
+            return True
+        if self.waits:
+            self.abandon(task)
+            kernel.preempt()
+        else:
+            task.held.remove(self)
+            self.owner = None
+        return True
+
+    def abandon(self, owner: Task) -> None:
+        """Take the mutex from its owner and hand it to the first waiter, without letting that run yet."""
+        kernel = self.kernel
+        owner.held.remove(self)
+        self.owner, self.count = None, 0
+        if self.waits:
+            heir = self.waits.pop(0)
+            self.owner, self.count = heir, 1
+            heir.held.append(self)
+            heir.mutex = None
+            kernel.enqueue(heir, None)
+            kernel.inherit(heir)
+        kernel.inherit(owner)
+
+    def _wait(self, task: Task) -> None:
+        kernel = self.kernel
+        if self._leads_to(task):
+            raise DeadlockError(
+                f"{task.name} takes mutex {self.name}, whose owner waits for {task.name}:\n{kernel.waiting()}"
+            )
+        task.mutex = self
+        owner, priority = self.owner, task.priority
+        while owner is not None and owner.priority > priority:
+            kernel.reprioritize(owner, priority)
+            owner = owner.mutex.owner if owner.mutex is not None else None
+        try:
+            kernel.wait_on(self.waits)
+        finally:
+            task.mutex = None
+            if self.owner is not None and self.owner is not task:
+                kernel.inherit(self.owner)  # we were killed while waiting: our urgency goes with us
+
+    def _leads_to(self, task: Task) -> bool:
+        owner = self.owner
+        while owner is not None and owner.mutex is not None:
+            owner = owner.mutex.owner
+            if owner is task:
+                return True
+        return False

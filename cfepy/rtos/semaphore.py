@@ -1,0 +1,53 @@
+"""A counting semaphore, and with a maximum of one a binary semaphore: the kernel object under OS_CountSem, OS_BinSem."""
+
+from __future__ import annotations
+
+from cfepy.rtos.kernel import Kernel
+from cfepy.rtos.task import FOREVER, TIMEOUT, WaitList
+
+
+class Semaphore:
+    """A count that tasks wait to take from.
+
+    Args:
+        kernel: where the tasks live.
+        initial: the count at the start.
+        maximum: a give beyond this is lost, as with a binary semaphore; None for no limit.
+        name: for reports.
+    """
+
+    __slots__ = ("count", "kernel", "maximum", "name", "waits")
+
+    def __init__(self, kernel: Kernel, initial: int = 0, maximum: int | None = None, name: str = "semaphore") -> None:
+        self.kernel = kernel
+        self.count = initial
+        self.maximum = maximum
+        self.name = name
+        self.waits = WaitList(f"semaphore {name}")
+
+    def give(self) -> None:
+        """Let one waiter go on, or raise the count."""
+        if self.waits:
+            self.kernel.make_ready(self.waits.pop(0), True)
+        elif self.maximum is None or self.count < self.maximum:
+            self.count += 1
+
+    def take(self, timeout_ns: int = FOREVER) -> bool:
+        """Lower the count, or wait until somebody gives.
+
+        Args:
+            timeout_ns: longest time to wait; 0 does not wait, FOREVER (-1) has no limit.
+
+        Returns:
+            False when the time was over first.
+        """
+        if self.count > 0:
+            self.count -= 1
+            return True
+        if timeout_ns == 0:
+            return False
+        return self.kernel.wait_on(self.waits, timeout_ns) is not TIMEOUT
+
+    def flush(self) -> None:
+        """Let all waiters go on without changing the count (OS_BinSemFlush)."""
+        self.kernel.wake_all(self.waits, True)

@@ -1,0 +1,116 @@
+"""A task of the simulated real-time system, and the lists in which tasks wait.
+
+Plain data, changed by the kernel and by the objects that tasks wait for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from cfepy import trace
+
+if TYPE_CHECKING:
+    from cfepy.rtos.mutex import Mutex
+
+
+class TaskExit(BaseException):
+    """Unwinds a task that ends or is killed. Only the kernel catches it."""
+
+
+class Timeout:
+    """The type of `TIMEOUT`, the value a wait gives when its time is over."""
+
+    def __repr__(self) -> str:
+        return "TIMEOUT"
+
+    def __bool__(self) -> bool:
+        return False
+
+
+TIMEOUT = Timeout()
+FOREVER = -1
+
+
+class WaitList(list["Task"]):
+    """Tasks that wait for one thing, most urgent first, first come first within a priority.
+
+    Args:
+        what: the thing, for the deadlock report: "queue HK_PIPE".
+    """
+
+    __slots__ = ("owner", "what")
+
+    def __init__(self, what: str) -> None:
+        super().__init__()
+        self.what = what
+        self.owner: Callable[[], Task | None] | None = None
+
+    __hash__ = object.__hash__  # type: ignore[assignment]  # a place to wait has an identity
+
+
+class Task:
+    """One thread of control, with a priority from 0 (most urgent) to 255."""
+
+    __slots__ = (
+        "base_priority",
+        "carrier",
+        "cpu_ns",
+        "done",
+        "dying",
+        "entry",
+        "error",
+        "exit_mark",
+        "held",
+        "ident",
+        "killer",
+        "mark",
+        "mutex",
+        "name",
+        "owner",
+        "park",
+        "priority",
+        "refusals",
+        "resume",
+        "started",
+        "switches",
+        "timer",
+        "waits",
+        "wake",
+        "wake_mark",
+    )
+
+    def __init__(self, name: str, ident: int, entry: Callable[[], object] | None, priority: int) -> None:
+        self.name = name
+        self.ident = ident
+        self.entry = entry
+        self.priority = self.base_priority = priority
+        self.owner: Any = None  # whoever the task works for: an application of ES
+        self.resume: Callable[[], Any] = _not_bound
+        self.park: Callable[..., Any] | None = None
+        self.carrier: Any = None  # what the context runs it on: an OS thread or a greenlet
+        self.wake: Any = None  # the value that ended the last wait
+        self.timer = 0  # number of the pending timer, 0 when there is none
+        self.waits: WaitList | None = None
+        self.mutex: Mutex | None = None  # the mutex it waits for
+        self.held: list[Mutex] = []
+        self.started = self.done = self.dying = False
+        self.killer: Task | None = None
+        self.error: BaseException | None = None
+        self.refusals = 0
+        self.cpu_ns = 0
+        self.switches = 0
+        self.mark = trace.mark(trace.DISPATCH, ident)
+        self.wake_mark = trace.mark(trace.WAKE, ident)
+        self.exit_mark = trace.mark(trace.EXIT, ident)
+
+    def __repr__(self) -> str:
+        return f"<Task {self.ident} {self.name!r} priority {self.priority}>"
+
+    def __lt__(self, other: Task) -> bool:
+        """Only reached for equal keys in the ready heap; creation order then decides."""
+        return self.ident < other.ident
+
+
+def _not_bound() -> None:
+    raise RuntimeError("the task has no context yet")
