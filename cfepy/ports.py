@@ -114,10 +114,20 @@ class Cleanup(Protocol):
         """Release everything that an application holds."""
 
 
+class Memory(Protocol):
+    """The board's memory, as far as it is counted."""
+
+    def claim(self, owner: str, kind: str, size: int) -> object:
+        """Take bytes for an owner ("HK", "pipe HK_PIPE", 1280); the token gives them back."""
+
+    def release(self, token: object) -> None:
+        """Give a claim back."""
+
+
 class Ports:
     """The services of one mission, as they see each other; filled in by `cfepy.mission`."""
 
-    __slots__ = ("es", "evs", "sb", "syslog", "tbl", "time")
+    __slots__ = ("es", "evs", "memory", "sb", "syslog", "tbl", "time")
 
     es: AppTable
     syslog: SysLog
@@ -125,3 +135,4 @@ class Ports:
     evs: Events
     time: SpacecraftClock
     tbl: Cleanup
+    memory: Memory

@@ -295,18 +295,15 @@ class Kernel:
         heappush(self.timers, (when, sequence, task))
 
     def block(self) -> Any:
-        """Give the CPU away until somebody makes the current task ready; the value it was made ready with."""
+        """Give the CPU away until somebody makes the current task ready; the value it was made ready with.
+
+        Whoever calls this has seen to it that somebody will, and that the task is not dying (`_refuse`).
+        """
         task = self.current
-        if task.dying:
-            self._refuse(task)
         ready = self.ready
-        if ready:
-            following = heappop(ready)[2] if self.policy is None else self._take()
-        else:
-            following = self._advance()
+        following = (heappop(ready)[2] if self.policy is None else self._take()) if ready else self._advance()
         if following is not task:
             self.current = following
-            following.switches += 1
             if self.record is not None:
                 self.record(following.mark)
             if self.switch_cost_ns:
@@ -444,7 +441,6 @@ class Kernel:
     def _switch(self, task: Task, following: Task) -> None:
         """Hand the baton from `task`, which is in the ready heap already, to `following`."""
         self.current = following
-        following.switches += 1
         if self.record is not None:
             self.record(following.mark)
         if self.switch_cost_ns and following is not self.host:
@@ -573,8 +569,8 @@ class Kernel:
             except BaseException as error:
                 self._take_back(error)
         if self._interrupted is not None:
-            error, self._interrupted = self._interrupted, None
-            raise error
+            interrupted, self._interrupted = self._interrupted, None
+            raise interrupted
         if self._failed:
             failed = self._failed.pop(0)
             assert failed.error is not None

@@ -1,4 +1,4 @@
-"""A counting semaphore, and with a maximum of one a binary semaphore: the kernel object under OS_CountSem, OS_BinSem."""
+"""A counting semaphore; with a maximum of one, a binary one: the kernel object under OS_CountSem and OS_BinSem."""
 
 from __future__ import annotations
 

@@ -73,7 +73,6 @@ class Task:
         "refusals",
         "resume",
         "started",
-        "switches",
         "timer",
         "waits",
         "wake",
@@ -99,7 +98,6 @@ class Task:
         self.error: BaseException | None = None
         self.refusals = 0
         self.cpu_ns = 0
-        self.switches = 0
         self.mark = trace.mark(trace.DISPATCH, ident)
         self.wake_mark = trace.mark(trace.WAKE, ident)
         self.exit_mark = trace.mark(trace.EXIT, ident)

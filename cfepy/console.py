@@ -1,0 +1,43 @@
+"""The console of a mission: where OS_printf, the system log and the event port write their lines.
+
+It keeps every line for tests and tools, and shows it on a stream or hands it to a live display. Imports
+nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import TextIO
+
+
+class Console:
+    """Keeps and shows lines of text.
+
+    Args:
+        stream: where lines are shown; the standard output of the moment when None.
+        quiet: keep the lines, show none.
+        sink: a display that gets every line instead of the stream, quiet or not.
+    """
+
+    __slots__ = ("lines", "quiet", "sink", "stream")
+
+    def __init__(
+        self, stream: TextIO | None = None, quiet: bool = False, sink: Callable[[str], object] | None = None
+    ) -> None:
+        self.stream = stream
+        self.quiet = quiet
+        self.sink = sink
+        self.lines: list[str] = []
+
+    def write(self, text: str) -> None:
+        """Add text: one line, or several with newlines between them; a newline at the end adds no empty line."""
+        for line in text.removesuffix("\n").split("\n"):
+            self.lines.append(line)
+            self._show(line)
+
+    def _show(self, line: str) -> None:
+        if self.sink is not None:
+            self.sink(line)
+        elif not self.quiet:
+            (self.stream or sys.stdout).write(line + "\n")

@@ -1,0 +1,122 @@
+"""File names as people and commands give them, completed with the default directory and extension of their kind.
+
+Stands for CFE_FS_ParseInputFileName and its relatives. Works on text alone and opens nothing. Imports only
+cfepy.status.
+"""
+
+from __future__ import annotations
+
+import re
+from enum import IntEnum
+
+from cfepy.status import CFE_FS_BAD_ARGUMENT, CFE_FS_FNAME_TOO_LONG, CFE_FS_INVALID_PATH, CfeError
+
+MAX_PATH_LEN = 64
+"""OS_MAX_PATH_LEN and CFE_MISSION_MAX_PATH_LEN, the NUL included."""
+
+NONVOL_MOUNT_POINT = "/cf"
+RAM_MOUNT_POINT = "/ram"
+MODULE_EXTENSION = ".so"
+
+
+class FileCategory(IntEnum):
+    """Kind of file, which decides where it lives and how its name ends (CFE_FS_FileCategory_t)."""
+
+    UNKNOWN = 0
+    DYNAMIC_MODULE = 1
+    BINARY_DATA_DUMP = 2
+    TEXT_LOG = 3
+    SCRIPT = 4
+    TEMP = 5
+
+
+_MOUNT_POINTS: dict[int, str] = {
+    FileCategory.DYNAMIC_MODULE: NONVOL_MOUNT_POINT,
+    FileCategory.SCRIPT: NONVOL_MOUNT_POINT,
+    FileCategory.BINARY_DATA_DUMP: RAM_MOUNT_POINT,
+    FileCategory.TEXT_LOG: RAM_MOUNT_POINT,
+    FileCategory.TEMP: RAM_MOUNT_POINT,
+}
+_EXTENSIONS: dict[int, str] = {
+    FileCategory.DYNAMIC_MODULE: MODULE_EXTENSION,
+    FileCategory.SCRIPT: ".scr",
+    FileCategory.TEXT_LOG: ".log",
+    FileCategory.TEMP: ".tmp",
+}
+
+
+def get_default_mount_point(category: int) -> str | None:
+    """Where files of a kind live, "/cf" or "/ram"; None for an unknown kind (CFE_FS_GetDefaultMountPoint)."""
+    return _MOUNT_POINTS.get(category)
+
+
+def get_default_extension(category: int) -> str | None:
+    """How names of a kind end, with the dot; None when they have no usual end (CFE_FS_GetDefaultExtension)."""
+    return _EXTENSIONS.get(category)
+
+
+def _directory(parts: list[str], default_path: str | None) -> str:
+    """The path part of a name, with one "/" at its end; runs of "/" count as one."""
+    if not parts:
+        return (default_path or "").rstrip("/") + "/"
+    return re.sub("/+", "/", "/".join([*parts, ""]))
+
+
+def parse_input_file_name_ex(
+    name: str,
+    default_name: str | None = None,
+    default_path: str | None = None,
+    default_extension: str | None = None,
+    max_len: int = MAX_PATH_LEN,
+) -> str:
+    """A complete file name from what a person or a command gave (CFE_FS_ParseInputFileNameEx).
+
+    Args:
+        name: the input; what follows a NUL does not count.
+        default_name: taken when the input is empty.
+        default_path: put before a name without any "/".
+        default_extension: put after a name without any "."; a "." too many or too few between them is mended.
+        max_len: size of the C buffer the result must fit, its NUL included.
+
+    Raises:
+        CfeError: CFE_FS_INVALID_PATH when there is no name before the extension, CFE_FS_FNAME_TOO_LONG,
+            CFE_FS_BAD_ARGUMENT for a `max_len` of 0.
+    """
+    if max_len <= 0:
+        raise CfeError(CFE_FS_BAD_ARGUMENT, "a buffer of no bytes holds no file name")
+    text = (name or default_name or "").partition("\0")[0]
+    *parts, last = text.split("/")
+    stem, dot, extension = last.partition(".")
+    if not dot and default_extension is not None:
+        dot, extension = ".", default_extension
+    complete = _directory(parts, default_path) + stem + dot + extension.lstrip(".")
+    if len(complete) >= max_len:
+        raise CfeError(CFE_FS_FNAME_TOO_LONG, f"{complete!r} has {len(complete)} characters, at most {max_len - 1} fit")
+    if not stem:
+        raise CfeError(CFE_FS_INVALID_PATH, f"{text!r} has no file name")
+    return complete
+
+
+def parse_input_file_name(name: str, category: int, max_len: int = MAX_PATH_LEN) -> str:
+    """As `parse_input_file_name_ex` with the defaults of a kind of file (CFE_FS_ParseInputFileName).
+
+    >>> parse_input_file_name("hk", FileCategory.DYNAMIC_MODULE)
+    '/cf/hk.so'
+    """
+    return parse_input_file_name_ex(
+        name, None, get_default_mount_point(category), get_default_extension(category), max_len
+    )
+
+
+def extract_filename_from_path(path: str) -> str:
+    """What follows the last "/" (CFE_FS_ExtractFilenameFromPath).
+
+    Raises:
+        CfeError: CFE_FS_INVALID_PATH without a "/" beyond the first character, CFE_FS_FNAME_TOO_LONG.
+    """
+    at = path.rfind("/")
+    if len(path) - (at + 1) >= MAX_PATH_LEN:
+        raise CfeError(CFE_FS_FNAME_TOO_LONG, f"the file name of {path!r} has {len(path) - at - 1} characters")
+    if at <= 0:
+        raise CfeError(CFE_FS_INVALID_PATH, f"{path!r} has no directory before the file name")
+    return path[at + 1 :]

@@ -1,0 +1,103 @@
+"""Which handler a command packet goes to: message id, then function code, then length, each checked in that order.
+
+Every service and app dispatches like this and sends its own event when one of the checks fails; so the table calls the
+handler or says what was wrong, and sends nothing itself. Imports only the header functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from cfepy.msg.header import CMD_HEADER_SIZE, Packet, get_msg_id
+from cfepy.status import CFE_MSG_BAD_ARGUMENT, CfeError
+
+Handler = Callable[[bytes], object]
+
+DONE = 0
+BAD_MSG_ID = 1
+BAD_CODE = 2
+BAD_LENGTH = 3
+
+
+class Dispatch(NamedTuple):
+    """What became of a packet, with all that an event text wants to tell.
+
+    `outcome` is DONE, BAD_MSG_ID, BAD_CODE or BAD_LENGTH; `length` and `expected` are bytes of the whole packet
+    (`expected` 0 when unknown); `fcn_code` is 0 for a message that is no command; `result` is the handler's.
+    """
+
+    outcome: int
+    msg_id: int
+    fcn_code: int
+    length: int
+    expected: int
+    result: object = None
+
+
+class CommandTable:
+    """Handlers by message id and function code.
+
+    A handler gets the whole packet as bytes. Fill the table once with `add` and `add_message`, then `dispatch`.
+    """
+
+    __slots__ = ("_commands", "_messages")
+
+    def __init__(self) -> None:
+        self._commands: dict[int, dict[int, tuple[int, Handler]]] = {}
+        self._messages: dict[int, tuple[int, Handler]] = {}
+
+    def add(self, msg_id: int, fcn_code: int, length: int, handler: Handler) -> None:
+        """Handle one function code of a command message.
+
+        Args:
+            msg_id: the message id.
+            fcn_code: 0..127.
+            length: bytes of the whole packet, header included.
+            handler: called with the packet.
+
+        Raises:
+            CfeError: CFE_MSG_BAD_ARGUMENT when the same command, or a plain message of that id, is there already.
+        """
+        if msg_id in self._messages or fcn_code in self._commands.get(msg_id, ()):
+            raise CfeError(CFE_MSG_BAD_ARGUMENT, f"command 0x{msg_id:04X}/{fcn_code} has a handler already")
+        self._commands.setdefault(msg_id, {})[fcn_code] = (length, handler)
+
+    def add_message(self, msg_id: int, length: int, handler: Handler) -> None:
+        """Handle a message without function codes, such as a housekeeping request or telemetry of another app.
+
+        Args:
+            msg_id: the message id.
+            length: bytes of the whole packet, or 0 to take any.
+            handler: called with the packet.
+
+        Raises:
+            CfeError: CFE_MSG_BAD_ARGUMENT when the id has a handler already.
+        """
+        if msg_id in self._messages or msg_id in self._commands:
+            raise CfeError(CFE_MSG_BAD_ARGUMENT, f"message 0x{msg_id:04X} has a handler already")
+        self._messages[msg_id] = (length, handler)
+
+    def dispatch(self, packet: bytes) -> Dispatch:
+        """Check a packet and call its handler."""
+        msg_id, length = get_msg_id(packet), len(packet)
+        codes = self._commands.get(msg_id)
+        if codes is not None:
+            fcn_code = _fcn_code(packet)
+            entry = codes.get(fcn_code)
+            if entry is None:
+                return Dispatch(BAD_CODE, msg_id, fcn_code, length, 0)
+        else:
+            fcn_code = 0
+            entry = self._messages.get(msg_id)
+            if entry is None:
+                return Dispatch(BAD_MSG_ID, msg_id, _fcn_code(packet), length, 0)
+        expected, handler = entry
+        if expected not in (0, length):
+            return Dispatch(BAD_LENGTH, msg_id, fcn_code, length, expected)
+        return Dispatch(DONE, msg_id, fcn_code, length, expected, handler(packet))
+
+
+def _fcn_code(packet: Packet) -> int:
+    """The function code where there is one, else 0, as CFE_MSG_GetFcnCode leaves it."""
+    return packet[6] & 0x7F if len(packet) >= CMD_HEADER_SIZE and packet[0] & 0x18 == 0x18 else 0

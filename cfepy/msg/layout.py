@@ -1,0 +1,265 @@
+"""Payload layouts: a C struct declared once, then packed and unpacked as NASA's x86-64 build has it in memory.
+
+Natural C alignment, little-endian. A layout compiles to one `struct.Struct` over all its leaves, nested structs and
+arrays included; packing lines the values up for it, unpacking builds them into a dict again. Imports only
+cfepy.status.
+
+A field's type is one of u8 i8 u16 i16 u32 i32 u64 i64 f32 f64 bool, `char[N]` (text of at most N bytes), another
+Layout, or an array of these: "u16[4]", "u8[2][3]", "char[4][20]" (4 texts of 20), `(Layout, 32)`.
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from cfepy.status import CFE_STATUS_WRONG_MSG_LENGTH, CfeError, UsageError
+
+_SCALARS = {
+    "u8": ("B", 1),
+    "i8": ("b", 1),
+    "u16": ("H", 2),
+    "i16": ("h", 2),
+    "u32": ("I", 4),
+    "i32": ("i", 4),
+    "u64": ("Q", 8),
+    "i64": ("q", 8),
+    "f32": ("f", 4),
+    "f64": ("d", 8),
+    "bool": ("?", 1),
+}
+_TYPE = re.compile(r"(\w+)((?:\[\d+\])*)")
+
+
+class _Scalar:
+    """A number or a bool."""
+
+    __slots__ = ("align", "code", "leaves", "size")
+
+    def __init__(self, code: str, size: int) -> None:
+        self.code: str = code
+        self.size: int = size
+        self.align: int = size
+        self.leaves: int = 1
+
+    def flatten(self, value: Any, path: str) -> Iterator[Any]:
+        if not isinstance(value, (int, float)):
+            raise UsageError(f"{value!r} is not a number", field=path)
+        if self.code not in "fd" and not isinstance(value, int):
+            raise UsageError(f"{value!r} is not an integer", field=path)
+        yield value
+
+    def build(self, leaves: Iterator[Any]) -> Any:
+        return next(leaves)
+
+    def zero(self) -> Any:
+        return 0
+
+
+class _Text:
+    """char[N]: text up to the first NUL; UTF-8, other bytes survive a round trip as surrogates."""
+
+    __slots__ = ("align", "code", "leaves", "size")
+
+    def __init__(self, size: int) -> None:
+        self.code: str = f"{size}s"
+        self.size: int = size
+        self.align: int = 1
+        self.leaves: int = 1
+
+    def flatten(self, value: Any, path: str) -> Iterator[Any]:
+        if not isinstance(value, (str, bytes, bytearray)):
+            raise UsageError(f"{value!r} is not a text", field=path)
+        data = value.encode("utf-8", "surrogateescape") if isinstance(value, str) else bytes(value)
+        if len(data) > self.size:
+            raise UsageError(f"{value!r} has {len(data)} bytes, there is room for {self.size}", field=path)
+        yield data
+
+    def build(self, leaves: Iterator[Any]) -> Any:
+        text: bytes = next(leaves)
+        return text.partition(b"\0")[0].decode("utf-8", "surrogateescape")
+
+    def zero(self) -> Any:
+        return b""
+
+
+class _Array:
+    """A fixed number of equal items; a shorter sequence is filled up with zeros."""
+
+    __slots__ = ("align", "code", "count", "item", "leaves", "size")
+
+    def __init__(self, item: _Type, count: int) -> None:
+        self.item: _Type = item
+        self.count: int = count
+        self.code: str = item.code * count
+        self.size: int = item.size * count
+        self.align: int = item.align
+        self.leaves: int = item.leaves * count
+
+    def flatten(self, value: Any, path: str) -> Iterator[Any]:
+        if not isinstance(value, (Sequence, memoryview, bytearray)) or isinstance(value, str):
+            raise UsageError(f"{value!r} is not a list", field=path)
+        if len(value) > self.count:
+            raise UsageError(f"{len(value)} items, there is room for {self.count}", field=path)
+        for number in range(self.count):
+            item = value[number] if number < len(value) else self.item.zero()
+            yield from self.item.flatten(item, f"{path}[{number}]")
+
+    def build(self, leaves: Iterator[Any]) -> Any:
+        return [self.item.build(leaves) for _ in range(self.count)]
+
+    def zero(self) -> Any:
+        return ()
+
+
+class Layout:
+    """A C struct.
+
+    Args:
+        name: the struct's name, for messages.
+        fields: (name, type) pairs in order, types as the module says.
+
+    Attributes:
+        size: bytes, padding at the end included (sizeof).
+        align: the strictest alignment of a field.
+        offsets: field name to offset in bytes.
+        sizes: field name to size in bytes.
+
+    >>> point = Layout("Point", [("Id", "u8"), ("X", "i32"), ("Name", "char[3]")])
+    >>> point.size, point.offsets
+    (12, {'Id': 0, 'X': 4, 'Name': 8})
+    >>> point.unpack(point.pack(Id=7, X=-1, Name="ab"))
+    {'Id': 7, 'X': -1, 'Name': 'ab'}
+    """
+
+    __slots__ = ("_fields", "_struct", "align", "code", "leaves", "name", "offsets", "size", "sizes")
+
+    def __init__(self, name: str, fields: Iterable[tuple[str, Any]]) -> None:
+        self.name: str = name
+        self._fields: dict[str, _Type] = {}
+        for field, kind in fields:
+            if field in self._fields:
+                raise UsageError("is declared twice", field=f"{name}.{field}")
+            self._fields[field] = _parse_type(kind, f"{name}.{field}")
+        self.sizes: dict[str, int] = {field: kind.size for field, kind in self._fields.items()}
+        self.align: int = max((kind.align for kind in self._fields.values()), default=1)
+        self.leaves: int = sum(kind.leaves for kind in self._fields.values())
+        self._place()
+        self._struct = struct.Struct("<" + self.code)
+
+    def _place(self) -> None:
+        """Give every field its offset, with padding as a C compiler puts it."""
+        self.offsets: dict[str, int] = {}
+        codes: list[str] = []
+        at = 0
+        for field, kind in self._fields.items():
+            padding = -at % kind.align
+            codes += [f"{padding}x"] * bool(padding) + [kind.code]
+            self.offsets[field] = at + padding
+            at += padding + kind.size
+        padding = -at % self.align
+        self.code: str = "".join(codes) + (f"{padding}x" if padding else "")
+        self.size: int = at + padding
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Field names in order."""
+        return tuple(self._fields)
+
+    def pack(self, values: Mapping[str, Any] | None = None, /, **more: Any) -> bytes:
+        """The struct's bytes; a field not given is zero.
+
+        Args:
+            values: field values as a mapping, and
+            more: as keywords. Nested structs are mappings, arrays are sequences.
+
+        Raises:
+            UsageError: an unknown field, or a value that does not fit; `field` is its path.
+        """
+        given = {**values, **more} if values else more
+        leaves = list(self.flatten(given, ""))
+        try:
+            return self._struct.pack(*leaves)
+        except (struct.error, OverflowError):
+            raise self._misfit(given) from None
+
+    def unpack(self, buffer: bytes | bytearray | memoryview, offset: int = 0) -> dict[str, Any]:
+        """The values of a struct that starts at `offset` of a buffer: numbers, texts, lists, dicts.
+
+        Raises:
+            CfeError: CFE_STATUS_WRONG_MSG_LENGTH when the buffer ends too early.
+        """
+        try:
+            leaves = self._struct.unpack_from(buffer, offset)
+        except struct.error:
+            text = f"{self.name} needs {self.size} bytes at offset {offset}, the buffer has {len(buffer)}"
+            raise CfeError(CFE_STATUS_WRONG_MSG_LENGTH, text) from None
+        return self.build(iter(leaves))
+
+    def flatten(self, value: Any, path: str) -> Iterator[Any]:
+        """The leaf values of this struct in order, for the struct around it."""
+        if not isinstance(value, Mapping):
+            raise UsageError(f"{value!r} is not a mapping of the fields of {self.name}", field=path)
+        prefix = f"{path}." if path else ""
+        if not value.keys() <= self._fields.keys():
+            unknown = next(name for name in value if name not in self._fields)
+            raise UsageError(f"{self.name} has no such field, only {', '.join(self._fields)}", field=prefix + unknown)
+        for field, kind in self._fields.items():
+            yield from kind.flatten(value[field] if field in value else kind.zero(), prefix + field)
+
+    def build(self, leaves: Iterator[Any]) -> dict[str, Any]:
+        """This struct's values, taken from the leaves of the struct around it."""
+        return {field: kind.build(leaves) for field, kind in self._fields.items()}
+
+    def zero(self) -> dict[str, Any]:
+        """What stands for an all-zero struct."""
+        return {}
+
+    def _misfit(self, value: Mapping[str, Any]) -> UsageError:
+        """Which field it was that did not fit: each is packed alone, down to the leaf."""
+        for path, code, leaf in _leaves(self, value, ""):
+            try:
+                struct.pack("<" + code, leaf)
+            except (struct.error, OverflowError):
+                return UsageError(f"{leaf!r} does not fit {_name_of_code(code)}", field=path)
+        return UsageError(f"the values do not fit {self.name}")
+
+    def __repr__(self) -> str:
+        return f"Layout({self.name!r}, size={self.size})"
+
+
+_Type = _Scalar | _Text | _Array | Layout
+
+
+def _parse_type(kind: Any, path: str) -> _Type:
+    if isinstance(kind, Layout):
+        return kind
+    if isinstance(kind, tuple):
+        return _Array(kind[0], kind[1])
+    match = _TYPE.fullmatch(kind)
+    if match is None or match[1] not in {*_SCALARS, "char"}:
+        raise UsageError(f"{kind!r} is no type; use {', '.join(_SCALARS)}, char[N] or a Layout", field=path)
+    counts = [int(count) for count in re.findall(r"\d+", match[2])]
+    parsed: _Type = _Text(counts.pop() if counts else 1) if match[1] == "char" else _Scalar(*_SCALARS[match[1]])
+    for count in reversed(counts):
+        parsed = _Array(parsed, count)
+    return parsed
+
+
+def _leaves(kind: _Type, value: Any, path: str) -> Iterator[tuple[str, str, Any]]:
+    """(path, struct code, value) of every leaf that was given."""
+    if isinstance(kind, Layout):
+        for field, inner in kind._fields.items():
+            if field in value:
+                yield from _leaves(inner, value[field], f"{path}.{field}" if path else field)
+    elif isinstance(kind, _Array):
+        for number, item in enumerate(value):
+            yield from _leaves(kind.item, item, f"{path}[{number}]")
+    else:
+        yield path, kind.code, next(kind.flatten(value, path))
+
+
+def _name_of_code(code: str) -> str:
+    return next((name for name, (known, _) in _SCALARS.items() if known == code), f"char[{code[:-1]}]")

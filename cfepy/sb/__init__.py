@@ -1,0 +1,11 @@
+"""Software Bus: messages between applications by MsgId (cFE SB).
+
+The five services do not import each other; what SB needs of them it finds in its `Ports`.
+"""
+
+from cfepy.sb.bus import PEND_FOREVER, POLL, SoftwareBus
+from cfepy.sb.core import BusCosts
+from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE
+from cfepy.sb.task import SbTask
+
+__all__ = ["PEND_FOREVER", "PIPEOPTS_IGNOREMINE", "POLL", "BusCosts", "SbTask", "SoftwareBus"]

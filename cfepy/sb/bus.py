@@ -1,0 +1,302 @@
+"""The Software Bus: transmitting and receiving packets (CFE_SB_TransmitMsg, CFE_SB_ReceiveBuffer).
+
+A message is one immutable bytes object, shared by all pipes that it goes to; nobody can change it on the way, so what
+C needs reference-counted buffers for is done by the interpreter. Transmitting never waits. This is the hot path of
+every mission: it makes no object beside the packet and its queue entry, and the usual case comes first.
+"""
+
+from __future__ import annotations
+
+import struct
+
+from cfepy.config import PlatformConfig
+from cfepy.msg import compute_checksum
+from cfepy.ports import Ports
+from cfepy.rtos import FOREVER, TIMEOUT, Kernel
+from cfepy.sb import events as ev
+from cfepy.sb.core import BusCosts, error
+from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE, PipeServices
+from cfepy.sb.routing import SECONDARY, Destination, Pipe, Route
+from cfepy.sb.subscriptions import SubscriptionServices
+from cfepy.status import (
+    CFE_SB_BAD_ARGUMENT,
+    CFE_SB_BUF_ALOC_ERR,
+    CFE_SB_MSG_TOO_BIG,
+    CFE_SB_PIPE_RD_ERR,
+    CfeError,
+)
+from cfepy.trace import BATCH
+
+PEND_FOREVER = -1
+POLL = 0
+
+BUFFER_BYTES = 64  # of a buffer descriptor in front of each message (CFE_SB_BufferD_t)
+pack_telemetry_header = struct.Struct(">HHHIH").pack
+pack_primary_header = struct.Struct(">HHH").pack
+
+
+class SoftwareBus(PipeServices, SubscriptionServices):
+    """One processor's Software Bus; the arguments are those of `BusCore`."""
+
+    def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, costs: BusCosts | None = None) -> None:
+        super().__init__(kernel, ports, config, costs)
+        self._queued_bytes = 0  # of waiting messages, once per pipe: at least what the pool holds
+        self._stamped_at = -1
+        self._seconds = self._subseconds = 0
+        self._max_size = config.sb_max_msg_size
+        self._pool_size = config.sb_buf_memory_bytes
+        self._pipe_of = self.pipes.records
+        self._record = kernel.record
+        self._records = kernel.trace.records if kernel.trace is not None else []
+        self._flush = kernel.trace.flush if kernel.trace is not None else _nothing
+
+    # -- transmitting ----------------------------------------------------------------------------------------------
+
+    def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
+        """Send a packet to every pipe that subscribed to its MsgId (CFE_SB_TransmitMsg).
+
+        Args:
+            packet: a whole CCSDS packet with cFE's headers.
+            is_origination: fill in the sequence count, and the time of telemetry or the checksum of a command;
+                False sends the packet as it is (from a ground link or another processor).
+
+        Raises:
+            CfeError: CFE_SB_BAD_ARGUMENT (no packet, bad MsgId or length), CFE_SB_MSG_TOO_BIG, CFE_SB_BUF_ALOC_ERR.
+                A full pipe and a reached message limit are events, not errors: the others still get the message.
+        """
+        size = len(packet)
+        if not 6 < size <= self._max_size:
+            raise self._bad_size(packet)
+        msg_id = packet[0] << 8 | packet[1]
+        route = self.routes.get(msg_id)
+        if route is None:
+            self._no_route(msg_id)
+            return
+        if not is_origination:
+            if (packet[4] << 8 | packet[5]) + 7 != size:
+                raise self._send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, f"length field of {size} bytes")
+            route.relayed += 1
+            self._deliver(route, bytes(packet))
+            return
+        sequence = route.sequence
+        route.sequence = sequence + 1
+        flags = (packet[2] & 0xC0) << 8 | (sequence & 0x3FFF)
+        if route.is_telemetry and size >= 12:
+            now = self.kernel.now
+            if now != self._stamped_at:
+                self._stamp(now)
+            header = pack_telemetry_header(msg_id, flags, size - 7, self._seconds, self._subseconds)
+            self._deliver(route, header + packet[12:])
+        elif msg_id & SECONDARY and size >= 8:
+            self._deliver(route, self._command(packet, flags))
+        else:
+            self._deliver(route, pack_primary_header(msg_id, flags, size - 7) + packet[6:])
+
+    def transmit_telemetry(self, msg_id: int, payload: bytes) -> None:
+        """Send a payload behind a telemetry header of 16 bytes: `transmit_msg` without building the packet first.
+
+        Args:
+            msg_id: a telemetry MsgId (secondary header, not a command).
+            payload: everything behind the header.
+        """
+        route = self.routes.get(msg_id)
+        if route is None:
+            self._no_route(msg_id)
+            return
+        size = len(payload) + 9
+        if size + 7 > self._max_size:
+            raise self._bad_size(bytes(16) + payload)
+        sequence = route.sequence
+        route.sequence = sequence + 1
+        now = self.kernel.now
+        if now != self._stamped_at:
+            self._stamp(now)
+        header = pack_telemetry_header(msg_id, 0xC000 | (sequence & 0x3FFF), size, self._seconds, self._subseconds)
+        self._deliver(route, header + b"\0\0\0\0" + payload)
+
+    def has_subscribers(self, msg_id: int) -> bool:
+        """Whether anybody would get a message."""
+        route = self.routes.get(msg_id)
+        return route is not None and bool(route.active)
+
+    def _deliver(self, route: Route, packet: bytes) -> None:
+        """Put a finished packet into the pipes of a route."""
+        kernel = self.kernel
+        if self._record is not None:
+            self._record(packet)
+        costs = self.costs
+        if costs is not None:
+            kernel.charge(costs.of(len(packet)))
+        failures: list[tuple[int, Destination]] | None = None
+        for destination in route.active:
+            pipe = destination.pipe
+            if pipe.opts and pipe.opts & PIPEOPTS_IGNOREMINE and pipe.owner is kernel.current.owner:
+                continue
+            puts = destination.puts
+            if puts - destination.gets >= destination.limit:
+                destination.limit_drops += 1
+                failures = [*(failures or ()), (ev.MSGID_LIM_ERR_EID, destination)]
+                continue
+            waits = pipe.waits
+            if waits:
+                destination.puts = puts + 1
+                kernel.make_ready(waits.pop(0), (packet, destination))
+                continue
+            items = pipe.items
+            waiting = len(items)
+            if waiting >= pipe.depth:
+                destination.overflow_drops += 1
+                failures = [*(failures or ()), (ev.Q_FULL_ERR_EID, destination)]
+                continue
+            self._queued_bytes = queued = self._queued_bytes + len(packet)
+            if queued > self._pool_size and self._pool_is_full(packet):
+                raise self._no_buffer(route.msg_id, packet)
+            destination.puts = puts + 1
+            items.append((packet, destination))
+            if waiting >= pipe.peak:
+                pipe.peak = waiting + 1
+        if failures is not None:
+            self._report_failures(route.msg_id, failures)
+
+    def _stamp(self, now: int) -> None:
+        """Keep the spacecraft time of this instant, as the header wants it."""
+        self._seconds, subseconds = self.ports.time.now()
+        self._subseconds = subseconds >> 16
+        self._stamped_at = now
+
+    def forget_time(self) -> None:
+        """The spacecraft time was set: the stamp of this instant is no longer true."""
+        self._stamped_at = -1
+
+    def _command(self, packet: bytes | bytearray, flags: int) -> bytes:
+        command = bytearray(packet)
+        command[2:6] = (flags << 16 | len(packet) - 7).to_bytes(4, "big")
+        command[7] = 0
+        command[7] = compute_checksum(command)
+        return bytes(command)
+
+    # -- receiving -------------------------------------------------------------------------------------------------
+
+    def receive_buffer(self, pipe_id: int, timeout_ms: int = PEND_FOREVER) -> bytes | None:
+        """Take the oldest message out of a pipe (CFE_SB_ReceiveBuffer).
+
+        Args:
+            pipe_id: any pipe; that it is one's own is not checked, as in NASA's code.
+            timeout_ms: longest time to wait; POLL (0) and PEND_FOREVER (-1) as named.
+
+        Returns:
+            The packet, or None when there is none in time.
+
+        Raises:
+            CfeError: CFE_SB_BAD_ARGUMENT (pipe, timeout), CFE_SB_PIPE_RD_ERR (the pipe was deleted meanwhile).
+        """
+        pipe = self._pipe_of.get(pipe_id)
+        if pipe is None or timeout_ms < PEND_FOREVER:
+            raise self._receive_error(pipe, pipe_id, timeout_ms)
+        if self.costs is not None:
+            self.kernel.charge(self.costs.call_ns)
+        items = pipe.items
+        packet: bytes
+        destination: Destination
+        if items:
+            packet, destination = items.popleft()
+            self._queued_bytes -= len(packet)
+        elif timeout_ms == POLL:
+            return None
+        else:
+            item = self.kernel.wait_on(pipe.waits, FOREVER if timeout_ms < 0 else timeout_ms * 1_000_000)
+            if item is TIMEOUT:
+                return None
+            if item is None:
+                raise self._read_error(pipe)
+            packet, destination = item
+        destination.gets += 1
+        if self._record is not None:
+            self._record(pipe.receive_mark)
+            if len(self._records) > BATCH:
+                self._flush()
+        return packet
+
+    # -- what can go wrong -----------------------------------------------------------------------------------------
+
+    def _no_route(self, msg_id: int) -> None:
+        if not self.is_valid_msg_id(msg_id):
+            text = f"Send Err:Invalid MsgId(0x{msg_id:x})in msg,App {self.caller_name()}"
+            self.counters.msg_send_error += 1
+            self.report_once(ev.SEND_INV_MSGID_EID, ev.ERROR, text)
+            raise error(CFE_SB_BAD_ARGUMENT, text)
+        self.counters.no_subscribers += 1
+        self.unrouted.sent[msg_id] = self.unrouted.sent.get(msg_id, 0) + 1
+        text = f"No subscribers for MsgId 0x{msg_id:x},sender {self.caller_name()}"
+        self.report_once(ev.SEND_NO_SUBS_EID, ev.INFORMATION, text)
+
+    def _bad_size(self, packet: bytes | bytearray) -> CfeError:
+        size, limit = len(packet), self.config.sb_max_msg_size
+        if size < 7:
+            text = f"Send Err:Bad input argument,Arg 0x0,App {self.caller_name()}"
+            return self._send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
+        msg_id = packet[0] << 8 | packet[1]
+        text = f"Send Err:Msg Too Big MsgId=0x{msg_id:x},app={self.caller_name()},size={size},MaxSz={limit}"
+        return self._send_error(ev.MSG_TOO_BIG_EID, CFE_SB_MSG_TOO_BIG, text)
+
+    def _send_error(self, event_id: int, status: int, text: str) -> CfeError:
+        self.counters.msg_send_error += 1
+        self.report_once(event_id, ev.ERROR, text)
+        return error(status, text)
+
+    def _no_buffer(self, msg_id: int, packet: bytes) -> CfeError:
+        self._queued_bytes -= len(packet)
+        text = (
+            f"Send Err:Request for Buffer Failed. MsgId 0x{msg_id:x},app {self.caller_name()},"
+            f"size {len(packet) + BUFFER_BYTES}"
+        )
+        return self._send_error(ev.GET_BUF_ERR_EID, CFE_SB_BUF_ALOC_ERR, text)
+
+    def _report_failures(self, msg_id: int, failures: list[tuple[int, Destination]]) -> None:
+        self.counters.msg_send_error += 1
+        sender = self.caller_name()
+        for event_id, destination in failures:
+            pipe = destination.pipe
+            pipe.send_errors += 1
+            if self._record is not None:
+                self._record(pipe.drop_mark)
+            if event_id == ev.MSGID_LIM_ERR_EID:
+                self.counters.msg_limit_error += 1
+                text = f"Msg Limit Err,MsgId 0x{msg_id:x},pipe {pipe.name},sender {sender}"
+            else:
+                self.counters.pipe_overflow_error += 1
+                text = f"Pipe Overflow,MsgId 0x{msg_id:x},pipe {pipe.name},sender {sender}"
+            self.report_once(event_id, ev.ERROR, text)
+
+    def _receive_error(self, pipe: Pipe | None, pipe_id: int, timeout_ms: int) -> CfeError:
+        self.counters.msg_receive_error += 1
+        app = self.caller_name()
+        if pipe is None:
+            text = f"Rcv Err:PipeId {pipe_id} does not exist,app {app}"
+            self.report_once(ev.BAD_PIPEID_EID, ev.ERROR, text)
+        else:
+            text = f"Rcv Err:Bad Input Arg:BufPtr 0x0,pipe {pipe.name},t/o {timeout_ms},app {app}"
+            self.report_once(ev.RCV_BAD_ARG_EID, ev.ERROR, text)
+        return error(CFE_SB_BAD_ARGUMENT, text)
+
+    def _read_error(self, pipe: Pipe) -> CfeError:
+        self.counters.internal_error += 1
+        text = f"Pipe Read Err,pipe {pipe.name},app {self.caller_name()},stat -1"
+        self.report_once(ev.Q_RD_ERR_EID, ev.ERROR, text)
+        return error(CFE_SB_PIPE_RD_ERR, text)
+
+    # -- memory ----------------------------------------------------------------------------------------------------
+
+    def pool_use(self) -> tuple[int, int]:
+        """(bytes, buffers) of the messages that wait in pipes; a message in several pipes is one buffer."""
+        packets = {id(item[0]): len(item[0]) for pipe in self.pipes for item in pipe.items}
+        return sum(packets.values()) + BUFFER_BYTES * len(packets), len(packets)
+
+    def _pool_is_full(self, packet: bytes) -> bool:
+        """The quick count is over the limit; it counts a message once a pipe, and those of deleted pipes: count again."""
+        self._queued_bytes = len(packet) + sum(len(item[0]) for pipe in self.pipes for item in pipe.items)
+        return self.pool_use()[0] + len(packet) + BUFFER_BYTES > self.config.sb_buf_memory_bytes
+
+
+def _nothing() -> None:
+    """The flush of a run without a trace."""

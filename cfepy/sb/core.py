@@ -1,0 +1,132 @@
+"""What all parts of the Software Bus share: its tables, counters, and the way it reports through events.
+
+An event travels on the bus itself, so reporting a failed transmission can fail in the same way again. As in NASA's
+code (CFE_SB_RequestToSendEvent) a task that is about to send an event does not send the same one from within.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from cfepy.config import PlatformConfig
+from cfepy.ids import SB_PIPEID_BASE, IdTable
+from cfepy.ports import Ports
+from cfepy.rtos import Kernel
+from cfepy.sb.routing import Pipe, Route
+from cfepy.status import CFE_SB_MAX_PIPES_MET, CfeError
+
+
+@dataclass(slots=True)
+class Counters:
+    """The counters of SB's housekeeping packet (CFE_SB_HousekeepingTlm_Payload_t)."""
+
+    command: int = 0
+    command_error: int = 0
+    no_subscribers: int = 0
+    msg_send_error: int = 0
+    msg_receive_error: int = 0
+    internal_error: int = 0
+    create_pipe_error: int = 0
+    subscribe_error: int = 0
+    pipe_opts_error: int = 0
+    duplicate_subscriptions: int = 0
+    get_pipe_id_by_name_error: int = 0
+    pipe_overflow_error: int = 0
+    msg_limit_error: int = 0
+
+
+@dataclass(slots=True)
+class Peaks:
+    """The high-water marks of SB's statistics packet."""
+
+    msg_ids: int = 0
+    pipes: int = 0
+    memory: int = 0
+    subscriptions: int = 0
+    buffers: int = 0
+
+
+@dataclass(slots=True)
+class BusCosts:
+    """Virtual CPU time of bus calls on a board; zeros on a host without limits.
+
+    `call_ns` a call, `byte_ps` picoseconds for each byte copied.
+    """
+
+    call_ns: int = 0
+    byte_ps: int = 0
+
+    def of(self, size: int) -> int:
+        """ns for a call that copies `size` bytes."""
+        return self.call_ns + size * self.byte_ps // 1000
+
+
+@dataclass(slots=True)
+class Unrouted:
+    """Messages that nobody ever subscribed to, per MsgId."""
+
+    sent: dict[int, int] = field(default_factory=dict)
+
+
+class BusCore:
+    """Tables and helpers; the base of `SoftwareBus`.
+
+    Args:
+        kernel: the processor.
+        ports: the other services.
+        config: limits.
+        costs: virtual CPU time of calls.
+    """
+
+    def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, costs: BusCosts | None = None) -> None:
+        self.kernel = kernel
+        self.ports = ports
+        self.config = config
+        self.costs = costs if costs is not None and (costs.call_ns or costs.byte_ps) else None
+        self.counters = Counters()
+        self.peaks = Peaks()
+        self.pipes: IdTable[Pipe] = IdTable(SB_PIPEID_BASE, config.sb_max_pipes, full=CFE_SB_MAX_PIPES_MET)
+        self.routes: dict[int, Route] = {}
+        self.unrouted = Unrouted()
+        self.app_id = 0  # of the SB application itself, in whose name events are sent
+        self._reporting: set[tuple[int, int]] = set()
+
+    def caller_name(self) -> str:
+        """Name of the calling task as SB's events give it: "APP", or "APP.TASK" for a child task."""
+        task = self.kernel.current
+        app: str | None = getattr(task.owner, "name", None)
+        if app is None or app == task.name:
+            return task.name
+        return f"{app}.{task.name}"
+
+    def report(self, event_id: int, event_type: int, text: str) -> None:
+        """Send an event of SB."""
+        self.ports.evs.send_event_with_app_id(event_id, event_type, self.app_id, text)
+
+    def report_once(self, event_id: int, event_type: int, text: str) -> None:
+        """Send an event of SB, unless the calling task is in the middle of sending the same one."""
+        key = (self.kernel.current.ident, event_id)
+        if key in self._reporting:
+            return
+        self._reporting.add(key)
+        try:
+            self.report(event_id, event_type, text)
+        finally:
+            self._reporting.discard(key)
+
+    def find_pipe(self, pipe_id: int) -> Pipe | None:
+        """The pipe of an id, or None."""
+        return self.pipes.find(pipe_id)
+
+    def is_foreign(self, pipe: Pipe) -> bool:
+        """Whether the calling application is not the owner of a pipe."""
+        return pipe.owner is not self.kernel.current.owner
+
+    def is_valid_msg_id(self, msg_id: int) -> bool:
+        """Whether a MsgId is in 1..CFE_PLATFORM_SB_HIGHEST_VALID_MSGID (CFE_SB_IsValidMsgId)."""
+        return 0 < msg_id <= self.config.sb_highest_valid_msg_id
+
+
+def error(status: int, text: str) -> CfeError:
+    """The error that a bus call raises after it reported the event of the same text."""
+    return CfeError(status, text)

@@ -1,0 +1,154 @@
+"""Pipes of the Software Bus: making, deleting, naming them, and their options (cfe_sb_api.c, first half)."""
+
+from __future__ import annotations
+
+from cfepy.sb import events as ev
+from cfepy.sb.core import BusCore, error
+from cfepy.sb.routing import Pipe
+from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_PIPES_MET, CFE_SB_PIPE_CR_ERR, CfeError
+
+PIPEOPTS_IGNOREMINE = 1
+SLOT_BYTES = 8  # a queue slot holds a pointer to a buffer
+PIPE_BYTES = 32  # CFE_SB_PipeD_t
+MAX_NAME = 19  # OS_MAX_API_NAME less the final NUL
+
+
+class PipeServices(BusCore):
+    """The CFE_SB_*Pipe* functions."""
+
+    def create_pipe(self, depth: int, name: str) -> int:
+        """Make a pipe that belongs to the calling application (CFE_SB_CreatePipe).
+
+        Args:
+            depth: messages that fit in, 1 to OS_QUEUE_MAX_DEPTH.
+            name: unique, at most 19 characters.
+
+        Returns:
+            The pipe id.
+
+        Raises:
+            CfeError: CFE_SB_BAD_ARGUMENT (depth, name), CFE_SB_MAX_PIPES_MET, CFE_SB_PIPE_CR_ERR (name taken).
+        """
+        app = self.caller_name()
+        limit = self.config.os_queue_max_depth
+        if not 0 < depth <= limit or not name:
+            text = f"CreatePipeErr:Bad Input Arg:app={app},ptr=0x0,depth={depth},maxdepth={limit}"
+            raise self._create_error(ev.CR_PIPE_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
+        if len(name) > MAX_NAME:
+            text = f"CreatePipeErr:OS_QueueCreate returned -13,app {app}"
+            raise self._create_error(ev.CR_PIPE_ERR_EID, CFE_SB_PIPE_CR_ERR, text)
+        if len(self.pipes) >= self.config.sb_max_pipes:
+            text = f"CreatePipeErr:Max Pipes({self.config.sb_max_pipes})In Use.app {app}"
+            raise self._create_error(ev.MAX_PIPES_MET_EID, CFE_SB_MAX_PIPES_MET, text)
+        if any(pipe.name == name for pipe in self.pipes):
+            text = f"CreatePipeErr:OS_QueueCreate failed, name taken (app={app}, name={name})"
+            raise self._create_error(ev.CR_PIPE_NAME_TAKEN_EID, CFE_SB_PIPE_CR_ERR, text)
+        return self._add_pipe(depth, name, app)
+
+    def _add_pipe(self, depth: int, name: str, app: str) -> int:
+        owner = self.kernel.current.owner
+        claim = self.ports.memory.claim(
+            getattr(owner, "name", "host"), f"pipe {name}", depth * SLOT_BYTES + PIPE_BYTES
+        )
+        pipe = Pipe(self.kernel, depth, name, owner)
+        pipe.claim = claim
+        pipe_id = self.pipes.create(pipe)
+        pipe.identify(pipe_id)
+        self.peaks.pipes = max(self.peaks.pipes, len(self.pipes))
+        self.report(ev.PIPE_ADDED_EID, ev.DEBUG, f"Pipe Created:name {name},id {pipe_id},app {app}")
+        return pipe_id
+
+    def _create_error(self, event_id: int, status: int, text: str) -> CfeError:
+        self.counters.create_pipe_error += 1
+        self.report(event_id, ev.ERROR, text)
+        return error(status, text)
+
+    def delete_pipe(self, pipe_id: int) -> None:
+        """Delete a pipe of the calling application, its subscriptions and its messages (CFE_SB_DeletePipe).
+
+        Raises:
+            CfeError: CFE_SB_BAD_ARGUMENT: no such pipe, or it belongs to another application.
+        """
+        pipe = self.find_pipe(pipe_id)
+        if pipe is None:
+            text = f"Pipe Delete Error:Bad Argument,PipedId {pipe_id},Requestor {self.caller_name()}"
+            raise self._create_error(ev.DEL_PIPE_ERR1_EID, CFE_SB_BAD_ARGUMENT, text)
+        if self.is_foreign(pipe):
+            text = f"Pipe Delete Error:Caller({self.caller_name()}) is not the owner of pipe {pipe_id}"
+            raise self._create_error(ev.DEL_PIPE_ERR2_EID, CFE_SB_BAD_ARGUMENT, text)
+        self.remove_pipe(pipe)
+        self.report(ev.PIPE_DELETED_EID, ev.DEBUG, f"Pipe Deleted:id {pipe_id},owner {pipe.app_name}")
+
+    def remove_pipe(self, pipe: Pipe) -> None:
+        """Delete a pipe, whoever asks: at clean-up of an application."""
+        for route in self.routes.values():
+            destination = route.find(pipe)
+            if destination is not None:
+                route.remove(destination)
+        self.pipes.delete(pipe.pipe_id)
+        self.ports.memory.release(pipe.claim)
+        pipe.close(None)
+
+    def set_pipe_opts(self, pipe_id: int, opts: int) -> None:
+        """Set the options of a pipe of the calling application (CFE_SB_SetPipeOpts).
+
+        Args:
+            pipe_id: the pipe.
+            opts: 0 or PIPEOPTS_IGNOREMINE: messages of the owning application do not come in.
+        """
+        pipe = self.find_pipe(pipe_id)
+        if pipe is None:
+            text = f"Pipe Opts Error:Bad Argument,PipedId {pipe_id},Requestor {self.caller_name()}"
+            raise self._opts_error(ev.SETPIPEOPTS_ID_ERR_EID, text)
+        if self.is_foreign(pipe):
+            text = f"Pipe Opts Set Error: Caller({self.caller_name()}) is not the owner of pipe {pipe_id}"
+            raise self._opts_error(ev.SETPIPEOPTS_OWNER_ERR_EID, text)
+        pipe.opts = opts
+        text = f"Pipe opts set:id {pipe_id},owner {pipe.app_name}, opts=0x{opts:02x}"
+        self.report(ev.SETPIPEOPTS_EID, ev.DEBUG, text)
+
+    def get_pipe_opts(self, pipe_id: int) -> int:
+        """The options of a pipe (CFE_SB_GetPipeOpts)."""
+        pipe = self.find_pipe(pipe_id)
+        if pipe is None:
+            text = f"Pipe Opts Error:Bad Argument,PipeId {pipe_id},Requestor {self.caller_name()}"
+            raise self._opts_error(ev.GETPIPEOPTS_ID_ERR_EID, text)
+        self.report(ev.GETPIPEOPTS_EID, ev.DEBUG, f"Pipe opts get:id {pipe_id}, opts=0x{pipe.opts:02x}")
+        return pipe.opts
+
+    def get_pipe_name(self, pipe_id: int) -> str:
+        """The name of a pipe (CFE_SB_GetPipeName)."""
+        pipe = self.find_pipe(pipe_id)
+        if pipe is None:
+            text = f"Pipe Id Error:Bad Argument,Id={pipe_id},Requestor {self.caller_name()}"
+            self.report(ev.GETPIPENAME_ID_ERR_EID, ev.ERROR, text)
+            raise error(CFE_SB_BAD_ARGUMENT, text)
+        return pipe.name
+
+    def get_pipe_id_by_name(self, name: str) -> int:
+        """The id of a named pipe (CFE_SB_GetPipeIdByName)."""
+        for pipe in self.pipes:
+            if pipe.name == name:
+                self.report(ev.GETPIPEIDBYNAME_EID, ev.DEBUG, f"PipeIdByName name={name} id={pipe.pipe_id}")
+                return pipe.pipe_id
+        self.counters.get_pipe_id_by_name_error += 1
+        text = f"Pipe ID By Name Error:Bad Argument,Requestor {self.caller_name()}"
+        self.report(ev.GETPIPEIDBYNAME_NAME_ERR_EID, ev.ERROR, text)
+        raise error(CFE_SB_BAD_ARGUMENT, text)
+
+    def pipe_id_to_index(self, pipe_id: int) -> int:
+        """Slot number of a pipe, 0 to the number of pipes less one (CFE_SB_PipeId_ToIndex)."""
+        if self.find_pipe(pipe_id) is None:
+            raise error(CFE_SB_BAD_ARGUMENT, f"pipe id 0x{pipe_id:x} is not in use")
+        return self.pipes.index(pipe_id)
+
+    def cleanup_app(self, app_id: int) -> None:
+        """Delete every pipe of an application that ends (CFE_SB_CleanUpApp)."""
+        for pipe in list(self.pipes):
+            if pipe.app_id == app_id:
+                self.remove_pipe(pipe)
+
+    def _opts_error(self, event_id: int, text: str) -> CfeError:
+        self.counters.pipe_opts_error += 1
+        self.report(event_id, ev.ERROR, text)
+        return error(CFE_SB_BAD_ARGUMENT, text)
