@@ -1,0 +1,131 @@
+"""The boot of the executive (CFE_ES_Main, cfe_es_start.c): core services, then the startup script, state by state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from cfepy.es.records import (
+    LATE_INIT,
+    RUNNING,
+    SYSTEM_APPS_INIT,
+    SYSTEM_CORE_READY,
+    SYSTEM_CORE_STARTUP,
+    SYSTEM_OPERATIONAL,
+    Entry,
+    StartParams,
+)
+from cfepy.es.service import ExecutiveServices
+from cfepy.es.startup_script import CFE_LIB, BadLine, parse
+from cfepy.es.startup_script import Entry as ScriptEntry
+from cfepy.es.tables import STARTUP_POLL_MS
+from cfepy.status import CfeError
+
+NONVOL_STARTUP_FILE = "/cf/cfe_es_startup.scr"
+
+
+class CoreApp(NamedTuple):
+    """A core application of the object table."""
+
+    name: str
+    entry: Entry
+    priority: int
+
+
+class ObjectTable(NamedTuple):
+    """What the executive sets up before any application (cfe_es_objtab.c): calls with their C names, then core apps."""
+
+    calls: Sequence[tuple[str, Callable[[], object]]]
+    core_apps: Sequence[CoreApp]
+
+
+class Boot:
+    """One boot of the executive.
+
+    Args:
+        es: Executive Services.
+        table: what to set up.
+        script: the bytes of the startup script.
+        on_operational: called when the mission is operational.
+    """
+
+    def __init__(
+        self,
+        es: ExecutiveServices,
+        table: ObjectTable,
+        script: bytes,
+        on_operational: Callable[[], object] = lambda: None,
+    ) -> None:
+        self.es = es
+        self.table = table
+        self.script = script
+        self.on_operational = on_operational
+        self.log = es.write_to_sys_log
+
+    def main(self) -> None:
+        """The main task of the processor."""
+        self.log("CFE_ES_SetupResetVariables: POWER ON RESET due to Power Cycle (Power Cycle).")
+        self.log("CFE_ES_Main: CFE_ES_Main in EARLY_INIT state")
+        self.es.console.write("CFE_PSP: CFE_PSP_AttachExceptions called")
+        self._enter(SYSTEM_CORE_STARTUP, "CORE_STARTUP")
+        self._create_objects()
+        self._enter(SYSTEM_CORE_READY, "CORE_READY")
+        self.start_applications()
+        if not self._wait_for_apps(LATE_INIT):
+            self.log("CFE_ES_Main: Startup Sync failed - Applications may not have all initialized")
+        self._enter(SYSTEM_APPS_INIT, "APPS_INIT")
+        if not self._wait_for_apps(RUNNING):
+            self.log("CFE_ES_Main: Startup Sync failed - Applications may not have all started")
+        self._enter(SYSTEM_OPERATIONAL, "OPERATIONAL")
+        self.on_operational()
+
+    def _enter(self, state: int, name: str) -> None:
+        self.log(f"CFE_ES_Main: CFE_ES_Main entering {name} state")
+        self.es.system_state = state
+
+    def _create_objects(self) -> None:
+        self.log("CFE_ES_CreateObjects: Starting Object Creation calls.")
+        for name, call in self.table.calls:
+            self.log(f"CFE_ES_CreateObjects: Calling {name}")
+            call()
+        for core in self.table.core_apps:
+            params = StartParams("", core.name, self.es.config.es_start_task_stack_size, core.priority)
+            app = self.es.app(self.es.create_app(core.name, params, core.entry))
+            self._wait(self.es.config.es_core_max_startup_ms, lambda app=app: app.state >= RUNNING)  # type: ignore[misc]
+        self.log("CFE_ES_CreateObjects: Finished ES CreateObject table entries.")
+
+    def start_applications(self) -> None:
+        """Start what the startup script names (CFE_ES_StartApplications)."""
+        self.log(f"CFE_ES_StartApplications: Opened ES App Startup file: {NONVOL_STARTUP_FILE}")
+        for entry in parse(self.script):
+            if isinstance(entry, BadLine):
+                for text in entry.log_texts:
+                    self.log(text)
+            else:
+                self._start(entry)
+
+    def _start(self, entry: ScriptEntry) -> None:
+        self.log(entry.log_text)
+        try:
+            if entry.kind == CFE_LIB:
+                self.es.load_library(entry.name, entry.path, entry.symbol)
+            else:
+                params = StartParams(
+                    entry.path, entry.symbol, entry.stack_size, entry.priority, entry.exception_action
+                )
+                self.es.create_app(entry.name, params)
+        except CfeError:
+            pass  # it is in the system log; as in cFE the next entry gets its chance
+
+    def _wait_for_apps(self, state: int) -> bool:
+        return self._wait(self.es.config.es_startup_script_timeout_ms, lambda: self.es.reached(state))
+
+    def _wait(self, limit_ms: int, done: Callable[[], bool]) -> bool:
+        """Look every 50 ms (CFE_ES_MainTaskSyncDelay); False when it took too long."""
+        waited = 0
+        while not done():
+            if waited >= limit_ms:
+                return False
+            self.es.osal.task_delay(STARTUP_POLL_MS)
+            waited += STARTUP_POLL_MS
+        return True

@@ -1,0 +1,156 @@
+"""What Executive Services keeps about applications, libraries and tasks, and the states they go through."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
+
+from cfepy.rtos import Task
+
+SYSTEM_EARLY_INIT = 1
+SYSTEM_CORE_STARTUP = 2
+SYSTEM_CORE_READY = 3
+SYSTEM_APPS_INIT = 4
+SYSTEM_OPERATIONAL = 5
+SYSTEM_SHUTDOWN = 6
+
+STATE_NAMES = {1: "EARLY_INIT", 2: "LATE_INIT", 3: "RUNNING", 4: "WAITING", 5: "STOPPED"}
+EARLY_INIT = 1
+LATE_INIT = 2
+RUNNING = 3
+WAITING = 4
+STOPPED = 5
+
+APP_RUN = 1
+APP_EXIT = 2
+APP_ERROR = 3
+SYS_EXCEPTION = 4
+SYS_RESTART = 5
+SYS_RELOAD = 6
+SYS_DELETE = 7
+CORE_APP_INIT_ERROR = 8
+CORE_APP_RUNTIME_ERROR = 9
+
+RESTART_APP = 0  # exception actions
+PROC_RESTART = 1
+
+Entry = Callable[[], object]
+
+
+@dataclass(slots=True)
+class StartParams:
+    """How an application is started, and started again (CFE_ES_AppStartParams_t).
+
+    `file` is cFE's name of the module, `stack_size` is in bytes, `priority` 0 to 255.
+    """
+
+    file: str
+    symbol: str
+    stack_size: int
+    priority: int
+    exception_action: int = RESTART_APP
+
+
+@dataclass(slots=True, eq=False)
+class TaskRecord:
+    """A task of an application."""
+
+    task_id: int
+    name: str
+    stack_size: int
+    priority: int
+    task: Task | None = None
+    execution_counter: int = 0
+
+
+@dataclass(slots=True, eq=False)
+class AppRecord:
+    """An application; it is the owner of its tasks, so that a service finds the caller there."""
+
+    name: str
+    params: StartParams
+    entry: Entry
+    is_core: bool = False
+    app_id: int = 0
+    state: int = EARLY_INIT
+    control_request: int = APP_RUN
+    timer_ms: int = 0
+    main_task_id: int = 0
+    error: BaseException | None = None
+    tasks: dict[int, TaskRecord] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class AppHistory:
+    """What outlives an application that is restarted under the same name, for the end of a run."""
+
+    name: str
+    restarts: int = 0
+    deaths: int = 0
+    cpu_ns: int = 0
+    last_state: int = EARLY_INIT
+    last_error: BaseException | None = None
+
+
+@dataclass(slots=True, eq=False)
+class LibRecord:
+    """A library."""
+
+    name: str
+    file: str
+    lib_id: int = 0
+
+
+class Fault(NamedTuple):
+    """A task that died of an exception, until the background scan deals with it."""
+
+    app: AppRecord
+    task_id: int
+    reason: str
+
+
+class AppInfo(NamedTuple):
+    """What CFE_ES_GetAppInfo tells about an application."""
+
+    app_id: int
+    type: int
+    name: str
+    entry_point: str
+    file_name: str
+    stack_size: int
+    exception_action: int
+    priority: int
+    main_task_id: int
+    main_task_name: str
+    execution_counter: int
+    num_of_child_tasks: int
+
+
+class TaskInfo(NamedTuple):
+    """What CFE_ES_GetTaskInfo tells about a task."""
+
+    task_id: int
+    task_name: str
+    app_id: int
+    app_name: str
+    stack_size: int
+    priority: int
+    execution_counter: int
+
+
+class Loader(Protocol):
+    """Finds the code that a startup script names.
+
+    `load` raises `OsalError` for a file that is not there (its status is the EC of NASA's text) and `SymbolError` for
+    an entry point that the file does not have.
+    """
+
+    def exists(self, file: str) -> bool:
+        """Whether there is such a module."""
+
+    def load(self, file: str, symbol: str, app_name: str) -> Entry:
+        """The main function of an application."""
+
+    def load_library(self, file: str, symbol: str) -> Callable[[int], object]:
+        """The init function of a library."""

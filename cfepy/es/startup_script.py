@@ -1,0 +1,240 @@
+"""The startup script, cfe_es_startup.scr: which libraries and apps a mission starts, read byte for byte as cFE does.
+
+Stands for the reading half of CFE_ES_StartApplications and CFE_ES_ParseFileEntry. To cFE the file is a stream: blanks
+and newlines vanish, "," ends a field, ";" an entry, the first "!" the file, and there is no comment before that. So an
+entry that says something else than its author meant is the rule; every one carries the line of text it began on and an
+explanation, beside the words of cFE's own system log. Imports only cfepy.status and cfepy.fs.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from cfepy.fs import FileCategory, parse_input_file_name
+from cfepy.status import CFE_ES_BAD_ARGUMENT, CFE_ES_ERR_APP_CREATE, CfeError
+
+CFE_APP = "CFE_APP"
+CFE_LIB = "CFE_LIB"
+
+EXCEPTION_RESTART_APP = 0
+EXCEPTION_PROC_RESTART = 1
+
+MAX_TOKENS = 8
+BUFFER_SIZE = 128
+MAX_NAME_LEN = 20
+MAX_TASK_PRIORITY = 255
+
+_ULONG_MAX = (1 << 64) - 1
+_DROPPED = bytes([*range(0x21), *range(0x80, 0x100)])
+"""Not above " " as a signed char: blanks and control characters, and on x86 everything beyond ASCII."""
+
+_NUMBER = re.compile(r"([+-]?)(0[xX][0-9a-fA-F]+|[0-9]+)")
+_PLAIN_NUMBER = re.compile(r"0[xX][0-9a-fA-F]+|0|[1-9][0-9]*")
+_PARSE = "CFE_ES_ParseFileEntry: "
+_START = "CFE_ES_StartApplications: "
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A library or an app to start.
+
+    Attributes:
+        kind: CFE_APP or CFE_LIB.
+        file: the file as written.
+        path: the file with default directory and extension, as cFE names it: "/cf/hk.so".
+        symbol: the entry function.
+        name: cFE's name of it.
+        priority: 0 (most urgent) to 255.
+        stack_size: bytes.
+        exception_action: EXCEPTION_RESTART_APP or EXCEPTION_PROC_RESTART.
+        number: which entry of the script it is, from 1; cFE calls it the file's line.
+        line: the line of text it begins on, from 1.
+        log_text: what cFE's system log says before it starts it.
+    """
+
+    kind: str
+    file: str
+    path: str
+    symbol: str
+    name: str
+    priority: int
+    stack_size: int
+    exception_action: int
+    number: int
+    line: int
+    log_text: str
+
+
+@dataclass(frozen=True, slots=True)
+class BadLine:
+    """An entry that starts nothing.
+
+    Attributes:
+        number: which entry of the script it is, from 1.
+        line: the line of text it begins on, from 1.
+        log_texts: what cFE's system log says.
+        explanation: what is wrong and what to do.
+        status: what CFE_ES_ParseFileEntry returns.
+        source: the entry without blanks.
+    """
+
+    number: int
+    line: int
+    log_texts: tuple[str, ...]
+    explanation: str
+    status: int
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """Something in a script that is hardly meant so; `line` is the line of text, from 1."""
+
+    line: int
+    explanation: str
+
+
+class _Raw(NamedTuple):
+    number: int
+    line: int
+    text: str
+    ended: bool
+    dropped: bool
+
+
+def parse(data: bytes) -> Iterator[Entry | BadLine]:
+    """The entries of a startup script in order, one result for each ";"; no bytes make it fail.
+
+    Args:
+        data: the file.
+    """
+    for raw in _split(data):
+        if raw.ended:
+            yield _parse_entry(raw)
+
+
+def check(data: bytes) -> list[Note]:
+    """Everything in a script that its author should look at, also what cFE takes without a word.
+
+    Args:
+        data: the file.
+    """
+    found: list[Note] = []
+    for raw in _split(data):
+        found += [Note(raw.line, text) for text in _remarks(raw)]
+    return found
+
+
+def strtoul(text: str) -> int:
+    """C's strtoul with base 0 and 64 bits: "0x1F" is 31, "017" is 15, garbage is 0, too much is the largest number."""
+    match = _NUMBER.match(text)
+    if match is None:
+        return 0
+    sign, digits = match.groups()
+    value = min(_magnitude(digits), _ULONG_MAX)
+    return -value & _ULONG_MAX if sign == "-" and value < _ULONG_MAX else value
+
+
+def _magnitude(digits: str) -> int:
+    if digits[:2] in ("0x", "0X"):
+        return int(digits, 16)
+    if digits[0] == "0":
+        return int(re.split("[89]", digits)[0] or "0", 8)
+    return int(digits)
+
+
+def _split(data: bytes) -> Iterator[_Raw]:
+    """The script cut into entries; the last one, if any, has no ";" (`ended` is False)."""
+    chunks = data.partition(b"!")[0].split(b";")
+    line = 1
+    for number, chunk in enumerate(chunks, 1):
+        ended = number < len(chunks)
+        text = chunk.translate(None, _DROPPED).decode("ascii")
+        start = len(chunk) - len(chunk.lstrip(_DROPPED))
+        if ended or text:
+            yield _Raw(number, line + chunk.count(b"\n", 0, start), text, ended, not chunk.isascii())
+        line += chunk.count(b"\n")
+
+
+def _parse_entry(raw: _Raw) -> Entry | BadLine:
+    tokens = raw.text.split(",")
+    if len(tokens) > MAX_TOKENS or len(raw.text) > BUFFER_SIZE:
+        return _malformed(raw, len(tokens))
+    if len(tokens) < MAX_TOKENS:
+        return _too_few(raw, len(tokens))
+    kind, file, symbol, name = tokens[:4]
+    try:
+        path = parse_input_file_name(file, FileCategory.DYNAMIC_MODULE)
+    except CfeError as error:
+        text = f"{_PARSE}Invalid ES Startup script file name: {file}"
+        return _bad(raw, f"the file name cannot be used: {error.text}", text, error.status)
+    if kind not in (CFE_APP, CFE_LIB):
+        text = f"{_PARSE}Unexpected EntryType {kind} in startup file."
+        return _bad(raw, f"the first field is {kind!r}, it must be {CFE_APP} or {CFE_LIB}", text, CFE_ES_ERR_APP_CREATE)
+    log_text = _loading(kind, path, name)
+    if len(name) >= MAX_NAME_LEN:
+        reason = f"the name {name!r} has {len(name)} characters, at most {MAX_NAME_LEN - 1} fit; cFE says nothing of it"
+        return _bad(raw, reason, log_text, CFE_ES_BAD_ARGUMENT)
+    return Entry(
+        kind=kind,
+        file=file,
+        path=path,
+        symbol=symbol[: MAX_NAME_LEN - 1],
+        name=name,
+        priority=min(strtoul(tokens[4]), MAX_TASK_PRIORITY),
+        stack_size=strtoul(tokens[5]),
+        exception_action=EXCEPTION_PROC_RESTART if strtoul(tokens[7]) else EXCEPTION_RESTART_APP,
+        number=raw.number,
+        line=raw.line,
+        log_text=log_text,
+    )
+
+
+def _loading(kind: str, path: str, name: str) -> str:
+    if kind == CFE_LIB:
+        return f"{_PARSE}Loading shared library: {path}"
+    return f"{_PARSE}Loading file: {path}, APP: {name}"
+
+
+def _bad(raw: _Raw, explanation: str, log_text: str, status: int = CFE_ES_BAD_ARGUMENT) -> BadLine:
+    return BadLine(raw.number, raw.line, (log_text,), explanation, status, raw.text)
+
+
+def _malformed(raw: _Raw, tokens: int) -> BadLine:
+    """More fields, or more characters, than cFE's buffers take; its log counts the commas as "tokens"."""
+    size = len(raw.text)
+    text = f"{_START}**WARNING** File Line {raw.number} is malformed: {size} bytes, {tokens - 1} tokens."
+    if tokens > MAX_TOKENS:
+        return _bad(raw, f"the entry has {tokens} fields, it must have {MAX_TOKENS}; is a ';' missing?", text)
+    return _bad(raw, f"the entry has {size} characters without blanks, at most {BUFFER_SIZE} are read", text)
+
+
+def _too_few(raw: _Raw, tokens: int) -> BadLine:
+    text = f"{_PARSE}Invalid ES Startup file entry: {tokens}"
+    reason = f"the entry has {tokens} of {MAX_TOKENS} fields"
+    if raw.text.startswith(("#", "//", "/*")):
+        reason += "; a startup script has no comments before the '!' that ends it"
+    return _bad(raw, reason, text)
+
+
+def _remarks(raw: _Raw) -> Iterator[str]:
+    if raw.dropped:
+        yield "bytes that are not ASCII are left out of the entry"
+    if not raw.ended:
+        yield f"the last entry has no ';' and is lost: {raw.text}"
+        return
+    entry = _parse_entry(raw)
+    if isinstance(entry, BadLine):
+        yield entry.explanation
+        return
+    fields = raw.text.split(",")
+    if len(fields[2]) >= MAX_NAME_LEN:
+        yield f"the symbol {fields[2]!r} is cut to {entry.symbol!r}"
+    for what, field in (("priority", fields[4]), ("stack size", fields[5]), ("exception action", fields[7])):
+        if not _PLAIN_NUMBER.fullmatch(field):
+            yield f"the {what} {field!r} is read as {strtoul(field)}"
+    if strtoul(fields[4]) > MAX_TASK_PRIORITY:
+        yield f"the priority {fields[4]} is cut to {MAX_TASK_PRIORITY}"
