@@ -92,9 +92,8 @@ class AppServices(EsCore):
 
     def _explain(self, failure: CfeError) -> None:
         """More than NASA's line says, where the cause has more to tell: who uses the board's memory."""
-        text = getattr(failure, "report", "")
-        if text:
-            self.console.write(text)
+        if "\n" in failure.text:
+            self.console.write(failure.text)
 
     def load_library(self, name: str, file: str, symbol: str) -> int:
         """Load a library and call its init function (CFE_ES_LoadLibrary).

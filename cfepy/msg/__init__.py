@@ -61,10 +61,12 @@ from cfepy.msg.secondary import (
     origination_action,
     set_fcn_code,
     set_msg_time,
+    set_user_data_length,
     telemetry,
     validate_checksum,
     verification_action,
 )
+from cfepy.msg.strings import message_string_get, message_string_set
 from cfepy.msg.topics import (
     cmd_topic_id_to_msg_id,
     global_cmd_topic_id_to_msg_id,
@@ -119,6 +121,8 @@ __all__ = [
     "is_valid_msg_id",
     "local_cmd_topic_id_to_msg_id",
     "local_tlm_topic_id_to_msg_id",
+    "message_string_get",
+    "message_string_set",
     "msg_id_equal",
     "msg_id_to_value",
     "origination_action",
@@ -137,6 +141,7 @@ __all__ = [
     "set_subsystem",
     "set_system",
     "set_type",
+    "set_user_data_length",
     "telemetry",
     "tlm_topic_id_to_msg_id",
     "validate_checksum",

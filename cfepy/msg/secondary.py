@@ -22,8 +22,12 @@ from cfepy.msg.header import (
     get_type,
     init,
     set_msg_id,
+    set_size,
 )
 from cfepy.status import CFE_MSG_WRONG_MSG_TYPE, CfeError
+
+MAX_BUS_MSG_SIZE = 32768
+"""CFE_MISSION_SB_MAX_SB_MSG_SIZE."""
 
 _FCN_CODE_MASK = 0x7F
 _KIND_MASK = 0xF8
@@ -159,6 +163,16 @@ def get_user_data(packet: Packet) -> memoryview:
 def get_user_data_length(packet: Packet) -> int:
     """Bytes after the headers, by the header's size (CFE_SB_GetUserDataLength)."""
     return get_size(packet) - get_header_size(packet)
+
+
+def set_user_data_length(packet: bytearray, length: int) -> None:
+    """Set the header's size so that `length` bytes follow the headers (CFE_SB_SetUserDataLength).
+
+    Raises:
+        CfeError: CFE_MSG_BAD_ARGUMENT when the packet would be larger than the 32768 bytes that the bus takes.
+    """
+    size = check_range("packet size", get_header_size(packet) + length, MAX_BUS_MSG_SIZE)
+    set_size(packet, size)
 
 
 def command(msg_id: int, fcn_code: int, payload: bytes = b"") -> bytearray:

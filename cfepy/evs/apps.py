@@ -1,0 +1,152 @@
+"""What Event Services keeps of one application: its filters, enabled event types, counters and flood brake.
+
+Stands for EVS_AppData_t, EVS_IsFiltered and EVS_CheckAndIncrementSquelchTokens. Sends nothing itself, and imports no
+other service.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from cfepy.config import PlatformConfig
+
+ALL_TYPES = 0x0F
+"""A bit for each event type: DEBUG 1, INFORMATION 2, ERROR 4, CRITICAL 8."""
+
+FREE_SLOT = 0xFFFF
+MAX_FILTER_COUNT = 0xFFFF
+MAX_SQUELCHED = 255
+
+EVENT_COST = 1000
+_NS_PER_MS = 1_000_000
+
+
+@dataclass(slots=True)
+class BinFilter:
+    """Lets an event pass when its count and the mask have no bit in common (EVS_BinFilter_t)."""
+
+    event_id: int = FREE_SLOT
+    mask: int = 0
+    count: int = 0
+
+
+class Filters:
+    """The filter slots of an application.
+
+    Args:
+        size: how many there are.
+        wanted: (event id, mask) pairs; what does not fit is left out.
+    """
+
+    __slots__ = ("_by_id", "slots")
+
+    def __init__(self, size: int, wanted: Iterable[tuple[int, int]] = ()) -> None:
+        self.slots = [BinFilter() for _ in range(size)]
+        for slot, (event_id, mask) in zip(self.slots, wanted, strict=False):
+            slot.event_id, slot.mask = event_id, mask
+        self._index()
+
+    def _index(self) -> None:
+        self._by_id = {slot.event_id: slot for slot in reversed(self.slots) if slot.event_id != FREE_SLOT}
+
+    def find(self, event_id: int) -> BinFilter | None:
+        """The filter of an event, the first one if there are two."""
+        return self._by_id.get(event_id)
+
+    def add(self, event_id: int, mask: int) -> bool:
+        """Use a free slot; False when there is none."""
+        slot = next((slot for slot in self.slots if slot.event_id == FREE_SLOT), None)
+        if slot is None:
+            return False
+        slot.event_id, slot.mask, slot.count = event_id, mask, 0
+        self._index()
+        return True
+
+    def remove(self, slot: BinFilter) -> None:
+        """Free a slot."""
+        slot.event_id, slot.mask, slot.count = FREE_SLOT, 0, 0
+        self._index()
+
+    def reset(self) -> None:
+        """Count from 0 again, all of them."""
+        for slot in self.slots:
+            slot.count = 0
+
+
+@dataclass(slots=True)
+class Squelch:
+    """The flood brake: a bucket of tokens that events empty and time fills.
+
+    A token is worth a thousandth of an event, so that integers do. The bucket can go below zero as far as it can be
+    full, so that a flood has to pause before events come through again.
+
+    Args:
+        burst: events that a full bucket lets through; 0 switches the brake off.
+        per_second: events that a second brings back.
+    """
+
+    burst: int
+    per_second: int
+    tokens: int = field(init=False)
+    dropped: int = 0
+    _credited_at: int = 0
+
+    def __post_init__(self) -> None:
+        self.tokens = self.burst * EVENT_COST
+
+    def admit(self, now: int) -> tuple[bool, bool]:
+        """Whether an event may go out at a time in ns, and whether to announce that events are dropped now."""
+        if not self.burst:
+            return True, False
+        full = self.burst * EVENT_COST
+        credit = (now - self._credited_at) // _NS_PER_MS * self.per_second
+        if credit >= EVENT_COST:
+            self._credited_at = now
+            self.tokens = min(full, self.tokens + credit)
+        admitted = self.tokens > 0
+        announce = not admitted and self.tokens > -EVENT_COST and credit < EVENT_COST
+        if not admitted:
+            self.dropped = min(MAX_SQUELCHED, self.dropped + 1)
+        self.tokens = max(-full, self.tokens - EVENT_COST)
+        return admitted, announce
+
+
+class AppEvents:
+    """One registered application.
+
+    Args:
+        app_id: its AppId.
+        name: its name, as events show it.
+        config: limits and defaults.
+        wanted: its (event id, mask) filters.
+
+    Attributes:
+        active: events are enabled at all.
+        types: enabled event types, one bit each.
+        sent: events sent, up to 65535.
+    """
+
+    __slots__ = ("active", "app_id", "filters", "name", "sent", "squelch", "types")
+
+    def __init__(self, app_id: int, name: str, config: PlatformConfig, wanted: Iterable[tuple[int, int]] = ()) -> None:
+        self.app_id = app_id
+        self.name = name
+        self.active = True
+        self.types = config.evs_default_type_flag
+        self.sent = 0
+        self.filters = Filters(config.evs_max_event_filters, wanted)
+        self.squelch = Squelch(config.evs_max_app_event_burst, config.evs_app_events_per_sec)
+
+    def judge(self, event_id: int, event_type: int) -> tuple[bool, bool]:
+        """(whether an event is filtered out, whether its filter was locked by this very event)."""
+        if not self.active or not 0 < event_type < 5 or not self.types >> event_type - 1 & 1:
+            return True, False
+        slot = self.filters.find(event_id)
+        if slot is None:
+            return False, False
+        is_filtered = slot.mask & slot.count != 0
+        if slot.count < MAX_FILTER_COUNT:
+            slot.count += 1
+            return is_filtered, slot.count == MAX_FILTER_COUNT
+        return is_filtered, False

@@ -1,0 +1,159 @@
+"""The making of an event: filters, flood brake, packets, event log and output ports (cfe_evs_utils.c).
+
+`EventServices` adds the calls that applications make, `EvsCommands` those of the ground. Imports no other service.
+"""
+
+from __future__ import annotations
+
+from cfepy.config import PlatformConfig
+from cfepy.console import Console
+from cfepy.evs import packets as pk
+from cfepy.evs.apps import AppEvents
+from cfepy.evs.events import (
+    CFE_EVS_ERR_UNREGISTERED_EVS_APP,
+    CFE_EVS_FILTER_MAX_EID,
+    CFE_EVS_SQUELCHED_ERR_EID,
+    ERROR,
+    INFORMATION,
+)
+from cfepy.evs.log import EventLog
+from cfepy.msg import PRIMARY_HEADER_SIZE, telemetry
+from cfepy.ports import Ports
+from cfepy.rtos import Kernel
+
+TRUNCATED = b"$"
+PORTS = (1, 2, 3, 4)
+
+_U16_MAX = 0xFFFF
+
+
+def _primary_header(msg_id: int, payload_size: int) -> bytes:
+    return bytes(telemetry(msg_id, bytes(payload_size))[:PRIMARY_HEADER_SIZE])
+
+
+_SPARE = bytes(4)
+_LONG_HEADER = _primary_header(pk.CFE_EVS_LONG_EVENT_MSG_MID, pk.LONG_EVENT.size)
+_SHORT_HEADER = _primary_header(pk.CFE_EVS_SHORT_EVENT_MSG_MID, pk.SHORT_EVENT.size)
+
+
+class EventCore:
+    """State of Event Services and the way of an event through it; the arguments are those of `EventServices`.
+
+    Attributes:
+        apps: the registered applications by AppId.
+        unregistered: AppIds that tried to send without being registered, each reported once.
+        own_app_id: AppId of CFE_EVS itself; 0 until its task runs.
+        log: the event log.
+        ports_mask: the output ports that are enabled, one bit each.
+        format_mode: FORMAT_SHORT or FORMAT_LONG, of the packet on the bus.
+        sent: events sent since the counters were reset, up to 65535.
+        truncated: events whose text was cut, likewise.
+        unregistered_count: applications that were reported as unregistered, likewise.
+        counts: events sent in this run by event type, for reports.
+        errors_by_app: ERROR and CRITICAL events sent in this run by application name, for reports.
+    """
+
+    def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, console: Console) -> None:
+        self.kernel = kernel
+        self.ports = ports
+        self.config = config
+        self.apps: dict[int, AppEvents] = {}
+        self.unregistered: set[int] = set()
+        self.own_app_id = 0
+        self.log = EventLog(config.evs_log_max, config.evs_default_log_mode)
+        self.ports_mask = config.evs_port_default
+        self.format_mode = config.evs_default_msg_format_mode
+        self.sent = self.truncated = self.unregistered_count = 0
+        self.counts: dict[int, int] = {}
+        self.errors_by_app: dict[str, int] = {}
+        self._console = console
+
+    def dispatch(
+        self, app: AppEvents, event_id: int, event_type: int, text: str, time: tuple[int, int] | None = None
+    ) -> None:
+        """Send an event of an application, unless its filters or its flood brake hold it back.
+
+        Args:
+            app: whose event it is.
+            event_id: 0 to 65535.
+            event_type: 1 to 4.
+            text: what happened.
+            time: spacecraft time that it shows; None for now.
+        """
+        if self._is_filtered(app, event_id, event_type):
+            return
+        admitted, announce = app.squelch.admit(self.kernel.now)
+        if announce:
+            self.send_own(CFE_EVS_SQUELCHED_ERR_EID, ERROR, f"Events squelched, AppName = {app.name}")
+        if admitted:
+            self._generate(app, event_id, event_type, text, time)
+
+    def send_own(self, event_id: int, event_type: int, text: str) -> None:
+        """Send an event of Event Services itself, which has no flood brake; nothing before its task runs."""
+        app = self.apps.get(self.own_app_id)
+        if app is not None and not self._is_filtered(app, event_id, event_type):
+            self._generate(app, event_id, event_type, text, None)
+
+    def report_unregistered(self, name: str) -> None:
+        """Count and tell that an application sends events without being registered."""
+        self.unregistered_count += 1
+        text = f"App {name} not registered with Event Services. Unable to send event."
+        self.send_own(CFE_EVS_ERR_UNREGISTERED_EVS_APP, ERROR, text)
+        self.ports.syslog.write_to_sys_log(f"EVS_NotRegistered: {text}")
+
+    def _is_filtered(self, app: AppEvents, event_id: int, event_type: int) -> bool:
+        is_filtered, is_locked = app.judge(event_id, event_type)
+        if is_locked:
+            text = (
+                f"Max filter count reached, AppName = {app.name}, EventID = 0x{event_id:08x}: Filter locked until reset"
+            )
+            self.send_own(CFE_EVS_FILTER_MAX_EID, INFORMATION, text)
+        return is_filtered
+
+    def _generate(
+        self, app: AppEvents, event_id: int, event_type: int, text: str, time: tuple[int, int] | None
+    ) -> None:
+        """Make the packets and give them to log, ports and bus, in this order (EVS_GenerateEventTelemetry)."""
+        message, is_cut = self._fit(text)
+        clock = self.ports.time
+        stamp = clock.stamp() if time is None else time[0] << 16 | time[1] >> 16
+        secondary_header = stamp.to_bytes(6, "big") + _SPARE
+        packet_id = {
+            "AppName": app.name,
+            "EventID": event_id,
+            "EventType": event_type,
+            "SpacecraftID": self.config.spacecraft_id,
+            "ProcessorID": self.config.processor_id,
+        }
+        packet = _LONG_HEADER + secondary_header + pk.LONG_EVENT.pack(PacketID=packet_id, Message=message)
+        self.log.add(packet)
+        if self.ports_mask:
+            self._write_ports(clock.text() if time is None else clock.print_(time), app.name, event_id, message)
+        if self.format_mode == pk.FORMAT_SHORT:
+            packet = _SHORT_HEADER + secondary_header + pk.SHORT_EVENT.pack(PacketID=packet_id)
+        self.ports.sb.transmit_msg(packet)
+        self._count(app, event_type, is_cut)
+
+    def _fit(self, text: str) -> tuple[bytes, bool]:
+        """The bytes of a text as a C string that fits the packet, and whether it had to be cut."""
+        data = text.encode("utf-8", "replace").partition(b"\0")[0]
+        room = self.config.evs_max_message_length - 1
+        if len(data) <= room:
+            return data, False
+        return data[: room - 1] + TRUNCATED, True
+
+    def _write_ports(self, time: str, app_name: str, event_id: int, message: bytes) -> None:
+        origin = f"{self.config.spacecraft_id}/{self.config.processor_id}/{app_name}"
+        line = f"{time} {origin} {event_id}: {message.decode('utf-8', 'replace')}"
+        for port in PORTS:
+            if self.ports_mask >> port - 1 & 1:
+                self._console.write(f"EVS Port{port} {line}")
+
+    def _count(self, app: AppEvents, event_type: int, is_cut: bool) -> None:
+        self.sent = min(_U16_MAX, self.sent + 1)
+        app.sent = min(_U16_MAX, app.sent + 1)
+        self.truncated += is_cut
+        self.counts[event_type] = self.counts.get(event_type, 0) + 1
+        if event_type >= ERROR:
+            self.errors_by_app[app.name] = self.errors_by_app.get(app.name, 0) + 1
+

@@ -1,0 +1,269 @@
+"""Event Services as applications and the other services call them (cfe_evs.h), and the making of an event.
+
+An event goes to the event log, to the console by way of the output ports, and onto the Software Bus. Imports no other
+service.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from cfepy.config import PlatformConfig
+from cfepy.console import Console
+from cfepy.evs import packets as pk
+from cfepy.evs.apps import AppEvents
+from cfepy.evs.commands import EvsCommands
+from cfepy.evs.core import EventCore
+from cfepy.evs.events import (
+    CFE_EVS_STARTUP_EID,
+    CRITICAL,
+    DEBUG,
+    ERROR,
+    INFORMATION,
+)
+from cfepy.evs.log import DISCARD, OVERWRITE, EventLog
+from cfepy.ids import ES_APPID_BASE, get_base
+from cfepy.ports import Caller, Ports
+from cfepy.rtos import Kernel
+from cfepy.status import (
+    CFE_ES_BAD_ARGUMENT,
+    CFE_EVS_APP_ILLEGAL_APP_ID,
+    CFE_EVS_APP_NOT_REGISTERED,
+    CFE_EVS_EVT_NOT_REGISTERED,
+    CFE_EVS_INVALID_PARAMETER,
+    CfeError,
+)
+from cfepy.versions import version_string
+
+PIPE_DEPTH = 32
+PIPE_NAME = "EVS_CMD_PIPE"
+CORE_READY = 3
+PEND_FOREVER = -1
+
+_U16_MAX = 0xFFFF
+
+
+class EventServices(EventCore):
+    """Events of one processor.
+
+    A call that sends an event returns nothing and does not tell whether a filter or the flood brake held it back;
+    housekeeping does.
+
+    Args:
+        kernel: the processor; its virtual time refills the flood brakes.
+        ports: the other services.
+        config: limits and defaults.
+        console: where the output ports write.
+        write_file: writes bytes to a file of a path in the file system of the mission, for the commands that dump to
+            files; None leaves these commands out.
+    """
+
+    def __init__(
+        self,
+        kernel: Kernel,
+        ports: Ports,
+        config: PlatformConfig,
+        console: Console,
+        write_file: Callable[[str, bytes], object] | None = None,
+    ) -> None:
+        super().__init__(kernel, ports, config, console)
+        self.commands = EvsCommands(self, write_file)
+
+    # -- life ------------------------------------------------------------------------------------------------------
+
+    def early_init(self, kept: EventLog | None = None) -> None:
+        """Get the event log ready, before any task exists (CFE_EVS_EarlyInit).
+
+        Args:
+            kept: the log of before a processor reset; None starts with an empty one.
+        """
+        if kept is None:
+            text = "Event Log cleared following power-on reset"
+        elif kept.mode not in (OVERWRITE, DISCARD):
+            text = f"Event Log cleared, {kept.summary()}"
+        else:
+            self.log = kept
+            text = f"Event Log restored, {kept.summary()}"
+        self.ports.syslog.write_to_sys_log(f"CFE_EVS_EarlyInit: {text}")
+
+    def task_main(self) -> None:
+        """The task CFE_EVS (CFE_EVS_TaskMain)."""
+        ports = self.ports
+        self.register()
+        pipe = ports.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
+        ports.sb.subscribe(pk.CFE_EVS_CMD_MID, pipe)
+        ports.sb.subscribe(pk.CFE_EVS_SEND_HK_MID, pipe)
+        self.own_app_id = ports.es.get_app_id()
+        self.send_own(CFE_EVS_STARTUP_EID, INFORMATION, f"cFE EVS Initialized: {version_string('CFE_EVS')}")
+        ports.es.wait_for_system_state(CORE_READY, self.config.es_core_max_startup_ms)
+        while True:
+            ports.es.increment_task_counter()
+            packet = ports.sb.receive_buffer(pipe, PEND_FOREVER)
+            if packet is not None:
+                self.commands.process(packet)
+
+    def cleanup_app(self, app_id: int) -> None:
+        """Forget an application that ended (CFE_EVS_CleanUpApp)."""
+        self.apps.pop(app_id, None)
+        self.unregistered.discard(app_id)
+
+    # -- registration and filters ----------------------------------------------------------------------------------
+
+    def register(self, filters: Iterable[tuple[int, int]] = ()) -> None:
+        """Register the calling application; again, with all counters at 0, if it was (CFE_EVS_Register).
+
+        Args:
+            filters: (event id, mask) pairs. An event passes when its count, from 0, and the mask have no bit in
+                common: mask 0xFFFC lets the first four pass, 0x0001 every other one. Of more than
+                `evs_max_event_filters` only the first are used.
+
+        Raises:
+            CfeError: CFE_EVS_APP_ILLEGAL_APP_ID outside of an application, CFE_ES_BAD_ARGUMENT for a filter that is
+                not two 16-bit numbers.
+        """
+        caller = self._caller()
+        wanted = list(filters)
+        for pair in wanted:
+            _check_filter(pair)
+        limit = self.config.evs_max_event_filters
+        if len(wanted) > limit:
+            self.ports.syslog.write_to_sys_log(f"CFE_EVS_Register: Filter limit truncated to {limit}")
+        self.unregistered.discard(caller.app_id)
+        self.apps[caller.app_id] = AppEvents(caller.app_id, caller.name, self.config, wanted)
+
+    def reset_filter(self, event_id: int) -> None:
+        """Let the filter of an event count from 0 again (CFE_EVS_ResetFilter).
+
+        Raises:
+            CfeError: CFE_EVS_APP_ILLEGAL_APP_ID, CFE_EVS_APP_NOT_REGISTERED, CFE_EVS_EVT_NOT_REGISTERED.
+        """
+        slot = self._registered_caller().filters.find(event_id)
+        if slot is None:
+            raise CfeError(CFE_EVS_EVT_NOT_REGISTERED, f"event {event_id} has no filter")
+        slot.count = 0
+
+    def reset_all_filters(self) -> None:
+        """Let all filters of the calling application count from 0 again (CFE_EVS_ResetAllFilters).
+
+        Raises:
+            CfeError: CFE_EVS_APP_ILLEGAL_APP_ID, CFE_EVS_APP_NOT_REGISTERED.
+        """
+        self._registered_caller().filters.reset()
+
+    # -- events ----------------------------------------------------------------------------------------------------
+
+    def send_event(self, event_id: int, event_type: int, text: str) -> None:
+        """Send an event of the calling application (CFE_EVS_SendEvent).
+
+        Args:
+            event_id: 0 to 65535.
+            event_type: DEBUG 1, INFORMATION 2, ERROR 3 or CRITICAL 4; any other is never sent.
+            text: what happened; only 121 bytes of it fit, the last one then is "$".
+
+        Raises:
+            CfeError: CFE_EVS_APP_ILLEGAL_APP_ID outside of an application, CFE_EVS_APP_NOT_REGISTERED,
+                CFE_EVS_INVALID_PARAMETER for a text or an id that is none.
+        """
+        caller: Caller | None = self.kernel.current.owner
+        app = self.apps.get(caller.app_id) if caller is not None else None
+        if app is None:
+            app = self._registered_caller(report=True)
+        _check_event(event_id, text)
+        self.dispatch(app, event_id, event_type, text)
+
+    def send_event_with_app_id(self, event_id: int, event_type: int, app_id: int, text: str) -> None:
+        """Send an event in the name of an application (CFE_EVS_SendEventWithAppID).
+
+        AppId 0, which a core service has before its task runs, sends nothing.
+
+        Args:
+            event_id: as for `send_event`.
+            event_type: as for `send_event`.
+            app_id: the application whose event it is, with its filters and types.
+            text: as for `send_event`.
+
+        Raises:
+            CfeError: CFE_EVS_APP_ILLEGAL_APP_ID for an id of something else, CFE_EVS_APP_NOT_REGISTERED,
+                CFE_EVS_INVALID_PARAMETER.
+        """
+        app = self.apps.get(app_id)
+        if app is None:
+            if not app_id:
+                return
+            if get_base(app_id) != ES_APPID_BASE:
+                raise CfeError(CFE_EVS_APP_ILLEGAL_APP_ID, f"0x{app_id:x} is not an AppId")
+            raise self._not_registered(app_id)
+        _check_event(event_id, text)
+        self.dispatch(app, event_id, event_type, text)
+
+    def send_timed_event(self, time: tuple[int, int], event_id: int, event_type: int, text: str) -> None:
+        """Send an event with another time than now (CFE_EVS_SendTimedEvent).
+
+        The time shows in the log and on the console; the bus stamps its copy anew.
+
+        Args:
+            time: (seconds, subseconds of 2**-32 s) of spacecraft time.
+            event_id: as for `send_event`.
+            event_type: as for `send_event`.
+            text: as for `send_event`.
+
+        Raises:
+            CfeError: as `send_event`.
+        """
+        app = self._registered_caller(report=True)
+        _check_event(event_id, text)
+        self.dispatch(app, event_id, event_type, text, time)
+
+    def send_dbg(self, event_id: int, text: str) -> None:
+        """Send a DEBUG event (CFE_EVS_SendDbg); errors as `send_event`."""
+        self.send_event(event_id, DEBUG, text)
+
+    def send_info(self, event_id: int, text: str) -> None:
+        """Send an INFORMATION event (CFE_EVS_SendInfo); errors as `send_event`."""
+        self.send_event(event_id, INFORMATION, text)
+
+    def send_err(self, event_id: int, text: str) -> None:
+        """Send an ERROR event (CFE_EVS_SendErr); errors as `send_event`."""
+        self.send_event(event_id, ERROR, text)
+
+    def send_crit(self, event_id: int, text: str) -> None:
+        """Send a CRITICAL event (CFE_EVS_SendCrit); errors as `send_event`."""
+        self.send_event(event_id, CRITICAL, text)
+
+    # -- who calls -------------------------------------------------------------------------------------------------
+
+    def _caller(self) -> Caller:
+        caller: Caller | None = self.kernel.current.owner
+        if caller is None:
+            raise CfeError(CFE_EVS_APP_ILLEGAL_APP_ID, "the calling task belongs to no application")
+        return caller
+
+    def _registered_caller(self, report: bool = False) -> AppEvents:
+        caller = self._caller()
+        app = self.apps.get(caller.app_id)
+        if app is not None:
+            return app
+        if report:
+            raise self._not_registered(caller.app_id)
+        raise CfeError(CFE_EVS_APP_NOT_REGISTERED, f"{caller.name} has to call evs.register first")
+
+    def _not_registered(self, app_id: int) -> CfeError:
+        """The error for an application that did not register; the first time it is an event too (EVS_NotRegistered)."""
+        name = self.ports.es.get_app_name(app_id)
+        if app_id not in self.unregistered:
+            self.unregistered.add(app_id)
+            self.report_unregistered(name)
+        return CfeError(CFE_EVS_APP_NOT_REGISTERED, f"{name} has to call evs.register before it sends events")
+
+
+def _check_event(event_id: int, text: str) -> None:
+    if not isinstance(text, str):
+        raise CfeError(CFE_EVS_INVALID_PARAMETER, f"the text of event {event_id!r} is {text!r}, not a text")
+    if not isinstance(event_id, int) or not 0 <= event_id <= _U16_MAX:
+        raise CfeError(CFE_EVS_INVALID_PARAMETER, f"event id is {event_id!r}, it must be 0 to {_U16_MAX}")
+
+
+def _check_filter(pair: tuple[int, int]) -> None:
+    is_pair = isinstance(pair, (tuple, list)) and len(pair) == 2
+    if not is_pair or not all(isinstance(value, int) and 0 <= value <= _U16_MAX for value in pair):
+        raise CfeError(CFE_ES_BAD_ARGUMENT, f"a filter is (event id, mask), two numbers of 16 bits, not {pair!r}")

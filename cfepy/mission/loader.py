@@ -1,0 +1,169 @@
+"""Finding the code of an application: OS_ModuleLoad for Python.
+
+cFE names a module by a virtual path, /cf/hk.so. What stands behind it is looked for in this order: the mission's folder
+(hk.py, or a package hk), the apps that cfepy brings along, and an installed Python module of that name. An app is
+executed anew for every start, so that a restart finds its variables as a fresh C module would.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from collections.abc import Callable
+from pathlib import Path, PurePosixPath
+from types import ModuleType
+from typing import Any
+
+from cfepy.console import Console
+from cfepy.es import SymbolError
+from cfepy.mission.tracebacks import app_traceback
+from cfepy.osal import FileSystem
+from cfepy.resources import shipped
+from cfepy.status import OS_ERROR, OsalError
+
+NODE_SYMBOL = "__main__"
+CODE_SUFFIXES = ("", ".so", ".py", ".obj", ".o")
+
+
+class ModuleLoader:
+    """The loader of one mission.
+
+    Args:
+        files: where /cf leads.
+        folder: the mission's folder.
+        console: for what went wrong while a module was executed.
+        handle: what an app's main function gets.
+        run_node: runs a ROS node's script under an application's name.
+    """
+
+    def __init__(
+        self,
+        files: FileSystem,
+        folder: Path,
+        console: Console,
+        handle: Callable[[], Any],
+        run_node: Callable[[Path, str], object],
+    ) -> None:
+        self._files = files
+        self._folder = folder
+        self._console = console
+        self._handle = handle
+        self._run_node = run_node
+        self._loaded: list[str] = []
+
+    def exists(self, file: str) -> bool:
+        """Whether there is code behind a virtual path."""
+        try:
+            return self.find(file) is not None
+        except OsalError:
+            return False
+
+    def find(self, file: str) -> Path | str | None:
+        """What stands behind a virtual path: a source file, the name of an installed module, or None.
+
+        Raises:
+            OsalError: the path itself is no good (OS_TranslatePath).
+        """
+        self._files.translate(file)
+        return find_code(file, self._folder)
+
+    def load(self, file: str, symbol: str, app_name: str) -> Callable[[], object]:
+        """The main function of an application, ready to be called without arguments.
+
+        Raises:
+            OsalError: there is no such file, or executing it failed (the traceback is on the console).
+            SymbolError: it has no such function.
+        """
+        if symbol == NODE_SYMBOL:
+            script = self._script(file)
+            return lambda: self._run_node(script, app_name)
+        main = self._symbol(file, symbol)
+        return lambda: main(self._handle())
+
+    def load_library(self, file: str, symbol: str) -> Callable[[int], object]:
+        """The init function of a library; one that is called NULL does nothing. Errors as `load`."""
+        if symbol == "NULL":
+            self._module(file)
+            return lambda lib_id: 0
+        init = self._symbol(file, symbol)
+        return lambda lib_id: init(self._handle())
+
+    def forget(self) -> None:
+        """Take the modules of this mission out of the process."""
+        for name in self._loaded:
+            sys.modules.pop(name, None)
+        self._loaded.clear()
+
+    def _symbol(self, file: str, symbol: str) -> Callable[[Any], object]:
+        function = getattr(self._module(file), symbol, None)
+        if not callable(function):
+            self._console.write(f"OS_SymbolLookup: {file} has no function {symbol}")
+            raise SymbolError(OS_ERROR, symbol)
+        found: Callable[[Any], object] = function
+        return found
+
+    def _script(self, file: str) -> Path:
+        found = self.find(file)
+        if not isinstance(found, Path):
+            raise self._missing(file)
+        return found
+
+    def _module(self, file: str) -> ModuleType:
+        found = self.find(file)
+        if found is None:
+            raise self._missing(file)
+        spec = _spec(found, f"cfepy_app_{id(self):x}_{len(self._loaded)}")
+        if spec is None or spec.loader is None:
+            raise self._missing(file)
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[spec.name] = module
+        self._loaded.append(spec.name)
+        try:
+            spec.loader.exec_module(module)
+        except Exception as error:
+            self._console.write(app_traceback(error))
+            raise OsalError(OS_ERROR, f"{file}: {type(error).__name__}: {error}") from error
+        return module
+
+    def _missing(self, file: str) -> OsalError:
+        name = _stem(file)
+        text = f"OS_ModuleLoad: no {name}.py and no package {name} in the mission's folder, no app or module {name}"
+        self._console.write(text)
+        return OsalError(OS_ERROR, text)
+
+
+def find_code(file: str, folder: Path) -> Path | str | None:
+    """What stands behind a virtual path below /cf; see the module's text."""
+    inside = PurePosixPath(file).relative_to("/cf") if file.startswith("/cf/") else PurePosixPath(file.lstrip("/"))
+    if inside.suffix not in CODE_SUFFIXES:
+        return _installed(str(inside).replace("/", "."))
+    stem = inside.with_suffix("")
+    for root in (folder, shipped("apps")):
+        for candidate in (root / stem.with_suffix(".py"), root / stem / "__init__.py"):
+            if candidate.is_file():
+                return candidate
+    return _installed(str(stem).replace("/", "."))
+
+
+def _installed(name: str) -> str | None:
+    if not all(part.isidentifier() for part in name.split(".")):
+        return None
+    try:
+        spec = importlib.util.find_spec(name)
+    except (ImportError, ValueError):
+        return None
+    return name if spec is not None and spec.has_location else None
+
+
+def _spec(found: Path | str, name: str) -> importlib.machinery.ModuleSpec | None:
+    if isinstance(found, str):
+        installed = importlib.util.find_spec(found)
+        if installed is None or installed.origin is None:
+            return None
+        found = Path(installed.origin)
+    inner = [str(found.parent)] if found.name == "__init__.py" else None
+    return importlib.util.spec_from_file_location(name, found, submodule_search_locations=inner)
+
+
+def _stem(file: str) -> str:
+    return PurePosixPath(file).stem

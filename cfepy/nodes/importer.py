@@ -1,0 +1,294 @@
+"""The import system of a universe: its `__import__`, module table and search path.
+
+Names are looked up in this order: the node's table; modules that were given to the universe (rospy, message packages);
+modules made for it (`time`, `_thread`, `os`, ...); the node's own folders; the standard library and the installed
+packages, executed afresh or shared as `cfepy.nodes.sharing` says. The host's `sys.modules` is never changed.
+"""
+
+from __future__ import annotations
+
+import builtins
+import importlib
+import importlib.util
+import os
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from cfepy.nodes import sharing
+from cfepy.nodes.import_locks import ImportLocks
+from cfepy.nodes.sources import code_of_file, code_of_library
+
+if TYPE_CHECKING:
+    from cfepy.nodes.universe import Universe
+
+Factory = Callable[["Universe"], ModuleType]
+
+
+class Importer:
+    """Finds and executes the modules of one universe.
+
+    Args:
+        universe: whose modules they are.
+        folders: the node's own folders, searched first.
+        ordered: set displays in the node's code make ordered sets.
+        factories: modules that are made, by name.
+        find_factory: asked for names that are not in `factories`; None is "not mine".
+        fixes: what is done to a module of the standard library after it was executed.
+    """
+
+    def __init__(
+        self,
+        universe: Universe,
+        *,
+        folders: Sequence[str],
+        ordered: bool,
+        factories: Mapping[str, Factory],
+        find_factory: Callable[[str], Factory | None],
+        fixes: Mapping[str, Callable[[Universe, ModuleType], None]],
+    ) -> None:
+        self.modules: dict[str, ModuleType] = {}
+        self.path: list[str] = [*folders, *sys.path]
+        self._universe = universe
+        self._ordered = ordered
+        self._own = frozenset(folders)
+        self._hosts = frozenset(sys.path)
+        self._factories = factories
+        self._find_factory = find_factory
+        self._fixes = fixes
+        self._shared: set[str] = set()
+        self._locks = ImportLocks(universe.kernel)
+
+    # -- what the node calls -----------------------------------------------------------------------------------------
+
+    def import_name(
+        self,
+        name: str,
+        globals: Mapping[str, Any] | None = None,
+        locals: Mapping[str, Any] | None = None,
+        fromlist: Sequence[str] | None = (),
+        level: int = 0,
+    ) -> ModuleType:
+        """`__import__`, which every import statement of the node ends in."""
+        if level:
+            name = _absolute(name, globals or {}, level)
+        module = self.modules.get(name)
+        if module is None or self._locks.busy:
+            module = self.load(name)
+        if not fromlist:
+            return self.modules[name.partition(".")[0]] if "." in name else module
+        if hasattr(module, "__path__"):
+            self._import_parts(module, name, fromlist)
+        return module
+
+    def import_module(self, name: str, package: str | None = None) -> ModuleType:
+        """`importlib.import_module`."""
+        level = len(name) - len(name.lstrip("."))
+        if not level:
+            return self.load(name)
+        if not package:
+            raise TypeError(f"the 'package' argument is required to perform a relative import for {name!r}")
+        return self.load(_absolute(name[level:], {"__package__": package}, level))
+
+    def reload(self, module: ModuleType) -> ModuleType:
+        """`importlib.reload`."""
+        spec = module.__spec__
+        if spec is None or spec.origin is None or module.__name__ in self._shared:
+            raise ImportError(f"{module.__name__} cannot be reloaded in a node")
+        self._execute(module, spec, self._is_own(spec.origin))
+        return module
+
+    def find_spec(self, name: str, package: str | None = None) -> ModuleSpec | None:
+        """`importlib.util.find_spec`."""
+        if self._factory(name) is not None:
+            return ModuleSpec(name, None)
+        parent = name.rpartition(".")[0]
+        if parent:
+            folders = getattr(self.load(parent), "__path__", None)
+            return None if folders is None else PathFinder.find_spec(name, list(folders))
+        return PathFinder.find_spec(name, self._node_folders()) or importlib.util.find_spec(name)
+
+    # -- loading -----------------------------------------------------------------------------------------------------
+
+    def load(self, name: str) -> ModuleType:
+        """The module called `name`, from the table or loaded now.
+
+        Raises:
+            ImportError: there is none, or it cannot be had in a node.
+        """
+        self._locks.wait_for(name)
+        module = self.modules.get(name)
+        if module is not None:
+            return module
+        parent, _, child = name.rpartition(".")
+        package = self.load(parent) if parent else None
+        if name in self.modules:
+            return self.modules[name]
+        if self._is_shared(parent) and name not in self._factories:
+            return self._share(name)
+        module = self._load_own(name, package)
+        if package is not None:
+            setattr(package, child, module)
+        return module
+
+    def load_file(self, name: str, file: str, folder: str | None = None) -> ModuleType:
+        """Execute a source file as the module `name` of this universe; what factories of whole packages use.
+
+        Args:
+            name: the full module name.
+            file: the source file.
+            folder: for a package, where its submodules are.
+        """
+        locations = None if folder is None else [folder]
+        loader = SourceFileLoader(name, file)
+        spec = importlib.util.spec_from_file_location(name, file, loader=loader, submodule_search_locations=locations)
+        if spec is None:
+            raise ImportError(f"{file} is not a Python source file", name=name)
+        return self._from_spec(spec, own=False)
+
+    def _load_own(self, name: str, package: ModuleType | None) -> ModuleType:
+        factory = self._factory(name)
+        if factory is not None:
+            module = factory(self._universe)
+            self.modules[name] = module
+            return module
+        if package is None:
+            return self._load_top(name)
+        folders = getattr(package, "__path__", None)
+        if folders is None:
+            raise ModuleNotFoundError(f"No module named {name!r}; {package.__name__!r} is not a package", name=name)
+        if name in sharing.HOST_SUBMODULES:
+            return self._share(name)
+        spec = PathFinder.find_spec(name, list(folders))
+        if spec is None:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+        return self._from_spec(spec, self._is_own(spec.origin))
+
+    def _load_top(self, name: str) -> ModuleType:
+        spec = PathFinder.find_spec(name, self._node_folders())
+        if spec is not None:
+            return self._from_spec(spec, own=True)
+        if sharing.is_stdlib(name):
+            if not sharing.is_fresh_stdlib(name):
+                return self._share(name)
+            return self._from_spec(_library_spec(name), own=False)
+        if name in sharing.HOST_PACKAGES:
+            return self._share(name)
+        spec = _host_spec(name)
+        return self._from_spec(spec, own=False) if sharing.is_pure_python(spec) else self._share(name)
+
+    def _from_spec(self, spec: ModuleSpec, own: bool) -> ModuleType:
+        """A module from a file; it is in the table, and in its package, before its code runs."""
+        name = spec.name
+        module = importlib.util.module_from_spec(spec) if spec.loader is None else _empty_module(spec)
+        self.modules[name] = module
+        parent, _, child = name.rpartition(".")
+        if parent:
+            setattr(self.modules[parent], child, module)
+        try:
+            self._execute(module, spec, own)
+        except BaseException:
+            self.modules.pop(name, None)
+            if parent:
+                vars(self.modules[parent]).pop(child, None)
+            raise
+        fix = self._fixes.get(name)
+        if fix is not None and not own:
+            fix(self._universe, module)
+        return self.modules.get(name, module)
+
+    def _execute(self, module: ModuleType, spec: ModuleSpec, own: bool) -> None:
+        if spec.loader is None:
+            return  # a namespace package has no code
+        if own:
+            if not isinstance(spec.loader, SourceFileLoader) or spec.origin is None:
+                raise ImportError(f"{spec.name}: a node's own module must be a Python source file, not {spec.origin}")
+            code = code_of_file(spec.origin, self._ordered)
+        else:
+            code = code_of_library(spec)
+        vars(module)["__builtins__"] = vars(self._universe.builtins)
+        with self._locks.loading(spec.name):
+            exec(code, vars(module))
+
+    def _is_shared(self, package: str) -> bool:
+        """Whether the modules in a package are the host's."""
+        return package in self._shared or package.partition(".")[0] in sharing.HOST_BELOW
+
+    def _share(self, name: str) -> ModuleType:
+        """The host's own module, and its packages."""
+        builtins.__import__(name)
+        self.modules[name] = sys.modules[name]
+        self._shared.add(name)
+        return sys.modules[name]
+
+    # -- finding -----------------------------------------------------------------------------------------------------
+
+    def _factory(self, name: str) -> Factory | None:
+        return self._factories.get(name) or self._find_factory(name)
+
+    def _node_folders(self) -> list[str]:
+        """The folders of the search path that are the node's: given to it, or added by itself."""
+        resolve = self._universe.resolve
+        return [
+            resolve(folder)
+            for folder in self.path
+            if isinstance(folder, str) and (folder in self._own or folder not in self._hosts)
+        ]
+
+    def _is_own(self, origin: str | None) -> bool:
+        """Whether a file belongs to the node, and not to the standard library or an installed package."""
+        return origin is not None and origin.startswith(tuple(os.path.join(f, "") for f in self._node_folders()))
+
+    def _import_parts(self, module: ModuleType, name: str, parts: Sequence[str]) -> None:
+        """`from package import part`: load those parts that are modules."""
+        for part in parts:
+            if part == "*":
+                self._import_parts(module, name, getattr(module, "__all__", ()))
+            elif not hasattr(module, part):
+                full = f"{name}.{part}"
+                try:
+                    self.load(full)
+                except ModuleNotFoundError as error:
+                    if error.name != full:
+                        raise
+
+
+def _library_spec(name: str) -> ModuleSpec:
+    """Where the source of a module of the standard library is; some of them are frozen into the interpreter."""
+    spec = PathFinder.find_spec(name, [os.path.dirname(os.__file__)])
+    return spec if spec is not None else _host_spec(name)
+
+
+def _host_spec(name: str) -> ModuleSpec:
+    spec = importlib.util.find_spec(name)
+    if spec is None:
+        raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+    return spec
+
+
+def _empty_module(spec: ModuleSpec) -> ModuleType:
+    module = ModuleType(spec.name)
+    names = vars(module)
+    names.update(__spec__=spec, __loader__=spec.loader, __package__=spec.parent, __file__=spec.origin)
+    if spec.cached is not None:
+        names["__cached__"] = spec.cached
+    if spec.submodule_search_locations is not None:
+        names["__path__"] = spec.submodule_search_locations
+    return module
+
+
+def _absolute(name: str, names: Mapping[str, Any], level: int) -> str:
+    """The full name that a relative import means."""
+    package = names.get("__package__")
+    if package is None:
+        package = names.get("__name__", "")
+        if "__path__" not in names:
+            package = package.rpartition(".")[0]
+    if not package:
+        raise ImportError("attempted relative import with no known parent package")
+    parts = package.rsplit(".", level - 1)
+    if len(parts) < level:
+        raise ImportError("attempted relative import beyond top-level package")
+    return f"{parts[0]}.{name}" if name else str(parts[0])

@@ -1,0 +1,61 @@
+"""Random numbers of a node: everything that Python seeds from the operating system comes from the node's own stream,
+derived from the seed of the run and the node's name. NumPy's module-level generator is the node's own too."""
+
+from __future__ import annotations
+
+import importlib
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from cfepy.nodes.synth import proxy
+
+if TYPE_CHECKING:
+    from cfepy.nodes.universe import Universe
+
+_GENERATORS = ("RandomState", "SeedSequence", "MT19937", "PCG64", "PCG64DXSM", "Philox", "SFC64")
+
+
+def fix_random(universe: Universe, module: ModuleType) -> None:
+    """After `random` was loaded: a `Random()` without a seed asks C code for entropy, so give it ours."""
+    generators: Any = module.Random
+    seed = generators.seed
+
+    def seed_from_node(generator: Any, a: Any = None, version: int = 2) -> None:
+        seed(generator, universe.rng.getrandbits(128) if a is None else a, version)
+
+    generators.seed = seed_from_node
+    vars(module)["seed"] = module._inst.seed
+    module._inst.seed()
+
+
+def numpy_module(universe: Universe) -> ModuleType:
+    """The host's NumPy with a `random` of the node's own."""
+    import numpy
+
+    module = proxy(numpy)
+    universe.importer.modules["numpy"] = module
+    vars(module)["random"] = universe.importer.load("numpy.random")
+    return module
+
+
+def numpy_random_module(universe: Universe) -> ModuleType:
+    """`numpy.random`: its functions draw from a generator of this node, and one without a seed gets one of ours."""
+    host = importlib.import_module("numpy.random")
+    state = host.RandomState(universe.rng.getrandbits(32))
+    own: dict[str, Any] = {name: getattr(state, name) for name in host.__all__ if hasattr(state, name)}
+    own.update(dict.fromkeys(("ranf", "sample"), state.random_sample))
+    own.update({name: _seeded_class(universe, getattr(host, name)) for name in _GENERATORS})
+
+    def default_rng(seed: Any = None) -> Any:
+        return host.default_rng(universe.rng.getrandbits(128) if seed is None else seed)
+
+    return proxy(host, **own, default_rng=default_rng)
+
+
+def _seeded_class(universe: Universe, generator: Any) -> type:
+    """A generator class that takes its seed from the node's stream when it is given none."""
+
+    def start(self: Any, seed: Any = None, *args: Any, **options: Any) -> None:
+        generator.__init__(self, universe.rng.getrandbits(32) if seed is None else seed, *args, **options)
+
+    return type(generator.__name__, (generator,), {"__init__": start})

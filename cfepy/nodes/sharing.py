@@ -1,0 +1,95 @@
+"""Which module comes from where: made for the node, executed afresh for it, or shared with the host.
+
+Modules that see a clock, threads, entropy, the environment or a module-wide state are the node's own; the rest of the
+standard library (json, re, math, collections, ...) has nothing to tell nodes apart and is the host's. An installed
+package is executed afresh if it is pure Python, because it may well import `time` or `threading`; one with extension
+modules (NumPy, PyYAML) can only exist once per process and is shared.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Mapping
+from importlib.machinery import EXTENSION_SUFFIXES, ModuleSpec
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from cfepy.nodes import refused
+
+if TYPE_CHECKING:
+    from cfepy.nodes.universe import Universe
+
+# fmt: off
+FRESH = frozenset({
+    "_pydatetime", "_pyio", "_threading_local", "argparse", "asynchat", "asyncore", "bdb", "cmd",
+    "code", "codeop", "concurrent", "configparser", "contextlib", "email", "fileinput", "ftplib", "genericpath",
+    "getopt", "getpass", "glob", "http", "imaplib", "logging", "nntplib", "optparse", "pathlib", "pdb", "pickle",
+    "poplib", "posixpath", "pprint", "queue", "random", "runpy", "sched", "secrets", "selectors", "shelve", "shutil",
+    "smtpd", "smtplib", "socketserver", "statistics", "telnetlib", "tempfile", "threading", "timeit", "traceback",
+    "tracemalloc", "unittest", "urllib", "uuid", "warnings", "wsgiref", "xmlrpc",
+})
+# fmt: on
+"""Modules of the standard library, by their first name, that each node executes for itself."""
+
+HOST_SUBMODULES = frozenset({"urllib.parse", "urllib.error"})
+
+HOST_BELOW = frozenset({"importlib", "numpy"})
+"""Packages that are made for the node, while their submodules are the host's."""
+
+WITHOUT_ACCELERATOR = frozenset({"_pickle", "_queue", "_uuid", "_warnings", "_posixsubprocess", "_asyncio"})
+"""C halves of the above that would keep state per process or block a real thread; the Python half works alone."""
+
+HOST_PACKAGES = frozenset({"cfepy", "greenlet", "hypothesis", "_pytest", "pytest"})
+
+# fmt: off
+_MULTIPROCESSING = (
+    "connection", "context", "dummy", "managers", "pool", "process", "queues", "reduction", "shared_memory",
+    "sharedctypes", "synchronize",
+)
+# fmt: on
+
+_pure: dict[str, bool] = {}
+
+
+def refused_modules() -> Mapping[str, Callable[[Universe], ModuleType]]:
+    """The factories of the modules that refuse their use, by name."""
+    named = {
+        "_socket": refused.socket_module,
+        "multiprocessing": refused.multiprocessing_module,
+        "select": refused.select_module,
+        "socket": refused.socket_module,
+        "subprocess": refused.subprocess_module,
+        "asyncio": refused.refused_import("asyncio", refused.LOOP),
+        "ssl": refused.refused_import("ssl", refused.NETWORK),
+        "_ssl": refused.refused_import("_ssl", refused.NETWORK),
+    }
+    named.update({f"multiprocessing.{part}": refused.multiprocessing_submodule for part in _MULTIPROCESSING})
+    named.update({name: refused.refused_import(name, "it is not needed") for name in WITHOUT_ACCELERATOR})
+    return named
+
+
+def is_fresh_stdlib(name: str) -> bool:
+    """Whether a module of the standard library, given by its full name, is executed afresh for each node."""
+    return name.partition(".")[0] in FRESH and name not in HOST_SUBMODULES
+
+
+def is_stdlib(top: str) -> bool:
+    """Whether the first part of a module name belongs to the standard library."""
+    return top in sys.stdlib_module_names
+
+
+def is_pure_python(spec: ModuleSpec) -> bool:
+    """Whether an installed module or package, found by `spec`, has no extension module anywhere below it."""
+    origin = spec.origin or ""
+    known = _pure.get(origin)
+    if known is None:
+        folders = spec.submodule_search_locations
+        known = origin.endswith(".py") if folders is None else not any(map(_has_extension, folders))
+        _pure[origin] = known
+    return known
+
+
+def _has_extension(folder: str) -> bool:
+    suffixes = tuple(EXTENSION_SUFFIXES)
+    return any(name.endswith(suffixes) for _, _, names in os.walk(folder) for name in names)

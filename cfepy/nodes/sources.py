@@ -1,0 +1,56 @@
+"""From a file to a code object: compiled once per process, shared by all universes, since code objects are immutable.
+
+The key holds the size and time stamp of a node's file, so that an edited file is compiled anew. Modules of the
+standard library and installed packages come from Python's own byte code cache.
+"""
+
+from __future__ import annotations
+
+import importlib.machinery
+import os
+from types import CodeType
+
+from cfepy.nodes.ordered_set import compile_ordered
+
+_compiled: dict[tuple[object, ...], CodeType] = {}
+
+
+def code_of_file(path: str, ordered: bool) -> CodeType:
+    """The code of a source file of a node.
+
+    Args:
+        path: the file.
+        ordered: set displays in it make ordered sets.
+
+    Raises:
+        OSError: it cannot be read.
+        SyntaxError: it cannot be compiled.
+    """
+    stat = os.stat(path)
+    key = (path, stat.st_mtime_ns, stat.st_size, ordered)
+    code = _compiled.get(key)
+    if code is None:
+        with open(path, "rb") as file:
+            source = file.read()
+        code = compile_ordered(source, path) if ordered else compile(source, path, "exec", dont_inherit=True)
+        _compiled[key] = code
+    return code
+
+
+def code_of_library(spec: importlib.machinery.ModuleSpec) -> CodeType:
+    """The code of a module of the standard library or of an installed package.
+
+    Raises:
+        ImportError: the module has no Python code.
+    """
+    key = (spec.origin,)
+    code = _compiled.get(key)
+    if code is None:
+        loader = spec.loader
+        if not isinstance(loader, importlib.machinery.SourceFileLoader):
+            raise ImportError(f"{spec.name} is not a Python source file, so it cannot be loaded into a node")
+        code = loader.get_code(spec.name)
+        if code is None:
+            raise ImportError(f"{spec.name} has no code")
+        _compiled[key] = code
+    return code

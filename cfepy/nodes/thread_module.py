@@ -1,0 +1,133 @@
+"""`_thread` on the kernel: what the standard library's own `threading`, `queue` and `concurrent.futures` stand on.
+
+A thread is a task at the priority of the thread that starts it.
+"""
+
+from __future__ import annotations
+
+import _thread
+from collections.abc import Callable, Mapping, Sequence
+from contextvars import Context
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from cfepy.nodes.local import make_local
+from cfepy.nodes.locks import MAX_WAIT_S
+from cfepy.nodes.report import traceback_text
+from cfepy.nodes.synth import made
+from cfepy.rtos import TaskExit
+
+if TYPE_CHECKING:
+    from cfepy.nodes.universe import Universe
+
+
+def thread_module(universe: Universe) -> ModuleType:
+    """The module `_thread` of a universe."""
+    kernel = universe.kernel
+    lock, rlock = universe.locks
+    sentinels: dict[int, Any] = {}
+
+    def get_ident() -> int:
+        return kernel.current.ident
+
+    def set_sentinel() -> Any:
+        """The lock whose release tells that the calling thread is gone."""
+        ident = kernel.current.ident
+        sentinel = sentinels[ident] = lock()
+        universe.at_thread_end(ident, lambda: _release(sentinels.pop(ident, None)))
+        return sentinel
+
+    def start(
+        function: Callable[..., object], args: Sequence[Any] = (), options: Mapping[str, Any] | None = None
+    ) -> int:
+        given = dict(options or {})
+        return universe.start_thread(lambda: _body(universe, function, tuple(args), given)).ident
+
+    names = made(
+        "_thread",
+        LockType=lock,
+        RLock=rlock,
+        TIMEOUT_MAX=MAX_WAIT_S,
+        _ExceptHookArgs=_thread._ExceptHookArgs,
+        _count=lambda: universe.thread_count,
+        _excepthook=lambda args: show_thread_error(universe, args),
+        _local=make_local(universe),
+        _set_sentinel=set_sentinel,
+        allocate=lock,
+        allocate_lock=lock,
+        error=RuntimeError,
+        exit=_exit,
+        exit_thread=_exit,
+        get_ident=get_ident,
+        get_native_id=get_ident,
+        interrupt_main=lambda number=2: universe.deliver_signal(number),
+        lock=lock,
+        stack_size=lambda size=0: 0,
+        start_new=start,
+        start_new_thread=start,
+    )
+    if hasattr(_thread, "_ThreadHandle"):
+        from cfepy.nodes.thread_handle import handle_names
+
+        vars(names).update(handle_names(universe, start, lock))
+    return names
+
+
+def _body(
+    universe: Universe, function: Callable[..., object], args: tuple[Any, ...], options: Mapping[str, Any]
+) -> None:
+    """A thread that was started below `threading`: its error is shown, and the program goes on."""
+    try:
+        Context().run(function, *args, **options)
+    except (TaskExit, SystemExit):
+        raise
+    except BaseException as error:
+        universe.thread_errors.append(error)
+        universe.print_error(f"Exception ignored in thread started by: {function!r}\n{traceback_text(error)}")
+
+
+def show_thread_error(universe: Universe, args: Any) -> None:
+    """`threading.excepthook`: the error of a thread ends the thread and not the node.
+
+    Args:
+        universe: the node's universe.
+        args: as `threading.excepthook` gets them.
+    """
+    if issubclass(args.exc_type, (TaskExit, SystemExit)):
+        return
+    error = args.exc_value if args.exc_value is not None else args.exc_type()
+    universe.thread_errors.append(error)
+    name = args.thread.name if args.thread is not None else universe.kernel.current.ident
+    universe.print_error(f"Exception in thread {name}:\n{traceback_text(error)}")
+
+
+def fix_threading(universe: Universe, module: ModuleType) -> None:
+    """After `threading` was loaded: threads hash by serial number, and asking an event takes CPU time.
+
+    `concurrent.futures` iterates a set of threads; a loop on `event.is_set()` would otherwise never let others run.
+    """
+    is_set = module.Event.is_set
+
+    def serial_hash(thread: Any) -> int:
+        number = thread.__dict__.get("_serial_hash")
+        if number is None:
+            universe.serial = number = universe.serial + 1
+            thread.__dict__["_serial_hash"] = number
+        return int(number)
+
+    def charged_is_set(event: Any) -> bool:
+        universe.charge()
+        return bool(is_set(event))
+
+    module.Thread.__hash__ = serial_hash
+    module.Event.is_set = charged_is_set
+    module.Event.isSet = charged_is_set
+
+
+def _release(sentinel: Any) -> None:
+    if sentinel is not None and sentinel.locked():
+        sentinel.release()
+
+
+def _exit() -> NoReturn:
+    raise SystemExit

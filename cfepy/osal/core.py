@@ -1,0 +1,229 @@
+"""What all parts of OSAL share: the records of objects, the tables that name them, and what a call costs.
+
+An OSAL object is a record in a table of its kind, under an id and a unique name, with the task that created it
+(osapi-idmap.c, OS_common_record_t). The parts of the interface are classes derived from `Core`, one module each, and
+`cfepy.osal.osal.Osal` is all of them together. May import cfepy.rtos, ids, status, config and console only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol, TypeVar
+
+from cfepy.config import PlatformConfig
+from cfepy.console import Console
+from cfepy.ids import OS_TIMEBASE_BASE, IdTable, get_base
+from cfepy.osal.filesystem import FileSystem
+from cfepy.osal.limits import OS_MAX_API_NAME, SIZE_MAX
+from cfepy.rtos import Kernel, Task
+from cfepy.status import (
+    OS_ERR_INCORRECT_OBJ_STATE,
+    OS_ERR_INVALID_ID,
+    OS_ERR_INVALID_SIZE,
+    OS_ERR_NAME_NOT_FOUND,
+    OS_ERR_NAME_TAKEN,
+    OS_ERR_NAME_TOO_LONG,
+    OsalError,
+)
+
+
+class Deleted:
+    """The type of `DELETED`, what a waiter is woken with when the thing it waits for goes away."""
+
+    def __bool__(self) -> bool:
+        return False
+
+
+DELETED = Deleted()
+
+
+class Ledger(Protocol):
+    """Who accounts for memory: the board's budget (`cfepy.psp.memory.MemoryBudget`)."""
+
+    def claim(self, owner: str, kind: str, size: int) -> int:
+        """Take `size` bytes for an owner; a token to give them back with."""
+
+    def release(self, token: int) -> None:
+        """Give a claim back."""
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectSizes:
+    """Bytes of memory that the operating system of a board keeps for each object; all 0 where nobody counts."""
+
+    task: int = 0  # the control block; the stack comes on top
+    queue: int = 0
+    queue_slot: int = 0  # added to the message size
+    semaphore: int = 0
+    mutex: int = 0
+    timer: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """What an `Osal` is made of.
+
+    Args:
+        kernel: the simulated real-time kernel.
+        config: limits.
+        console: where OS_printf goes.
+        files: the virtual file system.
+        memory: accounts for stacks and objects; None does not count.
+        sizes: what an object takes.
+        call_ns: virtual CPU time of a call.
+        byte_ps: virtual CPU time of copying one byte through a queue or a file, in picoseconds.
+        epoch_ns: local time at virtual time 0, in ns since the epoch of the mission's choice.
+    """
+
+    kernel: Kernel
+    config: PlatformConfig
+    console: Console
+    files: FileSystem = field(default_factory=FileSystem)
+    memory: Ledger | None = None
+    sizes: ObjectSizes = field(default_factory=ObjectSizes)
+    call_ns: int = 0
+    byte_ps: int = 0
+    epoch_ns: int = 0
+
+
+class OsObject:
+    """The common part of every OSAL object.
+
+    Args:
+        name: at most 19 characters, unique among objects of the same kind.
+    """
+
+    __slots__ = ("claim", "creator", "deleted", "id", "name", "owner")
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.id = 0
+        self.creator = 0  # id of the task that made it, 0 for the system
+        self.owner: Any = None  # the application that the creating task worked for
+        self.claim = 0
+        self.deleted = False
+
+
+Record = TypeVar("Record", bound=OsObject)
+
+
+class ObjectTable(IdTable[Record]):
+    """All objects of one kind, by id and by name.
+
+    Args:
+        kind: for error texts, e.g. "queue".
+        base: one of the OS_*_BASE numbers.
+        capacity: how many at most.
+    """
+
+    __slots__ = ("kind", "lookup", "names")
+
+    def __init__(self, kind: str, base: int, capacity: int) -> None:
+        super().__init__(base, capacity)
+        self.kind = kind
+        self.names: dict[str, int] = {}
+        self.lookup: Callable[[int], Record | None] = self.records.get
+
+    def add(self, record: Record) -> int:
+        """Give a record an id.
+
+        Raises:
+            OsalError: OS_ERR_NAME_TOO_LONG, OS_ERR_NAME_TAKEN or OS_ERR_NO_FREE_IDS.
+        """
+        self.check_name(record.name)
+        if record.name in self.names:
+            raise OsalError(OS_ERR_NAME_TAKEN, f"there is a {self.kind} called {record.name!r} already")
+        record.id = self.create(record)
+        self.names[record.name] = record.id
+        return record.id
+
+    def drop(self, record: Record) -> None:
+        """Take a record out; its name is free again."""
+        self.delete(record.id)
+        self.names.pop(record.name, None)
+        record.deleted = True
+
+    def named(self, name: str) -> int:
+        """The id of a name.
+
+        Raises:
+            OsalError: OS_ERR_NAME_NOT_FOUND or OS_ERR_NAME_TOO_LONG.
+        """
+        self.check_name(name)
+        found = self.names.get(name)
+        if found is None:
+            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"no {self.kind} is called {name!r}")
+        return found
+
+    def check_name(self, name: str) -> None:
+        """Raise OS_ERR_NAME_TOO_LONG for a name of more than 19 bytes."""
+        if len(name.encode()) >= OS_MAX_API_NAME:
+            raise OsalError(
+                OS_ERR_NAME_TOO_LONG, f"{self.kind} name {name!r} has more than {OS_MAX_API_NAME - 1} characters"
+            )
+
+    def missing(self, object_id: int) -> OsalError:
+        """The error for an id that is not in the table."""
+        return OsalError(OS_ERR_INVALID_ID, f"no {self.kind} has the id {object_id:#x}")
+
+    def gone(self, record: Record) -> OsalError:
+        """The error for a task whose wait ended because the object was deleted."""
+        return OsalError(OS_ERR_INVALID_ID, f"{self.kind} {record.name} was deleted by another task")
+
+
+class Core:
+    """State and helpers of every part of the interface."""
+
+    def __init__(self, setup: Setup) -> None:
+        self.kernel = setup.kernel
+        self.config = setup.config
+        self.console = setup.console
+        self._setup = setup
+        self._cost = setup.call_ns
+        self._byte_cost = setup.byte_ps
+        self._task_ids: dict[Task, int] = {}
+        self._tables: dict[int, ObjectTable[Any]] = {}
+
+    def _table(self, kind: str, base: int, capacity: int) -> ObjectTable[Any]:
+        table: ObjectTable[Any] = ObjectTable(kind, base, capacity)
+        self._tables[base] = table
+        return table
+
+    def _register(self, table: ObjectTable[Record], record: Record, kind: str, size: int) -> int:
+        """Account for an object of the current task's application and give it an id."""
+        task = self.kernel.current
+        record.owner = task.owner
+        record.creator = self._task_ids.get(task, 0)
+        memory = self._setup.memory
+        if memory is not None:
+            record.claim = memory.claim(_owner_name(record.owner), kind, size)
+        try:
+            return table.add(record)
+        except OsalError:
+            self._release(record)
+            raise
+
+    def _unregister(self, table: ObjectTable[Record], record: Record) -> None:
+        table.drop(record)
+        self._release(record)
+
+    def _release(self, record: OsObject) -> None:
+        if self._setup.memory is not None and record.claim:
+            self._setup.memory.release(record.claim)
+            record.claim = 0
+
+    def _refuse_in_callback(self, what: str) -> None:
+        """Timers must not be managed from a timer's callback (OS_ERR_INCORRECT_OBJ_STATE)."""
+        if get_base(self._task_ids.get(self.kernel.current, 0)) == OS_TIMEBASE_BASE:
+            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"{what} cannot be called from a timer callback")
+
+
+def check_size(size: int, what: str) -> None:
+    """Raise OS_ERR_INVALID_SIZE for a size of 0 or one that no memory has."""
+    if not 0 < size < SIZE_MAX:
+        raise OsalError(OS_ERR_INVALID_SIZE, f"{what} of {size} bytes")
+
+
+def _owner_name(owner: Any) -> str:
+    return str(getattr(owner, "name", "system"))

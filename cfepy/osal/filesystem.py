@@ -1,0 +1,232 @@
+"""The virtual file system behind OSAL's file functions: mount points and what is below them (osapi-filesys.c).
+
+`/cf` is the mission's folder, `/ram` a disk in memory. Files are read and written as a whole here; `cfepy.osal.files`
+adds OSAL's file descriptors. May import cfepy.status and its neighbours in cfepy.osal.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from cfepy.osal.limits import OS_MAX_FILE_NAME, OS_MAX_PATH_LEN
+from cfepy.osal.volumes import Node, Volume
+from cfepy.status import (
+    OS_ERR_NAME_NOT_FOUND,
+    OS_ERROR,
+    OS_FS_ERR_NAME_TOO_LONG,
+    OS_FS_ERR_PATH_INVALID,
+    OS_FS_ERR_PATH_TOO_LONG,
+    OsalError,
+)
+
+
+class Place(NamedTuple):
+    """Where a virtual path leads: a volume and a path in it."""
+
+    volume: Volume
+    path: str
+
+
+class FileSystem:
+    """Mounted volumes by virtual path.
+
+    Args:
+        cf: folder of the host that `/cf` shows, None for an empty one.
+        ram_bytes: size of the disk at `/ram`, None for no limit.
+    """
+
+    def __init__(self, cf: Path | None = None, ram_bytes: int | None = None) -> None:
+        self._mounts: dict[str, Volume] = {"/cf": Volume(cf), "/ram": Volume(capacity=ram_bytes)}
+
+    def mount(self, mount_point: str, volume: Volume) -> None:
+        """Let a volume appear at a path such as "/data".
+
+        Raises:
+            OsalError: OS_FS_ERR_PATH_INVALID.
+        """
+        if not mount_point.startswith("/") or mount_point.endswith("/"):
+            raise OsalError(OS_FS_ERR_PATH_INVALID, f"mount point {mount_point!r}; write it as /name")
+        self._mounts[mount_point] = volume
+
+    def unmount(self, mount_point: str) -> Volume:
+        """Take a volume out; its files stay in it.
+
+        Raises:
+            OsalError: OS_ERR_NAME_NOT_FOUND.
+        """
+        if mount_point not in self._mounts:
+            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"nothing is mounted at {mount_point}")
+        return self._mounts.pop(mount_point)
+
+    def volume(self, mount_point: str) -> Volume:
+        """The volume at a mount point.
+
+        Raises:
+            OsalError: OS_ERR_NAME_NOT_FOUND.
+        """
+        if mount_point not in self._mounts:
+            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"nothing is mounted at {mount_point}")
+        return self._mounts[mount_point]
+
+    def mount_points(self) -> list[str]:
+        """The paths at which volumes are mounted, sorted."""
+        return sorted(self._mounts)
+
+    def translate(self, path: str) -> Place:
+        """Where a virtual path leads (OS_TranslatePath).
+
+        Raises:
+            OsalError: OS_FS_ERR_PATH_TOO_LONG (64 characters or more), OS_FS_ERR_NAME_TOO_LONG (a last part of 20 or
+                more), OS_FS_ERR_PATH_INVALID (not absolute, not below a mount point, or with "..").
+        """
+        if len(path.encode()) >= OS_MAX_PATH_LEN:
+            raise OsalError(OS_FS_ERR_PATH_TOO_LONG, f"{path!r} has {OS_MAX_PATH_LEN} characters or more")
+        if "/" in path and len(path.rpartition("/")[2].encode()) >= OS_MAX_FILE_NAME:
+            raise OsalError(OS_FS_ERR_NAME_TOO_LONG, f"the name in {path!r} has {OS_MAX_FILE_NAME} characters or more")
+        if not path.startswith("/") or ".." in path:
+            raise OsalError(OS_FS_ERR_PATH_INVALID, f'{path!r} must begin with "/" and be without ".."')
+        for mount_point, volume in self._mounts.items():
+            if path == mount_point or path.startswith(mount_point + "/"):
+                rest = [part for part in path[len(mount_point) :].split("/") if part not in ("", ".")]
+                return Place(volume, "/".join(rest))
+        raise OsalError(
+            OS_FS_ERR_PATH_INVALID, f"{path!r} is below no mount point; there are {', '.join(self.mount_points())}"
+        )
+
+    def host_path(self, path: str) -> Path | None:
+        """The host's file that shows at a virtual path, for a loader of code; None when the file is in memory.
+
+        Raises:
+            OsalError: as `translate`.
+        """
+        volume, rest = self.translate(path)
+        real = volume.host / rest if volume.host is not None else None
+        return real if real is not None and volume.node(rest) is not None and real.is_file() else None
+
+    def find(self, path: str) -> Node | None:
+        """The file at a path, None when there is none.
+
+        Raises:
+            OsalError: as `translate`.
+        """
+        volume, rest = self.translate(path)
+        return volume.node(rest)
+
+    def read_file(self, path: str) -> bytes:
+        """The whole content of a file.
+
+        Raises:
+            OsalError: OS_ERROR when there is none; as `translate`.
+        """
+        node = self.find(path)
+        if node is None:
+            raise OsalError(OS_ERROR, f"there is no file {path}")
+        return bytes(node.data)
+
+    def write_file(self, path: str, data: bytes | bytearray | memoryview, now_ns: int = 0) -> None:
+        """Make a file with this content, or replace what is in it.
+
+        Args:
+            path: its folder must exist.
+            data: the content.
+            now_ns: virtual time of the change.
+
+        Raises:
+            OsalError: OS_ERROR when there is no such folder or no room; as `translate`.
+        """
+        node = self.open_node(path)
+        self.check_room(path, len(data) - len(node.data))
+        node.data[:] = data
+        node.modified_ns = now_ns
+
+    def open_node(self, path: str) -> Node:
+        """The file at a path, an empty new one when there was none.
+
+        Raises:
+            OsalError: OS_ERROR when its folder does not exist or it is a folder; as `translate`.
+        """
+        volume, rest = self.translate(path)
+        if volume.is_folder(rest) or not volume.is_folder(rest.rpartition("/")[0]):
+            raise OsalError(OS_ERROR, f"{path} is a folder, or is in none")
+        return volume.node(rest) or volume.create(rest)
+
+    def check_room(self, path: str, size: int) -> None:
+        """Raise OS_ERROR when the volume of a path has no room for `size` more bytes."""
+        if not self.translate(path).volume.has_room(size):
+            raise OsalError(OS_ERROR, f"no room for {size} more bytes in the volume of {path}")
+
+    def exists(self, path: str) -> bool:
+        """Whether there is a file or folder at a path; False for a path that cannot be.
+
+        Never raises.
+        """
+        try:
+            volume, rest = self.translate(path)
+        except OsalError:
+            return False
+        return volume.node(rest) is not None or volume.is_folder(rest)
+
+    def is_folder(self, path: str) -> bool:
+        """Whether there is a folder at a path.
+
+        Raises:
+            OsalError: as `translate`.
+        """
+        volume, rest = self.translate(path)
+        return volume.is_folder(rest)
+
+    def remove(self, path: str) -> None:
+        """Remove a file (OS_remove).
+
+        Raises:
+            OsalError: OS_ERROR when there is none; as `translate`.
+        """
+        volume, rest = self.translate(path)
+        if volume.node(rest) is None:
+            raise OsalError(OS_ERROR, f"there is no file {path}")
+        volume.remove(rest)
+
+    def rename(self, old: str, new: str) -> None:
+        """Give a file another path in the same volume (OS_rename).
+
+        Raises:
+            OsalError: OS_ERROR when there is no such file or the volume is another; as `translate`.
+        """
+        (source, source_path), (target, target_path) = self.translate(old), self.translate(new)
+        if source is not target or source.node(source_path) is None:
+            raise OsalError(OS_ERROR, f"{old} cannot become {new}")
+        source.rename(source_path, target_path)
+
+    def make_folder(self, path: str) -> None:
+        """Add a folder (OS_mkdir); one that exists stays as it is.
+
+        Raises:
+            OsalError: OS_ERROR when a file or no folder is in the way; as `translate`.
+        """
+        volume, rest = self.translate(path)
+        if volume.node(rest) is not None or not volume.is_folder(rest.rpartition("/")[0]):
+            raise OsalError(OS_ERROR, f"{path} is a file, or in no folder")
+        volume.make_folder(rest)
+
+    def remove_folder(self, path: str) -> None:
+        """Remove an empty folder (OS_rmdir).
+
+        Raises:
+            OsalError: OS_ERROR when there is none, when it is not empty or a mount point; as `translate`.
+        """
+        volume, rest = self.translate(path)
+        if not rest or not volume.is_folder(rest) or volume.names(rest):
+            raise OsalError(OS_ERROR, f"{path} is no empty folder")
+        volume.remove_folder(rest)
+
+    def list_dir(self, path: str) -> list[str]:
+        """Names in a folder, sorted.
+
+        Raises:
+            OsalError: OS_ERROR when there is no such folder; as `translate`.
+        """
+        volume, rest = self.translate(path)
+        if not volume.is_folder(rest):
+            raise OsalError(OS_ERROR, f"there is no folder {path}")
+        return volume.names(rest)

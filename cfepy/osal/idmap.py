@@ -1,0 +1,137 @@
+"""OSAL's id map (osapi-idmap.h), error names, console output and versions: what concerns no particular kind of object.
+
+May import cfepy.ids, status, versions and its neighbours in cfepy.osal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from cfepy import versions
+from cfepy.ids import OS_USER_BASE, equal, from_integer, get_base, is_defined, to_integer
+from cfepy.osal.core import Core, OsObject, Setup
+from cfepy.osal.limits import (
+    OS_BUFFER_SIZE,
+    OS_BUILD_NUMBER,
+    OS_ERROR_NAME_LENGTH,
+    OS_OBJECT_CREATOR_ANY,
+    OS_VERSION_NUMBER,
+)
+from cfepy.status import OS_ERR_INVALID_ID, OsalError, name_of, status_to_string
+
+
+class IdMapApi(Core):
+    """The functions on object ids of any kind, and OS_printf."""
+
+    object_id_to_integer = staticmethod(to_integer)
+    object_id_from_integer = staticmethod(from_integer)
+    object_id_equal = staticmethod(equal)
+    object_id_defined = staticmethod(is_defined)
+    status_to_string = staticmethod(status_to_string)
+
+    def __init__(self, setup: Setup) -> None:
+        super().__init__(setup)
+        self._printf_enabled = True
+
+    def get_resource_name(self, object_id: int) -> str:
+        """The name of any OSAL object (OS_GetResourceName).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        return self._object(object_id).name
+
+    def identify_object(self, object_id: int) -> int:
+        """The kind of an id, one of the OS_*_BASE numbers; 0 for what is no OSAL id (OS_IdentifyObject)."""
+        base = get_base(object_id)
+        return base if 0 < base < OS_USER_BASE else 0
+
+    def convert_to_array_index(self, object_id: int) -> int:
+        """A number from 0 that no other existing object of the same kind has (OS_ConvertToArrayIndex).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID for what is no OSAL id.
+        """
+        return self.object_id_to_array_index(0, object_id)
+
+    def object_id_to_array_index(self, idtype: int, object_id: int) -> int:
+        """As `convert_to_array_index`, for an id of a certain kind (OS_ObjectIdToArrayIndex).
+
+        Args:
+            idtype: one of the OS_*_BASE numbers, 0 for any.
+            object_id: the id.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID for an id of another kind.
+        """
+        base = get_base(object_id)
+        table = self._tables.get(base)
+        if table is None or (idtype and idtype != base):
+            raise OsalError(OS_ERR_INVALID_ID, f"{object_id:#x} is no id of kind {idtype or 'any'}")
+        return table.index(object_id)
+
+    def for_each_object(
+        self, creator_id: int, callback: Callable[[int, Any], object], callback_arg: Any = None
+    ) -> None:
+        """Call back with the id of every object a task created (OS_ForEachObject).
+
+        Args:
+            creator_id: the task; OS_OBJECT_CREATOR_ANY (0) for all objects.
+            callback: called with the id and `callback_arg`; it may delete the object.
+            callback_arg: handed to the callback.
+        """
+        for base in sorted(self._tables):
+            self.for_each_object_of_type(base, creator_id, callback, callback_arg)
+
+    def for_each_object_of_type(
+        self, objtype: int, creator_id: int, callback: Callable[[int, Any], object], callback_arg: Any = None
+    ) -> None:
+        """As `for_each_object`, for one kind of object (OS_ForEachObjectOfType)."""
+        table = self._tables.get(objtype)
+        for object_id, record in table.items() if table is not None else ():
+            if not record.deleted and creator_id in (OS_OBJECT_CREATOR_ANY, record.creator):
+                callback(object_id, callback_arg)
+
+    def get_error_name(self, status: int) -> str:
+        """NASA's name of an OS_* status, "OS_UNKNOWN(n)" for others (OS_GetErrorName)."""
+        name = name_of(status)
+        if status == 0:
+            return "OS_SUCCESS"
+        return name[: OS_ERROR_NAME_LENGTH - 1] if name.startswith("OS_") else f"OS_UNKNOWN({status})"
+
+    def printf(self, text: str) -> None:
+        """Write a text to the console, at most 171 characters of it (OS_printf)."""
+        if self._printf_enabled:
+            self.console.write(text[: OS_BUFFER_SIZE - 1])
+
+    def printf_disable(self) -> None:
+        """Let `printf` do nothing (OS_printf_disable)."""
+        self._printf_enabled = False
+
+    def printf_enable(self) -> None:
+        """Let `printf` write again (OS_printf_enable)."""
+        self._printf_enabled = True
+
+    def get_version_string(self) -> str:
+        """The version of OSAL that this one is like (OS_GetVersionString)."""
+        return versions.OSAL_VERSION
+
+    def get_version_code_name(self) -> str:
+        """The code name of that release (OS_GetVersionCodeName)."""
+        return versions.CODENAME
+
+    def get_version_number(self) -> tuple[int, int, int, int]:
+        """Major, minor, revision, mission revision (OS_GetVersionNumber)."""
+        return OS_VERSION_NUMBER
+
+    def get_build_number(self) -> int:
+        """The build number, 0 for a release (OS_GetBuildNumber)."""
+        return OS_BUILD_NUMBER
+
+    def _object(self, object_id: int) -> OsObject:
+        table = self._tables.get(get_base(object_id))
+        record: OsObject | None = table.find(object_id) if table is not None else None
+        if record is None:
+            raise OsalError(OS_ERR_INVALID_ID, f"no OSAL object has the id {object_id:#x}")
+        return record

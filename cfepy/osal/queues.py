@@ -1,0 +1,157 @@
+"""OSAL message queues (OS_Queue*): bounded, first in first out, and a writer never waits.
+
+Messages are bytes; they are handed over by reference when immutable, and copied otherwise. May import cfepy.rtos,
+ids, status and its neighbours in cfepy.osal.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cfepy.ids import OS_QUEUE_BASE
+from cfepy.osal.core import DELETED, Core, ObjectTable, OsObject, Setup, check_size
+from cfepy.osal.limits import NS_PER_MS, OS_PEND, PS_PER_NS
+from cfepy.rtos import Queue
+from cfepy.status import OS_ERR_INVALID_SIZE, OS_QUEUE_FULL, OS_QUEUE_INVALID_SIZE, OsalError
+
+
+class QueueInfo(NamedTuple):
+    """What `queue_get_info` tells (OS_queue_prop_t)."""
+
+    name: str
+    creator: int
+
+
+class OsQueue(OsObject):
+    """The record of a queue."""
+
+    __slots__ = ("data_size", "queue")
+
+    def __init__(self, name: str, queue: Queue, data_size: int) -> None:
+        super().__init__(name)
+        self.queue = queue
+        self.data_size = data_size
+
+
+class QueueApi(Core):
+    """The OS_Queue* functions."""
+
+    def __init__(self, setup: Setup) -> None:
+        super().__init__(setup)
+        self._queues: ObjectTable[OsQueue] = self._table("queue", OS_QUEUE_BASE, setup.config.os_max_queues)
+        self._find_queue = self._queues.lookup
+
+    def queue_create(self, name: str, depth: int, data_size: int, flags: int = 0) -> int:
+        """Make a queue (OS_QueueCreate).
+
+        Args:
+            name: unique among queues, at most 19 characters.
+            depth: how many messages wait at most, 1 to OS_QUEUE_MAX_DEPTH.
+            data_size: largest message in bytes.
+            flags: without effect, as in NASA's.
+
+        Returns:
+            The queue's id.
+
+        Raises:
+            OsalError: OS_ERR_NAME_TOO_LONG, OS_ERR_INVALID_SIZE, OS_QUEUE_INVALID_SIZE, OS_ERR_NAME_TAKEN or
+                OS_ERR_NO_FREE_IDS.
+        """
+        if self._cost:
+            self.kernel.charge(self._cost)
+        self._queues.check_name(name)
+        check_size(data_size, f"messages of queue {name}")
+        if not 0 < depth <= self.config.os_queue_max_depth:
+            raise OsalError(
+                OS_QUEUE_INVALID_SIZE, f"depth {depth} of queue {name} is not 1 to {self.config.os_queue_max_depth}"
+            )
+        record = OsQueue(name, Queue(self.kernel, depth, name), data_size)
+        sizes = self._setup.sizes
+        return self._register(self._queues, record, "queue", sizes.queue + depth * (sizes.queue_slot + data_size))
+
+    def queue_delete(self, queue_id: int) -> None:
+        """Delete a queue with what is in it; a task that waits there gets OS_ERR_INVALID_ID (OS_QueueDelete).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        record = self._queue(queue_id)
+        self._unregister(self._queues, record)
+        record.queue.close(DELETED)
+
+    def queue_put(self, queue_id: int, data: bytes | bytearray | memoryview, flags: int = 0) -> None:
+        """Add a message; never waits (OS_QueuePut).
+
+        Raises:
+            OsalError: OS_QUEUE_FULL; OS_QUEUE_INVALID_SIZE for a message larger than the queue's; OS_ERR_INVALID_SIZE
+                for an empty one; OS_ERR_INVALID_ID.
+        """
+        size = len(data)
+        if self._cost:
+            self.kernel.charge(self._cost + size * self._byte_cost // PS_PER_NS)
+        record = self._find_queue(queue_id)
+        if record is None:
+            raise self._queues.missing(queue_id)
+        if not 0 < size <= record.data_size:
+            status = OS_QUEUE_INVALID_SIZE if size else OS_ERR_INVALID_SIZE
+            raise OsalError(status, f"{size} bytes for queue {record.name} of {record.data_size}")
+        if not record.queue.put(data if type(data) is bytes else bytes(data)):
+            raise OsalError(OS_QUEUE_FULL, f"queue {record.name} holds {record.queue.depth} messages")
+
+    def queue_get(self, queue_id: int, timeout_ms: int = OS_PEND) -> bytes | None:
+        """Take the oldest message (OS_QueueGet).
+
+        Args:
+            queue_id: the queue.
+            timeout_ms: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
+
+        Returns:
+            The message; None when there was none in that time.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        record = self._find_queue(queue_id)
+        if record is None:
+            raise self._queues.missing(queue_id)
+        item = record.queue.get(timeout_ms * NS_PER_MS if timeout_ms > 0 else timeout_ms)
+        if item:
+            if self._cost:
+                self.kernel.charge(self._cost + len(item) * self._byte_cost // PS_PER_NS)
+            return item  # type: ignore[no-any-return]  # queues hold bytes, the kernel's queue anything
+        if item is DELETED:
+            raise self._queues.gone(record)
+        if self._cost:
+            self.kernel.charge(self._cost)
+        return None
+
+    def queue_get_id_by_name(self, name: str) -> int:
+        """Id of a named queue (OS_QueueGetIdByName).
+
+        Raises:
+            OsalError: OS_ERR_NAME_NOT_FOUND or OS_ERR_NAME_TOO_LONG.
+        """
+        return self._queues.named(name)
+
+    def queue_get_info(self, queue_id: int) -> QueueInfo:
+        """Facts about a queue (OS_QueueGetInfo).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        record = self._queue(queue_id)
+        return QueueInfo(record.name, record.creator)
+
+    def kernel_queue(self, queue_id: int) -> Queue:
+        """The kernel object behind a queue, for code that moves messages on a hot path (a pipe).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        return self._queue(queue_id).queue
+
+    def _queue(self, queue_id: int) -> OsQueue:
+        record = self._find_queue(queue_id)
+        if record is None:
+            raise self._queues.missing(queue_id)
+        return record

@@ -1,0 +1,217 @@
+"""OSAL binary and counting semaphores (OS_BinSem*, OS_CountSem*).
+
+May import cfepy.rtos, ids, status and its neighbours in cfepy.osal.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cfepy.ids import OS_BINSEM_BASE, OS_COUNTSEM_BASE
+from cfepy.osal.core import Core, ObjectTable, OsObject, Setup
+from cfepy.osal.limits import NS_PER_MS, OS_CHECK, OS_PEND, SEM_VALUE_MAX
+from cfepy.rtos import TIMEOUT, Semaphore
+from cfepy.status import OS_ERR_INVALID_ARGUMENT, OS_INVALID_SEM_VALUE, OS_SEM_FAILURE, OsalError
+
+
+class SemaphoreInfo(NamedTuple):
+    """What `bin_sem_get_info` and `count_sem_get_info` tell (OS_bin_sem_prop_t, OS_count_sem_prop_t)."""
+
+    name: str
+    creator: int
+    value: int
+
+
+class OsSemaphore(OsObject):
+    """The record of a semaphore of either kind."""
+
+    __slots__ = ("semaphore",)
+
+    def __init__(self, name: str, semaphore: Semaphore) -> None:
+        super().__init__(name)
+        self.semaphore = semaphore
+
+
+class SemaphoreApi(Core):
+    """The OS_BinSem* and OS_CountSem* functions."""
+
+    def __init__(self, setup: Setup) -> None:
+        super().__init__(setup)
+        limit = setup.config.os_max_semaphores
+        self._bin_sems: ObjectTable[OsSemaphore] = self._table("binary semaphore", OS_BINSEM_BASE, limit)
+        self._count_sems: ObjectTable[OsSemaphore] = self._table("counting semaphore", OS_COUNTSEM_BASE, limit)
+
+    def bin_sem_create(self, name: str, initial_value: int, options: int = 0) -> int:
+        """Make a binary semaphore (OS_BinSemCreate).
+
+        Args:
+            name: unique among binary semaphores, at most 19 characters.
+            initial_value: OS_SEM_EMPTY or OS_SEM_FULL; a larger value counts as full, as in NASA's.
+            options: without effect, as in NASA's.
+
+        Returns:
+            The semaphore's id.
+
+        Raises:
+            OsalError: OS_ERR_NAME_TOO_LONG, OS_INVALID_SEM_VALUE (negative), OS_ERR_NAME_TAKEN or OS_ERR_NO_FREE_IDS.
+        """
+        return self._create(self._bin_sems, name, min(initial_value, 1), 1)
+
+    def bin_sem_give(self, sem_id: int) -> None:
+        """Make a semaphore full; the most urgent task that waits takes it (OS_BinSemGive).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        if self._cost:
+            self.kernel.charge(self._cost)
+        record = self._bin_sems.lookup(sem_id)
+        if record is None:
+            raise self._bin_sems.missing(sem_id)
+        record.semaphore.give()
+
+    def bin_sem_flush(self, sem_id: int) -> None:
+        """Let every task that waits go on, and leave the semaphore as it is (OS_BinSemFlush).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        if self._cost:
+            self.kernel.charge(self._cost)
+        self._semaphore(self._bin_sems, sem_id).semaphore.flush()
+
+    def bin_sem_take(self, sem_id: int) -> None:
+        """Wait until the semaphore is full and empty it (OS_BinSemTake).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        self._take(self._bin_sems, sem_id, OS_PEND)
+
+    def bin_sem_timed_wait(self, sem_id: int, timeout_ms: int) -> bool:
+        """As `bin_sem_take` for at most `timeout_ms`; False when the time was over (OS_BinSemTimedWait).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_ARGUMENT for a negative time.
+        """
+        return self._timed_wait(self._bin_sems, sem_id, timeout_ms)
+
+    def bin_sem_delete(self, sem_id: int) -> None:
+        """Delete a binary semaphore; tasks that wait get OS_ERR_INVALID_ID (OS_BinSemDelete).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        self._delete(self._bin_sems, sem_id)
+
+    def bin_sem_get_id_by_name(self, name: str) -> int:
+        """Id of a named binary semaphore, or OS_ERR_NAME_NOT_FOUND (OS_BinSemGetIdByName)."""
+        return self._bin_sems.named(name)
+
+    def bin_sem_get_info(self, sem_id: int) -> SemaphoreInfo:
+        """Facts about a binary semaphore, or OS_ERR_INVALID_ID (OS_BinSemGetInfo)."""
+        return _info(self._semaphore(self._bin_sems, sem_id))
+
+    def count_sem_create(self, name: str, initial_value: int, options: int = 0) -> int:
+        """Make a counting semaphore (OS_CountSemCreate).
+
+        Args:
+            name: unique among counting semaphores, at most 19 characters.
+            initial_value: 0 to SEM_VALUE_MAX.
+            options: without effect, as in NASA's.
+
+        Returns:
+            The semaphore's id.
+
+        Raises:
+            OsalError: OS_ERR_NAME_TOO_LONG, OS_INVALID_SEM_VALUE, OS_ERR_NAME_TAKEN or OS_ERR_NO_FREE_IDS.
+        """
+        return self._create(self._count_sems, name, initial_value, None)
+
+    def count_sem_give(self, sem_id: int) -> None:
+        """Count up, or let the most urgent waiter go on (OS_CountSemGive).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID, OS_SEM_FAILURE at SEM_VALUE_MAX.
+        """
+        if self._cost:
+            self.kernel.charge(self._cost)
+        record = self._count_sems.lookup(sem_id)
+        if record is None:
+            raise self._count_sems.missing(sem_id)
+        if record.semaphore.count >= SEM_VALUE_MAX:
+            raise OsalError(OS_SEM_FAILURE, f"counting semaphore {record.name} is at its maximum")
+        record.semaphore.give()
+
+    def count_sem_take(self, sem_id: int) -> None:
+        """Wait until the count is above 0 and lower it (OS_CountSemTake).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        self._take(self._count_sems, sem_id, OS_PEND)
+
+    def count_sem_timed_wait(self, sem_id: int, timeout_ms: int) -> bool:
+        """As `count_sem_take` for at most `timeout_ms`; False when the time was over (OS_CountSemTimedWait).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_ARGUMENT for a negative time.
+        """
+        return self._timed_wait(self._count_sems, sem_id, timeout_ms)
+
+    def count_sem_delete(self, sem_id: int) -> None:
+        """Delete a counting semaphore; tasks that wait get OS_ERR_INVALID_ID (OS_CountSemDelete).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        self._delete(self._count_sems, sem_id)
+
+    def count_sem_get_id_by_name(self, name: str) -> int:
+        """Id of a named counting semaphore, or OS_ERR_NAME_NOT_FOUND (OS_CountSemGetIdByName)."""
+        return self._count_sems.named(name)
+
+    def count_sem_get_info(self, sem_id: int) -> SemaphoreInfo:
+        """Facts about a counting semaphore, or OS_ERR_INVALID_ID (OS_CountSemGetInfo)."""
+        return _info(self._semaphore(self._count_sems, sem_id))
+
+    def _create(self, table: ObjectTable[OsSemaphore], name: str, initial_value: int, maximum: int | None) -> int:
+        if self._cost:
+            self.kernel.charge(self._cost)
+        table.check_name(name)
+        if not 0 <= initial_value <= SEM_VALUE_MAX:
+            raise OsalError(OS_INVALID_SEM_VALUE, f"{table.kind} {name} cannot begin with {initial_value}")
+        record = OsSemaphore(name, Semaphore(self.kernel, initial_value, maximum, name))
+        return self._register(table, record, "semaphore", self._setup.sizes.semaphore)
+
+    def _semaphore(self, table: ObjectTable[OsSemaphore], sem_id: int) -> OsSemaphore:
+        record = table.lookup(sem_id)
+        if record is None:
+            raise table.missing(sem_id)
+        return record
+
+    def _take(self, table: ObjectTable[OsSemaphore], sem_id: int, timeout_ns: int) -> bool:
+        if self._cost:
+            self.kernel.charge(self._cost)
+        record = table.lookup(sem_id)
+        if record is None:
+            raise table.missing(sem_id)
+        if record.semaphore.take(timeout_ns):
+            return True
+        if record.deleted:
+            raise table.gone(record)
+        return False
+
+    def _timed_wait(self, table: ObjectTable[OsSemaphore], sem_id: int, timeout_ms: int) -> bool:
+        if timeout_ms < OS_CHECK:
+            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"time-out of {timeout_ms} ms")
+        return self._take(table, sem_id, timeout_ms * NS_PER_MS)
+
+    def _delete(self, table: ObjectTable[OsSemaphore], sem_id: int) -> None:
+        record = self._semaphore(table, sem_id)
+        self._unregister(table, record)
+        self.kernel.wake_all(record.semaphore.waits, TIMEOUT)
+
+
+def _info(record: OsSemaphore) -> SemaphoreInfo:
+    return SemaphoreInfo(record.name, record.creator, record.semaphore.count)

@@ -1,0 +1,218 @@
+"""OSAL tasks (OS_Task*): kernel tasks with an id, a name, a stack that is accounted for, and a delete handler.
+
+May import cfepy.rtos, ids, status and its neighbours in cfepy.osal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from cfepy.ids import OS_TASK_BASE
+from cfepy.osal.core import Core, ObjectTable, OsObject, Setup, check_size
+from cfepy.osal.limits import NS_PER_MS, OS_MAX_TASK_PRIORITY
+from cfepy.rtos import Task
+from cfepy.status import (
+    OS_ERR_INVALID_ARGUMENT,
+    OS_ERR_INVALID_ID,
+    OS_ERR_INVALID_PRIORITY,
+    OS_ERR_NAME_NOT_FOUND,
+    OS_INVALID_POINTER,
+    OsalError,
+)
+
+
+class TaskInfo(NamedTuple):
+    """What `task_get_info` tells (OS_task_prop_t)."""
+
+    name: str
+    creator: int
+    stack_size: int
+    priority: int
+
+
+class OsTask(OsObject):
+    """The record of a task."""
+
+    __slots__ = ("entry", "on_delete", "priority", "stack_size", "task")
+
+    def __init__(self, name: str, entry: Callable[[], object], stack_size: int, priority: int) -> None:
+        super().__init__(name)
+        self.entry = entry
+        self.stack_size = stack_size
+        self.priority = priority
+        self.on_delete: Callable[[], object] | None = None
+        self.task: Task | None = None
+
+
+class TaskApi(Core):
+    """The OS_Task* functions."""
+
+    def __init__(self, setup: Setup) -> None:
+        super().__init__(setup)
+        self._tasks: ObjectTable[OsTask] = self._table("task", OS_TASK_BASE, setup.config.os_max_tasks)
+
+    def task_create(
+        self,
+        name: str,
+        entry: Callable[[], object],
+        stack_size: int,
+        priority: int,
+        flags: int = 0,
+        *,
+        owner: Any = None,
+    ) -> int:
+        """Start a task (OS_TaskCreate). A more urgent one runs before this returns.
+
+        Args:
+            name: unique among tasks, at most 19 characters.
+            entry: called without arguments; when it returns, the task ends.
+            stack_size: bytes, accounted for where the board counts memory.
+            priority: 0 (most urgent) to 255.
+            flags: OS_FP_ENABLED or 0; without effect here.
+            owner: the application it works for; None takes over the caller's.
+
+        Returns:
+            The task's id.
+
+        Raises:
+            OsalError: OS_INVALID_POINTER, OS_ERR_NAME_TOO_LONG, OS_ERR_INVALID_SIZE, OS_ERR_INVALID_PRIORITY,
+                OS_ERR_NAME_TAKEN or OS_ERR_NO_FREE_IDS.
+        """
+        if self._cost:
+            self.kernel.charge(self._cost)
+        if not callable(entry):
+            raise OsalError(OS_INVALID_POINTER, f"the entry point of task {name} cannot be called")
+        self._tasks.check_name(name)
+        check_size(stack_size, f"stack of task {name}")
+        _check_priority(priority)
+        record = OsTask(name, entry, stack_size, priority)
+        task_id = self._register(self._tasks, record, "stack", stack_size + self._setup.sizes.task)
+        record.task = self.kernel.spawn(name, lambda: self._live(record), priority, owner)
+        return task_id
+
+    def task_delete(self, task_id: int) -> None:
+        """End a task and call its delete handler; what it created stays (OS_TaskDelete).
+
+        A task that deletes itself does not come back from this call.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        record = self._task(task_id)
+        task = record.task
+        if task is not None and task is not self.kernel.current:
+            self.kernel.kill(task)
+        self._forget(record)
+        if record.on_delete is not None:
+            record.on_delete()
+        if task is self.kernel.current:
+            self.kernel.exit_task()
+
+    def task_exit(self) -> None:
+        """End the calling task; its delete handler is not called (OS_TaskExit)."""
+        self.kernel.exit_task()
+
+    def task_install_delete_handler(self, handler: Callable[[], object] | None) -> None:
+        """Call `handler` when somebody deletes the calling task (OS_TaskInstallDeleteHandler).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID when the caller is no OSAL task.
+        """
+        self._task(self.task_get_id()).on_delete = handler
+
+    def task_delay(self, milliseconds: int) -> None:
+        """Sleep (OS_TaskDelay); others run even with 0 ms.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ARGUMENT for a negative time.
+        """
+        if self._cost:
+            self.kernel.charge(self._cost)
+        if milliseconds < 0:
+            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"delay of {milliseconds} ms")
+        self.kernel.delay(milliseconds * NS_PER_MS)
+
+    def task_set_priority(self, task_id: int, priority: int) -> None:
+        """Change a task's priority (OS_TaskSetPriority).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID or OS_ERR_INVALID_PRIORITY.
+        """
+        if self._cost:
+            self.kernel.charge(self._cost)
+        _check_priority(priority)
+        record = self._task(task_id)
+        record.priority = priority
+        if record.task is not None:
+            self.kernel.set_priority(record.task, priority)
+
+    def task_get_id(self) -> int:
+        """Id of the calling task, in a timer callback that of the time base, 0 for any other caller (OS_TaskGetId)."""
+        return self._task_ids.get(self.kernel.current, 0)
+
+    def task_get_id_by_name(self, name: str) -> int:
+        """Id of a named task (OS_TaskGetIdByName).
+
+        Raises:
+            OsalError: OS_ERR_NAME_NOT_FOUND or OS_ERR_NAME_TOO_LONG.
+        """
+        return self._tasks.named(name)
+
+    def task_get_info(self, task_id: int) -> TaskInfo:
+        """Facts about a task (OS_TaskGetInfo).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        record = self._task(task_id)
+        return TaskInfo(record.name, record.creator, record.stack_size, record.priority)
+
+    def task_find_id_by_system_data(self, system_data: Task) -> int:
+        """Id of the OSAL task that runs as a kernel task (OS_TaskFindIdBySystemData).
+
+        Raises:
+            OsalError: OS_ERR_NAME_NOT_FOUND when it is none.
+        """
+        for task_id, record in self._tasks.items():
+            if record.task is system_data:
+                return task_id
+        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"{system_data!r} is no OSAL task")
+
+    def kernel_task(self, task_id: int) -> Task:
+        """The kernel task behind an id.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        task = self._task(task_id).task
+        if task is None:
+            raise OsalError(OS_ERR_INVALID_ID, f"task {task_id:#x} has not begun")
+        return task
+
+    def _task(self, task_id: int) -> OsTask:
+        record = self._tasks.lookup(task_id)
+        if record is None:
+            raise self._tasks.missing(task_id)
+        return record
+
+    def _live(self, record: OsTask) -> None:
+        """What an OSAL task runs."""
+        record.task = task = self.kernel.current
+        self._task_ids[task] = record.id
+        try:
+            record.entry()
+        finally:
+            self._forget(record)
+
+    def _forget(self, record: OsTask) -> None:
+        if record.deleted:
+            return
+        self._unregister(self._tasks, record)
+        if record.task is not None:
+            self._task_ids.pop(record.task, None)
+
+
+def _check_priority(priority: int) -> None:
+    if not 0 <= priority <= OS_MAX_TASK_PRIORITY:
+        raise OsalError(OS_ERR_INVALID_PRIORITY, f"priority {priority} is not within 0 to {OS_MAX_TASK_PRIORITY}")

@@ -1,0 +1,142 @@
+"""YAML read so that every value knows its line: what lets an error about a file say where.
+
+`load` gives a tree of `Marked`. A file is refused when it is not YAML, has a key twice, or a key that is no text.
+Imports only cfepy.status; PyYAML is imported when a file is read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cfepy.status import UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class Marked:
+    """A value of a file and its place.
+
+    Attributes:
+        value: a scalar, a list of Marked, or a dict of text to Marked.
+        file: the file it was read from.
+        line: line in it, from 1.
+        field: dotted path, "limits.sb_max_pipes"; "" for the whole file.
+    """
+
+    value: Any
+    file: Path
+    line: int
+    field: str
+
+    def fail(self, text: str) -> UsageError:
+        """The error to raise about this value; `text` says what is wrong and what to do."""
+        return UsageError(text, file=self.file, line=self.line, field=self.field or None)
+
+    def mapping(self, known: Iterable[str] | None = None) -> dict[str, Marked]:
+        """The value as a mapping, an empty one when nothing was written.
+
+        Args:
+            known: the keys it may have; any when None.
+
+        Raises:
+            UsageError: it is no mapping, or has another key.
+        """
+        if self.value is None:
+            return {}
+        if not isinstance(self.value, dict):
+            raise self.fail(f"is {self.plain()!r}, it must be a mapping of names to values")
+        allowed = None if known is None else tuple(known)
+        for name, item in self.value.items():
+            if allowed is not None and name not in allowed:
+                raise item.fail(f"is not known here; known are {', '.join(allowed)}")
+        return self.value
+
+    def items(self) -> list[Marked]:
+        """The value as a list, an empty one when nothing was written.
+
+        Raises:
+            UsageError: it is no list.
+        """
+        if self.value is None:
+            return []
+        if not isinstance(self.value, list):
+            raise self.fail(f"is {self.plain()!r}, it must be a list")
+        return self.value
+
+    def integer(self, lowest: int = 0) -> int:
+        """The value as a whole number of at least `lowest`.
+
+        Raises:
+            UsageError: it is something else.
+        """
+        if not isinstance(self.value, int) or isinstance(self.value, bool) or self.value < lowest:
+            raise self.fail(f"is {self.plain()!r}, it must be a whole number of at least {lowest}")
+        return self.value
+
+    def text(self) -> str:
+        """The value as text.
+
+        Raises:
+            UsageError: it is something else.
+        """
+        if not isinstance(self.value, str):
+            raise self.fail(f"is {self.plain()!r}, it must be text; put it in quotes")
+        return self.value
+
+    def plain(self) -> Any:
+        """The value without its marks."""
+        if isinstance(self.value, dict):
+            return {name: item.plain() for name, item in self.value.items()}
+        return [item.plain() for item in self.value] if isinstance(self.value, list) else self.value
+
+
+def load(path: Path) -> Marked:
+    """Read a YAML file.
+
+    Raises:
+        UsageError: it cannot be read, or is not good YAML.
+    """
+    import yaml
+
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageError(f"cannot be read: {error}", file=path) from None
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)
+    try:
+        node = loader.get_single_node()
+        return Marked(None, path, 1, "") if node is None else _mark(loader, node, path, "")
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line = None if mark is None else mark.line + 1
+        raise UsageError(f"is not YAML: {error.problem or error.context}", file=path, line=line) from None
+    except UsageError:
+        raise
+    except (yaml.YAMLError, ValueError) as error:
+        raise UsageError(f"is not YAML: {error}", file=path) from None
+    finally:
+        loader.dispose()
+
+
+def _mark(loader: Any, node: Any, path: Path, field: str) -> Marked:
+    """A composed node as Marked; the loader's own constructor turns scalars into Python values."""
+    line = node.start_mark.line + 1
+    if node.id == "mapping":
+        return Marked(dict(_pairs(loader, node, path, field)), path, line, field)
+    if node.id == "sequence":
+        items = [_mark(loader, item, path, f"{field}[{index}]") for index, item in enumerate(node.value)]
+        return Marked(items, path, line, field)
+    return Marked(loader.construct_object(node), path, line, field)
+
+
+def _pairs(loader: Any, node: Any, path: Path, field: str) -> Iterator[tuple[str, Marked]]:
+    seen: set[str] = set()
+    for key_node, value_node in node.value:
+        key = _mark(loader, key_node, path, field)
+        name = key.text()
+        if name in seen:
+            raise key.fail(f"{name!r} is there twice; remove one")
+        seen.add(name)
+        yield name, _mark(loader, value_node, path, f"{field}.{name}" if field else name)

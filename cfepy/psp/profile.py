@@ -1,0 +1,196 @@
+"""The board a mission runs on: processor speed, clock tick, memory, what kernel calls cost, and what limits follow.
+
+A profile is a file, boards/<name>.yaml; a number that is 0 or left out means "no limit" or "costs nothing". Imports
+cfepy.status, cfepy.config and cfepy.resources, and cfepy.psp.marked_yaml.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+
+from cfepy.config import PlatformConfig
+from cfepy.psp.marked_yaml import Marked, load
+from cfepy.resources import shipped
+from cfepy.status import UsageError
+
+DEFAULT_NODE_CALL_NS = 1000
+_UNITS = {"B": 1, "KiB": 1024, "MiB": 1024 * 1024}
+_NS_PER_S = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class MemoryRegion:
+    """A stretch of RAM: its name, its bytes, and whether it keeps its content through a reset."""
+
+    name: str
+    size: int
+    retained: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class MemoryCosts:
+    """RAM that kernel and cFE objects take, bytes each; 0 costs nothing."""
+
+    task_control_block: int = 0
+    queue_control_block: int = 0
+    queue_slot: int = 0
+    semaphore: int = 0
+    mutex: int = 0
+    timer: int = 0
+    app_record: int = 0
+    pipe: int = 0
+    route: int = 0
+    destination: int = 0
+    buffer_header: int = 0
+    table_record: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class BoardProfile:
+    """What a mission has to live with.
+
+    Attributes:
+        name: the board's name.
+        description: one line about it.
+        cpu_hz: processor clock; 0 means that computing costs no virtual time.
+        tick_ns: the kernel's clock tick, to which delays are rounded up; 0 for none.
+        program_flash, data_flash: bytes; 0 for no limit.
+        sram: regions of RAM; none for no limit.
+        context_switch_cycles: processor cycles to go from one task to another.
+        syscall_cycles: cycles of a kernel call.
+        copy_cycles_per_byte: cycles to copy one byte of a message.
+        max_publish_hz: messages a second that one publisher may send; 0 for no limit.
+        node_call_ns: virtual time of one call of a ROS node into the middleware.
+        limits: values that replace those of `PlatformConfig`.
+        memory_costs: RAM that each object takes.
+    """
+
+    name: str
+    description: str = ""
+    cpu_hz: int = 0
+    tick_ns: int = 0
+    program_flash: int = 0
+    data_flash: int = 0
+    sram: tuple[MemoryRegion, ...] = ()
+    context_switch_cycles: int = 0
+    syscall_cycles: int = 0
+    copy_cycles_per_byte: int = 0
+    max_publish_hz: int = 0
+    node_call_ns: int = DEFAULT_NODE_CALL_NS
+    limits: dict[str, int | str] = field(default_factory=dict)
+    memory_costs: MemoryCosts = MemoryCosts()
+
+    @property
+    def sram_size(self) -> int:
+        """Bytes of all RAM; 0 for no limit."""
+        return sum(region.size for region in self.sram)
+
+    def cycles_ns(self, cycles: int) -> int:
+        """Nanoseconds that some processor cycles take, rounded up; 0 on a board without a clock rate."""
+        return -(-cycles * _NS_PER_S // self.cpu_hz) if self.cpu_hz else 0
+
+    def config(self, base: PlatformConfig | None = None) -> PlatformConfig:
+        """The platform configuration under this board's limits.
+
+        Args:
+            base: what the limits are applied to; cFE's defaults when None.
+        """
+        return (base or PlatformConfig()).with_limits(self.limits)
+
+
+def available_boards() -> list[str]:
+    """Names of the boards that cfepy brings along, sorted."""
+    return sorted(path.stem for path in shipped("boards").glob("*.yaml"))
+
+
+def load_profile(name_or_path: str | Path) -> BoardProfile:
+    """Read the profile of a board.
+
+    Args:
+        name_or_path: a shipped board's name such as "rx64m", or the path of a .yaml file.
+
+    Raises:
+        UsageError: no such board, or its file is wrong; says file, line and field.
+    """
+    root = load(_find(name_or_path))
+    entries = root.mapping([known.name for known in fields(BoardProfile)])
+    if "name" not in entries:
+        raise root.fail("has no name; a board profile starts with `name: ...`")
+    numbers = {key: _number(key, entries[key]) for key in entries if key in _NUMBERS}
+    texts = {key: entries[key].text() for key in ("name", "description") if key in entries}
+    parts = {key: read(entries[key]) for key, read in _PARTS.items() if key in entries}
+    return BoardProfile(**texts, **numbers, **parts)  # type: ignore[arg-type]  # keys and types are of the fields
+
+
+_SIZES = ("program_flash", "data_flash")
+_NUMBERS = (
+    "cpu_hz",
+    "tick_ns",
+    *_SIZES,
+    "context_switch_cycles",
+    "syscall_cycles",
+    "copy_cycles_per_byte",
+    "max_publish_hz",
+    "node_call_ns",
+)
+
+
+def _find(name_or_path: str | Path) -> Path:
+    path = Path(name_or_path)
+    if path.suffix in (".yaml", ".yml") or len(path.parts) != 1:
+        return path
+    boards = available_boards()
+    if str(name_or_path) not in boards:
+        raise UsageError(
+            f"there is no board {str(name_or_path)!r}; there are {', '.join(boards)}, or give the path of a .yaml file",
+            field="board",
+        )
+    return shipped("boards") / f"{path}.yaml"
+
+
+def _number(key: str, entry: Marked) -> int:
+    if entry.value is None:
+        return 0
+    return _size(entry) if key in _SIZES else entry.integer()
+
+
+def _size(entry: Marked) -> int:
+    """Bytes: a whole number, or one with a unit, "512 KiB"."""
+    if not isinstance(entry.value, str):
+        return entry.integer()
+    count, _, unit = entry.value.partition(" ")
+    if not count.isdecimal() or unit not in _UNITS:
+        raise entry.fail(f"is {entry.value!r}, it must be bytes or a number with {', '.join(_UNITS)}, such as 512 KiB")
+    return int(count) * _UNITS[unit]
+
+
+def _sram(entry: Marked) -> tuple[MemoryRegion, ...]:
+    return tuple(_region(item) for item in entry.items())
+
+
+def _region(entry: Marked) -> MemoryRegion:
+    parts = entry.mapping(["name", "size", "retained"])
+    for needed in ("name", "size"):
+        if needed not in parts:
+            raise entry.fail(f"has no {needed}; write a region as {{name: ecc, size: 512 KiB}}")
+    retained = parts.get("retained")
+    if retained is not None and not isinstance(retained.value, bool):
+        raise retained.fail(f"is {retained.value!r}, it must be true or false")
+    return MemoryRegion(parts["name"].text(), _size(parts["size"]), retained is not None and retained.value)
+
+
+def _limits(entry: Marked) -> dict[str, int | str]:
+    defaults = PlatformConfig()
+    limits: dict[str, int | str] = {}
+    for name, item in entry.mapping([known.name for known in fields(PlatformConfig)]).items():
+        limits[name] = item.text() if isinstance(getattr(defaults, name), str) else item.integer(1)
+    return limits
+
+
+def _memory_costs(entry: Marked) -> MemoryCosts:
+    parts = entry.mapping([known.name for known in fields(MemoryCosts)])
+    return MemoryCosts(**{name: item.integer() for name, item in parts.items()})
+
+
+_PARTS = {"sram": _sram, "limits": _limits, "memory_costs": _memory_costs}

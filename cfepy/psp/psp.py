@@ -1,0 +1,285 @@
+"""`Psp`: the board under a mission as one object, `cfe.psp` (cFE's Platform Support Package).
+
+It boots the board with the console lines of NASA's Linux PSP, tells who and when it is, keeps the reset-proof memory,
+and passes resets on to the mission. Names are NASA's in snake case without CFE_PSP_. May import cfepy.rtos,
+cfepy.osal and what is left of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from cfepy import versions
+from cfepy.config import PlatformConfig
+from cfepy.console import Console
+from cfepy.osal import Osal, OsTime
+from cfepy.osal.clock import time_from_total_nanoseconds
+from cfepy.osal.limits import OS_BUILD_NUMBER, OS_VERSION_NUMBER
+from cfepy.psp import endian
+from cfepy.psp.profile import BoardProfile
+from cfepy.psp.retained import Retained
+from cfepy.psp.watchdog import Watchdog
+from cfepy.rtos import Kernel
+from cfepy.status import CFE_PSP_ERROR, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError, status_to_string
+
+RST_TYPE_PROCESSOR = 1
+RST_TYPE_POWERON = 2
+RST_SUBTYPE_POWER_CYCLE = 1
+RST_SUBTYPE_PUSH_BUTTON = 2
+RST_SUBTYPE_HW_SPECIAL_COMMAND = 3
+RST_SUBTYPE_HW_WATCHDOG = 4
+RST_SUBTYPE_RESET_COMMAND = 5
+RST_SUBTYPE_EXCEPTION = 6
+RST_SUBTYPE_UNDEFINED_RESET = 7
+RST_SUBTYPE_HWDEBUG_RESET = 8
+RST_SUBTYPE_BANKSWITCH_RESET = 9
+
+SOFT_TIMEBASE_NAME = "cFS-Master"
+SOFT_TIMEBASE_PERIOD_US = 10_000
+TICKS_PER_SECOND = 1_000_000_000
+RESTART_DELAY_MS = 10_000
+_NS_PER_S = 1_000_000_000
+
+# The modules of NASA's Linux PSP that there is a counterpart of here, with their ids there and what they say.
+_MODULES = (
+    ("soft_timebase", 0x0110FF00, f"Instantiated software timebase '{SOFT_TIMEBASE_NAME}' running at 10000 usec"),
+    ("ram_notimpl", 0x0110FF03, "Physical RAM access not implemented"),
+    ("port_notimpl", 0x0110FF04, "I/O Port access not implemented"),
+    ("endian_api", 0x0110FF07, "Host CPU Endian=LITTLE"),
+)
+
+
+class RestartType(NamedTuple):
+    """Why the processor started: a RST_TYPE_* and a RST_SUBTYPE_*."""
+
+    reset_type: int
+    subtype: int
+
+
+class Timebase(NamedTuple):
+    """What `get_timebase` reads: seconds, and ns within the second."""
+
+    upper: int
+    lower: int
+
+
+class Psp:
+    """One board.
+
+    Args:
+        kernel: its clock and tasks.
+        profile: what kind of board it is.
+        config: who it is: spacecraft id, processor id and name.
+        console: where its lines go.
+        osal: for the software time base.
+        retained: memory that outlives a processor reset; None makes a new one.
+        on_restart: called with the reset type when somebody asks for a restart; None stops the run.
+        on_watchdog: called when the watchdog bites; None for none, as on Linux.
+    """
+
+    hto_be16 = be16_to_h = staticmethod(endian.swap_16)
+    hto_be32 = be32_to_h = staticmethod(endian.swap_32)
+    hto_be64 = be64_to_h = staticmethod(endian.swap_64)
+    hto_le16 = le16_to_h = staticmethod(endian.keep_16)
+    hto_le32 = le32_to_h = staticmethod(endian.keep_32)
+    hto_le64 = le64_to_h = staticmethod(endian.keep_64)
+    is_big_endian = False
+    is_little_endian = True
+
+    def __init__(
+        self,
+        kernel: Kernel,
+        profile: BoardProfile,
+        config: PlatformConfig,
+        console: Console,
+        osal: Osal,
+        *,
+        retained: Retained | None = None,
+        on_restart: Callable[[int], object] | None = None,
+        on_watchdog: Callable[[], object] | None = None,
+    ) -> None:
+        self.kernel = kernel
+        self.profile = profile
+        self.config = config
+        self.console = console
+        self.osal = osal
+        self.retained = retained if retained is not None else Retained(cds_bytes=config.es_cds_size)
+        self.on_restart = on_restart
+        self.watchdog = Watchdog(kernel, on_watchdog)
+        self._restart_type = RestartType(RST_TYPE_POWERON, RST_SUBTYPE_POWER_CYCLE)
+        self.watchdog_init = self.watchdog.init
+        self.watchdog_enable = self.watchdog.enable
+        self.watchdog_disable = self.watchdog.disable
+        self.watchdog_service = self.watchdog.service
+        self.watchdog_set = self.watchdog.set
+
+    # -- start and end ---------------------------------------------------------------------------------------------
+
+    def boot(self, reset_type: int = 0, subtype: int = RST_SUBTYPE_POWER_CYCLE) -> RestartType:
+        """Start the board, up to where NASA's PSP calls CFE_ES_Main (OS_Application_Startup).
+
+        Args:
+            reset_type: RST_TYPE_PROCESSOR or RST_TYPE_POWERON; 0 takes what the last restart asked for.
+            subtype: one of RST_SUBTYPE_*.
+
+        Returns:
+            The type of the start: power-on when nothing else was asked for.
+        """
+        self._announce(subtype)
+        self._start_modules()
+        if self.retained.next_reset_type:
+            how = "Normal" if self.retained.exited else "Abnormal"
+            self.console.write(f"CFE_PSP: {how} exit from previous cFE instance")
+        wanted = reset_type or self.retained.next_reset_type
+        is_processor = wanted == RST_TYPE_PROCESSOR
+        self._restart_type = RestartType(RST_TYPE_PROCESSOR if is_processor else RST_TYPE_POWERON, subtype)
+        self.console.write(f"CFE_PSP: Starting the cFE with a {'PROCESSOR' if is_processor else 'POWER ON'} reset.")
+        if not is_processor:
+            self._clear_memory()
+        self.retained.exited = False
+        self.retained.next_reset_type = RST_TYPE_PROCESSOR  # what happens when the run ends without a restart
+        return self._restart_type
+
+    def restart(self, reset_type: int) -> None:
+        """End this run and record how to start again (CFE_PSP_Restart). A task does not come back from this call.
+
+        Args:
+            reset_type: RST_TYPE_PROCESSOR or RST_TYPE_POWERON.
+        """
+        is_poweron = reset_type == RST_TYPE_POWERON
+        self.console.write(f"CFE_PSP: Exiting cFE with {'POWERON' if is_poweron else 'PROCESSOR'} Reset status.")
+        self.console.write("\nCFE_PSP: Shutdown initiated - Exiting cFE")
+        self.retained.next_reset_type = reset_type
+        self.retained.exited = True
+        if self.on_restart is not None:
+            self.on_restart(reset_type)
+        else:
+            self.kernel.stop()
+        if self.kernel.current is not self.kernel.host:
+            self.osal.task_delay(RESTART_DELAY_MS)
+            self.osal.task_exit()
+
+    def panic(self, error_code: int) -> None:
+        """The cFE cannot go on (CFE_PSP_Panic).
+
+        Raises:
+            CfeError: always; NASA's calls abort().
+        """
+        self.console.write(f"CFE_PSP_Panic called with error code = 0x{error_code & 0xFFFFFFFF:08X}. Exiting.")
+        self.console.write("The cFE could not start.")
+        raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"the PSP panics, code {error_code}")
+
+    def get_restart_type(self) -> RestartType:
+        """Type and subtype of the start of this run (CFE_PSP_GetRestartType)."""
+        return self._restart_type
+
+    def attach_exceptions(self) -> None:
+        """Tell that exceptions are watched from now on (CFE_PSP_AttachExceptions); the kernel always does."""
+        self.console.write("CFE_PSP: CFE_PSP_AttachExceptions called")
+
+    # -- who and when ----------------------------------------------------------------------------------------------
+
+    def get_spacecraft_id(self) -> int:
+        """Number of the spacecraft (CFE_PSP_GetSpacecraftId)."""
+        return self.config.spacecraft_id
+
+    def get_processor_id(self) -> int:
+        """Number of the processor (CFE_PSP_GetProcessorId)."""
+        return self.config.processor_id
+
+    def get_processor_name(self) -> str:
+        """Name of the processor (CFE_PSP_GetProcessorName)."""
+        return self.config.processor_name
+
+    def get_time(self) -> OsTime:
+        """Monotonic time since the start, in OSAL's ticks of 100 ns (CFE_PSP_GetTime)."""
+        return time_from_total_nanoseconds(self.kernel.now)
+
+    def get_timebase(self) -> Timebase:
+        """The same as whole seconds and ns (CFE_PSP_Get_Timebase)."""
+        return Timebase(*divmod(self.kernel.now, _NS_PER_S))
+
+    def get_timer_ticks_per_second(self) -> int:
+        """Ticks per second of the lower part of `get_timebase` (CFE_PSP_GetTimerTicksPerSecond)."""
+        return TICKS_PER_SECOND
+
+    def get_timer_low32_rollover(self) -> int:
+        """Where that part begins anew (CFE_PSP_GetTimerLow32Rollover)."""
+        return TICKS_PER_SECOND
+
+    # -- memory ----------------------------------------------------------------------------------------------------
+
+    def get_cds_size(self) -> int:
+        """Bytes of the critical data store (CFE_PSP_GetCDSSize)."""
+        return len(self.retained.cds)
+
+    def write_to_cds(self, data: bytes | bytearray | memoryview, cds_offset: int) -> None:
+        """Copy bytes into the critical data store (CFE_PSP_WriteToCDS).
+
+        Raises:
+            OsalError: CFE_PSP_ERROR when they do not lie within it.
+        """
+        self._check_cds(cds_offset, len(data))
+        self.retained.cds[cds_offset : cds_offset + len(data)] = data
+
+    def read_from_cds(self, cds_offset: int, num_bytes: int) -> bytes:
+        """Copy bytes out of the critical data store (CFE_PSP_ReadFromCDS).
+
+        Raises:
+            OsalError: CFE_PSP_ERROR when they do not lie within it.
+        """
+        self._check_cds(cds_offset, num_bytes)
+        return bytes(self.retained.cds[cds_offset : cds_offset + num_bytes])
+
+    def get_reset_area(self) -> memoryview:
+        """The memory that outlives a processor reset (CFE_PSP_GetResetArea)."""
+        return memoryview(self.retained.reset_area)
+
+    def get_user_reserved_area(self) -> memoryview:
+        """The same for users (CFE_PSP_GetUserReservedArea)."""
+        return memoryview(self.retained.user_reserved)
+
+    def watchdog_get(self) -> int:
+        """The watchdog's time in ms (CFE_PSP_WatchdogGet)."""
+        return self.watchdog.value_ms
+
+    def get_version_string(self) -> str:
+        """The version of the PSP that this one is like (CFE_PSP_GetVersionString)."""
+        return versions.PSP_VERSION
+
+    def get_version_code_name(self) -> str:
+        """The code name of that release (CFE_PSP_GetVersionCodeName)."""
+        return versions.CODENAME
+
+    def get_version_number(self) -> tuple[int, int, int, int]:
+        """Major, minor, revision, mission revision (CFE_PSP_GetVersionNumber)."""
+        return OS_VERSION_NUMBER
+
+    def get_build_number(self) -> int:
+        """The build number, 0 for a release (CFE_PSP_GetBuildNumber)."""
+        return OS_BUILD_NUMBER
+
+    status_to_string = staticmethod(status_to_string)
+
+    def _announce(self, subtype: int) -> None:
+        self.console.write(f"CFE_PSP: Default Reset SubType = {subtype}")
+        self.console.write(f"CFE_PSP: Default CPU ID = {self.config.processor_id}")
+        self.console.write(f"CFE_PSP: Default Spacecraft ID = {self.config.spacecraft_id}")
+        self.console.write(f"CFE_PSP: Default CPU Name: {self.config.processor_name}")
+
+    def _start_modules(self) -> None:
+        timebase = self.osal.time_base_create(SOFT_TIMEBASE_NAME)
+        self.osal.time_base_set(timebase, SOFT_TIMEBASE_PERIOD_US, SOFT_TIMEBASE_PERIOD_US)
+        for name, module_id, says in _MODULES:
+            self.console.write(f"CFE_PSP: initializing module '{name}' with ID {module_id:08x}")
+            self.console.write(f"CFE_PSP: {says}")
+
+    def _clear_memory(self) -> None:
+        for area in ("CDS", "Reset", "User Reserved"):
+            self.console.write(f"CFE_PSP: Clearing out CFE {area} Shared memory segment.")
+        self.retained.clear()
+
+    def _check_cds(self, offset: int, size: int) -> None:
+        if offset < 0 or size < 0 or offset >= len(self.retained.cds) or offset + size > len(self.retained.cds):
+            raise OsalError(CFE_PSP_ERROR, f"{size} bytes at {offset} are outside the CDS of {len(self.retained.cds)}")

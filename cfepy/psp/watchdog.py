@@ -1,0 +1,81 @@
+"""The watchdog of a board (CFE_PSP_Watchdog*): if nobody serves it in time, it bites.
+
+NASA's Linux PSP only keeps the value. Here it counts virtual time and calls `on_bite`, where a mission hooks in a
+processor reset; without a hook it keeps the value, as on Linux. May import cfepy.rtos and cfepy.osal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from cfepy.osal.limits import NS_PER_MS
+from cfepy.rtos import Kernel, WaitList
+
+WATCHDOG_MIN = 0
+WATCHDOG_MAX = 0xFFFFFFFF
+WATCHDOG_PRIORITY = 0
+
+
+class Watchdog:
+    """Counts down while enabled.
+
+    Args:
+        kernel: the clock.
+        on_bite: called in a task of priority 0 when the time is over; None for a dog without teeth.
+    """
+
+    def __init__(self, kernel: Kernel, on_bite: Callable[[], object] | None = None) -> None:
+        self.kernel = kernel
+        self.on_bite = on_bite
+        self.value_ms = WATCHDOG_MAX
+        self.enabled = False
+        self.bites = 0
+        self._deadline = 0
+        self._waits = WaitList("watchdog")
+        self._watching = False
+
+    def init(self) -> None:
+        """Set the longest time and stop counting (CFE_PSP_WatchdogInit)."""
+        self.value_ms = WATCHDOG_MAX
+        self.enabled = False
+
+    def enable(self) -> None:
+        """Count from now on (CFE_PSP_WatchdogEnable)."""
+        self.enabled = True
+        self.service()
+        if self.on_bite is None:
+            return
+        if self._watching:
+            self.kernel.wake_first(self._waits)
+        else:
+            self._watching = True
+            self.kernel.spawn("PSP_WATCHDOG", self._watch, WATCHDOG_PRIORITY)
+
+    def disable(self) -> None:
+        """Stop counting (CFE_PSP_WatchdogDisable)."""
+        self.enabled = False
+
+    def service(self) -> None:
+        """Begin the count anew (CFE_PSP_WatchdogService); costs no wake-up."""
+        self._deadline = self.kernel.now + self.value_ms * NS_PER_MS
+
+    def set(self, value_ms: int) -> None:
+        """Change the time in ms, and begin the count anew (CFE_PSP_WatchdogSet)."""
+        self.value_ms = value_ms
+        self.service()
+        if self._watching:
+            self.kernel.wake_first(self._waits)
+
+    def _watch(self) -> None:
+        kernel = self.kernel
+        kernel.current.owner = None
+        while True:
+            if not self.enabled:
+                kernel.wait_on(self._waits)
+            elif self._deadline > kernel.now:
+                kernel.wait_on(self._waits, self._deadline - kernel.now)
+            else:
+                self.enabled = False
+                self.bites += 1
+                assert self.on_bite is not None
+                self.on_bite()

@@ -1,0 +1,37 @@
+"""Table Services (CFE_TBL): named blocks of parameters that the ground loads, validates, activates and dumps."""
+
+from __future__ import annotations
+
+from cfepy.tbl.access import BAD_TABLE_HANDLE, TableInfo
+from cfepy.tbl.image import TableImage, build, pack_rows, read, unpack_rows, write_beside
+from cfepy.tbl.registry import (
+    OPT_CRITICAL,
+    OPT_DBL_BUFFER,
+    OPT_DEFAULT,
+    OPT_DUMP_ONLY,
+    OPT_LOAD_DUMP,
+    OPT_SNGL_BUFFER,
+    OPT_USR_DEF_ADDR,
+    TableHandle,
+)
+from cfepy.tbl.services import TableServices
+
+__all__ = [
+    "BAD_TABLE_HANDLE",
+    "OPT_CRITICAL",
+    "OPT_DBL_BUFFER",
+    "OPT_DEFAULT",
+    "OPT_DUMP_ONLY",
+    "OPT_LOAD_DUMP",
+    "OPT_SNGL_BUFFER",
+    "OPT_USR_DEF_ADDR",
+    "TableHandle",
+    "TableImage",
+    "TableInfo",
+    "TableServices",
+    "build",
+    "pack_rows",
+    "read",
+    "unpack_rows",
+    "write_beside",
+]

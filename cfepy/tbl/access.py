@@ -1,0 +1,179 @@
+"""Looking at tables: what every app that has a handle may do, owner or not (CFE_TBL_GetAddress and the like).
+
+Finds out who calls and whether the handle is good. Host code may ask for a table's data (`get_info`)
+and has no handles. Imports only cfepy.ids, cfepy.ports, cfepy.rtos, cfepy.status and its neighbours here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from cfepy.ids import UNDEFINED
+from cfepy.ports import Caller, Ports
+from cfepy.rtos import Kernel
+from cfepy.status import (
+    CFE_ES_ERR_RESOURCEID_NOT_VALID,
+    CFE_SUCCESS,
+    CFE_TBL_ERR_INVALID_HANDLE,
+    CFE_TBL_ERR_NEVER_LOADED,
+    CFE_TBL_ERR_NO_ACCESS,
+    CFE_TBL_ERR_UNREGISTERED,
+    CFE_TBL_INFO_DUMP_PENDING,
+    CFE_TBL_INFO_UPDATE_PENDING,
+    CFE_TBL_INFO_UPDATED,
+    CFE_TBL_INFO_VALIDATION_PENDING,
+    CfeError,
+)
+from cfepy.tbl.registry import Access, Registry
+
+BAD_TABLE_HANDLE = -1
+MODIFIED_MARK = "(*)"
+
+
+class TableInfo(NamedTuple):
+    """What CFE_TBL_GetInfo tells; times are (seconds, subseconds)."""
+
+    size: int
+    num_users: int
+    file_time: tuple[int, int]
+    crc: int
+    time_of_last_update: tuple[int, int]
+    table_loaded_once: bool
+    dump_only: bool
+    double_buffered: bool
+    user_def_addr: bool
+    critical: bool
+    last_file_loaded: str
+
+
+class TableAccess:
+    """The part of Table Services that changes no table.
+
+    Args:
+        kernel: tells whose task is running.
+        ports: the other services.
+        registry: the tables.
+    """
+
+    def __init__(self, kernel: Kernel, ports: Ports, registry: Registry) -> None:
+        self._kernel = kernel
+        self._ports = ports
+        self.registry = registry
+
+    def get_address(self, handle: int) -> tuple[memoryview, bool]:
+        """The active image, locked until `release_address` (CFE_TBL_GetAddress).
+
+        Returns:
+            A view of the bytes, and whether they changed since the last call (CFE_TBL_INFO_UPDATED).
+
+        Raises:
+            CfeError: CFE_TBL_ERR_NEVER_LOADED, CFE_TBL_ERR_UNREGISTERED, or no access.
+        """
+        access = self._access("GetAddress", handle)
+        table = access.table
+        if table.owner == UNDEFINED:
+            self._log("TxnGetTableAddress", f"App({access.app_id}) attempt to access unowned Tbl Handle={int(handle)}")
+            raise CfeError(CFE_TBL_ERR_UNREGISTERED, f"the owner of {table.name!r} gave it up")
+        if table.active is None:
+            raise CfeError(CFE_TBL_ERR_NEVER_LOADED, f"{table.name!r} was never loaded")
+        updated, access.updated = access.updated, False
+        access.locked, access.buffer = True, table.active
+        return table.active.view(), updated
+
+    def release_address(self, handle: int) -> int:
+        """Give the address back, so that updates can take place (CFE_TBL_ReleaseAddress).
+
+        Returns:
+            CFE_SUCCESS, or CFE_TBL_INFO_UPDATED when the table changed meanwhile.
+        """
+        access = self._access("ReleaseAddress", handle)
+        access.locked, access.buffer = False, None
+        if access.table.active is None:
+            raise CfeError(CFE_TBL_ERR_NEVER_LOADED, f"{access.table.name!r} was never loaded")
+        return CFE_TBL_INFO_UPDATED if access.updated else CFE_SUCCESS
+
+    def get_addresses(self, handles: Iterable[int]) -> list[tuple[memoryview, bool]]:
+        """`get_address` of several tables; when one fails, those before it are released (CFE_TBL_GetAddresses)."""
+        taken: list[int] = []
+        found = []
+        try:
+            for handle in handles:
+                found.append(self.get_address(handle))
+                taken.append(handle)
+        except CfeError:
+            self.release_addresses(taken)
+            raise
+        return found
+
+    def release_addresses(self, handles: Iterable[int]) -> int:
+        """`release_address` of several tables; returns the first that is not CFE_SUCCESS (CFE_TBL_ReleaseAddresses)."""
+        statuses = [self.release_address(handle) for handle in handles]
+        return next((status for status in statuses if status != CFE_SUCCESS), CFE_SUCCESS)
+
+    def get_status(self, handle: int) -> int:
+        """What is to be done with a table (CFE_TBL_GetStatus).
+
+        Returns:
+            CFE_SUCCESS, or CFE_TBL_INFO_VALIDATION_PENDING, _UPDATE_PENDING, _DUMP_PENDING; in that order.
+        """
+        table = self._access("GetStatus", handle).table
+        if table.validation is not None:
+            return CFE_TBL_INFO_VALIDATION_PENDING
+        if table.is_update_pending:
+            return CFE_TBL_INFO_UPDATE_PENDING
+        return CFE_TBL_INFO_DUMP_PENDING if table.dump is not None else CFE_SUCCESS
+
+    def get_info(self, full_name: str) -> TableInfo:
+        """All about a table, by its full name (CFE_TBL_GetInfo).
+
+        Raises:
+            CfeError: CFE_TBL_ERR_INVALID_NAME.
+        """
+        table = self.registry.by_name(full_name)
+        active = table.active
+        return TableInfo(
+            size=table.size,
+            num_users=len(table.accesses),
+            file_time=active.file_time if active else (0, 0),
+            crc=active.crc if active else 0,
+            time_of_last_update=table.last_update,
+            table_loaded_once=active is not None,
+            dump_only=table.dump_only,
+            double_buffered=table.double_buffered,
+            user_def_addr=table.user_defined,
+            critical=table.critical,
+            last_file_loaded=table.last_file + MODIFIED_MARK * table.modified,
+        )
+
+    def handle_to_id(self, handle: int) -> int:
+        """The resource id of a handle, 0 for CFE_TBL_BAD_TABLE_HANDLE (CFE_TBL_HandleToID)."""
+        return UNDEFINED if handle == BAD_TABLE_HANDLE else int(handle)
+
+    def handle_from_id(self, handle_id: int) -> int:
+        """The handle of a resource id, CFE_TBL_BAD_TABLE_HANDLE for 0 (CFE_TBL_HandleFromID)."""
+        return BAD_TABLE_HANDLE if handle_id == UNDEFINED else handle_id
+
+    def _caller(self) -> tuple[int, str]:
+        caller: Caller | None = self._kernel.current.owner
+        if caller is None:
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, "tables belong to apps; host code cannot make this call")
+        return caller.app_id, caller.name
+
+    def _access(self, function: str, handle: int, owner_only: bool = False) -> Access:
+        """The access descriptor of a handle, once the caller is found to have the right to use it."""
+        app_id, _ = self._caller()
+        access = self.registry.accesses.find(handle)
+        if access is None:
+            error = CfeError(CFE_TBL_ERR_INVALID_HANDLE, f"0x{int(handle) & 0xFFFFFFFF:x} is no table handle")
+        elif app_id not in (access.app_id, self.registry.services_app_id):
+            error = CfeError(CFE_TBL_ERR_NO_ACCESS, f"this handle on {access.table.name!r} is another app's")
+        elif owner_only and app_id not in (access.table.owner, self.registry.services_app_id):
+            error = CfeError(CFE_TBL_ERR_NO_ACCESS, f"{access.table.name!r} belongs to another app")
+        else:
+            return access
+        self._log(function, f"App({app_id}) does not have access to Tbl Handle={int(handle)}")
+        raise error
+
+    def _log(self, function: str, text: str) -> None:
+        self._ports.syslog.write_to_sys_log(f"CFE_TBL_{function}: {text}")

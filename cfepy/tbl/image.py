@@ -1,0 +1,95 @@
+"""Table files made and read by people and tools: headers and image in one, from field values (elf2cfetbl's job).
+
+A mission describes its tables as Python values and a layout; this turns them into the bytes that CFE_TBL_Load accepts.
+Imports only cfepy.fs, cfepy.msg and cfepy.status.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cfepy.fs import FileHeader, read_table_file, write_table_file
+from cfepy.msg import Layout
+from cfepy.status import UsageError
+from cfepy.tbl.packets import FULL_NAME_SIZE
+
+SPACECRAFT_ID = 66
+PROCESSOR_ID = 1
+
+
+class TableImage(NamedTuple):
+    """What a table file holds: `data` belongs at byte `offset` of the table called `name` ("APP.Table")."""
+
+    name: str
+    data: bytes
+    description: str = ""
+    offset: int = 0
+    spacecraft_id: int = SPACECRAFT_ID
+    processor_id: int = PROCESSOR_ID
+    time: tuple[int, int] = (0, 0)
+
+
+def build(image: TableImage) -> bytes:
+    """The table file of an image.
+
+    Raises:
+        UsageError: the name is empty, has no dot, or is longer than 39 characters; or there is no data.
+    """
+    if "." not in image.name or not 0 < len(image.name) < FULL_NAME_SIZE:
+        text = f"{image.name!r} is no full table name; write APP.Table, at most {FULL_NAME_SIZE - 1} characters"
+        raise UsageError(text, field="name")
+    if not image.data:
+        raise UsageError("a table file without data cannot be loaded; give at least one byte", field="data")
+    header = FileHeader(
+        description=image.description,
+        spacecraft_id=image.spacecraft_id,
+        processor_id=image.processor_id,
+        time_seconds=image.time[0],
+        time_subseconds=image.time[1],
+    )
+    return write_table_file(header, image.name, image.data, image.offset)
+
+
+def read(data: bytes) -> TableImage:
+    """The image in a table file.
+
+    Raises:
+        CfeError: the file is no table file or is too short; the statuses are those of CFE_TBL_Load.
+    """
+    header, table, image = read_table_file(data)
+    ids = header.spacecraft_id, header.processor_id
+    time = header.time_seconds, header.time_subseconds
+    return TableImage(table.table_name, image[: table.num_bytes], header.description, table.offset, *ids, time)
+
+
+def pack_rows(row: Layout, rows: Sequence[Mapping[str, Any]], capacity: int) -> bytes:
+    """A table that is an array of `capacity` equal structs, filled up with zeros after the given rows.
+
+    Raises:
+        UsageError: too many rows, or a value that does not fit; `field` says which row and field.
+    """
+    if len(rows) > capacity:
+        raise UsageError(f"{len(rows)} rows of {row.name}; there is room for {capacity}", field="rows")
+    return Layout(f"{row.name}[{capacity}]", [("rows", (row, capacity))]).pack(rows=rows)
+
+
+def unpack_rows(row: Layout, data: bytes | bytearray | memoryview) -> list[dict[str, Any]]:
+    """The rows of such a table, zero rows included."""
+    return [row.unpack(data, at) for at in range(0, len(data) - row.size + 1, row.size)]
+
+
+def write_beside(definition: str, image: TableImage) -> Path:
+    """Write the table file that a definition describes: "x.py" makes "x.tbl" in the same directory.
+
+    Args:
+        definition: path of the definition, usually its `__file__`.
+        image: what it describes.
+
+    Returns:
+        The path written.
+    """
+    path = Path(definition).with_suffix(".tbl")
+    path.write_bytes(build(image))
+    return path

@@ -1,0 +1,299 @@
+"""Table Services for apps (CFE_TBL_*): register, load, validate, update and look at tables.
+
+A failed call raises CfeError with NASA's status; a call that NASA answers with a warning or information returns that
+number. Host code may look tables up but owns none. The ground's side is in `cfepy.tbl.task`. Imports only cfepy.config,
+cfepy.ids, cfepy.ports, cfepy.rtos, cfepy.status and its neighbours here; other services are reached through the ports.
+"""
+
+from __future__ import annotations
+
+from cfepy.config import PlatformConfig
+from cfepy.console import Console
+from cfepy.ports import Ports
+from cfepy.rtos import Kernel
+from cfepy.status import (
+    CFE_ES_NOT_IMPLEMENTED,
+    CFE_SUCCESS,
+    CFE_TBL_INFO_DUMP_PENDING,
+    CFE_TBL_INFO_NO_VALIDATION_PENDING,
+    CFE_TBL_INFO_TABLE_LOCKED,
+    CFE_TBL_INFO_UPDATE_PENDING,
+    CFE_TBL_INFO_UPDATED,
+    CFE_TBL_INFO_VALIDATION_PENDING,
+    CFE_TBL_WARN_DUPLICATE,
+    CFE_TBL_WARN_NOT_CRITICAL,
+    CfeError,
+)
+from cfepy.tbl import events as eid
+from cfepy.tbl.access import TableAccess
+from cfepy.tbl.buffers import BufferMemory, Bytes
+from cfepy.tbl.dumps import Dumps
+from cfepy.tbl.loads import Files, Loads, Refused, TableFile
+from cfepy.tbl.registry import OPT_CRITICAL, Registry, Table, TableHandle, Validator
+from cfepy.tbl.task import TableTask
+
+
+class TableServices(TableAccess):
+    """The table registry of one mission and its API.
+
+    Args:
+        kernel: tells whose task is running.
+        ports: the other services.
+        config: limits and identities.
+        files: where table files are.
+        console: not written to; given to every service alike.
+    """
+
+    def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, files: Files, console: Console) -> None:
+        shared_size = max(config.tbl_max_sngl_table_size, config.tbl_max_dbl_table_size)
+        memory = BufferMemory(config.tbl_buf_memory_bytes, config.tbl_max_simultaneous_loads, shared_size)
+        self._pool_bytes = config.tbl_buf_memory_bytes
+        super().__init__(kernel, ports, Registry(config, memory))
+        self._loads = Loads(self.registry, memory, ports, files)
+        self._dumps = Dumps(memory, config, ports, files)
+        self.task = TableTask(ports, config, files, self.registry, self._loads, self._dumps, memory)
+
+    def early_init(self) -> None:
+        """What is done before any task runs (CFE_TBL_EarlyInit): the table buffer pool takes its RAM."""
+        self._ports.memory.claim("CFE_TBL", "table buffers", self._pool_bytes)
+
+    def task_main(self) -> None:
+        """The whole of the CFE_TBL task."""
+        self.task.main()
+
+    # --- registration ---
+
+    def register(self, name: str, size: int, options: int = 0, validate: Validator | None = None) -> TableHandle:
+        """Make a table of the calling app (CFE_TBL_Register).
+
+        Args:
+            name: 1 to 15 characters; the full name is "APP.name".
+            size: bytes.
+            options: OPT_* joined by |. No Critical Data Store holds tables yet: OPT_CRITICAL gives an ordinary table.
+            validate: called with each image before it is used, or None to take any.
+
+        Returns:
+            The handle; `handle.status` is CFE_SUCCESS, CFE_TBL_WARN_DUPLICATE (the app has that table already) or
+            CFE_TBL_WARN_NOT_CRITICAL.
+
+        Raises:
+            CfeError: the status that NASA's function returns; an event tells the ground too.
+        """
+        app_id, app_name = self._caller()
+        try:
+            full_name = self.registry.check(app_name, name, size, options)
+            access = self.registry.duplicate(full_name, size, app_id)
+            if access is not None:
+                return access.handle.with_status(CFE_TBL_WARN_DUPLICATE)
+            access = self.registry.add(Table(full_name, size, options, validate, app_id))
+        except CfeError as error:
+            text = f"{app_name} Failed to Register table '{name}', Status=0x{error.status & 0xFFFFFFFF:08X}"
+            self._event(eid.CFE_TBL_REGISTER_ERR_EID, eid.ERROR, text)
+            raise
+        if options & OPT_CRITICAL:
+            status = CFE_ES_NOT_IMPLEMENTED & 0xFFFFFFFF
+            self._log("Register", f"Failed to register '{full_name}' as a CDS (ErrCode=0x{status:08X})")
+            return access.handle.with_status(CFE_TBL_WARN_NOT_CRITICAL)
+        return access.handle
+
+    def share(self, full_name: str) -> TableHandle:
+        """A handle on another app's table, "APP.name" (CFE_TBL_Share).
+
+        Raises:
+            CfeError: CFE_TBL_ERR_INVALID_NAME, CFE_TBL_ERR_HANDLES_FULL.
+        """
+        app_id, app_name = self._caller()
+        try:
+            return self.registry.connect(self.registry.by_name(full_name), app_id).handle
+        except CfeError as error:
+            text = f"{app_name} Failed to Share '{full_name}', Status=0x{error.status & 0xFFFFFFFF:08X}"
+            self._event(eid.CFE_TBL_SHARE_ERR_EID, eid.ERROR, text)
+            raise
+
+    def unregister(self, handle: int) -> None:
+        """Give a handle back; the owner's gives up the table (CFE_TBL_Unregister)."""
+        try:
+            self.registry.release(self._access("Unregister", handle))
+        except CfeError as error:
+            text = f"{self._caller()[1]} Failed to Unregister '?', Status=0x{error.status & 0xFFFFFFFF:08X}"
+            self._event(eid.CFE_TBL_UNREGISTER_ERR_EID, eid.ERROR, text)
+            raise
+
+    # --- loading ---
+
+    def load(self, handle: int, source: str | Bytes) -> int:
+        """Load a table of the calling app and switch to the new image (CFE_TBL_Load).
+
+        Args:
+            handle: the owner's.
+            source: path of a table file, or the image's bytes (for OPT_USR_DEF_ADDR the app's own bytearray, which
+                then is the table).
+
+        Returns:
+            CFE_SUCCESS, CFE_TBL_WARN_SHORT_FILE, CFE_TBL_WARN_PARTIAL_LOAD, or CFE_TBL_INFO_TABLE_LOCKED: somebody
+            has the table's address, `manage` switches later.
+
+        Raises:
+            CfeError: what was wrong; an event tells the ground too, and the table is as it was.
+        """
+        access = self._access("Load", handle, owner_only=True)
+        table, caller = access.table, self._caller()[1]
+        file = TableFile(source) if isinstance(source, str) else None
+        try:
+            self._loads.reserve(table, from_file=file is not None)
+        except Refused as refused:
+            self._loads.report(refused, self.registry.services_app_id, caller, None, table)
+            raise
+        try:
+            status = self._fill(table, file, source)
+            faults = self._loads.validate(table)
+        except Refused as refused:
+            self.registry.discard_load(table)
+            self._loads.report(refused, self.registry.services_app_id, caller, file, table)
+            raise
+        except BaseException:  # a fault of the app's validator must not leave the table half loaded
+            self.registry.discard_load(table)
+            raise
+        if faults:
+            self.registry.discard_load(table)
+            for fault in faults:
+                self._loads.report(fault, self.registry.services_app_id, caller, None, table)
+            raise faults[-1]
+        return self._finish_load(table, caller, status)
+
+    def _fill(self, table: Table, file: TableFile | None, source: str | Bytes) -> int:
+        if file is not None:
+            self._loads.open(file)
+            self._loads.fill_from_file(table, file)
+            return file.completeness(table)
+        if not isinstance(source, str):
+            self._loads.fill_from_memory(table, source)
+        return CFE_SUCCESS
+
+    def _finish_load(self, table: Table, caller: str, status: int) -> int:
+        is_first = table.active is None
+        result = self._loads.update(table)
+        if result != CFE_SUCCESS:
+            text = f"{caller}: Failed to update '{table.name}' (Stat={result})"
+            self._event(eid.CFE_TBL_UPDATE_ERR_EID, eid.ERROR, text)
+            return result
+        text = f"Successfully loaded '{table.name}' from '{table.last_file}'"
+        self._event(eid.CFE_TBL_LOAD_SUCCESS_INF_EID, eid.DEBUG if is_first else eid.INFORMATION, text)
+        self.task.note_update(table)
+        return status
+
+    def update(self, handle: int) -> int:
+        """Switch to the image that was loaded (CFE_TBL_Update).
+
+        Returns:
+            CFE_SUCCESS, CFE_TBL_INFO_NO_UPDATE_PENDING or CFE_TBL_INFO_TABLE_LOCKED.
+        """
+        try:
+            access = self._access("Update", handle, owner_only=True)
+        except CfeError as error:
+            text = f"{self._caller()[1]} Failed to update table, Status=0x{error.status & 0xFFFFFFFF:08X}"
+            self._event(eid.CFE_TBL_UPDATE_ERR_EID, eid.ERROR, text)
+            raise
+        table = access.table
+        status = self._loads.update(table)
+        if status == CFE_SUCCESS:
+            text = f"{self._caller()[1]} Successfully Updated '{table.name}'"
+            self._event(eid.CFE_TBL_UPDATE_SUCCESS_INF_EID, eid.INFORMATION, text)
+            self.task.note_update(table)
+            return status
+        if status == CFE_TBL_INFO_TABLE_LOCKED:
+            self._ports.syslog.write_to_sys_log(
+                f"CFE_TBL_UpdateInternal: Unable to update locked table Handle={int(handle)}"
+            )
+        text = f"App({access.app_id}) fail to update Tbl '{table.name}' (Stat=0x{status:08X})"
+        self._log("Update", text)
+        return status
+
+    def validate(self, handle: int) -> int:
+        """Run the validator as the ground asked (CFE_TBL_Validate).
+
+        Returns:
+            CFE_SUCCESS whatever the validator found, or CFE_TBL_INFO_NO_VALIDATION_PENDING.
+        """
+        table = self._access("Validate", handle, owner_only=True).table
+        request, table.validation = table.validation, None
+        if request is None:
+            return CFE_TBL_INFO_NO_VALIDATION_PENDING
+        which = "active" if request.of_active else "inactive"
+        buffer = table.active if request.of_active else table.loading
+        result = -1
+        if buffer is not None:
+            result = 0 if table.validator is None else table.validator(buffer.view())
+            buffer.is_valid = result == 0
+        request.result, request.performed = result, True
+        caller = self._caller()[1]
+        if result == 0:
+            text = f"{caller} validation successful for {which} '{table.name}'"
+            self._event(eid.CFE_TBL_VALIDATION_INF_EID, eid.INFORMATION, text)
+            return CFE_SUCCESS
+        status = f"0x{result & 0xFFFFFFFF:08X}"
+        text = f"{caller} validation failed for {which} '{table.name}', Status={status}"
+        self._event(eid.CFE_TBL_VALIDATION_ERR_EID, eid.ERROR, text)
+        if result > 0:
+            text = f"App({table.owner}) Validation func return code invalid (Stat={status}) for '{table.name}'"
+            self._log("Validate", text)
+        return CFE_SUCCESS
+
+    def manage(self, handle: int) -> int:
+        """Do what the ground asked for of a table: validate, update or dump (CFE_TBL_Manage).
+
+        Returns:
+            CFE_SUCCESS when there was nothing to do, CFE_TBL_INFO_UPDATED when the table changed, else what
+            `validate`, `update` or `dump_to_buffer` returned.
+        """
+        while True:
+            status = self.get_status(handle)
+            if status == CFE_TBL_INFO_VALIDATION_PENDING:
+                self.validate(handle)
+            elif status == CFE_TBL_INFO_DUMP_PENDING:
+                return self.dump_to_buffer(handle)
+            elif status == CFE_TBL_INFO_UPDATE_PENDING:
+                return self.update(handle) or CFE_TBL_INFO_UPDATED
+            else:
+                return status
+
+    def dump_to_buffer(self, handle: int) -> int:
+        """Take the snapshot of a dump-only table that the ground asked for (CFE_TBL_DumpToBuffer).
+
+        Returns:
+            CFE_SUCCESS or CFE_TBL_INFO_NO_DUMP_PENDING.
+        """
+        return self._dumps.take_snapshot(self._access("DumpToBuffer", handle).table)
+
+    def modified(self, handle: int) -> None:
+        """Say that the app changed the table's content itself (CFE_TBL_Modified)."""
+        access = self._access("Modified", handle)
+        table = access.table
+        if table.active is None:
+            return
+        table.modified, table.last_update = True, self._ports.time.now()
+        table.active.recompute_crc()
+        for other in table.accesses:
+            other.updated = other.updated or other.app_id != access.app_id
+
+    def notify_by_message(self, handle: int, msg_id: int, fcn_code: int, parameter: int) -> None:
+        """Have a command sent whenever the ground asks for something of the table (CFE_TBL_NotifyByMessage).
+
+        Args:
+            handle: the owner's.
+            msg_id: of the command.
+            fcn_code: its function code.
+            parameter: 32 bits of payload.
+        """
+        access = self._access("NotifyByMessage", handle, owner_only=True)
+        access.table.notify = (msg_id, fcn_code, parameter)
+
+    def cleanup_app(self, app_id: int) -> None:
+        """Give back all tables, handles and dumps of an app that ended (CFE_TBL_CleanUpApp)."""
+        self._dumps.forget_owner(app_id)
+        for access in self.registry.accesses:
+            if access.app_id == app_id:
+                self.registry.release(access)
+
+    def _event(self, event_id: int, event_type: int, text: str) -> None:
+        self._ports.evs.send_event_with_app_id(event_id, event_type, self.registry.services_app_id, text)

@@ -1,0 +1,39 @@
+"""Time Services: one spacecraft time for all, set by ground and tone (cFE TIME).
+
+The five services do not import each other; what TIME needs of them it finds in its `Ports`.
+"""
+
+from __future__ import annotations
+
+from cfepy.time.clock import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID
+from cfepy.time.service import ResetVars, TimeServices
+from cfepy.time.systime import (
+    A_GT_B,
+    A_LT_B,
+    EQUAL,
+    SysTime,
+    add,
+    compare,
+    micro2sub_secs,
+    print_,
+    sub2micro_secs,
+    subtract,
+)
+
+__all__ = [
+    "A_GT_B",
+    "A_LT_B",
+    "CLOCK_FLYWHEEL",
+    "CLOCK_INVALID",
+    "CLOCK_VALID",
+    "EQUAL",
+    "ResetVars",
+    "SysTime",
+    "TimeServices",
+    "add",
+    "compare",
+    "micro2sub_secs",
+    "print_",
+    "sub2micro_secs",
+    "subtract",
+]

@@ -1,0 +1,124 @@
+"""Spacecraft time values and their arithmetic (CFE_TIME_SysTime_t, CFE_TIME_Add and relatives).
+
+A time is 32 bits of seconds and 32 bits of 2**-32 s. Within Time Services one 64-bit integer of 2**-32 s stands for it,
+here called ticks, so that adding, carrying and rolling over are a single addition. Pure functions; imports only
+cfepy.status.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+from cfepy.status import CFE_TIME_BAD_ARGUMENT, CfeError
+
+MASK_32 = 0xFFFFFFFF
+MASK_64 = 0xFFFFFFFFFFFFFFFF
+NS_PER_SECOND = 1_000_000_000
+EPOCH_YEAR = 1980
+
+A_LT_B = -1
+EQUAL = 0
+A_GT_B = 1
+"""What `compare` gives (CFE_TIME_Compare_t)."""
+
+_HALF_RANGE = 0x80000000
+_MICROS_PER_SECOND = 1_000_000
+_SECONDS_PER_DAY = 86400
+
+
+class SysTime(NamedTuple):
+    """Seconds and subseconds of 2**-32 s, each 0 to 2**32 - 1 (CFE_TIME_SysTime_t)."""
+
+    seconds: int
+    subseconds: int
+
+
+def to_ticks(time: tuple[int, int]) -> int:
+    """A time as one integer of 2**-32 s."""
+    return (time[0] << 32) + time[1] & MASK_64
+
+
+def from_ticks(ticks: int) -> SysTime:
+    """The time of an integer of 2**-32 s; more than 64 bits roll over."""
+    return SysTime(ticks >> 32 & MASK_32, ticks & MASK_32)
+
+
+def ticks_of_ns(duration_ns: int) -> int:
+    """Nanoseconds as 2**-32 s, rounded up, so that the way back gives the same (OS_TimeGetSubsecondsPart)."""
+    return -(-(duration_ns << 32) // NS_PER_SECOND)
+
+
+def add(first: tuple[int, int], second: tuple[int, int]) -> SysTime:
+    """The sum; seconds beyond 32 bits roll over (CFE_TIME_Add)."""
+    return from_ticks(to_ticks(first) + to_ticks(second))
+
+
+def subtract(first: tuple[int, int], second: tuple[int, int]) -> SysTime:
+    """`first` less `second`; below zero it rolls over (CFE_TIME_Subtract)."""
+    return from_ticks(to_ticks(first) - to_ticks(second))
+
+
+def compare(first: tuple[int, int], second: tuple[int, int]) -> int:
+    """Which time is later: A_LT_B (-1), EQUAL (0) or A_GT_B (1) (CFE_TIME_Compare).
+
+    Seconds that lie more than 2**31 apart are taken for a clock that rolled over in between, so the smaller one is
+    the later.
+    """
+    if first[0] != second[0]:
+        later = first[0] > second[0]
+        if abs(first[0] - second[0]) > _HALF_RANGE:
+            later = not later
+        return A_GT_B if later else A_LT_B
+    return (first[1] > second[1]) - (first[1] < second[1])
+
+
+def sub2micro_secs(subseconds: int) -> int:
+    """Subseconds of 2**-32 s as microseconds, cut off (CFE_TIME_Sub2MicroSecs).
+
+    Raises:
+        CfeError: CFE_TIME_BAD_ARGUMENT when it is not within 32 bits.
+    """
+    if not 0 <= subseconds <= MASK_32:
+        raise CfeError(CFE_TIME_BAD_ARGUMENT, f"subseconds are {subseconds}, they must be 0 to {MASK_32}")
+    return subseconds * _MICROS_PER_SECOND >> 32
+
+
+def micro2sub_secs(microseconds: int) -> int:
+    """Microseconds as subseconds of 2**-32 s, rounded up; a second or more gives 0xFFFFFFFF (CFE_TIME_Micro2SubSecs).
+
+    Raises:
+        CfeError: CFE_TIME_BAD_ARGUMENT when it is negative.
+    """
+    if microseconds < 0:
+        raise CfeError(CFE_TIME_BAD_ARGUMENT, f"microseconds are {microseconds}, they must not be negative")
+    if microseconds >= _MICROS_PER_SECOND:
+        return MASK_32
+    return -(-(microseconds << 32) // _MICROS_PER_SECOND)
+
+
+def print_(time: tuple[int, int]) -> str:
+    """A time as text since the epoch 1980-001, year-day-hour:minute:second.10us (CFE_TIME_Print).
+
+    >>> print_((1001000, 0))
+    '1980-012-14:03:20.00000'
+    """
+    days, second = divmod(time[0], _SECONDS_PER_DAY)
+    minutes, second = divmod(second, 60)
+    hour, minute = divmod(minutes, 60)
+    return f"{_date(days)}-{hour:02}:{minute:02}:{second:02}.{sub2micro_secs(time[1]) // 10:05}"
+
+
+@lru_cache(maxsize=64)
+def _date(days: int) -> str:
+    """Year and day of the year, some days after the epoch."""
+    year = EPOCH_YEAR
+    while days >= (length := _days_of(year)):
+        days -= length
+        year += 1
+    return f"{year}-{days + 1:03}"
+
+
+def _days_of(year: int) -> int:
+    is_leap = year % 4 == 0 and (year % 100 != 0 or year % 400 == 0)
+    return 366 if is_leap else 365
