@@ -15,7 +15,7 @@ from cfepy.fs import FileCategory, parse_input_file_name
 from cfepy.msg import CMD_HEADER_SIZE, CommandTable, Layout, telemetry
 from cfepy.msg.dispatch import BAD_CODE, BAD_MSG_ID, DONE
 from cfepy.status import CfeError
-from cfepy.versions import CFE_VERSION, OSAL_VERSION, PSP_VERSION, version_string
+from cfepy.versions import CFE_VERSION, OFFICIAL, OSAL_VERSION, PSP_VERSION, version_string
 
 PIPE_NAME = "ES_CMD_PIPE"
 PIPE_DEPTH = 32
@@ -84,9 +84,9 @@ class EsTask:
             ev.INITSTATS_INF_EID,
             f"cFS Versions: cfe {CFE_VERSION}, osal {OSAL_VERSION}, psp {PSP_VERSION}. cFE chksm {self.checksum}",
         )
-        self._send(ev.VERSION_INF_EID, f"Version Info: Mission {self.mission_name}, version {CFE_VERSION}")
+        self._send(ev.VERSION_INF_EID, f"Version Info: Mission {self.mission_name}, version git:{OFFICIAL}")
         for module in MODULES:
-            self._send(ev.VERSION_INF_EID, f"Version Info: Module {module}, version {CFE_VERSION}")
+            self._send(ev.VERSION_INF_EID, f"Version Info: Module {module}, version git:{OFFICIAL}")
         self._send(ev.BUILD_INF_EID, self.build)
 
     def process(self, packet: bytes) -> None:

@@ -28,6 +28,7 @@ from cfepy.psp.memory import MemoryBudget, object_sizes
 from cfepy.psp.profile import BoardProfile, load_profile
 from cfepy.rtos import Kernel, Task
 from cfepy.rtos.policy import Policy
+from cfepy.rtos.watchdog import StallWatch
 from cfepy.sb import BusCosts, SbTask, SoftwareBus
 from cfepy.tbl import TableServices
 from cfepy.time import TimeServices
@@ -207,7 +208,8 @@ class Mission:
     def run_until(self, until_ns: int) -> None:
         """Run until a virtual time in ns, or until the processor is reset."""
         if self.reset_reason is None:
-            self.kernel.run(until_ns)
+            with StallWatch(self.kernel):
+                self.kernel.run(until_ns)
 
     def shut_down_nodes(self) -> None:
         """Ask all ROS nodes to end, and give them a little virtual time for their shutdown hooks."""

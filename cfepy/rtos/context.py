@@ -35,6 +35,9 @@ class Context(Protocol):
     def stack_of(self, task: Task) -> list[str]:
         """The formatted stack of a task that is not running, for reports."""
 
+    def stack_of_running(self, task: Task, host_ident: int) -> list[str]:
+        """The same of the running task, seen from another OS thread; `host_ident` is the thread of the host."""
+
 
 def make_context(name: str) -> Context:
     """The context called `name`.

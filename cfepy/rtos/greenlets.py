@@ -58,6 +58,11 @@ class GreenletContext:
         frame = task.carrier.gr_frame
         return traceback.format_stack(frame) if frame is not None else []
 
+    def stack_of_running(self, task: Task, host_ident: int) -> list[str]:
+        from cfepy.rtos.threads import stack_of_thread
+
+        return stack_of_thread(host_ident)
+
 
 def _start_all(first: Any) -> None:
     pending = first

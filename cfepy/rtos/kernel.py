@@ -68,10 +68,14 @@ class Kernel:
         self.stuck: list[Task] = []  # tasks that would not die
         self.host = self.current = Task("host", 0, None, HOST_PRIORITY)
         self.host.dying = True  # the host must never wait: `_refuse` catches it where dying tasks are caught
+        self.host.mark = self.host.exit_mark = b""  # a pause of the run leaves no mark: slices of a run are one run
         self._front = 0
         self._idents = 0
         self._until = 0
+        self._slice_task: Task | None = None
+        self._slice_from = 0
         self._slice_end = 0
+        self._last: Task | None = None  # who gave the CPU to the host when the run paused
         self._failed: list[Task] = []
         self._interrupted: BaseException | None = None
         self._stopped = False
@@ -260,31 +264,41 @@ class Kernel:
             or now > self._until
             or (ready and ready[0][0] <= task.priority and now >= self._slice_end)
         ):
-            self._catch_up(task)
+            self._catch_up(task, duration_ns)
 
-    def _catch_up(self, task: Task) -> None:
+    def _catch_up(self, task: Task, duration_ns: int) -> None:
         """Time went on under a running task: fire what is due; more urgent tasks, then equals, get their turn."""
         self._fire_due()
         if task.dying:
             return
-        if self.now > self._until:
-            self._push_front(task)
-            self._switch(task, self.host)
-            return
         ready = self.ready
-        if not ready:
-            return
-        first = ready[0][0]
-        if first < task.priority:
-            following = self._take()
-            self._push_front(task)
-            self._switch(task, following)
-        elif first == task.priority and self.now >= self._slice_end:
-            self._slice_end = self.now + SLICE_NS
-            following = self._take()
+        first = ready[0][0] if ready else HOST_PRIORITY
+        paused = self.now > self._until
+        if first == task.priority and self._turn_is_over(task, duration_ns):
             self.sequence = sequence = self.sequence + 1
-            heappush(self.ready, (task.priority, sequence, task))
+            heappush(ready, (task.priority, sequence, task))
+        elif first < task.priority or paused:
+            self._push_front(task)
+        else:
+            return
+        if paused:
+            self._last = task
+        following = self.host if paused else self._take()
+        if following is not task:
             self._switch(task, following)
+
+    def _turn_is_over(self, task: Task, duration_ns: int) -> bool:
+        """Whether a task used the CPU for a whole slice while equals were ready; a new slice begins when it did."""
+        if self._slice_task is not task:
+            self._slice_task = task
+            self._slice_from = task.cpu_ns - duration_ns
+        left = SLICE_NS - (task.cpu_ns - self._slice_from)
+        self._slice_end = self.now + left
+        if left > 0:
+            return False
+        self._slice_task = None
+        self._slice_end = self.now
+        return True
 
     def arm(self, task: Task, duration_ns: int) -> None:
         """Set the timer of a task that is about to wait; it replaces an earlier one."""
@@ -306,7 +320,7 @@ class Kernel:
             self.current = following
             if self.record is not None:
                 self.record(following.mark)
-            if self.switch_cost_ns:
+            if self.switch_cost_ns and following is not self.host:
                 self.now += self.switch_cost_ns
                 following.cpu_ns += self.switch_cost_ns
             following.resume()
@@ -404,6 +418,8 @@ class Kernel:
             heappop(timers)
         if not timers or timers[0][0] > self._until:
             self._exhausted = not timers
+            if self.current is not self.host:
+                self._last = self.current
             return self.host
         when = timers[0][0]
         if when > self.now:
@@ -539,6 +555,10 @@ class Kernel:
         """Who waits for what, held by whom: the deadlock report."""
         return waiting_report(self.tasks, self.timers)
 
+    def progress(self) -> tuple[int, int, int]:
+        """Numbers of which one changes with every kernel call that lets time or another task go on."""
+        return self.now, self.sequence, self._front
+
     def next_event(self) -> int | None:
         """Virtual time of the next thing to happen: now if a task is ready, None if there is nothing."""
         if self.ready:
@@ -560,9 +580,7 @@ class Kernel:
         self.context.prepare_run(self.tasks)
         following = self._next()
         if following is not host:
-            self.current = following
-            if self.record is not None:
-                self.record(following.mark)
+            self._go_on_with(following)
             try:
                 following.resume()
                 self.context.enter(host)
@@ -575,6 +593,19 @@ class Kernel:
             failed = self._failed.pop(0)
             assert failed.error is not None
             raise failed.error
+
+    def _go_on_with(self, task: Task) -> None:
+        """Dispatch the first task after a pause, with the record and the cost it would have had without the pause."""
+        last, self._last = self._last, None
+        self.current = task
+        if task is last:
+            return
+        if self.record is not None:
+            self.record(task.exit_mark if last is not None and last.done else task.mark)
+        if last is not None and not last.done:
+            task.switches += 1
+            self.now += self.switch_cost_ns
+            task.cpu_ns += self.switch_cost_ns
 
     def _take_back(self, error: BaseException) -> None:
         """A signal woke the host while a task has the baton: stop the clock and never go on before it is back."""

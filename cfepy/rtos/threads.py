@@ -114,8 +114,16 @@ class ThreadContext:
             raise_in_thread(task.carrier.ident, error)
 
     def stack_of(self, task: Task) -> list[str]:
-        frame = sys._current_frames().get(task.carrier.ident)
-        return traceback.format_stack(frame) if frame is not None else []
+        return stack_of_thread(task.carrier.ident)
+
+    def stack_of_running(self, task: Task, host_ident: int) -> list[str]:
+        return stack_of_thread(task.carrier.ident)
+
+
+def stack_of_thread(ident: int) -> list[str]:
+    """The formatted stack of an OS thread of this process."""
+    frame = sys._current_frames().get(ident)
+    return traceback.format_stack(frame) if frame is not None else []
 
 
 def raise_in_thread(ident: int, error: type[BaseException]) -> None:

@@ -1,0 +1,36 @@
+"""HK's default copy table: the first four bytes of every core service's housekeeping, side by side in packet 0x089C.
+
+NASA's own default copies from offset 12, four spare bytes before the payload; here the data starts at 16, where
+telemetry payloads start. After a change: `python -m apps.hk.tables.hk_cpy_tbl` writes hk_cpy_tbl.tbl anew.
+"""
+
+from __future__ import annotations
+
+from cfepy.msg import TLM_HEADER_SIZE
+from cfepy.tbl import TableImage, pack_rows, write_beside
+
+from ..packets import COMBINED_PKT1_MID, COPY_TABLE_ENTRIES, COPY_TABLE_ENTRY
+
+CORE_HK_MIDS = (0x0801, 0x0805, 0x0803, 0x0800, 0x0804)
+"""Housekeeping of EVS, TIME, SB, ES and TBL."""
+
+PART = 4
+ROWS = [
+    {
+        "InputMid": msg_id,
+        "InputOffset": TLM_HEADER_SIZE,
+        "OutputMid": COMBINED_PKT1_MID,
+        "OutputOffset": TLM_HEADER_SIZE + PART * place,
+        "NumBytes": PART,
+    }
+    for place, msg_id in enumerate(CORE_HK_MIDS)
+]
+
+
+def image() -> TableImage:
+    """The table."""
+    return TableImage("HK.CopyTable", pack_rows(COPY_TABLE_ENTRY, ROWS, COPY_TABLE_ENTRIES), "HK Copy Tbl")
+
+
+if __name__ == "__main__":
+    write_beside(__file__, image())

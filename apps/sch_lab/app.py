@@ -1,0 +1,121 @@
+"""SCH_LAB's main task: a timer gives it a tick, every tick it sends what is due (sch_lab_app.c).
+
+The first 1 Hz packet of TIME starts it, so that it keeps step with the spacecraft's seconds from then on.
+"""
+
+from __future__ import annotations
+
+from cfepy.app import Cfe
+from cfepy.es import APP_ERROR, APP_RUN
+from cfepy.msg import local_cmd_topic_id_to_msg_id
+from cfepy.sb import POLL
+from cfepy.status import CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CFE_SUCCESS, CfeError, OsalError
+
+from . import schedule
+
+VERSION = "SCH Lab v1.0.0"
+TABLE_NAME = "ScheduleTable"
+TABLE_FILE = "/cf/sch_lab_table.tbl"
+TIME_ONEHZ_MID = local_cmd_topic_id_to_msg_id(0x11)
+PIPE_NAME = "SCH_LAB_CMD_PIPE"
+PIPE_DEPTH = 8
+OBJECT_NAME = "SCH_LAB"
+TIMEBASE = "cFS-Master"
+SECOND_US = 1_000_000
+
+
+def SCH_LAB_AppMain(cfe: Cfe) -> None:
+    """The entry point that the startup script names."""
+    run_status = APP_RUN
+    app = Scheduler(cfe)
+    try:
+        app.start()
+    except CfeError as error:
+        cfe.es.write_to_sys_log(f"SCH_LAB: Error Initializing RC = {_hex(error.status)}")
+        run_status = APP_ERROR
+    while cfe.es.run_loop(run_status):
+        app.wait()
+    cfe.es.exit_app(run_status)
+
+
+class Scheduler:
+    """The ticking and the entries of the table."""
+
+    def __init__(self, cfe: Cfe) -> None:
+        self._cfe = cfe
+        self._started = False
+
+    def start(self) -> None:
+        """Everything before the first tick.
+
+        Raises:
+            CfeError: no table, or an OSAL object could not be made; the system log says which.
+        """
+        cfe = self._cfe
+        timer = self._make_timer()
+        self._load_table()
+        self._pipe = cfe.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
+        cfe.sb.subscribe(TIME_ONEHZ_MID, self._pipe)
+        cfe.os.timer_set(timer, SECOND_US, self._period_us)
+        cfe.os.printf(f"SCH Lab Initialized.{VERSION}\n")
+
+    def _make_timer(self) -> int:
+        cfe, call = self._cfe, ""
+        try:
+            call = "OS_CountSemCreate"
+            self._ticks = cfe.os.count_sem_create(OBJECT_NAME, 0)
+            call = "OS_TimeBaseGetIdByName"
+            timebase = cfe.os.time_base_get_id_by_name(TIMEBASE)
+            call = "OS_TimerAdd"
+            return cfe.os.timer_add(OBJECT_NAME, timebase, self._tick)
+        except OsalError as error:
+            cfe.es.write_to_sys_log(f"SCH_LAB_AppInit: {call} failed:RC={error.status}")
+            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"{call} failed") from None
+
+    def _tick(self, timer_id: int, argument: object) -> None:
+        self._cfe.os.count_sem_give(self._ticks)
+
+    def _load_table(self) -> None:
+        cfe, step = self._cfe, ""
+        try:
+            step = "Registering"
+            handle = cfe.tbl.register(TABLE_NAME, schedule.TABLE.size)
+            step = "Loading Table"
+            status = cfe.tbl.load(handle, TABLE_FILE)
+            if status != CFE_SUCCESS:
+                raise CfeError(status)
+            step = "Getting Table's Address"
+            table, _ = cfe.tbl.get_address(handle)
+        except CfeError as error:
+            cfe.es.write_to_sys_log(f"SCH_LAB: Error {step} {TABLE_NAME}, RC = {_hex(error.status)}")
+            raise
+        tick_rate, self._entries = schedule.read(table)
+        cfe.tbl.release_address(handle)
+        self._period_us = self._tick_period(tick_rate)
+
+    def _tick_period(self, tick_rate: int) -> int:
+        """Microseconds of a tick, from ticks a second."""
+        log = self._cfe.es.write_to_sys_log
+        if tick_rate == 0:
+            log("SCH_LAB_AppInit: Using default tick rate of 1 second")
+            return SECOND_US
+        if SECOND_US % tick_rate:
+            text = f"tick rate of {tick_rate} is not an integer number of microseconds"
+            log(f"SCH_LAB_AppInit: WARNING: {text}")
+        return max(1, SECOND_US // tick_rate)
+
+    def wait(self) -> None:
+        """One tick: wait for it, then send the commands that are due."""
+        cfe = self._cfe
+        cfe.os.count_sem_take(self._ticks)
+        if cfe.sb.receive_buffer(self._pipe, POLL) is not None:
+            self._started = True
+        if self._started:
+            for entry in self._entries:
+                if entry.tick():
+                    cfe.sb.transmit_msg(entry.packet)
+
+
+def _hex(status: int) -> str:
+    """A status as C prints an int cast to unsigned long."""
+    return f"0x{status & 0xFFFFFFFFFFFFFFFF:08X}"

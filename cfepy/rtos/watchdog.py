@@ -1,0 +1,66 @@
+"""A watchdog for the host: it names a task that does not give up the CPU, with its stack.
+
+The simulation cannot do that itself: while one task computes, nothing else runs. So a thread of the host looks on, in
+wall-clock time; it only tells, and changes nothing in the run.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Callable
+
+from cfepy.rtos.kernel import Kernel
+
+LOOK_S = 1.0
+
+
+def to_stderr(text: str) -> None:
+    """Where a report goes by default."""
+    sys.stderr.write(text + "\n")
+
+
+class StallWatch:
+    """Watches a kernel while it runs; use as a context manager around `Kernel.run`.
+
+    Args:
+        kernel: the kernel to watch.
+        limit_s: wall-clock seconds without a kernel call after which the running task is reported.
+        report: gets the text.
+    """
+
+    def __init__(self, kernel: Kernel, limit_s: float = 10.0, report: Callable[[str], object] = to_stderr) -> None:
+        self._kernel = kernel
+        self._limit_s = limit_s
+        self._report = report
+        self._over = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._main_ident = threading.get_ident()
+
+    def __enter__(self) -> StallWatch:
+        self._thread = threading.Thread(target=self._look_on, name="cfepy stall watch", daemon=True)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._over.set()
+        if self._thread is not None:
+            self._thread.join()
+
+    def _look_on(self) -> None:
+        interval = min(LOOK_S, self._limit_s / 4)
+        seen, still = self._kernel.progress(), 0.0
+        while not self._over.wait(interval):
+            now = self._kernel.progress()
+            still = still + interval if now == seen else 0.0
+            seen = now
+            if still >= self._limit_s and self._kernel.current is not self._kernel.host:
+                self._tell()
+                still = 0.0
+
+    def _tell(self) -> None:
+        task = self._kernel.current
+        stack = "".join(self._kernel.context.stack_of_running(task, self._main_ident))
+        self._report(
+            f"cfepy: task {task.name} has not given up the CPU for {self._limit_s:g} s of wall time; it is here:\n{stack}"
+        )

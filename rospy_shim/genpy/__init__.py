@@ -1,0 +1,26 @@
+"""The part of ROS 1's genpy that nodes see: times, the message base class and its errors.
+
+A node imports it as `genpy` (`rospy_shim.msgs.make_module("genpy")`). Message classes themselves are generated in
+`rospy_shim.msgs`. Imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+import struct
+
+from rospy_shim.genpy.errors import DeserializationError, MessageException, SerializationError
+from rospy_shim.genpy.message import Message
+from rospy_shim.genpy.rostime import Duration, Time, TVal
+
+struct_I = struct.Struct("<I")  # genpy's name
+
+__all__ = [
+    "DeserializationError",
+    "Duration",
+    "Message",
+    "MessageException",
+    "SerializationError",
+    "TVal",
+    "Time",
+    "struct_I",
+]

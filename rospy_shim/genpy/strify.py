@@ -1,0 +1,112 @@
+"""Messages as text: `strify_message`, what `str(msg)`, `print(msg)` and `rostopic echo` show.
+
+The layout is genpy's: YAML-like, nested messages indented by two spaces, strings in double quotes, nanoseconds padded
+to nine places. PyYAML is imported only for strings that need escapes and for lists of strings. Imports
+nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rospy_shim.genpy.rostime import Time, TVal
+
+_PLAIN_LIMIT = 60  # YAML folds longer strings over several lines
+_Filter = Callable[[Any], list[str]]
+
+
+def strify_message(
+    val: Any,
+    indent: str = "",
+    time_offset: Time | None = None,
+    current_time: Time | None = None,
+    field_filter: _Filter | None = None,
+    fixed_numeric_width: int | None = None,
+) -> str:
+    """Text of a message or of a field's value.
+
+    Args:
+        val: the message or value.
+        indent: put before each line of a message.
+        time_offset: Times are printed relative to this one.
+        current_time: not used, as in genpy.
+        field_filter: gives the names of the fields of a message to print.
+        fixed_numeric_width: numbers are printed in so many columns.
+    """
+    return _Writer(time_offset, field_filter, fixed_numeric_width).text(val, indent)
+
+
+class _Writer:
+    __slots__ = ("fields_of", "offset", "width")
+
+    def __init__(self, offset: Time | None, fields_of: _Filter | None, width: int | None) -> None:
+        self.offset, self.fields_of, self.width = offset, fields_of, width
+
+    def text(self, val: Any, indent: str) -> str:
+        kind = type(val)
+        if kind in (int, float) and self.width is not None:
+            return self.number(val)
+        if kind in (int, float, bool):
+            return str(val)
+        if isinstance(val, str):
+            return _quoted(val)
+        if isinstance(val, TVal):
+            return self.time(val, indent)
+        if kind in (list, tuple):
+            return self.items(val, indent)
+        if hasattr(val, "_slot_types"):
+            return self.message(val, indent)
+        return str(val)
+
+    def number(self, val: float) -> str:
+        if isinstance(val, float):
+            return f"{val:{self.width}f}"
+        return f"{val:{self.width}d}"
+
+    def time(self, val: TVal, indent: str) -> str:
+        if self.offset is not None and isinstance(val, Time):
+            val = val - self.offset
+        return f"\n{indent}secs: {val.secs}\n{indent}nsecs: {val.nsecs:9d}"
+
+    def items(self, val: Any, indent: str) -> str:
+        if len(val) == 0:
+            return "[]"
+        first = val[0]
+        if type(first) in (int, float) and self.width is not None:
+            return "[" + ", ".join(self.number(item) for item in val) + "]"
+        if type(first) in (int, float, bool):
+            return str(list(val))
+        if isinstance(first, str):
+            return _string_list(val, indent)
+        return "\n" + "\n".join(f"{indent}- {self.text(item, indent + '  ')}" for item in val)
+
+    def message(self, val: Any, indent: str) -> str:
+        names = self.fields_of(val) if self.fields_of is not None else val.__slots__
+        types = dict(zip(val.__slots__, val._slot_types, strict=False))
+        lines = [f"{indent}{name}: {self.field(getattr(val, name), types.get(name, ''), indent)}" for name in names]
+        text = "\n".join(lines)
+        return "\n" + text if indent else text
+
+    def field(self, val: Any, field_type: str, indent: str) -> str:
+        if field_type.startswith("uint8[") and isinstance(val, bytes):
+            val = list(val)
+        return self.text(val, indent + "  ")
+
+
+def _quoted(val: str) -> str:
+    if not val:
+        return "''"
+    if len(val) < _PLAIN_LIMIT and val.isascii() and val.isprintable() and '"' not in val and "\\" not in val:
+        return f'"{val}"'
+    import yaml
+
+    text: str = yaml.dump(val, default_style='"')
+    return text.removesuffix("\n")
+
+
+def _string_list(val: Any, indent: str) -> str:
+    import yaml
+
+    text: str = yaml.dump(list(val), default_flow_style=False)
+    return "\n" + "\n".join(indent + line for line in text.removesuffix("\n").split("\n"))

@@ -1,0 +1,64 @@
+"""ROS message types in memory: definitions, md5sums, generated classes, and the modules that nodes import them from.
+
+    >>> from rospy_shim.msgs import message_class
+    >>> message_class("std_msgs/String")(data="hello")
+    data: "hello"
+
+Inside a node the same classes are found the usual way (`from std_msgs.msg import String`), through `make_module`.
+"""
+
+from __future__ import annotations
+
+from types import ModuleType
+
+from rospy_shim.msgs.classes import MessageClass
+from rospy_shim.msgs.library import Library, from_full_text, shipped
+from rospy_shim.msgs.modules import generate_dynamic, make_module
+from rospy_shim.msgs.services import ServiceClass
+from rospy_shim.msgs.sources import Folders, Shipped, Source
+
+__all__ = [
+    "Folders",
+    "Library",
+    "MessageClass",
+    "ServiceClass",
+    "Shipped",
+    "Source",
+    "from_full_text",
+    "generate_dynamic",
+    "load_package",
+    "make_module",
+    "message_class",
+    "service_class",
+    "shipped",
+]
+
+
+def message_class(full_name: str) -> MessageClass:
+    """Class of a shipped message type, e.g. "std_msgs/String"; generated when first asked for.
+
+    Raises:
+        UsageError: there is no such type.
+    """
+    return shipped().message_class(full_name)
+
+
+def service_class(full_name: str) -> ServiceClass:
+    """Class of a shipped service type, e.g. "std_srvs/SetBool".
+
+    Raises:
+        UsageError: there is no such type.
+    """
+    return shipped().service_class(full_name)
+
+
+def load_package(name: str) -> ModuleType:
+    """The message classes of a shipped package as attributes of a module, e.g. `load_package("std_msgs").String`.
+
+    Raises:
+        ModuleNotFoundError: there is no such package.
+    """
+    module = make_module(f"{name}.msg")
+    if module is None:
+        raise ModuleNotFoundError(f"no ROS package {name!r} comes with cfepy", name=name)
+    return module

@@ -1,0 +1,164 @@
+"""Message classes: what genpy writes into a package's Python files, made in memory from a `Spec`.
+
+A class carries genpy's public face (`_type`, `_md5sum`, `__slots__`, `serialize`, ...) and two functions of our own
+that the publisher and the subscriber use: `_pack(msg) -> bytes` and `_unpack(data, at=0) -> msg`. Functions that are
+seldom called are compiled at their first call. Imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Protocol
+
+from rospy_shim.genpy.message import Message
+from rospy_shim.msgs.decoder import Form, unpack_source
+from rospy_shim.msgs.encoder import pack_source
+from rospy_shim.msgs.namespace import Lines, Namespace
+from rospy_shim.msgs.reference import explain
+from rospy_shim.msgs.spec import PRIMITIVES, Field, Spec
+
+MessageClass = Any
+"""A generated class: its attributes are known at run time only."""
+
+
+class TypeTable(Protocol):
+    """Where a class finds what it is made of."""
+
+    def spec(self, full_name: str) -> Spec:
+        """The definition of a type."""
+
+    def md5sum(self, full_name: str) -> str:
+        """Its md5sum."""
+
+    def full_text(self, full_name: str) -> str:
+        """Its definition with those of all types in it."""
+
+    def message_class(self, full_name: str) -> MessageClass:
+        """Its class."""
+
+
+def build_class(spec: Spec, table: TypeTable, restore: Callable[[str], Any] | None, module: str) -> MessageClass:
+    """Make the class of a message type.
+
+    Args:
+        spec: the type.
+        table: nested types and fingerprints.
+        restore: makes an empty message from the type's name, for pickle; None leaves pickle to find the class itself.
+        module: value of `__module__`, e.g. "std_msgs.msg._String".
+    """
+    names = Namespace()
+    names.globals["_explain"] = partial(explain, spec, table.spec)
+    types = [field.type for field in spec.fields]
+    name = spec.full_name.rpartition("/")[2]
+    body: dict[str, Any] = {constant.attribute: constant.value for constant in spec.constants}
+    body |= {
+        "__module__": module,
+        "__slots__": [field.attribute for field in spec.fields],
+        "_slot_types": types,
+        "_type": spec.full_name,
+        "_md5sum": table.md5sum(spec.full_name),
+        "_has_header": spec.has_header,
+        "_full_text": table.full_text(spec.full_name),
+        "_get_types": lambda self: types,
+        "__init__": _constructor(spec, table, names),
+        "serialize": serialize,
+        "serialize_numpy": serialize_numpy,
+        "_pack": _function(spec, names, pack_source(spec, table.spec, names), "_pack"),
+    }
+    cls: MessageClass = type(name, (Message,), body)
+    _add_readers(cls, spec, table, names)
+    cls._restore_as = None if restore is None else (cls, restore)
+    return cls
+
+
+def serialize(self: MessageClass, buff: Any) -> None:
+    """Write the message to a file-like object.
+
+    Raises:
+        SerializationError: a field holds what its type cannot carry.
+    """
+    buff.write(self._pack())
+
+
+def serialize_numpy(self: MessageClass, buff: Any, numpy: Any) -> None:
+    """Write a message whose number arrays are numpy arrays; `numpy` is the module.
+
+    Raises:
+        SerializationError: a field holds what its type cannot carry.
+    """
+    buff.write(self._pack_numpy(numpy))
+
+
+def _function(spec: Spec, names: Namespace, lines: list[str], name: str) -> Callable[..., Any]:
+    function = names.compile(lines, name, spec.full_name)
+    function.__qualname__ = f"{spec.full_name.rpartition('/')[2]}.{name}"
+    return function
+
+
+def _add_readers(cls: MessageClass, spec: Spec, table: TypeTable, names: Namespace) -> None:
+    def reader(form: Form) -> list[str]:
+        return unpack_source(spec, table.spec, table.message_class, names, form)
+
+    cls._unpack = classmethod(_function(spec, names, reader(Form.UNPACK), "_unpack"))
+    _compile_later(cls, spec, names, "deserialize", partial(reader, Form.DESERIALIZE))
+    _compile_later(cls, spec, names, "deserialize_numpy", partial(reader, Form.DESERIALIZE_NUMPY))
+    with_numpy = partial(pack_source, spec, table.spec, names, with_numpy=True)
+    _compile_later(cls, spec, names, "_pack_numpy", with_numpy)
+
+
+def _compile_later(cls: MessageClass, spec: Spec, names: Namespace, name: str, source: Callable[[], list[str]]) -> None:
+    def first_call(self: MessageClass, *args: Any) -> Any:
+        function = _function(spec, names, source(), name)
+        setattr(cls, name, function)
+        return function(self, *args)
+
+    setattr(cls, name, first_call)
+
+
+def _constructor(spec: Spec, table: TypeTable, names: Namespace) -> Callable[..., Any]:
+    names.globals["_Message_init"] = Message.__init__
+    out = Lines(depth=1)
+    out.add("if args or kwds:")
+    # One positional argument per field is by far the commonest call.
+    if spec.fields:
+        targets = "".join(f"self.{field.attribute}, " for field in spec.fields)
+        out.add(f"    if len(args) == {len(spec.fields)} and not kwds:")
+        out.add(f"        {targets}= args")
+        out.add("    else:")
+        out.add("        _Message_init(self, *args, **kwds)")
+    else:
+        out.add("    _Message_init(self, *args, **kwds)")
+    for field in spec.fields:
+        out.add(f"    if self.{field.attribute} is None:")
+        out.add(f"        self.{field.attribute} = {_default(field, table, names)}")
+    out.add("else:")
+    for field in spec.fields:
+        out.add(f"    self.{field.attribute} = {_default(field, table, names)}")
+    if not spec.fields:
+        out.add("    pass")
+    return _function(spec, names, ["def __init__(self, *args, **kwds):", *out.lines], "__init__")
+
+
+def _default(field: Field, table: TypeTable, names: Namespace) -> str:
+    """Expression for a field's default value."""
+    if field.is_array and field.base in ("uint8", "char"):
+        return repr(bytes(field.length or 0))
+    if field.is_array and field.length is None:
+        return "[]"
+    single = _default_single(field.base, table, names)
+    if not field.is_array:
+        return single
+    if single.endswith("()"):
+        return f"[{single} for _ in range({field.length})]"
+    return f"[{single}] * {field.length}"
+
+
+def _default_single(base: str, table: TypeTable, names: Namespace) -> str:
+    if base in PRIMITIVES:
+        return {"float32": "0.0", "float64": "0.0", "bool": "False"}.get(base, "0")
+    if base == "string":
+        return "''"
+    if base in ("time", "duration"):
+        return f"_{base.capitalize()}()"
+    return names.cls(base, table.message_class(base)) + "()"

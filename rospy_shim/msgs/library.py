@@ -1,0 +1,170 @@
+"""A `Library` turns definitions into specs, fingerprints and classes, each made once, when it is first asked for.
+
+It looks through its sources in order. The library of the shipped packages is `shipped()`; a node that brings packages
+of its own gets one with a `Folders` source in front. Imports cfepy.status only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any
+
+from cfepy.status import UsageError
+from rospy_shim.msgs import fingerprint
+from rospy_shim.msgs.classes import MessageClass, build_class
+from rospy_shim.msgs.services import ServiceClass, build_service
+from rospy_shim.msgs.sources import Definition, Definitions, Kind, Shipped, Source, Texts, split_service
+from rospy_shim.msgs.spec import Spec, parse
+
+_PARTS = ("Request", "Response")
+
+
+class Library:
+    """Message types by full name, e.g. "std_msgs/String"; everything is made once, when first asked for."""
+
+    def __init__(
+        self, sources: Sequence[Source], restore: Callable[[str], Any] | None = None, *, module: str | None = None
+    ) -> None:
+        """Make a library.
+
+        Args:
+            sources: where definitions are looked for, in order.
+            restore: see `classes.build_class`.
+            module: value of the classes' `__module__`; None for ROS's "package.msg._Name".
+        """
+        self._sources, self._restore, self._module = tuple(sources), restore, module
+        self._packages: dict[tuple[str, Kind], Definitions | None] = {}
+        self._specs: dict[str, Spec] = {}
+        self._md5sums: dict[str, str] = {}
+        self._classes: dict[str, MessageClass] = {}
+        self._services: dict[str, ServiceClass] = {}
+        self._opening: list[str] = []
+
+    def packages(self) -> list[str]:
+        """Names of all packages, sorted."""
+        return sorted({name for source in self._sources for name in source.packages()})
+
+    def names(self, package: str, kind: Kind = "msg") -> list[str] | None:
+        """Names of the messages or services of a package, sorted; None when there are none."""
+        found = self._package(package, kind)
+        return None if found is None else sorted(found)
+
+    def has(self, full_name: str, kind: Kind = "msg") -> bool:
+        """Whether a message or service type is known."""
+        package, _, name = full_name.partition("/")
+        return name in (self._package(package, kind) or {})
+
+    def spec(self, full_name: str) -> Spec:
+        """The parsed definition of a type.
+
+        Raises:
+            UsageError: no such type, or its text has a mistake, or it contains itself.
+        """
+        found = self._specs.get(full_name)
+        if found is None:
+            definition = self._definition(full_name)
+            found = parse(definition.text, full_name, definition.file, definition.first_line)
+            self._open_nested(found)
+            self._specs[full_name] = found
+        return found
+
+    def md5sum(self, full_name: str) -> str:
+        """md5sum of a type."""
+        found = self._md5sums.get(full_name)
+        if found is None:
+            found = self._md5sums[full_name] = fingerprint.md5sum(self.spec(full_name), self.md5sum)
+        return found
+
+    def full_text(self, full_name: str) -> str:
+        """Definition of a type and of all types in it."""
+        return fingerprint.full_text(self.spec(full_name), self.spec)
+
+    def message_class(self, full_name: str) -> MessageClass:
+        """Class of a type.
+
+        Raises:
+            UsageError: as `spec`.
+        """
+        found = self._classes.get(full_name)
+        if found is None:
+            module = self._module_of(full_name, "msg")
+            found = self._classes[full_name] = build_class(self.spec(full_name), self, self._restore, module)
+        return found
+
+    def service_class(self, full_name: str) -> ServiceClass:
+        """Class of a service, with its request and response classes.
+
+        Raises:
+            UsageError: no such service, or its text has a mistake.
+        """
+        found = self._services.get(full_name)
+        if found is None:
+            if not self.has(full_name, "srv"):
+                raise UsageError(f"there is no service type {full_name!r}; is its package on ROS_PACKAGE_PATH?")
+            module = self._module_of(full_name, "srv")
+            parts = [build_class(self.spec(full_name + part), self, self._restore, module) for part in _PARTS]
+            self._classes.update(zip((full_name + part for part in _PARTS), parts, strict=True))
+            texts = [fingerprint.md5_text(self.spec(full_name + part), self.md5sum) for part in _PARTS]
+            found = self._services[full_name] = build_service(full_name, module, texts, *parts)
+        return found
+
+    def _module_of(self, full_name: str, kind: Kind) -> str:
+        package, _, name = full_name.partition("/")
+        return self._module or f"{package}.{kind}._{name}"
+
+    def _package(self, name: str, kind: Kind) -> Definitions | None:
+        key = (name, kind)
+        if key not in self._packages:
+            found = (source.package(name, kind) for source in self._sources)
+            self._packages[key] = next((package for package in found if package is not None), None)
+        return self._packages[key]
+
+    def _definition(self, full_name: str) -> Definition:
+        package, _, name = full_name.partition("/")
+        found = (self._package(package, "msg") or {}).get(name)
+        if found is not None:
+            return found
+        services = self._package(package, "srv") or {}
+        for index, part in enumerate(_PARTS):
+            if name.endswith(part) and name.removesuffix(part) in services:
+                return split_service(services[name.removesuffix(part)])[index]
+        raise UsageError(f"there is no message type {full_name!r}; is its package on ROS_PACKAGE_PATH?")
+
+    def _open_nested(self, found: Spec) -> None:
+        """Parse the nested types as well, so that a type with a gap in it is never half usable."""
+        self._opening.append(found.full_name)
+        try:
+            for name in found.message_types:
+                if name in self._opening:
+                    raise UsageError(f"message type {name} contains itself", file=found.file)
+                if not self.has(name):
+                    raise UsageError(f"message type {name} is unknown; add its package", file=found.file)
+                self.spec(name)
+        finally:
+            self._opening.pop()
+
+
+def from_full_text(full_name: str, text: str) -> Library:
+    """A library of the types in a full text (`_full_text`, a connection header's message_definition).
+
+    Args:
+        full_name: name of the first type; the others name themselves.
+        text: the full text.
+    """
+    definitions = {}
+    for name, body, line in fingerprint.split_full_text(text):
+        definitions[name or full_name] = Definition(body, f"<definition of {full_name}>", line)
+    return Library([Texts(definitions)], module=full_name)
+
+
+def restore_message(full_name: str) -> Any:
+    """An empty message of a shipped type, to be filled by pickle or copy."""
+    cls = shipped().message_class(full_name)
+    return cls.__new__(cls)
+
+
+@cache
+def shipped() -> Library:
+    """The library of the packages that come with cfepy; one per process, because its classes hold no state."""
+    return Library([Shipped()], restore_message)

@@ -1,0 +1,170 @@
+"""ROS .msg text to a `Spec`: fields, constants and where they came from, by genmsg's rules.
+
+A bare type name belongs to the message's own package, except that `Header` is std_msgs/Header; a string constant takes
+all that stands right of its `=`, comments included. A mistake is a UsageError with file and line. Knows nothing of
+Python classes; imports cfepy.status only.
+"""
+
+from __future__ import annotations
+
+import keyword
+import re
+from typing import Any, NamedTuple
+
+from cfepy.status import UsageError
+
+PRIMITIVES = {
+    "bool": "B", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i", "uint32": "I",
+    "int64": "q", "uint64": "Q", "float32": "f", "float64": "d", "char": "B", "byte": "b",
+}  # fmt: skip
+"""struct code of each type that has one."""
+
+BUILTINS = frozenset(PRIMITIVES) | {"string", "time", "duration"}
+HEADER = "std_msgs/Header"
+
+_RANGES = {
+    code: (-(1 << bits - 1), (1 << bits - 1) - 1) if code.islower() else (0, (1 << bits) - 1)
+    for code, bits in zip("bBhHiIqQ", (8, 8, 16, 16, 32, 32, 64, 64), strict=True)
+}
+_TYPE = re.compile(r"([A-Za-z][\w/]*)(\[(\d*)\])?")
+_NAME = re.compile(r"[A-Za-z]\w*")
+_RESERVED = frozenset(keyword.kwlist) | {"self"}
+
+
+class Field(NamedTuple):
+    """One field of a message."""
+
+    name: str
+    """As in the .msg file."""
+    attribute: str
+    """As in Python: a reserved word gets an underscore."""
+    base: str
+    """Resolved type without the brackets, e.g. "float64" or "std_msgs/Header"."""
+    is_array: bool
+    length: int | None
+    """Of a fixed array."""
+
+    @property
+    def type(self) -> str:
+        """Resolved type with its brackets."""
+        if not self.is_array:
+            return self.base
+        return f"{self.base}[{'' if self.length is None else self.length}]"
+
+
+class Constant(NamedTuple):
+    """One constant of a message."""
+
+    type: str
+    name: str
+    attribute: str
+    value: Any
+    text: str
+    """As written, which is what enters the md5sum."""
+
+
+class Spec(NamedTuple):
+    """A parsed message definition."""
+
+    full_name: str
+    text: str
+    fields: tuple[Field, ...]
+    constants: tuple[Constant, ...]
+    file: str
+
+    @property
+    def has_header(self) -> bool:
+        """Whether the first field is `Header header`: such a message is stamped and counted by the publisher."""
+        first = self.fields[0] if self.fields else None
+        return first is not None and first.name == "header" and first.type == HEADER
+
+    @property
+    def message_types(self) -> list[str]:
+        """Types of the nested messages, in order, each once."""
+        return list(dict.fromkeys(field.base for field in self.fields if field.base not in BUILTINS))
+
+
+def parse(text: str, full_name: str, file: str, first_line: int = 1) -> Spec:
+    """Parse the text of a .msg file.
+
+    Args:
+        text: the definition.
+        full_name: "package/Name".
+        file: path for errors.
+        first_line: number of the text's first line in that file.
+
+    Raises:
+        UsageError: a line that is neither a field nor a constant, a bad name or value, or a field named twice.
+    """
+    package = full_name.rpartition("/")[0]
+    fields: list[Field] = []
+    constants: list[Constant] = []
+    for number, raw in enumerate(text.split("\n"), first_line):
+        line = raw.split("#", 1)[0].strip()
+        try:
+            if "=" in line:
+                constants.append(_constant(line, raw))
+            elif line:
+                fields.append(_field(line, package, {field.name for field in fields}))
+        except ValueError as error:
+            raise UsageError(f"{error}; write `type name` or `type NAME=value`", file=file, line=number) from None
+    return Spec(full_name, text, tuple(fields), tuple(constants), file)
+
+
+def python_name(name: str) -> str:
+    """The attribute that holds a field, e.g. "from_" for "from"."""
+    return name + "_" if name in _RESERVED else name
+
+
+def _field(line: str, package: str, taken: set[str]) -> Field:
+    words = line.split()
+    if len(words) != 2:
+        raise ValueError(f"{line!r} is not a field")
+    kind, name = words
+    match = _TYPE.fullmatch(kind)
+    if match is None:
+        raise ValueError(f"{kind!r} is not a field type")
+    if not _NAME.fullmatch(name):
+        raise ValueError(f"{name!r} is not a field name")
+    if name in taken:
+        raise ValueError(f"field {name!r} is there twice")
+    base, brackets, length = match.groups()
+    return Field(name, python_name(name), _resolve(base, bool(brackets), package), bool(brackets), _length(length))
+
+
+def _length(digits: str | None) -> int | None:
+    return int(digits) if digits else None
+
+
+def _resolve(base: str, is_array: bool, package: str) -> str:
+    if base in BUILTINS or "/" in base:
+        return base
+    # genmsg knows the bare name for a single Header only, not for an array of them.
+    return HEADER if base == "Header" and not is_array else f"{package}/{base}"
+
+
+def _constant(line: str, raw: str) -> Constant:
+    declared, _, text = line.partition("=")
+    kind, *names = declared.split()
+    if kind == "string":
+        text = raw.partition("=")[2]
+    elif kind not in PRIMITIVES:
+        raise ValueError(f"{kind!r} is not a type for a constant")
+    if len(names) != 1:
+        raise ValueError(f"{line!r} is not a constant")
+    text = text.strip()
+    return Constant(kind, names[0], python_name(names[0]), _value(kind, text), text)
+
+
+def _value(kind: str, text: str) -> Any:
+    if kind == "string":
+        return text
+    if kind in ("float32", "float64"):
+        return float(text)
+    if kind == "bool":
+        return text == "True" if text in ("True", "False") else bool(int(text))
+    number = int(text)
+    low, high = _RANGES[PRIMITIVES[kind]]
+    if not low <= number <= high:
+        raise ValueError(f"{number} does not fit into {kind}")
+    return number

@@ -1,0 +1,24 @@
+"""CRC-16/ARC and the kinds that cFE only names."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy import fs
+
+
+@pytest.mark.parametrize(
+    ("data", "crc"),
+    [(b"123456789", 0xBB3D), (b"", 0), (bytes.fromhex("01000200"), 0x9C00), (bytes(100), 0)],
+)
+def test_known_values(data: bytes, crc: int) -> None:
+    assert fs.calculate_crc(data) == fs.crc16(data) == crc
+
+
+@pytest.mark.parametrize("kind", [fs.CRC_NONE, fs.CRC_8, fs.CRC_32, 99])
+def test_other_kinds_give_zero(kind: int) -> None:
+    assert fs.calculate_crc(b"123456789", 5, kind) == 0
+
+
+def test_no_data_gives_the_crc_that_came_in() -> None:
+    assert fs.calculate_crc(b"", 0x1234, fs.CRC_8) == 0x1234

@@ -1,0 +1,49 @@
+"""The command table's three checks."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy import msg
+from cfepy.msg import CommandTable, dispatch
+from cfepy.status import CfeError
+
+
+def table() -> tuple[CommandTable, list[bytes]]:
+    seen: list[bytes] = []
+    commands = CommandTable()
+    commands.add(0x1806, 0, 8, lambda packet: seen.append(packet))
+    commands.add(0x1806, 3, 10, lambda packet: "reply")
+    commands.add_message(0x1808, 8, lambda packet: seen.append(packet))
+    commands.add_message(0x0811, 0, lambda packet: seen.append(packet))
+    return commands, seen
+
+
+def test_good_packets_reach_their_handler() -> None:
+    commands, seen = table()
+    noop = bytes(msg.command(0x1806, 0))
+    assert commands.dispatch(noop) == (dispatch.DONE, 0x1806, 0, 8, 8, None)
+    assert commands.dispatch(bytes(msg.command(0x1806, 3, b"ab"))).result == "reply"
+    assert commands.dispatch(bytes(msg.command(0x1808, 0))).outcome == dispatch.DONE
+    assert commands.dispatch(bytes(msg.telemetry(0x0811, b"any"))).outcome == dispatch.DONE
+    assert seen[0] == noop
+    assert len(seen) == 3
+
+
+def test_bad_packets_are_told_apart() -> None:
+    commands, seen = table()
+    assert commands.dispatch(bytes(msg.command(0x1807, 5))) == (dispatch.BAD_MSG_ID, 0x1807, 5, 8, 0, None)
+    assert commands.dispatch(bytes(msg.command(0x1806, 99))) == (dispatch.BAD_CODE, 0x1806, 99, 8, 0, None)
+    assert commands.dispatch(bytes(msg.command(0x1806, 0, b"x"))) == (dispatch.BAD_LENGTH, 0x1806, 0, 9, 8, None)
+    assert commands.dispatch(bytes(msg.command(0x1808, 0, b"x"))).outcome == dispatch.BAD_LENGTH
+    assert seen == []
+
+
+def test_one_handler_each() -> None:
+    commands, _ = table()
+    with pytest.raises(CfeError, match="handler already"):
+        commands.add(0x1806, 0, 8, print)
+    with pytest.raises(CfeError, match="handler already"):
+        commands.add(0x1808, 0, 8, print)
+    with pytest.raises(CfeError, match="handler already"):
+        commands.add_message(0x1806, 8, print)

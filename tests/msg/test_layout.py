@@ -1,0 +1,133 @@
+"""Payload layouts against C's own."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from cfepy import msg
+from cfepy.msg import Layout
+from cfepy.status import CfeError, UsageError
+from tests.layouts import assert_same, c_structs
+from tests.msg.golden import golden_telemetry
+
+TIME = Layout("CFE_TIME_SysTime_t", [("Seconds", "u32"), ("Subseconds", "u32")])
+C_TYPES = {
+    "uint8": "u8",
+    "uint16": "u16",
+    "int16": "i16",
+    "uint32": "u32",
+    "int32": "i32",
+    "_Bool": "bool",
+    "CFE_ES_MemOffset_t": "u64",
+    "CFE_ES_MemAddress_t": "u64",
+    "CFE_SB_MsgId_t": "u32",
+    "CFE_SB_PipeId_t": "u32",
+    "CFE_ES_AppId_t": "u32",
+    "CFE_ES_TaskId_t": "u32",
+    "CFE_ResourceId_t": "u32",
+    "CFE_ES_MemHandle_t": "u32",
+    "CFE_ES_ExceptionAction_Enum_t": "u8",
+    "CFE_ES_TaskPriority_Atom_t": "u16",
+    "CFE_TIME_ClockState_Enum_t": "i16",
+    "CFE_EVS_EventType_Enum_t": "u16",
+    "CFE_SB_Qos_t": "u8[2]",
+    "CFE_SB_RouteId_Atom_t": "u16",
+}
+
+
+def from_c(name: str) -> Layout:
+    """A layout made of nothing but the field types of a C struct, in order."""
+    return Layout(name, [(field.name, _kind(field.type)) for field in c_structs()[name].fields])
+
+
+def _kind(c_type: str) -> Any:
+    base, bracket, count = c_type.partition("[")
+    if base == "char":
+        return c_type
+    if base in C_TYPES:
+        return C_TYPES[base] + bracket + count
+    inner = from_c(base)
+    return (inner, int(count[:-1])) if bracket else inner
+
+
+HK_PAYLOADS = [name for name in c_structs() if name.endswith("_Payload_t")]
+
+
+@pytest.mark.parametrize("name", HK_PAYLOADS)
+def test_every_payload_is_placed_as_c_places_it(name: str) -> None:
+    assert_same(from_c(name), name)
+
+
+def test_the_payloads_of_all_services_are_among_them() -> None:
+    assert {f"CFE_{service}_HousekeepingTlm_Payload_t" for service in ("ES", "EVS", "SB", "TBL", "TIME")} <= set(
+        HK_PAYLOADS
+    )
+
+
+def test_real_housekeeping_survives_a_round_trip() -> None:
+    names = {0x0800: "ES", 0x0803: "SB", 0x0805: "TIME"}
+    seen = 0
+    for golden in golden_telemetry():
+        if golden["mid"] in names:
+            layout = from_c(f"CFE_{names[golden['mid']]}_HousekeepingTlm_Payload_t")
+            payload = bytes.fromhex(golden["hex"])[msg.TLM_HEADER_SIZE :]
+            assert layout.pack(layout.unpack(payload)) == payload
+            seen += 1
+    assert seen >= 3
+
+
+def test_nested_arrays_and_texts() -> None:
+    layout = Layout("T", [("Flag", "bool"), ("At", (TIME, 2)), ("Names", "char[2][4]"), ("Grid", "i8[2][3]")])
+    assert layout.offsets == {"Flag": 0, "At": 4, "Names": 20, "Grid": 28}
+    assert layout.size == 36
+    data = layout.pack(Flag=True, At=[{"Seconds": 1}], Names=["ab", "full"], Grid=[[1, -2]])
+    assert layout.unpack(b"??" + data, 2) == {
+        "Flag": True,
+        "At": [{"Seconds": 1, "Subseconds": 0}, {"Seconds": 0, "Subseconds": 0}],
+        "Names": ["ab", "full"],
+        "Grid": [[1, -2, 0], [0, 0, 0]],
+    }
+
+
+def test_a_mapping_and_keywords_go_together() -> None:
+    assert TIME.pack({"Seconds": 1, "Subseconds": 2}, Seconds=3) == TIME.pack(Seconds=3, Subseconds=2)
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ({"Id": 256}, "Id: 256 does not fit u8"),
+        ({"Id": "x"}, "Id: 'x' is not a number"),
+        ({"Id": 1.5}, "Id: 1.5 is not an integer"),
+        ({"Name": "12345"}, "Name: '12345' has 5 bytes, there is room for 4"),
+        ({"Name": 7}, "Name: 7 is not a text"),
+        ({"At": [{}, {"Seconds": -1}]}, r"At\[1\].Seconds: -1 does not fit u32"),
+        ({"At": [{}, {}, {}]}, "At: 3 items, there is room for 2"),
+        ({"At": [7]}, r"At\[0\]: 7 is not a mapping"),
+        ({"At": 7}, "At: 7 is not a list"),
+        ({"Real": 1e300}, "Real: 1e.300 does not fit f32"),
+        ({"Nope": 1}, "Nope: T has no such field, only Id, Name, At, Real"),
+    ],
+)
+def test_bad_values_name_their_field(values: dict[str, Any], text: str) -> None:
+    layout = Layout("T", [("Id", "u8"), ("Name", "char[4]"), ("At", (TIME, 2)), ("Real", "f32")])
+    with pytest.raises(UsageError, match=text):
+        layout.pack(values)
+
+
+def test_a_short_buffer() -> None:
+    with pytest.raises(CfeError, match="CFE_STATUS_WRONG_MSG_LENGTH"):
+        TIME.unpack(b"1234567")
+
+
+@pytest.mark.parametrize("kind", ["u7", "u8[", "", "char[x]"])
+def test_bad_types(kind: str) -> None:
+    with pytest.raises(UsageError, match="is no type"):
+        Layout("T", [("Field", kind)])
+
+
+def test_a_field_twice() -> None:
+    with pytest.raises(UsageError, match=r"T\.A: is declared twice"):
+        Layout("T", [("A", "u8"), ("A", "u8")])

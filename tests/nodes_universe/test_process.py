@@ -1,0 +1,232 @@
+"""What belongs to a process: arguments, environment, directory, streams, signals, exit."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import pytest
+
+
+def test_arguments_environment_and_names(run, tmp_path):
+    program = run(
+        """
+        import os, sys
+        print(sys.argv[1:], os.path.basename(sys.argv[0]), os.environ["ROBOT"], os.getenv("NONE"), __name__)
+        print(os.path.basename(__file__), sys.path[0] == os.path.dirname(__file__))
+        os.environ["ADDED"] = "1"
+        """,
+        argv=["a", "_x:=1"],
+        env={"ROBOT": "r2"},
+    )
+    assert program.lines == ["['a', '_x:=1'] node.py r2 None __main__", "node.py True"]
+    assert "ADDED" not in os.environ
+
+
+def test_working_directory_is_virtual(run, tmp_path):
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "data.txt").write_text("hello")
+    host = os.getcwd()
+    program = run(
+        """
+        import glob, os, pathlib
+        print(os.getcwd() == os.path.dirname(__file__))
+        os.chdir("sub")
+        print(open("data.txt").read(), os.listdir(), os.path.exists("data.txt"), os.path.isfile("none"))
+        print(pathlib.Path("data.txt").read_text(), pathlib.Path.cwd().name, os.path.basename(os.path.abspath(".")))
+        os.makedirs("a/b"); os.rename("a", "c"); print(sorted(os.listdir(".")), glob.glob("*.txt"))
+        print([names for _, names, _ in os.walk("c")])
+        try:
+            os.chdir("nowhere")
+        except FileNotFoundError:
+            print("refused")
+        """,
+        cwd=tmp_path,
+    )
+    assert program.lines == [
+        "True",
+        "hello ['data.txt'] True False",
+        "hello sub sub",
+        "['c', 'data.txt'] ['data.txt']",
+        "[['b'], []]",
+        "refused",
+    ]
+    assert os.getcwd() == host
+
+
+@pytest.mark.parametrize(
+    ("body", "status", "shown"),
+    [
+        ("pass", 0, ""),
+        ("sys.exit()", 0, ""),
+        ("sys.exit(3)", 3, ""),
+        ("sys.exit('bad')", 1, "bad"),
+        ("exit(4)", 4, ""),
+        ("os._exit(5)", 5, ""),
+        ("threading.Thread(target=os._exit, args=(6,)).start(); time.sleep(9)", 6, ""),
+        ("os.kill(os.getpid(), signal.SIGTERM)", 143, ""),
+        ("raise KeyboardInterrupt", None, None),
+    ],
+)
+def test_exit_status(start, body, status, shown):
+    program = start(f"import os, signal, sys, threading, time\n{body}\n")
+    if status is None:
+        with pytest.raises(KeyboardInterrupt):
+            program.kernel.run()
+        return
+    program.kernel.run()
+    assert program.universe.exit_status == status
+    assert program.text == shown
+    assert program.universe.tasks == ()
+
+
+def test_uncaught_error_shows_the_nodes_lines_only(run):
+    program = run("""
+        import time
+        def level():
+            raise ValueError("boom")
+        def main():
+            try:
+                level()
+            except ValueError as error:
+                raise RuntimeError("outer") from error
+        main()
+    """)
+    assert program.universe.exit_status == 1
+    assert isinstance(program.universe.error, RuntimeError)
+    assert program.lines[0] == "Traceback (most recent call last):"
+    assert program.lines[-1] == "RuntimeError: outer"
+    files = {line.split('"')[1] for line in program.lines if line.startswith("  File")}
+    assert {os.path.basename(file) for file in files} == {"node.py"}
+
+
+def test_a_nodes_own_tracebacks_hide_the_simulator_too(run):
+    program = run("""
+        import time, traceback
+        try:
+            time.sleep(-1)
+        except ValueError:
+            traceback.print_exc()
+    """)
+    assert len(program.lines) == 4
+    assert "cfepy" not in program.text
+
+
+def test_syntax_error(run):
+    program = run("x = = 1\n")
+    assert program.lines[-1] == "SyntaxError: invalid syntax"
+    assert program.universe.exit_status == 1
+
+
+def test_exit_hooks_run_last_to_first_after_the_threads(run):
+    program = run("""
+        import atexit, threading, time
+        atexit.register(print, "first")
+        atexit.register(lambda: 1 / 0)
+        @atexit.register
+        def second():
+            print("second", time.monotonic() >= 1)
+        threading.Timer(1, print, ("thread",)).start()
+        threading.Thread(target=time.sleep, args=(99,), daemon=True).start()
+        print("main")
+    """)
+    assert [line for line in program.lines if line[0] not in " TEZ"] == ["main", "thread", "second True", "first"]
+    assert "ZeroDivisionError: division by zero" in program.lines
+    assert program.kernel.now < 2e9
+
+
+def test_print_and_streams_reach_the_console(run, capsys):
+    program = run("""
+        import io, sys, contextlib
+        print("a", 1, sep="-", end="."); print("b")
+        sys.stderr.write("half "); sys.stderr.write("line\\nrest")
+        sys.stdout.buffer.write("b\\u00fctes\\n".encode())
+        with contextlib.redirect_stdout(io.StringIO()) as caught:
+            print("hidden")
+        print(repr(caught.getvalue()), sys.stdout.isatty(), sys.stdin.read() == "")
+        try:
+            input("name? ")
+        except EOFError:
+            print("no input")
+    """)
+    assert program.lines == ["a-1.b", "half line", "b\u00fctes", "'hidden\\n' False True", "name? no input", "rest"]
+    assert capsys.readouterr() == ("", "")
+    assert sys.stdout is not program.universe.stdout
+
+
+def test_signals_are_the_nodes_own(run):
+    import signal
+
+    before = signal.getsignal(signal.SIGINT)
+    program = run("""
+        import os, signal
+        print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+        except KeyboardInterrupt:
+            print("interrupted")
+        signal.signal(signal.SIGINT, lambda number, frame: print("handled", number))
+        signal.raise_signal(signal.SIGINT)
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        os.kill(os.getpid(), signal.SIGTERM)
+    """)
+    assert program.lines == ["True", "interrupted", "handled 2"]
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "import socket; socket.socket()",
+        "import socket; socket.create_connection(('localhost', 1))",
+        "import subprocess; subprocess.run(['ls'])",
+        "import subprocess; subprocess.Popen('ls')",
+        "import multiprocessing; multiprocessing.Process(target=print)",
+        "from multiprocessing.pool import ThreadPool; ThreadPool(2)",
+        "import os; os.fork()",
+        "import os; os.system('ls')",
+        "import select; select.select([3], [], [])",
+        "import signal; signal.alarm(1)",
+        "import os; os.kill(1, 9)",
+        "import asyncio",
+        "import ssl",
+        "import xmlrpc.client; xmlrpc.client.ServerProxy('http://localhost:1').f()",
+    ],
+)
+def test_refused(run, body):
+    program = run(body)
+    assert program.universe.exit_status == 1
+    assert "is not available on the simulated computer; " in program.lines[-1]
+
+
+def test_modules_that_refuse_their_use_can_be_imported(run):
+    program = run("""
+        import http.server, logging.handlers, multiprocessing, select, socket, socketserver, subprocess, urllib.request
+        print(socket.gethostname(), multiprocessing.cpu_count(), select.select([], [], [], 0.5))
+        try:
+            socket.socket()
+        except socket.error:
+            print("caught")
+    """)
+    assert program.lines == ["cfepy 1 ([], [], [])", "caught"]
+
+
+def test_two_nodes_share_nothing(start, tmp_path):
+    (tmp_path / "counter.py").write_text("value = 0\n")
+    source = """
+        import builtins, counter, logging, os, random, sys, threading, time
+        logging.basicConfig(level=logging.DEBUG if sys.argv[1] == "1" else logging.ERROR, format="%(message)s")
+        builtins.mark = sys.argv[1]
+        for _ in range(3):
+            counter.value += 1
+            time.sleep(1)
+        logging.info("info")
+        print(counter.value, os.getpid() > 1, mark, threading.active_count(), sys.modules["counter"] is counter)
+        numbers = random.random(), random.Random().random(), os.urandom(4), os.getpid()
+    """
+    one = start(source, name="one", argv=["1"])
+    two = start(source, name="two", argv=["2"])
+    one.kernel.run()
+    assert one.lines == ["info", "3 True 1 1 True"]
+    assert two.lines == ["3 True 2 1 True"]
+    assert not set(one.global_("numbers")) & set(two.global_("numbers"))

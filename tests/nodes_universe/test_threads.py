@@ -1,0 +1,264 @@
+"""Threads, locks and queues of the standard library on virtual time."""
+
+from __future__ import annotations
+
+import pytest
+
+SECOND = 1_000_000_000
+
+WORKERS = """
+    import queue, random, threading, time
+    from concurrent.futures import ThreadPoolExecutor
+
+    items = queue.Queue(maxsize=5)
+    done = threading.Event()
+    lock = threading.Lock()
+    log = []
+
+    def produce(number):
+        count = 0
+        while not done.is_set():
+            items.put((number, count, random.random()))
+            count += 1
+            time.sleep(0.1)
+
+    def consume():
+        while True:
+            try:
+                item = items.get(timeout=0.05)
+            except queue.Empty:
+                if done.is_set():
+                    return
+                continue
+            with lock:
+                log.append((time.monotonic(), threading.current_thread().name, item))
+            items.task_done()
+
+    def square(x):
+        time.sleep(0.25)
+        return x * x
+
+    threads = [threading.Thread(target=produce, args=(n,), daemon=True) for n in range(3)]
+    threads += [threading.Thread(target=consume, name=f"consumer {n}") for n in range(2)]
+    for thread in threads:
+        thread.start()
+    timer = threading.Timer(3.0, lambda: log.append(("timer", time.monotonic())))
+    timer.start()
+    with ThreadPoolExecutor(max_workers=3) as pool:
+        squares = list(pool.map(square, range(7)))
+    pool_time = time.monotonic()
+    time.sleep(5)
+    done.set()
+"""
+
+
+def test_queue_timer_and_pool(run):
+    program = run(WORKERS, call_cost_ns=0)
+    log = program.global_("log")
+    assert program.global_("squares") == [0, 1, 4, 9, 16, 25, 36]
+    assert program.global_("pool_time") == 0.75
+    assert ("timer", 3.0) in log
+    assert len(log) == 3 * 58 + 1
+    assert program.universe.exit_status == 0
+    assert program.universe.tasks == ()
+
+
+def test_same_trace_on_both_contexts(tmp_path):
+    from cfepy.nodes import Universe
+    from cfepy.rtos import Kernel
+    from cfepy.trace import Trace
+    from textwrap import dedent
+
+    script = tmp_path / "workers.py"
+    script.write_text(dedent(WORKERS))
+    seen = set()
+    for context in ("thread", "greenlet", "thread"):
+        with Kernel(context=context, trace=Trace()) as kernel:
+            universe = Universe(kernel, name="workers", script=script, seed=4)
+            universe.spawn()
+            kernel.run()
+            seen.add((kernel.trace.digest(), repr(universe.importer.modules["__main__"].log)))
+    assert len(seen) == 1
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "lock = threading.Lock(); lock.acquire(); assert not lock.acquire(timeout=0.5); assert now() == 0.5",
+        "lock = threading.Lock(); assert lock.acquire(False); assert not lock.acquire(False); lock.release()",
+        "lock = threading.RLock(); lock.acquire(); assert lock.acquire(timeout=1); lock.release(); lock.release()",
+        "event = threading.Event(); assert not event.wait(2); assert now() == 2; event.set(); assert event.wait(1)",
+        "s = threading.Semaphore(2); s.acquire(); s.acquire(); assert not s.acquire(timeout=1); assert now() == 1",
+        "c = threading.Condition()\nwith c: assert not c.wait(0.25)\nassert now() == 0.25",
+        "c = threading.Condition()\nwith c: assert not c.wait_for(lambda: False, 0.25)\nassert now() >= 0.25",
+        "b = threading.Barrier(2); t = spawn(lambda: (time.sleep(1), b.wait())); b.wait(); assert now() == 1; t.join()",
+        "q = queue.SimpleQueue(); spawn(lambda: (time.sleep(1), q.put(7))); assert q.get() == 7; assert now() == 1",
+        "q = queue.PriorityQueue(); q.put(3); q.put(1); assert q.get() == 1",
+        "s = sched.scheduler(); s.enter(2, 1, got.append, ('x',)); s.run(); assert got == ['x']; assert now() == 2",
+        "t = spawn(lambda: time.sleep(3)); t.join(1); assert t.is_alive(); t.join(); assert now() == 3",
+        "t = spawn(lambda: got.append(threading.current_thread())); t.join(); assert got == [t]",
+        "assert threading.main_thread() is threading.current_thread(); assert threading.active_count() == 1",
+        "_thread.start_new_thread(got.append, (5,)); time.sleep(1); assert got == [5]",
+        "t = threading.Timer(1, got.append, (1,)); t.start(); t.cancel(); time.sleep(2); assert got == []",
+    ],
+)
+def test_primitives(run, body):
+    helper = """
+import _thread, queue, sched, threading, time
+got = []
+def now():
+    return time.monotonic()
+def spawn(function):
+    thread = threading.Thread(target=function)
+    thread.start()
+    return thread
+"""
+    program = run(helper + body, call_cost_ns=0)
+    assert program.text == ""
+    assert program.universe.exit_status == 0
+
+
+@pytest.mark.parametrize(
+    ("body", "error"),
+    [
+        ("threading.Lock().release()", "RuntimeError: release unlocked lock"),
+        ("threading.RLock().release()", "RuntimeError: cannot release un-acquired lock"),
+        ("lock = threading.Lock(); lock.acquire(False, 1)", "ValueError: can't specify a timeout"),
+        ("lock = threading.Lock(); lock.acquire(timeout=-2)", "ValueError: timeout value must be"),
+    ],
+)
+def test_misuse_of_locks(run, body, error):
+    assert error in run(f"import threading; {body}").text
+
+
+def test_waiters_of_a_lock_are_served_in_order(run):
+    program = run("""
+        import threading, time
+        lock, log = threading.Lock(), []
+        def use(number):
+            with lock:
+                time.sleep(1)
+                log.append(number)
+        for number in range(5):
+            threading.Thread(target=use, args=(number,)).start()
+    """)
+    assert program.global_("log") == [0, 1, 2, 3, 4]
+
+
+def test_local_belongs_to_a_thread_and_calls_init_in_each(run):
+    program = run("""
+        import threading, time
+        class Own(threading.local):
+            made = 0
+            def __init__(self, start):
+                self.value = start
+                Own.made += 1
+        own, seen = Own(10), []
+        def work(number):
+            own.value += number
+            time.sleep(1)
+            seen.append(own.value)
+        threads = [threading.Thread(target=work, args=(n,)) for n in range(3)]
+        for thread in threads: thread.start()
+        for thread in threads: thread.join()
+        assert own.value == 10 and Own.made == 4 and not hasattr(threading.local(), "value")
+    """)
+    assert program.text == ""
+    assert program.global_("seen") == [10, 11, 12]
+
+
+def test_error_in_a_thread_is_shown_and_the_node_goes_on(run):
+    program = run("""
+        import threading, time
+        def fail():
+            time.sleep(-1)
+        threading.Thread(target=fail, name="worker").start()
+        time.sleep(1)
+        print("alive")
+    """)
+    assert program.lines[0] == "Exception in thread worker:"
+    assert program.lines[-2:] == ["ValueError: sleep length must be non-negative", "alive"]
+    assert "in fail" in program.text
+    assert "cfepy" not in program.text
+    assert [type(error) for error in program.universe.thread_errors] == [ValueError]
+    assert program.universe.exit_status == 0
+
+
+def test_polling_loops_make_progress(run):
+    program = run("""
+        import queue, threading, time
+        event, items = threading.Event(), queue.Queue()
+        threading.Timer(0.01, event.set).start()
+        while not event.is_set():
+            pass
+        threading.Timer(0.01, items.put, (1,)).start()
+        while items.empty():
+            pass
+        end = time.time() + 0.01
+        while time.time() < end:
+            pass
+        thread = threading.Timer(0.01, print, ("done",)); thread.start()
+        while thread.is_alive():
+            pass
+        while threading.active_count() > 1:
+            time.sleep(0)
+    """)
+    assert program.text == "done"
+
+
+def test_killing_a_node_unwinds_all_its_threads(start):
+    program = start("""
+        import threading
+        log, never = [], threading.Event()
+        lock = threading.Lock()
+        def wait(number):
+            try:
+                with lock:
+                    never.wait()
+            finally:
+                log.append(number)
+        for number in range(3):
+            threading.Thread(target=wait, args=(number,)).start()
+        try:
+            never.wait()
+        finally:
+            log.append("main")
+    """)
+    program.kernel.run(SECOND)
+    assert program.universe.main_task is not None
+    program.kernel.kill(program.universe.main_task)
+    assert sorted(map(str, program.global_("log"))) == ["0", "1", "2", "main"]
+    assert program.universe.tasks == ()
+    assert not program.kernel.tasks
+    assert program.text == ""
+
+
+def test_threads_start_through_the_owners_hook(start):
+    names = []
+
+    def own(name, entry, priority):
+        names.append((name, priority))
+        return program.kernel.spawn(name, entry, priority, owner="app")
+
+    program = start(
+        "import threading\nfor _ in range(2): threading.Thread(target=print).start()",
+        on_thread_start=own,
+        priority=70,
+    )
+    program.kernel.run()
+    assert names == [("node.1", 70), ("node.2", 70)]
+
+
+def test_imports_wait_for_another_thread_that_imports(run, tmp_path):
+    (tmp_path / "slow.py").write_text("import time\ntime.sleep(1)\nvalue = 3\n")
+    program = run("""
+        import threading, time
+        seen = []
+        def use():
+            import slow
+            seen.append((slow.value, time.monotonic()))
+        for _ in range(2):
+            threading.Thread(target=use).start()
+    """, call_cost_ns=0)
+    assert program.text == ""
+    assert program.global_("seen") == [(3, 1.0), (3, 1.0)]

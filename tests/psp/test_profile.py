@@ -1,0 +1,94 @@
+"""Board profiles: the shipped ones, and what is said of wrong ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.config import PlatformConfig
+from cfepy.psp.profile import DEFAULT_NODE_CALL_NS, MemoryRegion, available_boards, load_profile
+from cfepy.status import UsageError
+
+
+def test_shipped_boards() -> None:
+    assert {"linux", "rx64m"} <= set(available_boards())
+    for name in available_boards():
+        assert load_profile(name).name == name
+
+
+def test_linux_has_no_limits() -> None:
+    board = load_profile("linux")
+    assert board.config() == PlatformConfig()
+    assert (board.cpu_hz, board.tick_ns, board.sram_size, board.max_publish_hz) == (0, 0, 0, 0)
+    assert board.node_call_ns == DEFAULT_NODE_CALL_NS
+    assert board.cycles_ns(1000) == 0
+
+
+def test_rx64m() -> None:
+    board = load_profile("rx64m")
+    assert (board.cpu_hz, board.tick_ns, board.max_publish_hz) == (120_000_000, 10_000_000, 100)
+    assert (board.program_flash, board.data_flash, board.sram_size) == (4 << 20, 64 << 10, 552 << 10)
+    assert MemoryRegion("standby", 8 << 10, retained=True) in board.sram
+    assert board.cycles_ns(1) == 9
+    assert board.cycles_ns(300) == 2500
+
+
+def test_rx64m_pools_and_core_stacks_fit_its_memory() -> None:
+    board = load_profile("rx64m")
+    config = board.config()
+    pools = config.sb_buf_memory_bytes + config.tbl_buf_memory_bytes
+    core_stacks = 8 * config.es_default_stack_size
+    app_stacks = config.es_max_applications * 16384
+    retained = sum(region.size for region in board.sram if region.retained)
+    assert config.es_cds_size <= retained
+    assert pools + core_stacks + app_stacks < board.sram_size - retained
+    assert config.os_queue_max_depth == PlatformConfig().os_queue_max_depth
+
+
+def write(path: Path, text: str) -> Path:
+    file = path / "board.yaml"
+    file.write_text(text)
+    return file
+
+
+def test_a_file_by_path(tmp_path: Path) -> None:
+    board = load_profile(write(tmp_path, "name: mine\ncpu_hz:\nprogram_flash: 2 MiB\nlimits: {sb_max_pipes: 5}\n"))
+    assert (board.name, board.cpu_hz, board.program_flash) == ("mine", 0, 2 << 20)
+    assert board.config().sb_max_pipes == 5
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "board.yaml:1: has no name; a board profile starts with `name: ...`"),
+        ("- a\n", "board.yaml:1: is ['a'], it must be a mapping"),
+        ("name: x\nspeed: 3\n", "board.yaml:2: speed: is not known here; known are name, description"),
+        ("name: x\ncpu_hz: fast\n", "board.yaml:2: cpu_hz: is 'fast', it must be a whole number"),
+        ("name: x\ncpu_hz: -1\n", "board.yaml:2: cpu_hz: is -1, it must be a whole number of at least 0"),
+        ("name: 7\n", "board.yaml:1: name: is 7, it must be text; put it in quotes"),
+        ("name: x\nsram:\n  - {name: a}\n", "board.yaml:3: sram[0]: has no size"),
+        ("name: x\nsram: {}\n", "board.yaml:2: sram: is {}, it must be a list"),
+        ("name: x\nsram:\n  - {name: a, size: 5 KB}\n", "board.yaml:3: sram[0].size: is '5 KB', it must be bytes"),
+        ("name: x\nsram:\n  - {name: a, size: 5, retained: 1}\n", "board.yaml:3: sram[0].retained: is 1"),
+        ("name: x\nlimits:\n  sb_pipes: 1\n", "board.yaml:3: limits.sb_pipes: is not known here"),
+        ("name: x\nlimits:\n  sb_max_pipes: 0\n", "board.yaml:3: limits.sb_max_pipes: is 0, it must be a whole number"),
+        ("name: x\nlimits:\n  sb_max_pipes: true\n", "board.yaml:3: limits.sb_max_pipes: is True"),
+        ("name: x\nmemory_costs: {pipes: 1}\n", "board.yaml:2: memory_costs.pipes: is not known here"),
+        ("name: x\nname: y\n", "board.yaml:2: 'name' is there twice"),
+        ("name: [x\n", "board.yaml:2: is not YAML"),
+        ("7: x\n", "board.yaml:1: is 7, it must be text"),
+        ("name: !thing x\n", "board.yaml:1: is not YAML"),
+    ],
+)
+def test_wrong_files_say_where(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        load_profile(write(tmp_path, text))
+    assert str(caught.value).startswith(f"{tmp_path}/{message}")
+
+
+def test_unknown_boards() -> None:
+    with pytest.raises(UsageError, match="there is no board 'vax'; there are linux, rx64m"):
+        load_profile("vax")
+    with pytest.raises(UsageError, match=r"nowhere\.yaml: cannot be read"):
+        load_profile("nowhere.yaml")

@@ -1,0 +1,328 @@
+"""Registering, loading and updating tables as an app does it (cTBL6000 and following)."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy.fs import crc16
+from cfepy.status import (
+    CFE_ES_ERR_MEM_BLOCK_SIZE,
+    CFE_ES_ERR_RESOURCEID_NOT_VALID,
+    CFE_STATUS_VALIDATION_FAILURE,
+    CFE_SUCCESS,
+    CFE_TBL_ERR_ACCESS,
+    CFE_TBL_ERR_DUMP_ONLY,
+    CFE_TBL_ERR_DUPLICATE_DIFF_SIZE,
+    CFE_TBL_ERR_DUPLICATE_NOT_OWNED,
+    CFE_TBL_ERR_FILE_FOR_WRONG_TABLE,
+    CFE_TBL_ERR_FILE_TOO_LARGE,
+    CFE_TBL_ERR_HANDLES_FULL,
+    CFE_TBL_ERR_ILLEGAL_SRC_TYPE,
+    CFE_TBL_ERR_INVALID_HANDLE,
+    CFE_TBL_ERR_INVALID_NAME,
+    CFE_TBL_ERR_INVALID_OPTIONS,
+    CFE_TBL_ERR_INVALID_SIZE,
+    CFE_TBL_ERR_LOAD_IN_PROGRESS,
+    CFE_TBL_ERR_LOAD_INCOMPLETE,
+    CFE_TBL_ERR_NEVER_LOADED,
+    CFE_TBL_ERR_NO_ACCESS,
+    CFE_TBL_ERR_NO_BUFFER_AVAIL,
+    CFE_TBL_ERR_NO_STD_HEADER,
+    CFE_TBL_ERR_NO_TBL_HEADER,
+    CFE_TBL_ERR_PARTIAL_LOAD,
+    CFE_TBL_ERR_REGISTRY_FULL,
+    CFE_TBL_ERR_UNREGISTERED,
+    CFE_TBL_INFO_NO_UPDATE_PENDING,
+    CFE_TBL_INFO_TABLE_LOCKED,
+    CFE_TBL_INFO_UPDATED,
+    CFE_TBL_WARN_DUPLICATE,
+    CFE_TBL_WARN_NOT_CRITICAL,
+    CFE_TBL_WARN_PARTIAL_LOAD,
+    CFE_TBL_WARN_SHORT_FILE,
+    CfeError,
+)
+from cfepy.tbl import (
+    OPT_CRITICAL,
+    OPT_DBL_BUFFER,
+    OPT_DUMP_ONLY,
+    OPT_USR_DEF_ADDR,
+)
+from tests.tbl.conftest import NOW, Bench
+
+
+def content(bench: Bench, handle: int) -> bytes:
+    data = bytes(bench.tbl.get_address(handle)[0])
+    bench.tbl.release_address(handle)
+    return data
+
+
+def failure(call: object, *args: object, **more: object) -> int:
+    with pytest.raises(CfeError) as caught:
+        call(*args, **more)  # type: ignore[operator]
+    return caught.value.status
+
+
+def test_first_load_goes_straight_to_the_active_buffer(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4)
+    assert failure(bench.tbl.get_address, handle) == CFE_TBL_ERR_NEVER_LOADED
+    bench.put("/cf/t.tbl", "APP.T", b"abcd")
+    assert bench.tbl.load(handle, "/cf/t.tbl") == CFE_SUCCESS
+    assert bench.take_events() == [(35, 1, "Successfully loaded 'APP.T' from '/cf/t.tbl'")]
+    view, updated = bench.tbl.get_address(handle)
+    assert (bytes(view), updated) == (b"abcd", True)
+    assert bench.tbl.get_address(handle)[1] is False
+    info = bench.tbl.get_info("APP.T")
+    assert (info.size, info.crc, info.num_users, info.table_loaded_once) == (4, crc16(b"abcd"), 1, True)
+    assert (info.last_file_loaded, info.time_of_last_update) == ("/cf/t.tbl", NOW)
+
+
+def test_second_load_is_an_information_event(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4)
+    bench.tbl.load(handle, b"1234")
+    bench.take_events()
+    bench.tbl.load(handle, b"5678")
+    (event,) = bench.take_events()
+    assert event[:2] == (35, 2)
+    assert content(bench, handle) == b"5678"
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "options", "status"),
+    [
+        ("", 4, 0, CFE_TBL_ERR_INVALID_NAME),
+        ("x" * 16, 4, 0, CFE_TBL_ERR_INVALID_NAME),
+        ("T", 0, 0, CFE_TBL_ERR_INVALID_SIZE),
+        ("T", 16385, 0, CFE_TBL_ERR_INVALID_SIZE),
+        ("T", 16385, OPT_DBL_BUFFER, CFE_TBL_ERR_INVALID_SIZE),
+        ("T", 4, OPT_DUMP_ONLY | OPT_DBL_BUFFER, CFE_TBL_ERR_INVALID_OPTIONS),
+        ("T", 4, OPT_USR_DEF_ADDR | OPT_DBL_BUFFER, CFE_TBL_ERR_INVALID_OPTIONS),
+        ("T", 4, OPT_USR_DEF_ADDR & ~OPT_DUMP_ONLY, CFE_TBL_ERR_INVALID_OPTIONS),
+        ("T", 4, OPT_DUMP_ONLY | OPT_CRITICAL, CFE_TBL_ERR_INVALID_OPTIONS),
+    ],
+)
+def test_bad_registration(bench: Bench, name: str, size: int, options: int, status: int) -> None:
+    assert failure(bench.tbl.register, name, size, options) == status
+    (event,) = bench.take_events()
+    assert event == (90, 3, f"APP Failed to Register table '{name}', Status=0x{status & 0xFFFFFFFF:08X}")
+
+
+def test_duplicates(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4)
+    again = bench.tbl.register("T", 4)
+    assert (again, again.status, handle.status) == (handle, CFE_TBL_WARN_DUPLICATE, CFE_SUCCESS)
+    assert failure(bench.tbl.register, "T", 8) == CFE_TBL_ERR_DUPLICATE_DIFF_SIZE
+    bench.tbl.registry.by_name("APP.T").owner = 0x110007
+    assert failure(bench.tbl.register, "T", 4) == CFE_TBL_ERR_DUPLICATE_NOT_OWNED
+
+
+def test_critical_tables_are_ordinary_ones_for_now(bench: Bench) -> None:
+    assert bench.tbl.register("T", 4, OPT_CRITICAL).status == CFE_TBL_WARN_NOT_CRITICAL
+    assert "Failed to register 'APP.T' as a CDS" in bench.log[0]
+
+
+def test_limits_leave_nothing_behind() -> None:
+    bench = Bench(tbl_max_num_tables=2, tbl_max_num_handles=3, tbl_buf_memory_bytes=4 * 16384 + 100)
+    bench.tbl.register("A", 40)
+    assert failure(bench.tbl.register, "BIG", 80) == CFE_ES_ERR_MEM_BLOCK_SIZE
+    bench.tbl.register("B", 40)
+    assert failure(bench.tbl.register, "C", 1) == CFE_TBL_ERR_REGISTRY_FULL
+    bench.tbl.share("APP.A")
+    assert failure(bench.tbl.share, "APP.A") == CFE_TBL_ERR_HANDLES_FULL
+
+
+def test_who_may_do_what(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4)
+    bench.tbl.load(handle, b"1234")
+    bench.as_app("OTHER")
+    assert failure(bench.tbl.get_address, handle) == CFE_TBL_ERR_NO_ACCESS
+    assert "CFE_TBL_GetAddress: App(1114119) does not have access to Tbl Handle=" in bench.log[-1]
+    shared = bench.tbl.share("APP.T")
+    assert bench.tbl.get_address(shared)[1] is True
+    assert failure(bench.tbl.load, shared, b"5678") == CFE_TBL_ERR_NO_ACCESS
+    assert failure(bench.tbl.get_address, 99) == CFE_TBL_ERR_INVALID_HANDLE
+    assert failure(bench.tbl.share, "APP.NO") == CFE_TBL_ERR_INVALID_NAME
+    bench.as_app("CFE_TBL")
+    assert bench.tbl.get_status(handle) == CFE_SUCCESS
+    bench.as_app(None)
+    assert failure(bench.tbl.register, "T", 4) == CFE_ES_ERR_RESOURCEID_NOT_VALID
+
+
+def test_shared_table_outlives_its_owner_until_given_back(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4)
+    bench.tbl.load(handle, b"1234")
+    bench.as_app("OTHER")
+    shared = bench.tbl.share("APP.T")
+    bench.tbl.cleanup_app(0x110006)
+    assert failure(bench.tbl.get_address, shared) == CFE_TBL_ERR_UNREGISTERED
+    assert len(bench.tbl.registry.tables) == 1
+    bench.tbl.unregister(shared)
+    assert len(bench.tbl.registry.tables) == 0
+    assert failure(bench.tbl.unregister, shared) == CFE_TBL_ERR_INVALID_HANDLE
+
+
+FILE_FAULTS = [
+    ("/cf/none.tbl", CFE_TBL_ERR_ACCESS, 53, "tbl=[unknown]:Unable to open, Status = -108"),
+    ("/cf/tiny.tbl", CFE_TBL_ERR_NO_STD_HEADER, 54, "tbl=[unknown]:Unable to read std header, Status = 0x00000003"),
+    ("/cf/half.tbl", CFE_TBL_ERR_NO_TBL_HEADER, 55, "tbl=[unknown]:Unable to read tbl header, Status = 0x0000000a"),
+    ("/cf/wrong.tbl", CFE_TBL_ERR_FILE_FOR_WRONG_TABLE, 102, "tbl=APP.X:File for wrong table 'APP.X'"),
+    ("/cf/empty.tbl", CFE_TBL_ERR_NO_TBL_HEADER, 73, "tbl=APP.T:Table header indicates no data in file"),
+    ("/cf/part.tbl", CFE_TBL_ERR_PARTIAL_LOAD, 74, "tbl=APP.T:partial load for uninitialized table"),
+    ("/cf/long.tbl", CFE_TBL_ERR_FILE_TOO_LARGE, 72, "tbl=APP.T:Cannot load 5 at off 0"),
+    ("/cf/cut.tbl", CFE_TBL_ERR_LOAD_INCOMPLETE, 71, "tbl=APP.T:Incomplete load into working buffer"),
+    ("/cf/more.tbl", CFE_TBL_ERR_FILE_TOO_LARGE, 75, "tbl=APP.T:File has more data than Tbl Hdr indicates (4)"),
+]
+
+
+@pytest.mark.parametrize(("path", "status", "event_id", "text"), FILE_FAULTS)
+def test_bad_files(bench: Bench, path: str, status: int, event_id: int, text: str) -> None:
+    bench.put("/cf/good.tbl", "APP.T", b"abcd")
+    good = bench.files["/cf/good.tbl"]
+    bench.files |= {
+        "/cf/tiny.tbl": b"cFE",
+        "/cf/half.tbl": good[:74],
+        "/cf/empty.tbl": good[:72] + bytes(4) + good[76:],
+        "/cf/cut.tbl": good[:-1],
+        "/cf/more.tbl": good + b"e",
+    }
+    bench.put("/cf/wrong.tbl", "APP.X", b"abcd")
+    bench.put("/cf/part.tbl", "APP.T", b"ab", offset=2)
+    bench.put("/cf/long.tbl", "APP.T", b"abcde")
+    handle = bench.tbl.register("T", 4)
+    assert failure(bench.tbl.load, handle, path) == status
+    assert bench.take_events() == [(event_id, 3, f"LoadFile,app=APP,file={path},{text}")]
+    assert bench.tbl.load(handle, "/cf/good.tbl") == CFE_SUCCESS
+
+
+def test_short_and_partial_files_keep_the_rest(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 6)
+    bench.put("/cf/short.tbl", "APP.T", b"ab")
+    bench.put("/cf/part.tbl", "APP.T", b"XY", offset=3)
+    assert bench.tbl.load(handle, "/cf/short.tbl") == CFE_TBL_WARN_SHORT_FILE
+    bench.tbl.load(handle, b"123456")
+    assert bench.tbl.load(handle, "/cf/part.tbl") == CFE_TBL_WARN_PARTIAL_LOAD
+    assert content(bench, handle) == b"123XY6"
+    assert failure(bench.tbl.load, handle, b"12") == CFE_TBL_ERR_LOAD_INCOMPLETE
+
+
+def test_validator_refuses(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4, 0, lambda image: -7 if image[0] == 0xFF else 0)
+    bench.tbl.load(handle, b"good")
+    bench.take_events()
+    assert failure(bench.tbl.load, handle, b"\xffbad") == -7
+    assert bench.take_events() == [
+        (96, 3, "Load,app=APP,tbl=APP.T:Validation func reports table invalid (Stat=fffffffffffffff9)")
+    ]
+    assert content(bench, handle) == b"good"
+    assert bench.tbl.registry.by_name("APP.T").loading is None
+
+
+def test_positive_result_of_a_validator_is_a_fault_of_its_own(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4, 0, lambda image: 1)
+    assert failure(bench.tbl.load, handle, b"1234") == CFE_STATUS_VALIDATION_FAILURE
+    assert [event[0] for event in bench.take_events()] == [93, 96]
+
+
+def test_validator_that_raises_leaves_the_table_alone(bench: Bench) -> None:
+    def broken(image: memoryview) -> int:
+        raise ZeroDivisionError
+
+    handle = bench.tbl.register("T", 4, 0, broken)
+    with pytest.raises(ZeroDivisionError):
+        bench.tbl.load(handle, b"1234")
+    assert bench.tbl.registry.by_name("APP.T").loading is None
+
+
+def test_double_buffer_switches_under_a_reader(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4, OPT_DBL_BUFFER)
+    bench.tbl.load(handle, b"old.")
+    old, _ = bench.tbl.get_address(handle)
+    assert bench.tbl.load(handle, b"new.") == CFE_SUCCESS
+    assert bytes(old) == b"old."
+    assert bench.tbl.get_address(handle)[1] is True
+    assert content(bench, handle) == b"new."
+
+
+def test_double_buffer_has_no_third_buffer(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4, OPT_DBL_BUFFER)
+    bench.tbl.load(handle, b"one.")
+    bench.tbl.get_address(handle)
+    bench.tbl.load(handle, b"two.")
+    bench.take_events()
+    assert failure(bench.tbl.load, handle, b"tri.") == CFE_TBL_ERR_NO_BUFFER_AVAIL
+    assert bench.take_events() == [
+        (60, 3, "Load,app=APP,tbl=APP.T:No working buffers available, stat=0xffffffffcc00000f")
+    ]
+    assert "Inactive Buff Locked for 'APP.T' by AppId=1114118" in bench.log[-1]
+    assert bench.tbl.release_address(handle) == CFE_TBL_INFO_UPDATED
+    assert bench.tbl.load(handle, b"tri.") == CFE_SUCCESS
+
+
+def test_single_buffer_waits_for_the_reader(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4)
+    bench.tbl.load(handle, b"old.")
+    view, _ = bench.tbl.get_address(handle)
+    bench.take_events()
+    assert bench.tbl.load(handle, b"new.") == CFE_TBL_INFO_TABLE_LOCKED
+    assert bench.take_events()[0][0] == 95
+    assert bytes(view) == b"old."
+    assert bench.tbl.manage(handle) == CFE_TBL_INFO_TABLE_LOCKED
+    assert failure(bench.tbl.load, handle, b"3rd.") == CFE_TBL_ERR_LOAD_IN_PROGRESS
+    bench.tbl.release_address(handle)
+    bench.take_events()
+    assert bench.tbl.manage(handle) == CFE_TBL_INFO_UPDATED
+    assert bench.take_events() == [(37, 2, "APP Successfully Updated 'APP.T'")]
+    assert content(bench, handle) == b"new."
+    assert bench.tbl.update(handle) == CFE_TBL_INFO_NO_UPDATE_PENDING
+
+
+def test_modified_tells_the_others(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4)
+    bench.tbl.load(handle, b"1234")
+    content(bench, handle)
+    bench.as_app("OTHER")
+    shared = bench.tbl.share("APP.T")
+    content(bench, shared)
+    bench.as_app("APP")
+    view, _ = bench.tbl.get_address(handle)
+    view[0] = ord("X")
+    bench.tbl.modified(handle)
+    bench.tbl.release_address(handle)
+    assert bench.tbl.get_info("APP.T").last_file_loaded.endswith("(*)")
+    assert bench.tbl.get_info("APP.T").crc == crc16(b"X234")
+    assert bench.tbl.get_address(handle)[1] is False
+    bench.as_app("OTHER")
+    assert bench.tbl.get_address(shared)[1] is True
+
+
+def test_dump_only_tables(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4, OPT_DUMP_ONLY)
+    view, updated = bench.tbl.get_address(handle)
+    assert (bytes(view), updated) == (bytes(4), False)
+    assert failure(bench.tbl.load, handle, b"1234") == CFE_TBL_ERR_DUMP_ONLY
+
+
+def test_table_at_an_address_of_the_app(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4, OPT_USR_DEF_ADDR)
+    assert failure(bench.tbl.load, handle, "/cf/t.tbl") == CFE_TBL_ERR_ILLEGAL_SRC_TYPE
+    mine = bytearray(b"1234")
+    assert bench.tbl.load(handle, mine) == CFE_SUCCESS
+    mine[0] = ord("X")
+    assert content(bench, handle) == b"X234"
+    assert failure(bench.tbl.load, handle, mine) == CFE_TBL_ERR_DUMP_ONLY
+
+
+def test_several_addresses_are_all_or_none(bench: Bench) -> None:
+    first, second = bench.tbl.register("A", 1), bench.tbl.register("B", 1)
+    bench.tbl.load(first, b"a")
+    assert failure(bench.tbl.get_addresses, [first, second]) == CFE_TBL_ERR_NEVER_LOADED
+    bench.tbl.load(second, b"b")
+    assert [bytes(view) for view, _ in bench.tbl.get_addresses([first, second])] == [b"a", b"b"]
+    assert bench.tbl.release_addresses([first, second]) == CFE_SUCCESS
+    assert bench.tbl.load(first, b"c") == CFE_SUCCESS
+
+
+def test_handle_ids(bench: Bench) -> None:
+    handle = bench.tbl.register("A", 1)
+    assert bench.tbl.handle_from_id(bench.tbl.handle_to_id(handle)) == handle
+    assert bench.tbl.handle_from_id(0) == -1
+    assert bench.tbl.handle_to_id(-1) == 0
