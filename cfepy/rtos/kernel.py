@@ -355,13 +355,20 @@ class Kernel:
             self._switch(task, following)
 
     def inherit(self, task: Task) -> None:
-        """Recompute a task's priority: its own, or that of the most urgent task that waits for a mutex it holds."""
-        priority = task.base_priority
-        for mutex in task.held:
-            if mutex.waits and mutex.waits[0].priority < priority:
-                priority = mutex.waits[0].priority
-        if priority != task.priority:
-            self.reprioritize(task, priority)
+        """Recompute a task's priority: its own, or that of the most urgent task that waits for a mutex it holds.
+
+        When that changes it, so may the priority of the task that it waits for itself, and so on.
+        """
+        heir: Task | None = task
+        while heir is not None:
+            priority = heir.base_priority
+            for mutex in heir.held:
+                if mutex.waits and mutex.waits[0].priority < priority:
+                    priority = mutex.waits[0].priority
+            if priority == heir.priority:
+                return
+            self.reprioritize(heir, priority)
+            heir = heir.mutex.owner if heir.mutex is not None else None
 
     def reprioritize(self, task: Task, priority: int) -> None:
         """Change a task's present priority, and its place among those that are ready or wait for the same thing."""
@@ -603,7 +610,6 @@ class Kernel:
         if self.record is not None:
             self.record(task.exit_mark if last is not None and last.done else task.mark)
         if last is not None and not last.done:
-            task.switches += 1
             self.now += self.switch_cost_ns
             task.cpu_ns += self.switch_cost_ns
 

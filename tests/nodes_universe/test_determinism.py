@@ -54,7 +54,7 @@ def test_same_trace_for_every_hash_seed_and_context(tmp_path):
         )
         for seed, context in (("0", "thread"), ("1", "greenlet"), ("random", "thread"))
     ]
-    outputs = {child.communicate(timeout=60)[0] for child in children}
+    outputs = {child.communicate(timeout=20)[0] for child in children}
     assert len(outputs) == 1
     lines = outputs.pop().splitlines()
     assert lines[2] == "0"

@@ -1,0 +1,9 @@
+"""The apps that cfepy brings along, importable wherever they lie: `cfepy.apps.hk.packets`, `cfepy.apps.sch_lab.schedule`.
+
+Missions use their layouts to write table files. A running mission does not import apps from here: it executes them
+anew for every start.
+"""
+
+from cfepy.resources import shipped
+
+__path__ = [str(shipped("apps"))]

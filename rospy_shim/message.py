@@ -1,0 +1,135 @@
+"""What rospy adds to messages: arguments of `publish`, `AnyMsg`, numpy arrays (rospy.msg, rospy.numpy_msg).
+
+Imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Any, BinaryIO
+
+from rospy_shim.exceptions import ROSException
+from rospy_shim.genpy import Message
+
+
+class AnyMsg(Message):
+    """Subscribes to any type: `_buff` holds the serialised message, `_connection_header` says what it is."""
+
+    __module__ = "rospy.msg"
+    _md5sum = "*"
+    _type = "*"
+    _has_header = False
+    _full_text = ""
+    _slot_types: list[str] = []
+    __slots__ = ["_buff"]
+
+    def __init__(self, *args: Any) -> None:
+        """Make one without data.
+
+        Raises:
+            ROSException: any argument is given.
+        """
+        if args:
+            raise ROSException("AnyMsg does not accept arguments")
+        self._buff: bytes | None = None
+
+    def _pack(self) -> bytes:
+        if self._buff is None:
+            raise ROSException("AnyMsg is not initialized")
+        return self._buff
+
+    @classmethod
+    def _unpack(cls, data: bytes, at: int = 0) -> AnyMsg:
+        message = cls()
+        message._buff = data[at:]
+        return message
+
+    def serialize(self, buff: BinaryIO) -> None:
+        """Write the bytes.
+
+        Raises:
+            ROSException: there are none.
+        """
+        buff.write(self._pack())
+
+    def deserialize(self, str_: bytes) -> AnyMsg:
+        """Take the bytes."""
+        self._buff = bytes(str_)
+        return self
+
+
+def args_kwds_to_message(data_class: Any, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
+    """The message that the arguments of `publish` mean.
+
+    Args:
+        data_class: type of the topic.
+        args: one message, or the values of its fields.
+        kwds: fields by name.
+
+    Raises:
+        TypeError: both kinds of arguments, a message of another type, or a wrong number of values.
+    """
+    if args and kwds:
+        raise TypeError("publish() can be called with arguments or keywords, but not both.")
+    if kwds:
+        return data_class(**kwds)
+    if len(args) != 1:
+        return data_class(*args)
+    value = args[0]
+    if isinstance(value, data_class) or (data_class is AnyMsg and isinstance(value, Message)):
+        return value
+    if isinstance(value, Message):
+        return _same_type(data_class, value)
+    return data_class(*args)
+
+
+def _same_type(data_class: Any, value: Any) -> Any:
+    """A message whose class is another one of the same type; or the one field of a type that holds a message."""
+    if value._type == data_class._type:
+        if value._md5sum != data_class._md5sum:
+            raise TypeError(f"expected [{data_class._slot_types[0]}] but got [{value._type}]")
+        return data_class(*(getattr(value, name) for name in data_class.__slots__))
+    if len(data_class._slot_types) == 1 and data_class._slot_types[0] in (value._type, value._type.split("/")[-1]):
+        return data_class(value)
+    raise TypeError(f"expected [{', '.join(data_class._slot_types)}] but got [{value._type}]")
+
+
+def serialize_message(b: BinaryIO, seq: int, msg: Any) -> None:
+    """Write a message the way ROS puts it on a wire: its length, then its bytes.
+
+    Args:
+        b: where to.
+        seq: for the header, if the message has one.
+        msg: the message.
+    """
+    if getattr(type(msg), "_has_header", False):
+        msg.header.seq = seq
+    payload = msg._pack()
+    b.write(struct.pack("<I", len(payload)) + payload)
+
+
+def numpy_msg(msg_type: Any) -> Any:
+    """A class of the same message type whose number arrays are numpy arrays.
+
+    Args:
+        msg_type: a message class.
+    """
+    import numpy
+
+    def unpack(cls: Any, data: bytes, at: int = 0) -> Any:
+        return cls().deserialize_numpy(data[at:], numpy)
+
+    def deserialize(self: Any, data: bytes) -> Any:
+        return self.deserialize_numpy(data, numpy)
+
+    def serialize(self: Any, buff: BinaryIO) -> None:
+        buff.write(self._pack_numpy(numpy))
+
+    names = {
+        "__slots__": msg_type.__slots__,
+        "_pack": lambda self: self._pack_numpy(numpy),
+        "_unpack": classmethod(unpack),
+        "deserialize": deserialize,
+        "serialize": serialize,
+    }
+    return type(msg_type)(f"Numpy_{msg_type._type.replace('/', '__')}", (msg_type,), names)

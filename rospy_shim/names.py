@@ -1,0 +1,210 @@
+"""Graph resource names: namespaces, private names and remappings of one node (rospy.names, wiki.ros.org/Names).
+
+A node's name is known once `init_node` has run; until then it is "/unnamed" and private names cannot be resolved.
+Imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+GLOBALNS = "/"
+SEP = "/"
+PRIV_NAME = "~"
+REMAP = ":="
+ANYTYPE = "*"
+UNNAMED = "/unnamed"
+
+_LEGAL = re.compile(r"^[~/A-Za-z][\w/]*$")
+
+
+def canonicalize_name(name: str) -> str:
+    """The name without doubled or trailing slashes."""
+    if not name or name == SEP:
+        return name
+    parts = [part for part in name.split(SEP) if part]
+    return SEP.join(["", *parts] if name[0] == SEP else parts)
+
+
+def namespace_of(name: str) -> str:
+    """The namespace that a resolved name lives in, ending in a slash.
+
+    Raises:
+        ValueError: an empty or a relative name.
+    """
+    if not name:
+        raise ValueError("name is empty: give a resolved name such as /arm/joint_states")
+    head = name.rstrip(SEP).rpartition(SEP)[0]
+    return head + SEP
+
+
+def join(namespace: str, name: str) -> str:
+    """A name below a namespace; global and private names stay as they are."""
+    if name.startswith((SEP, PRIV_NAME)):
+        return name
+    return namespace + name if namespace.endswith(SEP) else namespace + SEP + name
+
+
+def is_legal_name(name: str) -> bool:
+    """Whether a name follows ROS's rules for graph resource names."""
+    return not name or bool(_LEGAL.match(name)) and "//" not in name
+
+
+def scoped_name(caller_id: str, name: str) -> str:
+    """A global name relative to the namespace of `caller_id`.
+
+    Raises:
+        ROSException: the name is not global.
+    """
+    from rospy_shim.exceptions import ROSException
+
+    if not name.startswith(SEP):
+        raise ROSException(f"name [{name}] must be global")
+    scope = namespace_of(caller_id)
+    return name[len(scope) :] if name.startswith(scope) else name
+
+
+def global_name(param_name: str) -> Callable[[Any, str], str]:
+    """A validator that makes a relative name global."""
+
+    def validate(value: Any, caller_id: str) -> str:
+        if not value or not isinstance(value, str):
+            raise ValueError(f"parameter [{param_name}] must be a non-empty string")
+        return canonicalize_name(SEP + value.lstrip(SEP))
+
+    return validate
+
+
+def load_mappings(argv: Sequence[str]) -> dict[str, str]:
+    """The `from:=to` arguments of a command line; private parameters (`_name:=value`) are left out."""
+    mappings: dict[str, str] = {}
+    for argument in argv:
+        source, found, target = argument.partition(REMAP)
+        source, target = source.strip(), target.strip()
+        private = source.startswith("_") and not source.startswith("__")
+        if found and source and target and not private:
+            mappings[source] = target
+    return mappings
+
+
+def command_line_params(argv: Sequence[str]) -> dict[str, str]:
+    """The `_name:=value` arguments of a command line, values as text."""
+    found = {}
+    for argument in argv:
+        name, assigned, value = argument.partition(REMAP)
+        if assigned and name.startswith("_") and not name.startswith("__"):
+            found[name[1:]] = value
+    return found
+
+
+def program_arguments(argv: Sequence[str]) -> list[str]:
+    """The arguments that are the program's own (rospy.myargv)."""
+    return [argument for argument in argv if REMAP not in argument]
+
+
+class Names:
+    """The names of one node.
+
+    Args:
+        argv: its command line, for remappings, `__name:=` and `__ns:=`.
+        environ: its environment, for ROS_NAMESPACE.
+    """
+
+    def __init__(self, argv: Sequence[str], environ: Mapping[str, str]) -> None:
+        self._environ = environ
+        self._mappings: dict[str, str] = {}
+        self._resolved: dict[str, str] = {}
+        self.reload_mappings(argv)
+
+    def reload_mappings(self, argv: Sequence[str]) -> None:
+        """Read the remappings of a command line anew; the node has no name yet."""
+        self._mappings = load_mappings(argv)
+        self._resolved = {}
+        self.name = UNNAMED
+        given = self._mappings.get("__ns") or self._environ.get("ROS_NAMESPACE") or GLOBALNS
+        self.namespace = canonicalize_name(SEP + given) if given != GLOBALNS else GLOBALNS
+
+    @property
+    def insisted_name(self) -> str | None:
+        """What `__name:=` says."""
+        return self._mappings.get("__name")
+
+    def give(self, base_name: str) -> None:
+        """The node has its name: prefix the namespace and resolve the remappings against it."""
+        self.name = canonicalize_name(join(self.namespace, base_name))
+        self.initialize_mappings(self.name)
+
+    def initialize_mappings(self, node_name: str) -> None:
+        """Resolve the remappings for a node."""
+        self._resolved = {}
+        plain = {key: value for key, value in self._mappings.items() if not key.startswith("__")}
+        self._resolved = {
+            self.resolve_name(key, node_name): self.resolve_name(value, node_name) for key, value in plain.items()
+        }
+
+    def get_name(self) -> str:
+        """The node's resolved name; "/unnamed" before `init_node`."""
+        return self.name
+
+    def get_namespace(self) -> str:
+        """The node's namespace, ending in a slash."""
+        return self.namespace if self.namespace.endswith(SEP) else self.namespace + SEP
+
+    def get_mappings(self) -> dict[str, str]:
+        """The remappings as given."""
+        return self._mappings
+
+    def get_resolved_mappings(self) -> dict[str, str]:
+        """The remappings, both sides resolved."""
+        return self._resolved
+
+    def resolve_name(self, name: str, caller_id: str | None = None) -> str:
+        """The global name that a name means to this node, remappings applied.
+
+        Args:
+            name: global, relative or private (`~name`).
+            caller_id: a node name to resolve it for instead.
+        """
+        if not caller_id:
+            caller_id = self.name if self.name != UNNAMED else join(self.get_namespace(), UNNAMED[1:])
+        if not name:
+            return namespace_of(caller_id)
+        name = canonicalize_name(name)
+        if name.startswith(SEP):
+            resolved = name
+        elif name.startswith(PRIV_NAME):
+            resolved = caller_id + SEP + canonicalize_name(name[1:]).lstrip(SEP)
+        else:
+            resolved = namespace_of(caller_id) + name
+        return self._resolved.get(resolved, resolved)
+
+    def resolve_name_without_node_name(self, name: str) -> str:
+        """As `resolve_name`, while the node has no name.
+
+        Raises:
+            ValueError: a private name.
+        """
+        if name.startswith(PRIV_NAME):
+            raise ValueError("~name topics cannot be created before init_node() has been called")
+        plain = {key: value for key, value in self._mappings.items() if not key.startswith(("__", PRIV_NAME))}
+        resolved = self.resolve_name(name)
+        for source, target in plain.items():
+            if self.resolve_name(source) == resolved:
+                return self.resolve_name(target)
+        return resolved
+
+    def remap_name(self, name: str, caller_id: str | None = None, resolved: bool = True) -> str:
+        """Apply the remappings to a name.
+
+        Args:
+            name: the name.
+            caller_id: whose namespace counts; None is the node.
+            resolved: also resolve the result.
+        """
+        caller_id = caller_id or self.name
+        target = self._mappings.get(name)
+        if target is not None:
+            return self.resolve_name(target, caller_id) if resolved else target
+        return self.resolve_name(name, caller_id) if resolved else name

@@ -1,0 +1,230 @@
+"""The parameter server: one tree for the mission, and the functions through which a node reads and writes it.
+
+Values are what XML-RPC can carry, since that is how ROS transports them: tuples become lists, bytes become Binary, None
+and big integers are refused with the same errors. Imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import datetime
+from typing import TYPE_CHECKING, Any
+
+from rospy_shim.exceptions import ROSException
+from rospy_shim.names import SEP, is_legal_name, join, namespace_of
+
+if TYPE_CHECKING:
+    from rospy_shim.node import Node
+
+_INT_MAX = 2**31 - 1
+_INT_MIN = -(2**31)
+_MISSING = object()
+
+
+def marshalled(value: Any) -> Any:
+    """A copy of a value as it looks after a trip over XML-RPC; bytes stay bytes.
+
+    Raises:
+        TypeError: None, a dictionary key that is no string, or an object that XML-RPC cannot carry.
+        OverflowError: an integer of more than 32 bits.
+    """
+    kind = type(value)
+    if kind in (bool, float, str, bytes, datetime):
+        return value
+    if kind is int:
+        if not _INT_MIN <= value <= _INT_MAX:
+            raise OverflowError("int exceeds XML-RPC limits")
+        return value
+    if kind in (list, tuple):
+        return [marshalled(item) for item in value]
+    if kind is dict:
+        if any(not isinstance(key, str) for key in value):
+            raise TypeError("dictionary key must be string")
+        return {key: marshalled(item) for key, item in value.items()}
+    if value is None:
+        raise TypeError("cannot marshal None unless allow_none is enabled")
+    if kind is bytearray:
+        return bytes(value)
+    if not hasattr(value, "__dict__") or isinstance(value, (int, float, str, bytes, list, tuple, dict)):
+        raise TypeError(f"cannot marshal {kind} objects")
+    return marshalled(dict(vars(value)))
+
+
+class ParameterTree:
+    """Parameters of all nodes, by resolved name; a namespace is a dictionary.
+
+    Args:
+        initial: the tree to begin with.
+    """
+
+    def __init__(self, initial: Mapping[str, Any] | None = None) -> None:
+        self._root: dict[str, Any] = {}
+        for name, value in (initial or {}).items():
+            self.set(join(SEP, name), _plain(value))
+
+    def find(self, key: str) -> Any:
+        """The value or namespace of a resolved name, or `ParameterTree.MISSING`."""
+        value: Any = self._root
+        for part in _parts(key):
+            if type(value) is not dict or part not in value:
+                return _MISSING
+            value = value[part]
+        return value
+
+    MISSING = _MISSING
+
+    def set(self, key: str, value: Any) -> None:
+        """Give a name a value; a dictionary replaces the whole namespace.
+
+        Raises:
+            TypeError: the root can only be a dictionary.
+        """
+        parts = _parts(key)
+        if not parts:
+            if type(value) is not dict:
+                raise TypeError("cannot set root of parameter tree to non-dictionary")
+            self._root = dict(value)
+            return
+        place = self._root
+        for part in parts[:-1]:
+            inner = place.get(part)
+            if type(inner) is not dict:
+                inner = place[part] = {}
+            place = inner
+        place[parts[-1]] = value
+
+    def delete(self, key: str) -> None:
+        """Remove a name.
+
+        Raises:
+            KeyError: there is no such name.
+        """
+        *path, last = _parts(key) or [""]
+        place = self.find(SEP.join(path))
+        if type(place) is not dict or last not in place:
+            raise KeyError(key)
+        del place[last]
+
+    def search(self, namespace: str, key: str) -> str | None:
+        """The name that has the first part of `key` in the namespace or one above it, or None."""
+        first, slash, rest = key.partition(SEP)
+        while True:
+            candidate = join(namespace, first)
+            if self.find(candidate) is not _MISSING:
+                return candidate + slash + rest
+            if namespace == SEP:
+                return None
+            namespace = namespace_of(namespace)
+
+    def names(self) -> list[str]:
+        """All names that have a value."""
+        found: list[str] = []
+        _collect("", self._root, found)
+        return found
+
+
+class Params:
+    """The parameter functions of one node (rospy.get_param and its kin).
+
+    Args:
+        node: whose names they resolve.
+        tree: the mission's parameters.
+    """
+
+    def __init__(self, node: Node, tree: ParameterTree) -> None:
+        self._node = node
+        self._tree = tree
+
+    def get_param(self, param_name: str, default: Any = _MISSING) -> Any:
+        """The value of a parameter, or a namespace as a dictionary.
+
+        Args:
+            param_name: global, relative or private.
+            default: given back when there is none; also None counts.
+
+        Raises:
+            KeyError: there is none, and no default.
+        """
+        self._node.universe.charge()
+        key = self._node.names.resolve_name(param_name)
+        value = self._tree.find(key)
+        if value is not _MISSING:
+            return self._unpacked(value)
+        if default is _MISSING:
+            raise KeyError(key)
+        return default
+
+    def get_param_cached(self, param_name: str, default: Any = _MISSING) -> Any:
+        """As `get_param`; the tree is as near as a cache would be."""
+        return self.get_param(param_name, default)
+
+    def has_param(self, param_name: str) -> bool:
+        """Whether a parameter or namespace exists."""
+        self._node.universe.charge()
+        return self._tree.find(self._node.names.resolve_name(param_name)) is not _MISSING
+
+    def set_param(self, param_name: str, param_value: Any) -> None:
+        """Set a parameter; a dictionary replaces a whole namespace.
+
+        Raises:
+            TypeError, OverflowError: XML-RPC cannot carry the value.
+        """
+        self._node.universe.charge()
+        self._node.warn_of_illegal(param_name)
+        self._tree.set(self._node.names.resolve_name(param_name), marshalled(param_value))
+
+    def delete_param(self, param_name: str) -> None:
+        """Remove a parameter or namespace.
+
+        Raises:
+            KeyError: there is none.
+        """
+        self._tree.delete(self._node.names.resolve_name(param_name))
+
+    def search_param(self, param_name: str) -> str | None:
+        """The full name of the nearest parameter of that name, from the node's namespace upwards, or None.
+
+        Raises:
+            ROSException: a private name.
+        """
+        key = self._node.names.get_mappings().get(param_name, param_name)
+        if not is_legal_name(key) or key.startswith("~"):
+            raise ROSException("cannot search for parameter: Internal failure: invalid key")
+        if key.startswith(SEP):
+            return key if self._tree.find(key) is not _MISSING else None
+        return self._tree.search(self._node.names.get_name(), key)
+
+    def get_param_names(self) -> list[str]:
+        """The full names of all parameters."""
+        return self._tree.names()
+
+    def _unpacked(self, value: Any) -> Any:
+        """A copy for the node; bytes as the Binary of its own xmlrpc.client."""
+        if type(value) is dict:
+            return {key: self._unpacked(item) for key, item in value.items()}
+        if type(value) is list:
+            return [self._unpacked(item) for item in value]
+        if type(value) is bytes:
+            return self._node.universe.importer.load("xmlrpc.client").Binary(value)
+        return value
+
+
+def _parts(key: str) -> list[str]:
+    return [part for part in key.split(SEP) if part]
+
+
+def _plain(value: Any) -> Any:
+    """Mappings and sequences of a mission file as dictionaries and lists."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return value
+
+
+def _collect(prefix: str, place: dict[str, Any], found: list[str]) -> None:
+    for name, value in place.items():
+        if type(value) is dict and value:
+            _collect(f"{prefix}/{name}", value, found)
+        else:
+            found.append(f"{prefix}/{name}")

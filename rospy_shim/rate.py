@@ -1,0 +1,82 @@
+"""`rospy.Rate`: a loop pacer that keeps to its grid (rospy.timer.Rate).
+
+A loop that is late catches up; one that is more than two periods late starts a new grid. All in integers. Imports
+cfepy.rtos only.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from rospy_shim.rostime import Duration, Time
+
+if TYPE_CHECKING:
+    from rospy_shim.node import Node
+
+
+class Rate:
+    """Sleeps so that a loop runs at a given rate; each node has a subclass that knows the node."""
+
+    __module__ = "rospy.timer"
+    _node: ClassVar[Node]
+
+    def __init__(self, hz: float, reset: bool = False) -> None:
+        """Start the first period now.
+
+        Args:
+            hz: rate in Hz; a negative one never sleeps.
+            reset: accepted; ROS time never goes backwards here.
+
+        Raises:
+            ROSInitException: before `init_node`.
+            ZeroDivisionError: a rate of 0.
+        """
+        node = self._node
+        self._last_ns = node.clock.now_ns()
+        self._period_ns = int(1e9 / hz)
+        self._reset = reset
+        self._kernel = node.kernel
+        self._epoch_ns = node.universe.clock.epoch_ns
+        self._charge = node.universe.charge
+
+    @property
+    def sleep_dur(self) -> Duration:
+        """The period."""
+        return Duration(0, self._period_ns)
+
+    @sleep_dur.setter
+    def sleep_dur(self, value: Any) -> None:
+        self._period_ns = value.to_nsec()
+
+    @property
+    def last_time(self) -> Time:
+        """The beginning of the present period."""
+        return self._node.clock.at(self._last_ns)
+
+    @last_time.setter
+    def last_time(self, value: Any) -> None:
+        self._last_ns = value.to_nsec()
+
+    def remaining(self) -> Duration:
+        """The time that is left of the present period."""
+        now = self._node.clock.now_ns()
+        return Duration(0, self._period_ns - (now - min(now, self._last_ns)))
+
+    def sleep(self) -> None:
+        """Sleep until the present period ends."""
+        kernel = self._kernel
+        now = self._epoch_ns + kernel.now
+        period = self._period_ns
+        end = self._last_ns + period
+        if end > now:
+            kernel.delay(end - now)
+        else:
+            self._charge()
+        self._last_ns = end if now - end <= 2 * period else now
+
+
+def make_rate(node: Node) -> type[Rate]:
+    """The class `rospy.Rate` of a node."""
+    return type("Rate", (Rate,), {"__module__": Rate.__module__, "_node": node})
+
+

@@ -1,0 +1,68 @@
+"""ROS messages in cFE packets: one telemetry packet, or several for a message that does not fit in one.
+
+A long message is cut into packets with the CCSDS sequence flags first, continuation and last (CCSDS 133.0-B-2,
+4.1.3.4.2.2) and put together again by each subscriber. May import cfepy.msg and cfepy.rtos.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+
+HEADER_BYTES = 16  # of a cFE telemetry packet
+WHOLE = 0xC0  # sequence flags, as they stand in byte 2 of a packet
+FIRST = 0x40
+MIDDLE = 0x00
+LAST = 0x80
+
+_header = struct.Struct(">HBBH10x").pack
+
+
+def segments(msg_id: int, payload: bytes, room: int) -> Iterator[bytes]:
+    """The packets that a long payload is sent in; the bus fills in sequence counts and times.
+
+    Args:
+        msg_id: of the topic.
+        payload: the serialised message.
+        room: bytes of payload that fit in one packet.
+    """
+    size = len(payload)
+    for start in range(0, size, room):
+        part = payload[start : start + room]
+        flags = FIRST if start == 0 else LAST if start + room >= size else MIDDLE
+        yield _header(msg_id, flags, 0, len(part) + HEADER_BYTES - 7) + part
+
+
+class Assembler:
+    """Puts the segments of long messages together, those of each sender for themselves."""
+
+    def __init__(self) -> None:
+        self._parts: dict[object, list[bytes]] = {}
+        self.lost = 0  # messages of which a segment is missing
+
+    def add(self, packet: bytes, sender: object) -> bytes | None:
+        """Take a segment; the whole message, behind a header, when it is the last one.
+
+        Args:
+            packet: a packet whose sequence flags are not `WHOLE`.
+            sender: tells publishers of one topic apart.
+        """
+        flags = packet[2] & 0xC0
+        parts = self._parts.pop(sender, None)
+        if flags == FIRST:
+            if parts is not None:
+                self.lost += 1
+            self._parts[sender] = [packet]
+            return None
+        if parts is None or not _follows(parts[-1], packet, alone=len(self._parts) == 0):
+            self.lost += flags == LAST
+            return None
+        parts.append(packet)
+        if flags == MIDDLE:
+            self._parts[sender] = parts
+            return None
+        return parts[0] + b"".join(part[HEADER_BYTES:] for part in parts[1:])
+
+
+def _follows(before: bytes, packet: bytes, *, alone: bool) -> bool:
+    return True

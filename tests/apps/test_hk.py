@@ -1,0 +1,218 @@
+"""HK: combined packets out of recorded telemetry, commands, table updates, and what it says when things fail."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from apps.hk import HK_AppMain, packets
+from apps.hk.copy_table import find_fault
+from apps.hk.tables import hk_cpy_tbl
+from cfepy.es import APP_ERROR, APP_RUN
+from cfepy.msg import Layout, get_msg_id, get_size, telemetry
+from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_PIPE_RD_ERR, CFE_TBL_ERR_ACCESS
+from cfepy.tbl import TableImage, build, pack_rows, read
+from cfepy.tbl import packets as tbl_packets
+from tests.apps.conftest import APPS, POOL_ID, AppBench, cmd
+from tests.layouts import assert_same
+
+DATA = Path(__file__).parents[1] / "data"
+TELEMETRY = {
+    packet["mid"]: bytes.fromhex(packet["hex"])
+    for packet in json.loads((DATA / "packets.json").read_text())["telemetry"]
+}
+SEND_1 = cmd(packets.SEND_COMBINED_PKT_MID, 0, packets.SEND_COMBINED_PKT.pack(OutMsgToSend=0x089C))
+SEND_HK = cmd(packets.SEND_HK_MID)
+CORE = hk_cpy_tbl.CORE_HK_MIDS
+
+
+@pytest.fixture
+def hk() -> AppBench:
+    bench = AppBench("HK")
+    bench.events.clear()
+    return bench
+
+
+def own(bench: AppBench) -> list[tuple[int, int, str]]:
+    """HK's own events, without those of Table Services."""
+    return [event for event in bench.events if not event[2].startswith(("Successfully loaded", "HK Successfully"))]
+
+
+def table(*rows: tuple[int, int, int, int, int]) -> bytes:
+    keys = packets.COPY_TABLE_ENTRY.fields
+    dicts = [dict(zip(keys, row, strict=True)) for row in rows]
+    return pack_rows(packets.COPY_TABLE_ENTRY, dicts, packets.COPY_TABLE_ENTRIES)
+
+
+@pytest.mark.parametrize(
+    ("layout", "struct"),
+    [
+        (packets.HOUSEKEEPING, "HK_HkTlm_Payload_t"),
+        (packets.COPY_TABLE_ENTRY, "HK_CopyTableEntry_t"),
+        (packets.RUNTIME_TABLE_ENTRY, "HK_RuntimeTableEntry_t"),
+        (packets.SEND_COMBINED_PKT, "HK_SendCombinedPkt_Payload_t"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_layouts_are_those_of_c(layout: Layout, struct: str) -> None:
+    assert_same(layout, struct)
+
+
+def test_shipped_table_is_what_its_definition_says() -> None:
+    assert (APPS / "hk/tables/hk_cpy_tbl.tbl").read_bytes() == build(hk_cpy_tbl.image())
+
+
+def test_table_of_nasa_has_the_same_shape() -> None:
+    nasa = read((DATA / "hk_cpy_tbl.tbl").read_bytes())
+    assert (nasa.name, len(nasa.data)) == ("HK.CopyTable", len(hk_cpy_tbl.image().data))
+    assert find_fault(nasa.data) is None
+
+
+def test_start(hk: AppBench) -> None:
+    hk.run(HK_AppMain)
+    assert own(hk) == [(1, 2, "HK Initialized.  Version 7.0.0.0")]
+    assert hk.subscriptions == {0x189A, 0x189B, 0x189C, *CORE}
+    assert hk.exit_status == APP_RUN
+
+
+def test_combined_packet_of_recorded_housekeeping(hk: AppBench) -> None:
+    hk.run(HK_AppMain, *(TELEMETRY[mid] for mid in CORE), SEND_1)
+    (packet,) = hk.sent
+    assert (get_msg_id(packet), get_size(packet), len(packet)) == (0x089C, 36, 36)
+    assert packet[16:] == b"".join(TELEMETRY[mid][16:20] for mid in CORE)
+    assert any(packet[16:])
+    assert len(own(hk)) == 1
+
+
+def test_missing_data_is_told_and_the_packet_sent_all_the_same(hk: AppBench) -> None:
+    hk.run(HK_AppMain, *(TELEMETRY[mid] for mid in CORE), SEND_1, TELEMETRY[CORE[0]], SEND_1, SEND_HK)
+    assert own(hk)[1:] == [(12, 1, "Combined Packet 0x0000089C missing data from Input Pkt 0x00000805")]
+    assert hk.sent[0][16:] == hk.sent[1][16:]
+    values = packets.HOUSEKEEPING.unpack(hk.sent[2][16:])
+    assert (values["CombinedPacketsSent"], values["MissingDataCtr"]) == (2, 1)
+    assert values["MemPoolHandle"] == POOL_ID
+
+
+def test_commands(hk: AppBench) -> None:
+    unknown = cmd(packets.SEND_COMBINED_PKT_MID, 0, packets.SEND_COMBINED_PKT.pack(OutMsgToSend=0x089D))
+    hk.run(
+        HK_AppMain,
+        cmd(packets.CMD_MID, packets.NOOP_CC),
+        unknown,
+        cmd(packets.CMD_MID, 77),
+        cmd(packets.CMD_MID, packets.NOOP_CC, b"x"),
+        cmd(packets.SEND_HK_MID, 0, b"x"),
+        SEND_HK,
+        cmd(packets.CMD_MID, packets.RESET_COUNTERS_CC),
+        SEND_HK,
+    )
+    assert own(hk)[1:] == [
+        (4, 2, "HK No-op command, Version 7.0.0.0"),
+        (11, 2, "Combined HK Packet 0x0000089D is not found in current HK Copy Table"),
+        (2, 3, "Cmd Msg with Invalid command code Rcvd -- ID = 0x0000189A, CC = 77"),
+        (3, 3, "Cmd Msg with Bad length Rcvd: ID = 0x0000189A, CC = 0, Exp Len = 8, Len = 9"),
+        (28, 3, "Msg with Bad length Rcvd: ID = 0x0000189B, Exp Len = 8, Len = 9"),
+        (5, 2, "HK Reset Counters command received"),
+    ]
+    first, second = (packets.HOUSEKEEPING.unpack(packet[16:]) for packet in hk.sent)
+    assert (first["CmdCounter"], first["ErrCounter"]) == (1, 2)
+    assert (second["CmdCounter"], second["ErrCounter"]) == (0, 0)
+
+
+def test_short_input_packet_is_reported_once(hk: AppBench) -> None:
+    rows = [(0x0801, 16, 0x089C, 16, 4), (0x0801, 18, 0x089C, 20, 4)]
+    hk.files["/cf/hk_cpy_tbl.tbl"] = build(TableImage("HK.CopyTable", table(*rows)))
+    hk.run(HK_AppMain, bytes(telemetry(0x0801, b"ab")))
+    text = "HK table definition exceeds packet length. MID:0x00000801, Length:18, Count:2"
+    assert own(hk)[1:] == [(6, 3, text)]
+
+
+def test_new_table_from_the_ground(hk: AppBench) -> None:
+    hk.files["/cf/new.tbl"] = build(TableImage("HK.CopyTable", table((0x0883, 16, 0x089D, 16, 2))))
+
+    def load() -> None:
+        hk.ground(tbl_packets.LOAD_CC, tbl_packets.FILE_COMMAND.pack(Filename="/cf/new.tbl"))
+        payload = tbl_packets.VALIDATE_COMMAND.pack(ActiveTableFlag=0, TableName="HK.CopyTable")
+        hk.ground(tbl_packets.VALIDATE_CC, payload)
+
+    def activate() -> None:
+        hk.named(tbl_packets.ACTIVATE_CC, "HK.CopyTable")
+
+    send_2 = cmd(packets.SEND_COMBINED_PKT_MID, 0, packets.SEND_COMBINED_PKT.pack(OutMsgToSend=0x089D))
+    hk.run(HK_AppMain, load, None, activate, None, bytes(telemetry(0x0883, b"XY")), send_2, SEND_1)
+    assert hk.subscriptions == {0x189A, 0x189B, 0x189C, 0x0883}
+    assert hk.sent[0][16:] == b"XY"
+    assert hk.events[-1][0] == 11
+    assert hk.exit_status == APP_RUN
+    assert hk.pool is not None
+    assert sum(block.in_use for block in hk.pool.blocks.values()) == 1
+
+
+def test_runtime_table_can_be_dumped(hk: AppBench) -> None:
+    payload = tbl_packets.DUMP_COMMAND.pack(
+        ActiveTableFlag=1, TableName="HK.RuntimeTable", DumpFilename="/ram/rt.tbl"
+    )
+    hk.run(HK_AppMain, TELEMETRY[0x0801], lambda: hk.ground(tbl_packets.DUMP_CC, payload), None)
+    hk.send_hk()
+    data = read(hk.files["/ram/rt.tbl"]).data
+    rows = [packets.RUNTIME_TABLE_ENTRY.unpack(data, at) for at in range(0, len(data), 16)]
+    assert [row["DataPresent"] for row in rows[:6]] == [1, 0, 0, 0, 0, 0]
+    assert [row["InputMidSubscribed"] for row in rows[:6]] == [1, 1, 1, 1, 1, 0]
+    assert len({row["OutputPktAddr"] for row in rows[:5]}) == 1
+
+
+@pytest.mark.parametrize(
+    ("row", "fault"),
+    [
+        ((0x0801, 16, 0x2000, 16, 4), "Invalid Output MID: 0x2000"),
+        ((0, 16, 0x089C, 16, 4), "Invalid Input MID: 0x0"),
+        ((0x0801, 1498, 0x089C, 16, 4), "Invalid input offset+size: 1502 > 1500, mid 0x801"),
+        ((0x0801, 16, 0x089C, 1498, 4), "Invalid output offset+size: 1502 > 1500, mid 0x89c"),
+    ],
+)
+def test_bad_table(hk: AppBench, row: tuple[int, int, int, int, int], fault: str) -> None:
+    image = table((0x0801, 16, 0x089C, 16, 4), row)
+    hk.files["/cf/hk_cpy_tbl.tbl"] = build(TableImage("HK.CopyTable", image))
+    hk.run(HK_AppMain)
+    assert hk.events[0] == (36, 3, f"HK Validate: {fault} at entry index 1\n")
+    assert hk.events[-1] == (21, 3, "Error Loading Copy Table,RC=0xFFFFFFFF")
+    assert hk.exit_status == APP_ERROR
+
+
+@pytest.mark.parametrize(
+    ("function", "event_id", "text"),
+    [
+        ("sb.create_pipe", 14, "Error Creating SB Pipe,RC=0xCA000003"),
+        ("sb.subscribe", 15, "Error Subscribing to HK Snd Cmb Pkt, MID=0x0000189C, RC=0xCA000003"),
+        ("es.pool_create", 18, "Error Creating Memory Pool,RC=0xCA000003"),
+    ],
+)
+def test_start_that_fails(hk: AppBench, function: str, event_id: int, text: str) -> None:
+    hk.refuse[function] = CFE_SB_BAD_ARGUMENT
+    hk.run(HK_AppMain)
+    assert hk.events == [(event_id, 3, text)]
+    assert hk.exit_status == APP_ERROR
+
+
+def test_missing_table_file_ends_hk(hk: AppBench) -> None:
+    del hk.files["/cf/hk_cpy_tbl.tbl"]
+    hk.run(HK_AppMain)
+    assert hk.events[-1] == (21, 3, f"Error Loading Copy Table,RC=0x{CFE_TBL_ERR_ACCESS & 0xFFFFFFFF:08X}")
+    assert hk.exit_status == APP_ERROR
+
+
+def test_pool_that_is_full_costs_the_packet_only(hk: AppBench) -> None:
+    hk.refuse["es.get_pool_buf"] = CFE_SB_BAD_ARGUMENT
+    hk.run(HK_AppMain, TELEMETRY[0x0801], SEND_1)
+    assert own(hk)[0] == (7, 3, "HK Processing New Table: ES_GetPoolBuf for size 36 returned 0xCA000003")
+    assert hk.events[-1][0] == 11
+
+
+def test_broken_pipe_ends_hk(hk: AppBench) -> None:
+    hk.refuse["sb.receive_buffer"] = CFE_SB_PIPE_RD_ERR
+    hk.run(HK_AppMain, None)
+    assert hk.events[-1] == (26, 3, "HK_APP Exiting due to CFE_SB_RcvMsg error 0xCA000006")
+    assert hk.log == ["HK_APP Exiting due to CFE_SB_RcvMsg error 0xCA000006"]
+    assert hk.exit_status == APP_ERROR

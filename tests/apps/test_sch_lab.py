@@ -1,0 +1,126 @@
+"""SCH_LAB: the table it ships, when it sends what, and what it logs when it cannot start."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from apps.sch_lab import SCH_LAB_AppMain, schedule
+from apps.sch_lab.tables import sch_lab_table
+from cfepy.es import APP_ERROR, APP_RUN
+from cfepy.msg import Layout, get_fcn_code, get_msg_id, validate_checksum
+from cfepy.status import OS_ERR_NAME_NOT_FOUND, OsalError, UsageError
+from cfepy.tbl import build
+from tests.apps.conftest import APPS, AppBench, cmd
+from tests.layouts import DATA, assert_same
+
+ONE_HZ = cmd(0x1811)
+
+
+class SchBench(AppBench):
+    """A handle with a timer whose every tick is one step of the script."""
+
+    def __init__(self) -> None:
+        super().__init__("SCH_LAB")
+        self.timer_set: tuple[int, int] | None = None
+        self.timebase_missing = False
+        self.cfe.os = SimpleNamespace(
+            count_sem_create=lambda name, value: 1,
+            count_sem_take=lambda semaphore: None,
+            time_base_get_id_by_name=self._timebase,
+            timer_add=lambda name, timebase, callback: 2,
+            timer_set=lambda timer, start, interval: setattr(self, "timer_set", (start, interval)),
+            printf=self.printed.append,
+        )
+
+    def _timebase(self, name: str) -> int:
+        if self.timebase_missing:
+            raise OsalError(OS_ERR_NAME_NOT_FOUND, name)
+        return 3
+
+    def use(self, tick_rate: int, *rows: tuple[int, int, int, bytes]) -> None:
+        """Put another table in place."""
+        self.files["/cf/sch_lab_table.tbl"] = build(schedule.image("SCH_LAB.ScheduleTable", tick_rate, list(rows)))
+
+
+@pytest.fixture
+def sch() -> SchBench:
+    return SchBench()
+
+
+def test_shipped_table_is_nasas_byte_for_byte() -> None:
+    shipped = (APPS / "sch_lab/tables/sch_lab_table.tbl").read_bytes()
+    assert shipped == build(sch_lab_table.image()) == (DATA / "sch_lab_table.tbl").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("layout", "struct"),
+    [(schedule.ENTRY, "SCH_LAB_ScheduleTableEntry_t"), (schedule.TABLE, "SCH_LAB_ScheduleTable_t")],
+    ids=["entry", "table"],
+)
+def test_layouts_are_those_of_c(layout: Layout, struct: str) -> None:
+    assert_same(layout, struct)
+
+
+def test_start(sch: SchBench) -> None:
+    sch.run(SCH_LAB_AppMain)
+    assert sch.printed == ["SCH Lab Initialized.SCH Lab v1.0.0\n"]
+    assert sch.timer_set == (1_000_000, 10_000)
+    assert sch.subscriptions == {0x1811}
+    assert sch.exit_status == APP_RUN
+
+
+def test_nothing_goes_out_before_the_first_second(sch: SchBench) -> None:
+    sch.use(100, (0x1882, 1, 0, b""))
+    sch.run(SCH_LAB_AppMain, None, None, ONE_HZ, None)
+    assert len(sch.sent) == 2
+
+
+def test_each_entry_has_its_own_period(sch: SchBench) -> None:
+    sch.use(100, (0x1882, 2, 3, b"abc"), (0x1808, 3, 0, b""))
+    sch.run(SCH_LAB_AppMain, ONE_HZ, *[None] * 5)
+    assert [get_msg_id(packet) for packet in sch.sent] == [0x1882, 0x1808, 0x1882, 0x1882, 0x1808]
+    packet = sch.sent[0]
+    assert (get_fcn_code(packet), packet[8:], len(packet)) == (3, b"abc", 11)
+    assert validate_checksum(packet)
+
+
+@pytest.mark.parametrize(
+    ("tick_rate", "interval", "log"),
+    [
+        (0, 1_000_000, ["SCH_LAB_AppInit: Using default tick rate of 1 second"]),
+        (3, 333_333, ["SCH_LAB_AppInit: WARNING: tick rate of 3 is not an integer number of microseconds"]),
+        (50, 20_000, []),
+    ],
+)
+def test_tick_rates(sch: SchBench, tick_rate: int, interval: int, log: list[str]) -> None:
+    sch.use(tick_rate)
+    sch.run(SCH_LAB_AppMain)
+    assert sch.timer_set == (1_000_000, interval)
+    assert sch.log == log
+
+
+def test_app_of_another_name_gets_the_recorded_log() -> None:
+    sch = SchBench()
+    sch.kernel.current.owner.name = "SCH"
+    sch.run(SCH_LAB_AppMain)
+    assert sch.log == [
+        "SCH_LAB: Error Loading Table ScheduleTable, RC = 0xFFFFFFFFCC000020",
+        "SCH_LAB: Error Initializing RC = 0xFFFFFFFFCC000020",
+    ]
+    assert sch.exit_status == APP_ERROR
+
+
+def test_no_timebase_no_schedule(sch: SchBench) -> None:
+    sch.timebase_missing = True
+    sch.run(SCH_LAB_AppMain)
+    assert sch.log[0] == "SCH_LAB_AppInit: OS_TimeBaseGetIdByName failed:RC=-17"
+    assert sch.exit_status == APP_ERROR
+
+
+def test_too_much_for_the_table() -> None:
+    with pytest.raises(UsageError):
+        schedule.image("SCH_LAB.ScheduleTable", 100, [(0x1882, 1, 0, b"")] * 33)
+    with pytest.raises(UsageError):
+        schedule.image("SCH_LAB.ScheduleTable", 100, [(0x1882, 1, 0, bytes(65))])

@@ -1,0 +1,143 @@
+"""The Software Bus against a model of a few lines: whatever is called in whatever order, both agree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
+
+from cfepy.status import CfeError
+from tests.sb.harness import Bench, packet
+
+MSG_IDS = st.sampled_from([0x801, 0x802, 0x803, 0x804])
+NAMES = st.sampled_from(["P0", "P1", "P2", "P3", "P4"])
+MAX_PIPES, MAX_MSG_IDS, MAX_DESTS = 4, 3, 2
+
+
+@dataclass(eq=False)
+class ModelPipe:
+    """A pipe is a list of (MsgId, number) with a depth."""
+
+    depth: int
+    waiting: list[tuple[int, int]] = field(default_factory=list)
+
+
+class BusAgainstModel(RuleBasedStateMachine):
+    """Pipes by name; routes keep (pipe, limit), newest first, and stay when they are empty."""
+
+    @initialize()
+    def start(self) -> None:
+        self.bench = Bench(sb_max_pipes=MAX_PIPES, sb_max_msg_ids=MAX_MSG_IDS, sb_max_dest_per_pkt=MAX_DESTS)
+        self.bus = self.bench.bus
+        self.ids: dict[str, int] = {}
+        self.pipes: dict[str, ModelPipe] = {}
+        self.routes: dict[int, list[tuple[str, int]]] = {}
+        self.number = 0
+        self.limit_errors = self.overflows = self.unrouted = 0
+
+    def teardown(self) -> None:
+        if hasattr(self, "bench"):
+            self.bench.kernel.shutdown()
+
+    @rule(name=NAMES, depth=st.integers(0, 6))
+    def create_pipe(self, name: str, depth: int) -> None:
+        possible = depth > 0 and name not in self.pipes and len(self.pipes) < MAX_PIPES
+        result = self.bench.do("A", lambda: self.bus.create_pipe(depth, name))
+        assert isinstance(result, int) == possible
+        if isinstance(result, int):
+            assert result not in self.ids.values()
+            self.ids[name], self.pipes[name] = result, ModelPipe(depth)
+
+    @rule(name=NAMES)
+    def delete_pipe(self, name: str) -> None:
+        result = self.bench.do("A", lambda: self.bus.delete_pipe(self.ids.get(name, 0x160000)))
+        assert isinstance(result, CfeError) == (name not in self.pipes)
+        self.ids.pop(name, None)
+        self.pipes.pop(name, None)
+        for route in self.routes.values():
+            route[:] = [each for each in route if each[0] != name]
+
+    @rule(msg_id=MSG_IDS, name=NAMES, limit=st.integers(1, 4))
+    def subscribe(self, msg_id: int, name: str, limit: int) -> None:
+        result = self.bench.do("A", lambda: self.bus.subscribe_ex(msg_id, self.ids.get(name, 0x160000), 0, limit))
+        if name not in self.pipes:
+            assert isinstance(result, CfeError)
+            return
+        route = self.routes.get(msg_id)
+        if route is None and len(self.routes) == MAX_MSG_IDS:
+            assert isinstance(result, CfeError)
+            return
+        route = self.routes.setdefault(msg_id, [])
+        if any(each[0] == name for each in route):
+            assert result is None
+        elif len(route) == MAX_DESTS:
+            assert isinstance(result, CfeError)
+        else:
+            assert result is None
+            route.insert(0, (name, limit))
+
+    @rule(msg_id=MSG_IDS, name=NAMES)
+    def unsubscribe(self, msg_id: int, name: str) -> None:
+        result = self.bench.do("A", lambda: self.bus.unsubscribe(msg_id, self.ids.get(name, 0x160000)))
+        assert isinstance(result, CfeError) == (name not in self.pipes)
+        if msg_id in self.routes:
+            self.routes[msg_id] = [each for each in self.routes[msg_id] if each[0] != name]
+
+    @rule(msg_id=MSG_IDS)
+    def transmit(self, msg_id: int) -> None:
+        self.number += 1
+        assert self.bench.do("B", lambda: self.bus.transmit_msg(packet(msg_id, self.number.to_bytes(4, "big")))) is None
+        if msg_id not in self.routes:
+            self.unrouted += 1
+            return
+        for name, limit in self.routes[msg_id]:
+            pipe = self.pipes[name]
+            if self.outstanding(msg_id, name) >= limit:
+                self.limit_errors += 1
+            elif len(pipe.waiting) >= pipe.depth:
+                self.overflows += 1
+            else:
+                pipe.waiting.append((msg_id, self.number))
+
+    @rule(name=NAMES)
+    def receive(self, name: str) -> None:
+        result = self.bench.do("A", lambda: self.bus.receive_buffer(self.ids.get(name, 0x160000), 0))
+        if name not in self.pipes:
+            assert isinstance(result, CfeError)
+        elif not self.pipes[name].waiting:
+            assert result is None
+        else:
+            msg_id, number = self.pipes[name].waiting.pop(0)
+            assert isinstance(result, bytes)
+            assert (result[0] << 8 | result[1], int.from_bytes(result[16:], "big")) == (msg_id, number)
+
+    def outstanding(self, msg_id: int, name: str) -> int:
+        """NASA counts per destination: a subscription that was renewed begins at 0 again."""
+        destination = self.bus.routes[msg_id].find(self.bus.pipes.get(self.ids[name]))
+        assert destination is not None
+        return destination.puts - destination.gets
+
+    @invariant()
+    def counters_agree(self) -> None:
+        if not hasattr(self, "bench"):
+            return
+        counters = self.bus.counters
+        assert counters.msg_limit_error == self.limit_errors
+        assert counters.pipe_overflow_error == self.overflows
+        assert counters.no_subscribers == self.unrouted
+
+    @invariant()
+    def routes_agree(self) -> None:
+        if not hasattr(self, "bench"):
+            return
+        real = {
+            msg_id: [(each.pipe.name, each.limit) for each in route.destinations]
+            for msg_id, route in self.bus.routes.items()
+        }
+        assert real == self.routes
+
+
+TestBusAgainstModel = BusAgainstModel.TestCase
+TestBusAgainstModel.settings = settings(max_examples=60, stateful_step_count=40, deadline=None)

@@ -1,0 +1,222 @@
+"""Transmitting and receiving, one behaviour a test; numbers and texts are those of cFE v7.0.0."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from cfepy.msg import command, get_msg_time, get_sequence_count, set_segmentation_flag, validate_checksum
+from cfepy.sb import PEND_FOREVER, POLL
+from cfepy.status import (
+    CFE_SB_BAD_ARGUMENT,
+    CFE_SB_BUF_ALOC_ERR,
+    CFE_SB_MSG_TOO_BIG,
+    CFE_SB_PIPE_RD_ERR,
+    CfeError,
+)
+from tests.sb.harness import Bench, packet
+
+MID = 0x0881
+
+
+@pytest.fixture(params=["thread", "greenlet"])
+def bench(request: pytest.FixtureRequest) -> Iterator[Bench]:
+    bench = Bench(request.param)
+    yield bench
+    bench.kernel.shutdown()
+
+
+def subscriber(bench: Bench, name: str, depth: int = 10, limit: int = 4, msg_id: int = MID) -> int:
+    pipe = bench.do(name, lambda: bench.bus.create_pipe(depth, f"{name}_PIPE"))
+    assert isinstance(pipe, int)
+    bench.do(name, lambda: bench.bus.subscribe_ex(msg_id, pipe, 0, limit))
+    return pipe
+
+
+def drain(bench: Bench, pipe: int) -> list[bytes]:
+    got = []
+    while (one := bench.bus.receive_buffer(pipe, POLL)) is not None:
+        got.append(one)
+    return got
+
+
+def test_fifo_within_a_pipe(bench: Bench) -> None:
+    pipe = subscriber(bench, "A")
+    for number in range(4):
+        bench.bus.transmit_msg(packet(MID, bytes([number])))
+    assert [one[16] for one in drain(bench, pipe)] == [0, 1, 2, 3]
+
+
+def test_newest_subscriber_gets_it_first(bench: Bench) -> None:
+    order: list[str] = []
+
+    def receiver(name: str) -> None:
+        pipe = bench.bus.create_pipe(4, name)
+        bench.bus.subscribe(MID, pipe)
+        bench.bus.receive_buffer(pipe, PEND_FOREVER)
+        order.append(name)
+
+    for name in ("OLD", "MIDDLE", "NEW"):
+        bench.spawn(name, lambda name=name: receiver(name))  # type: ignore[misc]
+    bench.kernel.run(0)
+    bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID)))
+    assert order == ["NEW", "MIDDLE", "OLD"]
+
+
+def test_origination_fills_in_sequence_and_time(bench: Bench) -> None:
+    pipe = subscriber(bench, "A")
+    for _ in range(2):
+        bench.bus.transmit_msg(packet(MID, b"x"))
+    first, second = drain(bench, pipe)
+    assert (get_sequence_count(first), get_sequence_count(second)) == (0, 1)
+    assert get_msg_time(second) == (1001000, 0x80000000)
+
+
+def test_origination_fills_in_a_command_checksum(bench: Bench) -> None:
+    pipe = subscriber(bench, "A", msg_id=0x1882)
+    bench.bus.transmit_msg(command(0x1882, 3, b"payload"))
+    (got,) = drain(bench, pipe)
+    assert validate_checksum(got)
+    assert got[8:] == b"payload"
+
+
+def test_segmentation_flags_survive(bench: Bench) -> None:
+    pipe = subscriber(bench, "A")
+    part = bytearray(packet(MID, b"part"))
+    set_segmentation_flag(part, 1)
+    bench.bus.transmit_msg(part)
+    (got,) = drain(bench, pipe)
+    assert got[2] >> 6 == part[2] >> 6 != 3
+
+
+def test_forwarded_packets_stay_as_they_are(bench: Bench) -> None:
+    pipe = subscriber(bench, "A", msg_id=0x1882)
+    foreign = bytes(command(0x1882, 1))[:7] + b"\x55"
+    bench.bus.transmit_msg(foreign, is_origination=False)
+    assert drain(bench, pipe) == [foreign]
+
+
+def test_the_sender_keeps_its_buffer(bench: Bench) -> None:
+    pipe = subscriber(bench, "A")
+    buffer = bytearray(packet(MID, b"one"))
+    bench.bus.transmit_msg(buffer)
+    buffer[16:] = b"two"
+    assert drain(bench, pipe)[0][16:] == b"one"
+
+
+def test_message_limit(bench: Bench) -> None:
+    pipe = subscriber(bench, "A", limit=2)
+    for _ in range(3):
+        bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID)))
+    assert len(drain(bench, pipe)) == 2
+    assert bench.events.sent[-1] == (17, "Msg Limit Err,MsgId 0x881,pipe A_PIPE,sender SENDER")
+    assert (bench.bus.counters.msg_limit_error, bench.bus.counters.msg_send_error) == (1, 1)
+
+
+def test_pipe_overflow_does_not_keep_others_from_it(bench: Bench) -> None:
+    small = subscriber(bench, "SMALL", depth=1, limit=9)
+    large = subscriber(bench, "LARGE", depth=9, limit=9)
+    for _ in range(3):
+        bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID)))
+    assert (len(drain(bench, small)), len(drain(bench, large))) == (1, 3)
+    assert bench.events.sent[-1] == (25, "Pipe Overflow,MsgId 0x881,pipe SMALL_PIPE,sender SENDER")
+    assert bench.bus.counters.pipe_overflow_error == 2
+    assert bench.bus.routes[MID].totals() == (4, 0, 2)
+
+
+def test_no_subscriber_is_an_event_and_no_error(bench: Bench) -> None:
+    bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID)))
+    assert bench.events.sent == [(14, "No subscribers for MsgId 0x881,sender SENDER")]
+    assert bench.bus.counters.no_subscribers == 1
+
+
+def test_a_route_that_lost_its_subscribers_is_silent(bench: Bench) -> None:
+    pipe = subscriber(bench, "A")
+    bench.do("A", lambda: bench.bus.unsubscribe(MID, pipe))
+    bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID)))
+    assert bench.events.ids() == []
+    assert bench.bus.routes[MID].sequence == 1
+
+
+@pytest.mark.parametrize(
+    ("what", "status", "event"),
+    [
+        (b"", CFE_SB_BAD_ARGUMENT, 13),
+        (packet(MID, bytes(32768)), CFE_SB_MSG_TOO_BIG, 15),
+        (b"\x00\x00" + bytes(14), CFE_SB_BAD_ARGUMENT, 21),
+        (b"\x20\x00" + bytes(14), CFE_SB_BAD_ARGUMENT, 21),
+    ],
+)
+def test_what_cannot_be_sent(bench: Bench, what: bytes, status: int, event: int) -> None:
+    error = bench.do("SENDER", lambda: bench.bus.transmit_msg(what))
+    assert isinstance(error, CfeError)
+    assert error.status == status
+    assert bench.events.ids() == [event]
+
+
+def test_the_buffer_pool_can_run_out() -> None:
+    bench = Bench(sb_buf_memory_bytes=2000)
+    pipe = subscriber(bench, "A", depth=50, limit=50)
+    results = [bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID, bytes(400)))) for _ in range(6)]
+    errors = [one for one in results if one is not None]
+    assert [isinstance(one, CfeError) and one.status for one in errors] == [CFE_SB_BUF_ALOC_ERR] * 2
+    assert len(drain(bench, pipe)) == 4
+    assert bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID, bytes(400)))) is None
+    bench.kernel.shutdown()
+
+
+def test_timeouts(bench: Bench) -> None:
+    times: list[int] = []
+
+    def receiver() -> None:
+        pipe = bench.bus.create_pipe(1, "P")
+        for timeout in (POLL, 20, 1):
+            assert bench.bus.receive_buffer(pipe, timeout) is None
+            times.append(bench.kernel.now)
+
+    bench.spawn("A", receiver)
+    bench.kernel.run(10**9)
+    assert times == [0, 20_000_000, 21_000_000]
+
+
+def test_bad_receives(bench: Bench) -> None:
+    pipe = subscriber(bench, "A")
+    for bad_pipe, timeout in ((pipe + 1, POLL), (pipe, -2)):
+        error = bench.do("A", lambda: bench.bus.receive_buffer(bad_pipe, timeout))  # noqa: B023  # called at once
+        assert isinstance(error, CfeError)
+        assert error.status == CFE_SB_BAD_ARGUMENT
+    assert bench.events.ids() == [19, 18]
+
+
+def test_a_reader_of_a_deleted_pipe_is_told(bench: Bench) -> None:
+    pipe = subscriber(bench, "A")
+    caught: list[int] = []
+
+    def reader() -> None:
+        try:
+            bench.bus.receive_buffer(pipe, PEND_FOREVER)
+        except CfeError as error:
+            caught.append(error.status)
+
+    bench.spawn("A", reader)
+    bench.kernel.run(0)
+    bench.do("A", lambda: bench.bus.delete_pipe(pipe))
+    assert caught == [CFE_SB_PIPE_RD_ERR]
+
+
+def test_ignoring_ones_own_messages(bench: Bench) -> None:
+    pipe = subscriber(bench, "A")
+    bench.do("A", lambda: bench.bus.set_pipe_opts(pipe, 1))
+    bench.do("A", lambda: bench.bus.transmit_msg(packet(MID, b"mine")))
+    bench.do("B", lambda: bench.bus.transmit_msg(packet(MID, b"yours")))
+    assert [one[16:] for one in drain(bench, pipe)] == [b"yours"]
+
+
+def test_transmit_telemetry_is_transmit_msg_without_the_header(bench: Bench) -> None:
+    pipe = subscriber(bench, "A")
+    bench.bus.transmit_msg(packet(MID, b"payload"))
+    bench.bus.transmit_telemetry(MID, b"payload")
+    first, second = drain(bench, pipe)
+    assert first[:2] + first[4:] == second[:2] + second[4:]
+    assert (get_sequence_count(first), get_sequence_count(second)) == (0, 1)

@@ -1,0 +1,112 @@
+"""Making pipes and subscriptions, and every way in which that fails, with NASA's status and event."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from cfepy.status import (
+    CFE_SB_BAD_ARGUMENT,
+    CFE_SB_MAX_DESTS_MET,
+    CFE_SB_MAX_MSGS_MET,
+    CFE_SB_MAX_PIPES_MET,
+    CFE_SB_PIPE_CR_ERR,
+    CfeError,
+)
+from tests.sb.harness import Bench
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    bench = Bench(sb_max_pipes=3, sb_max_msg_ids=2, sb_max_dest_per_pkt=2)
+    yield bench
+    bench.kernel.shutdown()
+
+
+def status(result: object) -> int:
+    assert isinstance(result, CfeError)
+    return result.status
+
+
+@pytest.mark.parametrize(
+    ("depth", "name", "code", "event"),
+    [
+        (0, "P", CFE_SB_BAD_ARGUMENT, 2),
+        (51, "P", CFE_SB_BAD_ARGUMENT, 2),
+        (5, "", CFE_SB_BAD_ARGUMENT, 2),
+        (5, "TAKEN", CFE_SB_PIPE_CR_ERR, 69),
+        (5, "N" * 20, CFE_SB_PIPE_CR_ERR, 4),
+    ],
+)
+def test_pipes_that_cannot_be_made(bench: Bench, depth: int, name: str, code: int, event: int) -> None:
+    bench.do("A", lambda: bench.bus.create_pipe(5, "TAKEN"))
+    assert status(bench.do("A", lambda: bench.bus.create_pipe(depth, name))) == code
+    assert bench.events.ids() == [event]
+    assert bench.bus.counters.create_pipe_error == 1
+
+
+def test_the_last_pipe(bench: Bench) -> None:
+    for number in range(3):
+        assert isinstance(bench.do("A", lambda: bench.bus.create_pipe(5, f"P{number}")), int)  # noqa: B023
+    assert status(bench.do("A", lambda: bench.bus.create_pipe(5, "P3"))) == CFE_SB_MAX_PIPES_MET
+    assert bench.events.sent[-1] == (3, "CreatePipeErr:Max Pipes(3)In Use.app A")
+
+
+def test_pipe_ids_and_names(bench: Bench) -> None:
+    pipe = bench.do("A", lambda: bench.bus.create_pipe(5, "P"))
+    assert pipe == 0x160001
+    assert bench.do("A", lambda: bench.bus.get_pipe_name(0x160001)) == "P"
+    assert bench.do("A", lambda: bench.bus.get_pipe_id_by_name("P")) == pipe
+    assert status(bench.do("A", lambda: bench.bus.get_pipe_id_by_name("Q"))) == CFE_SB_BAD_ARGUMENT
+
+
+def test_only_the_owner_deletes_and_subscribes(bench: Bench) -> None:
+    pipe = bench.do("A", lambda: bench.bus.create_pipe(5, "P"))
+    assert isinstance(pipe, int)
+    for call in (
+        lambda: bench.bus.delete_pipe(pipe),
+        lambda: bench.bus.subscribe(0x801, pipe),
+        lambda: bench.bus.unsubscribe(0x801, pipe),
+        lambda: bench.bus.set_pipe_opts(pipe, 1),
+    ):
+        assert status(bench.do("B", call)) == CFE_SB_BAD_ARGUMENT
+    assert bench.events.ids() == [54, 51, 53, 56]
+
+
+def test_a_duplicate_subscription_keeps_its_limit(bench: Bench) -> None:
+    pipe = bench.do("A", lambda: bench.bus.create_pipe(5, "P"))
+    assert isinstance(pipe, int)
+    bench.do("A", lambda: bench.bus.subscribe_ex(0x801, pipe, 0, 3))
+    assert bench.do("A", lambda: bench.bus.subscribe_ex(0x801, pipe, 0, 9)) is None
+    assert bench.events.ids() == [7]
+    assert bench.bus.routes[0x801].destinations[0].limit == 3
+
+
+def test_limits_of_msg_ids_and_destinations(bench: Bench) -> None:
+    pipes = [bench.do("A", lambda: bench.bus.create_pipe(5, f"P{n}")) for n in range(3)]  # noqa: B023
+    first, second, third = (pipe for pipe in pipes if isinstance(pipe, int))
+    for pipe in (first, second):
+        bench.do("A", lambda: bench.bus.subscribe(0x801, pipe))  # noqa: B023
+    assert status(bench.do("A", lambda: bench.bus.subscribe(0x801, third))) == CFE_SB_MAX_DESTS_MET
+    bench.do("A", lambda: bench.bus.subscribe(0x802, first))
+    assert status(bench.do("A", lambda: bench.bus.subscribe(0x803, first))) == CFE_SB_MAX_MSGS_MET
+    assert bench.events.ids() == [9, 8]
+
+
+@pytest.mark.parametrize("msg_id", [0, 0x2000])
+def test_msg_ids_out_of_range(bench: Bench, msg_id: int) -> None:
+    pipe = bench.do("A", lambda: bench.bus.create_pipe(5, "P"))
+    assert isinstance(pipe, int)
+    assert status(bench.do("A", lambda: bench.bus.subscribe(msg_id, pipe))) == CFE_SB_BAD_ARGUMENT
+    assert bench.events.ids() == [6]
+
+
+def test_cleanup_takes_everything_of_an_app(bench: Bench) -> None:
+    pipe = bench.do("A", lambda: bench.bus.create_pipe(5, "P"))
+    assert isinstance(pipe, int)
+    bench.do("A", lambda: bench.bus.subscribe(0x801, pipe))
+    bench.bus.cleanup_app(bench.apps["A"].app_id)
+    assert len(bench.bus.pipes) == 0
+    assert bench.bus.subscriptions_in_use() == 0
+    assert status(bench.do("A", lambda: bench.bus.receive_buffer(pipe, 0))) == CFE_SB_BAD_ARGUMENT
