@@ -40,22 +40,22 @@ class Assembler:
         self._parts: dict[object, list[bytes]] = {}
         self.lost = 0  # messages of which a segment is missing
 
-    def add(self, packet: bytes, sender: object) -> bytes | None:
+    def add(self, packet: bytes, sender: object, index: int | None) -> bytes | None:
         """Take a segment; the whole message, behind a header, when it is the last one.
 
         Args:
             packet: a packet whose sequence flags are not `WHOLE`.
             sender: tells publishers of one topic apart.
+            index: number of the segment in its message, from 0; None when only its sequence count can tell.
         """
         flags = packet[2] & 0xC0
         parts = self._parts.pop(sender, None)
         if flags == FIRST:
-            if parts is not None:
-                self.lost += 1
+            self.lost += parts is not None
             self._parts[sender] = [packet]
             return None
-        if parts is None or not _follows(parts[-1], packet, alone=len(self._parts) == 0):
-            self.lost += flags == LAST
+        if parts is None or not _continues(parts, packet, index):
+            self.lost += parts is not None
             return None
         parts.append(packet)
         if flags == MIDDLE:
@@ -64,5 +64,12 @@ class Assembler:
         return parts[0] + b"".join(part[HEADER_BYTES:] for part in parts[1:])
 
 
-def _follows(before: bytes, packet: bytes, *, alone: bool) -> bool:
-    return True
+def sequence_of(packet: bytes) -> int:
+    """The sequence count of a packet, 0 to 16383."""
+    return (packet[2] & 0x3F) << 8 | packet[3]
+
+
+def _continues(parts: list[bytes], packet: bytes, index: int | None) -> bool:
+    if index is not None:
+        return index == len(parts)
+    return sequence_of(packet) == (sequence_of(parts[-1]) + 1) & 0x3FFF

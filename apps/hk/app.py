@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from cfepy.app import Cfe
-from cfepy.es import APP_ERROR, APP_RUN
+from cfepy.es import APP_ERROR, APP_EXIT, APP_RUN
 from cfepy.msg import CMD_HEADER_SIZE, CommandTable, get_user_data, telemetry
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, Dispatch
 from cfepy.status import (
@@ -42,7 +42,7 @@ def HK_AppMain(cfe: Cfe) -> None:
         app.run_status = APP_ERROR
     while cfe.es.run_loop(app.run_status):
         app.wait()
-    cfe.es.exit_app(app.run_status)
+    cfe.es.exit_app(APP_EXIT if app.run_status == APP_RUN else app.run_status)
 
 
 class HkApp:

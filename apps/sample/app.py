@@ -8,7 +8,7 @@ own with the handle `cfe`, through which the app reaches everything: `cfe.CFE_se
 from __future__ import annotations
 
 from cfepy.app import Cfe
-from cfepy.es import APP_ERROR, APP_RUN
+from cfepy.es import APP_ERROR
 from cfepy.msg import CMD_HEADER_SIZE, CommandTable, get_user_data, telemetry
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID
 from cfepy.sb import PEND_FOREVER
@@ -22,17 +22,16 @@ VERSION = "v1.0.0"
 def SAMPLE_APP_Main(cfe: Cfe) -> None:
     """Start, then do one message after another until cFE wants the app to end."""
     app = SampleApp(cfe)
-    run_status = APP_RUN
     try:
         app.start()
     except CfeError as error:
         cfe.es.write_to_sys_log(f"SAMPLE_APP: cannot start: {error}")
-        run_status = APP_ERROR
-    while cfe.es.run_loop(run_status):
+        cfe.es.exit_app(APP_ERROR)  # does not return
+    while cfe.es.run_loop():
         packet = cfe.sb.receive_buffer(app.pipe, PEND_FOREVER)
         if packet is not None:
             app.handle(packet)
-    cfe.es.exit_app(run_status)
+    cfe.es.exit_app()
 
 
 class SampleApp:

@@ -6,7 +6,7 @@ The first 1 Hz packet of TIME starts it, so that it keeps step with the spacecra
 from __future__ import annotations
 
 from cfepy.app import Cfe
-from cfepy.es import APP_ERROR, APP_RUN
+from cfepy.es import APP_ERROR
 from cfepy.msg import local_cmd_topic_id_to_msg_id
 from cfepy.sb import POLL
 from cfepy.status import CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CFE_SUCCESS, CfeError, OsalError
@@ -26,16 +26,15 @@ SECOND_US = 1_000_000
 
 def SCH_LAB_AppMain(cfe: Cfe) -> None:
     """The entry point that the startup script names."""
-    run_status = APP_RUN
     app = Scheduler(cfe)
     try:
         app.start()
     except CfeError as error:
         cfe.es.write_to_sys_log(f"SCH_LAB: Error Initializing RC = {_hex(error.status)}")
-        run_status = APP_ERROR
-    while cfe.es.run_loop(run_status):
+        cfe.es.exit_app(APP_ERROR)  # does not return
+    while cfe.es.run_loop():
         app.wait()
-    cfe.es.exit_app(run_status)
+    cfe.es.exit_app()
 
 
 class Scheduler:

@@ -17,7 +17,7 @@ from cfepy.evs.events import (
     INFORMATION,
 )
 from cfepy.evs.log import EventLog
-from cfepy.msg import PRIMARY_HEADER_SIZE, telemetry
+from cfepy.msg import PRIMARY_HEADER_SIZE, TLM_HEADER_SIZE, Layout, init
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
 
@@ -25,15 +25,15 @@ TRUNCATED = b"$"
 PORTS = (1, 2, 3, 4)
 
 _U16_MAX = 0xFFFF
-
-
-def _primary_header(msg_id: int, payload_size: int) -> bytes:
-    return bytes(telemetry(msg_id, bytes(payload_size))[:PRIMARY_HEADER_SIZE])
-
-
 _SPARE = bytes(4)
-_LONG_HEADER = _primary_header(pk.CFE_EVS_LONG_EVENT_MSG_MID, pk.LONG_EVENT.size)
-_SHORT_HEADER = _primary_header(pk.CFE_EVS_SHORT_EVENT_MSG_MID, pk.SHORT_EVENT.size)
+
+
+def _primary_header(msg_id: int, payload: Layout) -> bytes:
+    return bytes(init(msg_id, TLM_HEADER_SIZE + payload.size)[:PRIMARY_HEADER_SIZE])
+
+
+_LONG_HEADER = _primary_header(pk.CFE_EVS_LONG_EVENT_MSG_MID, pk.LONG_EVENT)
+_SHORT_HEADER = _primary_header(pk.CFE_EVS_SHORT_EVENT_MSG_MID, pk.SHORT_EVENT)
 
 
 class EventCore:
@@ -125,12 +125,12 @@ class EventCore:
             "SpacecraftID": self.config.spacecraft_id,
             "ProcessorID": self.config.processor_id,
         }
-        packet = _LONG_HEADER + secondary_header + pk.LONG_EVENT.pack(PacketID=packet_id, Message=message)
+        packet = b"".join((_LONG_HEADER, secondary_header, pk.LONG_EVENT.pack(PacketID=packet_id, Message=message)))
         self.log.add(packet)
         if self.ports_mask:
             self._write_ports(clock.text() if time is None else clock.print_(time), app.name, event_id, message)
         if self.format_mode == pk.FORMAT_SHORT:
-            packet = _SHORT_HEADER + secondary_header + pk.SHORT_EVENT.pack(PacketID=packet_id)
+            packet = b"".join((_SHORT_HEADER, secondary_header, pk.SHORT_EVENT.pack(PacketID=packet_id)))
         self.ports.sb.transmit_msg(packet)
         self._count(app, event_type, is_cut)
 
@@ -156,4 +156,3 @@ class EventCore:
         self.counts[event_type] = self.counts.get(event_type, 0) + 1
         if event_type >= ERROR:
             self.errors_by_app[app.name] = self.errors_by_app.get(app.name, 0) + 1
-

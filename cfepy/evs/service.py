@@ -41,6 +41,7 @@ CORE_READY = 3
 PEND_FOREVER = -1
 
 _U16_MAX = 0xFFFF
+_U32_MAX = 0xFFFFFFFF
 
 
 class EventServices(EventCore):
@@ -212,6 +213,8 @@ class EventServices(EventCore):
         """
         app = self._registered_caller(report=True)
         _check_event(event_id, text)
+        if not all(0 <= part <= _U32_MAX for part in time):
+            raise CfeError(CFE_EVS_INVALID_PARAMETER, f"{time} is no time, its parts are numbers of 32 bits")
         self.dispatch(app, event_id, event_type, text, time)
 
     def send_dbg(self, event_id: int, text: str) -> None:
@@ -249,11 +252,17 @@ class EventServices(EventCore):
 
     def _not_registered(self, app_id: int) -> CfeError:
         """The error for an application that did not register; the first time it is an event too (EVS_NotRegistered)."""
-        name = self.ports.es.get_app_name(app_id)
+        name = self._name_of(app_id)
         if app_id not in self.unregistered:
             self.unregistered.add(app_id)
             self.report_unregistered(name)
         return CfeError(CFE_EVS_APP_NOT_REGISTERED, f"{name} has to call evs.register before it sends events")
+
+    def _name_of(self, app_id: int) -> str:
+        try:
+            return self.ports.es.get_app_name(app_id)
+        except CfeError:
+            return f"0x{app_id:x}"  # it ended meanwhile
 
 
 def _check_event(event_id: int, text: str) -> None:

@@ -3,7 +3,6 @@ replaced. A host library's `datetime` objects count as instances of the node's c
 
 from __future__ import annotations
 
-import datetime as host
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +21,8 @@ class _Either(type):
 
 def datetime_module(universe: Universe) -> ModuleType:
     """The module `datetime` of a universe."""
+    import datetime as host
+
     clock = universe.clock
     utc = host.UTC
 

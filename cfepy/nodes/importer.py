@@ -168,22 +168,24 @@ class Importer:
         return self._from_spec(spec, self._is_own(spec.origin))
 
     def _load_top(self, name: str) -> ModuleType:
-        spec = PathFinder.find_spec(name, self._node_folders())
-        if spec is not None:
-            return self._from_spec(spec, own=True)
+        found = PathFinder.find_spec(name, self._node_folders())
+        if found is not None and found.loader is not None:
+            return self._from_spec(found, own=True)
         if sharing.is_stdlib(name):
             if not sharing.is_fresh_stdlib(name):
                 return self._share(name)
             return self._from_spec(_library_spec(name), own=False)
         if name in sharing.HOST_PACKAGES:
             return self._share(name)
-        spec = _host_spec(name)
+        spec = importlib.util.find_spec(name) or found  # a mere folder of the node comes last, as in Python
+        if spec is None:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
         return self._from_spec(spec, own=False) if sharing.is_pure_python(spec) else self._share(name)
 
     def _from_spec(self, spec: ModuleSpec, own: bool) -> ModuleType:
         """A module from a file; it is in the table, and in its package, before its code runs."""
         name = spec.name
-        module = importlib.util.module_from_spec(spec) if spec.loader is None else _empty_module(spec)
+        module = _empty_module(spec)
         self.modules[name] = module
         parent, _, child = name.rpartition(".")
         if parent:
@@ -201,7 +203,7 @@ class Importer:
         return self.modules.get(name, module)
 
     def _execute(self, module: ModuleType, spec: ModuleSpec, own: bool) -> None:
-        if spec.loader is None:
+        if spec.origin is None:
             return  # a namespace package has no code
         if own:
             if not isinstance(spec.loader, SourceFileLoader) or spec.origin is None:
@@ -259,11 +261,6 @@ class Importer:
 def _library_spec(name: str) -> ModuleSpec:
     """Where the source of a module of the standard library is; some of them are frozen into the interpreter."""
     spec = PathFinder.find_spec(name, [os.path.dirname(os.__file__)])
-    return spec if spec is not None else _host_spec(name)
-
-
-def _host_spec(name: str) -> ModuleSpec:
-    spec = importlib.util.find_spec(name)
     if spec is None:
         raise ModuleNotFoundError(f"No module named {name!r}", name=name)
     return spec

@@ -1,16 +1,15 @@
-"""A set that iterates in insertion order, and the transformation that makes a program use it.
+"""A set that iterates in insertion order.
 
 The order of a plain set shows the hash seed of the process and the addresses of objects; a program that iterates one
 then behaves differently from run to run. With ordered sets switched on for a node, `set(...)`, `{a, b}` and
-`{x for ...}` in its code make the class below. `frozenset`, and sets that C code makes (`d.keys() & e`), stay plain.
+`{x for ...}` in its code make the class below (see `cfepy.nodes.ordered_code`). `frozenset`, and sets that C code
+makes (`d.keys() & e`), stay plain.
 """
 
 from __future__ import annotations
 
-import ast
 import builtins
 from collections.abc import Iterable, Iterator
-from types import CodeType
 from typing import Any
 
 SET_NAME = "__ordered_set__"
@@ -148,39 +147,3 @@ class OrderedSet(set[Any], metaclass=_AnySet):
 
 def _is_set(value: object) -> bool:
     return isinstance(value, (builtins.set, frozenset)) or (hasattr(value, "isdisjoint") and hasattr(value, "__and__"))
-
-
-class _SetLiterals(ast.NodeTransformer):
-    """`{a, b}` and `{x for ...}` become calls; the right side of `in` stays, as its order cannot be seen."""
-
-    def visit_Compare(self, node: ast.Compare) -> ast.AST:
-        node.left = self.visit(node.left)
-        node.comparators = [
-            right if isinstance(right, ast.Set) and isinstance(how, (ast.In, ast.NotIn)) else self.visit(right)
-            for how, right in zip(node.ops, node.comparators, strict=True)
-        ]
-        return node
-
-    def visit_Set(self, node: ast.Set) -> ast.AST:
-        self.generic_visit(node)
-        return _call(node, ast.List(node.elts, ast.Load()))
-
-    def visit_SetComp(self, node: ast.SetComp) -> ast.AST:
-        self.generic_visit(node)
-        return _call(node, ast.GeneratorExp(node.elt, node.generators))
-
-
-def _call(node: ast.expr, argument: ast.expr) -> ast.AST:
-    call = ast.Call(ast.Name(SET_NAME, ast.Load()), [argument], [])
-    return ast.fix_missing_locations(ast.copy_location(call, node))
-
-
-def compile_ordered(source: bytes | str, file: str) -> CodeType:
-    """Compile a module so that its set displays make ordered sets.
-
-    Raises:
-        SyntaxError: as `compile` does.
-    """
-    tree = _SetLiterals().visit(ast.parse(source, file))
-    code: CodeType = compile(tree, file, "exec", dont_inherit=True)
-    return code

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
-import traceback
 from collections.abc import Callable, Iterable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from traceback import TracebackException
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _HIDDEN = (os.path.join(_PACKAGE, "nodes", ""), os.path.join(_PACKAGE, "rtos", ""), "<frozen importlib")
@@ -18,12 +20,14 @@ def is_hidden(file: str) -> bool:
 
 def traceback_text(error: BaseException) -> str:
     """The traceback of an error as Python prints it, without the simulator's frames."""
-    report = traceback.TracebackException(type(error), error, error.__traceback__)
+    from traceback import TracebackException
+
+    report = TracebackException(type(error), error, error.__traceback__)
     _strip(report, set())
     return "".join(report.format())
 
 
-def _strip(report: traceback.TracebackException | None, seen: set[int]) -> None:
+def _strip(report: TracebackException | None, seen: set[int]) -> None:
     if report is None or id(report) in seen:
         return
     seen.add(id(report))

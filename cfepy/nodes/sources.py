@@ -10,8 +10,6 @@ import importlib.machinery
 import os
 from types import CodeType
 
-from cfepy.nodes.ordered_set import compile_ordered
-
 _compiled: dict[tuple[object, ...], CodeType] = {}
 
 
@@ -32,9 +30,16 @@ def code_of_file(path: str, ordered: bool) -> CodeType:
     if code is None:
         with open(path, "rb") as file:
             source = file.read()
-        code = compile_ordered(source, path) if ordered else compile(source, path, "exec", dont_inherit=True)
-        _compiled[key] = code
+        _compiled[key] = code = _compile(source, path, ordered)
     return code
+
+
+def _compile(source: bytes, path: str, ordered: bool) -> CodeType:
+    if not ordered:
+        return compile(source, path, "exec", dont_inherit=True)
+    from cfepy.nodes.ordered_code import compile_ordered
+
+    return compile_ordered(source, path)
 
 
 def code_of_library(spec: importlib.machinery.ModuleSpec) -> CodeType:

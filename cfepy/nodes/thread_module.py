@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from cfepy.nodes.local import make_local
 from cfepy.nodes.locks import MAX_WAIT_S
 from cfepy.nodes.report import traceback_text
+from cfepy.nodes.signal_module import NodeInterrupt
 from cfepy.nodes.synth import made
 from cfepy.rtos import TaskExit
 
@@ -79,9 +80,7 @@ def _body(
     """A thread that was started below `threading`: its error is shown, and the program goes on."""
     try:
         Context().run(function, *args, **options)
-    except (TaskExit, SystemExit):
-        raise
-    except BaseException as error:
+    except (Exception, NodeInterrupt) as error:
         universe.thread_errors.append(error)
         universe.print_error(f"Exception ignored in thread started by: {function!r}\n{traceback_text(error)}")
 
@@ -96,6 +95,8 @@ def show_thread_error(universe: Universe, args: Any) -> None:
     if issubclass(args.exc_type, (TaskExit, SystemExit)):
         return
     error = args.exc_value if args.exc_value is not None else args.exc_type()
+    if not isinstance(error, (Exception, NodeInterrupt)):
+        raise error  # a Ctrl-C of the host's user
     universe.thread_errors.append(error)
     name = args.thread.name if args.thread is not None else universe.kernel.current.ident
     universe.print_error(f"Exception in thread {name}:\n{traceback_text(error)}")

@@ -5,7 +5,6 @@ Reading the clock takes the virtual CPU time of one call, so that a loop which p
 
 from __future__ import annotations
 
-import calendar
 import time
 from time import struct_time
 from types import ModuleType
@@ -122,7 +121,9 @@ class VirtualClock:
 
     def mktime(self, when: Any) -> float:
         """`time.mktime`."""
-        return float(calendar.timegm(when))
+        from calendar import timegm
+
+        return float(timegm(when))
 
 
 def time_module(universe: Universe) -> ModuleType:

@@ -107,7 +107,7 @@ class Universe:
         self.output: list[str] = []
         self._sink = stdout if stdout is not None else self.output.append
         self._start = on_thread_start
-        self._tasks: list[Task] = []
+        self._tasks: dict[Task, None] = {}
         self._finished_cpu_ns = 0
         self._ending = False
         self._thread_ends: dict[int, list[Callable[[], None]]] = {}
@@ -150,7 +150,7 @@ class Universe:
     @property
     def tasks(self) -> tuple[Task, ...]:
         """The node's living tasks, oldest first."""
-        return tuple(self._tasks)
+        return tuple(task for task in self._tasks if not task.done)
 
     @property
     def cpu_ns(self) -> int:
@@ -173,13 +173,15 @@ class Universe:
             finally:
                 self.release_current()
 
-        if self._start is not None:
-            return self._start(name, body, priority)
-        return self.kernel.spawn(name, body, priority)
+        start = self._start if self._start is not None else self.kernel.spawn
+        task = start(name, body, priority)
+        if not task.done:
+            self._tasks[task] = None  # one that is ended before it ever ran does not adopt itself
+        return task
 
     def adopt_current(self) -> None:
         """The current task belongs to the node from now on."""
-        self._tasks.append(self.kernel.current)
+        self._tasks[self.kernel.current] = None
 
     def release_current(self) -> None:
         """The current task is about to end: forget what it kept, and let those go on that join it."""
@@ -187,7 +189,7 @@ class Universe:
         for forget in self._thread_ends.pop(task.ident, ()):
             forget()
         self._finished_cpu_ns += task.cpu_ns
-        self._tasks.remove(task)
+        self._tasks.pop(task, None)
 
     def at_thread_end(self, ident: int, action: Callable[[], None]) -> None:
         """Have something done when the thread `ident` ends."""
@@ -203,7 +205,7 @@ class Universe:
         if self._ending:
             return
         self._ending = True
-        for task in reversed(self._tasks[:]):
+        for task in reversed(self.tasks):
             if task is not self.kernel.current:
                 self.kernel.kill(task)
 

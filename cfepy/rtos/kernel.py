@@ -274,7 +274,7 @@ class Kernel:
         ready = self.ready
         first = ready[0][0] if ready else HOST_PRIORITY
         paused = self.now > self._until
-        if first == task.priority and self._turn_is_over(task, duration_ns):
+        if first == task.priority and self.now >= self._slice_end and self._turn_is_over(task, duration_ns):
             self.sequence = sequence = self.sequence + 1
             heappush(ready, (task.priority, sequence, task))
         elif first < task.priority or paused:
@@ -531,7 +531,7 @@ class Kernel:
 
     def _run_until(self, end: int) -> None:
         """Run piece by piece: between the pieces, at fixed virtual times, garbage is collected."""
-        while True:
+        while self.now <= end:
             if self.now >= self._collect_at:
                 gc.collect()
                 self._collect_at = self.now // COLLECT_NS * COLLECT_NS + COLLECT_NS

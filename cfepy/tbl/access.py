@@ -154,6 +154,18 @@ class TableAccess:
         """The handle of a resource id, CFE_TBL_BAD_TABLE_HANDLE for 0 (CFE_TBL_HandleFromID)."""
         return BAD_TABLE_HANDLE if handle_id == UNDEFINED else handle_id
 
+    def handle_id_is_equal(self, first: int, second: int) -> bool:
+        """Whether two handle ids are the same (CFE_TBL_HandleID_IsEqual)."""
+        return first == second
+
+    def handle_id_as_int(self, handle_id: int) -> int:
+        """The number to show a person (CFE_TBL_HandleID_AsInt)."""
+        return int(handle_id)
+
+    def handle_id_is_defined(self, handle_id: int) -> bool:
+        """Whether it is the id of anything (CFE_TBL_HandleID_IsDefined)."""
+        return handle_id != UNDEFINED
+
     def _caller(self) -> tuple[int, str]:
         caller: Caller | None = self._kernel.current.owner
         if caller is None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from cfepy.config import PlatformConfig
 from cfepy.fs import FileCategory, FileHeader, get_default_extension, get_default_mount_point, parse_input_file_name_ex
+from cfepy.fs.header import SUBTYPE_TBL_REG
 from cfepy.msg import CMD_HEADER_SIZE, CommandTable, command, get_user_data, telemetry
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, Dispatch
 from cfepy.ports import Ports
@@ -26,7 +27,6 @@ PIPE_DEPTH = 12
 PEND_FOREVER = -1
 CORE_READY = 3
 REGISTRY_FILE = "/ram/cfe_tbl_reg.log"
-REGISTRY_SUBTYPE = 9
 REGISTRY_DESCRIPTION = "Table Registry"
 APP_NAME = "CFE_TBL"
 
@@ -255,7 +255,7 @@ class TableTask:
         seconds, subseconds = self._ports.time.now()
         header = FileHeader(
             description=REGISTRY_DESCRIPTION,
-            subtype=REGISTRY_SUBTYPE,
+            subtype=SUBTYPE_TBL_REG,
             spacecraft_id=self._config.spacecraft_id,
             processor_id=self._config.processor_id,
             application_id=self._registry.services_app_id,

@@ -92,7 +92,7 @@ class Tone:
     auto_start_fly: bool = False
     signal_latch: int = 0
     data_latch: int = 0
-    _previous: tuple[int, int] = (0, 0)
+    _previous: tuple[int, int] = field(default=(0, 0), init=False)
 
     def interrupt(self, latch: int) -> None:
         """A tone came (CFE_TIME_Tone1HzISR).

@@ -7,6 +7,9 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import pytest
+
+from cfepy.es import APP_EXIT
 from cfepy.es.pools import MemPool, PoolBlock
 from cfepy.msg import command
 from cfepy.status import CfeError
@@ -15,6 +18,10 @@ from tests.tbl.conftest import Bench
 APPS = Path(__file__).parents[2] / "apps"
 POOL_ID = 0x140003
 Step = bytes | None | Callable[[], object]
+
+
+class Ended(BaseException):
+    """What exit_app ends the app's task with."""
 
 
 class AppBench(Bench):
@@ -37,7 +44,7 @@ class AppBench(Bench):
         self._script: list[Step] = []
         self.cfe: Any = SimpleNamespace(
             es=SimpleNamespace(
-                run_loop=lambda status: status == 1 and bool(self._script),
+                run_loop=lambda status=1: status == 1 and bool(self._script),
                 exit_app=self._exit,
                 write_to_sys_log=self.log.append,
                 pool_create=self._pool_create,
@@ -60,23 +67,23 @@ class AppBench(Bench):
             ),
             tbl=self.tbl,
         )
-        for app_id, app in {0x110006: name}.items():
-            self.kernel.current.owner = SimpleNamespace(app_id=app_id, name=app, is_core=False)
+        self.kernel.current.owner = SimpleNamespace(app_id=0x110006, name=name, is_core=False)
         for table in APPS.glob("*/tables/*.tbl"):
             self.files[f"/cf/{table.name}"] = table.read_bytes()
 
     def run(self, main: Callable[[Any], None], *script: Step) -> None:
         """Run an app until the script is over: bytes are received, None is a timeout, functions are called between."""
         self._script = list(script) or [None]
-        self._start = len(self._script)
-        main(self.cfe)
+        with pytest.raises(Ended):
+            main(self.cfe)
 
     def _check(self, function: str) -> None:
         if function in self.refuse:
             raise CfeError(self.refuse[function], "the test says so")
 
-    def _exit(self, status: int) -> None:
+    def _exit(self, status: int = APP_EXIT) -> None:
         self.exit_status = status
+        raise Ended
 
     def _pool_create(self, size: int) -> int:
         self._check("es.pool_create")

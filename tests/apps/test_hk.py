@@ -10,7 +10,7 @@ import pytest
 from apps.hk import HK_AppMain, packets
 from apps.hk.copy_table import find_fault
 from apps.hk.tables import hk_cpy_tbl
-from cfepy.es import APP_ERROR, APP_RUN
+from cfepy.es import APP_ERROR, APP_EXIT
 from cfepy.msg import Layout, get_msg_id, get_size, telemetry
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_PIPE_RD_ERR, CFE_TBL_ERR_ACCESS
 from cfepy.tbl import TableImage, build, pack_rows, read
@@ -74,7 +74,7 @@ def test_start(hk: AppBench) -> None:
     hk.run(HK_AppMain)
     assert own(hk) == [(1, 2, "HK Initialized.  Version 7.0.0.0")]
     assert hk.subscriptions == {0x189A, 0x189B, 0x189C, *CORE}
-    assert hk.exit_status == APP_RUN
+    assert hk.exit_status == APP_EXIT
 
 
 def test_combined_packet_of_recorded_housekeeping(hk: AppBench) -> None:
@@ -145,15 +145,13 @@ def test_new_table_from_the_ground(hk: AppBench) -> None:
     assert hk.subscriptions == {0x189A, 0x189B, 0x189C, 0x0883}
     assert hk.sent[0][16:] == b"XY"
     assert hk.events[-1][0] == 11
-    assert hk.exit_status == APP_RUN
+    assert hk.exit_status == APP_EXIT
     assert hk.pool is not None
     assert sum(block.in_use for block in hk.pool.blocks.values()) == 1
 
 
 def test_runtime_table_can_be_dumped(hk: AppBench) -> None:
-    payload = tbl_packets.DUMP_COMMAND.pack(
-        ActiveTableFlag=1, TableName="HK.RuntimeTable", DumpFilename="/ram/rt.tbl"
-    )
+    payload = tbl_packets.DUMP_COMMAND.pack(ActiveTableFlag=1, TableName="HK.RuntimeTable", DumpFilename="/ram/rt.tbl")
     hk.run(HK_AppMain, TELEMETRY[0x0801], lambda: hk.ground(tbl_packets.DUMP_CC, payload), None)
     hk.send_hk()
     data = read(hk.files["/ram/rt.tbl"]).data

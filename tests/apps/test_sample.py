@@ -6,7 +6,7 @@ import pytest
 
 from apps.sample import SAMPLE_APP_Main, messages
 from apps.sample.tables import sample_app_tbl
-from cfepy.es import APP_ERROR, APP_RUN
+from cfepy.es import APP_ERROR, APP_EXIT
 from cfepy.msg import get_msg_id
 from cfepy.status import CFE_SB_BAD_ARGUMENT
 from cfepy.tbl import TableImage, build
@@ -51,7 +51,7 @@ def test_its_way_through_a_session(sample: AppBench) -> None:
     first, second = sample.sent
     assert (get_msg_id(first), len(first), first[16:]) == (0x0883, 20, bytes([2, 3, 0, 0]))
     assert second[16:] == bytes(4)
-    assert sample.exit_status == APP_RUN
+    assert sample.exit_status == APP_EXIT
 
 
 def test_table_out_of_range_is_refused_at_start(sample: AppBench) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from apps.sch_lab import SCH_LAB_AppMain, schedule
 from apps.sch_lab.tables import sch_lab_table
-from cfepy.es import APP_ERROR, APP_RUN
+from cfepy.es import APP_ERROR, APP_EXIT
 from cfepy.msg import Layout, get_fcn_code, get_msg_id, validate_checksum
 from cfepy.status import OS_ERR_NAME_NOT_FOUND, OsalError, UsageError
 from cfepy.tbl import build
@@ -68,7 +68,7 @@ def test_start(sch: SchBench) -> None:
     assert sch.printed == ["SCH Lab Initialized.SCH Lab v1.0.0\n"]
     assert sch.timer_set == (1_000_000, 10_000)
     assert sch.subscriptions == {0x1811}
-    assert sch.exit_status == APP_RUN
+    assert sch.exit_status == APP_EXIT
 
 
 def test_nothing_goes_out_before_the_first_second(sch: SchBench) -> None:

@@ -14,7 +14,7 @@ from cfepy.evs import packets as pk
 from cfepy.msg import TLM_HEADER_SIZE, command, get_msg_id
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
-from cfepy.status import CFE_ES_ERR_NAME_NOT_FOUND, CfeError
+from cfepy.status import CFE_ES_ERR_NAME_NOT_FOUND, CFE_ES_ERR_RESOURCEID_NOT_VALID, CfeError
 
 Result = TypeVar("Result")
 EVS_ID, APP_ID, MUTE_ID = 0x110001, 0x110006, 0x110007
@@ -55,6 +55,8 @@ class World:
         return self.kernel.current.owner.app_id
 
     def get_app_name(self, app_id: int) -> str:
+        if app_id not in self.apps:
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, hex(app_id))
         return self.apps[app_id].name
 
     def get_app_id_by_name(self, name: str) -> int:

@@ -5,14 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.evs.conftest import APP_ID, EVS_ID, World
-from tests.layouts import assert_same
 
 from cfepy.evs import DEBUG, ERROR, INFORMATION
 from cfepy.evs import packets as pk
+from cfepy.evs.commands import EvsCommands
+from cfepy.evs.files import EventFiles
 from cfepy.fs import read_header
-from cfepy.msg import Layout
+from cfepy.msg import Layout, command
 from cfepy.status import OS_ERROR, OsalError
+from tests.evs.conftest import APP_ID, EVS_ID, World
+from tests.layouts import assert_same
 
 DATA = Path(__file__).parent.parent / "data"
 
@@ -263,22 +265,16 @@ def test_a_file_that_cannot_be_written_is_an_event(world: World) -> None:
     def refuse(path: str, data: bytes) -> None:
         raise OsalError(OS_ERROR, "no")
 
-    from cfepy.evs.files import EventFiles
-
     files = EventFiles(world.evs, refuse)
     world.call(lambda: files.write_log({"Filename": "x"}), EVS_ID)
     world.call(lambda: files.write_app_data({"Filename": "/ram/.dat"}), EVS_ID)
     assert [(event.event_id, event.text) for event in world.sent()] == [
         (3, "Write Log File Command Error: OS_OpenCreate = -1, filename = /ram/x"),
-        (13, "Write App Data Command Error: CFE_FS_ParseInputFileNameEx() = 0x86000006"),
+        (13, "Write App Data Command Error: CFE_FS_ParseInputFileNameEx() = 0xC6000002"),
     ]
 
 
 def test_without_a_file_system_there_are_no_file_commands(world: World) -> None:
-    from cfepy.evs.commands import EvsCommands
-
     commands = EvsCommands(world.evs, None)
-    from cfepy.msg import command
-
     world.call(lambda: commands.process(bytes(command(pk.CFE_EVS_CMD_MID, 18, bytes(64)))), EVS_ID)
     assert world.sent()[-1].event_id == 15

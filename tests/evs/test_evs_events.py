@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from tests.evs.conftest import APP_ID, EVS_ID, MUTE_ID, Sent, World
 
+from cfepy.config import PlatformConfig
 from cfepy.evs import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.evs import packets as pk
 from cfepy.msg import TLM_HEADER_SIZE
@@ -16,6 +16,7 @@ from cfepy.status import (
     CFE_EVS_INVALID_PARAMETER,
     CfeError,
 )
+from tests.evs.conftest import APP_ID, EVS_ID, MUTE_ID, Sent, World
 
 READY = "cFE EVS Initialized: CFE_EVS v7.0.0+dev0 (Draco) v7.0.0 Official Release, EDS disabled"
 
@@ -51,7 +52,8 @@ def test_short_format_sends_the_identity_only_but_logs_and_shows_all(world: Worl
 
 
 @pytest.mark.parametrize(
-    ("send", "event_type"), [("send_dbg", DEBUG), ("send_info", INFORMATION), ("send_err", ERROR), ("send_crit", CRITICAL)]
+    ("send", "event_type"),
+    [("send_dbg", DEBUG), ("send_info", INFORMATION), ("send_err", ERROR), ("send_crit", CRITICAL)],
 )
 def test_each_type_has_its_own_call(world: World, send: str, event_type: int) -> None:
     world.evs.apps[APP_ID].types = 0x0F
@@ -86,6 +88,13 @@ def test_a_timed_event_shows_its_time_in_log_and_on_the_console(world: World) ->
     assert world.console.lines[-1] == "EVS Port1 T77 66/1/HK 1: then"
 
 
+def test_the_time_of_a_timed_event_has_32_bits(world: World) -> None:
+    for bad in ((-1, 0), (0, 1 << 32)):
+        with pytest.raises(CfeError) as caught:
+            world.call(lambda bad=bad: world.evs.send_timed_event(bad, 1, INFORMATION, "x"))  # type: ignore[misc]
+        assert caught.value.status == CFE_EVS_INVALID_PARAMETER
+
+
 def test_an_event_goes_out_in_the_name_of_another_with_the_types_of_that_other(world: World) -> None:
     world.evs.apps[APP_ID].types = 0x0F
     world.call(lambda: world.evs.send_event_with_app_id(4, DEBUG, APP_ID, "for HK"), EVS_ID)
@@ -104,7 +113,7 @@ def test_ports_are_lines_on_the_console(world: World) -> None:
 
 def test_an_unregistered_app_is_refused_and_told_of_once(world: World) -> None:
     for _ in range(2):
-        with pytest.raises(CfeError, match="MUTE has to call evs.register") as caught:
+        with pytest.raises(CfeError, match=r"MUTE has to call evs\.register") as caught:
             world.call(lambda: world.evs.send_event(1, ERROR, "x"), MUTE_ID)
         assert caught.value.status == CFE_EVS_APP_NOT_REGISTERED
     text = "App MUTE not registered with Event Services. Unable to send event."
@@ -128,6 +137,12 @@ def test_the_app_id_of_an_event_must_be_one(world: World) -> None:
     with pytest.raises(CfeError) as caught:
         world.call(lambda: send(1, 2, MUTE_ID, "x"))
     assert caught.value.status == CFE_EVS_APP_NOT_REGISTERED
+
+
+def test_an_app_that_ended_is_named_by_its_id(world: World) -> None:
+    gone = 0x1100FF
+    with pytest.raises(CfeError, match="0x1100ff has to call"):
+        world.call(lambda: world.evs.send_event_with_app_id(1, 2, gone, "x"))
 
 
 def test_a_core_service_whose_task_does_not_run_yet_sends_nothing(world: World) -> None:
@@ -240,8 +255,6 @@ def test_after_a_flood_events_come_back_at_fifteen_a_second(world: World) -> Non
 
 
 def test_the_brake_can_be_taken_off() -> None:
-    from cfepy.config import PlatformConfig
-
     world = World(PlatformConfig(evs_max_app_event_burst=0))
     world.start()
     world.call(world.evs.register)

@@ -87,6 +87,18 @@ def test_a_module_beside_the_script_goes_before_a_library(run, tmp_path):
     assert run("import queue, yaml\nprint(queue.mine, yaml.mine)").lines == ["True True"]
 
 
+def test_mere_folders_are_packages_but_hide_nothing(run, tmp_path):
+    for folder in ("models", "logging", "yaml"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "models" / "car.py").write_text("wheels = 4\n")
+    program = run("""
+        import logging, models.car, yaml
+        from models import car
+        print(car.wheels, logging.INFO, yaml.safe_load("1"))
+    """)
+    assert program.lines == ["4 20 1"]
+
+
 def test_edited_modules_are_read_again(start, tmp_path):
     for value in (1, 22):
         (tmp_path / "edited.py").write_text(f"value = {value}\n")

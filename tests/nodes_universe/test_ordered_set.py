@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cfepy.nodes.ordered_set import SET_NAME, OrderedSet, compile_ordered
+from cfepy.nodes.ordered_code import compile_ordered
+from cfepy.nodes.ordered_set import SET_NAME, OrderedSet
 
 items = st.lists(st.integers(0, 9), max_size=8)
 

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from textwrap import dedent
+
 import pytest
+
+from cfepy.nodes import Universe
+from cfepy.rtos import Kernel
+from cfepy.trace import Trace
 
 SECOND = 1_000_000_000
 
@@ -64,11 +70,6 @@ def test_queue_timer_and_pool(run):
 
 
 def test_same_trace_on_both_contexts(tmp_path):
-    from cfepy.nodes import Universe
-    from cfepy.rtos import Kernel
-    from cfepy.trace import Trace
-    from textwrap import dedent
-
     script = tmp_path / "workers.py"
     script.write_text(dedent(WORKERS))
     seen = set()
@@ -233,6 +234,47 @@ def test_killing_a_node_unwinds_all_its_threads(start):
     assert program.text == ""
 
 
+def test_a_thread_that_never_ran_ends_with_the_program(run):
+    program = run("""
+        import _thread
+        _thread.start_new_thread(print, ("too late",))
+    """)
+    assert program.text == ""
+    assert program.universe.exit_status == 0
+    assert not program.kernel.tasks
+
+
+@pytest.mark.parametrize("first", [0, 1, 2])
+def test_the_tasks_of_a_node_can_be_ended_in_any_order(start, first):
+    program = start("""
+        import threading, time
+        lock, log = threading.Lock(), []
+        def work():
+            while True:
+                with lock:
+                    time.sleep(0.1)
+        for _ in range(2):
+            threading.Thread(target=work).start()
+        try:
+            while True:
+                time.sleep(1)
+        finally:
+            log.append("end")
+    """)
+    program.kernel.run(SECOND)
+    tasks = program.universe.tasks
+    assert len(tasks) == 3
+
+    def end():
+        for number in range(3):
+            program.kernel.kill(tasks[(first + number) % 3])
+
+    program.kernel.spawn("owner", end, 10)
+    program.kernel.run(2 * SECOND)
+    assert program.global_("log") == ["end"]
+    assert not program.kernel.tasks
+
+
 def test_threads_start_through_the_owners_hook(start):
     names = []
 
@@ -251,7 +293,8 @@ def test_threads_start_through_the_owners_hook(start):
 
 def test_imports_wait_for_another_thread_that_imports(run, tmp_path):
     (tmp_path / "slow.py").write_text("import time\ntime.sleep(1)\nvalue = 3\n")
-    program = run("""
+    program = run(
+        """
         import threading, time
         seen = []
         def use():
@@ -259,6 +302,8 @@ def test_imports_wait_for_another_thread_that_imports(run, tmp_path):
             seen.append((slow.value, time.monotonic()))
         for _ in range(2):
             threading.Thread(target=use).start()
-    """, call_cost_ns=0)
+    """,
+        call_cost_ns=0,
+    )
     assert program.text == ""
     assert program.global_("seen") == [(3, 1.0), (3, 1.0)]

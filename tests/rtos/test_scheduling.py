@@ -367,11 +367,12 @@ def _periodic_program(kernel: Kernel) -> None:
         kernel.spawn(f"p{period}", lambda period=period: producer(period), 40 + period % 2)
 
 
-def test_slices_of_a_run_are_the_same_as_one_run(make_kernel: type[Kernel]) -> None:
+@pytest.mark.parametrize("board", [{}, {"switch_cost_ns": 2}, {"tick_ns": 10, "switch_cost_ns": 1}])
+def test_slices_of_a_run_are_the_same_as_one_run(make_kernel: type[Kernel], board: dict[str, int]) -> None:
     digests = set()
     for pieces in ([1000], [1, 2, 3, 999, 1000], list(range(0, 1001, 50))):
         trace = Trace()
-        with make_kernel(trace=trace) as kernel:
+        with make_kernel(trace=trace, **board) as kernel:
             _periodic_program(kernel)
             for until in pieces:
                 kernel.run(until_ns=until)

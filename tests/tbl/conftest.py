@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
@@ -27,8 +27,8 @@ class Bench:
         self.sent: list[bytes] = []
         self.claims: list[tuple[str, str, int]] = []
         self.files: dict[str, bytes] = {}
-        self.kernel: Any = SimpleNamespace(current=SimpleNamespace(owner=None))
-        ports: Any = SimpleNamespace(
+        self.kernel = cast(Any, SimpleNamespace(current=SimpleNamespace(owner=None)))
+        ports = SimpleNamespace(
             es=SimpleNamespace(get_app_name=APPS.__getitem__),
             syslog=SimpleNamespace(write_to_sys_log=self.log.append),
             evs=SimpleNamespace(
@@ -40,7 +40,7 @@ class Bench:
             memory=SimpleNamespace(claim=lambda owner, kind, size: self.claims.append((owner, kind, size))),
         )
         config = PlatformConfig().with_limits(dict(limits))
-        self.tbl = TableServices(self.kernel, ports, config, self, Console(quiet=True))
+        self.tbl = TableServices(self.kernel, cast(Any, ports), config, self, Console(quiet=True))
         self.tbl.registry.services_app_id = TBL_APP_ID
         self.as_app("APP")
 

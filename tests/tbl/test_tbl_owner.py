@@ -326,3 +326,6 @@ def test_handle_ids(bench: Bench) -> None:
     assert bench.tbl.handle_from_id(bench.tbl.handle_to_id(handle)) == handle
     assert bench.tbl.handle_from_id(0) == -1
     assert bench.tbl.handle_to_id(-1) == 0
+    assert bench.tbl.handle_id_is_defined(handle)
+    assert not bench.tbl.handle_id_is_defined(0)
+    assert bench.tbl.handle_id_is_equal(handle, bench.tbl.handle_id_as_int(handle))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
@@ -92,7 +94,7 @@ class TableLife(RuleBasedStateMachine):
         self.handles = {"APP": owner, "OTHER": self.bench.tbl.share("APP.T")}
         self.views: dict[str, tuple[memoryview, bytes]] = {}
 
-    def call(self, app: str, function: str, *args: object) -> object:
+    def call(self, app: str, function: str, *args: object) -> Any:
         self.bench.as_app(app)
         try:
             return getattr(self.bench.tbl, function)(self.handles[app], *args)
@@ -136,7 +138,7 @@ class TableLife(RuleBasedStateMachine):
 
     @rule(app=st.sampled_from(["APP", "OTHER"]))
     def get_address(self, app: str) -> None:
-        view, _ = self.call(app, "get_address")  # type: ignore[misc]
+        view: memoryview = self.call(app, "get_address")[0]
         assert bytes(view) == content(self.bench)
         self.views[app] = (view, bytes(view))
 

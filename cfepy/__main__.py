@@ -1,0 +1,10 @@
+"""`python -m cfepy`: the same as the command `cfepy`."""
+
+from __future__ import annotations
+
+import sys
+
+from cfepy.cli.main import main
+
+if __name__ == "__main__":
+    sys.exit(main())

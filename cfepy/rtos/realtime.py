@@ -1,0 +1,71 @@
+"""The wall clock, for those who look at a run from outside: a stopwatch, and pacing virtual time to real time.
+
+Pacing is a wrapper around running the kernel, not a mode of it: it sleeps until the next event is due, then lets the
+kernel run. So a paced run has the trace of a free one. This is one of the few modules that may read the wall clock.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from cfepy.rtos.kernel import Kernel
+
+NS_PER_S = 1_000_000_000
+STEP_NS = 1_000_000  # wall time: what is due within a millisecond runs in one go
+PATIENCE_NS = 50_000_000  # wall time: longest sleep
+
+
+class Stopwatch:
+    """Wall-clock time since it was made."""
+
+    def __init__(self) -> None:
+        self._start = time.perf_counter_ns()
+
+    def elapsed_ns(self) -> int:
+        """Nanoseconds since the start."""
+        return time.perf_counter_ns() - self._start
+
+
+class Pacer:
+    """Keeps the virtual clock of a kernel at a multiple of real time.
+
+    A run that cannot keep up falls behind, and catches up as soon as it can.
+
+    Args:
+        kernel: the kernel to pace, at the moment that pacing starts.
+        run_until: runs it until a virtual time in ns: `Kernel.run`, or what wraps it.
+        factor: virtual seconds for a real one, more than 0.
+    """
+
+    def __init__(self, kernel: Kernel, run_until: Callable[[int], object], factor: float = 1.0) -> None:
+        if not factor > 0:
+            raise ValueError(f"factor is {factor}, it must be more than 0")
+        self._kernel = kernel
+        self._run_until = run_until
+        self._factor = factor
+        self._virtual_start = kernel.now
+        self._watch = Stopwatch()
+
+    def step(self, until_ns: int) -> None:
+        """Wait for the next event to be due and run it, at most until a virtual time in ns.
+
+        It comes back after some 50 ms of wall time at the latest, so that the caller can look after other things, and
+        calls again until the clock is where it wants it.
+        """
+        elapsed = self._watch.elapsed_ns()
+        latest = self._due(elapsed + PATIENCE_NS)
+        upcoming = self._kernel.next_event()
+        idle_until = latest if upcoming is None else min(upcoming, latest)
+        target = min(max(idle_until, self._due(elapsed + STEP_NS)), until_ns)
+        ahead = self._wall_of(target) - self._watch.elapsed_ns()
+        if ahead > 0:
+            time.sleep(ahead / NS_PER_S)
+        self._run_until(max(target, self._kernel.now))
+
+    def _due(self, wall_ns: int) -> int:
+        """The virtual time that belongs to a wall time."""
+        return self._virtual_start + int(wall_ns * self._factor)
+
+    def _wall_of(self, virtual_ns: int) -> int:
+        return int((virtual_ns - self._virtual_start) / self._factor)

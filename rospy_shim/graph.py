@@ -1,0 +1,187 @@
+"""The ROS graph of a mission: nodes, topics with their MsgIds, who publishes and who subscribes (ROS's master).
+
+A topic has one MsgId, in every run the same: the mission file's choice, or a hash of the topic's name. May import
+cfepy.status, cfepy.nodes.config and rospy_shim.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from cfepy.status import UsageError
+from rospy_shim.params import ParameterTree
+from rospy_shim.transport import sequence_of
+
+if TYPE_CHECKING:
+    from cfepy.nodes.config import RosConfig
+    from rospy_shim.node import Node
+    from rospy_shim.publisher import Link
+    from rospy_shim.subscriber import Subscription
+
+ROSOUT = "/rosout"
+ROSOUT_MSG_ID = 0x0900
+FIRST_MSG_ID = 0x0901
+LAST_MSG_ID = 0x0FFF
+
+Header = dict[str, str]
+"""What ROS tells the two ends of a connection: caller, type, md5sum, topic, ..."""
+
+
+class TopicRow(NamedTuple):
+    """A topic in the mission's tables; `dropped` counts messages that found a subscriber's queue full."""
+
+    name: str
+    msg_id: int
+    type: str
+    publishers: tuple[str, ...]
+    subscribers: tuple[str, ...]
+    messages: int
+    dropped: int
+
+
+class Topic:
+    """One topic: the MsgId and both sides."""
+
+    def __init__(self, name: str, msg_id: int, raw: bool) -> None:
+        self.name = name
+        self.msg_id = msg_id
+        self.raw = raw
+        self.type = ""  # of whoever came first; empty while nobody is there
+        self.md5sum = ""
+        self.links: list[Link] = []
+        self.subscriptions: list[Subscription] = []
+        self.publisher_names: list[str] = []  # everyone who ever was there, for the tables
+        self.subscriber_names: list[str] = []
+        self.header: Header | None = None  # of the only publisher; None when a message must be looked up in `notes`
+        self.latching = False
+        self.notes: dict[int, tuple[Header, int]] = {}  # by sequence count: publisher, and number of the segment
+
+    def agrees(self, data_class: Any) -> bool:
+        """Whether a message class is the topic's; the first one that comes decides."""
+        if data_class._type == "*":
+            return True
+        if not self.type:
+            self.type, self.md5sum = data_class._type, data_class._md5sum
+        return bool(self.md5sum == data_class._md5sum)
+
+    def add_link(self, link: Link) -> None:
+        """A publisher came."""
+        self.links.append(link)
+        _remember(self.publisher_names, link.node.names.name)
+        self._refresh()
+
+    def remove_link(self, link: Link) -> None:
+        """A publisher left."""
+        if link in self.links:
+            self.links.remove(link)
+            self._refresh()
+
+    def add_subscription(self, subscription: Subscription) -> None:
+        """A subscriber came."""
+        self.subscriptions.append(subscription)
+        _remember(self.subscriber_names, subscription.node.names.name)
+
+    def remove_subscription(self, subscription: Subscription) -> None:
+        """A subscriber left."""
+        if subscription in self.subscriptions:
+            self.subscriptions.remove(subscription)
+            self._forget_type()
+            for link in self.links:
+                link.peer_left(len(self.subscriptions))
+
+    def _refresh(self) -> None:
+        shared = len(self.links) > 1
+        for link in self.links:
+            link.shared = shared
+        if not shared:
+            self.notes.clear()
+        self.header = None if shared else self.links[0].header if self.links else self.header
+        self.latching = any(link.latching for link in self.links)
+        self._forget_type()
+
+    def _forget_type(self) -> None:
+        if not self.links and not self.subscriptions:
+            self.type = self.md5sum = ""
+
+    def sender_of(self, packet: bytes) -> Header:
+        """The connection header of whoever sent a packet."""
+        if self.header is not None:
+            return self.header
+        note = self.notes.get(sequence_of(packet))
+        if note is not None:
+            return note[0]
+        return {"callerid": "", "latching": "0", "md5sum": self.md5sum, "topic": self.name, "type": self.type}
+
+
+class Graph:
+    """All nodes and topics of one mission.
+
+    Args:
+        config: what the mission file says about ROS.
+    """
+
+    def __init__(self, config: RosConfig) -> None:
+        self._config = config
+        self.topics: dict[str, Topic] = {}
+        self.nodes: dict[str, Node] = {}
+        self.params = ParameterTree(config.params)
+        self._names: dict[int, str] = {topic.msg_id: name for name, topic in config.topics.items()}
+
+    def topic(self, name: str) -> Topic:
+        """The topic of a resolved name.
+
+        Raises:
+            UsageError: its MsgId belongs to another topic.
+        """
+        topic = self.topics.get(name)
+        if topic is None:
+            pinned = self._config.topics.get(name)
+            msg_id = pinned.msg_id if pinned is not None else self._hashed(name)
+            topic = self.topics[name] = Topic(name, msg_id, pinned is not None and pinned.raw)
+        return topic
+
+    def _hashed(self, name: str) -> int:
+        msg_id = msg_id_of(name)
+        holder = self._names.setdefault(msg_id, name)
+        if holder != name:
+            free = next(each for each in range(LAST_MSG_ID, FIRST_MSG_ID, -1) if each not in self._names)
+            raise UsageError(
+                f"topics {holder} and {name} both fall on MsgId 0x{msg_id:04X}; give one of them another in"
+                f' mission.yaml: "{name}: 0x{free:04X}"',
+                field="topics",
+            )
+        return msg_id
+
+    def register_node(self, node: Node) -> None:
+        """A node has its name; one that has the same name already is shut down, as ROS does it."""
+        name = node.names.name
+        former = self.nodes.get(name)
+        self.nodes[name] = node
+        if former is not None and former is not node:
+            former.ask_to_shut_down(f"[{name}] Reason: new node registered with same name")
+
+    def forget_node(self, node: Node) -> None:
+        """A node is gone."""
+        if self.nodes.get(node.names.name) is node:
+            del self.nodes[node.names.name]
+
+    def published(self, namespace: str) -> list[list[str]]:
+        """[name, type] of the topics below a namespace that somebody publishes."""
+        prefix = namespace.rstrip("/") + "/"
+        return [
+            [topic.name, topic.type] for topic in self.topics.values() if topic.links and topic.name.startswith(prefix)
+        ]
+
+
+def msg_id_of(name: str) -> int:
+    """The MsgId of a topic that the mission file does not name: 0x0901 to 0x0FFF, from a hash of its name."""
+    if name == ROSOUT:
+        return ROSOUT_MSG_ID
+    digest = hashlib.blake2b(name.encode(), digest_size=8).digest()
+    return FIRST_MSG_ID + int.from_bytes(digest, "big") % (LAST_MSG_ID - FIRST_MSG_ID + 1)
+
+
+def _remember(names: list[str], name: str) -> None:
+    if name not in names:
+        names.append(name)

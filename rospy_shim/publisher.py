@@ -1,0 +1,320 @@
+"""`rospy.Publisher`: from a message object to a packet on the Software Bus (CFE_SB_TransmitMsg).
+
+`Link` is what all handles of a node on one topic share. The hot path is `Publisher.publish` and `Link.send`: one
+serialisation, one call of the bus. May import cfepy.status.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from cfepy.rtos import Mutex
+from cfepy.status import CfeError
+from rospy_shim.exceptions import ROSException, ROSSerializationException
+from rospy_shim.genpy import SerializationError
+from rospy_shim.message import args_kwds_to_message
+from rospy_shim.topic_handle import TopicHandle
+from rospy_shim.transport import HEADER_BYTES, segments
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rospy_shim.graph import Header, Topic
+    from rospy_shim.node import Node
+    from rospy_shim.subscriber import Subscription
+
+PACE_NS = 100_000  # between two looks whether a subscriber has room for the next segment
+PATIENCE = 100  # looks, before a segment is sent to a full queue and lost there
+NO_QUEUE_SIZE = (
+    "The publisher should be created with an explicit keyword argument 'queue_size'. It has no effect here, but on"
+    " ROS a publisher without it waits for its slowest subscriber."
+)
+
+
+class SubscribeListener:
+    """Base class for those that want to know who subscribes to a publisher (rospy.SubscribeListener)."""
+
+    __module__ = "rospy.topics"
+
+    def peer_subscribe(self, topic_name: str, topic_publish: Callable[..., None], peer_publish: Any) -> None:
+        """A subscriber came; `topic_publish` sends to all, `peer_publish` to the new one only."""
+
+    def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
+        """A subscriber left, `num_peers` remain."""
+
+
+class Link:
+    """The publishing side of one node on one topic.
+
+    Args:
+        node: the node.
+        name: resolved name of the topic.
+        data_class: message class.
+    """
+
+    def __init__(self, node: Node, name: str, data_class: Any) -> None:
+        self.node = node
+        self.name = name
+        self.data_class = data_class
+        self.handles = 0
+        self.has_header = bool(getattr(data_class, "_has_header", False))
+        self.seq = 0
+        self.latching = False
+        self.latched: Any = None
+        self.listeners: list[SubscribeListener] = []
+        self.header: Header = {}
+        self.shared = False  # with publishers of other nodes
+        self.connected = False
+        self.topic: Topic
+        self.msg_id = 0
+        bus = node.cfe.sb
+        self._bus = bus
+        self._has_subscribers = bus.has_subscribers
+        self._transmit = bus.transmit_telemetry
+        self._charge = node.kernel.charge
+        self._call_ns = node.call_ns
+        self._room = bus.config.sb_max_msg_size - HEADER_BYTES
+        self._mutex: Mutex | None = None
+
+    def connect(self) -> None:
+        """The node is initialised: go on the graph.
+
+        Raises:
+            UsageError: the topic's MsgId belongs to another topic.
+        """
+        self.topic = topic = self.node.graph.topic(self.name)
+        self.msg_id = topic.msg_id
+        self.header = self._make_header()
+        self.connected = True
+        if topic.agrees(self.data_class):
+            topic.add_link(self)
+            for subscription in topic.subscriptions:
+                self.peer_joined(subscription)
+        else:
+            self._has_subscribers = _nobody
+            self.node.warn_of_type(topic, self.data_class)
+
+    def _make_header(self) -> Header:
+        return {
+            "callerid": self.node.names.name,
+            "latching": "1" if self.latching else "0",
+            "md5sum": self.data_class._md5sum,
+            "message_definition": getattr(self.data_class, "_full_text", ""),
+            "topic": self.name,
+            "type": self.data_class._type,
+        }
+
+    def latch(self) -> None:
+        """Keep the last message for subscribers to come."""
+        self.latching = True
+        self.header["latching"] = "1"
+        if self.connected:
+            self.topic.latching = True
+
+    def close(self) -> None:
+        """Leave the graph."""
+        if self.connected:
+            self.topic.remove_link(self)
+        self.node.links.pop(self.name, None)
+
+    def connections(self) -> int:
+        """How many pipes get the topic's messages: subscribing nodes, and cFE applications."""
+        route = self._bus.routes.get(self.msg_id) if self.connected else None
+        return len(route.active) if route is not None and self in self.topic.links else 0
+
+    def send(self, message: Any) -> None:
+        """Publish a message.
+
+        Raises:
+            ROSSerializationException: a field holds what its type cannot carry.
+        """
+        if self._call_ns:
+            self._charge(self._call_ns)
+        if self.latching:
+            self.latched = message
+        if not self._has_subscribers(self.msg_id):
+            return
+        payload = self.serialize(message)
+        try:
+            if self.topic.raw:
+                self._send_packet(message)
+            elif len(payload) > self._room:
+                self._send_segments(payload)
+            else:
+                if self.shared:
+                    self._note(0)
+                self._transmit(self.msg_id, payload)
+        except CfeError as error:
+            self.node.logs.logerr("publish on %s: %s", self.name, error)
+
+    def serialize(self, message: Any) -> bytes:
+        """The bytes of a message, with the next sequence number in its header.
+
+        Raises:
+            ROSSerializationException: a field holds what its type cannot carry.
+        """
+        self.seq = seq = self.seq + 1
+        if self.has_header:
+            header = message.header
+            header.seq = seq
+            if header.frame_id is None:
+                header.frame_id = "0"
+        try:
+            payload: bytes = message._pack()
+        except SerializationError as error:
+            raise ROSSerializationException(str(error)) from error
+        return payload
+
+    def _send_packet(self, message: Any) -> None:
+        """A raw topic: the message's data are a whole packet."""
+        packet = bytes(message.data)
+        msg_id = int.from_bytes(packet[:2], "big")
+        if msg_id != self.msg_id:
+            raise ROSSerializationException(
+                f"{self.name} carries packets of MsgId 0x{self.msg_id:04X}, and these bytes begin with 0x{msg_id:04X}"
+            )
+        self._bus.transmit_msg(packet)
+
+    def _send_segments(self, payload: bytes) -> None:
+        """One long message; as with a socket that is full, the caller waits while a subscriber's queue is."""
+        if self._mutex is None:
+            self._mutex = Mutex(self.node.kernel, f"segments of {self.name}")
+        self._mutex.take()
+        try:
+            for index, packet in enumerate(segments(self.msg_id, payload, self._room)):
+                self._wait_for_room()
+                self._note(index)
+                self._bus.transmit_msg(packet)
+        finally:
+            self._mutex.give()
+
+    def _note(self, index: int) -> None:
+        """Remember who sends the next packet of the topic, since a packet cannot say."""
+        route = self._bus.routes[self.msg_id]
+        self.topic.notes[route.sequence & 0x3FFF] = (self.header, index)
+
+    def _wait_for_room(self) -> None:
+        kernel = self.node.kernel
+        if not self._has_room():
+            kernel.yield_cpu()
+        for _ in range(PATIENCE):
+            if self._has_room():
+                return
+            kernel.delay(PACE_NS)
+
+    def _has_room(self) -> bool:
+        route = self._bus.routes[self.msg_id]
+        return all(
+            each.puts - each.gets < each.limit and len(each.pipe.items) < each.pipe.depth for each in route.active
+        )
+
+    # -- subscribers that come and go --------------------------------------------------------------------------------
+
+    def peer_joined(self, subscription: Subscription) -> None:
+        """Give a new subscriber the latched message, and tell the listeners."""
+        if self.latching and self.latched is not None and not self.topic.raw:
+            subscription.deliver(self.serialize(self.latched), self.header)
+        for listener in self.listeners:
+            self.node.start_task(self.name, lambda each=listener: self._tell(each, subscription))  # type: ignore[misc]
+
+    def _tell(self, listener: SubscribeListener, subscription: Subscription) -> None:
+        def peer_publish(*args: Any, **kwds: Any) -> None:
+            message = args_kwds_to_message(self.data_class, args, kwds)
+            subscription.deliver(self.serialize(message), self.header)
+
+        def topic_publish(*args: Any, **kwds: Any) -> None:
+            self.send(args_kwds_to_message(self.data_class, args, kwds))
+
+        listener.peer_subscribe(self.name, topic_publish, peer_publish)
+
+    def peer_left(self, remaining: int) -> None:
+        """Tell the listeners."""
+        for listener in self.listeners:
+            body = lambda each=listener: each.peer_unsubscribe(self.name, remaining)  # noqa: E731
+            self.node.start_task(self.name, body)
+
+
+class Publisher(TopicHandle):
+    """A node's handle on a topic that it publishes; each node has a subclass that knows the node."""
+
+    __module__ = "rospy.topics"
+    impl: Link | None
+
+    def __init__(
+        self,
+        name: str,
+        data_class: Any,
+        subscriber_listener: SubscribeListener | None = None,
+        tcp_nodelay: bool = False,
+        latch: bool = False,
+        headers: dict[str, str] | None = None,
+        queue_size: int | None = None,
+    ) -> None:
+        """Publish on a topic.
+
+        Args:
+            name: of the topic.
+            data_class: message class.
+            subscriber_listener: is told of subscribers that come and go.
+            tcp_nodelay: accepted.
+            latch: subscribers that come later get the last message.
+            headers: added to the connection header.
+            queue_size: accepted; a warning reminds of it, as in rospy, when it is left out.
+
+        Raises:
+            ValueError: see `TopicHandle`.
+            UsageError: the topic's MsgId belongs to another topic.
+        """
+        super().__init__(name, data_class, "pub")
+        node = self._node
+        if queue_size is None:
+            node.warn(NO_QUEUE_SIZE, SyntaxWarning)
+        self.impl = link = node.link(self.resolved_name, data_class)
+        link.handles += 1
+        if latch:
+            link.latch()
+        if headers:
+            link.header.update(headers)
+        if subscriber_listener is not None:
+            link.listeners.append(subscriber_listener)
+            if link.connected:
+                for subscription in link.topic.subscriptions:
+                    link.peer_joined(subscription)
+
+    def publish(self, *args: Any, **kwds: Any) -> None:
+        """Send a message, given as such or by its fields.
+
+        Raises:
+            ROSException: before `init_node`, or after `unregister`.
+            ROSSerializationException: a field holds what its type cannot carry.
+            TypeError: the arguments do not make a message of the topic's type.
+        """
+        link = self.impl
+        if link is None:
+            raise ROSException("publish() to an unregistered() handle")
+        if not link.connected:
+            raise ROSException("ROS node has not been initialized yet. Please call init_node() first")
+        if len(args) == 1 and not kwds and type(args[0]) is self.data_class:
+            link.send(args[0])
+        else:
+            link.send(args_kwds_to_message(self.data_class, args, kwds))
+
+    def unregister(self) -> None:
+        """Stop publishing with this handle."""
+        link = self.impl
+        if link is None:
+            return
+        self.impl = None
+        link.handles -= 1
+        if link.handles == 0:
+            link.close()
+
+
+def _nobody(msg_id: int) -> bool:
+    """Subscribers of a publisher whose type is not the topic's."""
+    return False
+
+
+def make_publisher(node: Node) -> type[Publisher]:
+    """The class `rospy.Publisher` of a node."""
+    return type("Publisher", (Publisher,), {"__module__": Publisher.__module__, "_node": node})

@@ -1,0 +1,55 @@
+"""What publishers and subscribers have in common: the handle that a node holds (rospy.topics.Topic).
+
+Imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+import inspect
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from rospy_shim.names import is_legal_name
+
+if TYPE_CHECKING:
+    from rospy_shim.node import Node
+
+
+class TopicHandle:
+    """A topic as one side of a node sees it; `impl` is shared by all handles of the side, None once unregistered."""
+
+    __module__ = "rospy.topics"
+    _node: ClassVar[Node]
+    impl: Any = None
+
+    def __init__(self, name: str, data_class: Any, reg_type: str) -> None:
+        """Check the arguments and resolve the name.
+
+        Raises:
+            ValueError: an empty name, a class that is no message class, or a private name before `init_node`.
+        """
+        if not name or not isinstance(name, str):
+            raise ValueError("topic name is not a non-empty string")
+        if data_class is None:
+            raise ValueError("topic parameter 'data_class' is not initialized")
+        if not inspect.isclass(data_class):
+            raise ValueError(f"data_class [{data_class}] is not a class")
+        if not hasattr(data_class, "_md5sum"):
+            raise ValueError(f"data_class [{type(data_class).__name__}] is not a message data class")
+        node = self._node
+        if not is_legal_name(name):
+            node.warn_of_illegal(name)
+        names = node.names
+        if node.initialized:
+            self.resolved_name = names.resolve_name(name)
+        else:
+            self.resolved_name = names.resolve_name_without_node_name(name)
+        self.name = self.resolved_name
+        self.data_class = data_class
+        self.type: str = data_class._type
+        self.md5sum: str = data_class._md5sum
+        self.reg_type = reg_type
+
+    def get_num_connections(self) -> int:
+        """How many are at the other side."""
+        self._node.universe.charge()
+        return self.impl.connections() if self.impl is not None else 0

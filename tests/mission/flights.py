@@ -1,0 +1,24 @@
+"""Small missions for tests: a startup script, and the sources of its apps and nodes."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+
+
+def write_mission(folder: Path, startup: str, **sources: str) -> str:
+    """Write a mission's files.
+
+    Args:
+        folder: where to.
+        startup: the startup script.
+        sources: file stem to Python source (indented as it stands in the test); `mission_yaml` is the mission file.
+
+    Returns:
+        What `Mission` takes.
+    """
+    for stem, source in sources.items():
+        name = "mission.yaml" if stem == "mission_yaml" else f"{stem}.py"
+        (folder / name).write_text(textwrap.dedent(source))
+    (folder / "startup.scr").write_text(textwrap.dedent(startup))
+    return str(folder)

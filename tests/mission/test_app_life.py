@@ -1,0 +1,156 @@
+"""Applications that end, fail, restart and hang, in whole missions."""
+
+from __future__ import annotations
+
+import _thread
+from pathlib import Path
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.es.records import RUNNING
+from cfepy.mission import Mission
+from cfepy.rtos.threads import drain
+from tests.mission.flights import write_mission
+
+APP = "CFE_APP, {0}, {0}_main, {1}, 50, 16384, 0x0, {2};\n"
+
+CRASHING = """
+    COUNT = 0
+
+    def crash_main(cfe):
+        global COUNT
+        COUNT += 1
+        cfe.evs.register()
+        cfe.evs.send_info(1, f"start {COUNT}")
+        pipe = cfe.sb.create_pipe(3, "CRASH_PIPE")
+        cfe.sb.subscribe(0x1882, pipe)
+        cfe.es.run_loop()
+        cfe.os.task_delay(700)
+        raise ValueError("a wheel fell off")
+"""
+
+
+def fly(folder: str, seconds: float, tasks: str = "thread", **options: object) -> Mission:
+    mission = Mission(folder, console=Console(quiet=True), tasks=tasks, **options)  # type: ignore[arg-type]
+    try:
+        mission.run(seconds)
+    finally:
+        mission.close()
+    return mission
+
+
+def text_of(mission: Mission) -> str:
+    return "\n".join(mission.console.lines)
+
+
+def test_an_app_that_dies_is_restarted_with_fresh_variables(tmp_path: Path) -> None:
+    folder = write_mission(tmp_path, APP.format("crash", "CRASH", 0) + "!", crash=CRASHING)
+    mission = fly(folder, 20)
+    text = text_of(mission)
+    assert mission.cfe.es.history["CRASH"].restarts >= 1
+    assert mission.cfe.es.history["CRASH"].deaths >= 2
+    assert "start 1" in text
+    assert "start 2" not in text
+    assert "CFE_ES_RestartApp: Restart Application CRASH Initiated" in text
+    assert "Restart Application CRASH Completed, AppID=1114119" in text
+    assert mission.reset_reason is None
+
+
+def test_the_traceback_is_the_apps_own(tmp_path: Path) -> None:
+    folder = write_mission(tmp_path, APP.format("crash", "CRASH", 0) + "!", crash=CRASHING)
+    lines = fly(folder, 2).console.lines
+    begin = lines.index("Traceback (most recent call last):")
+    end = next(number for number, line in enumerate(lines) if line.startswith("ValueError"))
+    files = [line for line in lines[begin:end] if line.lstrip().startswith("File ")]
+    assert len(files) == 1
+    assert "crash.py" in files[0]
+    assert "ValueError: a wheel fell off (crash.py:13)" in text_of(fly(folder, 2))
+
+
+def test_exception_action_1_resets_the_processor(tmp_path: Path) -> None:
+    folder = write_mission(tmp_path, APP.format("crash", "CRASH", 1) + "!", crash=CRASHING)
+    mission = fly(folder, 20)
+    assert mission.reset_reason == "CRASH: ValueError: a wheel fell off (crash.py:13)"
+    assert "CFE_PSP: Exiting cFE with PROCESSOR Reset status." in mission.console.lines
+    assert mission.kernel.now < 3_000_000_000
+
+
+def test_an_app_that_returns_has_exited(tmp_path: Path) -> None:
+    source = """
+        def short_main(cfe):
+            cfe.evs.register()
+            cfe.es.run_loop()
+    """
+    mission = fly(write_mission(tmp_path, APP.format("short", "SHORT", 0) + "!", short=source), 4)
+    assert "Exit Application SHORT Completed." in text_of(mission)
+    assert mission.cfe.es.app_named("SHORT") is None
+
+
+LEAKY = """
+    import time
+
+    def leaky_main(cfe):
+        es, os, sb = cfe.es, cfe.os, cfe.sb
+        cfe.evs.register()
+        pipe = sb.create_pipe(5, "LEAKY")
+        sb.subscribe(0x1882, pipe)
+        os.queue_create("LEAKY_Q", 3, 8)
+        os.bin_sem_create("LEAKY_B", 0)
+        os.count_sem_create("LEAKY_C", 0)
+        os.mut_sem_create("LEAKY_M")
+        es.pool_create(1000)
+        cfe.tbl.register("LeakyTable", 64)
+        es.create_child_task("LEAKY_CHILD", lambda: os.task_delay(10_000_000), 4096, 60)
+        while es.run_loop():
+            sb.receive_buffer(pipe, 100)
+"""
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_a_hundred_restarts_leave_nothing_behind(tmp_path: Path, tasks: str) -> None:
+    folder = write_mission(tmp_path, APP.format("leaky", "LEAKY", 0) + "!", leaky=LEAKY)
+    drain()
+    threads = _thread._count()
+    mission = Mission(folder, console=Console(quiet=True), tasks=tasks)
+    with mission:
+        mission.run(2)
+        es = mission.cfe.es
+        before = held(mission)
+        for number in range(100):
+            app = es.app_named("LEAKY")
+            assert app is not None, number
+            assert app.state == RUNNING
+            es.restart_app(app.app_id)
+            mission.run(8)
+        assert es.history["LEAKY"].restarts == 100
+        assert held(mission) == before
+    drain()
+    assert _thread._count() == threads
+
+
+def held(mission: Mission) -> dict[str, int]:
+    """How many of everything there are."""
+    cfe = mission.cfe
+    return {
+        "tasks": len(mission.kernel.tasks),
+        "apps": len(cfe.es.apps),
+        "pools": len(cfe.es.pools),
+        "pipes": len(cfe.sb.pipes),
+        "subscriptions": cfe.sb.subscriptions_in_use(),
+        "memory": mission.memory.used,
+        "ready": len(mission.kernel.ready),
+    }
+
+
+def test_a_mission_can_be_closed_while_an_app_refuses_to_die(tmp_path: Path) -> None:
+    source = """
+        def stubborn_main(cfe):
+            while True:
+                try:
+                    cfe.os.task_delay(10)
+                except BaseException:
+                    pass
+    """
+    mission = fly(write_mission(tmp_path, APP.format("stubborn", "STUBBORN", 0) + "!", stubborn=source), 2)
+    assert [task.name for task in mission.kernel.stuck] == ["STUBBORN"]

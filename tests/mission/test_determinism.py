@@ -1,0 +1,70 @@
+"""Same mission, same seed, same trace: on both task contexts, in slices, and under any hash seed."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.mission import Mission
+from tests.mission.flights import write_mission
+
+STARTUP = """
+    CFE_APP, sample,  SAMPLE_APP_Main, SAMPLE,  50, 16384, 0x0, 0;
+    CFE_APP, hk,      HK_AppMain,      HK,      90, 16384, 0x0, 0;
+    CFE_APP, sch_lab, SCH_LAB_AppMain, SCH_LAB, 80, 16384, 0x0, 0;
+    !
+"""
+PROGRAM = """
+import sys
+from cfepy.console import Console
+from cfepy.mission import Mission
+with Mission(sys.argv[1], console=Console(quiet=True), tasks=sys.argv[2]) as mission:
+    mission.run(float(sys.argv[3]))
+    mission.shut_down_nodes()
+    print(mission.trace.digest())
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> str:
+    return write_mission(tmp_path, STARTUP)
+
+
+def digest(folder: str, tasks: str, slices: list[float]) -> str:
+    with Mission(folder, console=Console(quiet=True), tasks=tasks) as mission:
+        for seconds in slices:
+            mission.run(seconds)
+        return mission.trace.digest()
+
+
+def test_both_contexts_and_any_slicing_give_one_trace(folder: str) -> None:
+    slices = [[25.0], [12.5, 12.5], [0.1] * 250, [10.0, 0.0, 15.0]]
+    assert len({digest(folder, tasks, cut) for tasks in ("thread", "greenlet") for cut in slices}) == 1
+
+
+def test_two_missions_side_by_side_do_not_meet(folder: str) -> None:
+    alone = digest(folder, "thread", [6.0])
+    with (
+        Mission(folder, console=Console(quiet=True)) as first,
+        Mission(folder, console=Console(quiet=True), tasks="greenlet") as second,
+    ):
+        for _ in range(6):
+            first.run(1)
+            second.run(1)
+        assert [first.trace.digest(), second.trace.digest()] == [alone, alone]
+
+
+def digest_in_process(mission: str, tasks: str, seconds: float, hash_seed: str) -> str:
+    environment = os.environ | {"PYTHONHASHSEED": hash_seed}
+    command = [sys.executable, "-c", PROGRAM, mission, tasks, str(seconds)]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def test_hash_seeds_do_not_matter(folder: str) -> None:
+    seeds = ["0", "1", "4242"]
+    assert len({digest_in_process(folder, "thread", 5, seed) for seed in seeds} | {digest(folder, "thread", [5.0])}) == 1

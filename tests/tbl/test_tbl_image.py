@@ -1,0 +1,53 @@
+"""Table files made from Python values."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.msg import Layout
+from cfepy.status import UsageError
+from cfepy.tbl import TableImage, build, pack_rows, read, unpack_rows, write_beside
+from tests.layouts import DATA
+
+ROW = Layout("Row", [("A", "u8"), ("B", "u32")])
+
+
+def test_rows_are_filled_up_with_zeros() -> None:
+    data = pack_rows(ROW, [{"A": 1, "B": 2}], capacity=3)
+    assert len(data) == 3 * ROW.size
+    assert unpack_rows(ROW, data) == [{"A": 1, "B": 2}, {"A": 0, "B": 0}, {"A": 0, "B": 0}]
+
+
+def test_faults_of_rows_name_row_and_field() -> None:
+    with pytest.raises(UsageError, match="there is room for 1"):
+        pack_rows(ROW, [{}, {}], capacity=1)
+    with pytest.raises(UsageError) as caught:
+        pack_rows(ROW, [{}, {"A": 256}], capacity=2)
+    assert caught.value.field == "rows[1].A"
+
+
+@pytest.mark.parametrize("name", ["", "Table", "APP." + "x" * 36])
+def test_names_that_no_table_has(name: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        build(TableImage(name, b"1"))
+    assert caught.value.field == "name"
+
+
+def test_image_without_data() -> None:
+    with pytest.raises(UsageError):
+        build(TableImage("APP.T", b""))
+
+
+def test_written_beside_its_definition(tmp_path: Path) -> None:
+    image = TableImage("APP.T", b"1234", "a table")
+    path = write_beside(str(tmp_path / "t.py"), image)
+    assert path == tmp_path / "t.tbl"
+    assert read(path.read_bytes()) == image
+
+
+@pytest.mark.parametrize("name", ["hk_cpy_tbl", "sample_app_tbl", "sch_lab_table"])
+def test_files_of_elf2cfetbl_are_built_to_the_byte(name: str) -> None:
+    data = (DATA / f"{name}.tbl").read_bytes()
+    assert build(read(data)) == data
