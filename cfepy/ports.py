@@ -68,6 +68,9 @@ class Bus(Protocol):
     def subscribe_ex(self, msg_id: int, pipe_id: int, qos: int, msg_limit: int) -> None:
         """Route a MsgId to a pipe with a message limit (CFE_SB_SubscribeEx)."""
 
+    def subscribe_local(self, msg_id: int, pipe_id: int, msg_limit: int) -> None:
+        """Route a MsgId to a pipe, on this processor only (CFE_SB_SubscribeLocal)."""
+
     def unsubscribe(self, msg_id: int, pipe_id: int) -> None:
         """Remove a route (CFE_SB_Unsubscribe)."""
 
@@ -106,6 +109,9 @@ class SpacecraftClock(Protocol):
     def text(self) -> str:
         """The same as CFE_TIME_Print writes it: "1980-012-14:03:20.00000"."""
 
+    def print_(self, time: tuple[int, int]) -> str:
+        """Any time as CFE_TIME_Print writes it."""
+
 
 class Cleanup(Protocol):
     """A service that holds things for applications and gives them back when one ends."""
@@ -117,10 +123,10 @@ class Cleanup(Protocol):
 class Memory(Protocol):
     """The board's memory, as far as it is counted."""
 
-    def claim(self, owner: str, kind: str, size: int) -> object:
+    def claim(self, owner: str, kind: str, size: int) -> int:
         """Take bytes for an owner ("HK", "pipe HK_PIPE", 1280); the token gives them back."""
 
-    def release(self, token: object) -> None:
+    def release(self, token: int) -> None:
         """Give a claim back."""
 
 

@@ -64,8 +64,9 @@ class Link:
         self.listeners: list[SubscribeListener] = []
         self.header: Header = {}
         self.shared = False  # with publishers of other nodes
+        self.raw = False
         self.connected = False
-        self.topic: Topic
+        self.topic: Topic | None = None  # None until connected, and when the node is shut down or the types differ
         self.msg_id = 0
         bus = node.cfe.sb
         self._bus = bus
@@ -82,19 +83,20 @@ class Link:
         Raises:
             UsageError: the topic's MsgId belongs to another topic.
         """
-        self.topic = topic = self.node.graph.topic(self.name)
-        self.msg_id = topic.msg_id
-        self.header = self._make_header()
         self.connected = True
-        if topic.agrees(self.data_class):
-            topic.add_link(self)
-            for subscription in topic.subscriptions:
-                self.peer_joined(subscription)
-        else:
+        self.header |= self._own_header()
+        topic = self.node.topic_for(self.name, self.data_class)
+        if topic is None:
             self._has_subscribers = _nobody
-            self.node.warn_of_type(topic, self.data_class)
+            return
+        self.topic = topic
+        self.raw = topic.raw
+        self.msg_id = topic.msg_id
+        topic.add_link(self)
+        for subscription in topic.subscriptions:
+            self.peer_joined(subscription)
 
-    def _make_header(self) -> Header:
+    def _own_header(self) -> Header:
         return {
             "callerid": self.node.names.name,
             "latching": "1" if self.latching else "0",
@@ -108,19 +110,21 @@ class Link:
         """Keep the last message for subscribers to come."""
         self.latching = True
         self.header["latching"] = "1"
-        if self.connected:
+        if self.topic is not None:
             self.topic.latching = True
 
     def close(self) -> None:
-        """Leave the graph."""
-        if self.connected:
-            self.topic.remove_link(self)
+        """Leave the graph; who still publishes is not heard any more."""
+        self._has_subscribers = _nobody
         self.node.links.pop(self.name, None)
+        if self.topic is not None:
+            self.topic.remove_link(self)
+            self.topic = None
 
     def connections(self) -> int:
         """How many pipes get the topic's messages: subscribing nodes, and cFE applications."""
-        route = self._bus.routes.get(self.msg_id) if self.connected else None
-        return len(route.active) if route is not None and self in self.topic.links else 0
+        route = self._bus.routes.get(self.msg_id) if self.topic is not None else None
+        return len(route.active) if route is not None else 0
 
     def send(self, message: Any) -> None:
         """Publish a message.
@@ -136,7 +140,7 @@ class Link:
             return
         payload = self.serialize(message)
         try:
-            if self.topic.raw:
+            if self.raw:
                 self._send_packet(message)
             elif len(payload) > self._room:
                 self._send_segments(payload)
@@ -191,7 +195,8 @@ class Link:
     def _note(self, index: int) -> None:
         """Remember who sends the next packet of the topic, since a packet cannot say."""
         route = self._bus.routes[self.msg_id]
-        self.topic.notes[route.sequence & 0x3FFF] = (self.header, index)
+        if self.topic is not None:
+            self.topic.notes[route.sequence & 0x3FFF] = (self.header, index)
 
     def _wait_for_room(self) -> None:
         kernel = self.node.kernel
@@ -212,7 +217,7 @@ class Link:
 
     def peer_joined(self, subscription: Subscription) -> None:
         """Give a new subscriber the latched message, and tell the listeners."""
-        if self.latching and self.latched is not None and not self.topic.raw:
+        if self.latching and self.latched is not None and not self.raw:
             subscription.deliver(self.serialize(self.latched), self.header)
         for listener in self.listeners:
             self.node.start_task(self.name, lambda each=listener: self._tell(each, subscription))  # type: ignore[misc]
@@ -277,7 +282,7 @@ class Publisher(TopicHandle):
             link.header.update(headers)
         if subscriber_listener is not None:
             link.listeners.append(subscriber_listener)
-            if link.connected:
+            if link.topic is not None:
                 for subscription in link.topic.subscriptions:
                     link.peer_joined(subscription)
 

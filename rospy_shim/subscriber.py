@@ -7,9 +7,9 @@ that is full loses the newest message, and the bus reports it. May import cfepy.
 
 from __future__ import annotations
 
-import traceback
 from typing import TYPE_CHECKING, Any
 
+from cfepy.nodes.report import traceback_text
 from cfepy.rtos import TIMEOUT
 from cfepy.status import CfeError
 from rospy_shim.exceptions import ROSException
@@ -51,7 +51,7 @@ class Subscription:
         self._closed = False
         self._pipe = NO_PIPE
         self._assembler = Assembler()
-        self.topic: Topic
+        self.topic: Topic | None = None
 
     def add_callback(self, callback: Callable[..., Any], argument: Any) -> None:
         """Call this too, at once with a latched message that has come already."""
@@ -71,26 +71,24 @@ class Subscription:
         Raises:
             UsageError: the topic's MsgId belongs to another topic.
         """
-        self.topic = topic = self.node.graph.topic(self.name)
         self.connected = True
-        if topic.agrees(self.data_class):
-            self.node.start_child(self.name, self._serve)
-        else:
-            self.node.warn_of_type(topic, self.data_class)
+        topic = self.topic = self.node.topic_for(self.name, self.data_class)
+        if topic is not None:
+            self.node.start_child(self.name, lambda: self._serve(topic))
 
     def close(self) -> None:
         """Leave the graph. The task that serves it ends when it is back from its callbacks."""
         self._closed = True
         self.node.subscriptions.pop(self.name, None)
-        if self.connected:
+        if self.topic is not None:
             self.topic.remove_subscription(self)
-        if self._pipe != NO_PIPE:
-            self.node.cfe.sb.unsubscribe(self.topic.msg_id, self._pipe)
+            if self._pipe != NO_PIPE:
+                self.node.cfe.sb.unsubscribe(self.topic.msg_id, self._pipe)
         self._call_attention()
 
     def connections(self) -> int:
         """How many nodes publish the topic."""
-        return len(self.topic.links) if self.connected and self in self.topic.subscriptions else 0
+        return len(self.topic.links) if self.topic is not None and self in self.topic.subscriptions else 0
 
     def deliver(self, payload: bytes, header: Header) -> None:
         """Give this subscriber alone a message: a latched one, or one of a SubscribeListener."""
@@ -105,27 +103,27 @@ class Subscription:
 
     # -- in the task -------------------------------------------------------------------------------------------------
 
-    def _serve(self) -> None:
+    def _serve(self, topic: Topic) -> None:
         if self._closed:
             return
-        self._open()
+        self._open(topic)
         try:
-            self._receive()
+            self._receive(topic)
         except CfeError as error:
             if self._pipe != NO_PIPE:
                 self.node.logs.logerr("subscription of %s ends: %s", self.name, error)
         finally:
             self.release()
 
-    def _open(self) -> None:
+    def _open(self, topic: Topic) -> None:
         """Make the pipe, join the topic, and take what publishers have latched."""
         bus = self.node.cfe.sb
         most = bus.config.os_queue_max_depth
         depth = most if self.depth is None else min(self.depth, most)
         self._pipe = bus.create_pipe(depth, self.node.kernel.current.name)
-        bus.subscribe_ex(self.topic.msg_id, self._pipe, 0, depth)
-        self.topic.add_subscription(self)
-        for link in list(self.topic.links):
+        bus.subscribe_ex(topic.msg_id, self._pipe, 0, depth)
+        topic.add_subscription(self)
+        for link in list(topic.links):
             link.peer_joined(self)
 
     def release(self) -> None:
@@ -134,10 +132,9 @@ class Subscription:
         if pipe != NO_PIPE and self.node.cfe.sb.find_pipe(pipe) is not None:
             self.node.cfe.sb.delete_pipe(pipe)
 
-    def _receive(self) -> None:
+    def _receive(self, topic: Topic) -> None:
         """Packet after packet; the loop that every received message passes through."""
         receive, pipe = self.node.cfe.sb.receive_buffer, self._pipe
-        topic = self.topic
         unpack = self.data_class._unpack if not topic.raw else self._packet_as_message
         while True:
             if self._attention and not self._attend():
@@ -146,7 +143,7 @@ class Subscription:
             if packet is None:
                 continue
             if packet[2] < WHOLE and not topic.raw:
-                packet = self._assemble(packet)
+                packet = self._assemble(packet, topic)
                 if packet is None:
                     continue
             try:
@@ -163,8 +160,8 @@ class Subscription:
                         callback(message)
                     else:
                         callback(message, argument)
-                except Exception:
-                    self._bad_callback(callback)
+                except Exception as error:
+                    self._bad_callback(callback, error)
 
     def _attend(self) -> bool:
         """Do what is to be done beside receiving; False when it is to end."""
@@ -179,11 +176,9 @@ class Subscription:
                 self._call(callback, argument, message)
         return not self._closed
 
-    def _assemble(self, packet: bytes) -> bytes | None:
-        sequence = sequence_of(packet)
-        header, index = self.topic.notes.get(sequence, (None, None))
-        whole = self._assembler.add(packet, id(header), index)
-        return whole
+    def _assemble(self, packet: bytes, topic: Topic) -> bytes | None:
+        header, index = topic.notes.get(sequence_of(packet), (None, None))
+        return self._assembler.add(packet, header["callerid"] if header is not None else "", index)
 
     def _packet_as_message(self, packet: bytes, at: int) -> Any:
         """A raw topic: the message's data are the whole packet."""
@@ -197,12 +192,14 @@ class Subscription:
                 callback(message)
             else:
                 callback(message, argument)
-        except Exception:
-            self._bad_callback(callback)
+        except Exception as error:
+            self._bad_callback(callback, error)
 
-    def _bad_callback(self, callback: Callable[..., Any]) -> None:
+    def _bad_callback(self, callback: Callable[..., Any], error: Exception) -> None:
         """An exception in a callback is logged, and the next message comes all the same."""
-        self.node.logs.logerr("bad callback: %s\n%s", callback, traceback.format_exc())
+        where = error.__traceback__
+        text = traceback_text(error.with_traceback(where.tb_next if where is not None else None))
+        self.node.logs.logerr("bad callback: %s\n%s", callback, text)
 
 
 class Subscriber(TopicHandle):

@@ -38,7 +38,7 @@ def HK_AppMain(cfe: Cfe) -> None:
     app = HkApp(cfe)
     try:
         app.start()
-    except CfeError:  # its event is out already
+    except CfeError:  # it was reported where it happened
         app.run_status = APP_ERROR
     while cfe.es.run_loop(app.run_status):
         app.wait()
@@ -68,10 +68,14 @@ class HkApp:
         """Everything before the first message.
 
         Raises:
-            CfeError: a service refused; an event said so.
+            CfeError: a service refused; an event, or the system log, says so.
         """
         cfe = self._cfe
-        cfe.evs.register()
+        try:
+            cfe.evs.register()
+        except CfeError as error:
+            cfe.es.write_to_sys_log(f"HK: error registering for event services: 0x{error.status & 0xFFFFFFFF:08X}")
+            raise
         with self._reporting(eid.HK_CR_PIPE_ERR_EID, "Error Creating SB Pipe"):
             self._pipe = cfe.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
         for event_id, what, msg_id in (
@@ -193,7 +197,7 @@ class HkApp:
         with self._unexpected(eid.HK_UNEXPECTED_GETSTAT_RET_EID, "GetStatus", "Copy"):
             status = tbl.get_status(table)
         if status == CFE_TBL_INFO_VALIDATION_PENDING:
-            tbl.validate(table)
+            self._validate_copy_table()
         elif status == CFE_TBL_INFO_UPDATE_PENDING:
             self._combiner.tear_down()
             with self._unexpected(eid.HK_UNEXPECTED_RELADDR_RET_EID, "ReleaseAddress", "Copy"):
@@ -203,6 +207,14 @@ class HkApp:
             with self._unexpected(eid.HK_UNEXPECTED_GETADDR_RET_EID, "GetAddress", "Copy"):
                 entries, _ = tbl.get_address(table)
             self._combiner.use_table(entries)
+
+    def _validate_copy_table(self) -> None:
+        """Have a new table checked; that this fails is told, and no reason for HK to end."""
+        try:
+            _expect_success(self._cfe.tbl.validate(self._copy_table))
+        except CfeError as error:
+            text = f"Unexpected CFE_TBL_Validate return (0x{error.status & 0xFFFFFFFF:08X}) for Copy Table"
+            self._cfe.evs.send_err(eid.HK_UNEXPECTED_TBLVLD_RET_EID, text)
 
     def _look_after_runtime_table(self) -> None:
         tbl, table = self._cfe.tbl, self._runtime_table

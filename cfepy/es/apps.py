@@ -85,7 +85,9 @@ class AppServices(EsCore):
             )
         except CfeError as failure:
             self.apps.delete(record.app_id)
-            self.write_to_sys_log(f"CFE_ES_AppCreate: AppCreate Error: TaskCreate {name} Failed. EC = {failure.status}!")
+            self.write_to_sys_log(
+                f"CFE_ES_AppCreate: AppCreate Error: TaskCreate {name} Failed. EC = {failure.status}!"
+            )
             self._explain(failure)
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(failure)) from failure
         return record.app_id
@@ -215,9 +217,7 @@ class AppServices(EsCore):
     def _user_app(self, app_id: int, action: str) -> AppRecord:
         app = self.apps.find(app_id)
         if app is None:
-            self.write_to_sys_log(
-                f"CFE_ES_{action}App: Invalid Application ID received for {action}, AppID = {app_id}"
-            )
+            self.write_to_sys_log(f"CFE_ES_{action}App: Invalid Application ID received for {action}, AppID = {app_id}")
             return self.app(app_id)
         if app.is_core:
             self.write_to_sys_log(f"CFE_ES_{action}App: Cannot {action} a CORE Application: {app.name}.")

@@ -110,9 +110,7 @@ class Boot:
             if entry.kind == CFE_LIB:
                 self.es.load_library(entry.name, entry.path, entry.symbol)
             else:
-                params = StartParams(
-                    entry.path, entry.symbol, entry.stack_size, entry.priority, entry.exception_action
-                )
+                params = StartParams(entry.path, entry.symbol, entry.stack_size, entry.priority, entry.exception_action)
                 self.es.create_app(entry.name, params)
         except CfeError:
             pass  # it is in the system log; as in cFE the next entry gets its chance

@@ -59,7 +59,9 @@ class MemPool:
         needed = bucket + DESCRIPTOR_BYTES
         if self.next_offset + needed > self.size:
             free = self.size - self.next_offset
-            raise CfeError(CFE_ES_ERR_MEM_BLOCK_SIZE, f"pool {self.name}: {needed} bytes needed, {free} of {self.size} left")
+            raise CfeError(
+                CFE_ES_ERR_MEM_BLOCK_SIZE, f"pool {self.name}: {needed} bytes needed, {free} of {self.size} left"
+            )
         block = PoolBlock(bytearray(size), bucket, self.next_offset + DESCRIPTOR_BYTES)
         self.next_offset += needed
         self.blocks[block.offset] = block

@@ -192,14 +192,10 @@ class ExecutiveServices(AppServices):
         """
         app = self.app_of_caller()
         if app is None or not name:
-            self.write_to_sys_log(
-                f"CFE_ES_CreateChildTask: Invalid calling context when creating Task '{name}'"
-            )
+            self.write_to_sys_log(f"CFE_ES_CreateChildTask: Invalid calling context when creating Task '{name}'")
             raise CfeError(CFE_ES_BAD_ARGUMENT, f"child task {name!r} needs an application and a name")
         if self.osal.task_get_id() != app.main_task_id:
-            self.write_to_sys_log(
-                f"CFE_ES_CreateChildTask: Error: Cannot call from a Child Task (for Task '{name}')."
-            )
+            self.write_to_sys_log(f"CFE_ES_CreateChildTask: Error: Cannot call from a Child Task (for Task '{name}').")
             raise CfeError(CFE_ES_ERR_CHILD_TASK_CREATE, "only the main task of an application creates child tasks")
         return self.start_task(app, name, entry, stack_size, priority)
 
@@ -221,9 +217,7 @@ class ExecutiveServices(AppServices):
         app = self.calling_app()
         task_id = self.osal.task_get_id()
         if task_id == app.main_task_id:
-            self.write_to_sys_log(
-                f"CFE_ES_ExitChildTask: Error: Cannot Call from a cFE App Main Task. ID = {task_id}"
-            )
+            self.write_to_sys_log(f"CFE_ES_ExitChildTask: Error: Cannot Call from a cFE App Main Task. ID = {task_id}")
             return
         record = app.tasks.pop(task_id, None)
         if record is not None and record.task is not None:

@@ -41,7 +41,7 @@ class EsCore:
         self.apps: IdTable[AppRecord] = IdTable(ES_APPID_BASE, config.es_max_applications)
         self.libs: IdTable[LibRecord] = IdTable(ES_LIBID_BASE, config.es_max_libraries)
         self.pools: IdTable[MemPool] = IdTable(ES_POOLID_BASE, config.es_max_memory_pools)
-        self.pool_owners: dict[int, tuple[AppRecord | None, object]] = {}
+        self.pool_owners: dict[int, tuple[AppRecord | None, int]] = {}
         self.history: dict[str, AppHistory] = {}
         self.faults: list[Fault] = []
         self.system_state = SYSTEM_EARLY_INIT

@@ -119,9 +119,12 @@ class Mission:
         time = TimeServices(kernel, ports, config)
         tbl = TableServices(kernel, ports, config, self.files, console)
         ports.es, ports.syslog, ports.sb, ports.evs, ports.time, ports.tbl = es, es.syslog, sb, evs, time, tbl
+        time.clock.on_jump = sb.forget_time
         self.cfe = Cfe(es, sb, evs, time, tbl, self.osal, self.psp)
         self.sb_task = SbTask(sb)
-        self.es_task = EsTask(es, self.spec.name, self._build_text(), zlib.crc32(versions.CFE_VERSION.encode()) & 0xFFFF)
+        self.es_task = EsTask(
+            es, self.spec.name, self._build_text(), zlib.crc32(versions.CFE_VERSION.encode()) & 0xFFFF
+        )
 
     @property
     def epoch_ns(self) -> int:
@@ -145,7 +148,7 @@ class Mission:
                 ("CFE_EVS_EarlyInit", cfe.evs.early_init),
                 ("CFE_SB_EarlyInit", nothing),
                 ("CFE_TIME_EarlyInit", cfe.time.early_init),
-                ("CFE_TBL_EarlyInit", nothing),
+                ("CFE_TBL_EarlyInit", cfe.tbl.early_init),
                 ("CFE_FS_EarlyInit", nothing),
             ),
             core_apps=(
@@ -257,5 +260,3 @@ class Mission:
         if self.reset_reason is None:
             self.reset_reason = f"CFE_PSP_Restart({reset_type})"
         self.kernel.stop()
-
-

@@ -59,7 +59,9 @@ def find_script(mission: str) -> Path:
     if mission in shipped_missions():
         return shipped("missions") / mission / STARTUP_SCRIPT
     names = ", ".join(shipped_missions())
-    raise UsageError(f"no startup script, no folder with a {STARTUP_SCRIPT}, and no shipped mission ({names})", file=mission)
+    raise UsageError(
+        f"no startup script, no folder with a {STARTUP_SCRIPT}, and no shipped mission ({names})", file=mission
+    )
 
 
 def read_mission(mission: str) -> MissionSpec:
@@ -73,9 +75,7 @@ def read_mission(mission: str) -> MissionSpec:
     """
     script = find_script(mission)
     folder = script.parent
-    mission_file = next(
-        (path for path in (script.with_suffix(".yaml"), folder / MISSION_FILE) if path.is_file()), None
-    )
+    mission_file = next((path for path in (script.with_suffix(".yaml"), folder / MISSION_FILE) if path.is_file()), None)
     name = folder.name if script.name == STARTUP_SCRIPT else script.stem
     if mission_file is None:
         return MissionSpec(name, folder, script, None, "linux", RosConfig())

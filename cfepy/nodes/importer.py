@@ -12,7 +12,6 @@ import importlib
 import importlib.util
 import os
 import sys
-import threading  # noqa: F401  # first imported by a task, the host's would take that task for the main thread
 from collections.abc import Callable, Mapping, Sequence
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from types import ModuleType

@@ -7,7 +7,7 @@ process, is refused or does nothing.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 # fmt: off
 _ONE_PATH = (
-    "access", "chflags", "chmod", "chown", "getxattr", "lchmod", "lchown", "listdir", "listxattr", "lstat", "mkdir",
-    "mkfifo", "mknod", "open", "pathconf", "readlink", "remove", "removexattr", "rmdir", "scandir", "setxattr",
+    "access", "chflags", "chmod", "chown", "getxattr", "lchmod", "lchown", "listxattr", "lstat", "mkdir",
+    "mkfifo", "mknod", "open", "pathconf", "readlink", "remove", "removexattr", "rmdir", "setxattr",
     "stat", "statvfs", "truncate", "unlink", "utime",
 )
 _TWO_PATHS = ("link", "rename", "replace")
@@ -48,6 +48,33 @@ class Environ(dict[str, str]):
         if name not in self:
             self[name] = default
         return self[name]
+
+
+class Entries:
+    """`os.scandir`, sorted by name: the order of a directory is the file system's whim.
+
+    Args:
+        path: the directory.
+    """
+
+    def __init__(self, path: Any) -> None:
+        with os.scandir(path) as entries:
+            self._entries = iter(sorted(entries, key=lambda entry: entry.name))
+
+    def __iter__(self) -> Iterator[os.DirEntry[Any]]:
+        return self._entries
+
+    def __next__(self) -> os.DirEntry[Any]:
+        return next(self._entries)
+
+    def __enter__(self) -> Entries:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """`close` of a scandir iterator; all was read at once."""
 
 
 def os_module(universe: Universe) -> ModuleType:
@@ -82,13 +109,15 @@ def _paths(universe: Universe) -> dict[str, Any]:
     def symlink(target: Any, path: Any, target_is_directory: bool = False, **options: Any) -> None:
         os.symlink(target, resolve(path), target_is_directory, **options)
 
-    def scandir(path: Any = ".") -> Any:
-        """Entries keep the path as it was asked for; where that is relative, the absolute one is all there is."""
-        return os.scandir(resolve(path))
+    def listdir(path: Any = ".") -> list[Any]:
+        return sorted(os.listdir(resolve(path)))
+
+    def scandir(path: Any = ".") -> Entries:
+        return Entries(resolve(path))
 
     names = {name: one(getattr(os, name)) for name in _ONE_PATH if hasattr(os, name)}
     names.update({name: two(getattr(os, name)) for name in _TWO_PATHS})
-    names.update(symlink=symlink, scandir=scandir, getcwd=lambda: universe.cwd, chdir=universe.change_directory)
+    names.update(symlink=symlink, listdir=listdir, scandir=scandir, getcwd=lambda: universe.cwd, chdir=universe.change_directory)
     names["getcwdb"] = lambda: os.fsencode(universe.cwd)
     return names
 

@@ -1,4 +1,4 @@
-"""What a node on the simulated computer cannot have: real sockets, processes and event loops, refused by name.
+"""What a node on the simulated computer cannot have: real sockets and processes, refused by name.
 
 The modules can be imported, because many programs import them without need; the first use says what to do instead.
 A flight computer under an RTOS has no processes either.
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 NETWORK = "let nodes talk through topics and services; bytes from outside enter through the CI application"
 PROCESS = "start a thread (threading.Thread), or list the program as a node of its own in the mission"
-LOOP = "use threads and queue.Queue, or a timer of the node's client library"
 SIGNALS = "use threading.Timer"
 
 

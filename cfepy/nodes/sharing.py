@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 # fmt: off
 FRESH = frozenset({
-    "_pydatetime", "_pyio", "_threading_local", "argparse", "asynchat", "asyncore", "bdb", "cmd",
-    "code", "codeop", "concurrent", "configparser", "contextlib", "email", "fileinput", "ftplib", "genericpath",
-    "getopt", "getpass", "glob", "http", "imaplib", "logging", "nntplib", "optparse", "pathlib", "pdb", "pickle",
-    "poplib", "posixpath", "pprint", "queue", "random", "runpy", "sched", "secrets", "selectors", "shelve", "shutil",
-    "smtpd", "smtplib", "socketserver", "statistics", "telnetlib", "tempfile", "threading", "timeit", "traceback",
-    "tracemalloc", "unittest", "urllib", "uuid", "warnings", "wsgiref", "xmlrpc",
+    "_pydatetime", "_pyio", "_threading_local", "argparse", "asynchat", "asyncio", "asyncore", "bdb", "cmd", "code",
+    "codeop", "concurrent", "configparser", "contextlib", "email", "fileinput", "ftplib", "genericpath", "getopt",
+    "getpass", "glob", "http", "imaplib", "logging", "nntplib", "optparse", "pathlib", "pdb", "pickle", "poplib",
+    "posixpath", "pprint", "queue", "random", "runpy", "sched", "secrets", "selectors", "shelve", "shutil", "smtpd",
+    "smtplib", "socketserver", "statistics", "telnetlib", "tempfile", "threading", "timeit", "traceback",
+    "tracemalloc", "unittest", "urllib", "uuid", "warnings", "weakref", "wsgiref", "xmlrpc",
 })
 # fmt: on
 """Modules of the standard library, by their first name, that each node executes for itself."""
@@ -60,7 +60,6 @@ def refused_modules() -> Mapping[str, Callable[[Universe], ModuleType]]:
         "select": refused.select_module,
         "socket": refused.socket_module,
         "subprocess": refused.subprocess_module,
-        "asyncio": refused.refused_import("asyncio", refused.LOOP),
         "ssl": refused.refused_import("ssl", refused.NETWORK),
         "_ssl": refused.refused_import("_ssl", refused.NETWORK),
     }

@@ -69,9 +69,7 @@ def handle_names(universe: Universe, start: Callable[..., int], lock: Callable[[
     return {
         "_ThreadHandle": new_handle,
         "_get_main_thread_ident": lambda: universe.main_ident,
-        "_is_main_interpreter": lambda: True,
         "_make_thread_handle": lambda ident: ThreadHandle(lock(), ident),
         "_shutdown": shutdown,
-        "daemon_threads_allowed": lambda: True,
         "start_joinable_thread": start_joinable,
     }

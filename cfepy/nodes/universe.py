@@ -14,6 +14,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from cfepy.nodes import (
+    asyncio_module,
     datetime_module,
     importlib_module,
     lookup,
@@ -260,6 +261,7 @@ class Universe:
 
 
 _FIXES: dict[str, Callable[[Universe, ModuleType], None]] = {
+    "asyncio": asyncio_module.fix_asyncio,
     "random": random_module.fix_random,
     "threading": thread_module.fix_threading,
     "traceback": lambda universe, module: report.hide_in(module),

@@ -26,7 +26,9 @@ from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit, WaitList
 
 ENDLESS = 1 << 62
 HOST_PRIORITY = 256
-COLLECT_NS = 10_000_000_000  # garbage is collected at multiples of this, so that finalizers run at the same place always
+COLLECT_NS = (
+    10_000_000_000  # garbage is collected at multiples of this: finalizers always run at the same place
+)
 SLICE_NS = 100_000  # equals take turns when a task has used the CPU for this long
 MAX_REFUSALS = 100  # kernel calls that a dying task may try before it is left where it stands
 
@@ -127,6 +129,7 @@ class Kernel:
         self.ready = [entry for entry in self.ready if entry[2] is not task]
         heapify(self.ready)
         self._finish_in(task)
+        self.preempt()  # its end may have made a more urgent task ready
 
     def exit_task(self) -> None:
         """End the current task."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import struct
 
 from cfepy.config import PlatformConfig
-from cfepy.msg import compute_checksum
+from cfepy.msg import CMD_HEADER_SIZE, compute_checksum
 from cfepy.ports import Ports
 from cfepy.rtos import FOREVER, TIMEOUT, Kernel
 from cfepy.sb import events as ev
@@ -31,8 +31,10 @@ PEND_FOREVER = -1
 POLL = 0
 
 BUFFER_BYTES = 64  # of a buffer descriptor in front of each message (CFE_SB_BufferD_t)
-pack_telemetry_header = struct.Struct(">HHHIH").pack
-pack_primary_header = struct.Struct(">HHH").pack
+SECONDARY_BIT = SECONDARY >> 8
+unpack_primary = struct.Struct(">HH").unpack_from
+pack_telemetry = struct.Struct(">HHHIH").pack
+pack_empty_telemetry = struct.Struct(">HH12x").pack
 
 
 class SoftwareBus(PipeServices, SubscriptionServices):
@@ -67,66 +69,29 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         size = len(packet)
         if not 6 < size <= self._max_size:
             raise self._bad_size(packet)
-        msg_id = packet[0] << 8 | packet[1]
+        msg_id, bits = unpack_primary(packet)
         route = self.routes.get(msg_id)
         if route is None:
             self._no_route(msg_id)
             return
-        if not is_origination:
-            if (packet[4] << 8 | packet[5]) + 7 != size:
-                raise self._send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, f"length field of {size} bytes")
-            route.relayed += 1
-            self._deliver(route, bytes(packet))
-            return
-        sequence = route.sequence
-        route.sequence = sequence + 1
-        flags = (packet[2] & 0xC0) << 8 | (sequence & 0x3FFF)
-        if route.is_telemetry and size >= 12:
-            now = self.kernel.now
-            if now != self._stamped_at:
-                self._stamp(now)
-            header = pack_telemetry_header(msg_id, flags, size - 7, self._seconds, self._subseconds)
-            self._deliver(route, header + packet[12:])
-        elif msg_id & SECONDARY and size >= 8:
-            self._deliver(route, self._command(packet, flags))
-        else:
-            self._deliver(route, pack_primary_header(msg_id, flags, size - 7) + packet[6:])
-
-    def transmit_telemetry(self, msg_id: int, payload: bytes) -> None:
-        """Send a payload behind a telemetry header of 16 bytes: `transmit_msg` without building the packet first.
-
-        Args:
-            msg_id: a telemetry MsgId (secondary header, not a command).
-            payload: everything behind the header.
-        """
-        route = self.routes.get(msg_id)
-        if route is None:
-            self._no_route(msg_id)
-            return
-        size = len(payload) + 9
-        if size + 7 > self._max_size:
-            raise self._bad_size(bytes(16) + payload)
-        sequence = route.sequence
-        route.sequence = sequence + 1
-        now = self.kernel.now
-        if now != self._stamped_at:
-            self._stamp(now)
-        header = pack_telemetry_header(msg_id, 0xC000 | (sequence & 0x3FFF), size, self._seconds, self._subseconds)
-        self._deliver(route, header + b"\0\0\0\0" + payload)
-
-    def has_subscribers(self, msg_id: int) -> bool:
-        """Whether anybody would get a message."""
-        route = self.routes.get(msg_id)
-        return route is not None and bool(route.active)
-
-    def _deliver(self, route: Route, packet: bytes) -> None:
-        """Put a finished packet into the pipes of a route."""
         kernel = self.kernel
+        if not is_origination:
+            packet = self._relayed(route, packet)
+        else:
+            sequence = route.sequence
+            route.sequence = sequence + 1
+            bits = bits & 0xC000 | sequence & 0x3FFF
+            if route.is_telemetry and size > 11:
+                now = kernel.now
+                if now != self._stamped_at:
+                    self._stamp(now)
+                packet = pack_telemetry(msg_id, bits, size - 7, self._seconds, self._subseconds) + packet[12:]
+            else:
+                packet = self._originated(packet, bits)
         if self._record is not None:
             self._record(packet)
-        costs = self.costs
-        if costs is not None:
-            kernel.charge(costs.of(len(packet)))
+        if self.costs is not None:
+            kernel.charge(self.costs.of(size))
         failures: list[tuple[int, Destination]] | None = None
         for destination in route.active:
             pipe = destination.pipe
@@ -148,15 +113,29 @@ class SoftwareBus(PipeServices, SubscriptionServices):
                 destination.overflow_drops += 1
                 failures = [*(failures or ()), (ev.Q_FULL_ERR_EID, destination)]
                 continue
-            self._queued_bytes = queued = self._queued_bytes + len(packet)
+            self._queued_bytes = queued = self._queued_bytes + size
             if queued > self._pool_size and self._pool_is_full(packet):
-                raise self._no_buffer(route.msg_id, packet)
+                raise self._no_buffer(msg_id, packet)
             destination.puts = puts + 1
             items.append((packet, destination))
             if waiting >= pipe.peak:
                 pipe.peak = waiting + 1
         if failures is not None:
-            self._report_failures(route.msg_id, failures)
+            self._report_failures(msg_id, failures)
+
+    def transmit_telemetry(self, msg_id: int, payload: bytes) -> None:
+        """Send a payload behind a telemetry header of 16 bytes: `transmit_msg` for whoever has no header yet.
+
+        Args:
+            msg_id: a telemetry MsgId (secondary header, not a command).
+            payload: everything behind the header.
+        """
+        self.transmit_msg(pack_empty_telemetry(msg_id, 0xC000) + payload)
+
+    def has_subscribers(self, msg_id: int) -> bool:
+        """Whether anybody would get a message."""
+        route = self.routes.get(msg_id)
+        return route is not None and bool(route.active)
 
     def _stamp(self, now: int) -> None:
         """Keep the spacecraft time of this instant, as the header wants it."""
@@ -168,12 +147,23 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         """The spacecraft time was set: the stamp of this instant is no longer true."""
         self._stamped_at = -1
 
-    def _command(self, packet: bytes | bytearray, flags: int) -> bytes:
-        command = bytearray(packet)
-        command[2:6] = (flags << 16 | len(packet) - 7).to_bytes(4, "big")
-        command[7] = 0
-        command[7] = compute_checksum(command)
-        return bytes(command)
+    def _originated(self, packet: bytes | bytearray, bits: int) -> bytes:
+        """A command, or a packet without secondary header, with what origination fills in."""
+        header = packet[:2] + (bits << 16 | len(packet) - 7).to_bytes(4, "big")
+        if packet[0] & SECONDARY_BIT and len(packet) >= CMD_HEADER_SIZE:
+            command = bytearray(header + packet[6:])
+            command[7] = 0
+            command[7] = compute_checksum(command)
+            return bytes(command)
+        return bytes(header + packet[6:])
+
+    def _relayed(self, route: Route, packet: bytes | bytearray) -> bytes:
+        """A packet from elsewhere, as it is."""
+        if (packet[4] << 8 | packet[5]) + 7 != len(packet):
+            text = f"Send Err:Bad input argument,Arg 0x0,App {self.caller_name()}"
+            raise self._send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
+        route.relayed += 1
+        return bytes(packet)
 
     # -- receiving -------------------------------------------------------------------------------------------------
 
@@ -293,7 +283,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         return sum(packets.values()) + BUFFER_BYTES * len(packets), len(packets)
 
     def _pool_is_full(self, packet: bytes) -> bool:
-        """The quick count is over the limit; it counts a message once a pipe, and those of deleted pipes: count again."""
+        """The quick count, which takes a message once a pipe and keeps those of deleted pipes, is over: count again."""
         self._queued_bytes = len(packet) + sum(len(item[0]) for pipe in self.pipes for item in pipe.items)
         return self.pool_use()[0] + len(packet) + BUFFER_BYTES > self.config.sb_buf_memory_bytes
 

@@ -47,9 +47,7 @@ class PipeServices(BusCore):
 
     def _add_pipe(self, depth: int, name: str, app: str) -> int:
         owner = self.kernel.current.owner
-        claim = self.ports.memory.claim(
-            getattr(owner, "name", "host"), f"pipe {name}", depth * SLOT_BYTES + PIPE_BYTES
-        )
+        claim = self.ports.memory.claim(getattr(owner, "name", "host"), f"pipe {name}", depth * SLOT_BYTES + PIPE_BYTES)
         pipe = Pipe(self.kernel, depth, name, owner)
         pipe.claim = claim
         pipe_id = self.pipes.create(pipe)

@@ -24,7 +24,7 @@ class Pipe(Queue):
         self.app_name: str = getattr(owner, "name", "host")
         self.opts = 0
         self.send_errors = 0
-        self.claim: object = None
+        self.claim = 0
         self.identify(0)
 
     def identify(self, pipe_id: int) -> None:

@@ -64,7 +64,8 @@ class SubscriptionServices(BusCore):
         route = self.routes.get(msg_id)
         if route is None:
             if len(self.routes) >= self.config.sb_max_msg_ids:
-                text = f"Subscribe Err:Max Msgs({self.config.sb_max_msg_ids})In Use,MsgId 0x{msg_id:x},pipe {pipe.name},app {app}"
+                limit_text = f"Max Msgs({self.config.sb_max_msg_ids})In Use"
+                text = f"Subscribe Err:{limit_text},MsgId 0x{msg_id:x},pipe {pipe.name},app {app}"
                 raise self._subscribe_error(ev.MAX_MSGS_MET_EID, CFE_SB_MAX_MSGS_MET, text)
             route = self.routes[msg_id] = Route(msg_id)
             self.peaks.msg_ids = len(self.routes)
@@ -74,7 +75,8 @@ class SubscriptionServices(BusCore):
             self.report(ev.DUP_SUBSCRIP_EID, ev.INFORMATION, text)
             return
         if len(route.destinations) >= self.config.sb_max_dest_per_pkt:
-            text = f"Subscribe Err:Max Dests({self.config.sb_max_dest_per_pkt})In Use For Msg 0x{msg_id:x},pipe {pipe.name},app {app}"
+            limit_text = f"Max Dests({self.config.sb_max_dest_per_pkt})In Use"
+            text = f"Subscribe Err:{limit_text} For Msg 0x{msg_id:x},pipe {pipe.name},app {app}"
             raise self._subscribe_error(ev.MAX_DESTS_MET_EID, CFE_SB_MAX_DESTS_MET, text)
         route.add(Destination(pipe, limit, scope))
         self.peaks.subscriptions = max(self.peaks.subscriptions, self.subscriptions_in_use())

@@ -59,7 +59,7 @@ class AppBench(Bench):
                 receive_buffer=self._receive,
             ),
             evs=SimpleNamespace(
-                register=lambda: None,
+                register=lambda: self._check("evs.register"),
                 send_dbg=lambda event_id, text: self.events.append((event_id, 1, text)),
                 send_info=lambda event_id, text: self.events.append((event_id, 2, text)),
                 send_err=lambda event_id, text: self.events.append((event_id, 3, text)),

@@ -12,7 +12,17 @@ from apps.hk.copy_table import find_fault
 from apps.hk.tables import hk_cpy_tbl
 from cfepy.es import APP_ERROR, APP_EXIT
 from cfepy.msg import Layout, get_msg_id, get_size, telemetry
-from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_PIPE_RD_ERR, CFE_TBL_ERR_ACCESS
+from cfepy.status import (
+    CFE_SB_BAD_ARGUMENT,
+    CFE_SB_PIPE_RD_ERR,
+    CFE_SUCCESS,
+    CFE_TBL_ERR_ACCESS,
+    CFE_TBL_ERR_INVALID_HANDLE,
+    CFE_TBL_INFO_DUMP_PENDING,
+    CFE_TBL_INFO_UPDATE_PENDING,
+    CFE_TBL_INFO_VALIDATION_PENDING,
+    CfeError,
+)
 from cfepy.tbl import TableImage, build, pack_rows, read
 from cfepy.tbl import packets as tbl_packets
 from tests.apps.conftest import APPS, POOL_ID, AppBench, cmd
@@ -214,3 +224,41 @@ def test_broken_pipe_ends_hk(hk: AppBench) -> None:
     assert hk.events[-1] == (26, 3, "HK_APP Exiting due to CFE_SB_RcvMsg error 0xCA000006")
     assert hk.log == ["HK_APP Exiting due to CFE_SB_RcvMsg error 0xCA000006"]
     assert hk.exit_status == APP_ERROR
+
+
+def test_no_event_services_no_hk(hk: AppBench) -> None:
+    hk.refuse["evs.register"] = CFE_SB_BAD_ARGUMENT
+    hk.run(HK_AppMain)
+    assert hk.log == ["HK: error registering for event services: 0xCA000003"]
+    assert (hk.events, hk.exit_status) == ([], APP_ERROR)
+
+
+@pytest.mark.parametrize(
+    ("function", "status", "event"),
+    [
+        ("get_status", None, (10, 4, "Unexpected CFE_TBL_GetStatus return (0xCC000001) for Copy Table")),
+        ("validate", CFE_TBL_INFO_VALIDATION_PENDING, (32, 3, "Unexpected CFE_TBL_Validate return")),
+        ("release_address", CFE_TBL_INFO_UPDATE_PENDING, (31, 4, "Unexpected CFE_TBL_ReleaseAddress return")),
+        ("update", CFE_TBL_INFO_UPDATE_PENDING, (30, 4, "Unexpected CFE_TBL_Update return (0xCC000001)")),
+        ("get_address", CFE_TBL_INFO_UPDATE_PENDING, (29, 4, "Unexpected CFE_TBL_GetAddress return (0xCC000001)")),
+        ("dump_to_buffer", CFE_TBL_INFO_DUMP_PENDING, (33, 4, "Unexpected CFE_TBL_DumpToBuffer return")),
+    ],
+)
+def test_table_calls_that_fail(
+    hk: AppBench, monkeypatch: pytest.MonkeyPatch, function: str, status: int | None, event: tuple[int, int, str]
+) -> None:
+    statuses = [CFE_SUCCESS, status] if status == CFE_TBL_INFO_DUMP_PENDING else [status, CFE_SUCCESS]
+
+    def refuse(*args: object) -> int:
+        raise CfeError(CFE_TBL_ERR_INVALID_HANDLE)
+
+    def fail_from_now_on() -> None:
+        if status is not None:
+            monkeypatch.setattr(hk.tbl, "get_status", lambda handle: statuses.pop(0))
+            monkeypatch.setattr(hk.tbl, "update", lambda handle: CFE_SUCCESS)
+        monkeypatch.setattr(hk.tbl, function, refuse)
+
+    hk.run(HK_AppMain, fail_from_now_on, None)
+    assert hk.events[-1][:2] == event[:2]
+    assert hk.events[-1][2].startswith(event[2])
+    assert hk.exit_status == (APP_EXIT if function == "validate" else APP_ERROR)

@@ -1,8 +1,9 @@
-"""The apps together on a booted mission: their start, the scheduler's commands, a table load from the ground, a restart."""
+"""The apps together on a booted mission: start, scheduled commands, a table load from the ground, a restart."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -33,9 +34,7 @@ class Session:
         before = len(self.mission.console.lines)
         for msg_id, fcn_code, payload in commands:
             packet = bytes(command(msg_id, fcn_code, payload))
-            self.mission.kernel.spawn(
-                "ground", lambda packet=packet: self.mission.cfe.sb.transmit_msg(packet, False), 10
-            )
+            self.mission.kernel.spawn("ground", partial(self.mission.cfe.sb.transmit_msg, packet, False), 10)
         self.mission.run(seconds)
         lines = [line.partition(" 66/1/")[2] for line in self.mission.console.lines[before:]]
         return [line for line in lines if line.startswith(("SAMPLE", "HK", "CFE_TBL"))]

@@ -67,4 +67,6 @@ def digest_in_process(mission: str, tasks: str, seconds: float, hash_seed: str) 
 
 def test_hash_seeds_do_not_matter(folder: str) -> None:
     seeds = ["0", "1", "4242"]
-    assert len({digest_in_process(folder, "thread", 5, seed) for seed in seeds} | {digest(folder, "thread", [5.0])}) == 1
+    assert (
+        len({digest_in_process(folder, "thread", 5, seed) for seed in seeds} | {digest(folder, "thread", [5.0])}) == 1
+    )

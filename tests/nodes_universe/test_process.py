@@ -108,7 +108,7 @@ def test_a_nodes_own_tracebacks_hide_the_simulator_too(run):
         except ValueError:
             traceback.print_exc()
     """)
-    assert len(program.lines) == 4
+    assert sum(line.startswith("  File") for line in program.lines) == 1
     assert "cfepy" not in program.text
 
 
@@ -188,7 +188,7 @@ def test_signals_are_the_nodes_own(run):
         "import select; select.select([3], [], [])",
         "import signal; signal.alarm(1)",
         "import os; os.kill(1, 9)",
-        "import asyncio",
+        "import asyncio; asyncio.run(asyncio.open_connection('localhost', 1))",
         "import ssl",
         "import xmlrpc.client; xmlrpc.client.ServerProxy('http://localhost:1').f()",
     ],

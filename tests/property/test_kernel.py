@@ -28,13 +28,14 @@ from cfepy.trace import Trace
 pytest.importorskip("greenlet")
 
 OBJECTS = 2
-END_NS = 3000
-QUICK = settings(max_examples=3000, deadline=None)
+END_NS = 6_000_000
+COMPUTE_NS = 3000  # times 40 at most: more than a turn among equals
+QUICK = settings(max_examples=40, deadline=None)
 
 INDEX = st.integers(0, OBJECTS - 1)
 TIME = st.integers(0, 40)
 OPERATIONS = st.one_of(
-    st.tuples(st.sampled_from(["delay", "charge"]), TIME),
+    st.tuples(st.sampled_from(["delay", "charge", "compute"]), TIME),
     st.tuples(st.just("put"), INDEX),
     st.tuples(st.sampled_from(["get", "take", "lock"]), INDEX, st.integers(-1, 30)),
     st.tuples(st.sampled_from(["give", "flush", "wait", "wake_first", "wake_all"]), INDEX),
@@ -43,6 +44,7 @@ OPERATIONS = st.one_of(
     st.tuples(st.just("spawn"), st.integers(1, 6)),
 )
 TASKS = st.lists(st.tuples(st.integers(1, 6), st.lists(OPERATIONS, max_size=12)), min_size=1, max_size=5)
+ENDS = st.lists(st.one_of(st.integers(0, 100), st.integers(0, END_NS)), max_size=20).map(sorted)
 Program = Sequence[tuple[int, Sequence[tuple[object, ...]]]]
 
 
@@ -101,6 +103,9 @@ class Machine:
 
     def do_charge(self, held: list[Mutex], time: int) -> None:
         self.kernel.charge(time)
+
+    def do_compute(self, held: list[Mutex], time: int) -> None:
+        self.kernel.charge(time * COMPUTE_NS)
 
     def do_put(self, held: list[Mutex], index: int) -> bool:
         items = self.put_items[index]
@@ -197,13 +202,13 @@ def test_every_repetition_gives_the_same_run(program: Program) -> None:
 
 
 @QUICK
-@given(TASKS, st.lists(st.integers(0, END_NS), max_size=20).map(sorted))
+@given(TASKS, ENDS)
 def test_slices_give_the_same_run(program: Program, ends: list[int]) -> None:
     assert execute(program, "greenlet", [*ends, END_NS]) == execute(program, "greenlet")
 
 
 @QUICK
-@given(TASKS, st.integers(0, 3), st.integers(0, 20), st.lists(st.integers(0, END_NS), max_size=20).map(sorted))
+@given(TASKS, st.integers(0, 3), st.integers(0, 20), ENDS)
 def test_slices_give_the_same_run_on_a_board(program: Program, cost: int, tick: int, ends: list[int]) -> None:
     whole = execute(program, "greenlet", switch_cost_ns=cost, tick_ns=tick)
     assert execute(program, "thread", [*ends, END_NS], switch_cost_ns=cost, tick_ns=tick) == whole

@@ -235,6 +235,15 @@ def test_a_killed_owner_hands_the_mutex_on(kernel: Kernel, log: Log) -> None:
     assert log == ["next@7"]
 
 
+def test_an_urgent_task_that_waited_for_a_killed_owner_preempts_the_killer(kernel: Kernel, log: Log) -> None:
+    mutex = Mutex(kernel)
+    owner = kernel.spawn("owner", lambda: (mutex.take(), kernel.delay(1000)), 10)
+    kernel.spawn("next", lambda: (mutex.take(), log("next")), 20)
+    kernel.spawn("killer", lambda: (kernel.kill(owner), log("killer")), 30)
+    kernel.run()
+    assert log == ["next", "killer"]
+
+
 def test_two_mutexes_taken_in_opposite_order_are_a_deadlock(kernel: Kernel) -> None:
     first, second = Mutex(kernel, "A"), Mutex(kernel, "B")
 

@@ -1,0 +1,149 @@
+"""What a person sees while a mission runs: console lines, and on a terminal a status line below them.
+
+Console lines arrive from inside the simulation. On a terminal they are kept until the host has the CPU again, a few
+dozen milliseconds later, and shown in one go, so that drawing costs the run next to nothing.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Protocol, TextIO
+
+from cfepy.rtos.realtime import NS_PER_S, Stopwatch
+
+if TYPE_CHECKING:
+    from cfepy.mission import Mission
+
+REFRESH_NS = NS_PER_S // 10
+
+
+class Display(Protocol):
+    """Shows a run."""
+
+    def line(self, text: str) -> None:
+        """A line of the mission's console; called from inside the simulation."""
+
+    def update(self, mission: Mission) -> None:
+        """The run goes on; called by the host between pieces of it."""
+
+    def close(self) -> None:
+        """The run is over: nothing but finished lines may stay on the screen."""
+
+
+class PlainDisplay:
+    """Lines only, for files and pipes.
+
+    Args:
+        stream: where to.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._broken: BrokenPipeError | None = None
+
+    def line(self, text: str) -> None:
+        """See `Display.line`. A reader that went away must not look like an error of the app that wrote."""
+        if self._broken is None:
+            try:
+                self._stream.write(text + "\n")
+            except BrokenPipeError as error:
+                self._broken = error
+
+    def update(self, mission: Mission) -> None:
+        """See `Display.update`.
+
+        Raises:
+            BrokenPipeError: nobody reads any more.
+        """
+        if self._broken is not None:
+            raise self._broken
+
+    def close(self) -> None:
+        """See `Display.close`."""
+
+
+class SilentDisplay:
+    """Nothing at all."""
+
+    def line(self, text: str) -> None:
+        """See `Display.line`."""
+
+    def update(self, mission: Mission) -> None:
+        """See `Display.update`."""
+
+    def close(self) -> None:
+        """See `Display.close`."""
+
+
+class LiveDisplay:
+    """Lines, and a status line below them that is drawn anew at most ten times a second.
+
+    Args:
+        stream: a terminal.
+        seconds: virtual time that the run will take.
+    """
+
+    def __init__(self, stream: TextIO, seconds: float) -> None:
+        from rich.console import Console
+        from rich.live import Live
+
+        self._console = Console(file=stream, soft_wrap=True)
+        self._live = Live(
+            console=self._console, auto_refresh=False, transient=True, redirect_stdout=False, redirect_stderr=False
+        )
+        self._seconds = seconds
+        self._lines: list[str] = []
+        self._watch = Stopwatch()
+        self._drawn_ns = -REFRESH_NS
+        self._virtual_ns = self._messages = 0
+        self._live.start()
+
+    def line(self, text: str) -> None:
+        """See `Display.line`."""
+        self._lines.append(text)
+
+    def update(self, mission: Mission) -> None:
+        """See `Display.update`."""
+        wall_ns = self._watch.elapsed_ns()
+        since_ns = wall_ns - self._drawn_ns
+        if since_ns < REFRESH_NS:
+            return
+        self._show_lines()
+        now, messages = mission.kernel.now, _messages(mission)
+        speed = (now - self._virtual_ns) / since_ns
+        rate = (messages - self._messages) * NS_PER_S / since_ns
+        text = f" {now / NS_PER_S:.2f} of {self._seconds:g} s   {speed:.1f} x real time   {rate:,.0f} messages/s"
+        self._live.update(_status(text), refresh=True)
+        self._drawn_ns, self._virtual_ns, self._messages = wall_ns, now, messages
+
+    def close(self) -> None:
+        """See `Display.close`."""
+        self._show_lines()
+        self._live.stop()
+
+    def _show_lines(self) -> None:
+        if self._lines:
+            lines, self._lines = self._lines, []
+            self._console.print("\n".join(lines), markup=False, highlight=False, emoji=False)
+
+
+def make_display(quiet: bool, seconds: float) -> Display:
+    """The display for this process's standard output.
+
+    Args:
+        quiet: show nothing while the mission runs.
+        seconds: virtual time that the run will take.
+    """
+    if quiet:
+        return SilentDisplay()
+    return LiveDisplay(sys.stdout, seconds) if sys.stdout.isatty() else PlainDisplay(sys.stdout)
+
+
+def _messages(mission: Mission) -> int:
+    return sum(route.sequence + route.relayed for route in mission.cfe.sb.routes.values())
+
+
+def _status(text: str) -> object:
+    from rich.text import Text
+
+    return Text(text, style="reverse", no_wrap=True, overflow="ellipsis")

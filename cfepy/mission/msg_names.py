@@ -1,0 +1,85 @@
+"""Names of MsgIds: what the core services, the apps of a mission and its ROS side call them.
+
+An app's names are read from its source, where it says `SEND_HK_MID = local_cmd_topic_id_to_msg_id(0x83)` or
+`HK_TLM_MID = 0x0883` at module level; nothing of it is executed.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from cfepy.es.startup_script import Entry, parse
+from cfepy.mission.loader import NODE_SYMBOL, find_code
+from cfepy.mission.spec import MissionSpec
+from cfepy.msg import topics
+
+SUFFIX = "_MID"
+CORE_SERVICES = ("ES", "EVS", "SB", "TBL", "TIME")
+HIGHEST_MSG_ID = 0x1FFF
+
+
+def names_of(spec: MissionSpec) -> dict[int, str]:
+    """MsgId to name, as far as it can be told without running the mission; core services come first, topics last."""
+    names = core_names()
+    for entry in parse(spec.script.read_bytes()):
+        if isinstance(entry, Entry) and entry.symbol != NODE_SYMBOL:
+            for name, msg_id in declared(find_code(entry.path, spec.folder)):
+                names.setdefault(msg_id, _with_prefix(name, entry.name))
+    for topic in spec.ros.topics.values():
+        names.setdefault(topic.msg_id, topic.name)
+    return names
+
+
+def core_names() -> dict[int, str]:
+    """MsgId to NASA's name, for the messages of the five services: 0x0808 is CFE_EVS_LONG_EVENT_MSG."""
+    names: dict[int, str] = {}
+    for service in CORE_SERVICES:
+        module = importlib.import_module(f"cfepy.{service.lower()}.packets")
+        for name, value in vars(module).items():
+            if name.endswith(SUFFIX) and isinstance(value, int):
+                names.setdefault(value, _with_prefix(name, f"CFE_{service}"))
+    return names
+
+
+def declared(code: Path | str | None) -> Iterator[tuple[str, int]]:
+    """(constant, MsgId) of everything called *_MID in an app's sources.
+
+    Args:
+        code: what `find_code` found: a module's file or a package's `__init__.py`; others declare nothing.
+    """
+    if not isinstance(code, Path):
+        return
+    for file in sorted(code.parent.glob("*.py")) if code.name == "__init__.py" else [code]:
+        try:
+            tree = ast.parse(file.read_bytes())
+        except (SyntaxError, ValueError, OSError):
+            continue  # `cfepy check` has more to say about it
+        yield from _assigned(tree)
+
+
+def _assigned(tree: ast.Module) -> Iterator[tuple[str, int]]:
+    for statement in tree.body:
+        if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Name):
+            name, value = statement.targets[0].id, _msg_id(statement.value)
+            if name.endswith(SUFFIX) and value is not None:
+                yield name, value
+
+
+def _msg_id(node: ast.expr) -> int | None:
+    """The value of `0x1883` or of `local_cmd_topic_id_to_msg_id(0x83)`."""
+    value: Any = node.value if isinstance(node, ast.Constant) else None
+    if isinstance(node, ast.Call) and len(node.args) == 1 and isinstance(node.args[0], ast.Constant):
+        function = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+        topic = node.args[0].value
+        if function.endswith("_topic_id_to_msg_id") and hasattr(topics, function) and isinstance(topic, int):
+            value = getattr(topics, function)(topic)
+    return value if isinstance(value, int) and 0 < value <= HIGHEST_MSG_ID else None
+
+
+def _with_prefix(name: str, owner: str) -> str:
+    short = name.removesuffix(SUFFIX)
+    return short if short.startswith(owner) else f"{owner}_{short}"

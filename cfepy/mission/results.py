@@ -1,0 +1,266 @@
+"""What a run came to: messages, applications, events, memory, as plain numbers for a table or a JSON file.
+
+`mark` is called when the time of the run is over, before the nodes are asked to shut down; `Results.of` after the
+mission was closed, when every task has ended and its CPU time is known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from cfepy.es.records import STATE_NAMES
+from cfepy.es.startup_script import CFE_APP, BadLine, Entry, parse
+from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
+from cfepy.mission.mission import NS_PER_S, Mission
+from cfepy.mission.msg_names import names_of
+
+EVENT_TYPES = {DEBUG: "DEBUG", INFORMATION: "INFORMATION", ERROR: "ERROR", CRITICAL: "CRITICAL"}
+NOT_STARTED = "NOT STARTED"
+ENDED = "ENDED"
+
+
+@dataclass(frozen=True, slots=True)
+class TopicResult:
+    """One MsgId.
+
+    `sent` counts transmissions, `delivered` packets taken out of pipes (several a transmission, where several
+    subscribe), `waiting` those still in them. `dropped` is the sum of the three reasons behind it: a subscription's
+    message limit, a full pipe, a ROS subscriber's queue. `no_subscriber` counts messages that nobody wanted; they
+    are no losses. `rate_hz` is `sent` by the time since the mission was operational; `too_fast` says that it is more
+    than the board's `max_publish_hz`.
+    """
+
+    name: str
+    msg_id: int
+    type: str
+    sent: int
+    delivered: int
+    waiting: int
+    dropped: int
+    dropped_limit: int
+    dropped_pipe_full: int
+    dropped_queue: int
+    no_subscriber: int
+    rate_hz: float
+    too_fast: bool
+
+
+@dataclass(frozen=True, slots=True)
+class AppResult:
+    """One application. `state` is that at the end of the run's time; `cpu_share` is 0 to 1, of virtual time."""
+
+    name: str
+    state: str
+    cpu_share: float
+    restarts: int
+    deaths: int
+    error: str | None
+    core: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PipeResult:
+    """One pipe: how many messages it takes, how many ever waited, how many did not get in."""
+
+    name: str
+    app: str
+    depth: int
+    peak: int
+    dropped: int
+
+
+@dataclass(frozen=True, slots=True)
+class MemoryResult:
+    """The board's RAM in bytes; `limit` is None on a board without one."""
+
+    used: int
+    peak: int
+    limit: int | None
+    by_owner: dict[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """The state of a run when its time was over."""
+
+    now_ns: int
+    wall_ns: int
+    sent: dict[int, int]
+    states: dict[str, str]
+    pipes: list[PipeResult]
+    memory: MemoryResult
+    sb: dict[str, int]
+
+
+def mark(mission: Mission, wall_ns: int) -> Mark:
+    """Take down what a shutdown of the nodes would change.
+
+    Args:
+        mission: after its run.
+        wall_ns: wall-clock time that the run took, in ns.
+    """
+    sb, memory = mission.cfe.sb, mission.memory
+    return Mark(
+        mission.kernel.now,
+        wall_ns,
+        sent_by_msg_id(mission),
+        {app.name: STATE_NAMES[app.state] for app in mission.cfe.es.apps},
+        [PipeResult(pipe.name, pipe.app_name, pipe.depth, pipe.peak, pipe.send_errors) for pipe in sb.pipes],
+        MemoryResult(memory.used, memory.peak, memory.limit, memory.by_owner()),
+        mission.sb_task.housekeeping(),
+    )
+
+
+def sent_by_msg_id(mission: Mission) -> dict[int, int]:
+    """How many messages of each MsgId were transmitted so far."""
+    sent = {route.msg_id: route.sent for route in mission.cfe.sb.routes.values()}
+    for msg_id, count in mission.cfe.sb.unrouted.sent.items():
+        sent[msg_id] = sent.get(msg_id, 0) + count
+    return sent
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """The numbers of a run; `to_dict` gives the JSON form. Times in s, `speed` is virtual time by wall time.
+
+    `own_errors` counts ERROR and CRITICAL events of the mission's own applications.
+    """
+
+    mission: str
+    virtual_s: float
+    wall_s: float
+    speed: float
+    seed: int
+    board: str
+    tasks: str
+    trace: str
+    booted_s: float | None
+    reset: str | None
+    max_publish_hz: int
+    topics: list[TopicResult]
+    apps: list[AppResult]
+    events: dict[str, int]
+    own_errors: dict[str, int]
+    sb: dict[str, int]
+    pipes: list[PipeResult]
+    memory: MemoryResult
+    problems: list[str] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, mission: Mission, at: Mark) -> Results:
+        """The results of a mission that is closed.
+
+        Args:
+            mission: the mission.
+            at: what `mark` took down.
+        """
+        virtual_s, wall_s = at.now_ns / NS_PER_S, at.wall_ns / NS_PER_S
+        evs = mission.cfe.evs
+        core = {app.name for app in mission.cfe.es.apps if app.is_core}
+        own_errors = {name: count for name, count in sorted(evs.errors_by_app.items()) if name not in core}
+        apps = _apps(mission, at, core)
+        return cls(
+            mission=mission.spec.name,
+            virtual_s=virtual_s,
+            wall_s=wall_s,
+            speed=virtual_s / wall_s if wall_s else 0.0,
+            seed=mission.seed,
+            board=mission.board.name,
+            tasks=mission.tasks,
+            trace=mission.trace.digest(),
+            booted_s=None if mission.booted is None else mission.booted / NS_PER_S,
+            reset=mission.reset_reason,
+            max_publish_hz=mission.board.max_publish_hz,
+            topics=_topics(mission, at),
+            apps=apps,
+            events={name: evs.counts.get(kind, 0) for kind, name in EVENT_TYPES.items()},
+            own_errors=own_errors,
+            sb=at.sb,
+            pipes=at.pipes,
+            memory=at.memory,
+            problems=_problems(mission, apps, own_errors),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain dicts, lists, numbers and text."""
+        return asdict(self)
+
+
+def _topics(mission: Mission, at: Mark) -> list[TopicResult]:
+    names = names_of(mission.spec)
+    ros = {row.msg_id: row for row in mission.ros.topics()} if mission.ros is not None else {}
+    sb = mission.cfe.sb
+    since_boot_ns = at.now_ns - (mission.booted or 0)
+    limit_hz = mission.board.max_publish_hz
+    found = []
+    for msg_id, sent in sorted(sent_by_msg_id(mission).items()):
+        route, row = sb.routes.get(msg_id), ros.get(msg_id)
+        delivered, by_limit, by_pipe = route.totals() if route is not None else (0, 0, 0)
+        by_queue = row.dropped if row is not None else 0
+        rate_hz = at.sent.get(msg_id, 0) * NS_PER_S / since_boot_ns if since_boot_ns else 0.0
+        found.append(
+            TopicResult(
+                name=row.name if row is not None else names.get(msg_id, f"0x{msg_id:04X}"),
+                msg_id=msg_id,
+                type=row.type if row is not None else kind_of(msg_id),
+                sent=sent,
+                delivered=delivered,
+                waiting=sum(each.puts - each.gets for each in route.destinations) if route is not None else 0,
+                dropped=by_limit + by_pipe + by_queue,
+                dropped_limit=by_limit,
+                dropped_pipe_full=by_pipe,
+                dropped_queue=by_queue,
+                no_subscriber=sb.unrouted.sent.get(msg_id, 0),
+                rate_hz=round(rate_hz, 3),
+                too_fast=bool(limit_hz) and rate_hz > limit_hz,
+            )
+        )
+    return found
+
+
+def kind_of(msg_id: int) -> str:
+    """What a MsgId says of its packets: "command" or "telemetry"."""
+    return "command" if msg_id & 0x1000 else "telemetry"
+
+
+def _apps(mission: Mission, at: Mark, core: set[str]) -> list[AppResult]:
+    found = []
+    end_ns = mission.kernel.now
+    for history in mission.cfe.es.history.values():
+        error = history.last_error
+        found.append(
+            AppResult(
+                name=history.name,
+                state=at.states.get(history.name, ENDED),
+                cpu_share=history.cpu_ns / end_ns if end_ns else 0.0,
+                restarts=history.restarts,
+                deaths=history.deaths,
+                error=None if error is None else f"{type(error).__name__}: {error}",
+                core=history.name in core,
+            )
+        )
+    known = {app.name for app in found}
+    for entry in parse(mission.spec.script.read_bytes()):
+        if isinstance(entry, Entry) and entry.kind == CFE_APP and entry.name not in known:
+            known.add(entry.name)
+            found.append(AppResult(entry.name, NOT_STARTED, 0.0, 0, 0, None, False))
+    return found
+
+
+def _problems(mission: Mission, apps: list[AppResult], own_errors: dict[str, int]) -> list[str]:
+    """Why a run did not end well, a line each; empty when it did."""
+    found = []
+    for line in parse(mission.spec.script.read_bytes()):
+        if isinstance(line, BadLine):
+            found.append(f"{mission.spec.script}:{line.line}: {line.explanation}")
+    for app in apps:
+        if app.state == NOT_STARTED:
+            found.append(f"{app.name} could not be started")
+        elif app.deaths:
+            times = "" if app.deaths == 1 else f" {app.deaths} times"
+            found.append(f"{app.name} died{times}: {app.error}")
+    found += [f"{name} sent {count} ERROR or CRITICAL events" for name, count in own_errors.items()]
+    if mission.reset_reason is not None:
+        found.append(f"the processor was reset: {mission.reset_reason}")
+    return found

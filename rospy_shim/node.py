@@ -1,0 +1,177 @@
+"""One ROS node: the object behind the functions and classes of its own `rospy`.
+
+Every node of a mission has one; nothing is shared between two nodes but the graph. May import cfepy.nodes and
+cfepy.rtos.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from cfepy.rtos import Task
+from cfepy.status import CfeError
+from rospy_shim.client import Client
+from rospy_shim.life import Life
+from rospy_shim.logs import Logs
+from rospy_shim.names import Names
+from rospy_shim.params import Params
+from rospy_shim.publisher import Link, make_publisher
+from rospy_shim.rate import make_rate
+from rospy_shim.rostime import RosClock
+from rospy_shim.subscriber import Subscription, make_subscriber
+from rospy_shim.timer import make_timer
+
+if TYPE_CHECKING:
+    from cfepy.nodes import Universe
+    from cfepy.nodes.config import NodeConfig
+    from rospy_shim.graph import Graph, Topic
+    from rospy_shim.tasks import NodeTasks
+
+
+class Node:
+    """A node.
+
+    Args:
+        cfe: the handle of cFE's services.
+        graph: the mission's ROS graph.
+        universe: the module universe that the node's program runs in.
+        config: what the mission file says about it.
+        tasks: starts tasks in the name of the node's application.
+        call_ns: virtual CPU time of a call.
+    """
+
+    def __init__(
+        self, cfe: Any, graph: Graph, universe: Universe, config: NodeConfig, tasks: NodeTasks, call_ns: int
+    ) -> None:
+        self.cfe = cfe
+        self.graph = graph
+        self.universe = universe
+        self.config = config
+        self.kernel = universe.kernel
+        self.call_ns = call_ns
+        self.initialized = False
+        self.links: dict[str, Link] = {}
+        self.subscriptions: dict[str, Subscription] = {}
+        self._tasks = tasks
+        self._timer: type | None = None
+        self.names = Names(universe.argv, universe.environ)
+        self.life = Life(self)
+        self.clock = RosClock(self)
+        self.params = Params(self, graph.params)
+        self.logs = Logs(self)
+        self.client = Client(self)
+        self.Publisher = make_publisher(self)
+        self.Subscriber = make_subscriber(self)
+        self.Rate = make_rate(self)
+
+    @property
+    def Timer(self) -> type:  # noqa: N802  # rospy's name
+        """The node's class `rospy.Timer`, made at first use because it needs `threading`."""
+        if self._timer is None:
+            self._timer = make_timer(self)
+        return self._timer
+
+    def argv(self) -> list[str]:
+        """The node's `sys.argv` as it is now."""
+        return list(self.universe.importer.modules["sys"].argv)
+
+    # -- the graph ---------------------------------------------------------------------------------------------------
+
+    def go_on_graph(self) -> None:
+        """`init_node`: register the node, and what was made before."""
+        self.initialized = True
+        self.universe.name = self.names.name.lstrip("/")
+        self.graph.register_node(self)
+        for link in list(self.links.values()):
+            link.connect()
+        for subscription in list(self.subscriptions.values()):
+            subscription.connect()
+
+    def leave_graph(self) -> None:
+        """Shutdown: close all publishers and subscribers."""
+        for subscription in list(self.subscriptions.values()):
+            subscription.close()
+        for link in list(self.links.values()):
+            link.close()
+        self.graph.forget_node(self)
+
+    def abandon(self) -> None:
+        """The program has ended, whatever way: nothing of it stays on the graph or on the bus."""
+        subscriptions = list(self.subscriptions.values())
+        self.leave_graph()
+        for subscription in subscriptions:
+            try:
+                subscription.release()
+            except CfeError:
+                pass  # ES has cleaned up before
+
+    def link(self, name: str, data_class: Any) -> Link:
+        """The publishing side of a topic, made when first asked for."""
+        link = self.links.get(name)
+        if link is None or link.data_class._md5sum != data_class._md5sum:
+            link = self.links[name] = Link(self, name, data_class)
+            if self.initialized:
+                link.connect()
+        return link
+
+    def subscription(self, name: str, data_class: Any, depth: int | None) -> Subscription:
+        """The subscribing side of a topic, made when first asked for."""
+        found = self.subscriptions.get(name)
+        if found is None or found.data_class is not data_class:
+            found = Subscription(self, name, data_class, depth)
+            if self.initialized:
+                found.connect()
+            self.subscriptions.setdefault(name, found)
+        return found
+
+    def topic_for(self, name: str, data_class: Any) -> Topic | None:
+        """The topic to connect to; None when the node is shut down, or the topic's type is another (an error is logged).
+
+        Raises:
+            UsageError: the topic's MsgId belongs to another topic.
+        """
+        if self.life.over:
+            return None
+        topic = self.graph.topic(name)
+        if topic.agrees(data_class):
+            return topic
+        self.logs.logerr(
+            "[%s] has the type %s [%s] for topic %s, which is %s [%s] on the graph: not connected",
+            self.names.name,
+            data_class._type,
+            data_class._md5sum,
+            topic.name,
+            topic.type,
+            topic.md5sum,
+        )
+        return None
+
+    # -- warnings ----------------------------------------------------------------------------------------------------
+
+    def warn(self, text: str, category: type[Warning]) -> None:
+        """Warn through the node's own `warnings`, at the line of the node that called."""
+        self.universe.importer.load("warnings").warn(text, category, stacklevel=4)
+
+    def warn_of_illegal(self, name: str) -> None:
+        """Warn of a name that breaks ROS's rules."""
+        from rospy_shim.names import is_legal_name
+
+        if not is_legal_name(name):
+            text = f"'{name}' is not a legal ROS graph resource name. This may cause problems with other ROS tools"
+            self.warn(text, UserWarning)
+
+    # -- tasks -------------------------------------------------------------------------------------------------------
+
+    def start_child(self, label: str, body: Callable[[], None]) -> None:
+        """Start a child task of the node's application; `label` tells what it is for."""
+        self._tasks.child(self, label, body)
+
+    def start_task(self, label: str, body: Callable[[], None]) -> Task:
+        """Start a task of the node from whatever task, or from the host."""
+        return self._tasks.helper(self, label, body)
+
+    def ask_to_shut_down(self, reason: str) -> None:
+        """Shut the node down from outside; its hooks run in a task of its own."""
+        if not self.life.is_shutdown_requested():
+            self.start_task("shutdown", lambda: self.life.interrupt(reason))
