@@ -29,14 +29,16 @@ Header = dict[str, str]
 
 
 class TopicRow(NamedTuple):
-    """A topic in the mission's tables; `dropped` counts messages that found a subscriber's queue full."""
+    """A topic in the mission's tables.
+
+    `dropped` counts long messages that lost a segment in a full pipe; the bus itself counts the other losses.
+    """
 
     name: str
     msg_id: int
     type: str
     publishers: tuple[str, ...]
     subscribers: tuple[str, ...]
-    messages: int
     dropped: int
 
 
@@ -55,6 +57,7 @@ class Topic:
         self.subscriber_names: list[str] = []
         self.header: Header | None = None  # of the only publisher; None when a message must be looked up in `notes`
         self.latching = False
+        self.lost = 0  # long messages of which a segment is missing, once per subscriber
         self.notes: dict[int, tuple[Header, int]] = {}  # by sequence count: publisher, and number of the segment
 
     def agrees(self, data_class: Any) -> bool:

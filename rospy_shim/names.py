@@ -148,6 +148,8 @@ class Names:
         """The node's resolved name; "/unnamed" before `init_node`."""
         return self.name
 
+    get_caller_id = get_name
+
     def get_namespace(self) -> str:
         """The node's namespace, ending in a slash."""
         return self.namespace if self.namespace.endswith(SEP) else self.namespace + SEP

@@ -178,7 +178,10 @@ class Subscription:
 
     def _assemble(self, packet: bytes, topic: Topic) -> bytes | None:
         header, index = topic.notes.get(sequence_of(packet), (None, None))
-        return self._assembler.add(packet, header["callerid"] if header is not None else "", index)
+        before = self._assembler.lost
+        whole = self._assembler.add(packet, header["callerid"] if header is not None else "", index)
+        topic.lost += self._assembler.lost - before
+        return whole
 
     def _packet_as_message(self, packet: bytes, at: int) -> Any:
         """A raw topic: the message's data are the whole packet."""

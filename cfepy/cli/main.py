@@ -105,7 +105,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         metavar="FACTOR",
         help="pace virtual time to the wall clock, FACTOR times as fast (default: 1)",
     )
-    run.add_argument("--json", metavar="FILE", help="write the report's numbers to a file; - for standard output")
+    run.add_argument("--json", metavar="FILE", help="write the report's numbers to a file")
     run.add_argument("--trace", metavar="FILE", help="write everything that happened to a file, a line each")
     run.add_argument("--quiet", action="store_true", help="no console and no status line, only the report")
     run.set_defaults(module="run")
@@ -130,7 +130,13 @@ def _add_mids(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     )
     mids.add_argument("mission", metavar="MISSION", help=MISSION_HELP)
     mids.add_argument("--board", metavar="NAME|FILE", help="run on this board instead of the mission's own")
-    mids.add_argument("--json", metavar="FILE", help="write the table to a file; - for standard output")
+    mids.add_argument(
+        "--json",
+        nargs="?",
+        const="-",
+        metavar="FILE",
+        help="write the table as JSON to a file, or to standard output instead of the table",
+    )
     mids.set_defaults(module="mids")
 
 

@@ -148,12 +148,13 @@ class Results:
     problems: list[str] = field(default_factory=list)
 
     @classmethod
-    def of(cls, mission: Mission, at: Mark) -> Results:
+    def of(cls, mission: Mission, at: Mark, trace: str) -> Results:
         """The results of a mission that is closed.
 
         Args:
             mission: the mission.
             at: what `mark` took down.
+            trace: the digest of the run, from before the tasks were ended.
         """
         virtual_s, wall_s = at.now_ns / NS_PER_S, at.wall_ns / NS_PER_S
         evs = mission.cfe.evs
@@ -168,7 +169,7 @@ class Results:
             seed=mission.seed,
             board=mission.board.name,
             tasks=mission.tasks,
-            trace=mission.trace.digest(),
+            trace=trace,
             booted_s=None if mission.booted is None else mission.booted / NS_PER_S,
             reset=mission.reset_reason,
             max_publish_hz=mission.board.max_publish_hz,
@@ -181,6 +182,11 @@ class Results:
             memory=at.memory,
             problems=_problems(mission, apps, own_errors),
         )
+
+    @property
+    def not_started(self) -> list[str]:
+        """Applications of the startup script that never started."""
+        return [app.name for app in self.apps if app.state == NOT_STARTED]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dicts, lists, numbers and text."""

@@ -117,7 +117,9 @@ def _paths(universe: Universe) -> dict[str, Any]:
 
     names = {name: one(getattr(os, name)) for name in _ONE_PATH if hasattr(os, name)}
     names.update({name: two(getattr(os, name)) for name in _TWO_PATHS})
-    names.update(symlink=symlink, listdir=listdir, scandir=scandir, getcwd=lambda: universe.cwd, chdir=universe.change_directory)
+    names.update(
+        symlink=symlink, listdir=listdir, scandir=scandir, getcwd=lambda: universe.cwd, chdir=universe.change_directory
+    )
     names["getcwdb"] = lambda: os.fsencode(universe.cwd)
     return names
 

@@ -1,0 +1,55 @@
+"""rospy_shim: rospy for nodes that run on cfepy's simulated flight computer.
+
+Inside a mission `import rospy_shim as rospy` and `import rospy` both give a node its own rospy. Outside, in a plain
+Python process, this module has rospy's exceptions, times and constants, and every function says how to run the node.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rospy_shim.exceptions import (
+    ROSException,
+    ROSInitException,
+    ROSInternalException,
+    ROSInterruptException,
+    ROSSerializationException,
+    ROSTimeMovedBackwardsException,
+    ServiceException,
+)
+from rospy_shim.rostime import Duration, Time
+
+__all__ = [
+    "Duration",
+    "ROSException",
+    "ROSInitException",
+    "ROSInternalException",
+    "ROSInterruptException",
+    "ROSSerializationException",
+    "ROSTimeMovedBackwardsException",
+    "ServiceException",
+    "Time",
+]
+
+DEBUG, INFO, WARN, ERROR, FATAL = 1, 2, 4, 8, 16
+
+_NEEDS_A_NODE = frozenset(
+    """AnyMsg Header Message Publisher Rate SubscribeListener Subscriber Timer delete_param get_caller_id get_name
+    get_namespace get_node_uri get_param get_param_cached get_param_names get_published_topics get_rostime get_time
+    has_param init_node is_shutdown logdebug logerr logfatal loginfo logwarn myargv on_shutdown remap_name resolve_name
+    search_param set_param signal_shutdown sleep spin wait_for_message""".split()
+)
+
+
+def __getattr__(name: str) -> Any:
+    """What only a node has: calling it tells how to become one."""
+    if name not in _NEEDS_A_NODE:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+    def refuse(*args: Any, **options: Any) -> None:
+        raise ROSInitException(
+            f"rospy_shim.{name}() works in a node of a cfepy mission only. Run this program with `cfepy run <mission>`"
+            " (see docs/run_your_ros_node.md), or import rospy instead of rospy_shim on a computer with ROS"
+        )
+
+    return refuse

@@ -1,0 +1,114 @@
+"""The layer rule: a package imports only from those to its left, and the host's clock stays outside the simulation."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+LAYERS = [
+    {"status", "ids", "trace", "console", "versions", "config", "ports", "resources", "__init__"},
+    {"rtos"},
+    {"osal"},
+    {"psp", "msg", "fs"},
+    {"es", "sb", "evs", "time", "tbl"},
+    {"app"},
+    {"nodes", "apps"},
+    {"mission"},
+    {"cli", "__main__"},
+]
+LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
+SERVICES = {"es", "sb", "evs", "time", "tbl"}
+HOST_MODULES = {"time", "random", "threading", "_thread", "socket", "select", "datetime", "secrets", "uuid", "asyncio"}
+MAY_TOUCH_THE_HOST = {
+    "rtos": "task contexts, pacing and the stall watch are made of the host's threads and clock",
+    "nodes": "puts virtual modules in the place of these, and takes constants and types from the real ones",
+}
+
+
+def sources(package: str) -> list[Path]:
+    return sorted((ROOT / package).rglob("*.py"))
+
+
+def imported(path: Path) -> Iterator[str]:
+    """Full names of what a module imports, relative imports resolved."""
+    package = ".".join(path.relative_to(ROOT).with_suffix("").parts[:-1])
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = ".".join(package.split(".")[: len(package.split(".")) - node.level + 1]) if node.level else ""
+            module = ".".join(part for part in (base, node.module or "") if part)
+            yield from (f"{module}.{alias.name}" for alias in node.names)
+
+
+def part_of(name: str) -> str:
+    """cfepy.sb.bus.SoftwareBus is of part sb; cfepy itself of __init__."""
+    parts = name.split(".")
+    return parts[1] if len(parts) > 1 and parts[1] in LEVEL else "__init__"
+
+
+def own_part(path: Path) -> str:
+    inside = path.relative_to(ROOT / "cfepy")
+    return inside.parts[0] if len(inside.parts) > 1 else inside.stem
+
+
+@pytest.mark.parametrize("path", sources("cfepy"), ids=lambda path: str(path.relative_to(ROOT)))
+def test_imports_go_left(path: Path) -> None:
+    if "templates" in path.parts:
+        return
+    part = own_part(path)
+    assert part in LEVEL, f"{part} has no place in the layer rule; give it one in this test and in docs/design.md"
+    for name in imported(path):
+        if name.split(".")[0] == "cfepy":
+            other = part_of(name)
+            assert LEVEL[other] <= LEVEL[part], f"{part} must not import {name}: it stands further right"
+            if part in SERVICES and other in SERVICES:
+                assert part == other, f"{part} must not import {name}: services meet in cfepy.ports only"
+        assert not name.startswith("rospy_shim"), f"{name}: a mission loads ROS by name"
+
+
+@pytest.mark.parametrize("path", sources("apps"), ids=lambda path: str(path.relative_to(ROOT)))
+def test_apps_stand_on_the_app_handle(path: Path) -> None:
+    for name in imported(path):
+        if name.split(".")[0] == "cfepy":
+            assert LEVEL[part_of(name)] <= LEVEL["app"], f"an app must not import {name}"
+
+
+@pytest.mark.parametrize("path", sources("rospy_shim"), ids=lambda path: str(path.relative_to(ROOT)))
+def test_rospy_stands_on_app_and_nodes(path: Path) -> None:
+    for name in imported(path):
+        if name.split(".")[0] == "cfepy":
+            assert LEVEL[part_of(name)] <= LEVEL["nodes"], f"rospy_shim must not import {name}"
+
+
+@pytest.mark.parametrize(
+    "path",
+    [*sources("cfepy"), *sources("rospy_shim"), *sources("apps")],
+    ids=lambda path: str(path.relative_to(ROOT)),
+)
+def test_only_the_kernel_knows_the_host(path: Path) -> None:
+    if path.is_relative_to(ROOT / "cfepy") and own_part(path) in MAY_TOUCH_THE_HOST:
+        return
+    if "templates" in path.parts:
+        return
+    touched = {name.split(".")[0] for name in imported(path)} & HOST_MODULES
+    assert not touched, f"{touched} belong to the host; only {', '.join(MAY_TOUCH_THE_HOST)} may use them"
+
+
+def test_numpy_and_test_libraries_are_imported_lazily() -> None:
+    for path in [*sources("cfepy"), *sources("rospy_shim")]:
+        for node in ast.parse(path.read_text()).body:
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module or ""]
+                heavy = {name.split(".")[0] for name in names} & {"numpy", "pytest", "hypothesis", "rich", "yaml"}
+                assert not heavy or own_part_is_display(path), f"{path}: import {heavy} where it is used"
+
+
+def own_part_is_display(path: Path) -> bool:
+    """The display is itself imported only when it is needed."""
+    return path.name in {"display.py", "tables.py"} and "cli" in path.parts
