@@ -33,12 +33,15 @@ __all__ = [
 
 DEBUG, INFO, WARN, ERROR, FATAL = 1, 2, 4, 8, 16
 
-_NEEDS_A_NODE = frozenset(
-    """AnyMsg Header Message Publisher Rate SubscribeListener Subscriber Timer delete_param get_caller_id get_name
-    get_namespace get_node_uri get_param get_param_cached get_param_names get_published_topics get_rostime get_time
-    has_param init_node is_shutdown logdebug logerr logfatal loginfo logwarn myargv on_shutdown remap_name resolve_name
-    search_param set_param signal_shutdown sleep spin wait_for_message""".split()
-)
+# fmt: off
+_NEEDS_A_NODE = frozenset({
+    "AnyMsg", "Header", "Message", "Publisher", "Rate", "SubscribeListener", "Subscriber", "Timer", "delete_param",
+    "get_caller_id", "get_name", "get_namespace", "get_node_uri", "get_param", "get_param_cached", "get_param_names",
+    "get_published_topics", "get_rostime", "get_time", "has_param", "init_node", "is_shutdown", "logdebug", "logerr",
+    "logfatal", "loginfo", "logwarn", "myargv", "on_shutdown", "remap_name", "resolve_name", "search_param",
+    "set_param", "signal_shutdown", "sleep", "spin", "wait_for_message",
+})
+# fmt: on
 
 
 def __getattr__(name: str) -> Any:

@@ -6,7 +6,7 @@ All nodes share them: they hold no state. Imports nothing of cfepy.
 from __future__ import annotations
 
 
-class ROSException(Exception):  # noqa: N818  # rospy's name
+class ROSException(Exception):  # rospy's name
     """Base of what goes wrong with ROS."""
 
     __module__ = "rospy.exceptions"
@@ -44,7 +44,7 @@ class ROSTimeMovedBackwardsException(ROSInterruptException):
         super().__init__("ROS time moved backwards")
 
 
-class ROSInternalException(Exception):  # noqa: N818  # rospy's name
+class ROSInternalException(Exception):  # rospy's name
     """Base of rospy's internal errors."""
 
     __module__ = "rospy.exceptions"
@@ -56,7 +56,7 @@ class TransportException(ROSInternalException):
     __module__ = "rospy.exceptions"
 
 
-class TransportTerminated(TransportException):  # noqa: N818  # rospy's name
+class TransportTerminated(TransportException):  # rospy's name
     """A connection ended."""
 
     __module__ = "rospy.exceptions"
@@ -68,7 +68,7 @@ class TransportInitError(TransportException):
     __module__ = "rospy.exceptions"
 
 
-class ServiceException(Exception):  # noqa: N818  # rospy's name
+class ServiceException(Exception):  # rospy's name
     """A service call failed."""
 
     __module__ = "rospy.service"

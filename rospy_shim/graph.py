@@ -49,8 +49,9 @@ class Topic:
         self.name = name
         self.msg_id = msg_id
         self.raw = raw
-        self.type = ""  # of whoever came first; empty while nobody is there
+        self.type = ""  # of whoever came first, as long as anybody of them is there
         self.md5sum = ""
+        self._members = 0
         self.links: list[Link] = []
         self.subscriptions: list[Subscription] = []
         self.publisher_names: list[str] = []  # everyone who ever was there, for the tables
@@ -60,13 +61,19 @@ class Topic:
         self.lost = 0  # long messages of which a segment is missing, once per subscriber
         self.notes: dict[int, tuple[Header, int]] = {}  # by sequence count: publisher, and number of the segment
 
-    def agrees(self, data_class: Any) -> bool:
-        """Whether a message class is the topic's; the first one that comes decides."""
-        if data_class._type == "*":
-            return True
-        if not self.type:
-            self.type, self.md5sum = data_class._type, data_class._md5sum
-        return bool(self.md5sum == data_class._md5sum)
+    def join(self, data_class: Any) -> bool:
+        """Somebody wants to connect: whether the message class is the topic's. The first one that comes decides."""
+        if self._members == 0 or not self.type:
+            concrete = data_class._type != "*"
+            self.type, self.md5sum = (data_class._type, data_class._md5sum) if concrete else (self.type, "")
+        elif data_class._type != "*" and self.md5sum not in ("", data_class._md5sum):
+            return False
+        self._members += 1
+        return True
+
+    def leave(self) -> None:
+        """Somebody who joined is gone."""
+        self._members -= 1
 
     def add_link(self, link: Link) -> None:
         """A publisher came."""
@@ -89,7 +96,6 @@ class Topic:
         """A subscriber left."""
         if subscription in self.subscriptions:
             self.subscriptions.remove(subscription)
-            self._forget_type()
             for link in self.links:
                 link.peer_left(len(self.subscriptions))
 
@@ -101,11 +107,6 @@ class Topic:
             self.notes.clear()
         self.header = None if shared else self.links[0].header if self.links else self.header
         self.latching = any(link.latching for link in self.links)
-        self._forget_type()
-
-    def _forget_type(self) -> None:
-        if not self.links and not self.subscriptions:
-            self.type = self.md5sum = ""
 
     def sender_of(self, packet: bytes) -> Header:
         """The connection header of whoever sent a packet."""

@@ -1,7 +1,7 @@
 """The end of a node: who may ask for it, and what runs then (rospy.core's shutdown functions, rospy.spin).
 
-A shutdown comes from the node itself, from ES (CFE_ES_RunLoop says no), or from the end of the mission, which stands for
-the Ctrl-C that ends a roslaunch. May import cfepy.nodes and cfepy.rtos.
+A shutdown comes from the node itself, from ES (CFE_ES_RunLoop says no), or from the end of the mission, which stands
+for the Ctrl-C that ends a roslaunch. May import cfepy.nodes and cfepy.rtos.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ Imports nothing of cfepy.
 from __future__ import annotations
 
 import struct
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, ClassVar
 
 from rospy_shim.exceptions import ROSException
 from rospy_shim.genpy import Message
@@ -18,9 +18,9 @@ class AnyMsg(Message):
     __module__ = "rospy.msg"
     _md5sum = "*"
     _type = "*"
-    _has_header = False
+    _has_header: ClassVar[bool] = False
     _full_text = ""
-    _slot_types: list[str] = []
+    _slot_types: ClassVar[list[str]] = []
     __slots__ = ["_buff"]
 
     def __init__(self, *args: Any) -> None:

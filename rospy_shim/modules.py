@@ -97,7 +97,7 @@ class RosModules:
         if part and part not in self._tables:
             return None
         name = f"rospy.{part}" if part else "rospy"
-        return lambda universe: universe.importer.load(name)  # type: ignore[no-any-return]
+        return lambda universe: universe.importer.load(name)
 
     def _part(self, part: str) -> ModuleType:
         late = {"Timer": lambda: self._node.Timer} if part == "timer" else {}
@@ -198,9 +198,7 @@ class RosModules:
         }
 
     def _top_names(self) -> Names:
-        return _pick(
-            self._node.names, ("get_caller_id", "get_name", "get_namespace", "remap_name", "resolve_name")
-        )
+        return _pick(self._node.names, ("get_caller_id", "get_name", "get_namespace", "remap_name", "resolve_name"))
 
     def _names(self) -> Names:
         own = (

@@ -49,7 +49,7 @@ def join(namespace: str, name: str) -> str:
 
 def is_legal_name(name: str) -> bool:
     """Whether a name follows ROS's rules for graph resource names."""
-    return not name or bool(_LEGAL.match(name)) and "//" not in name
+    return not name or (bool(_LEGAL.match(name)) and "//" not in name)
 
 
 def scoped_name(caller_id: str, name: str) -> str:

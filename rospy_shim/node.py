@@ -66,7 +66,7 @@ class Node:
         self.Rate = make_rate(self)
 
     @property
-    def Timer(self) -> type:  # noqa: N802  # rospy's name
+    def Timer(self) -> type:  # rospy's name
         """The node's class `rospy.Timer`, made at first use because it needs `threading`."""
         if self._timer is None:
             self._timer = make_timer(self)
@@ -126,7 +126,9 @@ class Node:
         return found
 
     def topic_for(self, name: str, data_class: Any) -> Topic | None:
-        """The topic to connect to; None when the node is shut down, or the topic's type is another (an error is logged).
+        """The topic to connect to; None when the node is shut down, or when the topic's type is another one.
+
+        The latter is logged as an error, and the rest of the graph goes on.
 
         Raises:
             UsageError: the topic's MsgId belongs to another topic.
@@ -134,7 +136,7 @@ class Node:
         if self.life.over:
             return None
         topic = self.graph.topic(name)
-        if topic.agrees(data_class):
+        if topic.join(data_class):
             return topic
         self.logs.logerr(
             "[%s] has the type %s [%s] for topic %s, which is %s [%s] on the graph: not connected",

@@ -14,7 +14,7 @@ from rospy_shim.exceptions import ROSException, ROSSerializationException
 from rospy_shim.genpy import SerializationError
 from rospy_shim.message import args_kwds_to_message
 from rospy_shim.topic_handle import TopicHandle
-from rospy_shim.transport import HEADER_BYTES, segments
+from rospy_shim.transport import HEADER_BYTES, segments, whole_header
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -70,8 +70,9 @@ class Link:
         self.msg_id = 0
         bus = node.cfe.sb
         self._bus = bus
-        self._has_subscribers = bus.has_subscribers
-        self._transmit = bus.transmit_telemetry
+        self._routes: dict[int, Any] = bus.routes
+        self._transmit = bus.transmit_msg
+        self._head = b""
         self._charge = node.kernel.charge
         self._call_ns = node.call_ns
         self._room = bus.config.sb_max_msg_size - HEADER_BYTES
@@ -87,11 +88,12 @@ class Link:
         self.header |= self._own_header()
         topic = self.node.topic_for(self.name, self.data_class)
         if topic is None:
-            self._has_subscribers = _nobody
+            self._routes = {}
             return
         self.topic = topic
         self.raw = topic.raw
         self.msg_id = topic.msg_id
+        self._head = whole_header(topic.msg_id)
         topic.add_link(self)
         for subscription in topic.subscriptions:
             self.peer_joined(subscription)
@@ -115,15 +117,16 @@ class Link:
 
     def close(self) -> None:
         """Leave the graph; who still publishes is not heard any more."""
-        self._has_subscribers = _nobody
+        self._routes = {}
         self.node.links.pop(self.name, None)
         if self.topic is not None:
             self.topic.remove_link(self)
+            self.topic.leave()
             self.topic = None
 
     def connections(self) -> int:
         """How many pipes get the topic's messages: subscribing nodes, and cFE applications."""
-        route = self._bus.routes.get(self.msg_id) if self.topic is not None else None
+        route = self._routes.get(self.msg_id)
         return len(route.active) if route is not None else 0
 
     def send(self, message: Any) -> None:
@@ -136,7 +139,8 @@ class Link:
             self._charge(self._call_ns)
         if self.latching:
             self.latched = message
-        if not self._has_subscribers(self.msg_id):
+        route = self._routes.get(self.msg_id)
+        if route is None or not route.active:
             return
         payload = self.serialize(message)
         try:
@@ -147,7 +151,7 @@ class Link:
             else:
                 if self.shared:
                     self._note(0)
-                self._transmit(self.msg_id, payload)
+                self._transmit(self._head + payload)
         except CfeError as error:
             self.node.logs.logerr("publish on %s: %s", self.name, error)
 
@@ -194,8 +198,8 @@ class Link:
 
     def _note(self, index: int) -> None:
         """Remember who sends the next packet of the topic, since a packet cannot say."""
-        route = self._bus.routes[self.msg_id]
-        if self.topic is not None:
+        route = self._routes.get(self.msg_id)
+        if self.topic is not None and route is not None:
             self.topic.notes[route.sequence & 0x3FFF] = (self.header, index)
 
     def _wait_for_room(self) -> None:
@@ -208,8 +212,8 @@ class Link:
             kernel.delay(PACE_NS)
 
     def _has_room(self) -> bool:
-        route = self._bus.routes[self.msg_id]
-        return all(
+        route = self._routes.get(self.msg_id)
+        return route is None or all(
             each.puts - each.gets < each.limit and len(each.pipe.items) < each.pipe.depth for each in route.active
         )
 
@@ -313,11 +317,6 @@ class Publisher(TopicHandle):
         link.handles -= 1
         if link.handles == 0:
             link.close()
-
-
-def _nobody(msg_id: int) -> bool:
-    """Subscribers of a publisher whose type is not the topic's."""
-    return False
 
 
 def make_publisher(node: Node) -> type[Publisher]:

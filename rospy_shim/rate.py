@@ -78,5 +78,3 @@ class Rate:
 def make_rate(node: Node) -> type[Rate]:
     """The class `rospy.Rate` of a node."""
     return type("Rate", (Rate,), {"__module__": Rate.__module__, "_node": node})
-
-

@@ -27,7 +27,7 @@ def nanoseconds(duration: Any) -> int:
     """
     if isinstance(duration, genpy.Duration):
         return duration.secs * NS + duration.nsecs
-    return round(duration * NS)
+    return round(float(duration) * NS) if not isinstance(duration, int) else duration * NS
 
 
 class Duration(genpy.Duration):

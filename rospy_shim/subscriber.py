@@ -82,8 +82,10 @@ class Subscription:
         self.node.subscriptions.pop(self.name, None)
         if self.topic is not None:
             self.topic.remove_subscription(self)
+            self.topic.leave()
             if self._pipe != NO_PIPE:
                 self.node.cfe.sb.unsubscribe(self.topic.msg_id, self._pipe)
+            self.topic = None
         self._call_attention()
 
     def connections(self) -> int:

@@ -5,8 +5,7 @@ Imports nothing of cfepy.
 
 from __future__ import annotations
 
-import inspect
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from rospy_shim.names import is_legal_name
 
@@ -31,7 +30,7 @@ class TopicHandle:
             raise ValueError("topic name is not a non-empty string")
         if data_class is None:
             raise ValueError("topic parameter 'data_class' is not initialized")
-        if not inspect.isclass(data_class):
+        if not isinstance(data_class, type):
             raise ValueError(f"data_class [{data_class}] is not a class")
         if not hasattr(data_class, "_md5sum"):
             raise ValueError(f"data_class [{type(data_class).__name__}] is not a message data class")
@@ -44,9 +43,9 @@ class TopicHandle:
         else:
             self.resolved_name = names.resolve_name_without_node_name(name)
         self.name = self.resolved_name
-        self.data_class = data_class
-        self.type: str = data_class._type
-        self.md5sum: str = data_class._md5sum
+        self.data_class = message = cast(Any, data_class)
+        self.type: str = message._type
+        self.md5sum: str = message._md5sum
         self.reg_type = reg_type
 
     def get_num_connections(self) -> int:

@@ -18,6 +18,11 @@ LAST = 0x80
 _header = struct.Struct(">HBBH10x").pack
 
 
+def whole_header(msg_id: int) -> bytes:
+    """The header of a packet that holds a whole message; the bus fills in sequence count, length and time."""
+    return _header(msg_id, WHOLE, 0, 0)
+
+
 def segments(msg_id: int, payload: bytes, room: int) -> Iterator[bytes]:
     """The packets that a long payload is sent in; the bus fills in sequence counts and times.
 

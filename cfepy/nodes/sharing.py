@@ -22,12 +22,13 @@ if TYPE_CHECKING:
 
 # fmt: off
 FRESH = frozenset({
-    "_pydatetime", "_pyio", "_threading_local", "argparse", "asynchat", "asyncio", "asyncore", "bdb", "cmd", "code",
-    "codeop", "concurrent", "configparser", "contextlib", "email", "fileinput", "ftplib", "genericpath", "getopt",
-    "getpass", "glob", "http", "imaplib", "logging", "nntplib", "optparse", "pathlib", "pdb", "pickle", "poplib",
-    "posixpath", "pprint", "queue", "random", "runpy", "sched", "secrets", "selectors", "shelve", "shutil", "smtpd",
-    "smtplib", "socketserver", "statistics", "telnetlib", "tempfile", "threading", "timeit", "traceback",
-    "tracemalloc", "unittest", "urllib", "uuid", "warnings", "weakref", "wsgiref", "xmlrpc",
+    "_pydatetime", "_pyio", "_threading_local", "argparse", "asynchat", "asyncio", "asyncore", "bdb", "bz2", "cmd",
+    "code", "codeop", "concurrent", "configparser", "contextlib", "email", "fileinput", "ftplib", "genericpath",
+    "getopt", "getpass", "glob", "gzip", "http", "imaplib", "logging", "lzma", "nntplib", "optparse", "pathlib",
+    "pdb", "pickle", "platform", "poplib", "posixpath", "pprint", "queue", "random", "runpy", "sched", "secrets",
+    "selectors", "shelve", "shutil", "smtpd", "smtplib", "socketserver", "statistics", "tarfile", "telnetlib",
+    "tempfile", "threading", "timeit", "traceback", "tracemalloc", "unittest", "urllib", "uuid", "warnings", "wave",
+    "weakref", "wsgiref", "xmlrpc", "zipfile",
 })
 # fmt: on
 """Modules of the standard library, by their first name, that each node executes for itself."""

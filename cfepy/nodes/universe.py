@@ -10,6 +10,7 @@ import os
 import random
 import zlib
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -97,7 +98,8 @@ class Universe:
         self.cwd = os.path.abspath(cwd if cwd is not None else os.getcwd())
         self.rng = random.Random(f"{seed}/{name}")
         self.serial = 0  # of locks and threads, which hash by it
-        self.call_cost_ns = call_cost_ns
+        # The current task made a call that polls: it takes virtual CPU time, and others get their turn.
+        self.charge: Callable[[], object] = partial(kernel.charge, call_cost_ns) if call_cost_ns else _free
         self.ordered_sets = ordered_sets
         self.main_task: Task | None = None
         self.exit_status: int | None = None
@@ -196,11 +198,6 @@ class Universe:
         """Have something done when the thread `ident` ends."""
         self._thread_ends.setdefault(ident, []).append(action)
 
-    def charge(self) -> None:
-        """The current task made a call that polls: it takes virtual CPU time, and others get their turn."""
-        if self.call_cost_ns:
-            self.kernel.charge(self.call_cost_ns)
-
     def end_threads(self) -> None:
         """End all tasks of the node but the current one, which may itself be ended because of this: do it once."""
         if self._ending:
@@ -258,6 +255,10 @@ class Universe:
 
     def _write_line(self, line: str) -> None:
         self._sink(f"[{self.name}] {line}")
+
+
+def _free() -> None:
+    """A call that takes no virtual time."""
 
 
 _FIXES: dict[str, Callable[[Universe, ModuleType], None]] = {

@@ -190,10 +190,10 @@ class Core:
         self._tables[base] = table
         return table
 
-    def _register(self, table: ObjectTable[Record], record: Record, kind: str, size: int) -> int:
-        """Account for an object of the current task's application and give it an id."""
+    def _register(self, table: ObjectTable[Record], record: Record, kind: str, size: int, owner: Any = None) -> int:
+        """Account for an object of an application, by default the current task's, and give it an id."""
         task = self.kernel.current
-        record.owner = task.owner
+        record.owner = task.owner if owner is None else owner
         record.creator = self._task_ids.get(task, 0)
         memory = self._setup.memory
         if memory is not None:

@@ -87,7 +87,7 @@ class TaskApi(Core):
         check_size(stack_size, f"stack of task {name}")
         _check_priority(priority)
         record = OsTask(name, entry, stack_size, priority)
-        task_id = self._register(self._tasks, record, "stack", stack_size + self._setup.sizes.task)
+        task_id = self._register(self._tasks, record, "stack", stack_size + self._setup.sizes.task, owner)
         record.task = self.kernel.spawn(name, lambda: self._live(record), priority, owner)
         return task_id
 

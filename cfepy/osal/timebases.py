@@ -9,7 +9,7 @@ cfepy.osal.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from cfepy.ids import OS_TIMEBASE_BASE
 from cfepy.osal.core import Core, ObjectTable, OsObject, Setup
@@ -129,13 +129,16 @@ class OsTimeBase(OsObject):
             self.kernel.wake_first(self.waits)
 
     def expire(self, freerun: int) -> None:
-        """Run the callbacks that are due."""
+        """Run the callbacks that are due; an error in one is its application's, and the time base goes on."""
         task = self.kernel.current
-        owner = task.owner
         for timer in tuple(self.timers):
-            task.owner = timer.owner  # an error in a callback is its application's, and stays so when it is raised
-            timer.expire(freerun)
-        task.owner = owner
+            task.owner = timer.owner
+            try:
+                timer.expire(freerun)
+            except Exception as error:
+                if not self.kernel.on_task_error(task, error):
+                    raise
+        task.owner = None
 
     def run_by_clock(self) -> None:
         """The task of a time base that follows the kernel's clock."""
@@ -259,7 +262,7 @@ class TimeBaseApi(Core):
         return record
 
     def _serve(self, record: OsTimeBase) -> None:
-        task: Any = self.kernel.current
+        task = self.kernel.current
         record.task = task
         task.owner = None
         self._task_ids[task] = record.id  # so a callback is known for what it is, as in NASA's

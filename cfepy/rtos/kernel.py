@@ -198,7 +198,11 @@ class Kernel:
         task = self.current
         if task.dying:
             self._refuse(task)
-        self.arm(task, duration_ns if duration_ns > 0 else 1)
+        when = self.now + (duration_ns if duration_ns > 0 else 1)
+        if self.tick_ns:
+            when = -(-when // self.tick_ns) * self.tick_ns
+        self.sequence = task.timer = sequence = self.sequence + 1
+        heappush(self.timers, (when, sequence, task))
         self.block()
 
     def wait_on(self, waits: WaitList, timeout_ns: int = FOREVER) -> Any:
@@ -424,28 +428,32 @@ class Kernel:
     def _advance(self) -> Task:
         """Nobody is ready: move the clock to the next deadline. The host, when the run is over before that."""
         timers = self.timers
-        while timers and timers[0][2].timer != timers[0][1]:
+        while timers:
+            when, sequence, task = timers[0]
+            if task.timer != sequence:
+                heappop(timers)
+                continue
+            if when > self._until:
+                break
             heappop(timers)
-        if not timers or timers[0][0] > self._until:
-            self._exhausted = not timers
-            if self.current is not self.host:
-                self._last = self.current
-            return self.host
-        when = timers[0][0]
-        if when > self.now:
-            self.now = when
-            if self.trace is not None:
-                records = self.trace.records
-                records.append(tr.pack_time(tr.TIME, when))
-                if len(records) > tr.BATCH:
-                    self.trace.flush()
-        _, sequence, task = heappop(timers)
-        if not timers or timers[0][0] > self.now:
-            self._time_out(task)  # the usual case: exactly one timer is due
-            return task
-        heappush(timers, (when, sequence, task))
-        self._fire_due()
-        return self._take() if self.ready else self._advance()
+            if when > self.now:
+                self.now = when
+                if self.trace is not None:
+                    records = self.trace.records
+                    records.append(tr.pack_time(tr.TIME, when))
+                    if len(records) > tr.BATCH:
+                        self.trace.flush()
+            self._time_out(task)
+            if timers and timers[0][0] <= self.now:
+                self.sequence = order = self.sequence + 1
+                heappush(self.ready, (task.priority, order, task))
+                self._fire_due()
+                return self._take()
+            return task  # the usual case: exactly one timer is due
+        self._exhausted = not timers
+        if self.current is not self.host:
+            self._last = self.current
+        return self.host
 
     def _fire_due(self) -> None:
         timers = self.timers

@@ -139,8 +139,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
 
     def _stamp(self, now: int) -> None:
         """Keep the spacecraft time of this instant, as the header wants it."""
-        self._seconds, subseconds = self.ports.time.now()
-        self._subseconds = subseconds >> 16
+        self._seconds, self._subseconds = divmod(self.ports.time.stamp(), 0x10000)
         self._stamped_at = now
 
     def forget_time(self) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import importlib.util
 import sys
 import types
 
 import pytest
 
-from cfepy.nodes import Universe
+from cfepy.nodes import Universe, sharing
 from cfepy.rtos import Kernel
 
 
@@ -241,6 +242,20 @@ def test_the_host_is_not_patched(run):
     assert {name for name in modules if sys.modules.get(name) is not modules[name]} == set()
     assert "X_OF_NODE" not in os.environ
     assert sys.getrecursionlimit() > 100
+
+
+def test_every_module_that_is_executed_afresh_can_be(run):
+    names = sorted(name for name in sharing.FRESH if importlib.util.find_spec(name) is not None)
+    program = run(f"""
+        import importlib
+        for name in {names!r}:
+            try:
+                importlib.import_module(name)
+            except ImportError as error:
+                print(name, error)
+    """)
+    assert program.universe.exit_status == 0, program.text
+    assert program.text == ""
 
 
 def test_a_universe_can_be_used_from_the_host_without_a_script():

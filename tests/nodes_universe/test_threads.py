@@ -7,7 +7,7 @@ from textwrap import dedent
 import pytest
 
 from cfepy.nodes import Universe
-from cfepy.rtos import Kernel
+from cfepy.rtos import DeadlockError, Kernel
 from cfepy.trace import Trace
 
 SECOND = 1_000_000_000
@@ -273,6 +273,47 @@ def test_the_tasks_of_a_node_can_be_ended_in_any_order(start, first):
     program.kernel.run(2 * SECOND)
     assert program.global_("log") == ["end"]
     assert not program.kernel.tasks
+
+
+def test_a_lock_handed_to_a_task_that_is_ended_goes_to_the_next(start):
+    program = start("""
+        import threading, time
+        lock, log = threading.Lock(), []
+        lock.acquire()
+        def use(number):
+            with lock:
+                log.append(number)
+        for number in range(2):
+            threading.Thread(target=use, args=(number,)).start()
+        time.sleep(5)
+    """)
+    program.kernel.run(SECOND)
+    first = program.universe.tasks[1]
+
+    def hand_over_and_end():
+        program.global_("lock").release()
+        program.kernel.kill(first)
+
+    program.kernel.spawn("owner", hand_over_and_end, 10)
+    program.kernel.run()
+    assert program.global_("log") == [1]
+    assert not program.global_("lock").locked()
+
+
+def test_a_deadlock_is_reported_by_the_locks_that_are_waited_for(start):
+    program = start("""
+        import threading, time
+        a, b = threading.RLock(), threading.RLock()
+        def take(first, second):
+            with first:
+                time.sleep(1)
+                with second:
+                    pass
+        for locks in ((a, b), (b, a)):
+            threading.Thread(target=take, args=locks).start()
+    """)
+    with pytest.raises(DeadlockError, match=r"lock \d+ of node"):
+        program.kernel.run()
 
 
 def test_threads_start_through_the_owners_hook(start):

@@ -39,8 +39,8 @@ class Events:
 class Clock:
     """Spacecraft time 1001000 s."""
 
-    def now(self) -> tuple[int, int]:
-        return (1001000, 0x80000000)
+    def stamp(self) -> int:
+        return 1001000 << 16 | 0x8000
 
 
 class Memory:

@@ -1,0 +1,36 @@
+"""What OSAL tests share: an Osal on a kernel, and tasks that run to their end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from cfepy.config import PlatformConfig
+from cfepy.console import Console
+from cfepy.osal import Osal
+from cfepy.rtos import Kernel
+from cfepy.trace import Trace
+
+MS = 1_000_000
+
+
+class Bench:
+    """One kernel with an Osal on it."""
+
+    def __init__(self, **setup: Any) -> None:
+        self.kernel = Kernel("thread", Trace())
+        self.console = Console(quiet=True)
+        self.os = Osal(self.kernel, setup.pop("config", PlatformConfig()), self.console, **setup)
+        self.log: list[Any] = []
+
+    def task(self, body: Callable[[], object], priority: int = 100, name: str = "", owner: Any = None) -> int:
+        """Start an OSAL task; named after its function unless told otherwise."""
+        return self.os.task_create(name or body.__name__, body, 4096, priority, owner=owner)
+
+    def run(self, body: Callable[[], object], until_ms: int = 60_000) -> Any:
+        """Run `body` in a task called MAIN until the run is over; what it returned."""
+        results: list[Any] = []
+        self.task(lambda: results.append(body()), name="MAIN")
+        self.kernel.run(until_ns=until_ms * MS)
+        assert results, "the task did not come to its end"
+        return results[0]

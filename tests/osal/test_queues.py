@@ -1,0 +1,115 @@
+"""OS_Queue*: order, limits, time-outs and deletion."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy.osal.limits import OS_CHECK, OS_PEND
+from cfepy.status import (
+    OS_ERR_INVALID_ID,
+    OS_ERR_INVALID_SIZE,
+    OS_ERR_NAME_NOT_FOUND,
+    OS_ERR_NAME_TAKEN,
+    OS_ERR_NAME_TOO_LONG,
+    OS_ERR_NO_FREE_IDS,
+    OS_QUEUE_FULL,
+    OS_QUEUE_INVALID_SIZE,
+    OsalError,
+)
+from tests.osal.helpers import MS, Bench
+
+
+def status_of(call: object, *arguments: object) -> int:
+    with pytest.raises(OsalError) as caught:
+        call(*arguments)  # type: ignore[operator]  # any function of Osal
+    return caught.value.status
+
+
+def test_messages_come_out_in_order(bench: Bench) -> None:
+    queue_id = bench.os.queue_create("Q", 3, 8)
+    for text in (b"a", b"bb", b"ccc"):
+        bench.os.queue_put(queue_id, text)
+    assert [bench.os.queue_get(queue_id, OS_CHECK) for _ in range(4)] == [b"a", b"bb", b"ccc", None]
+
+
+def test_a_put_never_waits(bench: Bench) -> None:
+    queue_id = bench.os.queue_create("Q", 1, 8)
+    bench.os.queue_put(queue_id, b"a")
+    assert status_of(bench.os.queue_put, queue_id, b"b") == OS_QUEUE_FULL
+    assert bench.os.queue_get(queue_id) == b"a"
+
+
+def test_a_changed_buffer_does_not_change_the_message(bench: Bench) -> None:
+    queue_id = bench.os.queue_create("Q", 1, 8)
+    buffer = bytearray(b"old")
+    bench.os.queue_put(queue_id, buffer)
+    buffer[:] = b"new"
+    assert bench.os.queue_get(queue_id) == b"old"
+
+
+def test_bad_arguments(bench: Bench) -> None:
+    create = bench.os.queue_create
+    queue_id = create("Q", 1, 4)
+    assert status_of(create, "Q" * 20, 1, 4) == OS_ERR_NAME_TOO_LONG
+    assert status_of(create, "Q", 1, 4) == OS_ERR_NAME_TAKEN
+    assert status_of(create, "R", 1, 0) == OS_ERR_INVALID_SIZE
+    assert status_of(create, "R", 51, 4) == OS_QUEUE_INVALID_SIZE
+    assert status_of(create, "R", 0, 4) == OS_QUEUE_INVALID_SIZE
+    assert status_of(bench.os.queue_put, queue_id, b"12345") == OS_QUEUE_INVALID_SIZE
+    assert status_of(bench.os.queue_put, queue_id, b"") == OS_ERR_INVALID_SIZE
+    assert status_of(bench.os.queue_put, 0, b"1") == OS_ERR_INVALID_ID
+    assert status_of(bench.os.queue_get, queue_id + 1) == OS_ERR_INVALID_ID
+    assert status_of(bench.os.queue_get_id_by_name, "R") == OS_ERR_NAME_NOT_FOUND
+    assert status_of(bench.os.queue_get_info, 0x10001) == OS_ERR_INVALID_ID
+
+
+def test_there_are_as_many_queues_as_configured(bench: Bench) -> None:
+    for number in range(bench.os.config.os_max_queues):
+        bench.os.queue_create(f"Q{number}", 1, 1)
+    assert status_of(bench.os.queue_create, "ONE_MORE", 1, 1) == OS_ERR_NO_FREE_IDS
+
+
+def test_a_deleted_id_does_not_come_back_at_once(bench: Bench) -> None:
+    first = bench.os.queue_create("Q", 1, 1)
+    bench.os.queue_delete(first)
+    assert bench.os.queue_create("Q", 1, 1) != first
+
+
+@pytest.mark.parametrize(("timeout_ms", "elapsed_ms"), [(OS_CHECK, 0), (1, 1), (250, 250)])
+def test_time_outs(bench: Bench, timeout_ms: int, elapsed_ms: int) -> None:
+    queue_id = bench.os.queue_create("Q", 1, 1)
+
+    def body() -> tuple[bytes | None, int]:
+        return bench.os.queue_get(queue_id, timeout_ms), bench.kernel.now
+
+    assert bench.run(body) == (None, elapsed_ms * MS)
+
+
+def test_a_pending_reader_gets_what_comes_later(bench: Bench) -> None:
+    queue_id = bench.os.queue_create("Q", 1, 4)
+
+    def writer() -> None:
+        bench.os.task_delay(5000)
+        bench.os.queue_put(queue_id, b"late")
+
+    bench.task(writer)
+    assert bench.run(lambda: (bench.os.queue_get(queue_id, OS_PEND), bench.kernel.now)) == (b"late", 5000 * MS)
+
+
+def test_deleting_a_queue_wakes_its_readers_with_an_error(bench: Bench) -> None:
+    queue_id = bench.os.queue_create("Q", 1, 4)
+
+    def deleter() -> None:
+        bench.os.task_delay(5)
+        bench.os.queue_delete(queue_id)
+
+    bench.task(deleter)
+    assert bench.run(lambda: status_of(bench.os.queue_get, queue_id, OS_PEND)) == OS_ERR_INVALID_ID
+
+
+def test_info_names_the_creator(bench: Bench) -> None:
+    def body() -> tuple[object, int]:
+        return bench.os.queue_get_info(bench.os.queue_create("Q", 1, 1)), bench.os.task_get_id()
+
+    info, creator = bench.run(body)
+    assert info == ("Q", creator)

@@ -1,0 +1,77 @@
+"""Small missions of ROS nodes for the tests: scripts as text or files, run for some virtual seconds."""
+
+from __future__ import annotations
+
+import shutil
+import textwrap
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cfepy.console import Console
+from cfepy.mission.mission import Mission
+from cfepy.mission.spec import MissionSpec
+from cfepy.nodes.config import NodeConfig, RosConfig, TopicConfig
+
+
+class Run(NamedTuple):
+    """What is left of a run: the lines that nodes printed, everything on the console, the topics' rows, the digest."""
+
+    printed: dict[str, list[str]]
+    lines: list[str]
+    topics: dict[str, Any]
+    digest: str
+    finished: bool
+
+
+def run_nodes(
+    folder: Path,
+    scripts: Mapping[str, str | Path],
+    *,
+    seconds: float = 3.0,
+    nodes: Mapping[str, NodeConfig] | None = None,
+    topics: Mapping[str, TopicConfig] | None = None,
+    params: Mapping[str, Any] | None = None,
+    tasks: str = "thread",
+    priorities: Mapping[str, int] | None = None,
+) -> Run:
+    """Run scripts as nodes; keys are their cFE names.
+
+    Args:
+        folder: an empty folder to put the mission in.
+        scripts: source text, or a file that is copied.
+        seconds: virtual time before the nodes are asked to end.
+        nodes: what a mission file says about them.
+        topics: pinned MsgIds.
+        params: global parameters.
+        tasks: "thread" or "greenlet".
+        priorities: of the applications, 100 by default.
+    """
+    script_lines = []
+    for app, source in scripts.items():
+        name = f"{app.lower()}.py"
+        if isinstance(source, Path):
+            shutil.copy(source, folder / name)
+        else:
+            (folder / name).write_text(textwrap.dedent(source))
+        priority = (priorities or {}).get(app, 100)
+        script_lines.append(f"CFE_APP, {name}, __main__, {app}, {priority}, 16384, 0x0, 1;\n")
+    startup = folder / "startup.scr"
+    startup.write_text("".join(script_lines) + "!\n")
+    ros = RosConfig(nodes or {}, topics or {}, params or {})
+    console = Console(quiet=True)
+    with Mission(MissionSpec("test", folder, startup, None, "linux", ros), tasks=tasks, console=console) as mission:
+        mission.run(seconds)
+        mission.shut_down_nodes()
+        rows = {row.name: row for row in mission.ros.topics()} if mission.ros is not None else {}
+        finished = mission.ros is None or mission.ros.all_finished()
+        return Run(_by_node(console.lines), list(console.lines), rows, mission.trace.digest(), finished)
+
+
+def _by_node(lines: list[str]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for line in lines:
+        if line.startswith("[") and "] " in line:
+            name, _, text = line[1:].partition("] ")
+            found.setdefault(name, []).append(text)
+    return found
