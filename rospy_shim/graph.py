@@ -10,6 +10,7 @@ import hashlib
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cfepy.status import UsageError
+from rospy_shim.exceptions import ServiceException
 from rospy_shim.params import ParameterTree
 from rospy_shim.transport import sequence_of
 
@@ -17,12 +18,14 @@ if TYPE_CHECKING:
     from cfepy.nodes.config import RosConfig
     from rospy_shim.node import Node
     from rospy_shim.publisher import Link
+    from rospy_shim.service import Service
     from rospy_shim.subscriber import Subscription
 
 ROSOUT = "/rosout"
 ROSOUT_MSG_ID = 0x0900
 FIRST_MSG_ID = 0x0901
 LAST_MSG_ID = 0x0FFF
+COMMAND_BIT = 0x1000  # a service's requests are commands, its answers telemetry of the same number
 
 Header = dict[str, str]
 """What ROS tells the two ends of a connection: caller, type, md5sum, topic, ..."""
@@ -57,6 +60,7 @@ class Topic:
         self.publisher_names: list[str] = []  # everyone who ever was there, for the tables
         self.subscriber_names: list[str] = []
         self.header: Header | None = None  # of the only publisher; None when a message must be looked up in `notes`
+        self._shared = False  # there were two publishers at a time; packets of one that left may still wait in pipes
         self.latching = False
         self.lost = 0  # long messages of which a segment is missing, once per subscriber
         self.notes: dict[int, tuple[Header, int]] = {}  # by sequence count: publisher, and number of the segment
@@ -100,11 +104,9 @@ class Topic:
                 link.peer_left(len(self.subscriptions))
 
     def _refresh(self) -> None:
-        shared = len(self.links) > 1
+        self._shared = shared = self._shared or len(self.links) > 1
         for link in self.links:
             link.shared = shared
-        if not shared:
-            self.notes.clear()
         self.header = None if shared else self.links[0].header if self.links else self.header
         self.latching = any(link.latching for link in self.links)
 
@@ -118,6 +120,28 @@ class Topic:
         return {"callerid": "", "latching": "0", "md5sum": self.md5sum, "topic": self.name, "type": self.type}
 
 
+class ServiceEntry:
+    """A service that is offered.
+
+    Args:
+        service: who handles its requests.
+        answer_id: MsgId of its answers; requests have the same with the command bit.
+    """
+
+    def __init__(self, service: Service, answer_id: int) -> None:
+        self.service = service
+        self.answer_id = answer_id
+        self.request_id = answer_id | COMMAND_BIT
+        self.callers: dict[int, str] = {}  # by call number, while a call is under way
+        self._calls = 0
+
+    def begin(self, caller: str) -> int:
+        """The number of a new call."""
+        self._calls = number = self._calls + 1
+        self.callers[number] = caller
+        return number
+
+
 class Graph:
     """All nodes and topics of one mission.
 
@@ -129,6 +153,7 @@ class Graph:
         self._config = config
         self.topics: dict[str, Topic] = {}
         self.nodes: dict[str, Node] = {}
+        self.services: dict[str, ServiceEntry] = {}
         self.params = ParameterTree(config.params)
         self._names: dict[int, str] = {topic.msg_id: name for name, topic in config.topics.items()}
 
@@ -152,7 +177,7 @@ class Graph:
             free = next(each for each in range(LAST_MSG_ID, FIRST_MSG_ID, -1) if each not in self._names)
             raise UsageError(
                 f"topics {holder} and {name} both fall on MsgId 0x{msg_id:04X}; give one of them another in"
-                f' mission.yaml: "{name}: 0x{free:04X}"',
+                f' mission.yaml: "{name}: {{msg_id: 0x{free:04X}}}"',
                 field="topics",
             )
         return msg_id
@@ -169,6 +194,36 @@ class Graph:
         """A node is gone."""
         if self.nodes.get(node.names.name) is node:
             del self.nodes[node.names.name]
+
+    def register_service(self, service: Service) -> ServiceEntry:
+        """A node offers a service; one of another node under that name is shut down, as ROS forgets it.
+
+        Raises:
+            ServiceException: the same node offers it already.
+        """
+        name = service.resolved_name
+        former = self.services.get(name)
+        if former is not None and former.service.node is service.node:
+            raise ServiceException(f"service [{name}] already registered")
+        entry = ServiceEntry(service, former.answer_id if former is not None else self._service_id(name))
+        if former is not None:
+            former.service.shutdown("another node offers the service")
+        self.services[name] = entry
+        return entry
+
+    def _service_id(self, name: str) -> int:
+        """The MsgId of a service's answers: from a hash of its name, the next free one if that is taken."""
+        label = f"service {name}"
+        msg_id = msg_id_of(label)
+        while self._names.setdefault(msg_id, label) != label:
+            msg_id = FIRST_MSG_ID + (msg_id + 1 - FIRST_MSG_ID) % (LAST_MSG_ID - FIRST_MSG_ID + 1)
+        return msg_id
+
+    def forget_service(self, service: Service) -> None:
+        """A service is offered no longer."""
+        entry = self.services.get(service.resolved_name)
+        if entry is not None and entry.service is service:
+            del self.services[service.resolved_name]
 
     def published(self, namespace: str) -> list[list[str]]:
         """[name, type] of the topics below a namespace that somebody publishes."""

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes.report import traceback_text
 from cfepy.rtos import WaitList
-from rospy_shim.exceptions import ROSInitException
 
 if TYPE_CHECKING:
     from rospy_shim.node import Node
@@ -135,8 +134,7 @@ class Life:
         Raises:
             ROSInitException: before `init_node`.
         """
-        if not self._node.initialized:
-            raise ROSInitException("client code must call rospy.init_node() first")
+        self._node.require_initialized()
         try:
             while not self.is_shutdown():
                 self.wait(WaitList(f"shutdown of node {self._node.names.name}"), SPIN_NS)

@@ -7,6 +7,7 @@ cfepy.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -70,6 +71,7 @@ class RosModules:
             "numpy_msg": lambda: {"numpy_msg": message.numpy_msg},
             "rostime": self._rostime,
             "service": lambda: {"ServiceException": exceptions.ServiceException},
+            "impl.tcpros_service": self._services,
             "timer": self._timer,
             "topics": lambda: {
                 **self._topics(),
@@ -91,9 +93,7 @@ class RosModules:
         return None if table is None else lambda universe: self._part(part)
 
     def _alias(self, part: str) -> Callable[[Any], ModuleType] | None:
-        """`rospy_shim` is another name of `rospy`; the parts below the message packages are the host's."""
-        if part.partition(".")[0] in ("genpy", "msgs"):
-            return lambda universe: _host_module(f"rospy_shim.{part}")
+        """`rospy_shim` is another name of `rospy`; what has no counterpart there is not found here."""
         if part and part not in self._tables:
             return None
         name = f"rospy.{part}" if part else "rospy"
@@ -112,7 +112,7 @@ class RosModules:
         for table in (self._exceptions, self._top_of_core, self._client, self._params, self._top_names):
             ready |= table()
         ready |= _pick(node.clock, ("Time", "Duration", "get_rostime", "get_time"))
-        ready |= self._topics() | self._timer()
+        ready |= self._topics() | self._timer() | self._services()
         ready |= {
             "AnyMsg": message.AnyMsg,
             "Header": message_class("std_msgs/Header"),
@@ -121,7 +121,9 @@ class RosModules:
             **_pick(logs, ("DEBUG", "INFO", "WARN", "ERROR", "FATAL")),
         }
         load = node.universe.importer.load
-        late: dict[str, Callable[[], Any]] = {part: lambda part=part: load(f"rospy.{part}") for part in self._tables}  # type: ignore[misc]
+        late: dict[str, Callable[[], Any]] = {
+            part: partial(load, f"rospy.{part}") for part in self._tables if "." not in part
+        }
         module = RosModule("rospy", ready, {**late, "Timer": lambda: node.Timer})
         module.__path__ = []
         return module
@@ -235,15 +237,12 @@ class RosModules:
             "SubscribeListener": publisher.SubscribeListener,
         }
 
+    def _services(self) -> Names:
+        return _pick(self._node, ("Service", "ServiceProxy", "wait_for_service"))
+
     def _msg(self) -> Names:
         return _pick(message, ("AnyMsg", "args_kwds_to_message", "serialize_message"))
 
 
 def _pick(source: object, wanted: Iterable[str]) -> Names:
     return {name: getattr(source, name) for name in wanted}
-
-
-def _host_module(name: str) -> ModuleType:
-    import importlib
-
-    return importlib.import_module(name)

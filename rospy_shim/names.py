@@ -69,12 +69,12 @@ def scoped_name(caller_id: str, name: str) -> str:
 def global_name(param_name: str) -> Callable[[Any, str], str]:
     """A validator that makes a relative name global."""
 
-    def validate(value: Any, caller_id: str) -> str:
+    def validator(value: Any, caller_id: str) -> str:
         if not value or not isinstance(value, str):
             raise ValueError(f"parameter [{param_name}] must be a non-empty string")
         return canonicalize_name(SEP + value.lstrip(SEP))
 
-    return validate
+    return validator
 
 
 def load_mappings(argv: Sequence[str]) -> dict[str, str]:

@@ -12,13 +12,16 @@ from typing import TYPE_CHECKING, Any
 from cfepy.rtos import Task
 from cfepy.status import CfeError
 from rospy_shim.client import Client
+from rospy_shim.exceptions import ROSInitException
 from rospy_shim.life import Life
 from rospy_shim.logs import Logs
-from rospy_shim.names import Names
+from rospy_shim.names import Names, is_legal_name
 from rospy_shim.params import Params
 from rospy_shim.publisher import Link, make_publisher
 from rospy_shim.rate import make_rate
 from rospy_shim.rostime import RosClock
+from rospy_shim.service import Service, make_service
+from rospy_shim.service_proxy import make_service_proxy, wait_for_service
 from rospy_shim.subscriber import Subscription, make_subscriber
 from rospy_shim.timer import make_timer
 
@@ -53,6 +56,7 @@ class Node:
         self.initialized = False
         self.links: dict[str, Link] = {}
         self.subscriptions: dict[str, Subscription] = {}
+        self.services: list[Service] = []
         self._tasks = tasks
         self._timer: type | None = None
         self.names = Names(universe.argv, universe.environ)
@@ -63,6 +67,8 @@ class Node:
         self.client = Client(self)
         self.Publisher = make_publisher(self)
         self.Subscriber = make_subscriber(self)
+        self.Service = make_service(self)
+        self.ServiceProxy = make_service_proxy(self)
         self.Rate = make_rate(self)
 
     @property
@@ -94,15 +100,17 @@ class Node:
             subscription.close()
         for link in list(self.links.values()):
             link.close()
+        for service in self.services[:]:
+            service.shutdown()
         self.graph.forget_node(self)
 
     def abandon(self) -> None:
         """The program has ended, whatever way: nothing of it stays on the graph or on the bus."""
-        subscriptions = list(self.subscriptions.values())
+        holders: list[Subscription | Service] = [*self.subscriptions.values(), *self.services]
         self.leave_graph()
-        for subscription in subscriptions:
+        for holder in holders:
             try:
-                subscription.release()
+                holder.release()
             except CfeError:
                 pass  # ES has cleaned up before
 
@@ -149,6 +157,19 @@ class Node:
         )
         return None
 
+    def wait_for_service(self, service: str, timeout: Any = None) -> None:
+        """See `rospy_shim.service_proxy.wait_for_service`."""
+        wait_for_service(self, service, timeout)
+
+    def require_initialized(self) -> None:
+        """Check that `init_node` has run.
+
+        Raises:
+            ROSInitException: it has not.
+        """
+        if not self.initialized:
+            raise ROSInitException("client code must call rospy.init_node() first")
+
     # -- warnings ----------------------------------------------------------------------------------------------------
 
     def warn(self, text: str, category: type[Warning]) -> None:
@@ -157,13 +178,15 @@ class Node:
 
     def warn_of_illegal(self, name: str) -> None:
         """Warn of a name that breaks ROS's rules."""
-        from rospy_shim.names import is_legal_name
-
         if not is_legal_name(name):
             text = f"'{name}' is not a legal ROS graph resource name. This may cause problems with other ROS tools"
             self.warn(text, UserWarning)
 
     # -- tasks -------------------------------------------------------------------------------------------------------
+
+    def task_name(self, label: str) -> str:
+        """A name for a task or a pipe that nothing else in the mission has."""
+        return self._tasks.name(label)
 
     def start_child(self, label: str, body: Callable[[], None]) -> None:
         """Start a child task of the node's application; `label` tells what it is for."""

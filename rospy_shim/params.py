@@ -7,7 +7,6 @@ and big integers are refused with the same errors. Imports nothing of cfepy.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
 from rospy_shim.exceptions import ROSException
@@ -29,7 +28,7 @@ def marshalled(value: Any) -> Any:
         OverflowError: an integer of more than 32 bits.
     """
     kind = type(value)
-    if kind in (bool, float, str, bytes, datetime):
+    if kind in (bool, float, str, bytes):
         return value
     if kind is int:
         if not _INT_MIN <= value <= _INT_MAX:

@@ -40,14 +40,15 @@ class NodeTasks:
         self._main = kernel.current
         self._owner = self._main.owner
 
-    def _name(self, label: str) -> str:
+    def name(self, label: str) -> str:
+        """A name of at most 19 characters that nothing else in the mission has."""
         tail = label.rpartition("/")[2][:_LABEL]
         number = self._number()
         return f"{self._app[: 19 - len(tail) - len(str(number)) - 2]}.{tail}.{number}"
 
     def child(self, node: Node, label: str, body: Callable[[], None]) -> None:
         """Start a task for a subscription; pipe and task have the same name."""
-        name, entry = self._name(label), _in_universe(node.universe, body)
+        name, entry = self.name(label), _in_universe(node.universe, body)
         if self._kernel.current is not self._main:
             self._cfe.os.task_create(name, entry, self._stack_size, self.priority)
             return
@@ -64,7 +65,7 @@ class NodeTasks:
         Raises:
             RuntimeError: OSAL has no task left; as Python says it.
         """
-        name = self._name(label)
+        name = self.name(label)
         try:
             self._cfe.os.task_create(name, entry, self._stack_size, priority)
         except OsalError as error:
@@ -74,7 +75,7 @@ class NodeTasks:
     def helper(self, node: Node, label: str, body: Callable[[], None]) -> Task:
         """Start a short task from outside the application; ES ends it with the application."""
         entry = _in_universe(node.universe, body)
-        return self._kernel.spawn(self._name(label), entry, self.priority, owner=self._owner)
+        return self._kernel.spawn(self.name(label), entry, self.priority, owner=self._owner)
 
 
 def _in_universe(universe: Universe, body: Callable[[], None]) -> Callable[[], None]:

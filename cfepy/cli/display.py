@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Protocol, TextIO
 from cfepy.rtos.realtime import NS_PER_S, Stopwatch
 
 if TYPE_CHECKING:
+    from rich.text import Text
+
     from cfepy.mission import Mission
 
 REFRESH_NS = NS_PER_S // 10
@@ -143,7 +145,7 @@ def _messages(mission: Mission) -> int:
     return sum(route.sequence + route.relayed for route in mission.cfe.sb.routes.values())
 
 
-def _status(text: str) -> object:
+def _status(text: str) -> Text:
     from rich.text import Text
 
     return Text(text, style="reverse", no_wrap=True, overflow="ellipsis")

@@ -115,7 +115,8 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     check = commands.add_parser(
         "check",
         help="find everything that is wrong with a mission before it boots",
-        description="Find what is wrong with a mission, without running any of its code. Exit status: 0 nothing, 1 something.",
+        description="Find what is wrong with a mission; none of its code is executed.",
+        epilog="exit status: 0 nothing found, 1 something found, 2 no such mission",
     )
     check.add_argument("mission", metavar="MISSION", help=MISSION_HELP)
     check.add_argument("--board", metavar="NAME|FILE", help="check against this board instead of the mission's own")

@@ -56,9 +56,12 @@ def _draw(table: Table, stream: TextIO) -> None:
     from rich.table import Table as RichTable
     from rich.text import Text
 
-    drawn = RichTable(title=table.title, title_justify="left", box=box.SIMPLE_HEAD, caption=table.note or None)
+    drawn = RichTable(
+        title=table.title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False, caption=table.note or None
+    )
     for at, column in enumerate(table.columns):
-        drawn.add_column(column, justify="right" if at in table.right else "left", overflow="fold")
+        is_last = at == len(table.columns) - 1
+        drawn.add_column(column, justify="right" if at in table.right else "left", no_wrap=not is_last)
     for row in table.rows:
         drawn.add_row(*(Text(cell) for cell in row))
     Console(file=stream).print(drawn)

@@ -73,6 +73,8 @@ class TraceFile:
         """The sink of a `Trace`."""
         self._learn()
         for record in records:
+            if not record:
+                continue  # what the host does leaves no mark
             if record[0] < _FIRST_MARK:
                 self._line(self._send(record))
             else:

@@ -86,7 +86,7 @@ def _read_file(name: str, folder: Path, script: Path, mission_file: Path) -> Mis
     root = load(mission_file)
     entries = root.mapping(["name", "board", "nodes", "topics", "params"])
     ros = RosConfig(
-        nodes=_named(entries.get("nodes"), _node),
+        nodes=_named(entries.get("nodes"), read_node),
         topics=_topics(entries.get("topics")),
         params=_tree(entries.get("params")),
     )
@@ -102,7 +102,7 @@ def _named(section: Marked | None, read: Any) -> dict[str, Any]:
     return {key: read(key, value) for key, value in section.mapping().items()}
 
 
-def _node(app: str, entry: Marked) -> NodeConfig:
+def read_node(app: str, entry: Marked) -> NodeConfig:
     fields = entry.mapping(["name", "namespace", "remap", "params", "args", "env"])
     namespace = fields["namespace"].text() if "namespace" in fields else "/"
     if not namespace.startswith("/"):
@@ -119,7 +119,7 @@ def _node(app: str, entry: Marked) -> NodeConfig:
 
 
 def _topics(section: Marked | None) -> dict[str, TopicConfig]:
-    topics: dict[str, TopicConfig] = _named(section, _topic)
+    topics: dict[str, TopicConfig] = _named(section, read_topic)
     by_id: dict[int, str] = {}
     for topic in topics.values():
         other = by_id.setdefault(topic.msg_id, topic.name)
@@ -128,7 +128,7 @@ def _topics(section: Marked | None) -> dict[str, TopicConfig]:
     return topics
 
 
-def _topic(name: str, entry: Marked) -> TopicConfig:
+def read_topic(name: str, entry: Marked) -> TopicConfig:
     if not name.startswith("/"):
         raise entry.fail(f'is the topic {name!r}; a topic name here begins with "/"')
     fields = entry.mapping(["msg_id", "raw"])

@@ -72,12 +72,12 @@ class CleanupApi(TaskApi, QueueApi, SemaphoreApi, MutexApi, CondVarApi, RwLockAp
         Returns:
             What could not be deleted.
         """
-        leftovers: list[Leftover] = []
         for task_id, record in reversed(self._tasks_of(owner)):
-            leftovers += self.delete_objects_of_task(task_id)
+            self.delete_objects_of_task(task_id)
             if not record.deleted:
                 self.task_delete(task_id)
-        return leftovers + self._delete_where(lambda record: record.owner is owner and not self._is_caller(record))
+        # Once more for what is left: mutexes that a task held until it ended, things of tasks that ended before.
+        return self._delete_where(lambda record: record.owner is owner and not self._is_caller(record))
 
     def delete_objects_of_task(self, task_id: int) -> list[Leftover]:
         """Delete every object that a task created, other tasks included, but not the task (OS_ForEachObject).

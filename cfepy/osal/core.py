@@ -115,13 +115,15 @@ class ObjectTable(IdTable[Record]):
         kind: for error texts, e.g. "queue".
         base: one of the OS_*_BASE numbers.
         capacity: how many at most.
+        name_limit: length at which a name is too long.
     """
 
-    __slots__ = ("kind", "lookup", "names")
+    __slots__ = ("kind", "lookup", "name_limit", "names")
 
-    def __init__(self, kind: str, base: int, capacity: int) -> None:
+    def __init__(self, kind: str, base: int, capacity: int, name_limit: int = OS_MAX_API_NAME) -> None:
         super().__init__(base, capacity)
         self.kind = kind
+        self.name_limit = name_limit
         self.names: dict[str, int] = {}
         self.lookup: Callable[[int], Record | None] = self.records.get
 
@@ -157,10 +159,10 @@ class ObjectTable(IdTable[Record]):
         return found
 
     def check_name(self, name: str) -> None:
-        """Raise OS_ERR_NAME_TOO_LONG for a name of more than 19 bytes."""
-        if len(name.encode()) >= OS_MAX_API_NAME:
+        """Raise OS_ERR_NAME_TOO_LONG for a name that is, by default one of more than 19 bytes."""
+        if len(name.encode()) >= self.name_limit:
             raise OsalError(
-                OS_ERR_NAME_TOO_LONG, f"{self.kind} name {name!r} has more than {OS_MAX_API_NAME - 1} characters"
+                OS_ERR_NAME_TOO_LONG, f"{self.kind} name {name!r} has more than {self.name_limit - 1} characters"
             )
 
     def missing(self, object_id: int) -> OsalError:
@@ -185,8 +187,8 @@ class Core:
         self._task_ids: dict[Task, int] = {}
         self._tables: dict[int, ObjectTable[Any]] = {}
 
-    def _table(self, kind: str, base: int, capacity: int) -> ObjectTable[Any]:
-        table: ObjectTable[Any] = ObjectTable(kind, base, capacity)
+    def _table(self, kind: str, base: int, capacity: int, name_limit: int = OS_MAX_API_NAME) -> ObjectTable[Any]:
+        table: ObjectTable[Any] = ObjectTable(kind, base, capacity, name_limit)
         self._tables[base] = table
         return table
 

@@ -20,6 +20,9 @@ from cfepy.status import (
     OsalError,
 )
 
+RAM_BLOCK_BYTES = 512  # CFE_PLATFORM_ES_RAM_DISK_SECTOR_SIZE
+RAM_BLOCKS = 4096  # CFE_PLATFORM_ES_RAM_DISK_NUM_SECTORS
+
 
 class Place(NamedTuple):
     """Where a virtual path leads: a volume and a path in it."""
@@ -36,7 +39,7 @@ class FileSystem:
         ram_bytes: size of the disk at `/ram`, None for no limit.
     """
 
-    def __init__(self, cf: Path | None = None, ram_bytes: int | None = None) -> None:
+    def __init__(self, cf: Path | None = None, ram_bytes: int | None = RAM_BLOCK_BYTES * RAM_BLOCKS) -> None:
         self._mounts: dict[str, Volume] = {"/cf": Volume(cf), "/ram": Volume(capacity=ram_bytes)}
 
     def mount(self, mount_point: str, volume: Volume) -> None:

@@ -10,12 +10,13 @@ from cfepy.config import PlatformConfig
 from cfepy.console import Console
 from cfepy.osal.cleanup import CleanupApi
 from cfepy.osal.core import Ledger, ObjectSizes, Setup
+from cfepy.osal.disks import DiskApi
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.idmap import IdMapApi
 from cfepy.rtos import Kernel
 
 
-class Osal(CleanupApi, IdMapApi):
+class Osal(CleanupApi, DiskApi, IdMapApi):
     """The whole interface; see the modules beside this one for its parts.
 
     Args:

@@ -38,3 +38,13 @@ def keep_32(value: int) -> int:
 def keep_64(value: int) -> int:
     """The lower 64 bits as they are (CFE_PSP_HtoLE64, CFE_PSP_LE64toH)."""
     return value & 0xFFFFFFFFFFFFFFFF
+
+
+def is_big_endian() -> bool:
+    """Whether the processor is big-endian (CFE_PSP_IsBigEndian)."""
+    return False
+
+
+def is_little_endian() -> bool:
+    """Whether the processor is little-endian (CFE_PSP_IsLittleEndian)."""
+    return True

@@ -84,8 +84,8 @@ class Psp:
     hto_le16 = le16_to_h = staticmethod(endian.keep_16)
     hto_le32 = le32_to_h = staticmethod(endian.keep_32)
     hto_le64 = le64_to_h = staticmethod(endian.keep_64)
-    is_big_endian = False
-    is_little_endian = True
+    is_big_endian = staticmethod(endian.is_big_endian)
+    is_little_endian = staticmethod(endian.is_little_endian)
 
     def __init__(
         self,

@@ -29,7 +29,7 @@ HOST_PRIORITY = 256
 COLLECT_NS = (
     10_000_000_000  # garbage is collected at multiples of this: finalizers always run at the same place
 )
-SLICE_NS = 100_000  # equals take turns when a task has used the CPU for this long
+SLICE_NS = 20_000  # equals take turns when this much virtual CPU time was used
 MAX_REFUSALS = 100  # kernel calls that a dying task may try before it is left where it stands
 
 
@@ -154,6 +154,8 @@ class Kernel:
         elif killer.park is not None:
             killer.park()
         self.current = killer
+        if killer is self.host:
+            self._drop_pause_mark()
 
     def _main(self, task: Task) -> Task:
         """The life of a task; returns the one to resume at its end."""
@@ -548,6 +550,7 @@ class Kernel:
                 self._collect_at = self.now // COLLECT_NS * COLLECT_NS + COLLECT_NS
             self._until = min(end, self._collect_at)
             self._enter()
+            self._drop_pause_mark()
             if self._stopped or self._exhausted or self._until >= end:
                 return
             self.now = max(self.now, self._until)
@@ -586,8 +589,15 @@ class Kernel:
             heappop(timers)
         return timers[0][0] if timers else None
 
+    def _drop_pause_mark(self) -> None:
+        """Whoever gave the CPU to the host recorded the host's empty mark; nobody is to see it."""
+        records = self.trace.records if self.trace is not None else []
+        if records and not records[-1]:
+            records.pop()
+
     def _drop_host(self) -> None:
         """`stop` put the host among the ready tasks; it is back now."""
+        self._drop_pause_mark()
         self.ready = [entry for entry in self.ready if entry[2] is not self.host]
         heapify(self.ready)
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 import _thread
 import os
 import sys
+import threading  # noqa: F401  # first imported in a task, it would take that task for the process's main thread
 import time
 import traceback
 from collections.abc import Callable

@@ -1,0 +1,16 @@
+#!/usr/bin/env python3
+"""Takes JointStates and looks at one field."""
+
+import rospy
+from sensor_msgs.msg import JointState
+
+seen = []
+
+
+def on_joints(message):
+    seen[:] = message.position
+
+
+rospy.init_node("sink")
+rospy.Subscriber("joints", JointState, on_joints)
+rospy.spin()

@@ -1,0 +1,215 @@
+"""OSAL's functions on whole file systems (osapi-filesys.h): making, mounting, measuring disks.
+
+/cf, the mission's folder, is a fixed map, and the RAM disk at /ram exists from the start as "/ramdev0", as after
+CFE_ES_InitializeFileSystems. May import cfepy.ids, status and its neighbours in cfepy.osal.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cfepy.ids import OS_FILESYS_BASE, OS_STREAM_BASE
+from cfepy.osal.core import Core, ObjectTable, OsObject, Setup
+from cfepy.osal.filesystem import RAM_BLOCK_BYTES, FileSystem
+from cfepy.osal.limits import OS_FS_DEV_NAME_LEN, OS_FS_VOL_NAME_LEN, OS_MAX_FILE_SYSTEMS, OS_MAX_NUM_OPEN_FILES
+from cfepy.osal.volumes import Volume
+from cfepy.status import (
+    OS_ERR_INCORRECT_OBJ_STATE,
+    OS_ERR_NAME_NOT_FOUND,
+    OS_ERR_NO_FREE_IDS,
+    OS_FS_ERR_DEVICE_NOT_FREE,
+    OS_FS_ERR_PATH_INVALID,
+    OS_FS_ERR_PATH_TOO_LONG,
+    OsalError,
+)
+
+RAM_DEVICE = "/ramdev0"
+UNLIMITED_BLOCKS = 0xFFFFFFFF
+
+
+class VolumeStat(NamedTuple):
+    """What `file_sys_stat_volume` tells (OS_statvfs_t)."""
+
+    block_size: int
+    total_blocks: int
+    blocks_free: int
+
+
+class FileSystemInfo(NamedTuple):
+    """What `get_fs_info` tells (os_fsinfo_t)."""
+
+    max_fds: int
+    free_fds: int
+    max_volumes: int
+    free_volumes: int
+
+
+class OsDisk(OsObject):
+    """The record of a file system; its name is that of the device, or the virtual path of a fixed map."""
+
+    __slots__ = ("block_size", "mount_point", "physical", "volume")
+
+    def __init__(self, name: str, volume: Volume, block_size: int, physical: str = "", mount_point: str = "") -> None:
+        super().__init__(name)
+        self.volume = volume
+        self.block_size = block_size
+        self.physical = physical or f"RAM:{name}"
+        self.mount_point = mount_point
+
+
+class DiskApi(Core):
+    """The functions of osapi-filesys.h."""
+
+    def __init__(self, setup: Setup) -> None:
+        super().__init__(setup)
+        self._mounts: FileSystem = setup.files
+        self._disks: ObjectTable[OsDisk] = self._table(
+            "file system", OS_FILESYS_BASE, OS_MAX_FILE_SYSTEMS, OS_FS_DEV_NAME_LEN
+        )
+        for point in setup.files.mount_points():
+            volume = setup.files.volume(point)
+            device = RAM_DEVICE if point == "/ram" else point
+            self._disks.add(OsDisk(device, volume, RAM_BLOCK_BYTES, str(volume.host or ""), point))
+
+    def mkfs(self, devname: str, volname: str, blocksize: int, numblocks: int) -> None:
+        """Make an empty RAM disk, not mounted yet (OS_mkfs).
+
+        Args:
+            devname: the device, e.g. "/ramdev1".
+            volname: the volume, e.g. "RAM1".
+            blocksize: bytes of a block.
+            numblocks: how many blocks.
+
+        Raises:
+            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_PATH_INVALID (an empty name), OS_ERR_NAME_TAKEN,
+                OS_FS_ERR_DEVICE_NOT_FREE.
+        """
+        self._check(devname, OS_FS_DEV_NAME_LEN)
+        self._check(volname, OS_FS_VOL_NAME_LEN)
+        if not devname or not volname:
+            raise OsalError(OS_FS_ERR_PATH_INVALID, "a file system needs names for its device and its volume")
+        disk = OsDisk(devname, Volume(capacity=blocksize * numblocks), blocksize, f"{volname}:{devname}")
+        try:
+            self._register(self._disks, disk, "disk", blocksize * numblocks)
+        except OsalError as error:
+            status = OS_FS_ERR_DEVICE_NOT_FREE if error.status == OS_ERR_NO_FREE_IDS else error.status
+            raise OsalError(status, error.text) from error
+
+    def initfs(self, devname: str, volname: str, blocksize: int, numblocks: int) -> None:
+        """As `mkfs`: a new RAM disk is always empty (OS_initfs)."""
+        self.mkfs(devname, volname, blocksize, numblocks)
+
+    def rmfs(self, devname: str) -> None:
+        """Remove a file system with all that is in it (OS_rmfs).
+
+        Raises:
+            OsalError: OS_ERR_NAME_NOT_FOUND, OS_ERR_INCORRECT_OBJ_STATE while it is mounted.
+        """
+        disk = self._disk(devname)
+        if disk.mount_point:
+            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"{devname} is mounted at {disk.mount_point}")
+        self._unregister(self._disks, disk)
+
+    def mount(self, devname: str, mountpoint: str) -> None:
+        """Let a disk appear at a virtual path (OS_mount).
+
+        Raises:
+            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_PATH_INVALID, OS_ERR_NAME_NOT_FOUND when there is no such
+                disk, when it is mounted already, or something else is mounted there.
+        """
+        self._check(devname, OS_FS_DEV_NAME_LEN)
+        disk = self._disk(devname)
+        if disk.mount_point or mountpoint in self._mounts.mount_points():
+            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"{devname} cannot be mounted at {mountpoint}: one is in use")
+        self._mounts.mount(mountpoint, disk.volume)
+        disk.mount_point = mountpoint
+
+    def unmount(self, mountpoint: str) -> None:
+        """Take a disk out of the virtual paths, with its files (OS_unmount).
+
+        Raises:
+            OsalError: OS_ERR_NAME_NOT_FOUND.
+        """
+        disk = self._mounted(mountpoint)
+        self._mounts.unmount(disk.mount_point)
+        disk.mount_point = ""
+
+    def file_sys_add_fixed_map(self, volume: Volume, virt_path: str) -> int:
+        """Show a volume at a virtual path for good (OS_FileSysAddFixedMap).
+
+        Args:
+            volume: instead of NASA's path of the host: `Volume(Path(...))` shows a folder of it.
+            virt_path: where, e.g. "/data".
+
+        Returns:
+            The id of the file system.
+
+        Raises:
+            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_PATH_INVALID, OS_ERR_NAME_TAKEN, OS_ERR_NO_FREE_IDS.
+        """
+        self._check(virt_path, OS_FS_DEV_NAME_LEN)
+        disk = OsDisk(virt_path, volume, RAM_BLOCK_BYTES, str(volume.host or ""), virt_path)
+        disk_id = self._register(self._disks, disk, "disk", 0)
+        self._mounts.mount(virt_path, volume)
+        return disk_id
+
+    def file_sys_stat_volume(self, name: str) -> VolumeStat:
+        """Size and free space of the volume of a path (OS_FileSysStatVolume).
+
+        Raises:
+            OsalError: OS_ERR_NAME_NOT_FOUND.
+        """
+        disk = self._mounted(name)
+        volume = disk.volume
+        if volume.capacity is None:
+            return VolumeStat(disk.block_size, UNLIMITED_BLOCKS, UNLIMITED_BLOCKS)
+        free = max(0, volume.capacity - volume.used())
+        return VolumeStat(disk.block_size, volume.capacity // disk.block_size, free // disk.block_size)
+
+    def chkfs(self, name: str, repair: bool = False) -> None:
+        """Check a file system: in memory nothing breaks (OS_chkfs); OS_ERR_NAME_NOT_FOUND when there is none."""
+        self._mounted(name)
+
+    def fs_get_phys_drive_name(self, mount_point: str) -> str:
+        """What is mounted at a path: a folder of the host, or a RAM volume (OS_FS_GetPhysDriveName).
+
+        Raises:
+            OsalError: OS_ERR_NAME_NOT_FOUND.
+        """
+        return self._mounted(mount_point).physical
+
+    def get_fs_info(self) -> FileSystemInfo:
+        """How many descriptors and volumes there can be, and are free (OS_GetFsInfo)."""
+        open_files = len(self._tables[OS_STREAM_BASE])
+        return FileSystemInfo(
+            OS_MAX_NUM_OPEN_FILES,
+            OS_MAX_NUM_OPEN_FILES - open_files,
+            OS_MAX_FILE_SYSTEMS,
+            OS_MAX_FILE_SYSTEMS - len(self._disks),
+        )
+
+    def translate_path(self, virtual_path: str) -> str:
+        """The path behind a virtual one: of the host, or "RAM:device/..." in memory (OS_TranslatePath).
+
+        Raises:
+            OsalError: as `FileSystem.translate`.
+        """
+        place = self._mounts.translate(virtual_path)
+        physical = next((disk.physical for disk in self._disks if disk.volume is place.volume), "")
+        return f"{physical}/{place.path}" if place.path else physical
+
+    def _check(self, name: str, limit: int) -> None:
+        if len(name.encode()) >= limit:
+            raise OsalError(OS_FS_ERR_PATH_TOO_LONG, f"{name!r} has {limit} characters or more")
+
+    def _disk(self, devname: str) -> OsDisk:
+        for disk in self._disks:
+            if disk.name == devname:
+                return disk
+        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"there is no file system {devname}")
+
+    def _mounted(self, path: str) -> OsDisk:
+        for disk in self._disks:
+            if disk.mount_point and (path == disk.mount_point or path.startswith(disk.mount_point + "/")):
+                return disk
+        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"nothing is mounted at {path}")

@@ -1,0 +1,238 @@
+"""The virtual file system, and OSAL's file and directory functions on it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.osal import FileSystem, Volume
+from cfepy.osal.limits import (
+    OS_FILE_FLAG_CREATE,
+    OS_FILE_FLAG_TRUNCATE,
+    OS_FILESTAT_MODE_DIR,
+    OS_MAX_NUM_OPEN_FILES,
+    OS_READ_ONLY,
+    OS_READ_WRITE,
+    OS_SEEK_CUR,
+    OS_SEEK_END,
+    OS_SEEK_SET,
+    OS_WRITE_ONLY,
+)
+from cfepy.status import (
+    OS_ERR_INVALID_ID,
+    OS_ERR_INVALID_SIZE,
+    OS_ERR_NAME_NOT_FOUND,
+    OS_ERR_NO_FREE_IDS,
+    OS_ERROR,
+    OS_FS_ERR_NAME_TOO_LONG,
+    OS_FS_ERR_PATH_INVALID,
+    OS_FS_ERR_PATH_TOO_LONG,
+)
+from tests.osal.helpers import MS, Bench
+from tests.osal.test_queues import status_of
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A mission's folder with two files."""
+    (tmp_path / "a.tbl").write_bytes(b"table")
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "b.txt").write_bytes(b"text")
+    return tmp_path
+
+
+@pytest.fixture
+def files(folder: Path) -> FileSystem:
+    """A file system whose /cf is that folder."""
+    return FileSystem(folder, ram_bytes=1000)
+
+
+@pytest.mark.parametrize(
+    ("path", "status"),
+    [
+        ("/ram/" + "d/" * 30, OS_FS_ERR_PATH_TOO_LONG),
+        ("/ram/" + "n" * 20, OS_FS_ERR_NAME_TOO_LONG),
+        ("ram/" + "n" * 20, OS_FS_ERR_NAME_TOO_LONG),
+        ("ram/x", OS_FS_ERR_PATH_INVALID),
+        ("x", OS_FS_ERR_PATH_INVALID),
+        ("", OS_FS_ERR_PATH_INVALID),
+        ("/ram/../cf/x", OS_FS_ERR_PATH_INVALID),
+        ("/nowhere/x", OS_FS_ERR_PATH_INVALID),
+        ("/ramdisk/x", OS_FS_ERR_PATH_INVALID),
+        ("/", OS_FS_ERR_PATH_INVALID),
+    ],
+)
+def test_bad_paths(files: FileSystem, path: str, status: int) -> None:
+    assert status_of(files.translate, path) == status
+    assert status_of(files.read_file, path) == status
+    assert not files.exists(path)
+
+
+def test_the_missions_folder_shows_and_is_never_written(files: FileSystem, folder: Path) -> None:
+    assert files.read_file("/cf/a.tbl") == b"table"
+    assert files.read_file("/cf/sub/b.txt") == b"text"
+    files.write_file("/cf/a.tbl", b"changed")
+    files.write_file("/cf/new", b"new")
+    files.remove("/cf/sub/b.txt")
+    assert files.read_file("/cf/a.tbl") == b"changed"
+    assert files.list_dir("/cf") == ["a.tbl", "new", "sub"]
+    assert files.list_dir("/cf/sub") == []
+    assert sorted(path.name for path in folder.rglob("*")) == ["a.tbl", "b.txt", "sub"]
+    assert (folder / "a.tbl").read_bytes() == b"table"
+
+
+def test_a_host_file_that_changes_during_a_run_does_not_change_the_run(files: FileSystem, folder: Path) -> None:
+    assert files.read_file("/cf/a.tbl") == b"table"
+    (folder / "a.tbl").write_bytes(b"edited meanwhile")
+    assert files.read_file("/cf/a.tbl") == b"table"
+
+
+def test_host_path_is_for_files_of_the_host_only(files: FileSystem, folder: Path) -> None:
+    files.write_file("/cf/new", b"new")
+    assert files.host_path("/cf/a.tbl") == folder / "a.tbl"
+    assert files.host_path("/cf/new") is None
+    assert files.host_path("/cf/missing") is None
+    assert files.host_path("/ram/x") is None
+
+
+def test_missing_files_and_folders(files: FileSystem) -> None:
+    for call in (files.read_file, files.remove, files.list_dir, files.remove_folder):
+        assert status_of(call, "/ram/none") == OS_ERROR
+    assert status_of(files.write_file, "/ram/none/x", b"") == OS_ERROR
+    assert status_of(files.write_file, "/ram", b"") == OS_ERROR
+    assert status_of(files.make_folder, "/ram/none/x") == OS_ERROR
+    assert status_of(files.rename, "/ram/none", "/ram/x") == OS_ERROR
+
+
+def test_folders(files: FileSystem) -> None:
+    files.make_folder("/ram/logs")
+    files.write_file("/ram/logs/one", b"1")
+    assert files.list_dir("/ram") == ["logs"]
+    assert files.list_dir("/ram/logs") == ["one"]
+    assert status_of(files.remove_folder, "/ram/logs") == OS_ERROR
+    files.remove("/ram/logs/one")
+    files.remove_folder("/ram/logs")
+    assert not files.exists("/ram/logs")
+    assert status_of(files.remove_folder, "/ram") == OS_ERROR
+
+
+def test_a_full_disk_refuses(files: FileSystem) -> None:
+    files.write_file("/ram/a", bytes(900))
+    assert status_of(files.write_file, "/ram/b", bytes(200)) == OS_ERROR
+    files.write_file("/ram/a", bytes(1000))
+
+
+def test_mount_and_unmount(files: FileSystem) -> None:
+    volume = Volume()
+    files.mount("/data", volume)
+    files.write_file("/data/x", b"kept")
+    assert files.mount_points() == ["/cf", "/data", "/ram"]
+    assert files.unmount("/data") is volume
+    assert status_of(files.read_file, "/data/x") == OS_FS_ERR_PATH_INVALID
+    assert status_of(files.unmount, "/data") == OS_ERR_NAME_NOT_FOUND
+    assert status_of(files.mount, "data/", volume) == OS_FS_ERR_PATH_INVALID
+    files.mount("/data", volume)
+    assert files.read_file("/data/x") == b"kept"
+    files.volume("/data").clear()
+    assert files.list_dir("/data") == []
+
+
+def test_read_write_and_seek(bench: Bench) -> None:
+    os = bench.os
+    filedes = os.open_create("/ram/log", OS_FILE_FLAG_CREATE, OS_READ_WRITE)
+    assert os.write(filedes, b"hello world") == 11
+    assert os.lseek(filedes, -5, OS_SEEK_END) == 6
+    assert os.read(filedes, 100) == b"world"
+    assert os.read(filedes, 100) == b""
+    assert os.lseek(filedes, 0, OS_SEEK_SET) == 0
+    assert os.write(filedes, b"J") == 1
+    assert os.lseek(filedes, 3, OS_SEEK_CUR) == 4
+    assert os.read(filedes, 1) == b"o"
+    assert os.lseek(filedes, 15, OS_SEEK_SET) == 15
+    os.write(filedes, b"!")
+    os.close(filedes)
+    assert os.files.read_file("/ram/log") == b"Jello world\0\0\0\0!"
+
+
+def test_modes_and_flags(bench: Bench) -> None:
+    os = bench.os
+    os.files.write_file("/ram/x", b"content")
+    reader = os.open_create("/ram/x")
+    writer = os.open_create("/ram/x", 0, OS_WRITE_ONLY)
+    assert status_of(os.write, reader, b"x") == OS_ERROR
+    assert status_of(os.read, writer, 1) == OS_ERROR
+    assert status_of(os.read, reader, 0) == OS_ERR_INVALID_SIZE
+    assert status_of(os.write, writer, b"") == OS_ERR_INVALID_SIZE
+    assert status_of(os.lseek, reader, -1, OS_SEEK_SET) == OS_ERROR
+    assert status_of(os.lseek, reader, 0, 9) == OS_ERROR
+    assert status_of(os.open_create, "/ram/x", 0, 7) == OS_ERROR
+    assert status_of(os.open_create, "/ram/none", 0, OS_READ_ONLY) == OS_ERROR
+    os.close(os.open_create("/ram/x", OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY))
+    assert os.read(reader, 10) == b""
+    os.close(reader)
+    assert status_of(os.close, reader) == OS_ERR_INVALID_ID
+
+
+def test_descriptors_by_name(bench: Bench) -> None:
+    os = bench.os
+    os.files.write_file("/ram/x", b"content")
+    filedes = os.open_create("/ram/x")
+    os.open_create("/ram/x")
+    assert os.file_open_check("/ram/x")
+    assert os.fd_get_info(filedes) == ("/ram/x", 0, True)
+    os.rename("/ram/x", "/ram/y")
+    assert os.fd_get_info(filedes).path == "/ram/y"
+    os.close_file_by_name("/ram/y")
+    assert not os.file_open_check("/ram/y")
+    assert status_of(os.close_file_by_name, "/ram/y") == OS_FS_ERR_PATH_INVALID
+    os.files.write_file("/ram/y", b"")
+    for _ in range(OS_MAX_NUM_OPEN_FILES):
+        os.open_create("/ram/y")
+    assert status_of(os.open_create, "/ram/y") == OS_ERR_NO_FREE_IDS
+    os.close_all_files()
+    assert not os.file_open_check("/ram/y")
+
+
+def test_stat(bench: Bench) -> None:
+    bench.os.mkdir("/ram/d")
+    bench.run(lambda: (bench.os.task_delay(5), bench.os.files.write_file("/ram/x", b"123", bench.kernel.now)))
+    assert bench.os.stat("/ram/x")[1:] == (3, 5 * MS)
+    assert bench.os.stat("/ram/d").file_mode & OS_FILESTAT_MODE_DIR
+    assert status_of(bench.os.stat, "/ram/none") == OS_ERROR
+
+
+def test_copy_and_move_between_volumes(bench: Bench) -> None:
+    os = bench.os
+    os.files.write_file("/ram/x", b"content")
+    os.cp("/ram/x", "/cf/y")
+    os.mv("/cf/y", "/ram/z")
+    assert os.files.read_file("/ram/z") == b"content"
+    assert not os.files.exists("/cf/y")
+    os.mv("/ram/z", "/ram/w")
+    os.remove("/ram/w")
+    assert status_of(os.remove, "/ram/w") == OS_ERROR
+
+
+def test_truncate_and_allocate(bench: Bench) -> None:
+    os = bench.os
+    filedes = os.open_create("/ram/x", OS_FILE_FLAG_CREATE, OS_READ_WRITE)
+    os.write(filedes, b"123456")
+    os.file_truncate(filedes, 3)
+    os.file_allocate(filedes, 0, 5)
+    assert os.files.read_file("/ram/x") == b"123\0\0"
+
+
+def test_directories(bench: Bench) -> None:
+    os = bench.os
+    os.mkdir("/ram/d")
+    for name in ("b", "a"):
+        os.files.write_file(f"/ram/d/{name}", b"")
+    dir_id = os.directory_open("/ram/d")
+    names = [os.directory_read(dir_id) for _ in range(3)]
+    os.directory_rewind(dir_id)
+    assert [*names, os.directory_read(dir_id)] == ["a", "b", None, "a"]
+    os.directory_close(dir_id)
+    assert status_of(os.directory_read, dir_id) == OS_ERR_INVALID_ID
+    assert status_of(os.directory_open, "/ram/none") == OS_ERROR
+    assert status_of(os.rmdir, "/ram/d") == OS_ERROR

@@ -1,0 +1,226 @@
+"""The board: boot lines, clock, resets and what outlives them, watchdog."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from cfepy.config import PlatformConfig
+from cfepy.console import Console
+from cfepy.osal import Osal
+from cfepy.psp import BoardProfile, Psp, RestartType, Retained
+from cfepy.rtos import Kernel
+from cfepy.status import CFE_PSP_ERROR, CfeError, OsalError
+
+MS = 1_000_000
+BOOT = """\
+CFE_PSP: Default Reset SubType = 1
+CFE_PSP: Default CPU ID = 1
+CFE_PSP: Default Spacecraft ID = 66
+CFE_PSP: Default CPU Name: cpu1
+CFE_PSP: initializing module 'soft_timebase' with ID 0110ff00
+CFE_PSP: Instantiated software timebase 'cFS-Master' running at 10000 usec
+CFE_PSP: initializing module 'ram_notimpl' with ID 0110ff03
+CFE_PSP: Physical RAM access not implemented
+CFE_PSP: initializing module 'port_notimpl' with ID 0110ff04
+CFE_PSP: I/O Port access not implemented
+CFE_PSP: initializing module 'endian_api' with ID 0110ff07
+CFE_PSP: Host CPU Endian=LITTLE
+CFE_PSP: Starting the cFE with a POWER ON reset.
+CFE_PSP: Clearing out CFE CDS Shared memory segment.
+CFE_PSP: Clearing out CFE Reset Shared memory segment.
+CFE_PSP: Clearing out CFE User Reserved Shared memory segment.
+"""
+
+
+class Board:
+    """A PSP with everything below it."""
+
+    def __init__(self, retained: Retained | None = None, **hooks: Any) -> None:
+        self.kernel = Kernel("thread")
+        self.console = Console(quiet=True)
+        self.osal = Osal(self.kernel, PlatformConfig(), self.console)
+        self.psp = Psp(
+            self.kernel,
+            BoardProfile("test"),
+            PlatformConfig(),
+            self.console,
+            self.osal,
+            retained=retained,
+            **hooks,
+        )
+
+
+@pytest.fixture
+def board() -> Iterator[Board]:
+    """A board that has not been booted."""
+    made = Board()
+    with made.kernel:
+        yield made
+
+
+def test_the_boot_lines_of_nasas_linux_psp(board: Board) -> None:
+    assert board.psp.boot() == RestartType(2, 1)
+    assert board.console.lines == BOOT.splitlines()
+    board.kernel.run(until_ns=55 * MS)
+    assert board.osal.time_base_get_free_run(board.osal.time_base_get_id_by_name("cFS-Master")) == 50_000
+
+
+def test_who_and_when_it_is(board: Board) -> None:
+    psp = board.psp
+    board.kernel.run(until_ns=2_000_000_300)
+    assert (psp.get_spacecraft_id(), psp.get_processor_id(), psp.get_processor_name()) == (66, 1, "cpu1")
+    assert psp.get_time() == 20_000_003
+    assert psp.get_timebase() == (2, 300)
+    assert psp.get_timer_ticks_per_second() == psp.get_timer_low32_rollover() == 1_000_000_000
+    assert psp.get_version_string() == "v7.0.0+dev0"
+    assert (psp.get_version_code_name(), psp.get_version_number(), psp.get_build_number()) == ("Draco", (7, 0, 0, 0), 0)
+
+
+def test_a_processor_reset_keeps_memory_and_a_power_on_reset_clears_it() -> None:
+    retained = Retained(cds_bytes=64)
+    first = Board(retained)
+    with first.kernel:
+        first.psp.boot()
+        first.psp.write_to_cds(b"critical", 8)
+        first.psp.get_reset_area()[:2] = b"rs"
+        first.psp.get_user_reserved_area()[:2] = b"us"
+        retained.kept["ES"] = "log"
+        first.psp.restart(1)
+    assert first.console.lines[-3:] == [
+        "CFE_PSP: Exiting cFE with PROCESSOR Reset status.",
+        "",
+        "CFE_PSP: Shutdown initiated - Exiting cFE",
+    ]
+    second = Board(retained)
+    with second.kernel:
+        assert second.psp.boot() == RestartType(1, 1)
+        assert second.psp.get_restart_type() == RestartType(1, 1)
+        assert second.console.lines[-2:] == [
+            "CFE_PSP: Normal exit from previous cFE instance",
+            "CFE_PSP: Starting the cFE with a PROCESSOR reset.",
+        ]
+        assert second.psp.read_from_cds(8, 8) == b"critical"
+        assert bytes(second.psp.get_reset_area()[:2]) == b"rs"
+        assert retained.kept == {"ES": "log"}
+        second.psp.restart(2)
+    third = Board(retained)
+    with third.kernel:
+        assert third.psp.boot().reset_type == 2
+        assert third.psp.read_from_cds(8, 8) == bytes(8)
+        assert bytes(third.psp.get_user_reserved_area()[:2]) == bytes(2)
+        assert not retained.kept
+    fourth = Board(retained)
+    with fourth.kernel:
+        assert fourth.psp.boot(2, 5) == RestartType(2, 5)
+        assert "CFE_PSP: Abnormal exit from previous cFE instance" in fourth.console.lines
+
+
+def test_the_cds_has_ends(board: Board) -> None:
+    size = board.psp.get_cds_size()
+    assert size == 131072
+    for call in (
+        lambda: board.psp.write_to_cds(b"ab", size - 1),
+        lambda: board.psp.read_from_cds(size, 0),
+        lambda: board.psp.read_from_cds(-1, 1),
+        lambda: board.psp.read_from_cds(0, size + 1),
+    ):
+        with pytest.raises(OsalError) as caught:
+            call()
+        assert caught.value.status == CFE_PSP_ERROR
+    board.psp.write_to_cds(b"ab", size - 2)
+
+
+def test_a_task_does_not_come_back_from_a_restart(board: Board) -> None:
+    log: list[str] = []
+    board.osal.task_create("T", lambda: (board.psp.restart(1), log.append("back")), 100, 50)
+    board.kernel.run(until_ns=1000 * MS)
+    assert board.kernel.now == 0
+    board.kernel.run(until_ns=60_000 * MS)
+    assert log == []
+
+
+def test_the_mission_may_handle_a_restart() -> None:
+    kinds: list[int] = []
+    board = Board(on_restart=kinds.append)
+    with board.kernel:
+        board.psp.restart(2)
+    assert kinds == [2]
+    assert "CFE_PSP: Exiting cFE with POWERON Reset status." in board.console.lines
+
+
+def test_panic(board: Board) -> None:
+    with pytest.raises(CfeError, match="code 5"):
+        board.psp.panic(5)
+    assert board.console.lines == [
+        "CFE_PSP_Panic called with error code = 0x00000005. Exiting.",
+        "The cFE could not start.",
+    ]
+
+
+def test_endian_helpers() -> None:
+    assert Psp.hto_be16(0x1234) == Psp.be16_to_h(0x1234) == 0x3412
+    assert Psp.hto_be32(0x12345678) == 0x78563412
+    assert Psp.be64_to_h(1) == 1 << 56
+    assert (Psp.hto_le16(0x12345), Psp.le32_to_h(5), Psp.hto_le64(5)) == (0x2345, 5, 5)
+    assert Psp.is_little_endian()
+    assert not Psp.is_big_endian()
+
+
+def _served(board: Board, psp: Psp, times: int, period_ms: int) -> None:
+    def server() -> None:
+        for _ in range(times):
+            board.osal.task_delay(period_ms)
+            psp.watchdog_service()
+
+    board.osal.task_create("SERVER", server, 100, 50)
+
+
+def test_the_watchdog_bites_when_nobody_serves_it() -> None:
+    bites: list[int] = []
+    board = Board(on_watchdog=lambda: bites.append(board.kernel.now // MS))
+    with board.kernel:
+        board.psp.watchdog_set(100)
+        board.psp.watchdog_enable()
+        _served(board, board.psp, 5, 80)
+        board.kernel.run(until_ns=2000 * MS)
+        assert bites == [500]
+        assert board.psp.watchdog.bites == 1
+        board.psp.watchdog_enable()
+        board.kernel.run(until_ns=4000 * MS)
+        assert bites == [500, 2100]
+
+
+def test_a_disabled_watchdog_does_not_bite() -> None:
+    bites: list[int] = []
+    board = Board(on_watchdog=lambda: bites.append(1))
+    with board.kernel:
+        board.psp.watchdog_set(100)
+        board.psp.watchdog_enable()
+        board.psp.watchdog_disable()
+        board.kernel.run(until_ns=2000 * MS)
+        board.psp.watchdog_init()
+        assert board.psp.watchdog_get() == 0xFFFFFFFF
+    assert bites == []
+
+
+def test_a_shorter_time_counts_at_once() -> None:
+    bites: list[int] = []
+    board = Board(on_watchdog=lambda: bites.append(board.kernel.now // MS))
+    with board.kernel:
+        board.psp.watchdog_set(5000)
+        board.psp.watchdog_enable()
+        board.kernel.run(until_ns=10 * MS)
+        board.psp.watchdog_set(100)
+        board.kernel.run(until_ns=2000 * MS)
+    assert bites == [110]
+
+
+def test_a_watchdog_without_teeth_keeps_its_value(board: Board) -> None:
+    board.psp.watchdog_set(1)
+    board.psp.watchdog_enable()
+    board.kernel.run(until_ns=2000 * MS)
+    assert board.psp.watchdog_get() == 1
+    assert not board.kernel.tasks

@@ -1,0 +1,86 @@
+"""loginfo and its kin: format, levels, once, throttle, loggers, /rosout."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from tests.rospy_shim.missions import run_nodes
+
+
+def run(tmp_path: Path, body: str) -> list[str]:
+    """What a node logged and printed, without the time."""
+    result = run_nodes(tmp_path, {"PROBE": "import rospy, logging\n" + body})
+    lines = [line for lines in result.printed.values() for line in lines] or result.lines
+    return [re.sub(r" \[\d+\.\d{6}\]", "", line) for line in lines]
+
+
+def test_format_and_levels(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+rospy.init_node("probe")
+rospy.logdebug("not shown")
+rospy.loginfo("hello %s %d", "you", 5)
+rospy.loginfo("100%")
+rospy.loginfo(7)
+rospy.logwarn("w"); rospy.logerr("e"); rospy.logfatal("f"); rospy.logerror("old name")
+rospy.loginfo("named", logger_name="part")
+logging.getLogger("rosout").info("direct")
+logging.getLogger("rosout.part").setLevel(logging.DEBUG)
+rospy.logdebug("shown", logger_name="part")
+""",
+    )
+    assert lines == [
+        "[INFO]: hello you 5",
+        "[INFO]: 100%",
+        "[INFO]: 7",
+        "[WARN]: w",
+        "[ERROR]: e",
+        "[FATAL]: f",
+        "[ERROR]: old name",
+        "[INFO]: named",
+        "[INFO]: direct",
+        "[DEBUG]: shown",
+    ]
+
+
+def test_once_throttle_identical(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+rospy.init_node("probe")
+for n in range(6):
+    rospy.loginfo_once("once %d", n)
+    rospy.loginfo_throttle(1.0, "throttle %d" % n)
+    rospy.logwarn_throttle_identical(10, "half %d" % (n // 3))
+    rospy.sleep(0.4)
+""",
+    )
+    assert lines == [
+        "[INFO]: once 0",
+        "[INFO]: throttle 0",
+        "[WARN]: half 0",
+        "[INFO]: throttle 3",
+        "[WARN]: half 1",
+    ]
+
+
+def test_log_level_of_init_node(tmp_path: Path) -> None:
+    lines = run(tmp_path, 'rospy.init_node("probe", log_level=rospy.ERROR)\nrospy.logwarn("w")\nrospy.logerr("e")\n')
+    assert lines == ["[ERROR]: e"]
+
+
+def test_rosout_is_published_when_somebody_listens(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+from rosgraph_msgs.msg import Log
+rospy.init_node("probe")
+rospy.Subscriber("/rosout", Log, lambda m: print(m.name, m.level, m.msg, m.file, m.topics))
+rospy.sleep(0.2)
+rospy.logwarn("heard %d", 1)
+rospy.sleep(0.1)
+""",
+    )
+    assert lines == ["[WARN]: heard 1", "/probe 4 heard 1 logs.py ['/rosout']"]

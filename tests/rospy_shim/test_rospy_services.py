@@ -1,0 +1,150 @@
+"""Services between nodes and in one node: calls, errors, types, what happens when a side ends."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.rospy_shim.missions import Run, run_nodes
+
+HEAD = """
+import rospy
+from std_srvs.srv import Empty, SetBool, SetBoolResponse, Trigger
+from rospy_tutorials.srv import AddTwoInts, AddTwoIntsRequest
+def attempt(function, *args, **kwds):
+    try:
+        print(function(*args, **kwds))
+    except Exception as error:
+        print(type(error).__name__, error)
+"""
+
+
+def run(tmp_path: Path, body: str) -> list[str]:
+    """What one node printed."""
+    result = run_nodes(tmp_path, {"PROBE": HEAD + 'rospy.init_node("probe", log_level=rospy.FATAL)\n' + body})
+    return result.printed.get("probe", result.lines)
+
+
+def two(tmp_path: Path, server: str, client: str, **options: object) -> Run:
+    """Run a node with a service and one that calls it."""
+    scripts = {
+        "SERVER": HEAD + 'rospy.init_node("server")\n' + server,
+        "CLIENT": HEAD + 'rospy.init_node("client")\n' + client,
+    }
+    return run_nodes(tmp_path, scripts, **options)  # type: ignore[arg-type]
+
+
+def test_call_between_nodes(tmp_path: Path) -> None:
+    result = two(
+        tmp_path,
+        'rospy.Service("add", AddTwoInts, lambda r: r.a + r.b)\nrospy.spin()',
+        """
+rospy.wait_for_service("add", timeout=2)
+add = rospy.ServiceProxy("add", AddTwoInts, persistent=True)
+print(add(1, 2).sum, add(AddTwoIntsRequest(3, 4)).sum, add.call(a=5).sum)
+print(add(1, 1)._connection_header["callerid"], add.resolved_name, add.request_class.__name__)
+add.close()
+""",
+    )
+    assert result.printed["client"] == ["3 7 5", "/server /add AddTwoIntsRequest"]
+
+
+def test_what_handlers_may_return(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+def service(value):
+    def handler(request):
+        if isinstance(value, Exception):
+            raise value
+        return value
+    offered = rospy.Service("s", SetBool, handler)
+    attempt(lambda: rospy.ServiceProxy("s", SetBool)(True).message)
+    offered.shutdown()
+for value in (SetBoolResponse(True, "object"), (True, "tuple"), {"message": "dict"}, None, "str", [1],
+              ZeroDivisionError("no"), rospy.ServiceException("why")):
+    service(value)
+rospy.Service("one", Trigger, lambda request: [True, "list"])
+attempt(lambda: rospy.ServiceProxy("one", Trigger)().message)
+""",
+    )
+    refused = "ServiceException service [/s] responded with an error: b"
+    count = "Invalid number of arguments, args should be ['success', 'message'] args are"
+    assert lines == [
+        "object",
+        "tuple",
+        "dict",
+        refused + "'service cannot process request: service handler returned None'",
+        refused + f"\"service cannot process request: handler returned invalid value: {count}('str',)\"",
+        refused + f'"service cannot process request: handler returned wrong number of values: {count}(1,)"',
+        refused + "'error processing request: no'",
+        refused + "'service cannot process request: why'",
+        "list",
+    ]
+
+
+def test_errors_of_the_caller(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+rospy.Service("add", AddTwoInts, lambda r: 0)
+attempt(rospy.ServiceProxy("nope", SetBool), True)
+attempt(rospy.wait_for_service, "nope", timeout=0.3)
+attempt(rospy.ServiceProxy("add", AddTwoInts), 1)
+attempt(rospy.ServiceProxy("add", AddTwoInts), z=1)
+attempt(rospy.ServiceProxy("add", AddTwoInts), "x", 1)
+attempt(rospy.Service, "add", AddTwoInts, lambda r: 0)
+attempt(lambda: rospy.ServiceProxy("add", SetBool)(True))
+""",
+    )
+    assert lines[:6] == [
+        "ServiceException service [/nope] unavailable",
+        "ROSException timeout exceeded while waiting for service /nope",
+        "TypeError Invalid number of arguments, args should be ['a', 'b'] args are(1,)",
+        "AttributeError z is not an attribute of AddTwoIntsRequest",
+        "SerializationError field a must be an integer type",
+        "ServiceException service [/add] already registered",
+    ]
+    assert lines[6].startswith("ServiceException unable to connect to service: remote error reported: request from")
+
+
+def test_service_that_ends_during_a_call(tmp_path: Path) -> None:
+    result = two(
+        tmp_path,
+        'rospy.Service("slow", Empty, lambda r: rospy.sleep(60))\nrospy.sleep(1.0)',
+        'rospy.wait_for_service("slow")\nattempt(rospy.ServiceProxy("slow", Empty))',
+        seconds=5,
+    )
+    assert result.printed["client"] == [
+        "ServiceException transport error completing service call: the service has ended"
+    ]
+
+
+def test_service_calls_another_service_and_publishes_errors(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+errors = []
+rospy.Service("inner", AddTwoInts, lambda r: r.a * r.b)
+rospy.Service("outer", AddTwoInts, lambda r: rospy.ServiceProxy("inner", AddTwoInts)(r.a, 10).sum + r.b)
+rospy.Service("bad", Trigger, lambda r: 1 / 0, error_handler=lambda e, kind, value, tb: errors.append(kind.__name__))
+print(rospy.ServiceProxy("outer", AddTwoInts)(4, 2).sum)
+attempt(rospy.ServiceProxy("bad", Trigger))
+print(errors)
+""",
+    )
+    assert lines[0] == "42"
+    assert lines[-1] == "['ZeroDivisionError']"
+
+
+def test_what_does_not_fit_in_a_packet(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+rospy.Service("big", Trigger, lambda r: (True, "x" * 100_000))
+attempt(rospy.ServiceProxy("big", Trigger))
+""",
+    )
+    assert lines == [
+        "ServiceException service [/big] responded with an error:"
+        " b'service response of 100005 bytes: a packet has room for 32747'"
+    ]
