@@ -80,6 +80,9 @@ class Bus(Protocol):
     def receive_buffer(self, pipe_id: int, timeout_ms: int) -> bytes | None:
         """Next packet of a pipe, or None (CFE_SB_ReceiveBuffer)."""
 
+    def cleanup_app(self, app_id: int) -> None:
+        """Release everything that an application holds."""
+
 
 class Events(Protocol):
     """Event services (CFE_EVS_*)."""
@@ -111,6 +114,9 @@ class SpacecraftClock(Protocol):
 
     def print_(self, time: tuple[int, int]) -> str:
         """Any time as CFE_TIME_Print writes it."""
+
+    def cleanup_app(self, app_id: int) -> None:
+        """Release everything that an application holds."""
 
 
 class Cleanup(Protocol):

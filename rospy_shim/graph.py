@@ -16,8 +16,8 @@ from rospy_shim.transport import sequence_of
 
 if TYPE_CHECKING:
     from cfepy.nodes.config import RosConfig
+    from rospy_shim.link import Link
     from rospy_shim.node import Node
-    from rospy_shim.publisher import Link
     from rospy_shim.service import Service
     from rospy_shim.subscriber import Subscription
 

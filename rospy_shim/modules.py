@@ -11,7 +11,7 @@ from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from rospy_shim import exceptions, genpy, logs, message, names, publisher, subscriber, timer, topic_handle
+from rospy_shim import exceptions, genpy, link, logs, message, names, subscriber, timer, topic_handle
 from rospy_shim.msgs import message_class
 
 if TYPE_CHECKING:
@@ -234,7 +234,7 @@ class RosModules:
         return {
             "Publisher": self._node.Publisher,
             "Subscriber": self._node.Subscriber,
-            "SubscribeListener": publisher.SubscribeListener,
+            "SubscribeListener": link.SubscribeListener,
         }
 
     def _services(self) -> Names:

@@ -14,10 +14,11 @@ from cfepy.status import CfeError
 from rospy_shim.client import Client
 from rospy_shim.exceptions import ROSInitException
 from rospy_shim.life import Life
+from rospy_shim.link import Link
 from rospy_shim.logs import Logs
 from rospy_shim.names import Names, is_legal_name
 from rospy_shim.params import Params
-from rospy_shim.publisher import Link, make_publisher
+from rospy_shim.publisher import make_publisher
 from rospy_shim.rate import make_rate
 from rospy_shim.rostime import RosClock
 from rospy_shim.service import Service, make_service

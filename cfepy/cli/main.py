@@ -127,7 +127,7 @@ def _add_mids(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     mids = commands.add_parser(
         "mids",
         help="show a mission's MsgIds: who sends and who subscribes",
-        description="Run a mission quietly for 2 virtual seconds, and show its MsgIds.",
+        description="Run a mission quietly for 10 virtual seconds, and show its MsgIds.",
     )
     mids.add_argument("mission", metavar="MISSION", help=MISSION_HELP)
     mids.add_argument("--board", metavar="NAME|FILE", help="run on this board instead of the mission's own")

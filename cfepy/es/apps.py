@@ -274,11 +274,10 @@ class AppServices(EsCore):
         self.ports.evs.send_event(event, kind, f"{action} Application {app.name} {detail}")
 
     def cleanup_app(self, app: AppRecord) -> None:
-        """End an application's tasks and give back everything it holds (CFE_ES_CleanUpApp)."""
-        for service in (self.ports.tbl, self.ports.sb, self.ports.time, self.ports.evs):
-            cleanup = getattr(service, "cleanup_app", None)
-            if cleanup is not None:
-                cleanup(app.app_id)
+        """End an application's tasks and give back everything it holds (CFE_ES_CleanUpApp).
+
+        The tasks go first, so that their `finally` blocks still find what they clean up.
+        """
         history = self.history_of(app.name)
         history.last_state, history.last_error = app.state, app.error
         for task_id in [*(each for each in app.tasks if each != app.main_task_id), app.main_task_id]:
@@ -286,6 +285,8 @@ class AppServices(EsCore):
         for task in [task for task in self.kernel.tasks if task.owner is app]:
             history.cpu_ns += task.cpu_ns
             self.kernel.kill(task)
+        for service in (self.ports.tbl, self.ports.sb, self.ports.time, self.ports.evs):
+            service.cleanup_app(app.app_id)
         self.osal.delete_objects_of(app)
         self._release_pools(app)
         self.apps.delete(app.app_id)

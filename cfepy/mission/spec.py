@@ -18,6 +18,7 @@ from cfepy.status import UsageError
 
 STARTUP_SCRIPT = "startup.scr"
 MISSION_FILE = "mission.yaml"
+SECTIONS = ("name", "board", "nodes", "topics", "params")
 HIGHEST_MSG_ID = 0x1FFF
 
 
@@ -84,7 +85,7 @@ def read_mission(mission: str) -> MissionSpec:
 
 def _read_file(name: str, folder: Path, script: Path, mission_file: Path) -> MissionSpec:
     root = load(mission_file)
-    entries = root.mapping(["name", "board", "nodes", "topics", "params"])
+    entries = root.mapping(SECTIONS)
     ros = RosConfig(
         nodes=_named(entries.get("nodes"), read_node),
         topics=_topics(entries.get("topics")),

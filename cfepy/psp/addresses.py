@@ -2,7 +2,7 @@
 
 Ranges hold bytes here when somebody attached an area to them, as the PSP does with the retained areas and the EEPROM;
 NASA's Linux PSP refuses direct RAM access, so reading and writing RAM works better here than there. I/O ports exist
-nowhere. May import cfepy.status only.
+nowhere, see `cfepy.psp.absent`. May import cfepy.status only.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 from cfepy.status import (
     CFE_PSP_ERROR_ADDRESS_MISALIGNED,
-    CFE_PSP_ERROR_NOT_IMPLEMENTED,
     CFE_PSP_INVALID_MEM_ADDR,
     CFE_PSP_INVALID_MEM_ATTR,
     CFE_PSP_INVALID_MEM_RANGE,
@@ -28,7 +27,6 @@ MEM_ATTR_WRITE = 1
 MEM_ATTR_READ = 2
 MEM_ATTR_READWRITE = 3
 MEM_TABLE_SIZE = 10
-EEPROM_BYTES = 0x80000
 _WORD_SIZES = (1, 2, 4)
 
 
@@ -181,12 +179,3 @@ class AddressSpace:
 def _check_alignment(address: int, size: int) -> None:
     if address % size:
         raise OsalError(CFE_PSP_ERROR_ADDRESS_MISALIGNED, f"{address:#x} is not divisible by {size}")
-
-
-def no_such_hardware(*_: object) -> int:
-    """Stands for what NASA's Linux PSP has not either: I/O ports, EEPROM write protection.
-
-    Raises:
-        OsalError: CFE_PSP_ERROR_NOT_IMPLEMENTED, always.
-    """
-    raise OsalError(CFE_PSP_ERROR_NOT_IMPLEMENTED, "this board has no such hardware")

@@ -17,8 +17,10 @@ from cfepy.osal import Osal, OsTime
 from cfepy.osal.clock import time_from_total_nanoseconds
 from cfepy.osal.limits import OS_BUILD_NUMBER, OS_VERSION_NUMBER
 from cfepy.psp import endian
+from cfepy.psp.absent import AbsentHardware
+from cfepy.psp.addresses import MEM_ATTR_READWRITE, MEM_EEPROM, MEM_RAM, AddressSpace
 from cfepy.psp.profile import BoardProfile
-from cfepy.psp.retained import Retained
+from cfepy.psp.retained import EEPROM_BYTES, Retained
 from cfepy.psp.watchdog import Watchdog
 from cfepy.rtos import Kernel
 from cfepy.status import CFE_PSP_ERROR, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError, status_to_string
@@ -39,6 +41,9 @@ SOFT_TIMEBASE_NAME = "cFS-Master"
 SOFT_TIMEBASE_PERIOD_US = 10_000
 TICKS_PER_SECOND = 1_000_000_000
 RESTART_DELAY_MS = 10_000
+EEPROM_ADDRESS = 0x1000_0000
+RESET_AREA_ADDRESS = 0x2000_0000
+USER_RESERVED_ADDRESS = 0x3000_0000
 _NS_PER_S = 1_000_000_000
 
 # The modules of NASA's Linux PSP that there is a counterpart of here, with their ids there and what they say.
@@ -64,7 +69,7 @@ class Timebase(NamedTuple):
     lower: int
 
 
-class Psp:
+class Psp(AddressSpace, AbsentHardware):
     """One board.
 
     Args:
@@ -99,12 +104,17 @@ class Psp:
         on_restart: Callable[[int], object] | None = None,
         on_watchdog: Callable[[], object] | None = None,
     ) -> None:
+        super().__init__()
         self.kernel = kernel
         self.profile = profile
         self.config = config
         self.console = console
         self.osal = osal
-        self.retained = retained if retained is not None else Retained(cds_bytes=config.es_cds_size)
+        self.retained = (
+            retained
+            if retained is not None
+            else Retained(cds_bytes=config.es_cds_size, eeprom_bytes=profile.data_flash or EEPROM_BYTES)
+        )
         self.on_restart = on_restart
         self.watchdog = Watchdog(kernel, on_watchdog)
         self._restart_type = RestartType(RST_TYPE_POWERON, RST_SUBTYPE_POWER_CYCLE)
@@ -128,6 +138,7 @@ class Psp:
         """
         self._announce(subtype)
         self._start_modules()
+        self._map_memory()
         if self.retained.next_reset_type:
             how = "Normal" if self.retained.exited else "Abnormal"
             self.console.write(f"CFE_PSP: {how} exit from previous cFE instance")
@@ -274,6 +285,20 @@ class Psp:
         for name, module_id, says in _MODULES:
             self.console.write(f"CFE_PSP: initializing module '{name}' with ID {module_id:08x}")
             self.console.write(f"CFE_PSP: {says}")
+
+    def _map_memory(self) -> None:
+        """Give the areas that are bytes here an address; the EEPROM is the second range, as in NASA's."""
+        kept, eeprom = self.retained, self.retained.eeprom
+        for number, kind, address, area in (
+            (0, MEM_RAM, RESET_AREA_ADDRESS, kept.reset_area),
+            (1, MEM_EEPROM, EEPROM_ADDRESS, eeprom),
+            (2, MEM_RAM, USER_RESERVED_ADDRESS, kept.user_reserved),
+        ):
+            self.mem_range_set(number, kind, address, len(area), 4, MEM_ATTR_READWRITE, area)
+        self.console.write(
+            f"CFE_PSP: EEPROM Range (2) created: Start Address = {EEPROM_ADDRESS:08X}, "
+            f"Size = {len(eeprom):08X} Status = 0"
+        )
 
     def _clear_memory(self) -> None:
         for area in ("CDS", "Reset", "User Reserved"):

@@ -1,4 +1,4 @@
-"""Memory that outlives a processor reset: the boot record, the reset area, the CDS and the user reserved area.
+"""Memory that outlives a reset: the boot record, the reset area, the CDS, the user reserved area, and the EEPROM.
 
 The mission keeps one `Retained` for each simulated processor and hands it to the `Psp` of every boot. It stands for the
 shared memory segments of NASA's Linux PSP (cfe_psp_memory.c). Imports nothing of cfepy.
@@ -11,6 +11,7 @@ from typing import Any
 RESET_AREA_BYTES = 16384
 CDS_BYTES = 131072
 USER_RESERVED_BYTES = 1048576
+EEPROM_BYTES = 0x80000
 
 
 class Retained:
@@ -20,20 +21,26 @@ class Retained:
         reset_bytes: size of the reset area.
         cds_bytes: size of the critical data store.
         user_bytes: size of the user reserved area.
+        eeprom_bytes: size of the EEPROM, which outlives a power-on reset too.
     """
 
     def __init__(
-        self, reset_bytes: int = RESET_AREA_BYTES, cds_bytes: int = CDS_BYTES, user_bytes: int = USER_RESERVED_BYTES
+        self,
+        reset_bytes: int = RESET_AREA_BYTES,
+        cds_bytes: int = CDS_BYTES,
+        user_bytes: int = USER_RESERVED_BYTES,
+        eeprom_bytes: int = EEPROM_BYTES,
     ) -> None:
         self.reset_area = bytearray(reset_bytes)
         self.cds = bytearray(cds_bytes)
         self.user_reserved = bytearray(user_bytes)
+        self.eeprom = bytearray(eeprom_bytes)
         self.kept: dict[str, Any] = {}  # by service: system log, event log, reset counters
         self.next_reset_type = 0  # 0: nothing was recorded yet
         self.exited = False  # the last run ended by a restart
 
     def clear(self) -> None:
-        """A power-on reset: everything is gone, also for those who hold the areas."""
+        """A power-on reset: all but the EEPROM is gone, also for those who hold the areas."""
         for area in (self.reset_area, self.cds, self.user_reserved):
             area[:] = bytes(len(area))
         self.kept.clear()

@@ -13,7 +13,7 @@ ONLY_THEIRS = [
     (r"OS_Posix_", "the POSIX scheduler's policies: there is no such scheduler here"),
     (r"CFE_PSP: initializing module '(timebase_posix_clock|eeprom_mmap_file|iodriver|linux_sysmon)'", "host drivers"),
     (r"CFE_PSP: Using POSIX monotonic clock as CFE timebase", "the time base is virtual"),
-    (r"CFE_PSP: (Using MMAP simulated EEPROM|EEPROM Range)", "EEPROM comes with the memory access functions"),
+    (r"CFE_PSP: (Using MMAP simulated EEPROM|EEPROM Range)", "the host's address of the simulated EEPROM"),
     (r"cFE chksm \d+", "the checksum of another program"),
     (r"Version Info: Mission SampleMission", "the mission has another name"),
     (r"92: Build \d+ by", "built by others, elsewhere"),
@@ -21,6 +21,7 @@ ONLY_THEIRS = [
 ]
 # Lines that only ours has.
 ONLY_OURS = [
+    (r"CFE_PSP: EEPROM Range", "the board's address of the simulated EEPROM"),
     (r"cFE chksm \d+", "the checksum of this program"),
     (r"Version Info: Mission \w+, version", "this mission's name"),
     (r"92: Build cfepy", "built by cfepy"),

@@ -28,6 +28,7 @@ CFE_PSP: initializing module 'port_notimpl' with ID 0110ff04
 CFE_PSP: I/O Port access not implemented
 CFE_PSP: initializing module 'endian_api' with ID 0110ff07
 CFE_PSP: Host CPU Endian=LITTLE
+CFE_PSP: EEPROM Range (2) created: Start Address = 10000000, Size = 00080000 Status = 0
 CFE_PSP: Starting the cFE with a POWER ON reset.
 CFE_PSP: Clearing out CFE CDS Shared memory segment.
 CFE_PSP: Clearing out CFE Reset Shared memory segment.

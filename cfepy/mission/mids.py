@@ -1,0 +1,99 @@
+"""The MsgIds of a mission: what they are called, who sends, who subscribes.
+
+Found by running the mission for a while with a Software Bus that looks who transmits what. A sender that stays silent
+for that time is not seen; a ROS publisher is, since it registers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from cfepy.console import Console
+from cfepy.es.startup_script import Entry, parse
+from cfepy.mission.loader import NODE_SYMBOL
+from cfepy.mission.mission import Mission
+from cfepy.mission.msg_names import names_of
+from cfepy.mission.results import kind_of
+from cfepy.mission.spec import MissionSpec
+from cfepy.sb import SoftwareBus
+
+LOOK_S = 10.0
+
+
+class WatchedBus(SoftwareBus):
+    """A Software Bus that keeps, for each MsgId, which applications transmitted it."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.senders: dict[int, set[str]] = {}
+
+    def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
+        """See `SoftwareBus.transmit_msg`."""
+        if len(packet) > 1:
+            self._note(packet[0] << 8 | packet[1])
+        super().transmit_msg(packet, is_origination)
+
+    def transmit_telemetry(self, msg_id: int, payload: bytes) -> None:
+        """See `SoftwareBus.transmit_telemetry`."""
+        self._note(msg_id)
+        super().transmit_telemetry(msg_id, payload)
+
+    def _note(self, msg_id: int) -> None:
+        owner = self.kernel.current.owner
+        self.senders.setdefault(msg_id, set()).add("host" if owner is None else owner.name)
+
+
+@dataclass(frozen=True, slots=True)
+class MidRow:
+    """One MsgId; `type` is "command", "telemetry", or the type of a ROS topic's messages."""
+
+    msg_id: int
+    name: str
+    type: str
+    senders: list[str]
+    subscribers: list[str]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers and text."""
+        return asdict(self)
+
+
+def survey(spec: MissionSpec, board: str | None = None) -> list[MidRow]:
+    """The MsgIds of a mission, in order.
+
+    Args:
+        spec: the mission; it runs for 10 virtual seconds.
+        board: name or file of a board; None takes the mission's own.
+
+    Raises:
+        CfeError: it cannot boot.
+        UsageError: no such board.
+    """
+    with Mission(spec, board=board, console=Console(quiet=True), bus=WatchedBus) as mission:
+        mission.run(LOOK_S)
+        return _rows(mission)
+
+
+def _rows(mission: Mission) -> list[MidRow]:
+    bus = mission.cfe.sb
+    assert isinstance(bus, WatchedBus)
+    names = names_of(mission.spec)
+    ros = {row.msg_id: row for row in mission.ros.topics()} if mission.ros is not None else {}
+    nodes = {entry.name for entry in _entries(mission) if entry.symbol == NODE_SYMBOL}
+    found = []
+    for msg_id in sorted({*bus.routes, *bus.senders, *ros}):
+        row, route = ros.get(msg_id), bus.routes.get(msg_id)
+        senders = set(bus.senders.get(msg_id, ()))
+        subscribers = {each.pipe.app_name for each in route.destinations} if route is not None else set()
+        name, kind = names.get(msg_id, f"0x{msg_id:04X}"), kind_of(msg_id)
+        if row is not None:  # ROS knows the nodes by their own names
+            name, kind = row.name, row.type
+            senders = senders - nodes | set(row.publishers)
+            subscribers = subscribers - nodes | set(row.subscribers)
+        found.append(MidRow(msg_id, name, kind, sorted(senders), sorted(subscribers)))
+    return found
+
+
+def _entries(mission: Mission) -> list[Entry]:
+    return [entry for entry in parse(mission.spec.script.read_bytes()) if isinstance(entry, Entry)]

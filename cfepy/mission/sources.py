@@ -1,0 +1,89 @@
+"""Python sources read without running them: are they Python, and do they define what a startup script asks for?
+
+Reading a syntax tree cannot answer everything: what a star import or a module's `__getattr__` brings counts as there.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+PACKAGE_FILE = "__init__.py"
+
+
+def source_of(code: Path | str) -> Path | None:
+    """The file behind what `find_code` found; None when it is not Python source (an extension module)."""
+    if isinstance(code, Path):
+        return code
+    spec = importlib.util.find_spec(code)
+    path = Path(spec.origin) if spec is not None and spec.origin is not None else None
+    return path if path is not None and path.suffix == ".py" else None
+
+
+def files_of(source: Path) -> list[Path]:
+    """The sources that belong to a module: itself, or all of its package."""
+    return sorted(source.parent.rglob("*.py")) if source.name == PACKAGE_FILE else [source]
+
+
+def syntax_error(source: Path) -> tuple[int, str] | None:
+    """(line, what is wrong) of a file that is not Python; None when it is."""
+    try:
+        ast.parse(source.read_bytes(), filename=str(source))
+    except SyntaxError as error:
+        return error.lineno or 1, error.msg
+    except (ValueError, OSError) as error:
+        return 1, str(error)
+    return None
+
+
+def functions_of(source: Path) -> list[str]:
+    """Functions that a module defines itself, for suggestions."""
+    return [node.name for node in _tree(source).body if isinstance(node, ast.FunctionDef)]
+
+
+def defines(source: Path, name: str) -> bool:
+    """Whether a module that can be parsed has a name at its top level, or may have it."""
+    return any(_binds(statement, source, name) for statement in _statements(_tree(source).body))
+
+
+def _tree(source: Path) -> ast.Module:
+    try:
+        return ast.parse(source.read_bytes())
+    except (SyntaxError, ValueError, OSError):
+        return ast.Module(body=[], type_ignores=[])
+
+
+def _statements(body: Iterable[ast.stmt]) -> Iterator[ast.stmt]:
+    """The statements that run when a module is imported, those within `if`, `try`, `with` and loops too."""
+    for statement in body:
+        yield statement
+        for block in ("body", "orelse", "finalbody"):
+            if not isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+                yield from _statements(getattr(statement, block, ()))
+        for handler in getattr(statement, "handlers", ()):
+            yield from _statements(handler.body)
+
+
+def _binds(statement: ast.stmt, source: Path, name: str) -> bool:
+    if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        return statement.name in (name, "__getattr__")
+    if isinstance(statement, ast.ImportFrom):
+        return any(_imports(statement, alias, source, name) for alias in statement.names)
+    if isinstance(statement, ast.Import):
+        return any((alias.asname or alias.name.partition(".")[0]) == name for alias in statement.names)
+    targets = getattr(statement, "targets", [getattr(statement, "target", None)])
+    return any(
+        isinstance(node, ast.Name) and node.id == name for target in targets if target for node in ast.walk(target)
+    )
+
+
+def _imports(statement: ast.ImportFrom, alias: ast.alias, source: Path, name: str) -> bool:
+    """Whether `from x import alias` gives `name`; a module of the same package is looked into."""
+    if alias.name != "*" and (alias.asname or alias.name) != name:
+        return False
+    sibling = source.parent / f"{statement.module}.py" if statement.level == 1 and statement.module else None
+    if sibling is None or not sibling.is_file() or sibling == source:
+        return True
+    return defines(sibling, name if alias.name == "*" else alias.name)

@@ -1,0 +1,238 @@
+"""`Link`: the publishing side of one node on one topic, shared by all of its handles (CFE_SB_TransmitMsg).
+
+The hot path is `Link.send`: one serialisation, one call of the bus. A message that does not fit in a packet goes out in
+segments, one that nobody would get is not even serialised. May import cfepy.rtos and cfepy.status.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from cfepy.rtos import Mutex
+from cfepy.status import CfeError
+from rospy_shim.exceptions import ROSSerializationException
+from rospy_shim.genpy import SerializationError
+from rospy_shim.message import args_kwds_to_message
+from rospy_shim.transport import HEADER_BYTES, segments, whole_header
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rospy_shim.graph import Header, Topic
+    from rospy_shim.node import Node
+    from rospy_shim.subscriber import Subscription
+
+PACE_NS = 100_000  # between two looks whether a subscriber has room for the next segment
+PATIENCE = 100  # looks, before a segment is sent to a full queue and lost there
+
+
+class SubscribeListener:
+    """Base class for those that want to know who subscribes to a publisher (rospy.SubscribeListener)."""
+
+    __module__ = "rospy.topics"
+
+    def peer_subscribe(self, topic_name: str, topic_publish: Callable[..., None], peer_publish: Any) -> None:
+        """A subscriber came; `topic_publish` sends to all, `peer_publish` to the new one only."""
+
+    def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
+        """A subscriber left, `num_peers` remain."""
+
+
+class Link:
+    """The publishing side of one node on one topic.
+
+    Args:
+        node: the node.
+        name: resolved name of the topic.
+        data_class: message class.
+    """
+
+    def __init__(self, node: Node, name: str, data_class: Any) -> None:
+        self.node = node
+        self.name = name
+        self.data_class = data_class
+        self.handles = 0
+        self.has_header = bool(getattr(data_class, "_has_header", False))
+        self.seq = 0
+        self.latching = False
+        self.latched: Any = None
+        self.listeners: list[SubscribeListener] = []
+        self.header: Header = {}
+        self.shared = False  # with publishers of other nodes
+        self.raw = False
+        self.connected = False
+        self.topic: Topic | None = None  # None until connected, and when the node is shut down or the types differ
+        self.msg_id = 0
+        bus = node.cfe.sb
+        self._bus = bus
+        self._routes: dict[int, Any] = bus.routes
+        self._transmit = bus.transmit_msg
+        self._head = b""
+        self._charge = node.kernel.charge
+        self._call_ns = node.call_ns
+        self._room = bus.config.sb_max_msg_size - HEADER_BYTES
+        self._mutex: Mutex | None = None
+
+    def connect(self) -> None:
+        """The node is initialised: go on the graph.
+
+        Raises:
+            UsageError: the topic's MsgId belongs to another topic.
+        """
+        self.connected = True
+        self.header |= self._own_header()
+        topic = self.node.topic_for(self.name, self.data_class)
+        if topic is None:
+            self._routes = {}
+            return
+        self.topic = topic
+        self.raw = topic.raw
+        self.msg_id = topic.msg_id
+        self._head = whole_header(topic.msg_id)
+        topic.add_link(self)
+        for subscription in topic.subscriptions:
+            self.peer_joined(subscription)
+
+    def _own_header(self) -> Header:
+        return {
+            "callerid": self.node.names.name,
+            "latching": "1" if self.latching else "0",
+            "md5sum": self.data_class._md5sum,
+            "message_definition": getattr(self.data_class, "_full_text", ""),
+            "topic": self.name,
+            "type": self.data_class._type,
+        }
+
+    def latch(self) -> None:
+        """Keep the last message for subscribers to come."""
+        self.latching = True
+        self.header["latching"] = "1"
+        if self.topic is not None:
+            self.topic.latching = True
+
+    def close(self) -> None:
+        """Leave the graph; who still publishes is not heard any more."""
+        self._routes = {}
+        self.node.links.pop(self.name, None)
+        if self.topic is not None:
+            self.topic.remove_link(self)
+            self.topic.leave()
+            self.topic = None
+
+    def connections(self) -> int:
+        """How many pipes get the topic's messages: subscribing nodes, and cFE applications."""
+        route = self._routes.get(self.msg_id)
+        return len(route.active) if route is not None else 0
+
+    def send(self, message: Any) -> None:
+        """Publish a message.
+
+        Raises:
+            ROSSerializationException: a field holds what its type cannot carry.
+        """
+        if self._call_ns:
+            self._charge(self._call_ns)
+        if self.latching:
+            self.latched = message
+        route = self._routes.get(self.msg_id)
+        if route is None or not route.active:
+            return
+        payload = self.serialize(message)
+        try:
+            if self.raw:
+                self._send_packet(message)
+            elif len(payload) > self._room:
+                self._send_segments(payload)
+            else:
+                if self.shared:
+                    self._note(0)
+                self._transmit(self._head + payload)
+        except CfeError as error:
+            self.node.logs.logerr("publish on %s: %s", self.name, error)
+
+    def serialize(self, message: Any) -> bytes:
+        """The bytes of a message, with the next sequence number in its header.
+
+        Raises:
+            ROSSerializationException: a field holds what its type cannot carry.
+        """
+        self.seq = seq = self.seq + 1
+        if self.has_header:
+            header = message.header
+            header.seq = seq
+            if header.frame_id is None:
+                header.frame_id = "0"
+        try:
+            payload: bytes = message._pack()
+        except SerializationError as error:
+            raise ROSSerializationException(str(error)) from error
+        return payload
+
+    def _send_packet(self, message: Any) -> None:
+        """A raw topic: the message's data are a whole packet."""
+        packet = bytes(message.data)
+        msg_id = int.from_bytes(packet[:2], "big")
+        if msg_id != self.msg_id:
+            raise ROSSerializationException(
+                f"{self.name} carries packets of MsgId 0x{self.msg_id:04X}, and these bytes begin with 0x{msg_id:04X}"
+            )
+        self._bus.transmit_msg(packet)
+
+    def _send_segments(self, payload: bytes) -> None:
+        """One long message; as with a socket that is full, the caller waits while a subscriber's queue is."""
+        if self._mutex is None:
+            self._mutex = Mutex(self.node.kernel, f"segments of {self.name}")
+        self._mutex.take()
+        try:
+            for index, packet in enumerate(segments(self.msg_id, payload, self._room)):
+                self._wait_for_room()
+                self._note(index)
+                self._bus.transmit_msg(packet)
+        finally:
+            self._mutex.give()
+
+    def _note(self, index: int) -> None:
+        """Remember who sends the next packet of the topic, since a packet cannot say."""
+        route = self._routes.get(self.msg_id)
+        if self.topic is not None and route is not None:
+            self.topic.notes[route.sequence & 0x3FFF] = (self.header, index)
+
+    def _wait_for_room(self) -> None:
+        kernel = self.node.kernel
+        if not self._has_room():
+            kernel.yield_cpu()
+        for _ in range(PATIENCE):
+            if self._has_room():
+                return
+            kernel.delay(PACE_NS)
+
+    def _has_room(self) -> bool:
+        route = self._routes.get(self.msg_id)
+        return route is None or all(
+            each.puts - each.gets < each.limit and len(each.pipe.items) < each.pipe.depth for each in route.active
+        )
+
+    # -- subscribers that come and go --------------------------------------------------------------------------------
+
+    def peer_joined(self, subscription: Subscription) -> None:
+        """Give a new subscriber the latched message, and tell the listeners."""
+        if self.latching and self.latched is not None and not self.raw:
+            subscription.deliver(self.serialize(self.latched), self.header)
+        for listener in self.listeners:
+            self.node.start_task(self.name, lambda each=listener: self._tell(each, subscription))  # type: ignore[misc]
+
+    def _tell(self, listener: SubscribeListener, subscription: Subscription) -> None:
+        def peer_publish(*args: Any, **kwds: Any) -> None:
+            message = args_kwds_to_message(self.data_class, args, kwds)
+            subscription.deliver(self.serialize(message), self.header)
+
+        def topic_publish(*args: Any, **kwds: Any) -> None:
+            self.send(args_kwds_to_message(self.data_class, args, kwds))
+
+        listener.peer_subscribe(self.name, topic_publish, peer_publish)
+
+    def peer_left(self, remaining: int) -> None:
+        """Tell the listeners."""
+        for listener in self.listeners:
+            body = lambda each=listener: each.peer_unsubscribe(self.name, remaining)  # noqa: E731
+            self.node.start_task(self.name, body)
