@@ -12,7 +12,8 @@ from cfepy.rtos import Mutex
 from cfepy.status import CfeError
 from rospy_shim.exceptions import ROSSerializationException
 from rospy_shim.genpy import SerializationError
-from rospy_shim.message import args_kwds_to_message
+from rospy_shim.message import args_kwds_to_message, packer
+from rospy_shim.topic_handle import Connection, connections_of
 from rospy_shim.transport import HEADER_BYTES, segments, whole_header
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ class Link:
         self.data_class = data_class
         self.handles = 0
         self.has_header = bool(getattr(data_class, "_has_header", False))
+        self._pack = packer(data_class)
         self.seq = 0
         self.latching = False
         self.latched: Any = None
@@ -119,10 +121,19 @@ class Link:
             self.topic.leave()
             self.topic = None
 
-    def connections(self) -> int:
+    def get_num_connections(self) -> int:
         """How many pipes get the topic's messages: subscribing nodes, and cFE applications."""
         route = self._routes.get(self.msg_id)
         return len(route.active) if route is not None else 0
+
+    def has_connection(self, endpoint_id: str) -> bool:
+        """Whether the node of that name subscribes."""
+        return any(each.endpoint_id == endpoint_id for each in self.connections)
+
+    @property
+    def connections(self) -> list[Connection]:
+        """The nodes that subscribe."""
+        return connections_of(self.topic.subscriptions) if self.topic is not None else []
 
     def send(self, message: Any) -> None:
         """Publish a message.
@@ -163,10 +174,9 @@ class Link:
             if header.frame_id is None:
                 header.frame_id = "0"
         try:
-            payload: bytes = message._pack()
+            return self._pack(message)
         except SerializationError as error:
             raise ROSSerializationException(str(error)) from error
-        return payload
 
     def _send_packet(self, message: Any) -> None:
         """A raw topic: the message's data are a whole packet."""

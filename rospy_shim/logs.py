@@ -141,7 +141,7 @@ class Logs:
 
     def _publish(self, record: Any) -> None:
         link = self._node.links.get(ROSOUT)
-        if link is None or not link.connections():
+        if link is None or not link.get_num_connections():
             return
         log = message_class("rosgraph_msgs/Log")()
         log.header.stamp = MessageTime(*divmod(self._node.universe.clock.epoch_ns + self._node.kernel.now, NS))

@@ -5,7 +5,10 @@ Imports nothing of cfepy.
 
 from __future__ import annotations
 
+import codecs
+import io
 import struct
+from collections.abc import Callable
 from typing import Any, BinaryIO, ClassVar
 
 from rospy_shim.exceptions import ROSException
@@ -58,6 +61,48 @@ class AnyMsg(Message):
         return self
 
 
+def packer(data_class: Any) -> Callable[[Any], bytes]:
+    """What serialises the messages of a class: its own fast function, or `serialize` of a class that genpy made."""
+    if data_class is AnyMsg:
+        return lambda message: packer(type(message))(message) if type(message) is not AnyMsg else message._pack()
+    own: Callable[[Any], bytes] | None = getattr(data_class, "_pack", None)
+    return own if own is not None else _serialized
+
+
+def unpacker(data_class: Any) -> Callable[[bytes, int], Any]:
+    """What makes a message of a class from bytes at an offset; the counterpart of `packer`."""
+    own: Callable[[bytes, int], Any] | None = getattr(data_class, "_unpack", None)
+    if own is not None:
+        return own
+    _register_text_errors()
+    return lambda data, at: data_class().deserialize(data[at:])
+
+
+class _TextErrors:
+    """What code that genpy generated asks of the error handler "rosmsg": bytes that are no UTF-8 become U+FFFD."""
+
+    msg_type = ""  # set by that code
+
+    def __call__(self, error: UnicodeError) -> tuple[str, int]:
+        if not isinstance(error, UnicodeDecodeError):
+            raise error
+        return "\ufffd", error.end
+
+
+def _register_text_errors() -> None:
+    """Give Python's codecs the handler that genpy gives them when it is imported."""
+    try:
+        codecs.lookup_error("rosmsg")
+    except LookupError:
+        codecs.register_error("rosmsg", _TextErrors())
+
+
+def _serialized(message: Any) -> bytes:
+    buffer = io.BytesIO()
+    message.serialize(buffer)
+    return buffer.getvalue()
+
+
 def args_kwds_to_message(data_class: Any, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
     """The message that the arguments of `publish` mean.
 
@@ -104,7 +149,7 @@ def serialize_message(b: BinaryIO, seq: int, msg: Any) -> None:
     """
     if getattr(type(msg), "_has_header", False):
         msg.header.seq = seq
-    payload = msg._pack()
+    payload = packer(type(msg))(msg)
     b.write(struct.pack("<I", len(payload)) + payload)
 
 

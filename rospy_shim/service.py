@@ -17,6 +17,7 @@ from cfepy.rtos import TIMEOUT, WaitList
 from cfepy.status import CfeError
 from rospy_shim.exceptions import ROSInterruptException, ServiceException
 from rospy_shim.genpy import Message, SerializationError
+from rospy_shim.message import packer, unpacker
 from rospy_shim.subscriber import DEFAULT_BUFF_SIZE, NO_PIPE
 
 if TYPE_CHECKING:
@@ -164,13 +165,13 @@ class Service:
     def _answer(self, packet: bytes) -> None:
         (number,) = call_number.unpack_from(packet, 8)
         try:
-            request = self.request_class._unpack(packet, REQUEST_AT)
+            request = unpacker(self.request_class)(packet, REQUEST_AT)
             request._connection_header = {
                 "callerid": self._entry.callers.get(number, ""),
                 "md5sum": self.service_class._md5sum,
                 "service": self.resolved_name,
             }
-            good, body = True, response_of(self.handler(request), self.response_class)._pack()
+            good, body = True, packer(self.response_class)(response_of(self.handler(request), self.response_class))
         except (ServiceException, SerializationError, ROSInterruptException) as error:
             good, body = False, f"service cannot process request: {error}".encode()
         except Exception as error:

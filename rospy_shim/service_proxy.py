@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from cfepy.status import CfeError
 from rospy_shim.exceptions import ROSException, ROSInterruptException, ServiceException
-from rospy_shim.message import args_kwds_to_message
+from rospy_shim.message import args_kwds_to_message, packer, unpacker
 from rospy_shim.rostime import nanoseconds
 from rospy_shim.service import ANSWER_AT, REQUEST_AT, answer_state, call_number, request_header
 from rospy_shim.subscriber import NO_PIPE
@@ -61,7 +61,7 @@ class ServiceProxy:
         """
         node = self._node
         node.universe.charge()
-        body = args_kwds_to_message(self.request_class, args, kwds)._pack()
+        body = packer(self.request_class)(args_kwds_to_message(self.request_class, args, kwds))
         entry = node.graph.services.get(self.resolved_name)
         if entry is None:
             raise ServiceException(f"service [{self.resolved_name}] unavailable")
@@ -74,7 +74,7 @@ class ServiceProxy:
                 self.close()
         if not good:
             raise ServiceException(f"service [{self.resolved_name}] responded with an error: {answer!r}")
-        response = self.response_class._unpack(answer)
+        response = unpacker(self.response_class)(answer, 0)
         response._connection_header = {
             "callerid": entry.service.node.names.name,
             "md5sum": self.service_class._md5sum,

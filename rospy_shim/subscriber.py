@@ -13,7 +13,8 @@ from cfepy.nodes.report import traceback_text
 from cfepy.rtos import TIMEOUT
 from cfepy.status import CfeError
 from rospy_shim.exceptions import ROSException
-from rospy_shim.topic_handle import TopicHandle
+from rospy_shim.message import unpacker
+from rospy_shim.topic_handle import Connection, TopicHandle, connections_of
 from rospy_shim.transport import HEADER_BYTES, Assembler, sequence_of
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ class Subscription:
         self.node = node
         self.name = name
         self.data_class = data_class
+        self._unpack = unpacker(data_class)
         self.depth = depth
         self.handles = 0
         self.callbacks: tuple[tuple[Callable[..., Any], Any], ...] = ()
@@ -88,9 +90,18 @@ class Subscription:
             self.topic = None
         self._call_attention()
 
-    def connections(self) -> int:
+    def get_num_connections(self) -> int:
         """How many nodes publish the topic."""
         return len(self.topic.links) if self.topic is not None and self in self.topic.subscriptions else 0
+
+    def has_connection(self, endpoint_id: str) -> bool:
+        """Whether the node of that name publishes."""
+        return any(each.endpoint_id == endpoint_id for each in self.connections)
+
+    @property
+    def connections(self) -> list[Connection]:
+        """The nodes that publish."""
+        return connections_of(self.topic.links) if self.topic is not None else []
 
     def deliver(self, payload: bytes, header: Header) -> None:
         """Give this subscriber alone a message: a latched one, or one of a SubscribeListener."""
@@ -137,7 +148,7 @@ class Subscription:
     def _receive(self, topic: Topic) -> None:
         """Packet after packet; the loop that every received message passes through."""
         receive, pipe = self.node.cfe.sb.receive_buffer, self._pipe
-        unpack = self.data_class._unpack if not topic.raw else self._packet_as_message
+        unpack = self._unpack if not topic.raw else self._packet_as_message
         while True:
             if self._attention and not self._attend():
                 return
@@ -170,7 +181,7 @@ class Subscription:
         self._attention = False
         while self._backlog and not self._closed:
             payload, header = self._backlog.pop(0)
-            message = self.data_class._unpack(payload)
+            message = self._unpack(payload, 0)
             message._connection_header = header
             if header.get("latching") == "1":
                 self.latest = message

@@ -5,12 +5,25 @@ Imports nothing of cfepy.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 from rospy_shim.names import is_legal_name
 
 if TYPE_CHECKING:
     from rospy_shim.node import Node
+
+
+class Connection(NamedTuple):
+    """A node at the other side, under the names by which libraries such as actionlib look for it."""
+
+    endpoint_id: str
+    callerid_pub: str
+
+
+def connections_of(sides: Iterable[Any]) -> list[Connection]:
+    """The nodes that some links or subscriptions belong to."""
+    return [Connection(side.node.names.name, side.node.names.name) for side in sides]
 
 
 class TopicHandle:
@@ -51,4 +64,4 @@ class TopicHandle:
     def get_num_connections(self) -> int:
         """How many are at the other side."""
         self._node.universe.charge()
-        return self.impl.connections() if self.impl is not None else 0
+        return self.impl.get_num_connections() if self.impl is not None else 0

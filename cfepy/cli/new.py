@@ -1,0 +1,126 @@
+"""`cfepy new`: write the skeleton of an application or a mission, which runs as it is.
+
+The application is a copy of the one in apps/sample under another name, so that there is one example to keep good; the
+files around it are in `templates`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import keyword
+import re
+import sys
+import zlib
+from pathlib import Path
+
+from cfepy.cli.main import ENDED_WELL
+from cfepy.resources import shipped
+from cfepy.status import UsageError
+from cfepy.tbl import image
+
+TEMPLATES = Path(__file__).with_name("templates")
+APP_SUFFIX = "_app"
+LONGEST_APP = 14  # its entry point, NAME_Main, must fit the 19 characters that cFE takes
+LONGEST = {"app": LONGEST_APP, "mission": LONGEST_APP - len(APP_SUFFIX)}
+TAKEN = ("cfepy", "rospy", "rospy_shim", "std_msgs", "sample", "hk", "sch_lab")
+FIRST_TOPIC, TOPIC_PAIRS = 0xA0, 0x30  # topic ids of new apps: behind those of NASA's apps, before those of ROS topics
+
+Files = dict[str, bytes]
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the skeleton that the command line asks for into a new folder.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: the name cannot be used, or there is such a file or folder already.
+    """
+    kind, name = arguments.kind, arguments.name
+    _check_name(kind, name)
+    folder = Path(name)
+    if folder.exists():
+        raise UsageError("is there already; choose another name, nothing is overwritten", file=folder)
+    files = app_files(name) if kind == "app" else mission_files(name)
+    try:
+        for path, content in files.items():
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_bytes(content)
+    except OSError as error:
+        raise UsageError(f"cannot be written: {error.strerror}", file=error.filename) from None
+    for path in files:
+        print(folder / path)
+    print(f"\nNow: cfepy run {name}")
+    return ENDED_WELL
+
+
+def app_files(name: str) -> Files:
+    """An application and the smallest mission around it: path to content."""
+    return {
+        "README.md": _rendered("app/README.md.in", name, name),
+        "startup.scr": _rendered("app/startup.scr.in", name, name),
+        f"test_{name}.py": _rendered("app/test_app.py.in", name, name),
+        **_package(name),
+    }
+
+
+def mission_files(folder: str) -> Files:
+    """A mission of an application and two ROS nodes: path to content."""
+    app = folder + APP_SUFFIX
+    plain = ("README.md", "startup.scr", "mission.yaml", "talker.py", "listener.py")
+    return {
+        **{file: _rendered(f"mission/{file}.in", app, folder) for file in plain},
+        f"test_{folder}.py": _rendered("mission/test_mission.py.in", app, folder),
+        **_package(app),
+    }
+
+
+def _check_name(kind: str, name: str) -> None:
+    longest = LONGEST[kind]
+    if not re.fullmatch(r"[a-z][a-z0-9_]*", name) or len(name) > longest:
+        text = f"{name!r} cannot be used; take 1 to {longest} lower-case letters, digits and '_', a letter first"
+        raise UsageError(text, field="NAME")
+    if keyword.iskeyword(name) or name in sys.stdlib_module_names or name in TAKEN:
+        raise UsageError(f"{name!r} means something else already; choose another name", field="NAME")
+
+
+def _rendered(template: str, name: str, folder: str) -> bytes:
+    text = (TEMPLATES / template).read_text(encoding="utf-8")
+    for key, value in (("{{name}}", name), ("{{NAME}}", name.upper()), ("{{folder}}", folder)):
+        text = text.replace(key, value)
+    return text.encode()
+
+
+def _package(name: str) -> Files:
+    """apps/sample under another name, with message ids and a table of its own."""
+    sample = shipped("apps") / "sample"
+    files: Files = {}
+    for source in sorted([*sample.glob("*.py"), *sample.glob("tables/*.py")]):
+        path = source.relative_to(sample).as_posix().replace("sample_app_tbl", name)
+        files[f"{name}/{path}"] = _renamed(source.read_text(encoding="utf-8"), name).encode()
+    table = image.read((sample / "tables/sample_app_tbl.tbl").read_bytes())
+    renamed = table._replace(name=table.name.replace("SAMPLE_APP", name.upper()))
+    files[f"{name}/tables/{name}.tbl"] = image.build(renamed)
+    return files
+
+
+def _renamed(text: str, name: str) -> str:
+    title = name.replace("_", " ").title()
+    topic = FIRST_TOPIC + 2 * (zlib.crc32(name.encode()) % TOPIC_PAIRS)
+    for old, new in (
+        (", the smallest real cFE app: commands, telemetry, events and a table. Start here, and copy it.", ": a cFE app."),
+        (" (sample_app_eventids.h)", ""),
+        ("apps.sample.tables.sample_app_tbl", f"{name}.tables.{name}"),
+        ("sample_app_tbl", name),
+        ("SAMPLE_APP_CMD_PIPE", f"{name.upper()}_PIPE"),
+        ("SAMPLE_APP", name.upper()),
+        ("SAMPLE:", f"{name.upper()}:"),
+        ("SampleApp", title.replace(" ", "")),
+        ("Sample App Initialized.Sample App", f"{title} initialized, version"),
+        ("Sample App", title),
+        ("0x82", f"0x{topic:02X}"),
+        ("0x83", f"0x{topic + 1:02X}"),
+    ):
+        text = text.replace(old, new)
+    return text

@@ -1,0 +1,80 @@
+"""A wheel of cfepy, installed in an environment of its own, works away from the checkout."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import venv
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.mission import Mission
+
+ROOT = Path(__file__).parents[2]
+SHIPPED = [
+    "cfepy/py.typed",
+    "cfepy/share/apps/hk/tables/hk_cpy_tbl.tbl",
+    "cfepy/share/boards/rx64m.yaml",
+    "cfepy/share/missions/capture/startup.scr",
+    "cfepy/share/missions/rx64m_pubsub/mission.yaml",
+    "rospy_shim/msgs/definitions/std_msgs.msgs",
+]
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("wheel")
+    execute([sys.executable, "-m", "pip", "wheel", "--no-deps", "--wheel-dir", str(folder), str(ROOT)], folder)
+    (built,) = folder.glob("cfepy-*.whl")
+    return built
+
+
+@pytest.fixture(scope="module")
+def home(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that is not the checkout, with an environment in which the wheel is installed."""
+    folder = tmp_path_factory.mktemp("elsewhere")
+    venv.create(folder / "venv", with_pip=True)
+    execute([str(folder / "venv/bin/python"), "-m", "pip", "install", "--quiet", str(wheel)], folder)
+    return folder
+
+
+def execute(command: list[str], folder: Path) -> str:
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+def cfepy(home: Path, *arguments: str) -> str:
+    return execute([str(home / "venv/bin/cfepy"), *arguments], home)
+
+
+def test_the_wheel_brings_everything_along(wheel: Path) -> None:
+    names = set(zipfile.ZipFile(wheel).namelist())
+    assert names.issuperset(SHIPPED)
+    assert any(name.endswith("licenses/LICENSE") for name in names)
+    assert not [name for name in names if name.startswith(("tests/", "benchmarks/", "docs/")) or "__pycache__" in name]
+
+
+def test_the_capture_mission_flies_as_in_the_checkout(home: Path) -> None:
+    output = cfepy(home, "run", "capture", "--for", "1", "--quiet", "--json", "numbers.json")
+    numbers = json.loads((home / "numbers.json").read_text())
+    assert output.splitlines()[-1] == f"trace: {numbers['trace']}"
+    assert {topic["name"] for topic in numbers["topics"]} >= {"/joint_states", "/motor_command"}
+    with Mission("capture", console=Console(quiet=True)) as mission:
+        mission.run(1)
+        mission.shut_down_nodes()
+        assert mission.trace.digest() == numbers["trace"]
+
+
+def test_boards_are_found(home: Path) -> None:
+    output = cfepy(home, "boards")
+    assert "linux" in output
+    assert "rx64m" in output

@@ -1,0 +1,79 @@
+"""The documentation: links lead somewhere, commands can be given as they stand, nothing goes stale unnoticed."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli import main as cli
+
+ROOT = Path(__file__).parents[1]
+DOCS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("missions/*/*.md")])
+FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+HEADING = re.compile(r"^#+ +(.+)$", re.MULTILINE)
+OURS = re.compile(r"`((?:cfepy|rospy_shim|apps|boards|missions|tests|docs|benchmarks|\.ci)/[\w./*-]+)`")
+
+each_document = pytest.mark.parametrize("path", DOCS, ids=lambda path: str(path.relative_to(ROOT)))
+
+
+def anchors(path: Path) -> set[str]:
+    """The anchors that GitHub makes of headings."""
+    titles = HEADING.findall(FENCE.sub("", path.read_text()))
+    return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+def broken(path: Path, link: str) -> bool:
+    if re.match(r"[a-z]+:", link):
+        return False
+    file, _, anchor = link.partition("#")
+    target = path.parent / file if file else path
+    return not target.exists() or (anchor != "" and anchor not in anchors(target))
+
+
+def commands(path: Path) -> Iterator[list[str]]:
+    """The `cfepy` commands in a document's code blocks, split into words."""
+    for block in FENCE.findall(path.read_text()):
+        for line in block.splitlines():
+            for command in line.removeprefix("$ ").split(" && "):
+                words = shlex.split(command, comments=True) if re.match(r"\s*([\w./]*/)?cfepy ", command) else []
+                if words:
+                    yield words[1:]
+
+
+@each_document
+def test_links_lead_somewhere(path: Path) -> None:
+    assert [link for link in LINK.findall(FENCE.sub("", path.read_text())) if broken(path, link)] == []
+
+
+@each_document
+def test_files_that_are_named_exist(path: Path) -> None:
+    assert [name for name in OURS.findall(path.read_text()) if not list(ROOT.glob(name.rstrip("/")))] == []
+
+
+@each_document
+def test_commands_can_be_given(path: Path) -> None:
+    for words in commands(path):
+        try:
+            cli._parser().parse_args(words)
+        except SystemExit as stopped:
+            assert stopped.code == 0, f"cfepy {shlex.join(words)}"  # --help and --version stop too
+
+
+@each_document
+def test_no_digest_is_written_down(path: Path) -> None:
+    assert re.findall(r"\b[0-9a-f]{32}\b", path.read_text()) == []
+
+
+def test_the_readme_has_commands_to_look_at() -> None:
+    assert ["run", "capture", "--for", "20"] in list(commands(ROOT / "README.md"))
+
+
+def test_every_document_is_in_the_index() -> None:
+    index = (ROOT / "docs/README.md").read_text()
+    missing = [path.name for path in DOCS if path.parent.name == "docs" and f"({path.name})" not in index]
+    assert missing == ["README.md"]
