@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TextIO
 
 from cfepy.cli.table import Table, show_tables
-from cfepy.mission.results import Results
+from cfepy.mission.results import Results, TopicResult
 
 
 def show(results: Results, stream: TextIO) -> None:
     """Print all tables and the line about speed."""
     show_tables([_topics(results), _apps(results), _events(results), *_pipes(results), *_memory(results)], stream)
     line = f"{results.virtual_s:.3f} virtual s in {results.wall_s:.3f} s: {results.speed:.1f} x real time"
-    print(f"{line}, board {results.board}, {results.tasks} tasks, seed {results.seed}", file=stream)
+    print(f"\n{line}, board {results.board}, {results.tasks} tasks, seed {results.seed}", file=stream)
 
 
 def _topics(results: Results) -> Table:
@@ -27,7 +27,7 @@ def _topics(results: Results) -> Table:
             topic.sent,
             topic.delivered,
             topic.dropped,
-            _why(topic.dropped_limit, topic.dropped_pipe_full, topic.dropped_queue, topic.no_subscriber),
+            _why(topic),
             f"{topic.rate_hz:.1f}{mark}",
         )
     if any(topic.too_fast for topic in results.topics):
@@ -35,10 +35,16 @@ def _topics(results: Results) -> Table:
     return table
 
 
-def _why(limit: int, pipe_full: int, queue: int, no_subscriber: int) -> str:
-    reasons = (("message limit", limit), ("pipe full", pipe_full), ("subscriber's queue", queue))
-    said = [f"{count} {reason}" for reason, count in reasons if count]
-    if no_subscriber:
+def _why(topic: TopicResult) -> str:
+    """Why messages that were sent were not delivered."""
+    reasons = (
+        ("message limit", topic.dropped_limit),
+        ("pipe full", topic.dropped_pipe_full),
+        ("segment lost", topic.dropped_segment),
+        ("not taken yet", topic.waiting),
+    )
+    said = [f"{count:,} {reason}" for reason, count in reasons if count]
+    if topic.no_subscriber:
         said.append("no subscriber")
     return ", ".join(said)
 
@@ -46,7 +52,7 @@ def _why(limit: int, pipe_full: int, queue: int, no_subscriber: int) -> str:
 def _apps(results: Results) -> Table:
     table = Table("Applications", ("name", "state", "CPU", "restarts", "died of"), right=(2, 3))
     for app in results.apps:
-        table.add(app.name, app.state, f"{app.cpu_share:.1%}", app.restarts, app.error or "")
+        table.add(app.name, app.state, f"{app.cpu_share:.2%}", app.restarts, app.error or "")
     return table
 
 

@@ -47,7 +47,8 @@ def _write(table: Table, stream: TextIO) -> None:
             for at, (cell, width) in enumerate(zip(row, widths, strict=True))
         )
         stream.write(("  " + "  ".join(cells)).rstrip() + "\n")
-    stream.write(f"  {table.note}\n\n" if table.note else "\n")
+    if table.note:
+        stream.write(f"  {table.note}\n")
 
 
 def _draw(table: Table, stream: TextIO) -> None:

@@ -1,4 +1,4 @@
-"""The Executive Services application: its command pipe, housekeeping and commands (cfe_es_task.c, cfe_es_dispatch.c)."""
+"""The Executive Services application: command pipe, commands, housekeeping (cfe_es_task.c, cfe_es_dispatch.c)."""
 
 from __future__ import annotations
 

@@ -165,7 +165,7 @@ class Mission:
         self.booted = self.kernel.now
 
     def _provide_tables(self) -> None:
-        """Put the default tables of the apps that cfepy brings along into /cf, where the mission has none of its own."""
+        """Put the default tables of shipped apps into /cf, where the mission has none of its own."""
         from cfepy.es.startup_script import Entry, parse
 
         for entry in parse(self._script):

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from cfepy.es.records import STATE_NAMES
-from cfepy.es.startup_script import CFE_APP, BadLine, Entry, parse
+from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, parse
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.mission.mission import NS_PER_S, Mission
 from cfepy.mission.msg_names import names_of
@@ -26,7 +26,7 @@ class TopicResult:
 
     `sent` counts transmissions, `delivered` packets taken out of pipes (several a transmission, where several
     subscribe), `waiting` those still in them. `dropped` is the sum of the three reasons behind it: a subscription's
-    message limit, a full pipe, a ROS subscriber's queue. `no_subscriber` counts messages that nobody wanted; they
+    message limit, a full pipe, and long ROS messages that lost a segment. `no_subscriber` counts messages that nobody wanted; they
     are no losses. `rate_hz` is `sent` by the time since the mission was operational; `too_fast` says that it is more
     than the board's `max_publish_hz`.
     """
@@ -40,7 +40,7 @@ class TopicResult:
     dropped: int
     dropped_limit: int
     dropped_pipe_full: int
-    dropped_queue: int
+    dropped_segment: int
     no_subscriber: int
     rate_hz: float
     too_fast: bool
@@ -203,7 +203,7 @@ def _topics(mission: Mission, at: Mark) -> list[TopicResult]:
     for msg_id, sent in sorted(sent_by_msg_id(mission).items()):
         route, row = sb.routes.get(msg_id), ros.get(msg_id)
         delivered, by_limit, by_pipe = route.totals() if route is not None else (0, 0, 0)
-        by_queue = row.dropped if row is not None else 0
+        by_segment = row.dropped if row is not None else 0
         rate_hz = at.sent.get(msg_id, 0) * NS_PER_S / since_boot_ns if since_boot_ns else 0.0
         found.append(
             TopicResult(
@@ -212,11 +212,11 @@ def _topics(mission: Mission, at: Mark) -> list[TopicResult]:
                 type=row.type if row is not None else kind_of(msg_id),
                 sent=sent,
                 delivered=delivered,
-                waiting=sum(each.puts - each.gets for each in route.destinations) if route is not None else 0,
-                dropped=by_limit + by_pipe + by_queue,
+                waiting=sum(each.puts - each.gets for each in (*route.destinations, *route.gone)) if route else 0,
+                dropped=by_limit + by_pipe + by_segment,
                 dropped_limit=by_limit,
                 dropped_pipe_full=by_pipe,
-                dropped_queue=by_queue,
+                dropped_segment=by_segment,
                 no_subscriber=sb.unrouted.sent.get(msg_id, 0),
                 rate_hz=round(rate_hz, 3),
                 too_fast=bool(limit_hz) and rate_hz > limit_hz,
@@ -247,8 +247,8 @@ def _apps(mission: Mission, at: Mark, core: set[str]) -> list[AppResult]:
             )
         )
     known = {app.name for app in found}
-    for entry in parse(mission.spec.script.read_bytes()):
-        if isinstance(entry, Entry) and entry.kind == CFE_APP and entry.name not in known:
+    for entry in _entries(mission):
+        if entry.kind == CFE_APP and entry.name not in known:
             known.add(entry.name)
             found.append(AppResult(entry.name, NOT_STARTED, 0.0, 0, 0, None, False))
     return found
@@ -260,6 +260,10 @@ def _problems(mission: Mission, apps: list[AppResult], own_errors: dict[str, int
     for line in parse(mission.spec.script.read_bytes()):
         if isinstance(line, BadLine):
             found.append(f"{mission.spec.script}:{line.line}: {line.explanation}")
+    loaded = {library.name for library in mission.cfe.es.libs}
+    for entry in _entries(mission):
+        if entry.kind == CFE_LIB and entry.name not in loaded:
+            found.append(f"library {entry.name} could not be loaded")
     for app in apps:
         if app.state == NOT_STARTED:
             found.append(f"{app.name} could not be started")
@@ -270,3 +274,7 @@ def _problems(mission: Mission, apps: list[AppResult], own_errors: dict[str, int
     if mission.reset_reason is not None:
         found.append(f"the processor was reset: {mission.reset_reason}")
     return found
+
+
+def _entries(mission: Mission) -> list[Entry]:
+    return [entry for entry in parse(mission.spec.script.read_bytes()) if isinstance(entry, Entry)]

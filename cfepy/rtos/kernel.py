@@ -26,9 +26,7 @@ from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit, WaitList
 
 ENDLESS = 1 << 62
 HOST_PRIORITY = 256
-COLLECT_NS = (
-    10_000_000_000  # garbage is collected at multiples of this: finalizers always run at the same place
-)
+COLLECT_NS = 10_000_000_000  # garbage is collected at multiples of this: finalizers always run at the same place
 SLICE_NS = 20_000  # equals take turns when this much virtual CPU time was used
 MAX_REFUSALS = 100  # kernel calls that a dying task may try before it is left where it stands
 

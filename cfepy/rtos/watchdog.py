@@ -62,5 +62,6 @@ class StallWatch:
         task = self._kernel.current
         stack = "".join(self._kernel.context.stack_of_running(task, self._main_ident))
         self._report(
-            f"cfepy: task {task.name} has not given up the CPU for {self._limit_s:g} s of wall time; it is here:\n{stack}"
+            f"cfepy: task {task.name} has not given up the CPU for {self._limit_s:g} s of wall time; "
+            f"it is here:\n{stack}"
         )
