@@ -44,6 +44,7 @@ class Logs:
         self._last: dict[tuple[str, int, int], int] = {}
         self._last_text: dict[tuple[str, int, int], tuple[int, str]] = {}
         self._logging: Any = None
+        self._formatter: Any = None
         for name, level in (("debug", 10), ("info", 20), ("warn", 30), ("err", 40), ("fatal", 50)):
             self._add(name, level)
 
@@ -91,6 +92,7 @@ class Logs:
 
     def _log(self, level: int, msg: Any, args: tuple[Any, ...], kwargs: dict[str, Any]) -> None:
         name = kwargs.pop("logger_name", None)
+        kwargs.setdefault("stacklevel", 3)  # the node's line, behind this function and the one that it called
         logger = self.logging.getLogger(f"{_TOP}.{name}" if name else _TOP)
         logger.log(level, msg, *args, **kwargs)
 
@@ -119,6 +121,7 @@ class Logs:
         logger = self.logging.getLogger(_TOP)
         logger.setLevel(PYTHON_LEVELS[level])
         logger.propagate = False
+        self._formatter = self.logging.Formatter()
         logger.addHandler(self._handler(self._show))
         if publish:
             self._node.link(ROSOUT, message_class("rosgraph_msgs/Log"))
@@ -127,12 +130,12 @@ class Logs:
     def _handler(self, emit: Callable[[Any], None]) -> Any:
         handler = self.logging.Handler()
         handler.emit = emit
-        handler.setFormatter(self.logging.Formatter())
+        handler.setFormatter(self._formatter)
         return handler
 
     def _show(self, record: Any) -> None:
         """A line on the console: warnings and worse on stderr."""
-        text = self.logging.Formatter().format(record)
+        text = self._formatter.format(record)
         level = _SHOWN.get(record.levelno, record.levelname)
         seconds, rest = divmod(self._node.universe.clock.epoch_ns + self._node.kernel.now, NS)
         streams = self._node.universe.importer.modules["sys"]

@@ -1,7 +1,7 @@
 """One ROS node: the object behind the functions and classes of its own `rospy`.
 
-Every node of a mission has one; nothing is shared between two nodes but the graph. May import cfepy.nodes and
-cfepy.rtos.
+Every node of a mission has one; nothing is shared between two nodes but the graph. May import cfepy.app,
+cfepy.nodes, cfepy.rtos and cfepy.status.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from rospy_shim.subscriber import Subscription, make_subscriber
 from rospy_shim.timer import make_timer
 
 if TYPE_CHECKING:
+    from cfepy.app import Cfe
     from cfepy.nodes import Universe
     from cfepy.nodes.config import NodeConfig
     from rospy_shim.graph import Graph, Topic
@@ -46,7 +47,7 @@ class Node:
     """
 
     def __init__(
-        self, cfe: Any, graph: Graph, universe: Universe, config: NodeConfig, tasks: NodeTasks, call_ns: int
+        self, cfe: Cfe, graph: Graph, universe: Universe, config: NodeConfig, tasks: NodeTasks, call_ns: int
     ) -> None:
         self.cfe = cfe
         self.graph = graph

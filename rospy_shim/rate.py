@@ -1,7 +1,7 @@
 """`rospy.Rate`: a loop pacer that keeps to its grid (rospy.timer.Rate).
 
 A loop that is late catches up; one that is more than two periods late starts a new grid. All in integers. Imports
-cfepy.rtos only.
+nothing of cfepy.
 """
 
 from __future__ import annotations

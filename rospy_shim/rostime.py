@@ -1,7 +1,7 @@
 """`rospy.Time`, `rospy.Duration` and the functions that read the clock (rospy.rostime).
 
 The values are genpy's, under rospy's class names; ROS time is the mission's clock plus the epoch of the run. Each node
-has classes of its own, because `Time.now` belongs to one simulated computer. Imports cfepy.rtos only.
+has classes of its own, because `Time.now` belongs to one simulated computer. Imports nothing of cfepy.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 On the Software Bus a service is a command MsgId for requests and a telemetry MsgId for answers. A request is a command
 packet (function code 0) with a call number and the serialised request; an answer carries the same number, whether the
 call went well, and the serialised response or the error's text. Requests are handled one after the other. May import
-cfepy.rtos and cfepy.status.
+cfepy.nodes, cfepy.rtos and cfepy.status.
 """
 
 from __future__ import annotations

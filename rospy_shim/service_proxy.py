@@ -1,6 +1,6 @@
 """`rospy.ServiceProxy` and `rospy.wait_for_service`: calling a service over the Software Bus; see `rospy_shim.service`.
 
-The caller waits for the answer in a pipe of its own. May import cfepy.rtos and cfepy.status.
+The caller waits for the answer in a pipe of its own. May import cfepy.status.
 """
 
 from __future__ import annotations

@@ -2,7 +2,8 @@
 
 `Subscription` is what all handles of a node on one topic share: one pipe and one child task, which calls the callbacks
 in the order in which they were registered, all with the same message object, as rospy's receiving thread does. A pipe
-that is full loses the newest message, and the bus reports it. May import cfepy.rtos and cfepy.status.
+that is full loses the newest message, and the bus reports it. May import cfepy.nodes, cfepy.rtos and
+cfepy.status.
 """
 
 from __future__ import annotations

@@ -2,18 +2,19 @@
 
 ES lets only the main task of an application create child tasks (CFE_ES_CreateChildTask), and starts them 50 ms later.
 What a thread or callback starts is therefore a plain OSAL task (OS_TaskCreate), which ES ends with the application all
-the same. May import cfepy.rtos and cfepy.status.
+the same. May import cfepy.nodes, cfepy.rtos and cfepy.status.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from cfepy.rtos import Kernel, Task
 from cfepy.status import OsalError
 
 if TYPE_CHECKING:
+    from cfepy.app import Cfe
     from cfepy.nodes import Universe
     from rospy_shim.node import Node
 
@@ -29,7 +30,7 @@ class NodeTasks:
         number: gives a number that no task of the mission has yet.
     """
 
-    def __init__(self, cfe: Any, kernel: Kernel, number: Callable[[], int]) -> None:
+    def __init__(self, cfe: Cfe, kernel: Kernel, number: Callable[[], int]) -> None:
         info = cfe.es.get_app_info(cfe.es.get_app_id())
         self._cfe = cfe
         self._kernel = kernel

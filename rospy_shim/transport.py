@@ -1,7 +1,7 @@
 """ROS messages in cFE packets: one telemetry packet, or several for a message that does not fit in one.
 
 A long message is cut into packets with the CCSDS sequence flags first, continuation and last (CCSDS 133.0-B-2,
-4.1.3.4.2.2) and put together again by each subscriber. May import cfepy.msg and cfepy.rtos.
+4.1.3.4.2.2) and put together again by each subscriber. Imports nothing of cfepy.
 """
 
 from __future__ import annotations

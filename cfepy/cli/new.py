@@ -109,7 +109,8 @@ def _renamed(text: str, name: str) -> str:
     title = name.replace("_", " ").title()
     topic = FIRST_TOPIC + 2 * (zlib.crc32(name.encode()) % TOPIC_PAIRS)
     for old, new in (
-        (", the smallest real cFE app: commands, telemetry, events and a table. Start here, and copy it.", ": a cFE app."),
+        ("the smallest real cFE app: ", "a cFE app: "),
+        (" Start here, and copy it.", ""),
         (" (sample_app_eventids.h)", ""),
         ("apps.sample.tables.sample_app_tbl", f"{name}.tables.{name}"),
         ("sample_app_tbl", name),

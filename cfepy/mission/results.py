@@ -6,7 +6,7 @@ mission was closed, when every task has ended and its CPU time is known.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from cfepy.es.records import STATE_NAMES
@@ -25,10 +25,10 @@ class TopicResult:
     """One MsgId.
 
     `sent` counts transmissions, `delivered` packets taken out of pipes (several a transmission, where several
-    subscribe), `waiting` those still in them. `dropped` is the sum of the three reasons behind it: a subscription's
-    message limit, a full pipe, and long ROS messages that lost a segment. `no_subscriber` counts messages that nobody wanted; they
-    are no losses. `rate_hz` is `sent` by the time since the mission was operational; `too_fast` says that it is more
-    than the board's `max_publish_hz`.
+    subscribe), `waiting` those that nobody took before the end. `dropped` is the sum of its three reasons: a
+    subscription's message limit, a full pipe, a long ROS message that lost a segment. `no_subscriber` counts messages
+    that nobody wanted; they are no losses. `rate_hz` is what was sent in the time since the mission was operational;
+    `too_fast` says that it is more than the board's `max_publish_hz`.
     """
 
     name: str
@@ -124,7 +124,8 @@ def sent_by_msg_id(mission: Mission) -> dict[int, int]:
 class Results:
     """The numbers of a run; `to_dict` gives the JSON form. Times in s, `speed` is virtual time by wall time.
 
-    `own_errors` counts ERROR and CRITICAL events of the mission's own applications.
+    `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` says, a line each, why
+    the run did not end well, `script_problems` what of the startup script could not be started.
     """
 
     mission: str
@@ -145,7 +146,8 @@ class Results:
     sb: dict[str, int]
     pipes: list[PipeResult]
     memory: MemoryResult
-    problems: list[str] = field(default_factory=list)
+    script_problems: list[str]
+    problems: list[str]
 
     @classmethod
     def of(cls, mission: Mission, at: Mark, trace: str) -> Results:
@@ -180,13 +182,9 @@ class Results:
             sb=at.sb,
             pipes=at.pipes,
             memory=at.memory,
+            script_problems=_script_problems(mission, apps),
             problems=_problems(mission, apps, own_errors),
         )
-
-    @property
-    def not_started(self) -> list[str]:
-        """Applications of the startup script that never started."""
-        return [app.name for app in self.apps if app.state == NOT_STARTED]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dicts, lists, numbers and text."""
@@ -254,26 +252,32 @@ def _apps(mission: Mission, at: Mark, core: set[str]) -> list[AppResult]:
     return found
 
 
-def _problems(mission: Mission, apps: list[AppResult], own_errors: dict[str, int]) -> list[str]:
-    """Why a run did not end well, a line each; empty when it did."""
-    found = []
-    for line in parse(mission.spec.script.read_bytes()):
-        if isinstance(line, BadLine):
-            found.append(f"{mission.spec.script}:{line.line}: {line.explanation}")
+def _script_problems(mission: Mission, apps: list[AppResult]) -> list[str]:
+    script = mission.spec.script
+    bad = (line for line in parse(script.read_bytes()) if isinstance(line, BadLine))
     loaded = {library.name for library in mission.cfe.es.libs}
-    for entry in _entries(mission):
-        if entry.kind == CFE_LIB and entry.name not in loaded:
-            found.append(f"library {entry.name} could not be loaded")
+    return [
+        *(f"{script}:{line.line}: {line.explanation}" for line in bad),
+        *(f"library {each.name} could not be loaded" for each in _libraries(mission) if each.name not in loaded),
+        *(f"{app.name} could not be started" for app in apps if app.state == NOT_STARTED),
+    ]
+
+
+def _problems(mission: Mission, apps: list[AppResult], own_errors: dict[str, int]) -> list[str]:
+    found = []
     for app in apps:
-        if app.state == NOT_STARTED:
-            found.append(f"{app.name} could not be started")
-        elif app.deaths:
+        if app.deaths:
             times = "" if app.deaths == 1 else f" {app.deaths} times"
             found.append(f"{app.name} died{times}: {app.error}")
-    found += [f"{name} sent {count} ERROR or CRITICAL events" for name, count in own_errors.items()]
+    for name, count in own_errors.items():
+        found.append(f"{name} sent {count} ERROR or CRITICAL event{'s' if count > 1 else ''}")
     if mission.reset_reason is not None:
         found.append(f"the processor was reset: {mission.reset_reason}")
     return found
+
+
+def _libraries(mission: Mission) -> list[Entry]:
+    return [entry for entry in _entries(mission) if entry.kind == CFE_LIB]
 
 
 def _entries(mission: Mission) -> list[Entry]:

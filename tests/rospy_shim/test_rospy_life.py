@@ -218,6 +218,27 @@ print("end")
     assert any("Stop Application PROBE Completed" in line for line in console.lines)
 
 
+def test_node_that_does_not_listen_is_ended_with_its_threads(tmp_path: Path) -> None:
+    scripts = {
+        "DEAF": """
+import rospy, threading
+from std_msgs.msg import String
+rospy.init_node("deaf")
+rospy.Subscriber("t", String, lambda m: None)
+threading.Thread(target=threading.Event().wait).start()
+threading.Event().wait()
+""",
+        "KILLER": """
+import rospy
+rospy.init_node("killer")
+rospy.sleep(1.0)
+""",
+    }
+    result = run_nodes(tmp_path, scripts, seconds=3)
+    assert not result.finished
+    assert not any("Traceback" in line for line in result.lines)
+
+
 def test_same_name_twice_ends_the_first(tmp_path: Path) -> None:
     script = """
 import rospy

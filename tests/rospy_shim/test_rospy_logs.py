@@ -83,4 +83,4 @@ rospy.logwarn("heard %d", 1)
 rospy.sleep(0.1)
 """,
     )
-    assert lines == ["[WARN]: heard 1", "/probe 4 heard 1 logs.py ['/rosout']"]
+    assert lines == ["[WARN]: heard 1", "/probe 4 heard 1 probe.py ['/rosout']"]

@@ -321,6 +321,31 @@ rospy.sleep(0.1)
     assert lines == ["ndarray 6.0"]
 
 
+def test_class_that_genpy_generated(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+import codecs, genpy, struct
+class Old(genpy.Message):
+    _type, _md5sum, _has_header, _full_text = "old_msgs/Old", "0" * 32, False, "string text"
+    __slots__, _slot_types = ["text"], ["string"]
+    def serialize(self, buff):
+        raw = self.text.encode()
+        buff.write(struct.pack("<I", len(raw)) + raw)
+    def deserialize(self, data):
+        codecs.lookup_error("rosmsg").msg_type = self._type
+        self.text = data[4:].decode("utf-8", "rosmsg")
+        return self
+rospy.Subscriber("old", Old, lambda m: print(m.text))
+publisher = rospy.Publisher("old", Old, queue_size=1)
+rospy.sleep(0.2)
+publisher.publish("hello")
+rospy.sleep(0.1)
+""",
+    )
+    assert lines == ["hello"]
+
+
 def test_missing_queue_size_warns_once(tmp_path: Path) -> None:
     lines = run(tmp_path, 'for _ in range(2): rospy.Publisher("w", String)\n')
     assert len([line for line in lines if "SyntaxWarning" in line and "queue_size" in line]) == 1
