@@ -35,6 +35,7 @@ class TopicRow(NamedTuple):
     """A topic in the mission's tables.
 
     `dropped` counts long messages that lost a segment in a full pipe; the bus itself counts the other losses.
+    `held_back` counts messages that had to wait because the board publishes no faster.
     """
 
     name: str
@@ -43,6 +44,7 @@ class TopicRow(NamedTuple):
     publishers: tuple[str, ...]
     subscribers: tuple[str, ...]
     dropped: int
+    held_back: int = 0
 
 
 class Topic:
@@ -62,6 +64,7 @@ class Topic:
         self.header: Header | None = None  # of the only publisher; None when a message must be looked up in `notes`
         self._shared = False  # there were two publishers at a time; packets of one that left may still wait in pipes
         self.latching = False
+        self.held_back = 0  # messages that waited for the board's publishing rate
         self.lost = 0  # long messages of which a segment is missing, once per subscriber
         self.notes: dict[int, tuple[Header, int]] = {}  # by sequence count: publisher, and number of the segment
 

@@ -72,6 +72,8 @@ class Link:
         self._head = b""
         self._charge = node.kernel.charge
         self._call_ns = node.call_ns
+        self._slot_ns = node.publish_slot_ns
+        self._slot = -1  # in which the last message went out
         self._room = bus.config.sb_max_msg_size - HEADER_BYTES
         self._mutex: Mutex | None = None
 
@@ -148,6 +150,8 @@ class Link:
         route = self._routes.get(self.msg_id)
         if route is None or not route.active:
             return
+        if self._slot_ns:
+            self._hold_back()
         payload = self.serialize(message)
         try:
             if self.raw:
@@ -160,6 +164,17 @@ class Link:
                 self._transmit(self._head + payload)
         except CfeError as error:
             self.node.logs.logerr("publish on %s: %s", self.name, error)
+
+    def _hold_back(self) -> None:
+        """On a board with a highest publishing rate: wait for a slot of time in which nothing went out yet."""
+        kernel = self.node.kernel
+        slot = kernel.now // self._slot_ns
+        while slot <= self._slot:
+            if self.topic is not None:
+                self.topic.held_back += 1
+            kernel.delay((self._slot + 1) * self._slot_ns - kernel.now)
+            slot = kernel.now // self._slot_ns
+        self._slot = slot
 
     def serialize(self, message: Any) -> bytes:
         """The bytes of a message, with the next sequence number in its header.

@@ -44,10 +44,18 @@ class Node:
         config: what the mission file says about it.
         tasks: starts tasks in the name of the node's application.
         call_ns: virtual CPU time of a call.
+        publish_slot_ns: a publisher sends at most one message in each stretch of so many ns; 0 for no limit.
     """
 
     def __init__(
-        self, cfe: Cfe, graph: Graph, universe: Universe, config: NodeConfig, tasks: NodeTasks, call_ns: int
+        self,
+        cfe: Cfe,
+        graph: Graph,
+        universe: Universe,
+        config: NodeConfig,
+        tasks: NodeTasks,
+        call_ns: int,
+        publish_slot_ns: int = 0,
     ) -> None:
         self.cfe = cfe
         self.graph = graph
@@ -55,6 +63,7 @@ class Node:
         self.config = config
         self.kernel = universe.kernel
         self.call_ns = call_ns
+        self.publish_slot_ns = publish_slot_ns
         self.initialized = False
         self.links: dict[str, Link] = {}
         self.subscriptions: dict[str, Subscription] = {}

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from cfepy.console import Console
     from cfepy.rtos import Kernel
 
+NS_PER_S = 1_000_000_000
 APP_ERROR = 3  # CFE_ES_RunStatus_APP_ERROR
 
 
@@ -38,6 +39,7 @@ class RosRuntime:
         seed: of the run; the nodes' random numbers come from it.
         epoch_ns: ROS time in ns when the kernel's clock is 0.
         node_call_ns: virtual CPU time of a call of ROS's or Python's API in a node.
+        max_publish_hz: messages a second that a publisher may send; it is held back at more. 0 for no limit.
         console: where nodes print and log.
     """
 
@@ -50,6 +52,7 @@ class RosRuntime:
         seed: int,
         epoch_ns: int,
         node_call_ns: int,
+        max_publish_hz: int = 0,
         console: Console,
     ) -> None:
         self.graph = Graph(config)
@@ -59,6 +62,7 @@ class RosRuntime:
         self._seed = seed
         self._epoch_ns = epoch_ns
         self._call_ns = node_call_ns
+        self._publish_slot_ns = NS_PER_S // max_publish_hz if max_publish_hz else 0
         self._console = console
         self._running: list[Node] = []
         self._task_numbers = count(1)
@@ -101,7 +105,7 @@ class RosRuntime:
             priority=tasks.priority,
             on_thread_start=tasks.thread,
         )
-        node = Node(self._cfe, self.graph, universe, config, tasks, self._call_ns)
+        node = Node(self._cfe, self.graph, universe, config, tasks, self._call_ns, self._publish_slot_ns)
         find = _finder(RosModules(node))
         return node
 
@@ -130,6 +134,7 @@ class RosRuntime:
             tuple(topic.publisher_names),
             tuple(topic.subscriber_names),
             topic.lost,
+            topic.held_back,
         )
 
 

@@ -29,7 +29,7 @@ from cfepy.status import CfeError, UsageError
 
 FIRST_PIECE_NS = 10_000_000
 LEAST_PIECE_NS = 1_000_000
-SHORT_NS, LONG_NS = 40_000_000, 120_000_000  # wall time that a piece should take
+SHORT_NS, LONG_NS = 80_000_000, 250_000_000  # wall time that a piece should take
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -97,7 +97,7 @@ class Flight:
         return mission.kernel.now < self._until_ns and mission.reset_reason is None and not self.interrupted
 
     def _free_step(self, until_ns: int) -> None:
-        """As fast as it goes: a piece of virtual time that takes some 40 to 120 ms of wall time."""
+        """As fast as it goes: a piece of virtual time that takes some 80 to 250 ms of wall time."""
         watch = Stopwatch()
         self.mission.run_until(min(until_ns, self.mission.kernel.now + self._piece_ns))
         wall_ns = watch.elapsed_ns()

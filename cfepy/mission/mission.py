@@ -194,6 +194,7 @@ class Mission:
                 seed=self.seed,
                 epoch_ns=self.epoch_ns,
                 node_call_ns=self.board.node_call_ns,
+                max_publish_hz=self.board.max_publish_hz,
                 console=self.console,
             )
         self._ros.run_node(script, app_name)

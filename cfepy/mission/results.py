@@ -6,10 +6,12 @@ mission was closed, when every task has ended and its CPU time is known.
 
 from __future__ import annotations
 
+import re
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from cfepy.es.records import STATE_NAMES
+from cfepy.es.events import ERREXIT_APP_INF_EID
+from cfepy.es.records import APP_ERROR, STATE_NAMES
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, parse
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.mission.mission import NS_PER_S, Mission
@@ -253,6 +255,8 @@ def _apps(mission: Mission, at: Mark, core: set[str]) -> list[AppResult]:
 
 
 def _script_problems(mission: Mission, apps: list[AppResult]) -> list[str]:
+    if mission.booted is None:
+        return []  # the startup script was not read to its end
     script = mission.spec.script
     bad = (line for line in parse(script.read_bytes()) if isinstance(line, BadLine))
     loaded = {library.name for library in mission.cfe.es.libs}
@@ -269,11 +273,21 @@ def _problems(mission: Mission, apps: list[AppResult], own_errors: dict[str, int
         if app.deaths:
             times = "" if app.deaths == 1 else f" {app.deaths} times"
             found.append(f"{app.name} died{times}: {app.error}")
+    found += [f"{name} ended with CFE_ES_RunStatus_APP_ERROR" for name in _failed(mission)]
     for name, count in own_errors.items():
         found.append(f"{name} sent {count} ERROR or CRITICAL event{'s' if count > 1 else ''}")
     if mission.reset_reason is not None:
         found.append(f"the processor was reset: {mission.reset_reason}")
     return found
+
+
+def _failed(mission: Mission) -> list[str]:
+    """Applications that ended themselves because of an error. ES tells it by the id of the event it then sends."""
+    event = re.compile(rf"EVS Port1 .*/CFE_ES {ERREXIT_APP_INF_EID}: Exit Application (\S+)")
+    matches = (event.match(line) for line in mission.console.lines)
+    ended = [match[1] for match in matches if match is not None]
+    ending = [app.name for app in mission.cfe.es.apps if app.control_request == APP_ERROR]
+    return list(dict.fromkeys(ended + ending))
 
 
 def _libraries(mission: Mission) -> list[Entry]:

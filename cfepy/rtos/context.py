@@ -29,8 +29,11 @@ class Context(Protocol):
     def enter(self, host: Task) -> None:
         """Wait in the host until the baton comes back; the kernel handed it out before."""
 
-    def interrupt(self, task: Task, host: Task, error: type[BaseException]) -> None:
-        """The host was woken by a signal while `task` had the baton: raise `error` there and get the baton back."""
+    def interrupt(self, running: Callable[[], Task], host: Task, error: type[BaseException]) -> None:
+        """The host was woken by a signal while a task had the baton, `running()` at any moment.
+
+        Wait for the baton, which comes at the task's next kernel call, and raise `error` in a task that makes none.
+        """
 
     def stack_of(self, task: Task) -> list[str]:
         """The formatted stack of a task that is not running, for reports."""

@@ -51,7 +51,7 @@ class GreenletContext:
     def enter(self, host: Task) -> None:
         pass
 
-    def interrupt(self, task: Task, host: Task, error: type[BaseException]) -> None:
+    def interrupt(self, running: Callable[[], Task], host: Task, error: type[BaseException]) -> None:
         """Nothing to do: a signal is raised in the running task itself, which is on the host's own thread."""
 
     def stack_of(self, task: Task) -> list[str]:

@@ -638,6 +638,6 @@ class Kernel:
             self._until = -1
             self._stopped = True
             heappush(self.ready, (-1, 0, self.host))
-            self.context.interrupt(self.current, self.host, TaskExit)
+            self.context.interrupt(lambda: self.current, self.host, TaskExit)
             self.current = self.host
         raise error

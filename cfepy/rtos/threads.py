@@ -22,6 +22,8 @@ from collections.abc import Callable
 from cfepy.rtos.task import Task
 
 STACK_BYTES = 512 * 1024  # 64 KiB crashes in deep C recursion, 256 KiB still gives a clean RecursionError
+FIRST_PATIENCE_S = 0.2  # how long a computing task may take to reach its next kernel call after Ctrl-C
+LAST_PATIENCE_S = 5.0
 _HAS_AFFINITY = hasattr(os, "sched_setaffinity")
 _HAS_BATCH = hasattr(os, "SCHED_BATCH")
 
@@ -109,10 +111,14 @@ class ThreadContext:
         assert host.park is not None
         host.park()
 
-    def interrupt(self, task: Task, host: Task, error: type[BaseException]) -> None:
+    def interrupt(self, running: Callable[[], Task], host: Task, error: type[BaseException]) -> None:
         assert host.park is not None
-        while not host.park(True, 0.2):
-            raise_in_thread(task.carrier.ident, error)
+        patience = FIRST_PATIENCE_S
+        while not host.park(True, patience):
+            task = running()
+            if task is not host and not task.done:
+                raise_in_thread(task.carrier.ident, error)
+            patience = min(2 * patience, LAST_PATIENCE_S)  # a second error must not hit a task that is ending already
 
     def stack_of(self, task: Task) -> list[str]:
         return stack_of_thread(task.carrier.ident)

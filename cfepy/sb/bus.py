@@ -33,7 +33,7 @@ POLL = 0
 BUFFER_BYTES = 64  # of a buffer descriptor in front of each message (CFE_SB_BufferD_t)
 SECONDARY_BIT = SECONDARY >> 8
 unpack_primary = struct.Struct(">HH").unpack_from
-pack_telemetry = struct.Struct(">HHHIH").pack
+pack_primary = struct.Struct(">HHH").pack
 pack_empty_telemetry = struct.Struct(">HH12x").pack
 
 
@@ -44,7 +44,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         super().__init__(kernel, ports, config, costs)
         self._queued_bytes = 0  # of waiting messages, once per pipe: at least what the pool holds
         self._stamped_at = -1
-        self._seconds = self._subseconds = 0
+        self._time = bytes(6)
         self._max_size = config.sb_max_msg_size
         self._pool_size = config.sb_buf_memory_bytes
         self._pipe_of = self.pipes.records
@@ -85,7 +85,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
                 now = kernel.now
                 if now != self._stamped_at:
                     self._stamp(now)
-                packet = pack_telemetry(msg_id, bits, size - 7, self._seconds, self._subseconds) + packet[12:]
+                packet = pack_primary(msg_id, bits, size - 7) + self._time + packet[12:]
             else:
                 packet = self._originated(packet, bits)
         if self._record is not None:
@@ -139,7 +139,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
 
     def _stamp(self, now: int) -> None:
         """Keep the spacecraft time of this instant, as the header wants it."""
-        self._seconds, self._subseconds = divmod(self.ports.time.stamp(), 0x10000)
+        self._time = self.ports.time.stamp().to_bytes(6, "big")
         self._stamped_at = now
 
     def forget_time(self) -> None:

@@ -6,6 +6,7 @@ import gc
 import signal
 import threading
 import weakref
+from itertools import count
 
 import pytest
 
@@ -231,21 +232,21 @@ def test_ctrl_c_reaches_the_host_while_a_task_computes(context: str) -> None:
 def test_ctrl_c_while_tasks_switch_leaves_a_usable_kernel(context: str) -> None:
     main = threading.get_ident()
     with Kernel(context) as kernel:
-        seen: list[int] = []
 
-        def ticker() -> None:
-            for number in range(200_000):
-                kernel.delay(10)
-                if number == 50:
+        def ticker(period: int, signal_at: int) -> None:
+            for number in count():
+                kernel.delay(period)
+                if number == signal_at:
                     signal.pthread_kill(main, signal.SIGINT)
-                seen.append(number)
 
-        kernel.spawn("ticker", ticker)
-        kernel.spawn("other", lambda: [kernel.delay(7) for _ in range(200_000)])
+        kernel.spawn("ticker", lambda: ticker(10, 50))
+        kernel.spawn("other", lambda: ticker(7, -1))
         with pytest.raises(KeyboardInterrupt):
             kernel.run()
         assert kernel.current is kernel.host
-        kernel.kill(kernel.tasks[-1])
+        for task in kernel.tasks[:]:
+            kernel.kill(task)
+        assert not kernel.tasks
 
 
 def test_idle_threads_of_the_pool_can_be_ended() -> None:

@@ -1,0 +1,269 @@
+"""`cfepy run`: exit statuses, the report, --json, --trace, and one digest however a run is looked at."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from tests.cli.conftest import Write
+
+SMALL_BOARD = "name: small\nsram: [{name: all, size: 100 KiB}]\nlimits: {tbl_buf_memory_bytes: 200000}\n"
+
+
+def run(folder: Path, *options: str) -> int:
+    return main(["run", str(folder), "--for", "2", *options])
+
+
+def digest(capsys: pytest.CaptureFixture[str], folder: Path, *options: str) -> str:
+    assert run(folder, *options) == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last.startswith("trace: ")
+    return last
+
+
+def test_a_good_run(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(make_mission("Quiet")) == 0
+    shown = capsys.readouterr()
+    assert "CFE_ES_Main entering OPERATIONAL state" in shown.out
+    assert "QUIET" in shown.out
+    assert shown.out.splitlines()[-1].startswith("trace: ")
+    assert shown.err == ""
+
+
+def test_quiet_shows_only_the_report(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    run(make_mission("Quiet"), "--quiet")
+    shown = capsys.readouterr().out
+    assert "OPERATIONAL" not in shown
+    assert shown.startswith("\nMessages\n")
+
+
+@pytest.mark.parametrize(
+    ("entry_point", "said"),
+    [
+        ("Dies", "DIES died: ValueError: boom"),
+        ("Complains", "COMPLAINS sent 1 ERROR or CRITICAL event"),
+        ("GivesUp", "GIVESUP ended with CFE_ES_RunStatus_APP_ERROR"),
+        ("Missing", 'MISSING could not be started\ncfepy: "cfepy check '),
+    ],
+)
+def test_a_run_that_goes_wrong(
+    make_mission: Write, capsys: pytest.CaptureFixture[str], entry_point: str, said: str
+) -> None:
+    assert run(make_mission("Quiet", entry_point), "--quiet") == 1
+    assert f"cfepy: {said}" in capsys.readouterr().err
+
+
+def test_a_processor_reset(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(make_mission("Dies", action=1), "--quiet") == 1
+    assert "the processor was reset" in capsys.readouterr().err
+
+
+def test_a_bad_line_of_the_startup_script(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = make_mission("Quiet")
+    script = folder / "startup.scr"
+    script.write_text(script.read_text().replace("!", "CFE_APP, apps, Quiet;\n!"))
+    assert run(folder, "--quiet") == 1
+    assert f"{script}:2: the entry has 3 of 8 fields" in capsys.readouterr().err
+
+
+def test_a_mission_that_is_not_there(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "no_such_mission"]) == 2
+    assert capsys.readouterr().err.startswith("cfepy: no_such_mission: no startup script")
+
+
+def test_a_bad_mission_file(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = make_mission("Quiet", yaml="name: x\nbord: linux\n")
+    assert run(folder) == 2
+    assert f"{folder / 'mission.yaml'}:2: bord: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("options", [("--board", "abacus"), ("--json", "/no/such/x"), ("--trace", "/no/such/x")])
+def test_bad_options(make_mission: Write, capsys: pytest.CaptureFixture[str], options: tuple[str, str]) -> None:
+    assert run(make_mission("Quiet"), *options) == 2
+    assert capsys.readouterr().err.startswith("cfepy: ")
+
+
+@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf", "soon"])
+def test_a_bad_time(seconds: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["run", "capture", f"--for={seconds}"])
+    assert ended.value.code == 2
+
+
+def test_a_board_on_which_the_core_cannot_boot(
+    make_mission: Write, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    board = tmp_path / "small.yaml"
+    board.write_text(SMALL_BOARD)
+    assert run(make_mission("Quiet"), "--board", str(board), "--quiet") == 2
+    said = capsys.readouterr().err
+    assert "cannot boot" in said
+    assert "the board is full: CFE_TBL" in said
+
+
+def test_too_short_to_boot(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(make_mission("Quiet")), "--for", "0.1", "--quiet"]) == 2
+    assert "not OPERATIONAL after 0.1 virtual seconds" in capsys.readouterr().err
+
+
+def test_numbers_as_json(make_mission: Write, tmp_path: Path) -> None:
+    file = tmp_path / "numbers.json"
+    run(make_mission("Chatty", "Quiet"), "--quiet", "--json", str(file), "--seed", "7", "--board", "rx64m")
+    numbers = json.loads(file.read_text())
+    assert numbers["virtual_s"] == pytest.approx(2, abs=0.001)
+    assert numbers["speed"] == pytest.approx(numbers["virtual_s"] / numbers["wall_s"])
+    assert (numbers["seed"], numbers["board"], numbers["tasks"]) == (7, "rx64m", "thread")
+    assert len(numbers["trace"]) == 32
+    topic = next(topic for topic in numbers["topics"] if topic["msg_id"] == 0x0890)
+    assert topic["dropped"] == topic["dropped_limit"] == topic["sent"] - 4
+    assert (topic["delivered"], topic["waiting"]) == (0, 4)
+    assert topic["rate_hz"] == pytest.approx(10, rel=0.2)
+    app = next(app for app in numbers["apps"] if app["name"] == "QUIET")
+    assert app["state"] == "RUNNING"
+    assert app["restarts"] == 0
+    assert 0 < app["cpu_share"] < 0.01
+    assert set(numbers["events"]) == {"DEBUG", "INFORMATION", "ERROR", "CRITICAL"}
+    assert numbers["sb"]["MsgLimitErrorCounter"] == topic["dropped"]
+    assert numbers["memory"]["limit"] == 552 * 1024
+
+
+def test_names_and_reasons_in_the_report(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    run(make_mission("Chatty"), "--quiet")
+    shown = capsys.readouterr().out
+    line = next(line for line in shown.splitlines() if "0x0890" in line)
+    assert "message limit, 4 not taken yet" in line
+    assert "CFE_EVS_LONG_EVENT_MSG" in shown
+
+
+def test_a_rate_beyond_the_board_is_marked(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    board = make_mission("Chatty") / "slow.yaml"
+    board.write_text("name: slow\nmax_publish_hz: 5\n")
+    run(board.parent, "--quiet", "--board", str(board))
+    shown = capsys.readouterr().out
+    assert "! more than the 5 Hz that slow is made for" in shown
+
+
+def test_the_trace_file(make_mission: Write, tmp_path: Path) -> None:
+    file = tmp_path / "trace.txt"
+    run(make_mission("Chatty"), "--quiet", "--trace", str(file))
+    lines = file.read_text().splitlines()
+    assert any(line.endswith("CHATTY send 0x0890 sequence 0 length 20") for line in lines)
+    assert any(line.endswith("CHATTY drop at CHATTY") for line in lines)
+    assert any(" console " in line and "OPERATIONAL" in line for line in lines)
+    assert any(line.endswith(" CHATTY dispatch") for line in lines)
+    times = [float(line.split()[0]) for line in lines]
+    assert times == sorted(times)
+
+
+def test_one_digest_however_it_is_run(
+    make_mission: Write, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("greenlet")
+    folder = make_mission("Chatty", "Quiet", yaml="board: rx64m\n")
+    expected = digest(capsys, folder)
+    for options in (
+        ("--tasks", "greenlet"),
+        ("--realtime", "50"),
+        ("--quiet",),
+        ("--trace", str(tmp_path / "trace.txt")),
+        ("--seed", "3"),
+    ):
+        assert digest(capsys, folder, *options) == expected
+
+
+def test_a_random_schedule_depends_on_the_seed_alone(
+    make_mission: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = make_mission("Chatty", "Quiet", "Complains")
+    options = ("--quiet", "--schedule", "random", "--seed")
+    digests = set()
+    for seed in ("1", "1", "2", "3"):
+        run(folder, *options, seed)
+        digests.add(capsys.readouterr().out.splitlines()[-1])
+    assert 1 < len(digests) <= 3
+
+
+
+def on_terminal(*arguments: str) -> str:
+    """What `cfepy` writes when its standard output is a terminal."""
+    pty = pytest.importorskip("pty")
+    import os
+
+    master, slave = pty.openpty()
+    process = subprocess.Popen([sys.executable, "-m", "cfepy", *arguments], stdout=slave, stderr=slave)
+    os.close(slave)
+    shown = b""
+    while True:
+        try:
+            part = os.read(master, 65536)
+        except OSError:  # how Linux says that nobody has the other end any more
+            break
+        if not part:
+            break
+        shown += part
+    os.close(master)
+    process.wait()
+    return shown.decode()
+
+
+def test_a_terminal_gets_a_status_line_and_the_same_digest(
+    make_mission: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = make_mission("Chatty")
+    shown = on_terminal("run", str(folder), "--for", "2")
+    assert "x real time" in shown
+    assert "messages/s" in shown
+    assert shown.rstrip().splitlines()[-1].strip() == digest(capsys, folder)
+
+
+@pytest.mark.parametrize("options", [("--for", "1000000"), ("--for", "1000000", "--realtime")])
+def test_ctrl_c_ends_a_run_with_its_report(make_mission: Write, options: tuple[str, ...]) -> None:
+    process = start("run", str(make_mission("Quiet")), *options)
+    assert process.stdout is not None
+    while "OPERATIONAL" not in process.stdout.readline():
+        pass
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate()
+    assert process.returncode == 130
+    assert out.splitlines()[-1].startswith("trace: ")
+    assert "ended by Ctrl-C after " in err
+
+
+def test_a_second_ctrl_c_ends_even_an_endless_loop(make_mission: Write) -> None:
+    process = start("run", str(make_mission("Endless")), "--for", "5")
+    assert process.stdout is not None
+    while "Loading file" not in process.stdout.readline():
+        pass
+    for _ in range(100):
+        process.send_signal(signal.SIGINT)
+        try:
+            process.wait(0.2)
+            break
+        except subprocess.TimeoutExpired:
+            pass  # signals that arrive before the first was handled are one signal
+    assert process.returncode == 130
+    assert process.communicate()[0].splitlines()[-1].startswith("trace: ")
+
+
+def test_a_reader_that_went_away_is_no_error(make_mission: Write) -> None:
+    process = start("run", str(make_mission("Quiet")), "--for", "5000")
+    assert process.stdout is not None
+    assert process.stderr is not None
+    process.stdout.readline()
+    process.stdout.close()
+    assert "Traceback" not in process.stderr.read()
+    process.stderr.close()
+    assert process.wait() == 0
+
+
+def start(*arguments: str) -> subprocess.Popen[str]:
+    """`cfepy` in a process of its own, its output in pipes."""
+    return subprocess.Popen(
+        [sys.executable, "-u", "-m", "cfepy", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )

@@ -1,0 +1,145 @@
+"""The missions that cfepy brings along, flown whole."""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.mission import Mission, shipped_missions
+from cfepy.resources import shipped
+from cfepy.tbl import build
+
+MISSIONS = shipped("missions")
+
+
+def fly(mission: str, seconds: float, **options: object) -> tuple[Mission, list[str]]:
+    flight = Mission(mission, console=Console(quiet=True), **options)  # type: ignore[arg-type]
+    try:
+        flight.run(seconds)
+        flight.shut_down_nodes()
+    finally:
+        flight.close()
+    return flight, flight.console.lines
+
+
+def topic(flight: Mission, name: str) -> tuple[int, int, int]:
+    """(sent, delivered, dropped) of a topic."""
+    route = flight.cfe.sb.routes[next(row.msg_id for row in flight.ros.topics() if row.name == name)]
+    delivered, limited, overflown = route.totals()
+    return route.sent, delivered, limited + overflown
+
+
+def test_capture_catches_the_debris() -> None:
+    flight, lines = fly("capture", 21)
+    assert any("capture complete: largest joint error 0.0000" in line for line in lines)
+    assert [line.rpartition(" ")[2] for line in lines if "phase " in line] == ["approach", "grasp", "retract", "hold"]
+    for name in ("/joint_states", "/motor_command"):
+        sent, delivered, dropped = topic(flight, name)
+        assert sent == delivered + 1 or sent == delivered
+        assert sent >= 20_300
+        assert dropped == 0
+    assert flight.cfe.evs.errors_by_app == {}
+    assert flight.reset_reason is None
+
+
+def test_hk_carries_the_nodes_housekeeping_to_a_node() -> None:
+    _, lines = fly("capture", 12)
+    report = next(line for line in lines if "housekeeping 0x089C" in line)
+    assert "0 missing, 0 malformed" in report
+    assert "SB send errors 0" in report
+    assert "arm samples 0" not in report
+    assert "arm peak current [A] 0.0," not in report
+
+
+@pytest.mark.parametrize("name", shipped_missions())
+def test_both_contexts_fly_the_same_trace(name: str) -> None:
+    digests = {fly(name, 3, tasks=tasks)[0].trace.digest() for tasks in ("thread", "greenlet")}
+    assert len(digests) == 1
+
+
+def test_a_seed_changes_nothing_where_nothing_is_random() -> None:
+    assert fly("rx64m_pubsub", 2, seed=1)[0].trace.digest() == fly("rx64m_pubsub", 2, seed=2)[0].trace.digest()
+
+
+def module(path: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec is not None
+    assert spec.loader is not None
+    found = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(found)
+    return found
+
+
+@pytest.mark.parametrize("table", ["hk_cpy_tbl", "sch_lab_table"])
+def test_table_files_are_what_their_definitions_say(table: str) -> None:
+    definition = MISSIONS / "capture" / f"{table}.py"
+    assert definition.with_suffix(".tbl").read_bytes() == build(module(definition).image())
+
+
+# -- the small board -----------------------------------------------------------------------------------------------------
+
+
+def with_rate(folder: Path, rate: int) -> str:
+    """The rx64m mission with a talker of another rate."""
+    copy = folder / f"rate{rate}"
+    shutil.copytree(MISSIONS / "rx64m_pubsub", copy)
+    text = (copy / "mission.yaml").read_text()
+    (copy / "mission.yaml").write_text(text.replace("rate: 100", f"rate: {rate}"))
+    return str(copy)
+
+
+def test_100_hz_on_the_rx64m_lose_nothing() -> None:
+    flight, lines = fly("rx64m_pubsub", 10)
+    assert flight.board.name == "rx64m"
+    sent, delivered, dropped = topic(flight, "/counter")
+    assert (sent - delivered, dropped) == (0, 0)
+    assert sent == pytest.approx(100 * 9.3, abs=15)
+    assert any("0 lost, 0 out of order" in line for line in lines)
+
+
+@pytest.mark.parametrize("rate", [150, 200, 1000])
+def test_more_than_100_hz_is_held_back_and_reported(tmp_path: Path, rate: int) -> None:
+    flight, lines = fly(with_rate(tmp_path, rate), 10)
+    sent, delivered, dropped = topic(flight, "/counter")
+    assert dropped == 0
+    assert sent - delivered <= 1
+    assert sent == pytest.approx(100 * 9.3, abs=15)
+    row = next(row for row in flight.ros.topics() if row.name == "/counter")
+    assert row.held_back > 400
+    assert any("0 lost, 0 out of order" in line for line in lines)
+
+
+def test_the_same_on_linux_is_not_held_back(tmp_path: Path) -> None:
+    flight, _ = fly(with_rate(tmp_path, 200), 5, board="linux")
+    assert topic(flight, "/counter")[0] == pytest.approx(200 * 4.4, abs=20)
+
+
+def test_everything_on_the_rx64m_happens_at_ticks() -> None:
+    flight, _ = fly("rx64m_pubsub", 2)
+    assert flight.booted is not None
+    assert flight.booted % 10_000_000 < 100_000  # the work of one tick after the tick
+
+
+def test_over_the_boards_memory_the_report_says_who_uses_what(tmp_path: Path) -> None:
+    folder = Path(with_rate(tmp_path, 100))
+    script = (folder / "startup.scr").read_text()
+    (folder / "startup.scr").write_text(script.replace("LISTENER, 90,  8192", "LISTENER, 90,  500000"))
+    flight, lines = fly(str(folder), 3)
+    text = "\n".join(lines)
+    assert "CFE_ES_AppCreate: AppCreate Error: TaskCreate LISTENER Failed." in text
+    assert "LISTENER asks for 500256 bytes (stack)" in text
+    assert "RAM of rx64m" in text
+    assert "CFE_TBL" in text
+    assert flight.cfe.es.app_named("LISTENER") is None
+    assert flight.cfe.es.app_named("TALKER") is not None
+
+
+def test_work_costs_virtual_time_on_the_board() -> None:
+    flight, _ = fly("rx64m_pubsub", 5)
+    for name in ("TALKER", "LISTENER"):
+        assert 0 < flight.cfe.es.history[name].cpu_ns / flight.kernel.now < 0.05
