@@ -18,9 +18,13 @@ class Console:
         stream: where lines are shown; the standard output of the moment when None.
         quiet: keep the lines, show none.
         sink: a display that gets every line instead of the stream, quiet or not.
+
+    Attributes:
+        lines: everything written.
+        record: gets every line too; a mission notes them in its trace.
     """
 
-    __slots__ = ("lines", "quiet", "sink", "stream")
+    __slots__ = ("lines", "quiet", "record", "sink", "stream")
 
     def __init__(
         self, stream: TextIO | None = None, quiet: bool = False, sink: Callable[[str], object] | None = None
@@ -29,11 +33,14 @@ class Console:
         self.quiet = quiet
         self.sink = sink
         self.lines: list[str] = []
+        self.record: Callable[[str], object] | None = None
 
     def write(self, text: str) -> None:
         """Add text: one line, or several with newlines between them; a newline at the end adds no empty line."""
         for line in text.removesuffix("\n").split("\n"):
             self.lines.append(line)
+            if self.record is not None:
+                self.record(line)
             self._show(line)
 
     def _show(self, line: str) -> None:

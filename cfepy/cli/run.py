@@ -52,9 +52,9 @@ def run(arguments: argparse.Namespace) -> int:
     if numbers is not None:
         numbers.write_text(json.dumps(results.to_dict(), indent=2) + "\n", encoding="utf-8")
     report.show(results, sys.stdout)
-    _explain(results, arguments, flight.interrupted)
+    _explain(results, arguments, flight.interrupts.asked)
     print(f"trace: {results.trace}")
-    return _status(results, flight.interrupted)
+    return _status(results, flight.interrupts.asked)
 
 
 class Flight:
@@ -64,11 +64,14 @@ class Flight:
         mission: the mission.
         arguments: of the command line.
         display: is told between the pieces.
+        interrupts: says whether somebody pressed Ctrl-C.
     """
 
-    def __init__(self, mission: Mission, arguments: argparse.Namespace, display: Display) -> None:
+    def __init__(
+        self, mission: Mission, arguments: argparse.Namespace, display: Display, interrupts: Interrupts
+    ) -> None:
         self.mission = mission
-        self.interrupted = False
+        self.interrupts = interrupts
         self.trace = ""
         self.at: Mark
         self._display = display
@@ -81,7 +84,7 @@ class Flight:
     def go(self) -> None:
         """Run, let the nodes shut down, and take down what there is to know before the tasks end."""
         watch = Stopwatch()
-        with self._first_ctrl_c_only_stops(), _no_collection_between_pieces():
+        with _no_collection_between_pieces():
             try:
                 while self._goes_on():
                     self._step(self._until_ns)
@@ -94,7 +97,7 @@ class Flight:
 
     def _goes_on(self) -> bool:
         mission = self.mission
-        return mission.kernel.now < self._until_ns and mission.reset_reason is None and not self.interrupted
+        return mission.kernel.now < self._until_ns and mission.reset_reason is None and not self.interrupts.asked
 
     def _free_step(self, until_ns: int) -> None:
         """As fast as it goes: a piece of virtual time that takes some 80 to 250 ms of wall time."""
@@ -106,22 +109,35 @@ class Flight:
         elif wall_ns > LONG_NS:
             self._piece_ns = max(LEAST_PIECE_NS, self._piece_ns // 2)
 
-    @contextlib.contextmanager
-    def _first_ctrl_c_only_stops(self) -> Iterator[None]:
-        def on_signal(*_: Any) -> None:
-            if self.interrupted:
-                raise KeyboardInterrupt
-            self.interrupted = True
 
+class Interrupts:
+    """What Ctrl-C does while a mission runs and ends; use as a context manager.
+
+    The first one sets `asked`, for the run to end at the next occasion. The second one raises KeyboardInterrupt, for a
+    task that gives no occasion. Any more are ignored: they would disturb the ending of tasks.
+    """
+
+    def __init__(self) -> None:
+        self.asked = False
+        self._count = 0
+        self._before: Any = None
+
+    def __enter__(self) -> Interrupts:
         try:
-            before = signal.signal(signal.SIGINT, on_signal)
-        except ValueError:  # not the main thread: Ctrl-C does not come here
-            yield
-            return
-        try:
-            yield
-        finally:
-            signal.signal(signal.SIGINT, before)
+            self._before = signal.signal(signal.SIGINT, self._on_signal)
+        except ValueError:
+            pass  # not the main thread: Ctrl-C does not come here
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+
+    def _on_signal(self, *_: object) -> None:
+        self.asked = True
+        self._count += 1
+        if self._count == 2:
+            raise KeyboardInterrupt
 
 
 @contextlib.contextmanager
@@ -138,11 +154,12 @@ def _no_collection_between_pieces() -> Iterator[None]:
 
 def _fly(arguments: argparse.Namespace, spec: MissionSpec) -> Flight:
     with contextlib.ExitStack() as stack:
+        interrupts = stack.enter_context(Interrupts())
         trace = stack.enter_context(TraceFile(arguments.trace)) if arguments.trace else None
         display = make_display(arguments.quiet, arguments.seconds)
         stack.callback(display.close)
         mission = stack.enter_context(_mission(arguments, spec, display, trace))
-        flight = Flight(mission, arguments, display)
+        flight = Flight(mission, arguments, display, interrupts)
         flight.go()
     return flight
 

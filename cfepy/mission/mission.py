@@ -80,6 +80,7 @@ class Mission:
         self.config = self.board.config()
         self.console = console if console is not None else Console()
         self.trace = Trace(trace_sink)
+        self.console.record = self.trace.note
         self.booted: int | None = None
         self.reset_reason: str | None = None
         self._script = self.spec.script.read_bytes()
