@@ -1,12 +1,7 @@
-"""The simulated real-time kernel: virtual time, strict priorities, and one task running at any moment.
+"""The simulated real-time kernel: the scheduler, the life of tasks, and the host that lets them run.
 
-A task gives up the CPU only inside a kernel call: when it waits, when it makes a more urgent task ready, or when the
-virtual CPU time it used lets another one in. When nobody is ready, the clock jumps to the next deadline, so idle time
-costs nothing. Who runs next is decided in the task that yields, which then hands the baton over directly.
-
-This is the one long module of cfepy: its parts share the ready heap, the timer heap and the clock, and its hot paths
-are written out where a call would cost more than the work. It takes no lock and never logs. It stands for the
-scheduler below OSAL (a POSIX kernel with SCHED_FIFO, FreeRTOS) and knows nothing of OSAL or cFE.
+`Scheduler` decides who runs; this adds how tasks come and go, and `run`, which the host calls. It may be used by one
+host thread at a time.
 """
 
 from __future__ import annotations
@@ -22,16 +17,14 @@ from cfepy.rtos.context import make_context
 from cfepy.rtos.errors import DeadlockError
 from cfepy.rtos.policy import Policy
 from cfepy.rtos.report import waiting_report
-from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit, WaitList
+from cfepy.rtos.scheduler import Scheduler
+from cfepy.rtos.task import Task, TaskExit
 
 ENDLESS = 1 << 62
-HOST_PRIORITY = 256
 COLLECT_NS = 10_000_000_000  # garbage is collected at multiples of this: finalizers always run at the same place
-SLICE_NS = 20_000  # equals take turns when this much virtual CPU time was used
-MAX_REFUSALS = 100  # kernel calls that a dying task may try before it is left where it stands
 
 
-class Kernel:
+class Kernel(Scheduler):
     """One simulated processor.
 
     Args:
@@ -52,34 +45,14 @@ class Kernel:
         switch_cost_ns: int = 0,
         seed: int = 0,
     ) -> None:
-        self.now = 0
-        self.tick_ns = tick_ns
-        self.switch_cost_ns = switch_cost_ns
+        super().__init__(trace, policy, tick_ns, switch_cost_ns)
         self.seed = seed
-        self.trace = trace
-        self.record: Callable[[bytes], None] | None = trace.append if trace is not None else None
-        self.policy = policy
         self.context = make_context(context)
-        self.tasks: list[Task] = []
-        self.ready: list[tuple[int, int, Task]] = []
-        self.timers: list[tuple[int, int, Task]] = []
-        self.sequence = 0
         self.on_task_error: Callable[[Task, BaseException], bool] = lambda task, error: False
-        self.stuck: list[Task] = []  # tasks that would not die
-        self.host = self.current = Task("host", 0, None, HOST_PRIORITY)
-        self.host.dying = True  # the host must never wait: `_refuse` catches it where dying tasks are caught
-        self.host.mark = self.host.exit_mark = b""  # a pause of the run leaves no mark: slices of a run are one run
-        self._front = 0
         self._idents = 0
-        self._until = 0
-        self._slice_task: Task | None = None
-        self._slice_from = 0
-        self._slice_end = 0
-        self._last: Task | None = None  # who gave the CPU to the host when the run paused
         self._failed: list[Task] = []
         self._interrupted: BaseException | None = None
         self._stopped = False
-        self._exhausted = False
         self._frozen = False
         self._collect_at = COLLECT_NS
 
@@ -190,322 +163,6 @@ class Kernel:
             handled = True
         if not handled:
             self._failed.append(task)
-
-    # -- waiting ---------------------------------------------------------------------------------------------------
-
-    def delay(self, duration_ns: int) -> None:
-        """Sleep for a time in ns, at least 1, rounded up to the board's tick."""
-        task = self.current
-        if task.dying:
-            self._refuse(task)
-        when = self.now + (duration_ns if duration_ns > 0 else 1)
-        if self.tick_ns:
-            when = -(-when // self.tick_ns) * self.tick_ns
-        self.sequence = task.timer = sequence = self.sequence + 1
-        heappush(self.timers, (when, sequence, task))
-        self.block()
-
-    def wait_on(self, waits: WaitList, timeout_ns: int = FOREVER) -> Any:
-        """Wait in a list until `wake_first` or `wake_all`.
-
-        Args:
-            waits: where to wait.
-            timeout_ns: the longest time, at least 1; FOREVER (-1) for no limit.
-
-        Returns:
-            The value that was given to the waker's call, or TIMEOUT.
-        """
-        task = self.current
-        if task.dying:
-            self._refuse(task)
-        if waits and waits[-1].priority > task.priority:
-            at = len(waits)
-            while at and waits[at - 1].priority > task.priority:
-                at -= 1
-            waits.insert(at, task)
-        else:
-            waits.append(task)
-        task.waits = waits
-        if timeout_ns >= 0:
-            self.arm(task, timeout_ns or 1)
-        return self.block()
-
-    def wake_first(self, waits: WaitList, value: Any = None) -> bool:
-        """Make the most urgent waiter ready; it may run before this returns. False when nobody waits."""
-        if not waits:
-            return False
-        self.make_ready(waits.pop(0), value)
-        return True
-
-    def wake_all(self, waits: WaitList, value: Any = None) -> int:
-        """Make all waiters ready before any of them runs; how many they were."""
-        tasks = waits[:]
-        waits.clear()
-        for task in tasks:
-            self.enqueue(task, value)
-        self.preempt()
-        return len(tasks)
-
-    def yield_cpu(self) -> None:
-        """Let the others of the same priority run first."""
-        task = self.current
-        if task.dying:
-            self._refuse(task)
-        ready = self.ready
-        if ready and ready[0][0] <= task.priority:
-            self.sequence = sequence = self.sequence + 1
-            heappush(ready, (task.priority, sequence, task))
-            self._switch(task, self._take())
-
-    def charge(self, duration_ns: int) -> None:
-        """The current task used the CPU for `duration_ns` of virtual time: due timers fire, and others may get in."""
-        task = self.current
-        if task is self.host:
-            return
-        task.cpu_ns += duration_ns
-        self.now = now = self.now + duration_ns
-        timers = self.timers
-        ready = self.ready
-        if (
-            (timers and timers[0][0] <= now)
-            or now > self._until
-            or (ready and ready[0][0] <= task.priority and now >= self._slice_end)
-        ):
-            self._catch_up(task, duration_ns)
-
-    def _catch_up(self, task: Task, duration_ns: int) -> None:
-        """Time went on under a running task: fire what is due; more urgent tasks, then equals, get their turn."""
-        self._fire_due()
-        if task.dying:
-            return
-        ready = self.ready
-        first = ready[0][0] if ready else HOST_PRIORITY
-        paused = self.now > self._until
-        if first == task.priority and self.now >= self._slice_end and self._turn_is_over(task, duration_ns):
-            self.sequence = sequence = self.sequence + 1
-            heappush(ready, (task.priority, sequence, task))
-        elif first < task.priority or paused:
-            self._push_front(task)
-        else:
-            return
-        if paused:
-            self._last = task
-        following = self.host if paused else self._take()
-        if following is not task:
-            self._switch(task, following)
-
-    def _turn_is_over(self, task: Task, duration_ns: int) -> bool:
-        """Whether a task used the CPU for a whole slice while equals were ready; a new slice begins when it did."""
-        if self._slice_task is not task:
-            self._slice_task = task
-            self._slice_from = task.cpu_ns - duration_ns
-        left = SLICE_NS - (task.cpu_ns - self._slice_from)
-        self._slice_end = self.now + left
-        if left > 0:
-            return False
-        self._slice_task = None
-        self._slice_end = self.now
-        return True
-
-    def arm(self, task: Task, duration_ns: int) -> None:
-        """Set the timer of a task that is about to wait; it replaces an earlier one."""
-        when = self.now + duration_ns
-        if self.tick_ns:
-            when = -(-when // self.tick_ns) * self.tick_ns
-        self.sequence = task.timer = sequence = self.sequence + 1
-        heappush(self.timers, (when, sequence, task))
-
-    def block(self) -> Any:
-        """Give the CPU away until somebody makes the current task ready; the value it was made ready with.
-
-        Whoever calls this has seen to it that somebody will, and that the task is not dying (`_refuse`).
-        """
-        task = self.current
-        ready = self.ready
-        following = (heappop(ready)[2] if self.policy is None else self._take()) if ready else self._advance()
-        if following is not task:
-            self.current = following
-            if self.record is not None:
-                self.record(following.mark)
-            if self.switch_cost_ns and following is not self.host:
-                self.now += self.switch_cost_ns
-                following.cpu_ns += self.switch_cost_ns
-            following.resume()
-            if task.park is not None:
-                task.park()
-            if task.dying:
-                raise TaskExit
-        return task.wake
-
-    def make_ready(self, task: Task, value: Any = None) -> None:
-        """End the wait of a task, which must not be in a wait list any more; it runs now if it is more urgent."""
-        task.wake = value
-        task.timer = 0
-        task.waits = None
-        if self.record is not None:
-            self.record(task.wake_mark)
-        current = self.current
-        if task.priority < current.priority and current is not self.host and not current.dying:
-            self._push_front(current)
-            self._switch(current, task)
-        else:
-            self.sequence = sequence = self.sequence + 1
-            heappush(self.ready, (task.priority, sequence, task))
-
-    def preempt(self) -> None:
-        """Let a more urgent ready task run, if there is one."""
-        task = self.current
-        ready = self.ready
-        if ready and ready[0][0] < task.priority and task is not self.host and not task.dying:
-            following = self._take()
-            self._push_front(task)
-            self._switch(task, following)
-
-    def inherit(self, task: Task) -> None:
-        """Recompute a task's priority: its own, or that of the most urgent task that waits for a mutex it holds.
-
-        When that changes it, so may the priority of the task that it waits for itself, and so on.
-        """
-        heir: Task | None = task
-        while heir is not None:
-            priority = heir.base_priority
-            for mutex in heir.held:
-                if mutex.waits and mutex.waits[0].priority < priority:
-                    priority = mutex.waits[0].priority
-            if priority == heir.priority:
-                return
-            self.reprioritize(heir, priority)
-            heir = heir.mutex.owner if heir.mutex is not None else None
-
-    def reprioritize(self, task: Task, priority: int) -> None:
-        """Change a task's present priority, and its place among those that are ready or wait for the same thing."""
-        task.priority = priority
-        for at, (_, sequence, waiting) in enumerate(self.ready):
-            if waiting is task:
-                self.ready[at] = (priority, sequence, task)
-                heapify(self.ready)
-                return
-        if task.waits is not None:
-            task.waits.remove(task)
-            at = len(task.waits)
-            while at and task.waits[at - 1].priority > priority:
-                at -= 1
-            task.waits.insert(at, task)
-
-    # -- choosing --------------------------------------------------------------------------------------------------
-
-    def enqueue(self, task: Task, value: Any) -> None:
-        """As `make_ready`, but the caller goes on even when the task is more urgent; `preempt` makes up for it."""
-        task.wake = value
-        task.timer = 0
-        task.waits = None
-        if self.record is not None:
-            self.record(task.wake_mark)
-        self.sequence = sequence = self.sequence + 1
-        heappush(self.ready, (task.priority, sequence, task))
-
-    def _push_front(self, task: Task) -> None:
-        """A preempted task stays the first of its priority."""
-        self._front = front = self._front - 1
-        heappush(self.ready, (task.priority, front, task))
-
-    def _take(self) -> Task:
-        """Remove the task that runs next from the ready heap."""
-        if self.policy is None:
-            return heappop(self.ready)[2]
-        first = heappop(self.ready)
-        equals = [first]
-        while self.ready and self.ready[0][0] == first[0]:
-            equals.append(heappop(self.ready))
-        chosen = equals.pop(self.policy.choose([entry[2] for entry in equals])) if len(equals) > 1 else equals.pop()
-        for entry in equals:
-            heappush(self.ready, entry)
-        return chosen[2]
-
-    def _next(self) -> Task:
-        return self._take() if self.ready else self._advance()
-
-    def _advance(self) -> Task:
-        """Nobody is ready: move the clock to the next deadline. The host, when the run is over before that."""
-        timers = self.timers
-        while timers:
-            when, sequence, task = timers[0]
-            if task.timer != sequence:
-                heappop(timers)
-                continue
-            if when > self._until:
-                break
-            heappop(timers)
-            if when > self.now:
-                self.now = when
-                if self.trace is not None:
-                    records = self.trace.records
-                    records.append(tr.pack_time(tr.TIME, when))
-                    if len(records) > tr.BATCH:
-                        self.trace.flush()
-            self._time_out(task)
-            if timers and timers[0][0] <= self.now:
-                self.sequence = order = self.sequence + 1
-                heappush(self.ready, (task.priority, order, task))
-                self._fire_due()
-                return self._take()
-            return task  # the usual case: exactly one timer is due
-        self._exhausted = not timers
-        if self.current is not self.host:
-            self._last = self.current
-        return self.host
-
-    def _fire_due(self) -> None:
-        timers = self.timers
-        now = self.now
-        while timers and timers[0][0] <= now:
-            _, sequence, task = heappop(timers)
-            if task.timer == sequence:
-                self._time_out(task)
-                self.sequence = order = self.sequence + 1
-                heappush(self.ready, (task.priority, order, task))
-
-    def _time_out(self, task: Task) -> None:
-        task.timer = 0
-        task.wake = TIMEOUT
-        if task.waits is not None:
-            task.waits.remove(task)
-            task.waits = None
-
-    def _switch(self, task: Task, following: Task) -> None:
-        """Hand the baton from `task`, which is in the ready heap already, to `following`."""
-        self.current = following
-        if self.record is not None:
-            self.record(following.mark)
-        if self.switch_cost_ns and following is not self.host:
-            self.now += self.switch_cost_ns
-            following.cpu_ns += self.switch_cost_ns
-        following.resume()
-        if task.park is not None:
-            task.park()
-        if task.dying:
-            raise TaskExit
-
-    def _refuse(self, task: Task) -> None:
-        """A dying task, or the host, must not wait."""
-        if task is self.host:
-            raise RuntimeError("this call waits, so only a task inside the simulation can make it")
-        task.refusals += 1
-        if task.refusals > MAX_REFUSALS and task.killer is not None:
-            self._leave_behind(task, task.killer)
-        raise TaskExit
-
-    def _leave_behind(self, task: Task, killer: Task) -> None:
-        """It swallows every TaskExit: never run it again, and let the killer go on."""
-        task.done = True
-        self.tasks.remove(task)
-        self.stuck.append(task)
-        for mutex in task.held[:]:
-            mutex.abandon(task)
-        self.current = killer
-        killer.resume()
-        while task.park is not None:
-            task.park()
 
     # -- the host --------------------------------------------------------------------------------------------------
 

@@ -7,7 +7,7 @@ from itertools import groupby
 import pytest
 
 from cfepy.rtos import EMPTY, FOREVER, TIMEOUT, DeadlockError, Kernel, Queue, Semaphore, WaitList
-from cfepy.rtos.kernel import SLICE_NS
+from cfepy.rtos.scheduler import SLICE_NS
 from cfepy.trace import Trace
 from tests.rtos.helpers import Log
 
