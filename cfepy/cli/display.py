@@ -6,6 +6,7 @@ dozen milliseconds later, and shown in one go, so that drawing costs the run nex
 
 from __future__ import annotations
 
+import io
 import sys
 from typing import TYPE_CHECKING, Protocol, TextIO
 
@@ -41,21 +42,21 @@ class PlainDisplay:
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
-        self._broken: BrokenPipeError | None = None
+        self._broken: OSError | None = None
 
     def line(self, text: str) -> None:
         """See `Display.line`. A reader that went away must not look like an error of the app that wrote."""
         if self._broken is None:
             try:
                 self._stream.write(text + "\n")
-            except BrokenPipeError as error:
+            except OSError as error:
                 self._broken = error
 
     def update(self, mission: Mission) -> None:
         """See `Display.update`.
 
         Raises:
-            BrokenPipeError: nobody reads any more.
+            OSError: nobody reads any more, or the disk is full.
         """
         if self._broken is not None:
             raise self._broken
@@ -138,6 +139,8 @@ def make_display(quiet: bool, seconds: float) -> Display:
     """
     if quiet:
         return SilentDisplay()
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # what the encoding lacks must not stop the task that says it
     return LiveDisplay(sys.stdout, seconds) if sys.stdout.isatty() else PlainDisplay(sys.stdout)
 
 

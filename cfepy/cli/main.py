@@ -52,6 +52,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Whoever read the output has enough of it; the interpreter must not try to write the rest when it ends.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return ENDED_WELL
+    except OSError as error:
+        print(f"cfepy: {error}", file=sys.stderr)
+        return BAD_USAGE
 
 
 def _parser() -> argparse.ArgumentParser:

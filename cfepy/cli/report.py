@@ -36,12 +36,13 @@ def _topics(results: Results) -> Table:
 
 
 def _why(topic: TopicResult) -> str:
-    """Why messages that were sent were not delivered."""
+    """Why messages were not delivered, or not when their publisher wanted."""
     reasons = (
         ("message limit", topic.dropped_limit),
         ("pipe full", topic.dropped_pipe_full),
         ("segment lost", topic.dropped_segment),
         ("not taken yet", topic.waiting),
+        ("held back", topic.held_back),
     )
     said = [f"{count:,} {reason}" for reason, count in reasons if count]
     if topic.no_subscriber:

@@ -1,35 +1,23 @@
-"""`cfepy run`: run a mission piece by piece, keep the display up to date, and report.
-
-The pieces change nothing in the run. They are there so that Ctrl-C ends it between two of them, cleanly, and so that
-the status line moves. A second Ctrl-C interrupts the task that is running, should the first one not be enough.
-"""
+"""`cfepy run`: run a mission as the command line says, and report what happened."""
 
 from __future__ import annotations
 
 import argparse
 import contextlib
-import gc
 import json
-import signal
 import sys
-from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 from cfepy.cli import report
 from cfepy.cli.display import Display, make_display
+from cfepy.cli.flight import Flight, Interrupts
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.trace_file import TraceFile
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec, read_mission
-from cfepy.mission.results import Mark, Results, mark
+from cfepy.mission.results import Results
 from cfepy.rtos.policy import SeededRandom
-from cfepy.rtos.realtime import NS_PER_S, Pacer, Stopwatch
 from cfepy.status import CfeError, UsageError
-
-FIRST_PIECE_NS = 10_000_000
-LEAST_PIECE_NS = 1_000_000
-SHORT_NS, LONG_NS = 80_000_000, 250_000_000  # wall time that a piece should take
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -57,101 +45,6 @@ def run(arguments: argparse.Namespace) -> int:
     return _status(results, flight.interrupts.asked)
 
 
-class Flight:
-    """A run that goes on until its time is over, or until somebody presses Ctrl-C.
-
-    Args:
-        mission: the mission.
-        arguments: of the command line.
-        display: is told between the pieces.
-        interrupts: says whether somebody pressed Ctrl-C.
-    """
-
-    def __init__(
-        self, mission: Mission, arguments: argparse.Namespace, display: Display, interrupts: Interrupts
-    ) -> None:
-        self.mission = mission
-        self.interrupts = interrupts
-        self.trace = ""
-        self.at: Mark
-        self._display = display
-        self._until_ns = round(arguments.seconds * NS_PER_S)
-        self._piece_ns = FIRST_PIECE_NS
-        self._step: Callable[[int], None] = self._free_step
-        if arguments.realtime is not None:
-            self._step = Pacer(mission.kernel, mission.run_until, arguments.realtime).step
-
-    def go(self) -> None:
-        """Run, let the nodes shut down, and take down what there is to know before the tasks end."""
-        watch = Stopwatch()
-        with _no_collection_between_pieces():
-            try:
-                while self._goes_on():
-                    self._step(self._until_ns)
-                    self._display.update(self.mission)
-                self.at = mark(self.mission, watch.elapsed_ns())
-                self.mission.shut_down_nodes()
-            except KeyboardInterrupt:
-                self.at = mark(self.mission, watch.elapsed_ns())
-        self.trace = self.mission.trace.digest()
-
-    def _goes_on(self) -> bool:
-        mission = self.mission
-        return mission.kernel.now < self._until_ns and mission.reset_reason is None and not self.interrupts.asked
-
-    def _free_step(self, until_ns: int) -> None:
-        """As fast as it goes: a piece of virtual time that takes some 80 to 250 ms of wall time."""
-        watch = Stopwatch()
-        self.mission.run_until(min(until_ns, self.mission.kernel.now + self._piece_ns))
-        wall_ns = watch.elapsed_ns()
-        if wall_ns < SHORT_NS:
-            self._piece_ns *= 2
-        elif wall_ns > LONG_NS:
-            self._piece_ns = max(LEAST_PIECE_NS, self._piece_ns // 2)
-
-
-class Interrupts:
-    """What Ctrl-C does while a mission runs and ends; use as a context manager.
-
-    The first one sets `asked`, for the run to end at the next occasion. The second one raises KeyboardInterrupt, for a
-    task that gives no occasion. Any more are ignored: they would disturb the ending of tasks.
-    """
-
-    def __init__(self) -> None:
-        self.asked = False
-        self._count = 0
-        self._before: Any = None
-
-    def __enter__(self) -> Interrupts:
-        try:
-            self._before = signal.signal(signal.SIGINT, self._on_signal)
-        except ValueError:
-            pass  # not the main thread: Ctrl-C does not come here
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        if self._before is not None:
-            signal.signal(signal.SIGINT, self._before)
-
-    def _on_signal(self, *_: object) -> None:
-        self.asked = True
-        self._count += 1
-        if self._count == 2:
-            raise KeyboardInterrupt
-
-
-@contextlib.contextmanager
-def _no_collection_between_pieces() -> Iterator[None]:
-    """The kernel collects garbage at fixed virtual times; in the host it would run finalizers at the clock's whim."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
-
-
 def _fly(arguments: argparse.Namespace, spec: MissionSpec) -> Flight:
     with contextlib.ExitStack() as stack:
         interrupts = stack.enter_context(Interrupts())
@@ -159,20 +52,19 @@ def _fly(arguments: argparse.Namespace, spec: MissionSpec) -> Flight:
         display = make_display(arguments.quiet, arguments.seconds)
         stack.callback(display.close)
         mission = stack.enter_context(_mission(arguments, spec, display, trace))
-        flight = Flight(mission, arguments, display, interrupts)
+        flight = Flight(mission, arguments.seconds, arguments.realtime, display, interrupts)
         flight.go()
     return flight
 
 
 def _mission(arguments: argparse.Namespace, spec: MissionSpec, display: Display, trace: TraceFile | None) -> Mission:
-    console = Console(sink=display.line if trace is None else trace.console_sink(display.line))
     try:
         mission = Mission(
             spec,
             seed=arguments.seed,
             board=arguments.board,
             tasks=arguments.tasks,
-            console=console,
+            console=Console(sink=display.line),
             policy=SeededRandom(arguments.seed) if arguments.schedule == "random" else None,
             trace_sink=None if trace is None else trace.write,
         )

@@ -7,7 +7,6 @@ Only a trace file makes this text: the trace itself stays bytes.
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
 from types import TracebackType
 
 from cfepy import trace as tr
@@ -36,12 +35,14 @@ class TraceFile:
             self._file = open(path, "w", encoding="utf-8")  # noqa: SIM115  # closed in __exit__
         except OSError as error:
             raise UsageError(f"cannot be written: {error.strerror}", file=path, field="--trace") from None
+        self._path = path
         self._mission: Mission | None = None
         self._names: dict[int, str] = {}
         self._tasks: dict[int, str] = {0: HOST}
         self._pipes: dict[int, str] = {}
         self._now_ns = 0
         self._task = HOST
+        self._error: OSError | None = None
 
     def __enter__(self) -> TraceFile:
         return self
@@ -51,26 +52,31 @@ class TraceFile:
     ) -> None:
         if self._mission is not None:
             self._mission.trace.flush()
-        self._file.close()
+        self._close()
+
+    def _close(self) -> None:
+        try:
+            self._file.close()
+        except OSError as error:
+            self._error = self._error or error
+        if self._error is not None:
+            raise UsageError(f"could not be written: {self._error.strerror}", file=self._path, field="--trace")
 
     def watch(self, mission: Mission) -> None:
         """Learn names of tasks, pipes and messages from this mission."""
         self._mission = mission
         self._names = names_of(mission.spec)
 
-    def console_sink(self, show: Callable[[str], object]) -> Callable[[str], None]:
-        """A console's sink that shows a line, and also writes it into the trace file where it belongs."""
-
-        def sink(text: str) -> None:
-            show(text)
-            if self._mission is not None:
-                self._mission.trace.flush()
-                self._line(f"console {text}")
-
-        return sink
-
     def write(self, records: list[bytes]) -> None:
-        """The sink of a `Trace`."""
+        """The sink of a `Trace`; it is called inside the simulation, where no error of the disk may be raised."""
+        if self._error is not None:
+            return
+        try:
+            self._write(records)
+        except OSError as error:
+            self._error = error
+
+    def _write(self, records: list[bytes]) -> None:
         self._learn()
         for record in records:
             if not record:
@@ -97,7 +103,7 @@ class TraceFile:
         if kind == tr.TIME:
             (self._now_ns,) = tr.unpack_time(record)
         elif kind == tr.NOTE:
-            self._line(f"note {record[1:].decode('utf-8', 'replace')}")
+            self._line(f"console {record[1:].decode('utf-8', 'replace')}")
         else:
             (number,) = _number(record)
             self._line(self._event(kind, number))

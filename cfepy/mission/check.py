@@ -58,7 +58,7 @@ def check_mission(mission: str, board: str | None = None) -> list[Finding]:
     found += [Finding(Path(error.file or script), error.line or 0, _with_field(error)) for error in said.errors]
     found += _check_nodes(said, entries)
     found += _check_board(script, entries, said, board, folder)
-    return sorted(set(found), key=lambda finding: (str(finding.file), finding.line))
+    return sorted(dict.fromkeys(found), key=lambda finding: (str(finding.file), finding.line))
 
 
 def _with_field(error: UsageError) -> str:

@@ -89,9 +89,10 @@ class ModuleLoader:
         return lambda lib_id: init(self._handle())
 
     def forget(self) -> None:
-        """Take the modules of this mission out of the process."""
-        for name in self._loaded:
-            sys.modules.pop(name, None)
+        """Take the modules of this mission out of the process, with those that they consist of."""
+        loaded = set(self._loaded)
+        for name in [name for name in sys.modules if name.partition(".")[0] in loaded]:
+            del sys.modules[name]
         self._loaded.clear()
 
     def _symbol(self, file: str, symbol: str) -> Callable[[Any], object]:

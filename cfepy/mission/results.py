@@ -20,6 +20,7 @@ from cfepy.mission.msg_names import names_of
 EVENT_TYPES = {DEBUG: "DEBUG", INFORMATION: "INFORMATION", ERROR: "ERROR", CRITICAL: "CRITICAL"}
 NOT_STARTED = "NOT STARTED"
 ENDED = "ENDED"
+TOLERANCE = 1.1  # of a measured rate: what was sent shortly before the mission was operational counts too
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +30,9 @@ class TopicResult:
     `sent` counts transmissions, `delivered` packets taken out of pipes (several a transmission, where several
     subscribe), `waiting` those that nobody took before the end. `dropped` is the sum of its three reasons: a
     subscription's message limit, a full pipe, a long ROS message that lost a segment. `no_subscriber` counts messages
-    that nobody wanted; they are no losses. `rate_hz` is what was sent in the time since the mission was operational;
-    `too_fast` says that it is more than the board's `max_publish_hz`.
+    that nobody wanted and `held_back` those that a ROS publisher could send only later, because the board publishes no
+    faster; neither are losses. `rate_hz` is what was sent in the time since the mission was operational; `too_fast`
+    says that it is more than the board's `max_publish_hz`.
     """
 
     name: str
@@ -44,6 +46,7 @@ class TopicResult:
     dropped_pipe_full: int
     dropped_segment: int
     no_subscriber: int
+    held_back: int
     rate_hz: float
     too_fast: bool
 
@@ -218,8 +221,9 @@ def _topics(mission: Mission, at: Mark) -> list[TopicResult]:
                 dropped_pipe_full=by_pipe,
                 dropped_segment=by_segment,
                 no_subscriber=sb.unrouted.sent.get(msg_id, 0),
+                held_back=row.held_back if row is not None else 0,
                 rate_hz=round(rate_hz, 3),
-                too_fast=bool(limit_hz) and rate_hz > limit_hz,
+                too_fast=bool(limit_hz) and rate_hz > limit_hz * TOLERANCE,
             )
         )
     return found

@@ -39,7 +39,7 @@ class ArmModel:
     def __init__(self, period: float) -> None:
         self.position = joint_values("~initial_position", STOWED)
         self.velocity = [0.0] * JOINTS
-        self.current = [0.0] * JOINTS
+        self.current: Sequence[float] = [0.0] * JOINTS
         self._limit = float(rospy.get_param("~current_limit", 5.0))
         self._encoder_step = 2.0 * math.pi / 2 ** int(rospy.get_param("~encoder_bits", 20))
         drives = zip(
@@ -47,7 +47,7 @@ class ArmModel:
             positive_joint_values("~viscous_friction", VISCOUS_FRICTION),
             positive_joint_values("~torque_constant", TORQUE_CONSTANT),
         )
-        self._coefficients = [self._discretise(*drive, period) for drive in drives]
+        self._keep, self._gain, self._glide, self._push = zip(*(self._discretise(*drive, period) for drive in drives))
 
     @staticmethod
     def _discretise(
@@ -65,16 +65,15 @@ class ArmModel:
     def step(self, command: Sequence[float]) -> None:
         """Advance by one period under the commanded currents, clipped to what the drives can deliver."""
         limit = self._limit
-        self.current = current = [
-            limit if ampere > limit else -limit if ampere < -limit else ampere for ampere in command
-        ]
+        if max(command) > limit or min(command) < -limit:
+            command = [min(max(ampere, -limit), limit) for ampere in command]
         velocity = self.velocity
-        coefficients = self._coefficients
         self.position = [
             q + glide * v + push * i
-            for q, v, i, (_, _, glide, push) in zip(self.position, velocity, current, coefficients)
+            for q, v, i, glide, push in zip(self.position, velocity, command, self._glide, self._push)
         ]
-        self.velocity = [keep * v + gain * i for v, i, (keep, gain, _, _) in zip(velocity, current, coefficients)]
+        self.velocity = [keep * v + gain * i for v, i, keep, gain in zip(velocity, command, self._keep, self._gain)]
+        self.current = command
 
     def encoder_readings(self) -> list[float]:
         """Joint angles as the encoders see them: the last whole count, in rad."""

@@ -50,8 +50,9 @@ class Leg:
         self.begin = begin
         self.end = begin + duration
         self.duration = duration
+        self.start = start
         self.goal = goal
-        self.pairs = [(q0, q1 - q0) for q0, q1 in zip(start, goal)]
+        self.span = [q1 - q0 for q0, q1 in zip(start, goal)]
 
 
 class ComputedTorque:
@@ -65,15 +66,12 @@ class ComputedTorque:
             positive_joint_values("~viscous_friction", VISCOUS_FRICTION),
             positive_joint_values("~torque_constant", TORQUE_CONSTANT),
         )
-        self._gains = [
-            (
-                inertia * frequency * frequency / torque_constant,
-                2.0 * inertia * damping * frequency / torque_constant,
-                friction / torque_constant,
-                inertia / torque_constant,
-            )
-            for inertia, friction, torque_constant in drives
-        ]
+        gains = [(inertia / torque, friction / torque) for inertia, friction, torque in drives]
+        self._inertia = [inertia for inertia, _ in gains]
+        self._stiffness = [inertia * frequency * frequency for inertia, _ in gains]
+        self._drag = [2.0 * inertia * damping * frequency for inertia, _ in gains]
+        # What the reference's speed asks for: its own friction, and the part that the drag takes off.
+        self._feed = [drag + friction for drag, (_, friction) in zip(self._drag, gains)]
 
     def currents(self, leg: Leg, now: float, position: Sequence[float], velocity: Sequence[float]) -> list[float]:
         """Motor currents (A) that take the joints along the leg at mission time `now` (s)."""
@@ -87,12 +85,9 @@ class ComputedTorque:
         pace = 30.0 * x * x * rest * rest / duration
         surge = 60.0 * x * rest * (rest - x) / (duration * duration)
         return [
-            stiffness * (start + span * way - q)
-            + drag * (span * pace - v)
-            + friction * (span * pace)
-            + inertia * (span * surge)
-            for (start, span), q, v, (stiffness, drag, friction, inertia) in zip(
-                leg.pairs, position, velocity, self._gains
+            stiffness * (start - q) - drag * v + span * (stiffness * way + feed * pace + inertia * surge)
+            for start, span, q, v, stiffness, drag, feed, inertia in zip(
+                leg.start, leg.span, position, velocity, self._stiffness, self._drag, self._feed, self._inertia
             )
         ]
 

@@ -11,8 +11,8 @@ from cfepy.apps.hk.packets import COMBINED_PKT1_MID, SEND_COMBINED_PKT_MID, SEND
 from cfepy.apps.sch_lab import schedule
 from cfepy.tbl import TableImage, write_beside
 
-TICKS_PER_SECOND = 100
-EVERY_SECOND = 100  # ticks
+TICKS_PER_SECOND = 10
+EVERY_SECOND = 10  # ticks
 SEND_HK = {"ES": 0x1808, "EVS": 0x1809, "SB": 0x180B, "TBL": 0x180C, "TIME": 0x180D, "HK": SEND_HK_MID}
 
 

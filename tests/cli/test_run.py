@@ -161,9 +161,7 @@ def test_the_trace_file(make_mission: Write, tmp_path: Path) -> None:
     assert times == sorted(times)
 
 
-def test_one_digest_however_it_is_run(
-    make_mission: Write, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_one_digest_however_it_is_run(make_mission: Write, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("greenlet")
     folder = make_mission("Chatty", "Quiet", yaml="board: rx64m\n")
     expected = digest(capsys, folder)
@@ -177,9 +175,7 @@ def test_one_digest_however_it_is_run(
         assert digest(capsys, folder, *options) == expected
 
 
-def test_a_random_schedule_depends_on_the_seed_alone(
-    make_mission: Write, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_random_schedule_depends_on_the_seed_alone(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
     folder = make_mission("Chatty", "Quiet", "Complains")
     options = ("--quiet", "--schedule", "random", "--seed")
     digests = set()
@@ -187,7 +183,6 @@ def test_a_random_schedule_depends_on_the_seed_alone(
         run(folder, *options, seed)
         digests.add(capsys.readouterr().out.splitlines()[-1])
     assert 1 < len(digests) <= 3
-
 
 
 def on_terminal(*arguments: str) -> str:

@@ -1,0 +1,121 @@
+"""A run in pieces: between two of them the display is brought up to date, and Ctrl-C ends it cleanly.
+
+The pieces change nothing in the run: its trace is that of a run in one piece.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import signal
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from cfepy.cli.display import Display
+from cfepy.mission import Mission
+from cfepy.mission.results import Mark, mark
+from cfepy.rtos.realtime import NS_PER_S, Pacer, Stopwatch
+
+FIRST_PIECE_NS = 10_000_000
+LEAST_PIECE_NS = 1_000_000
+SHORT_NS, LONG_NS = 80_000_000, 250_000_000  # wall time that a piece should take
+
+
+class Flight:
+    """A run that goes on until its time is over, or until somebody presses Ctrl-C.
+
+    Args:
+        mission: the mission.
+        seconds: virtual time to run.
+        realtime: pace it to the wall clock, so many times as fast; None runs as fast as it goes.
+        display: is told between the pieces.
+        interrupts: says whether somebody pressed Ctrl-C.
+
+    Attributes:
+        at: what there was when the time was over; set by `go`.
+        trace: the digest; set by `go`.
+    """
+
+    def __init__(
+        self, mission: Mission, seconds: float, realtime: float | None, display: Display, interrupts: Interrupts
+    ) -> None:
+        self.mission = mission
+        self.interrupts = interrupts
+        self.trace = ""
+        self.at: Mark
+        self._display = display
+        self._until_ns = round(seconds * NS_PER_S)
+        self._piece_ns = FIRST_PIECE_NS
+        self._step: Callable[[int], None] = self._free_step
+        if realtime is not None:
+            self._step = Pacer(mission.kernel, mission.run_until, realtime).step
+
+    def go(self) -> None:
+        """Run, let the nodes shut down, and take down what there is to know before the tasks end."""
+        watch = Stopwatch()
+        with _no_collection_between_pieces():
+            try:
+                while self._goes_on():
+                    self._step(self._until_ns)
+                    self._display.update(self.mission)
+                self.at = mark(self.mission, watch.elapsed_ns())
+                self.mission.shut_down_nodes()
+            except KeyboardInterrupt:
+                self.at = mark(self.mission, watch.elapsed_ns())
+        self.trace = self.mission.trace.digest()
+
+    def _goes_on(self) -> bool:
+        mission = self.mission
+        return mission.kernel.now < self._until_ns and mission.reset_reason is None and not self.interrupts.asked
+
+    def _free_step(self, until_ns: int) -> None:
+        """As fast as it goes: a piece of virtual time that takes some 80 to 250 ms of wall time."""
+        watch = Stopwatch()
+        self.mission.run_until(min(until_ns, self.mission.kernel.now + self._piece_ns))
+        wall_ns = watch.elapsed_ns()
+        if wall_ns < SHORT_NS:
+            self._piece_ns *= 2
+        elif wall_ns > LONG_NS:
+            self._piece_ns = max(LEAST_PIECE_NS, self._piece_ns // 2)
+
+
+class Interrupts:
+    """What Ctrl-C does while a mission runs and ends; use as a context manager.
+
+    The first one sets `asked`, for the run to end at the next occasion. The second one raises KeyboardInterrupt, for a
+    task that gives no occasion. Any more are ignored: they would disturb the ending of tasks.
+    """
+
+    def __init__(self) -> None:
+        self.asked = False
+        self._count = 0
+        self._before: Any = None
+
+    def __enter__(self) -> Interrupts:
+        try:
+            self._before = signal.signal(signal.SIGINT, self._on_signal)
+        except ValueError:
+            pass  # not the main thread: Ctrl-C does not come here
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+
+    def _on_signal(self, *_: object) -> None:
+        self.asked = True
+        self._count += 1
+        if self._count == 2:
+            raise KeyboardInterrupt
+
+
+@contextlib.contextmanager
+def _no_collection_between_pieces() -> Iterator[None]:
+    """The kernel collects garbage at fixed virtual times; in the host it would run finalizers at the clock's whim."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()

@@ -1,0 +1,46 @@
+"""The command itself: help, version, and what it imports to say so."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+import cfepy
+from cfepy.cli.main import main
+
+
+@pytest.mark.parametrize("words", [["--help"], ["run", "--help"], ["check", "--help"], ["new", "--help"]])
+def test_help(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert ended.value.code == 0
+    assert capsys.readouterr().out.startswith("usage: cfepy")
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["--version"])
+    assert capsys.readouterr().out == f"cfepy {cfepy.__version__}\n"
+
+
+@pytest.mark.parametrize("words", [[], ["fly"], ["run"], ["new", "app"], ["run", "x", "--tasks", "fibers"]])
+def test_bad_usage(words: list[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert ended.value.code == 2
+
+
+def test_help_imports_nothing_heavy() -> None:
+    program = "import sys\nfrom cfepy.cli.main import main\ntry: main(['--help'])\nfinally: print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.splitlines()[-1].split())
+    assert loaded.isdisjoint({"rich", "numpy", "yaml", "cfepy.mission", "cfepy.rtos"})
+
+
+def test_boards(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["boards"]) == 0
+    shown = capsys.readouterr().out
+    assert "120 MHz" in shown
+    assert "552 KiB" in shown

@@ -1,0 +1,50 @@
+"""Pacing to the wall clock: never early, no other trace."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy.rtos import Kernel
+from cfepy.rtos.realtime import NS_PER_S, Pacer, Stopwatch
+from cfepy.trace import Trace
+
+
+def ticking(kernel: Kernel, period_ns: int) -> None:
+    def task() -> None:
+        while True:
+            kernel.delay(period_ns)
+
+    kernel.spawn("ticker", task)
+
+
+def test_virtual_time_is_never_ahead_of_the_clock() -> None:
+    with Kernel("thread", Trace()) as kernel:
+        ticking(kernel, 7_000_000)
+        watch = Stopwatch()
+        pacer = Pacer(kernel, kernel.run, factor=5)
+        while kernel.now < NS_PER_S // 2:
+            pacer.step(NS_PER_S // 2)
+            assert kernel.now <= watch.elapsed_ns() * 5
+    assert kernel.now == NS_PER_S // 2
+
+
+def test_the_trace_is_that_of_a_free_run() -> None:
+    digests = []
+    for factor in (None, 100.0):
+        trace = Trace()
+        with Kernel("thread", trace) as kernel:
+            ticking(kernel, 3_000_000)
+            if factor is None:
+                kernel.run(NS_PER_S)
+            else:
+                pacer = Pacer(kernel, kernel.run, factor)
+                while kernel.now < NS_PER_S:
+                    pacer.step(NS_PER_S)
+            digests.append(trace.digest())
+    assert digests[0] == digests[1]
+
+
+@pytest.mark.parametrize("factor", [0, -1, float("nan")])
+def test_a_factor_that_makes_no_sense(factor: float) -> None:
+    with Kernel("thread") as kernel, pytest.raises(ValueError, match="more than 0"):
+        Pacer(kernel, kernel.run, factor)

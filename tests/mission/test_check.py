@@ -1,0 +1,183 @@
+"""Everything wrong with a mission before it boots: each finding with its file and line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from cfepy.mission.check import check_mission
+from cfepy.mission.check_file import check_file
+from cfepy.psp.profile import load_profile
+from cfepy.status import UsageError
+
+HK = "CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 0;\n"
+
+
+def check(folder: Path, script: str, yaml: str | None = None, board: str | None = None) -> list[tuple[str, int, str]]:
+    """Findings as (file name, line, text)."""
+    (folder / "startup.scr").write_text(script)
+    if yaml is not None:
+        (folder / "mission.yaml").write_text(yaml)
+    return [(finding.file.name, finding.line, finding.text) for finding in check_mission(str(folder), board)]
+
+
+def node(folder: Path, name: str = "talker") -> str:
+    (folder / f"{name}.py").write_text("import rospy\n")
+    return f"CFE_APP, {name}.py, __main__, {name.upper()}, 60, 16384, 0, 0;\n"
+
+
+def test_a_good_mission(tmp_path: Path) -> None:
+    assert check(tmp_path, HK + node(tmp_path) + "!", "nodes:\n  TALKER: {name: talker}\n") == []
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0;", "the entry has 7 of 8 fields"),
+        ("CFE_APP, nothere, X_Main, X, 60, 16384, 0, 0;", "no code for /cf/nothere.so"),
+        ("CFE_APP, hk, HK_AppMian, HK2, 60, 16384, 0, 0;", "has no function HK_AppMian; is HK_AppMain meant?"),
+        ("CFE_APP, hk, , HK2, 60, 16384, 0, 0;", "the entry point is empty"),
+        ("CFE_APP, hk, HK_AppMain, , 60, 16384, 0, 0;", "the name is empty"),
+        ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 0;", "the name 'HK' is taken by line 1"),
+        ("CFE_APP, hk, HK_AppMain, CFE_ES, 60, 16384, 0, 0;", "the name 'CFE_ES' is taken by the core application"),
+        ("CFE_APP, hk, HK_AppMain, TWENTY_CHARACTERS_XX, 60, 1, 0, 0;", "at most 19 fit"),
+        ("CFE_APP, /ram/hk, HK_AppMain, HK2, 60, 16384, 0, 0;", "/ram/hk.so is not below /cf"),
+        ("CFE_LIB, hk, HK_LibInit, LIB, 0, 0, 0, 0;", "has no function HK_LibInit"),
+        ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0, 0", "the last entry has no ';' and is lost"),
+    ],
+)
+def test_a_bad_line(tmp_path: Path, line: str, said: str) -> None:
+    ((file, number, text),) = check(tmp_path, f"{HK}{line}\n!")
+    assert (file, number) == ("startup.scr", 2)
+    assert said in text
+
+
+def test_the_same_name_for_an_app_and_a_library_is_fine(tmp_path: Path) -> None:
+    assert check(tmp_path, HK + "CFE_LIB, hk, NULL, HK, 0, 0, 0, 0;\n!") == []
+
+
+def test_all_problems_are_found_at_once(tmp_path: Path) -> None:
+    script = "CFE_APP, a;\nCFE_APP, nothere, X, X, 60, 1, 0, 0;\nCFE_APP, hk, Nope, Y, 60, 1, 0, 0;\n!"
+    assert [line for _, line, _ in check(tmp_path, script)] == [1, 2, 3]
+
+
+def test_sources_that_are_not_python(tmp_path: Path) -> None:
+    (tmp_path / "broken.py").write_text("import rospy\n\ndef f(:\n")
+    found = check(tmp_path, "CFE_APP, broken.py, __main__, B, 60, 16384, 0, 0;!")
+    assert found == [("broken.py", 3, "is not Python: invalid syntax")]
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "def Main(cfe): ...",
+        "async def other(): ...\nclass Main: ...",
+        "Main = lambda cfe: None",
+        "try:\n    from x import Main\nexcept ImportError:\n    Main = None",
+        "if True:\n    def Main(cfe): ...",
+        "from .part import Main",
+        "from .part import Main_Function as Main",
+        "from .part import *",
+        "from elsewhere import *",
+        "def __getattr__(name): ...",
+    ],
+)
+def test_where_an_entry_point_may_come_from(tmp_path: Path, source: str) -> None:
+    (tmp_path / "app").mkdir()
+    (tmp_path / "app/__init__.py").write_text(source)
+    (tmp_path / "app/part.py").write_text("def Main(cfe): ...\ndef Main_Function(cfe): ...\n")
+    assert check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!") == []
+
+
+@pytest.mark.parametrize("source", ["", "def f():\n    Main = 1", "from .part import Main"])
+def test_an_entry_point_that_is_not_there(tmp_path: Path, source: str) -> None:
+    (tmp_path / "app").mkdir()
+    (tmp_path / "app/__init__.py").write_text(source)
+    (tmp_path / "app/part.py").write_text("def other(cfe): ...\n")
+    ((_, line, text),) = check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!")
+    assert line == 1
+    assert "has no function Main" in text
+
+
+def test_nothing_is_executed(tmp_path: Path) -> None:
+    (tmp_path / "app.py").write_text("raise SystemExit('executed')\ndef Main(cfe): ...\n")
+    assert check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!") == []
+
+
+def test_the_mission_file(tmp_path: Path) -> None:
+    yaml = """\
+bord: linux
+board: abacus
+nodes:
+  TALKER: {namespace: robot, nme: x}
+  TALKR: {}
+  HK: {}
+topics:
+  /a: {msg_id: 0x0901}
+  b: {msg_id: 0x0902}
+  /c: {msg_id: 0x0901}
+  /d: {raw: true}
+"""
+    found = check(tmp_path, HK + node(tmp_path) + "!", yaml)
+    assert {file for file, _, _ in found} == {"mission.yaml"}
+    assert [(line, text.partition(":")[0]) for _, line, text in found] == [
+        (1, "bord"),
+        (2, "board"),
+        (4, "nodes.TALKER.namespace"),
+        (4, "nodes.TALKER.nme"),
+        (5, "nodes.TALKR"),
+        (6, "nodes.HK"),
+        (9, "topics.b"),
+        (10, "topics./c"),
+        (11, "topics./d"),
+    ]
+
+
+def test_two_nodes_of_one_name(tmp_path: Path) -> None:
+    yaml = "nodes:\n  A: {name: robot}\n  B: {name: robot, namespace: /}\n"
+    ((_, line, text),) = check(tmp_path, node(tmp_path, "a") + node(tmp_path, "b") + "!", yaml)
+    assert line == 3
+    assert "the node name /robot is that of A too" in text
+
+
+def test_a_mission_file_that_is_not_yaml(tmp_path: Path) -> None:
+    ((file, line, text),) = check(tmp_path, HK + "!", "nodes: {\n")
+    assert (file, line) == ("mission.yaml", 2)
+    assert "is not YAML" in text
+
+
+def test_more_applications_than_the_board_takes(tmp_path: Path) -> None:
+    script = "".join(HK.replace(" HK,", f" HK{number},") for number in range(13)) + "!"
+    found = check(tmp_path, script, board="rx64m")
+    assert [(line, text.split(";")[0]) for _, line, text in found] == [
+        (12, "HK11 is one application too many, rx64m takes 11"),
+        (13, "HK12 is one application too many, rx64m takes 11"),
+    ]
+
+
+def test_stacks_beyond_the_memory(tmp_path: Path) -> None:
+    script = HK + HK.replace(" HK,", " BIG,").replace("16384", "550000") + "!"
+    ((_, line, text),) = check(tmp_path, script, board="rx64m")
+    assert line == 2
+    assert "with the stack of BIG (550,000 bytes)" in text
+    assert check(tmp_path, script, board="linux") == []
+
+
+def test_a_board_given_by_hand(tmp_path: Path) -> None:
+    ((_, _, text),) = check(tmp_path, HK + "!", board="abacus")
+    assert "there is no board 'abacus'" in text
+
+
+def test_no_mission(tmp_path: Path) -> None:
+    with pytest.raises(UsageError):
+        check_mission(str(tmp_path / "nothing"))
+
+
+@pytest.mark.parametrize(("document", "read"), [("mission_file", check_file), ("board_profiles", load_profile)])
+def test_the_example_in_the_documentation(tmp_path: Path, document: str, read: Callable[[Path], object]) -> None:
+    text = (Path(__file__).parents[2] / "docs" / f"{document}.md").read_text()
+    example = tmp_path / "example.yaml"
+    example.write_text(text.partition("```yaml\n")[2].partition("```")[0])
+    assert not getattr(read(example), "errors", None)
