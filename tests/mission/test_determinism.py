@@ -70,3 +70,8 @@ def test_hash_seeds_do_not_matter(folder: str) -> None:
     assert (
         len({digest_in_process(folder, "thread", 5, seed) for seed in seeds} | {digest(folder, "thread", [5.0])}) == 1
     )
+
+
+def test_hash_seeds_do_not_matter_to_nodes() -> None:
+    digests = {digest_in_process("capture", tasks, 1.2, seed) for tasks, seed in (("thread", "7"), ("greenlet", "99"))}
+    assert len(digests) == 1
