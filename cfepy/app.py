@@ -25,7 +25,7 @@ from cfepy.time import TimeServices
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cfe:
-    """The services of one mission: `es`, `sb`, `evs`, `time`, `tbl`; below them `os` and `psp`; pure helpers `msg`, `fs`.
+    """The services of one mission: `es`, `sb`, `evs`, `time`, `tbl`; below them `os` and `psp`; helpers `msg`, `fs`.
 
     `msg` and `fs` are the modules `cfepy.msg` (packet headers) and `cfepy.fs` (file headers, CRC).
     """

@@ -1,4 +1,4 @@
-"""The apps that cfepy brings along, importable wherever they lie: `cfepy.apps.hk.packets`, `cfepy.apps.sch_lab.schedule`.
+"""The apps that cfepy brings along, importable wherever they lie: `cfepy.apps.hk.packets` and the like.
 
 Missions use their layouts to write table files. A running mission does not import apps from here: it executes them
 anew for every start.

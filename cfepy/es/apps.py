@@ -253,6 +253,7 @@ class AppServices(EsCore):
         """Clean up an application, start it again if that was asked for, and say so (CFE_ES_ProcessControlRequest)."""
         request = app.control_request
         history = self.history_of(app.name)
+        history.error_exits += request == APP_ERROR
         self.cleanup_app(app)
         detail, failed = "Completed.", False
         if request in (SYS_RESTART, SYS_RELOAD):

@@ -6,11 +6,9 @@ mission was closed, when every task has ended and its CPU time is known.
 
 from __future__ import annotations
 
-import re
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from cfepy.es.events import ERREXIT_APP_INF_EID
 from cfepy.es.records import APP_ERROR, STATE_NAMES
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, parse
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
@@ -286,11 +284,10 @@ def _problems(mission: Mission, apps: list[AppResult], own_errors: dict[str, int
 
 
 def _failed(mission: Mission) -> list[str]:
-    """Applications that ended themselves because of an error. ES tells it by the id of the event it then sends."""
-    event = re.compile(rf"EVS Port1 .*/CFE_ES {ERREXIT_APP_INF_EID}: Exit Application (\S+)")
-    matches = (event.match(line) for line in mission.console.lines)
-    ended = [match[1] for match in matches if match is not None]
-    ending = [app.name for app in mission.cfe.es.apps if app.control_request == APP_ERROR]
+    """Applications that ended themselves because of an error."""
+    es = mission.cfe.es
+    ended = [history.name for history in es.history.values() if history.error_exits]
+    ending = [app.name for app in es.apps if app.control_request == APP_ERROR]
     return list(dict.fromkeys(ended + ending))
 
 

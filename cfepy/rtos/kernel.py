@@ -161,6 +161,9 @@ class Kernel(Scheduler):
             handled = self.on_task_error(task, error)
         except TaskExit:
             handled = True
+        except Exception as broken:  # the hook itself; were it to come out here, the baton would be lost
+            task.error = broken
+            handled = False
         if not handled:
             self._failed.append(task)
 
@@ -295,6 +298,10 @@ class Kernel(Scheduler):
             self._until = -1
             self._stopped = True
             heappush(self.ready, (-1, 0, self.host))
-            self.context.interrupt(lambda: self.current, self.host, TaskExit)
-            self.current = self.host
+            while self.current is not self.host:
+                try:
+                    self.context.interrupt(lambda: self.current, self.host, TaskExit)
+                    self.current = self.host
+                except KeyboardInterrupt:
+                    continue  # Ctrl-C once more; there is nothing more to do about it
         raise error

@@ -81,7 +81,7 @@ def test_table_files_are_what_their_definitions_say(table: str) -> None:
     assert definition.with_suffix(".tbl").read_bytes() == build(module(definition).image())
 
 
-# -- the small board -----------------------------------------------------------------------------------------------------
+# -- the small board -----------------------------------------------------------------------------------------------
 
 
 def with_rate(folder: Path, rate: int) -> str:

@@ -151,6 +151,19 @@ def test_an_error_hook_lets_the_run_go_on(kernel: Kernel) -> None:
     assert isinstance(task.error, ValueError)
 
 
+def test_an_error_in_the_error_hook_comes_out_of_run(kernel: Kernel) -> None:
+    def hook(task: Task, error: BaseException) -> bool:
+        raise LookupError("in the hook")
+
+    def fail() -> None:
+        raise ValueError("in the task")
+
+    kernel.on_task_error = hook
+    kernel.spawn("failing", fail)
+    with pytest.raises(LookupError, match="in the hook"):
+        kernel.run()
+
+
 def test_errors_of_two_tasks_at_once_both_come_out(kernel: Kernel) -> None:
     def faulty(text: str) -> None:
         raise ValueError(text)
