@@ -1,4 +1,4 @@
-"""The Software Bus: one task, two tasks, one to many. Traced, with limits, statistics and time stamps as in a mission."""
+"""The Software Bus: one task, two tasks, one to many. Traced, with limits, statistics and stamps, as in a mission."""
 
 from __future__ import annotations
 

@@ -310,7 +310,3 @@ class AppServices(EsCore):
                 self.pools.delete(pool_id)
                 self.ports.memory.release(claim)
                 del self.pool_owners[pool_id]
-
-    def on_reset(self, reason: str) -> None:
-        """A processor reset is due; the mission says what that means (`ExecutiveServices` sets it)."""
-        raise NotImplementedError

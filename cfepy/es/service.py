@@ -37,8 +37,6 @@ EXTERNAL = 2
 class ExecutiveServices(AppServices):
     """One processor's ES; the arguments are those of `EsCore`."""
 
-    on_processor_reset: Callable[[str], None]
-
     # -- the run loop ----------------------------------------------------------------------------------------------
 
     def run_loop(self, status: int = APP_RUN) -> bool:
@@ -286,10 +284,6 @@ class ExecutiveServices(AppServices):
         task_id = next((each.task_id for each in app.tasks.values() if each.task is task), 0)
         self.faults.append(Fault(app, task_id, reason))
         return True
-
-    def on_reset(self, reason: str) -> None:
-        """A processor reset is due."""
-        self.on_processor_reset(reason)
 
     def apps_below(self, state: int) -> list[AppRecord]:
         """External applications that have not reached a state yet and have not ended either."""

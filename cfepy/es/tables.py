@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
 from cfepy.es.pools import MemPool
@@ -45,6 +47,7 @@ class EsCore:
         self.history: dict[str, AppHistory] = {}
         self.faults: list[Fault] = []
         self.system_state = SYSTEM_EARLY_INIT
+        self.on_reset: Callable[[str], object] = lambda reason: None  # the processor is to be reset; the mission's part
 
     def write_to_sys_log(self, text: str) -> None:
         """Add a line to the system log (CFE_ES_WriteToSysLog)."""

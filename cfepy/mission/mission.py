@@ -114,7 +114,7 @@ class Mission:
         self.psp = Psp(kernel, self.board, config, console, self.osal, on_restart=self._restart)
         self.loader = ModuleLoader(self.files, self.spec.folder, console, lambda: self.cfe, self._run_node)
         es = ExecutiveServices(kernel, ports, config, self.osal, console, self.loader)
-        es.on_processor_reset = self._reset
+        es.on_reset = self._reset
         sb = bus(kernel, ports, config, BusCosts(costs.call_ns, costs.byte_ps))
         evs = EventServices(kernel, ports, config, console, self.files.write_file)
         time = TimeServices(kernel, ports, config)

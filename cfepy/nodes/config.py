@@ -31,8 +31,8 @@ class NodeConfig:
 class TopicConfig:
     """One topic with a MsgId of the mission's choice.
 
-    A `raw` topic carries whole cFE packets: its messages are std_msgs/UInt8MultiArray, and their data are the bytes of a
-    packet.
+    A `raw` topic carries whole cFE packets: its messages are std_msgs/UInt8MultiArray, and their data are the bytes
+    of a packet.
     """
 
     name: str
