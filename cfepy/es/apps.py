@@ -28,7 +28,6 @@ from cfepy.es.records import (
 from cfepy.es.tables import STARTUP_POLL_MS, EsCore
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
-    CFE_ES_ERR_APP_CREATE,
     CFE_ES_ERR_DUPLICATE_NAME,
     CFE_ES_ERR_LOAD_LIB,
     CFE_ES_LIB_ALREADY_LOADED,
