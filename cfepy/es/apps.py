@@ -77,7 +77,6 @@ class AppServices(EsCore):
         main = entry or self._load(params.file, lambda: self.loader.load(params.file, params.symbol, name))
         record = AppRecord(name, params, main, is_core)
         record.app_id = self.apps.create(record)
-        self.history_of(name)
         try:
             record.main_task_id = self.start_task(
                 record, name, self._main_of(record), params.stack_size, params.priority
@@ -89,6 +88,7 @@ class AppServices(EsCore):
             )
             self._explain(failure)
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(failure)) from failure
+        self.history_of(name)
         return record.app_id
 
     def _explain(self, failure: CfeError) -> None:

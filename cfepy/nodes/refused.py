@@ -15,7 +15,7 @@ from cfepy.nodes.synth import made, proxy
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
 
-NETWORK = "let nodes talk through topics and services; bytes from outside enter through the CI application"
+NETWORK = "let nodes talk through topics and services; a cFE application can pass on bytes from outside"
 PROCESS = "start a thread (threading.Thread), or list the program as a node of its own in the mission"
 SIGNALS = "use threading.Timer"
 

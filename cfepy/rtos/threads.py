@@ -24,6 +24,7 @@ from cfepy.rtos.task import Task
 STACK_BYTES = 512 * 1024  # 64 KiB crashes in deep C recursion, 256 KiB still gives a clean RecursionError
 FIRST_PATIENCE_S = 0.2  # how long a computing task may take to reach its next kernel call after Ctrl-C
 LAST_PATIENCE_S = 5.0
+LOOK_UP_S = 0.5  # how long a signal may wait for the host in the worst case
 _HAS_AFFINITY = hasattr(os, "sched_setaffinity")
 _HAS_BATCH = hasattr(os, "SCHED_BATCH")
 
@@ -109,7 +110,8 @@ class ThreadContext:
 
     def enter(self, host: Task) -> None:
         assert host.park is not None
-        host.park()
+        while not host.park(True, LOOK_UP_S):
+            pass  # a signal that came just before the wait is only handled between two waits
 
     def interrupt(self, running: Callable[[], Task], host: Task, error: type[BaseException]) -> None:
         assert host.park is not None

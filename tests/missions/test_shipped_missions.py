@@ -9,6 +9,7 @@ from types import ModuleType
 
 import pytest
 
+from cfepy.cli.main import main
 from cfepy.console import Console
 from cfepy.mission import Mission, shipped_missions
 from cfepy.resources import shipped
@@ -143,3 +144,13 @@ def test_work_costs_virtual_time_on_the_board() -> None:
     flight, _ = fly("rx64m_pubsub", 5)
     for name in ("TALKER", "LISTENER"):
         assert 0 < flight.cfe.es.history[name].cpu_ns / flight.kernel.now < 0.05
+
+
+def test_an_application_that_does_not_fit_fails_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = Path(with_rate(tmp_path, 100))
+    script = (folder / "startup.scr").read_text()
+    (folder / "startup.scr").write_text(script.replace("LISTENER, 90,  8192", "LISTENER, 90,  500000"))
+    assert main(["run", str(folder), "--for", "1", "--quiet"]) == 1
+    captured = capsys.readouterr()
+    assert "NOT STARTED" in captured.out
+    assert "LISTENER could not be started" in captured.err
