@@ -147,7 +147,7 @@ class Mission:
                 ("CFE_Config_Init", nothing),
                 ("CFE_ES_CDSEarlyInit", nothing),
                 ("CFE_EVS_EarlyInit", cfe.evs.early_init),
-                ("CFE_SB_EarlyInit", nothing),
+                ("CFE_SB_EarlyInit", cfe.sb.early_init),
                 ("CFE_TIME_EarlyInit", cfe.time.early_init),
                 ("CFE_TBL_EarlyInit", cfe.tbl.early_init),
                 ("CFE_FS_EarlyInit", nothing),

@@ -52,6 +52,10 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         self._records = kernel.trace.records if kernel.trace is not None else []
         self._flush = kernel.trace.flush if kernel.trace is not None else _nothing
 
+    def early_init(self) -> None:
+        """Book the memory of the message pool, before any task exists (CFE_SB_EarlyInit)."""
+        self.ports.memory.claim("CFE_SB", "message pool", self._pool_size)
+
     # -- transmitting ----------------------------------------------------------------------------------------------
 
     def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:

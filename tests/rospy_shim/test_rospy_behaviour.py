@@ -32,7 +32,8 @@ def outcome(expression):
         try:
             row = {"result": plain(eval(expression, NAMES))}
         except Exception as error:
-            row = {"result": {"raises": type(error).__name__, "text": str(error).partition(" and no __dict__")[0][:160]}}
+            text = str(error).partition(" and no __dict__")[0]  # which newer interpreters add
+            row = {"result": {"raises": type(error).__name__, "text": text[:160]}}
     row["expression"] = expression
     if caught:
         row["warns"] = caught[0].category.__name__
