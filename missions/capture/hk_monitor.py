@@ -75,12 +75,12 @@ class HkMonitor:
         self.packet = packet
 
     def report(self, _event: object = None) -> None:
-        """Log the latest values."""
+        """Log the latest values that are not zero."""
         if not self.packet:
             rospy.loginfo("housekeeping: no packet yet")
             return
         stream, _, _, seconds, fraction = _HEADER.unpack_from(self.packet)
-        values = (f"{field.name} {code.unpack_from(self.packet, field.offset)[0]:g}" for field, code in _PAYLOADS)
+        values = ((field.name, code.unpack_from(self.packet, field.offset)[0]) for field, code in _PAYLOADS)
         rospy.loginfo(
             "housekeeping 0x%04X at %.3f s, %d received, %d missing, %d malformed: %s",
             stream,
@@ -88,7 +88,7 @@ class HkMonitor:
             self.received,
             self.missing,
             self.malformed,
-            ", ".join(values),
+            ", ".join(f"{name} {value:g}" for name, value in values if value),
         )
 
 

@@ -104,7 +104,7 @@ def test_a_board_on_which_the_core_cannot_boot(
     assert run(make_mission("Quiet"), "--board", str(board), "--quiet") == 2
     said = capsys.readouterr().err
     assert "cannot boot" in said
-    assert "the board is full: CFE_TBL" in said
+    assert "the board is full: CFE_SB" in said
 
 
 def test_too_short_to_boot(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
