@@ -90,6 +90,7 @@ class Mission:
             tasks, self.trace, policy, tick_ns=self.board.tick_ns, switch_cost_ns=costs.switch_ns, seed=seed
         )
         self.kernel.on_task_error = self._task_failed
+        self._watch = StallWatch(self.kernel)
         self.memory = MemoryBudget(self.board)
         self.files = FileSystem(self.spec.folder)
         self._build(costs, bus)
@@ -213,8 +214,8 @@ class Mission:
     def run_until(self, until_ns: int) -> None:
         """Run until a virtual time in ns, or until the processor is reset."""
         if self.reset_reason is None:
-            with StallWatch(self.kernel):
-                self.kernel.run(until_ns)
+            self._watch.begin()
+            self.kernel.run(until_ns)
 
     def shut_down_nodes(self) -> None:
         """Ask all ROS nodes to end, and give them a little virtual time for their shutdown hooks."""
@@ -232,6 +233,7 @@ class Mission:
             history.last_state, history.last_error = app.state, app.error
             history.cpu_ns += sum(task.cpu_ns for task in self.kernel.tasks if task.owner is app)
         self.kernel.shutdown()
+        self._watch.end()
         self.loader.forget()
 
     def __enter__(self) -> Mission:

@@ -21,7 +21,7 @@ def to_stderr(text: str) -> None:
 
 
 class StallWatch:
-    """Watches a kernel while it runs; use as a context manager around `Kernel.run`.
+    """Watches a kernel, from the first `begin` to `end`.
 
     Args:
         kernel: the kernel to watch.
@@ -35,14 +35,17 @@ class StallWatch:
         self._report = report
         self._over = threading.Event()
         self._thread: threading.Thread | None = None
-        self._main_ident = threading.get_ident()
+        self._host_ident = 0
 
-    def __enter__(self) -> StallWatch:
-        self._thread = threading.Thread(target=self._look_on, name="cfepy stall watch", daemon=True)
-        self._thread.start()
-        return self
+    def begin(self) -> None:
+        """The calling thread is about to run the kernel. Cheap after the first time: a run may come in many pieces."""
+        self._host_ident = threading.get_ident()
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._look_on, name="cfepy stall watch", daemon=True)
+            self._thread.start()
 
-    def __exit__(self, *error: object) -> None:
+    def end(self) -> None:
+        """Look no more."""
         self._over.set()
         if self._thread is not None:
             self._thread.join()
@@ -60,7 +63,7 @@ class StallWatch:
 
     def _tell(self) -> None:
         task = self._kernel.current
-        stack = "".join(self._kernel.context.stack_of_running(task, self._main_ident))
+        stack = "".join(self._kernel.context.stack_of_running(task, self._host_ident))
         self._report(
             f"cfepy: task {task.name} has not given up the CPU for {self._limit_s:g} s of wall time; "
             f"it is here:\n{stack}"
