@@ -56,7 +56,7 @@ class Trace:
 
     def note(self, text: str) -> None:
         """Record a text, for instance a line of the console."""
-        self.append(NOTE + text.encode())
+        self.append(NOTE + text.encode("utf-8", "backslashreplace"))
 
     def digest(self) -> str:
         """32 hexadecimal digits that stand for the whole run so far."""

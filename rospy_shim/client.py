@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from cfepy.rtos import FOREVER, WaitList
-from rospy_shim.exceptions import ROSException, ROSInterruptException
+from rospy_shim.exceptions import ROSException, ROSInitException, ROSInterruptException
 from rospy_shim.logs import INFO
 from rospy_shim.names import SEP, command_line_params, program_arguments
 from rospy_shim.params import marshalled
@@ -100,17 +100,24 @@ class Client:
         """Private parameters of the mission file, then those of the command line."""
         for name, value in self._node.config.params.items():
             self._node.params.set_param(f"~{name}", marshalled(value))
-        self.load_command_line_node_params(argv)
+        for name, value in self.load_command_line_node_params(argv).items():
+            self._node.params.set_param(f"~{name}", value)
 
-    def load_command_line_node_params(self, argv: Sequence[str]) -> None:
-        """Set the private parameters that stand on a command line as `_name:=value`, the value in YAML."""
-        found = command_line_params(argv)
-        if not found:
-            return
-        import yaml
+    def load_command_line_node_params(self, argv: Sequence[str]) -> dict[str, Any]:
+        """The private parameters that stand on a command line as `_name:=value`, the value in YAML.
 
-        for name, text in found.items():
-            self._node.params.set_param(f"~{name}", yaml.safe_load(text))
+        Raises:
+            ROSInitException: an argument that has ":=" twice, or whose value is not YAML.
+        """
+        try:
+            found = command_line_params(argv)
+            if not found:
+                return {}
+            import yaml
+
+            return {name: yaml.safe_load(text) for name, text in found.items()}
+        except Exception as error:
+            raise ROSInitException(f"invalid command-line parameters: {error}") from error
 
     def myargv(self, argv: Sequence[str] | None = None) -> list[str]:
         """The command line without remappings and parameters."""

@@ -191,7 +191,7 @@ class Graph:
         former = self.nodes.get(name)
         self.nodes[name] = node
         if former is not None and former is not node:
-            former.ask_to_shut_down(f"[{name}] Reason: new node registered with same name")
+            former.give_way()
 
     def forget_node(self, node: Node) -> None:
         """A node is gone."""

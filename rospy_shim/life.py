@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes.report import traceback_text
+from cfepy.nodes.script import exit_from_handler
 from cfepy.rtos import WaitList
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ class Life:
         self._preshutdown_hooks: list[Callable[[str], object]] = []
         self._shutdown_hooks: list[Callable[[str], object]] = []
         self._own_handlers: list[object] = []
+        self._former_handlers: dict[int, Any] = {}
         self.wait_lists: list[WaitList] = []  # whoever waits here is woken by the shutdown
         node.universe.exit_hooks.append((self.signal_shutdown, ("atexit",), {}))
 
@@ -165,15 +167,22 @@ class Life:
                 former(received, frame)
 
         self._own_handlers.append(on_signal)
+        self._former_handlers[number] = former
         return on_signal
 
     def interrupt(self, reason: str) -> None:
-        """The mission ends: what Ctrl-C is to a node. A handler of the node's own has the last word."""
+        """The mission ends: what Ctrl-C is to a node. Its own handler runs; one set before `init_node` runs last."""
         handler = self._node.universe.signals.get(signal.SIGINT)
-        if callable(handler) and handler is not signal.default_int_handler and handler not in self._own_handlers:
-            self._node.universe.deliver_signal(signal.SIGINT)
-        else:
+        if handler in self._own_handlers:
             self.signal_shutdown(reason)
+            handler = self._former_handlers[signal.SIGINT]
+        if not callable(handler) or handler is signal.default_int_handler:
+            self.signal_shutdown(reason)
+            return
+        try:
+            handler(int(signal.SIGINT), None)
+        except SystemExit as error:
+            exit_from_handler(self._node.universe, error)
 
 
 def _check(hook: object) -> None:

@@ -57,7 +57,7 @@ class AnyMsg(Message):
 
     def deserialize(self, str_: bytes) -> AnyMsg:
         """Take the bytes."""
-        self._buff = bytes(str_)
+        self._buff = str_
         return self
 
 

@@ -118,7 +118,6 @@ class RosModules:
             "Header": message_class("std_msgs/Header"),
             "Message": genpy.Message,
             "ServiceException": exceptions.ServiceException,
-            **_pick(logs, ("DEBUG", "INFO", "WARN", "ERROR", "FATAL")),
         }
         load = node.universe.importer.load
         late: dict[str, Callable[[], Any]] = {
@@ -158,6 +157,7 @@ class RosModules:
         return {
             **_pick(self._node.client, own),
             **self._params(),
+            **_pick(logs, ("DEBUG", "INFO", "WARN", "ERROR", "FATAL")),
             "on_shutdown": life.add_client_shutdown_hook,
             "spin": life.spin,
         }

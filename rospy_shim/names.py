@@ -18,6 +18,7 @@ ANYTYPE = "*"
 UNNAMED = "/unnamed"
 
 _LEGAL = re.compile(r"^[~/A-Za-z][\w/]*$")
+_REMAPPING = re.compile(r"[~/_A-Za-z][\w/]*:=")  # how an argument begins that belongs to ROS
 
 
 def canonicalize_name(name: str) -> str:
@@ -53,17 +54,16 @@ def is_legal_name(name: str) -> bool:
 
 
 def scoped_name(caller_id: str, name: str) -> str:
-    """A global name relative to the namespace of `caller_id`.
+    """A global name without as many characters as the namespace of `caller_id` has.
 
     Raises:
-        ROSException: the name is not global.
+        ROSException: `caller_id` is not global.
     """
     from rospy_shim.exceptions import ROSException
 
-    if not name.startswith(SEP):
-        raise ROSException(f"name [{name}] must be global")
-    scope = namespace_of(caller_id)
-    return name[len(scope) :] if name.startswith(scope) else name
+    if not caller_id or not caller_id.startswith(SEP):
+        raise ROSException(f"caller_id must be global, not {caller_id!r}")
+    return name[len(namespace_of(caller_id)) :]
 
 
 def global_name(param_name: str) -> Callable[[Any, str], str]:
@@ -80,28 +80,33 @@ def global_name(param_name: str) -> Callable[[Any, str], str]:
 def load_mappings(argv: Sequence[str]) -> dict[str, str]:
     """The `from:=to` arguments of a command line; private parameters (`_name:=value`) are left out."""
     mappings: dict[str, str] = {}
-    for argument in argv:
-        source, found, target = argument.partition(REMAP)
-        source, target = source.strip(), target.strip()
+    for argument in filter(_REMAPPING.match, argv):
+        source, _, target = argument.partition(REMAP)
         private = source.startswith("_") and not source.startswith("__")
-        if found and source and target and not private:
-            mappings[source] = target
+        if target.strip() and REMAP not in target and not private:
+            mappings[source] = target.strip()
     return mappings
 
 
 def command_line_params(argv: Sequence[str]) -> dict[str, str]:
-    """The `_name:=value` arguments of a command line, values as text."""
+    """The `_name:=value` arguments of a command line, values as text.
+
+    Raises:
+        ValueError: an argument with two ":=".
+    """
     found = {}
     for argument in argv:
-        name, assigned, value = argument.partition(REMAP)
-        if assigned and name.startswith("_") and not name.startswith("__"):
-            found[name[1:]] = value
-    return found
+        name, *values = [part.strip() for part in argument.split(REMAP)]
+        if values and name.startswith("_") and not name.startswith("__"):
+            if len(values) > 1:
+                raise ValueError(f"{argument} has more than one {REMAP}")
+            found[name[1:]] = values[0]
+    return {name: value for name, value in found.items() if name and value}
 
 
 def program_arguments(argv: Sequence[str]) -> list[str]:
     """The arguments that are the program's own (rospy.myargv)."""
-    return [argument for argument in argv if REMAP not in argument]
+    return [argument for argument in argv if not _REMAPPING.match(argument)]
 
 
 class Names:
@@ -177,7 +182,7 @@ class Names:
         if name.startswith(SEP):
             resolved = name
         elif name.startswith(PRIV_NAME):
-            resolved = caller_id + SEP + canonicalize_name(name[1:]).lstrip(SEP)
+            resolved = join(caller_id, canonicalize_name(name[1:]))
         else:
             resolved = namespace_of(caller_id) + name
         return self._resolved.get(resolved, resolved)

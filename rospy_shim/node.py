@@ -6,6 +6,7 @@ cfepy.nodes, cfepy.rtos and cfepy.status.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -185,7 +186,7 @@ class Node:
 
     def warn(self, text: str, category: type[Warning]) -> None:
         """Warn through the node's own `warnings`, at the line of the node that called."""
-        self.universe.importer.load("warnings").warn(text, category, stacklevel=4)
+        self.universe.importer.load("warnings").warn(text, category, stacklevel=_depth_of_rospy() + 1)
 
     def warn_of_illegal(self, name: str) -> None:
         """Warn of a name that breaks ROS's rules."""
@@ -211,3 +212,18 @@ class Node:
         """Shut the node down from outside; its hooks run in a task of its own."""
         if not self.life.is_shutdown_requested():
             self.start_task("shutdown", lambda: self.life.interrupt(reason))
+
+    def give_way(self) -> None:
+        """Another node has taken the name: what ROS's master then asks of this one."""
+        request = f"[{self.names.name}] Reason: new node registered with same name"
+        self.universe.stdout.write(f"shutdown request: {request}\n")
+        reason = f"external shutdown request from [/master]: [{request}]"
+        self.start_task("shutdown", lambda: self.life.signal_shutdown(reason))
+
+
+def _depth_of_rospy() -> int:
+    """How many of the innermost frames are rospy's own, this function's aside."""
+    frame, depth = sys._getframe(1), 0
+    while frame.f_back is not None and frame.f_globals["__name__"].startswith("rospy_shim."):
+        frame, depth = frame.f_back, depth + 1
+    return depth

@@ -51,6 +51,8 @@ class PlainDisplay:
                 self._stream.write(text + "\n")
             except OSError as error:
                 self._broken = error
+            except ValueError as error:  # an app closed it
+                self._broken = BrokenPipeError(str(error))
 
     def update(self, mission: Mission) -> None:
         """See `Display.update`.

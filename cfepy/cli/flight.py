@@ -7,17 +7,21 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import os
 import signal
 from collections.abc import Callable, Iterator
 from typing import Any
 
 from cfepy.cli.display import Display
+from cfepy.cli.main import INTERRUPTED
 from cfepy.mission import Mission
 from cfepy.mission.results import Mark, mark
 from cfepy.rtos.realtime import NS_PER_S, Pacer, Stopwatch
 
 FIRST_PIECE_NS = 10_000_000
 LEAST_PIECE_NS = 1_000_000
+PATIENCE_NS = 2 * NS_PER_S  # wall time after the second Ctrl-C in which no other has an effect
+STDERR = 2
 SHORT_NS, LONG_NS = 80_000_000, 250_000_000  # wall time that a piece should take
 
 
@@ -61,6 +65,7 @@ class Flight:
                 self.at = mark(self.mission, watch.elapsed_ns())
                 self.mission.shut_down_nodes()
             except KeyboardInterrupt:
+                self.interrupts.asked = True  # also when an app raised it: what it looks like is what it is
                 self.at = mark(self.mission, watch.elapsed_ns())
         self.trace = self.mission.trace.digest()
 
@@ -83,13 +88,15 @@ class Interrupts:
     """What Ctrl-C does while a mission runs and ends; use as a context manager.
 
     The first one sets `asked`, for the run to end at the next occasion. The second one raises KeyboardInterrupt, for a
-    task that gives no occasion. Any more are ignored: they would disturb the ending of tasks.
+    task that gives no occasion. Any more are ignored for a while: they would disturb the ending of tasks. After that
+    the next one ends the process, for a task that nothing can end, such as one that waits in a C library.
     """
 
     def __init__(self) -> None:
         self.asked = False
         self._count = 0
         self._before: Any = None
+        self._since_second = Stopwatch()
 
     def __enter__(self) -> Interrupts:
         try:
@@ -106,7 +113,11 @@ class Interrupts:
         self.asked = True
         self._count += 1
         if self._count == 2:
+            self._since_second = Stopwatch()
             raise KeyboardInterrupt
+        if self._count > 2 and self._since_second.elapsed_ns() > PATIENCE_NS:
+            os.write(STDERR, b"cfepy: a task does not end; gave up\n")
+            os._exit(INTERRUPTED)
 
 
 @contextlib.contextmanager

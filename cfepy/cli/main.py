@@ -6,6 +6,7 @@ Only argparse is imported here; a subcommand imports its module when it is chose
 from __future__ import annotations
 
 import argparse
+import contextlib
 import importlib
 import os
 import sys
@@ -18,6 +19,9 @@ ENDED_WELL = 0
 FOUND_PROBLEMS = 1
 BAD_USAGE = 2
 INTERRUPTED = 130  # 128 + SIGINT, what shells expect
+
+LONGEST_S = 1e9  # virtual time is a signed 64-bit number of ns
+SLOWEST, FASTEST = 1e-3, 1e9  # times real time
 
 MISSION_HELP = "a startup script, a folder with a startup.scr, or a shipped mission's name"
 STATUS_HELP = """exit status:
@@ -37,6 +41,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns:
         The exit status.
     """
+    _open_closed_streams()
     arguments = _parser().parse_args(argv)
     try:
         run = importlib.import_module(f"cfepy.cli.{arguments.module}").run
@@ -50,7 +55,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return INTERRUPTED
     except BrokenPipeError:
         # Whoever read the output has enough of it; the interpreter must not try to write the rest when it ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        with contextlib.suppress(ValueError):  # an app closed it
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return ENDED_WELL
     except OSError as error:
         print(f"cfepy: {error}", file=sys.stderr)
@@ -84,7 +90,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     run.add_argument(
         "--for",
         dest="seconds",
-        type=_positive,
+        type=_seconds,
         default=10.0,
         metavar="SECONDS",
         help="virtual seconds to run (default: 10)",
@@ -103,7 +109,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     run.add_argument(
         "--realtime",
         nargs="?",
-        type=_positive,
+        type=_factor,
         const=1.0,
         metavar="FACTOR",
         help="pace virtual time to the wall clock, FACTOR times as fast (default: 1)",
@@ -151,8 +157,27 @@ def _add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     new.set_defaults(module="new")
 
 
-def _positive(text: str) -> float:
-    number = float(text)
-    if not 0 < number < float("inf"):
-        raise ValueError(text)
+def _seconds(text: str) -> float:
+    return _between(text, 0, LONGEST_S, "a number of seconds")
+
+
+def _factor(text: str) -> float:
+    return _between(text, SLOWEST, FASTEST, "a factor")
+
+
+def _between(text: str, least: float, most: float, what: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = 0
+    if not least <= number <= most or not number:
+        low = f"{least:g}" if least else "more than 0"
+        raise argparse.ArgumentTypeError(f"{text!r} is not {what}; give {low} to {most:g}")
     return number
+
+
+def _open_closed_streams() -> None:
+    """A process that was started without standard output or error gets ones that go nowhere."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  # as long as the process

@@ -29,31 +29,42 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: it cannot run like this.
     """
+    with Interrupts() as interrupts:
+        return _run(arguments, interrupts)
+
+
+def _run(arguments: argparse.Namespace, interrupts: Interrupts) -> int:
     spec = read_mission(arguments.mission)
     numbers = _output(arguments.json)
     try:
-        flight = _fly(arguments, spec)
+        flight = _fly(arguments, spec, interrupts)
     except CfeError as error:
         print(f"cfepy: {spec.script}: the mission cannot boot: {error}", file=sys.stderr)
         return BAD_USAGE
     results = Results.of(flight.mission, flight.at, flight.trace)
-    if numbers is not None:
-        numbers.write_text(json.dumps(results.to_dict(), indent=2) + "\n", encoding="utf-8")
+    unwritten = None if numbers is None else _write(numbers, results)
     report.show(results, sys.stdout)
-    _explain(results, arguments, flight.interrupts.asked)
-    print(f"trace: {results.trace}")
-    return _status(results, flight.interrupts.asked)
+    _explain(results, arguments, interrupts.asked)
+    print(f"trace: {results.trace}", flush=True)
+    if unwritten is not None:
+        raise unwritten
+    return _status(results, interrupts.asked)
 
 
-def _fly(arguments: argparse.Namespace, spec: MissionSpec) -> Flight:
-    with contextlib.ExitStack() as stack:
-        interrupts = stack.enter_context(Interrupts())
-        trace = stack.enter_context(TraceFile(arguments.trace)) if arguments.trace else None
-        display = make_display(arguments.quiet, arguments.seconds)
-        stack.callback(display.close)
-        mission = stack.enter_context(_mission(arguments, spec, display, trace))
-        flight = Flight(mission, arguments.seconds, arguments.realtime, display, interrupts)
-        flight.go()
+def _fly(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupts) -> Flight:
+    flight: Flight | None = None
+    try:
+        with contextlib.ExitStack() as stack:
+            trace = stack.enter_context(TraceFile(arguments.trace)) if arguments.trace else None
+            display = make_display(arguments.quiet, arguments.seconds)
+            stack.callback(display.close)
+            mission = stack.enter_context(_mission(arguments, spec, display, trace))
+            flight = Flight(mission, arguments.seconds, arguments.realtime, display, interrupts)
+            flight.go()
+    except KeyboardInterrupt:
+        if flight is None or not flight.trace:
+            raise
+        # A task would not end; the process ends it, and the numbers are there.
     return flight
 
 
@@ -87,6 +98,15 @@ def _output(file: str | None) -> Path | None:
     except OSError as error:
         raise UsageError(f"cannot be written: {error.strerror}", file=file, field="--json") from None
     return path
+
+
+def _write(file: Path, results: Results) -> UsageError | None:
+    """Write the numbers; an error is returned, for the report of a long run must not be lost with them."""
+    try:
+        file.write_text(json.dumps(results.to_dict(), indent=2) + "\n", encoding="utf-8")
+    except OSError as error:
+        return UsageError(f"could not be written: {error.strerror}", file=str(file), field="--json")
+    return None
 
 
 def _explain(results: Results, arguments: argparse.Namespace, interrupted: bool) -> None:

@@ -54,6 +54,8 @@ class BackgroundTask:
             f"CFE_ES_RunExceptionScan: ExceptionID 0x{context:x} in TaskID {fault.task_id}: {fault.reason}"
         )
         app = fault.app
+        if es.apps.find(app.app_id) is not app:
+            return  # it was on its way out already: a `finally` block failed
         if app.params.exception_action == RESTART_APP and not app.is_core:
             try:
                 es.restart_app(app.app_id)

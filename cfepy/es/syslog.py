@@ -38,13 +38,13 @@ class SystemLog:
 
     def append(self, line: str) -> None:
         """Put a finished line into the buffer."""
-        length = len(line.encode())
+        length = _size(line)
         if self.mode == DISCARD and self.bytes_used + length > self.size:
             return
         self.entries.append(line)
         self.bytes_used += length
         while self.bytes_used > self.size:
-            self.bytes_used -= len(self.entries.pop(0).encode())
+            self.bytes_used -= _size(self.entries.pop(0))
 
     def clear(self) -> None:
         """Forget all lines (CFE_ES_SysLogClear)."""
@@ -54,3 +54,7 @@ class SystemLog:
     def text(self) -> str:
         """Everything in the buffer."""
         return "".join(self.entries)
+
+
+def _size(line: str) -> int:
+    return len(line.encode("utf-8", "backslashreplace"))

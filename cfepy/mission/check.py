@@ -14,8 +14,9 @@ from cfepy.es import startup_script
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, Entry, parse
 from cfepy.mission import sources
 from cfepy.mission.check_file import CheckedFile, check_file
-from cfepy.mission.loader import NODE_SYMBOL, find_code
+from cfepy.mission.loader import NODE_SYMBOL, find_code, find_node
 from cfepy.mission.spec import MISSION_FILE, find_script
+from cfepy.osal.limits import OS_MAX_FILE_NAME
 from cfepy.psp.profile import BoardProfile, load_profile
 from cfepy.status import UsageError
 
@@ -87,13 +88,18 @@ def _check_code(script: Path, folder: Path, entry: Entry) -> Iterator[Finding]:
         text = f"{entry.path} is not below /cf, which is the mission's folder; write {FILES}..."
         yield Finding(script, entry.line, text)
         return
-    code = find_code(entry.path, folder)
+    is_node = entry.symbol == NODE_SYMBOL
+    if not is_node and len(entry.path.rpartition("/")[2]) >= OS_MAX_FILE_NAME:
+        text = f"the file name in {entry.path} has {OS_MAX_FILE_NAME} characters or more; choose a shorter one"
+        yield Finding(script, entry.line, text)
+        return
+    code = (find_node(entry.path, folder) if is_node else None) or find_code(entry.path, folder)
     if code is None:
         stem = Path(entry.path).stem
         text = f"no code for {entry.path}: no {stem}.py and no package {stem} in {folder}, no app or module {stem}"
         yield Finding(script, entry.line, text + "; add it, or correct the name")
         return
-    if entry.symbol == NODE_SYMBOL and not isinstance(code, Path):
+    if is_node and not isinstance(code, Path):
         yield Finding(script, entry.line, f"the node {entry.name} is no script of the mission's folder; add the script")
         return
     source = sources.source_of(code)

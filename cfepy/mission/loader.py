@@ -8,6 +8,7 @@ executed anew for every start, so that a restart finds its variables as a fresh 
 from __future__ import annotations
 
 import importlib.util
+import inspect
 import sys
 from collections.abc import Callable
 from pathlib import Path, PurePosixPath
@@ -16,13 +17,16 @@ from typing import Any
 
 from cfepy.console import Console
 from cfepy.es import SymbolError
-from cfepy.mission.tracebacks import app_traceback
+from cfepy.mission.module_names import ModuleNames
+from cfepy.mission.tracebacks import app_traceback, described
 from cfepy.osal import FileSystem
 from cfepy.resources import shipped
+from cfepy.rtos import TaskExit
 from cfepy.status import OS_ERROR, OsalError
 
 NODE_SYMBOL = "__main__"
 CODE_SUFFIXES = ("", ".so", ".py", ".obj", ".o")
+NODE_SUFFIX = ".so"  # what ES puts after a name that has no suffix
 
 
 class ModuleLoader:
@@ -49,12 +53,12 @@ class ModuleLoader:
         self._console = console
         self._handle = handle
         self._run_node = run_node
-        self._loaded: list[str] = []
+        self._names = ModuleNames()
 
     def exists(self, file: str) -> bool:
         """Whether there is code behind a virtual path."""
         try:
-            return self.find(file) is not None
+            return find_node(file, self._folder) is not None or self.find(file) is not None
         except OsalError:
             return False
 
@@ -77,53 +81,66 @@ class ModuleLoader:
         if symbol == NODE_SYMBOL:
             script = self._script(file)
             return lambda: self._run_node(script, app_name)
-        main = self._symbol(file, symbol)
+        main = self._symbol(file, symbol, app_name)
         return lambda: main(self._handle())
 
     def load_library(self, file: str, symbol: str) -> Callable[[int], object]:
         """The init function of a library; one that is called NULL does nothing. Errors as `load`."""
         if symbol == "NULL":
-            self._module(file)
+            self._module(file, f"library {file}")
             return lambda lib_id: 0
-        init = self._symbol(file, symbol)
-        return lambda lib_id: init(self._handle())
+        init = self._symbol(file, symbol, f"library {file}")
+        return lambda lib_id: self._init_library(init)
 
     def forget(self) -> None:
         """Take the modules of this mission out of the process, with those that they consist of."""
-        loaded = set(self._loaded)
-        for name in [name for name in sys.modules if name.partition(".")[0] in loaded]:
-            del sys.modules[name]
-        self._loaded.clear()
+        self._names.forget()
 
-    def _symbol(self, file: str, symbol: str) -> Callable[[Any], object]:
-        function = getattr(self._module(file), symbol, None)
+    def _init_library(self, init: Callable[[Any], object]) -> object:
+        """What the init function returns; a negative number when it fails, so that the boot goes on without it."""
+        try:
+            return init(self._handle())
+        except (TaskExit, KeyboardInterrupt):
+            raise
+        except BaseException as error:
+            self._console.write(app_traceback(error))
+            return OS_ERROR
+
+    def _symbol(self, file: str, symbol: str, owner: str) -> Callable[[Any], object]:
+        function = getattr(self._module(file, owner), symbol, None)
         if not callable(function):
             self._console.write(f"OS_SymbolLookup: {file} has no function {symbol}")
+            raise SymbolError(OS_ERROR, symbol)
+        kind = _kind_without_body(function)
+        if kind is not None:
+            text = f"{symbol} of {file} is {kind}: calling it runs nothing; make it a plain function"
+            self._console.write(f"OS_SymbolLookup: {text}")
             raise SymbolError(OS_ERROR, symbol)
         found: Callable[[Any], object] = function
         return found
 
     def _script(self, file: str) -> Path:
-        found = self.find(file)
-        if not isinstance(found, Path):
+        found = find_node(file, self._folder)
+        if found is None:
             raise self._missing(file)
         return found
 
-    def _module(self, file: str) -> ModuleType:
+    def _module(self, file: str, owner: str) -> ModuleType:
         found = self.find(file)
         if found is None:
             raise self._missing(file)
-        spec = _spec(found, f"cfepy_app_{id(self):x}_{len(self._loaded)}")
+        spec = _spec(found, self._names.new(owner))
         if spec is None or spec.loader is None:
             raise self._missing(file)
         module = importlib.util.module_from_spec(spec)
         sys.modules[spec.name] = module
-        self._loaded.append(spec.name)
         try:
             spec.loader.exec_module(module)
-        except Exception as error:
+        except (TaskExit, KeyboardInterrupt):
+            raise
+        except BaseException as error:  # also sys.exit(): it is the module that ends, not the process
             self._console.write(app_traceback(error))
-            raise OsalError(OS_ERROR, f"{file}: {type(error).__name__}: {error}") from error
+            raise OsalError(OS_ERROR, f"{file}: {described(error)}") from error
         return module
 
     def _missing(self, file: str) -> OsalError:
@@ -146,6 +163,18 @@ def find_code(file: str, folder: Path) -> Path | str | None:
     return _installed(str(stem).replace("/", "."))
 
 
+def find_node(file: str, folder: Path) -> Path | None:
+    """The script of a ROS node behind a virtual path below /cf: x.py, or a file x, as ROS scripts are often called.
+
+    OSAL never opens it, so OSAL's limits for file names do not hold for it.
+    """
+    found = find_code(file, folder)
+    if isinstance(found, Path):
+        return found
+    plain = folder / file.removeprefix("/cf/").removesuffix(NODE_SUFFIX)
+    return plain if plain.is_file() else None
+
+
 def _installed(name: str) -> str | None:
     if not all(part.isidentifier() for part in name.split(".")):
         return None
@@ -164,6 +193,13 @@ def _spec(found: Path | str, name: str) -> importlib.machinery.ModuleSpec | None
         found = Path(installed.origin)
     inner = [str(found.parent)] if found.name == "__init__.py" else None
     return importlib.util.spec_from_file_location(name, found, submodule_search_locations=inner)
+
+
+def _kind_without_body(function: Callable[..., Any]) -> str | None:
+    """What a function is whose call only makes an object; None for a usual one."""
+    if inspect.iscoroutinefunction(function) or inspect.isasyncgenfunction(function):
+        return "async"
+    return "a generator (it has a yield)" if inspect.isgeneratorfunction(function) else None
 
 
 def _stem(file: str) -> str:

@@ -14,6 +14,7 @@ from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, parse
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.mission.mission import NS_PER_S, Mission
 from cfepy.mission.msg_names import names_of
+from cfepy.mission.tracebacks import described
 
 EVENT_TYPES = {DEBUG: "DEBUG", INFORMATION: "INFORMATION", ERROR: "ERROR", CRITICAL: "CRITICAL"}
 NOT_STARTED = "NOT STARTED"
@@ -244,7 +245,7 @@ def _apps(mission: Mission, at: Mark, core: set[str]) -> list[AppResult]:
                 cpu_share=history.cpu_ns / end_ns if end_ns else 0.0,
                 restarts=history.restarts,
                 deaths=history.deaths,
-                error=None if error is None else f"{type(error).__name__}: {error}",
+                error=None if error is None else described(error),
                 core=history.name in core,
             )
         )

@@ -7,23 +7,42 @@ from pathlib import Path
 
 PACKAGE = str(Path(__file__).resolve().parents[1])
 SHARED = str(Path(PACKAGE) / "share")
+INNERMOST = 50  # frames that are shown: how deep a runaway recursion gets differs between task contexts
 
 
 def app_traceback(error: BaseException) -> str:
-    """The formatted traceback of an error, frames of cfepy left out; all of it when nothing else would be left."""
-    text = traceback.TracebackException.from_exception(error)
-    kept = [frame for frame in text.stack if not _is_ours(frame.filename)]
-    if kept:
-        text.stack = traceback.StackSummary.from_list(kept)
+    """The formatted traceback of an error and its causes, without frames of cfepy; all when nothing would be left."""
+    text = traceback.TracebackException.from_exception(error, limit=-INNERMOST)
+    whole = list(text.stack)
+    _strip(text, set())
+    if not text.stack and not isinstance(error, SyntaxError):  # that one names its place by itself
+        text.stack = traceback.StackSummary.from_list(whole)
     return "".join(text.format()).rstrip()
 
 
 def reason(error: BaseException) -> str:
     """The last line of a traceback, with the place: `ValueError: no such joint (arm.py:12)`."""
-    frames = traceback.extract_tb(error.__traceback__)
+    frames = traceback.extract_tb(error.__traceback__, limit=-INNERMOST)
     own = [frame for frame in frames if not _is_ours(frame.filename)] or frames
     what = traceback.format_exception_only(error)[-1].strip()
     return f"{what} ({Path(own[-1].filename).name}:{own[-1].lineno})" if own else what
+
+
+def described(error: BaseException) -> str:
+    """Type and text of an error, also when its own `__str__` fails."""
+    try:
+        return f"{type(error).__name__}: {error}"
+    except Exception:
+        return f"{type(error).__name__}: its text cannot be had"
+
+
+def _strip(text: traceback.TracebackException | None, seen: set[int]) -> None:
+    if text is None or id(text) in seen:
+        return
+    seen.add(id(text))
+    text.stack[:] = [frame for frame in text.stack if not _is_ours(frame.filename)]
+    for inner in (text.__cause__, text.__context__, *(text.exceptions or ())):
+        _strip(inner, seen)
 
 
 def _is_ours(file: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.machinery import SourceFileLoader
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from cfepy.nodes.report import traceback_text
 from cfepy.nodes.signal_module import NodeInterrupt
@@ -42,6 +42,16 @@ def run_script(universe: Universe) -> int:
         universe.stdout.finish()
         universe.stderr.finish()
     return universe.exit_status
+
+
+def exit_from_handler(universe: Universe, error: SystemExit) -> NoReturn:
+    """End the program from a task beside its main one, for a signal handler that called `sys.exit`.
+
+    Exit hooks run here, then all tasks of the program end.
+    """
+    status = _exit_code(universe, error.code)
+    universe.run_exit_hooks()
+    universe.exit_now(status)
 
 
 def _execute(universe: Universe) -> int:

@@ -129,13 +129,14 @@ class OsTimeBase(OsObject):
             self.kernel.wake_first(self.waits)
 
     def expire(self, freerun: int) -> None:
-        """Run the callbacks that are due; an error in one is its application's, and the time base goes on."""
+        """Run the callbacks that are due; an error in one is its application's, and stops only that timer."""
         task = self.kernel.current
         for timer in tuple(self.timers):
             task.owner = timer.owner
             try:
                 timer.expire(freerun)
-            except Exception as error:
+            except (Exception, SystemExit) as error:
+                timer.due = None
                 if not self.kernel.on_task_error(task, error):
                     raise
         task.owner = None

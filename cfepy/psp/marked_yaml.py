@@ -13,6 +13,8 @@ from typing import Any
 
 from cfepy.status import UsageError
 
+MOST = (1 << 62) - 1  # what times in ns can hold
+
 
 @dataclass(frozen=True, slots=True)
 class Marked:
@@ -65,14 +67,16 @@ class Marked:
             raise self.fail(f"is {self.plain()!r}, it must be a list")
         return self.value
 
-    def integer(self, lowest: int = 0) -> int:
-        """The value as a whole number of at least `lowest`.
+    def integer(self, lowest: int = 0, highest: int = MOST) -> int:
+        """The value as a whole number from `lowest` to `highest`.
 
         Raises:
             UsageError: it is something else.
         """
         if not isinstance(self.value, int) or isinstance(self.value, bool) or self.value < lowest:
             raise self.fail(f"is {self.plain()!r}, it must be a whole number of at least {lowest}")
+        if self.value > highest:
+            raise self.fail(f"is {self.value}, it must be at most {highest}")
         return self.value
 
     def text(self) -> str:
@@ -114,6 +118,8 @@ def load(path: Path) -> Marked:
         raise UsageError(f"is not YAML: {error.problem or error.context}", file=path, line=line) from None
     except UsageError:
         raise
+    except RecursionError:
+        raise UsageError("is nested too deeply, or has an alias of something inside itself", file=path) from None
     except (yaml.YAMLError, ValueError) as error:
         raise UsageError(f"is not YAML: {error}", file=path) from None
     finally:

@@ -17,6 +17,8 @@ from cfepy.status import UsageError
 DEFAULT_NODE_CALL_NS = 1000
 _UNITS = {"B": 1, "KiB": 1024, "MiB": 1024 * 1024}
 _NS_PER_S = 1_000_000_000
+MOST_BYTES = 1 << 32  # a board with more needs none of this
+MOST_LIMIT = (1 << 31) - 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,11 +160,14 @@ def _number(key: str, entry: Marked) -> int:
 def _size(entry: Marked) -> int:
     """Bytes: a whole number, or one with a unit, "512 KiB"."""
     if not isinstance(entry.value, str):
-        return entry.integer()
+        return entry.integer(highest=MOST_BYTES)
     count, _, unit = entry.value.partition(" ")
     if not count.isdecimal() or unit not in _UNITS:
         raise entry.fail(f"is {entry.value!r}, it must be bytes or a number with {', '.join(_UNITS)}, such as 512 KiB")
-    return int(count) * _UNITS[unit]
+    size = int(count) * _UNITS[unit]
+    if size > MOST_BYTES:
+        raise entry.fail(f"is {entry.value!r}, it must be at most {MOST_BYTES // _UNITS['MiB']} MiB")
+    return size
 
 
 def _sram(entry: Marked) -> tuple[MemoryRegion, ...]:
@@ -184,7 +189,7 @@ def _limits(entry: Marked) -> dict[str, int | str]:
     defaults = PlatformConfig()
     limits: dict[str, int | str] = {}
     for name, item in entry.mapping([known.name for known in fields(PlatformConfig)]).items():
-        limits[name] = item.text() if isinstance(getattr(defaults, name), str) else item.integer(1)
+        limits[name] = item.text() if isinstance(getattr(defaults, name), str) else item.integer(1, MOST_LIMIT)
     return limits
 
 

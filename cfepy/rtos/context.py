@@ -16,6 +16,7 @@ class Context(Protocol):
     """A way to run tasks."""
 
     name: str
+    interrupts: tuple[type[BaseException], ...]  # come from outside the simulation: they end the run, not just a task
 
     def bind_host(self, host: Task) -> None:
         """Prepare the caller of `Kernel.run`, which takes part as a task of its own."""

@@ -13,7 +13,7 @@ from typing import Any
 from cfepy.rtos.task import Task
 
 try:
-    from greenlet import getcurrent, greenlet
+    from greenlet import GreenletExit, getcurrent, greenlet
 except ImportError as missing:
     raise ValueError("greenlet tasks need the library greenlet: pip install 'cfepy[fast]'") from missing
 
@@ -26,6 +26,7 @@ class GreenletContext:
     """
 
     name = "greenlet"
+    interrupts: tuple[type[BaseException], ...] = (KeyboardInterrupt, GreenletExit)
 
     def __init__(self) -> None:
         self._starter = greenlet(_start_all)

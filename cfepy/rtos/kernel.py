@@ -154,8 +154,8 @@ class Kernel(Scheduler):
 
     def _failure(self, task: Task, error: BaseException) -> None:
         task.error = error
-        if not isinstance(error, Exception) and not isinstance(error, SystemExit):
-            self._interrupted = error  # Ctrl-C reached a task on the host's own thread
+        if isinstance(error, self.context.interrupts):
+            self._interrupted = error
             return
         try:
             handled = self.on_task_error(task, error)

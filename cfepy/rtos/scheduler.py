@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from heapq import heapify, heappop, heappush
+from operator import index
 from typing import Any
 
 from cfepy import trace as tr
@@ -22,6 +23,18 @@ from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit, WaitList
 HOST_PRIORITY = 256
 SLICE_NS = 20_000  # equals take turns when this much virtual CPU time was used
 MAX_REFUSALS = 100  # kernel calls that a dying task may try before it is left where it stands
+
+
+def whole(time_ns: Any) -> int:
+    """A time as an int: a clock that became a float once would never be exact again.
+
+    Raises:
+        TypeError: it is no whole number.
+    """
+    try:
+        return int(index(time_ns))
+    except TypeError:
+        raise TypeError(f"a time is a whole number, an int, not {time_ns!r}") from None
 
 
 class Scheduler:
@@ -57,6 +70,8 @@ class Scheduler:
         task = self.current
         if task.dying:
             self._refuse(task)
+        if type(duration_ns) is not int:
+            duration_ns = whole(duration_ns)
         when = self.now + (duration_ns if duration_ns > 0 else 1)
         if self.tick_ns:
             when = -(-when // self.tick_ns) * self.tick_ns
@@ -77,6 +92,8 @@ class Scheduler:
         task = self.current
         if task.dying:
             self._refuse(task)
+        if type(timeout_ns) is not int:
+            timeout_ns = whole(timeout_ns)
         if waits and waits[-1].priority > task.priority:
             at = len(waits)
             while at and waits[at - 1].priority > task.priority:

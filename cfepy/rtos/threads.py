@@ -83,6 +83,7 @@ class ThreadContext:
     """The reference context; see the module's text."""
 
     name = "thread"
+    interrupts: tuple[type[BaseException], ...] = (KeyboardInterrupt,)
 
     def __init__(self) -> None:
         self._cpu = _current_cpu()

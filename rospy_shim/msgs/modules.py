@@ -47,7 +47,7 @@ class MessageModule(ModuleType):
 
 
 def make_module(name: str, library: Library | None = None) -> ModuleType | None:
-    """A fresh module of a ROS package or of genpy; or one of the modules that hold the codec, which all nodes share.
+    """A fresh module of a ROS package, genpy or roslib; or one of the modules that hold the codec, which all share.
 
     The latter (`rospy_shim.msgs`, `rospy_shim.genpy` and below) must be the same inside a node and outside: a pickled
     message names a function there.
@@ -68,6 +68,8 @@ def make_module(name: str, library: Library | None = None) -> ModuleType | None:
         return importlib.import_module(name) if rest and rest[0] in ("msgs", "genpy") else None
     if package == "genpy":
         return _genpy_module(name, library)
+    if package == "roslib":
+        return _roslib_module(name, library)
     if not rest:
         known = library.names(package) is not None or library.names(package, "srv") is not None
         return _as_package(ModuleType(name)) if known else None
@@ -115,6 +117,22 @@ def _genpy_module(name: str, library: Library) -> ModuleType | None:
     for part in ("message", "rostime"):
         setattr(module, part, _genpy_module(f"genpy.{part}", library))
     return _as_package(module)
+
+
+def _roslib_module(name: str, library: Library) -> ModuleType | None:
+    """`roslib`, what many a node begins with, and `roslib.message`, an older name of `genpy.message`."""
+    module = ModuleType(name)
+    if name == "roslib.message":
+        module.__dict__.update(_genpy_contents("genpy.message", library) or {})
+        return module
+    if name != "roslib":
+        return None
+    module.__dict__["load_manifest"] = load_manifest
+    return _as_package(module)
+
+
+def load_manifest(package_name: str) -> None:
+    """roslib.load_manifest: puts the packages that a package depends on into sys.path; here all are found anyhow."""
 
 
 def _genpy_contents(name: str, library: Library) -> dict[str, Any] | None:

@@ -89,11 +89,47 @@ def test_bad_options(make_mission: Write, capsys: pytest.CaptureFixture[str], op
     assert capsys.readouterr().err.startswith("cfepy: ")
 
 
-@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf", "soon"])
+@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf", "soon", "1e300", ""])
 def test_a_bad_time(seconds: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["run", "capture", f"--for={seconds}"])
     assert ended.value.code == 2
+    assert "is not a number of seconds; give more than 0 to 1e+09" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("factor", ["0", "-1", "nan", "1e-300", "inf", "fast"])
+def test_a_bad_factor(factor: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["run", "capture", f"--realtime={factor}"])
+    assert ended.value.code == 2
+    assert "is not a factor; give 0.001 to 1e+09" in capsys.readouterr().err
+
+
+def test_numbers_that_cannot_be_written_do_not_cost_the_report(
+    make_mission: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("needs a full device")
+    assert run(make_mission("Quiet"), "--quiet", "--json", "/dev/full") == 2
+    shown = capsys.readouterr()
+    assert shown.out.splitlines()[-1].startswith("trace: ")
+    assert shown.err == "cfepy: /dev/full: --json: could not be written: No space left on device\n"
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_a_process_without_standard_output(make_mission: Write, command: str) -> None:
+    script = f'exec "{sys.executable}" -m cfepy {command} "{make_mission("Quiet")}" >&-'
+    ended = subprocess.run(["sh", "-c", script], stderr=subprocess.PIPE, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def test_an_app_that_raises_keyboard_interrupt_ends_the_run_like_ctrl_c(
+    make_mission: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = make_mission("Quiet")
+    (folder / "apps.py").write_text("def Quiet(cfe):\n    raise KeyboardInterrupt\n")
+    assert run(folder, "--quiet") == 130
+    assert "ended by Ctrl-C" in capsys.readouterr().err
 
 
 def test_a_board_on_which_the_core_cannot_boot(
@@ -244,6 +280,33 @@ def test_a_second_ctrl_c_ends_even_an_endless_loop(make_mission: Write) -> None:
             pass  # signals that arrive before the first was handled are one signal
     assert process.returncode == 130
     assert process.communicate()[0].splitlines()[-1].startswith("trace: ")
+
+
+@pytest.mark.parametrize(
+    ("body", "has_report"),
+    [
+        ("    try:\n        while True: cfe.os.task_delay(100)\n    finally:\n        while True: pass\n", True),
+        ("    import time\n    time.sleep(1000)\n", False),
+    ],
+)
+def test_ctrl_c_ends_the_process_whatever_a_task_does(make_mission: Write, body: str, has_report: bool) -> None:
+    folder = make_mission("Quiet")
+    (folder / "apps.py").write_text(f"def Quiet(cfe):\n{body}")
+    process = start("run", str(folder), "--for", "1")
+    assert process.stdout is not None
+    while "Loading file" not in process.stdout.readline():
+        pass
+    for _ in range(50):
+        process.send_signal(signal.SIGINT)
+        try:
+            process.wait(0.2)
+            break
+        except subprocess.TimeoutExpired:
+            pass
+    assert process.returncode == 130
+    out, err = process.communicate()
+    assert "Traceback" not in err
+    assert ("\ntrace: " in out) == has_report
 
 
 def test_a_reader_that_went_away_is_no_error(make_mission: Write) -> None:

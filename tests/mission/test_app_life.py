@@ -154,3 +154,12 @@ def test_a_mission_can_be_closed_while_an_app_refuses_to_die(tmp_path: Path) -> 
     """
     mission = fly(write_mission(tmp_path, APP.format("stubborn", "STUBBORN", 0) + "!", stubborn=source), 2)
     assert [task.name for task in mission.kernel.stuck] == ["STUBBORN"]
+
+
+@pytest.mark.parametrize("name", ["a_talker_without_suffix", "a_script_with_a_long_name.py"])
+def test_nodes_may_be_called_what_ros_scripts_are_called(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("#!/usr/bin/env python\nprint(__name__, __file__.rpartition('/')[2])\n")
+    startup = f"CFE_APP, {name}, __main__, TALKER, 60, 16384, 0, 0;\n!"
+    with fly(write_mission(tmp_path, startup), 1) as mission:
+        assert f"[TALKER] __main__ {name}" in text_of(mission)
+        assert "Could not load file" not in text_of(mission)

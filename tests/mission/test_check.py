@@ -43,6 +43,7 @@ def test_a_good_mission(tmp_path: Path) -> None:
         ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 0;", "the name 'HK' is taken by line 1"),
         ("CFE_APP, hk, HK_AppMain, CFE_ES, 60, 16384, 0, 0;", "the name 'CFE_ES' is taken by the core application"),
         ("CFE_APP, hk, HK_AppMain, TWENTY_CHARACTERS_XX, 60, 1, 0, 0;", "at most 19 fit"),
+        ("CFE_APP, twenty_characters.py, A, HK2, 60, 16384, 0, 0;", "twenty_characters.py has 20 characters or more"),
         ("CFE_APP, /ram/hk, HK_AppMain, HK2, 60, 16384, 0, 0;", "/ram/hk.so is not below /cf"),
         ("CFE_LIB, hk, HK_LibInit, LIB, 0, 0, 0, 0;", "has no function HK_LibInit"),
         ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0, 0", "the last entry has no ';' and is lost"),
@@ -99,6 +100,14 @@ def test_an_entry_point_that_is_not_there(tmp_path: Path, source: str) -> None:
     ((_, line, text),) = check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!")
     assert line == 1
     assert "has no function Main" in text
+
+
+def test_a_node_may_be_called_what_ros_scripts_are_called(tmp_path: Path) -> None:
+    (tmp_path / "a_talker_without_suffix").write_text("import rospy\n")
+    (tmp_path / "a_script_with_a_long_name.py").write_text("import rospy\n")
+    line = "CFE_APP, a_talker_without_suffix, __main__, TALKER, 60, 16384, 0, 0;\n"
+    line += "CFE_APP, a_script_with_a_long_name.py, __main__, OTHER, 60, 16384, 0, 0;\n"
+    assert check(tmp_path, line + "!") == []
 
 
 def test_nothing_is_executed(tmp_path: Path) -> None:

@@ -92,3 +92,21 @@ def test_unknown_boards() -> None:
         load_profile("vax")
     with pytest.raises(UsageError, match=r"nowhere\.yaml: cannot be read"):
         load_profile("nowhere.yaml")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("data_flash: 99999999999999999999999", "it must be at most 4294967296"),
+        ("data_flash: 99999999 MiB", "it must be at most 4096 MiB"),
+        ("limits: {es_cds_size: 99999999999999999999999}", "it must be at most 2147483647"),
+        ("tick_ns: 99999999999999999999999", "it must be at most 4611686018427387903"),
+        ("sram: &x [*x]", "has an alias of something inside itself"),
+        ("sram: " + "[" * 3000 + "]" * 3000, "is nested too deeply"),
+    ],
+)
+def test_absurd_boards(tmp_path: Path, text: str, said: str) -> None:
+    board = tmp_path / "board.yaml"
+    board.write_text(f"name: absurd\n{text}\n")
+    with pytest.raises(UsageError, match=said):
+        load_profile(board)

@@ -158,3 +158,14 @@ def test_load_package() -> None:
         load_package("nope")
     with pytest.raises(UsageError, match="no message type 'std_msgs/Nope'"):
         message_class("std_msgs/Nope")
+
+
+def test_roslib() -> None:
+    roslib, message = _module("roslib"), _module("roslib.message")
+    assert roslib.__path__ == []
+    assert roslib.load_manifest("some_package") is None
+    assert message.get_message_class("std_msgs/String") is message_class("std_msgs/String")
+    assert message.get_message_class("std_msgs/Nope") is None
+    assert message.get_service_class("std_srvs/SetBool") is service_class("std_srvs/SetBool")
+    assert message.Message is genpy.Message
+    assert make_module("roslib.scriptutil") is None

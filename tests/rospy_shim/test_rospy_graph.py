@@ -7,6 +7,7 @@ import pytest
 from cfepy.nodes.config import RosConfig, TopicConfig
 from cfepy.status import UsageError
 from rospy_shim import names
+from rospy_shim.exceptions import ROSException
 from rospy_shim.graph import FIRST_MSG_ID, LAST_MSG_ID, Graph, msg_id_of
 from rospy_shim.params import ParameterTree, marshalled
 from rospy_shim.transport import Assembler, segments
@@ -70,6 +71,41 @@ def test_names_for_others_and_helpers() -> None:
     assert names.canonicalize_name("/a//b/") == "/a/b"
     assert names.program_arguments(["s", "a:=b", "--x", "_p:=1"]) == ["s", "--x"]
     assert names.command_line_params(["_p:=1", "__name:=n", "a:=b"]) == {"p": "1"}
+
+
+@pytest.mark.parametrize(
+    ("name", "caller_id", "resolved"),
+    [("~foo", "/", "/foo"), ("~/foo", "/ns/node", "/foo"), ("~foo//bar/", "/ns/node", "/ns/node/foo/bar")],
+)
+def test_private_names_of_others(name: str, caller_id: str, resolved: str) -> None:
+    assert names.Names(["script"], {}).resolve_name(name, caller_id) == resolved
+
+
+def test_which_arguments_are_the_programs_own() -> None:
+    ros = ["a:=b", "/a:=/b", "~p:=1", "_x:=1", "__name:=n", "a/b:=c", "x:="]
+    own = ["-bar:=baz", "--x=y:=z", ":=", ":=y", "9a:=b", "a-b:=c", "a b:=c"]
+    assert names.program_arguments(["s", *ros, *own]) == ["s", *own]
+    assert names.load_mappings([*ros, *own, "q:=r:=s"]) == {
+        "a": "b",
+        "/a": "/b",
+        "~p": "1",
+        "__name": "n",
+        "a/b": "c",
+    }
+
+
+@pytest.mark.parametrize(
+    ("caller_id", "name", "scoped"),
+    [("/", "/name", "name"), ("/ns", "/ns/name", "ns/name"), ("/ns/node", "/ns/name", "name")],
+)
+def test_scoped_names(caller_id: str, name: str, scoped: str) -> None:
+    assert names.scoped_name(caller_id, name) == scoped
+
+
+@pytest.mark.parametrize("caller_id", ["", "name", "~name"])
+def test_scoped_names_need_a_global_caller(caller_id: str) -> None:
+    with pytest.raises(ROSException, match="caller_id must be global"):
+        names.scoped_name(caller_id, "/name")
 
 
 def test_parameter_tree() -> None:

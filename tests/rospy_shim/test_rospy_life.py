@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from cfepy.nodes.config import NodeConfig
 from tests.rospy_shim.missions import Run, run_nodes
 
@@ -99,6 +101,24 @@ print(os.environ["MODE"], rospy.names.get_mappings()["scan"])
     ]
 
 
+def test_parameters_of_a_command_line(tmp_path: Path) -> None:
+    lines = printed(
+        tmp_path,
+        """
+from rospy.client import load_command_line_node_params as load
+print(load([]), load(["a:=b", "c", "__n:=1"]), load(["_a:=1", "_b:=[x, y]", "_c:=text"]))
+for bad in ("_a:=b:=c", "_a:={"):
+    try:
+        load([bad])
+    except rospy.ROSInitException as error:
+        print(str(error).partition(":")[0])
+any_message = rospy.AnyMsg()
+print(any_message.deserialize("text")._buff)
+""",
+    )
+    assert lines == ["{} {} {'a': 1, 'b': ['x', 'y'], 'c': 'text'}", *["invalid command-line parameters"] * 2, "text"]
+
+
 def test_anonymous_names_differ_and_repeat(tmp_path: Path) -> None:
     script = "import rospy\nrospy.init_node('worker', anonymous=True)\nprint(rospy.get_name())\n"
     runs = []
@@ -186,6 +206,39 @@ print("end")
     assert lines == ["signal 2", "end"]
 
 
+def test_handler_from_before_init_node_runs_after_the_shutdown(tmp_path: Path) -> None:
+    lines = printed(
+        tmp_path,
+        """
+import signal
+signal.signal(signal.SIGINT, lambda number, frame: print("signal", number, rospy.is_shutdown()))
+rospy.init_node("probe")
+rospy.on_shutdown(lambda: print("hook"))
+rospy.spin()
+""",
+    )
+    assert lines == ["hook", "signal 2 True"]
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_own_signal_handler_may_exit(tmp_path: Path, tasks: str) -> None:
+    script = """
+import atexit, rospy, signal, sys, time
+rospy.init_node("probe")
+signal.signal(signal.SIGINT, lambda number, frame: sys.exit("enough"))
+rospy.on_shutdown(lambda: print("hook"))
+atexit.register(lambda: print("atexit"))
+try:
+    while True:
+        time.sleep(0.3)
+finally:
+    print("finally")
+"""
+    result = run_nodes(tmp_path, {"PROBE": script}, tasks=tasks)
+    assert result.printed["probe"] == ["enough", "atexit", "hook", "finally"]
+    assert result.finished
+
+
 def test_es_asks_a_node_to_end(tmp_path: Path) -> None:
     app = """
 def KILLER_AppMain(cfe):
@@ -248,7 +301,12 @@ rospy.core.add_shutdown_hook(lambda reason: print("{delay}", reason))
 rospy.spin()
 """
     result = run_nodes(tmp_path, {"ONE": script.format(delay=0.1), "TWO": script.format(delay=1.0)})
-    assert result.printed["twin"] == ["0.1 [/twin] Reason: new node registered with same name", "1.0 the run is over"]
+    request = "[/twin] Reason: new node registered with same name"
+    assert result.printed["twin"] == [
+        f"shutdown request: {request}",
+        f"0.1 external shutdown request from [/master]: [{request}]",
+        "1.0 the run is over",
+    ]
 
 
 def test_failing_node_ends_its_application(tmp_path: Path) -> None:
@@ -294,9 +352,9 @@ from rospy import *
 from rospy.exceptions import ROSException as again
 from rospy_shim import Publisher as other
 print(rospy_shim is rospy, rospy_shim.core is rospy.core, again is ROSException)
-print(other is Publisher, Timer is rospy.Timer)
+print(other is Publisher, Timer is rospy.Timer, rospy.client.DEBUG == rospy.DEBUG == 1)
 message = pickle.loads(pickle.dumps([String("x"), rospy.Time(5), rospy.Duration(1)]))
 print(message[0].data, message[1] == rospy.Time(5), repr(message[2]))
 """,
     )
-    assert lines == ["True True True", "True True", "x True rospy.Duration[1000000000]"]
+    assert lines == ["True True True", "True True True", "x True rospy.Duration[1000000000]"]

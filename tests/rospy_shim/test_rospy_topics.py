@@ -351,6 +351,22 @@ def test_missing_queue_size_warns_once(tmp_path: Path) -> None:
     assert len([line for line in lines if "SyntaxWarning" in line and "queue_size" in line]) == 1
 
 
+def test_warnings_point_at_the_line_of_the_node(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+def talk():
+    return rospy.Publisher("a", String)
+talk()
+rospy.set_param("1bad", 0)
+rospy.Subscriber("2bad", String)
+""",
+    )
+    assert ["probe.py" in line for line in lines if "Warning:" in line] == [True] * 3
+    code = ['return rospy.Publisher("a", String)', 'rospy.set_param("1bad", 0)', 'rospy.Subscriber("2bad", String)']
+    assert [line.strip() for line in lines if line.startswith("  ")] == code
+
+
 def test_remapped_topic_and_published_topics(tmp_path: Path) -> None:
     lines = run(
         tmp_path,

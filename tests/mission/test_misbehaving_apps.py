@@ -1,0 +1,150 @@
+"""Applications and libraries that misbehave: the mission goes on, says what happened, and its digest stays the same."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.mission import Mission
+from cfepy.mission.results import Results, mark
+from tests.mission.flights import write_mission
+
+APP = "CFE_APP, app, Main, APP, 50, 16384, 0x0, 0;\n"
+LIBRARY = "CFE_LIB, app, Init, LIBRARY, 0, 0, 0x0, 0;\n"
+READY = "    cfe.evs.register()\n    cfe.es.run_loop()\n    cfe.os.task_delay(700)\n"
+
+
+def fly(folder: Path, source: str, startup: str = APP, seconds: float = 3.0, tasks: str = "thread") -> Mission:
+    write_mission(folder, startup + "!")
+    (folder / "app.py").write_text(source)
+    with Mission(str(folder), console=Console(quiet=True), tasks=tasks) as mission:
+        mission.run(seconds)
+    return mission
+
+
+def text_of(mission: Mission) -> str:
+    return "\n".join(mission.console.lines)
+
+
+def error_of(mission: Mission) -> str | None:
+    results = Results.of(mission, mark(mission, 1), mission.trace.digest())
+    return next(app.error for app in results.apps if app.name == "APP")
+
+
+@pytest.mark.parametrize("statement", ["import sys; sys.exit(3)", "raise GeneratorExit", "1 / 0"])
+def test_a_module_that_cannot_be_executed_is_a_line_of_the_startup_script(tmp_path: Path, statement: str) -> None:
+    mission = fly(tmp_path, f"{statement}\ndef Main(cfe): pass")
+    assert mission.booted is not None
+    assert "CFE_ES_LoadModule: Could not load file:" in text_of(mission)
+
+
+@pytest.mark.parametrize("statement", ["raise ValueError('spring')", "import sys; sys.exit(4)"])
+def test_a_library_whose_init_fails_is_not_loaded(tmp_path: Path, statement: str) -> None:
+    mission = fly(tmp_path, f"def Init(cfe):\n    {statement}", LIBRARY)
+    assert mission.booted is not None
+    assert "CFE_ES_LoadLibrary: Load Shared Library Init Error = 0xffffffff" in text_of(mission)
+    assert not list(mission.cfe.es.libs)
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [
+        ("async def Main(cfe):\n    pass", "Main of /cf/app.so is async: calling it runs nothing"),
+        ("def Main(cfe):\n    yield", "Main of /cf/app.so is a generator (it has a yield): calling it runs nothing"),
+    ],
+)
+def test_an_entry_point_that_would_not_run_is_refused(tmp_path: Path, source: str, said: str) -> None:
+    mission = fly(tmp_path, source)
+    assert said in text_of(mission)
+    assert "APP" not in mission.cfe.es.history
+
+
+def test_any_exception_is_the_death_of_its_app_alone(tmp_path: Path) -> None:
+    mission = fly(tmp_path, f"class Own(BaseException): pass\ndef Main(cfe):\n{READY}    raise Own('mine')\n")
+    assert mission.reset_reason is None
+    assert error_of(mission) == "Own: mine"  # also after the restart, and however that one ends
+
+
+@pytest.mark.parametrize("body", ["raise KeyError", "return 5"])
+def test_an_exception_without_a_text_is_told_all_the_same(tmp_path: Path, body: str) -> None:
+    source = f"class Own(Exception):\n    def __str__(self): {body}\n\ndef Main(cfe):\n{READY}    raise Own\n"
+    mission = fly(tmp_path, source)
+    assert "app_0_1.Own: <exception str() failed>" in text_of(mission)
+    assert error_of(mission) == "Own: its text cannot be had"
+
+
+def test_text_that_utf8_cannot_hold(tmp_path: Path) -> None:
+    mission = fly(
+        tmp_path, f"def Main(cfe):\n{READY}    cfe.es.write_to_sys_log('\\ud800')\n    raise OSError('\\ud800')"
+    )
+    assert error_of(mission) == "OSError: \ud800"
+
+
+def test_a_module_keeps_its_name_in_every_run_and_is_forgotten(tmp_path: Path) -> None:
+    source = f"def Main(cfe):\n    cfe.os.printf(__name__)\n{READY}    raise ValueError\n"
+    before = set(sys.modules)
+    runs = [fly(tmp_path, source, seconds=5) for _ in range(2)]
+    assert "cfepy_app_0_1" in text_of(runs[0])
+    assert runs[0].trace.digest() == runs[1].trace.digest()
+    assert set(sys.modules) <= before
+
+
+def test_restarts_leave_no_modules_behind(tmp_path: Path) -> None:
+    write_mission(tmp_path, APP + "!", app=f"def Main(cfe):\n{READY}    raise ValueError\n")
+    with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
+        mission.run(20)
+        assert mission.cfe.es.history["APP"].restarts > 1
+        assert len([name for name in sys.modules if name.startswith("cfepy_app_")]) == 2  # the place, and the last one
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_the_end_of_a_runaway_recursion_is_the_same_everywhere(tmp_path: Path, tasks: str) -> None:
+    if tasks == "greenlet":
+        pytest.importorskip("greenlet")
+    mission = fly(tmp_path, f"def deeper(): deeper()\ndef Main(cfe):\n{READY}    deeper()\n", tasks=tasks)
+    assert "[Previous line repeated 47 more times]" in text_of(mission)
+
+
+def test_a_traceback_shows_no_frames_of_cfepy_in_its_chain(tmp_path: Path) -> None:
+    source = f"""
+def Main(cfe):
+{READY}
+    try:
+        cfe.es.restart_app(cfe.es.get_app_id())
+        while True:
+            cfe.os.task_delay(100)
+    finally:
+        raise ValueError("while it was ended")
+"""
+    mission = fly(tmp_path, source, seconds=8)
+    text = text_of(mission)
+    assert "while it was ended" in text
+    assert "kernel.py" not in text
+    assert mission.reset_reason is None  # it was being ended anyway
+    assert mission.cfe.es.history["APP"].restarts >= 1
+
+
+@pytest.mark.parametrize("time", ["0.25", "float('nan')"])
+def test_the_clock_stays_a_whole_number(tmp_path: Path, time: str) -> None:
+    mission = fly(tmp_path, f"def Main(cfe):\n{READY}    cfe.os.task_delay({time})\n")
+    assert type(mission.kernel.now) is int
+    assert "a time is a whole number, an int, not " in text_of(mission)
+
+
+@pytest.mark.parametrize("statement", ["raise ValueError('tick')", "import sys; sys.exit()"])
+def test_a_timer_whose_callback_fails_stops(tmp_path: Path, statement: str) -> None:
+    source = f"""
+def Main(cfe):
+    def tick(timer_id):
+        {statement}
+{READY}
+    timer, _ = cfe.os.timer_create("TICK", tick)
+    cfe.os.timer_set(timer, 1000, 1000)
+    while cfe.es.run_loop():
+        cfe.os.task_delay(100)
+"""
+    mission = fly(tmp_path, source, seconds=2)
+    assert mission.cfe.es.history["APP"].deaths == 1
