@@ -26,7 +26,6 @@ class PlatformConfig:
     es_max_applications: int = 32
     es_max_libraries: int = 10
     es_max_memory_pools: int = 10
-    es_max_gen_counters: int = 8
     es_default_stack_size: int = 8192
     es_start_task_stack_size: int = 8192
     es_app_scan_rate_ms: int = 1000

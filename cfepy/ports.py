@@ -1,14 +1,23 @@
 """The seams between the core services: what each of them may ask of the others, as Protocols.
 
 ES, SB, EVS, TIME and TBL need one another (SB reports through EVS, EVS sends through SB), yet none imports another.
-A mission makes one `Ports`, hands it to all of them, and fills it in once they exist. This module holds types only and
-imports nothing of cfepy.
+A mission makes one `Ports`, hands it to all of them, and fills it in once they exist. Beside the types stand the few
+numbers that a service gives to another. Imports nothing of cfepy.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from typing import Protocol
+
+DEBUG, INFORMATION, ERROR, CRITICAL = 1, 2, 3, 4
+"""Event types (CFE_EVS_EventType_Enum_t), for `Events.send_event`."""
+
+SYSTEM_CORE_READY = 3
+"""All core applications run (CFE_ES_SystemState_CORE_READY), for `AppTable.wait_for_system_state`."""
+
+PEND_FOREVER = -1
+"""No limit of time (CFE_SB_PEND_FOREVER), for `Bus.receive_buffer`."""
 
 
 class Caller(Protocol):

@@ -25,7 +25,8 @@ from cfepy.es.records import (
     StartParams,
     TaskRecord,
 )
-from cfepy.es.tables import STARTUP_POLL_MS, EsCore
+from cfepy.es.tables import EsCore
+from cfepy.osal.limits import OS_MAX_API_NAME
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_ES_ERR_DUPLICATE_NAME,
@@ -37,7 +38,7 @@ from cfepy.status import (
     OsalError,
 )
 
-MAX_NAME = 19
+MAX_NAME = OS_MAX_API_NAME - 1
 Loaded = TypeVar("Loaded")
 
 
@@ -140,7 +141,7 @@ class AppServices(EsCore):
 
         def run() -> None:
             record.task = self.kernel.current
-            self.osal.task_delay(STARTUP_POLL_MS)
+            self.osal.task_delay(self.config.es_startup_sync_poll_ms)
             entry()
 
         record.task_id = self.osal.task_create(name, run, stack_size, priority, owner=app)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from cfepy.es.records import RESTART_APP, Fault
+from cfepy.es.records import Fault
 from cfepy.es.service import ExecutiveServices
+from cfepy.es.startup_script import EXCEPTION_RESTART_APP
+from cfepy.osal.limits import NS_PER_MS
 from cfepy.rtos import Semaphore
 from cfepy.status import CfeError
 
@@ -11,7 +13,6 @@ TASK_NAME = "ES_BG_TASK"
 STACK_SIZE = 4096
 PRIORITY = 200
 ACTIVE_SCAN_DIVISOR = 4  # while an application changes state, scans come four times as often
-NS_PER_MS = 1_000_000
 
 
 class BackgroundTask:
@@ -56,7 +57,7 @@ class BackgroundTask:
         app = fault.app
         if es.apps.find(app.app_id) is not app:
             return  # it was on its way out already: a `finally` block failed
-        if app.params.exception_action == RESTART_APP and not app.is_core:
+        if app.params.exception_action == EXCEPTION_RESTART_APP and not app.is_core:
             try:
                 es.restart_app(app.app_id)
                 self.wake()

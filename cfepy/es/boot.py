@@ -9,7 +9,6 @@ from cfepy.es.records import (
     LATE_INIT,
     RUNNING,
     SYSTEM_APPS_INIT,
-    SYSTEM_CORE_READY,
     SYSTEM_CORE_STARTUP,
     SYSTEM_OPERATIONAL,
     Entry,
@@ -18,7 +17,7 @@ from cfepy.es.records import (
 from cfepy.es.service import ExecutiveServices
 from cfepy.es.startup_script import CFE_LIB, BadLine, parse
 from cfepy.es.startup_script import Entry as ScriptEntry
-from cfepy.es.tables import STARTUP_POLL_MS
+from cfepy.ports import SYSTEM_CORE_READY
 from cfepy.status import CfeError
 
 NONVOL_STARTUP_FILE = "/cf/cfe_es_startup.scr"
@@ -124,6 +123,6 @@ class Boot:
         while not done():
             if waited >= limit_ms:
                 return False
-            self.es.osal.task_delay(STARTUP_POLL_MS)
-            waited += STARTUP_POLL_MS
+            self.es.osal.task_delay(self.es.config.es_startup_sync_poll_ms)
+            waited += self.es.config.es_startup_sync_poll_ms
         return True

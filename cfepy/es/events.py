@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from cfepy.ports import DEBUG as DEBUG
+from cfepy.ports import ERROR as ERROR
+from cfepy.ports import INFORMATION as INFORMATION
+
 INIT_INF_EID = 1
 INITSTATS_INF_EID = 2
 NOOP_INF_EID = 3
@@ -52,7 +56,3 @@ TLM_POOL_STATS_INFO_EID = 81
 INVALID_POOL_HANDLE_ERR_EID = 82
 VERSION_INF_EID = 91
 BUILD_INF_EID = 92
-
-DEBUG = 1
-INFORMATION = 2
-ERROR = 3

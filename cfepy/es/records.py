@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
+from cfepy.es.startup_script import EXCEPTION_RESTART_APP
 from cfepy.rtos import Task
 
 SYSTEM_EARLY_INIT = 1
 SYSTEM_CORE_STARTUP = 2
-SYSTEM_CORE_READY = 3
 SYSTEM_APPS_INIT = 4
 SYSTEM_OPERATIONAL = 5
 SYSTEM_SHUTDOWN = 6
@@ -32,9 +32,6 @@ SYS_DELETE = 7
 CORE_APP_INIT_ERROR = 8
 CORE_APP_RUNTIME_ERROR = 9
 
-RESTART_APP = 0  # exception actions
-PROC_RESTART = 1
-
 Entry = Callable[[], object]
 
 
@@ -49,7 +46,7 @@ class StartParams:
     symbol: str
     stack_size: int
     priority: int
-    exception_action: int = RESTART_APP
+    exception_action: int = EXCEPTION_RESTART_APP
 
 
 @dataclass(slots=True, eq=False)

@@ -10,15 +10,14 @@ from cfepy.es.records import (
     APP_RUN,
     LATE_INIT,
     RUNNING,
-    SYSTEM_CORE_READY,
     SYSTEM_OPERATIONAL,
     AppInfo,
     AppRecord,
     Fault,
     TaskInfo,
 )
-from cfepy.es.tables import STARTUP_POLL_MS
 from cfepy.fs import CRC_16, calculate_crc
+from cfepy.ports import SYSTEM_CORE_READY
 from cfepy.rtos import Task
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -81,8 +80,8 @@ class ExecutiveServices(AppServices):
         while self.system_state < state:
             if waited >= timeout_ms:
                 raise CfeError(CFE_ES_OPERATION_TIMED_OUT, f"system state {state} not reached in {timeout_ms} ms")
-            self.osal.task_delay(STARTUP_POLL_MS)
-            waited += STARTUP_POLL_MS
+            self.osal.task_delay(self.config.es_startup_sync_poll_ms)
+            waited += self.config.es_startup_sync_poll_ms
 
     def wait_for_startup_sync(self, timeout_ms: int) -> None:
         """Wait until the mission is operational; a timeout is not an error (CFE_ES_WaitForStartupSync)."""

@@ -116,6 +116,15 @@ def parse(data: bytes) -> Iterator[Entry | BadLine]:
             yield _parse_entry(raw)
 
 
+def entries(data: bytes) -> list[Entry]:
+    """The entries of a startup script that start something, in order.
+
+    Args:
+        data: the file.
+    """
+    return [entry for entry in parse(data) if isinstance(entry, Entry)]
+
+
 def check(data: bytes) -> list[Note]:
     """Everything in a script that its author should look at, also what cFE takes without a word.
 

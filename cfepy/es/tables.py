@@ -15,8 +15,6 @@ from cfepy.ports import Ports
 from cfepy.rtos import Kernel
 from cfepy.status import CFE_ES_ERR_NAME_NOT_FOUND, CFE_ES_ERR_RESOURCEID_NOT_VALID, CfeError
 
-STARTUP_POLL_MS = 50  # CFE_PLATFORM_ES_STARTUP_SYNC_POLL_MSEC
-
 
 class EsCore:
     """State of Executive Services; the base of its parts.

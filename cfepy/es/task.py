@@ -8,19 +8,20 @@ from typing import Any
 from cfepy.es import events as ev
 from cfepy.es import packets as pk
 from cfepy.es.background import PRIORITY, STACK_SIZE, TASK_NAME, BackgroundTask
-from cfepy.es.records import PROC_RESTART, RUNNING, SYSTEM_CORE_READY, StartParams
+from cfepy.es.records import RUNNING, StartParams
 from cfepy.es.service import ExecutiveServices
+from cfepy.es.startup_script import EXCEPTION_PROC_RESTART
 from cfepy.es.syslog import DISCARD, OVERWRITE
 from cfepy.fs import FileCategory, parse_input_file_name
 from cfepy.msg import CMD_HEADER_SIZE, CommandTable, Layout, telemetry
 from cfepy.msg.dispatch import BAD_CODE, BAD_MSG_ID, DONE
+from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY
+from cfepy.psp.psp import RST_SUBTYPE_POWER_CYCLE, RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.status import CfeError
 from cfepy.versions import CFE_VERSION, OFFICIAL, OSAL_VERSION, PSP_VERSION, version_string
 
 PIPE_NAME = "ES_CMD_PIPE"
 PIPE_DEPTH = 32
-POWER_ON = 2
-POWER_CYCLE = 1
 MODULES = ("CORE_API", "ES", "EVS", "FS", "SB", "TBL", "TIME", "OSAL", "PSP", "MSG", "SBR", "RESOURCEID", "CONFIG")
 
 
@@ -73,7 +74,7 @@ class EsTask:
         es.wait_for_system_state(SYSTEM_CORE_READY, es.config.es_core_max_startup_ms)
         while True:
             es.increment_task_counter()
-            packet = sb.receive_buffer(pipe, -1)
+            packet = sb.receive_buffer(pipe, PEND_FOREVER)
             if packet is not None:
                 self.process(packet)
                 self.background.wake()  # a command may have asked for something that the scan does
@@ -99,11 +100,7 @@ class EsTask:
         elif done.outcome == BAD_CODE:
             event, text = ev.CC1_ERR_EID, f"Invalid ground command code: ID = 0x{done.msg_id:X}, CC = {done.fcn_code}"
         else:
-            event = ev.LEN_ERR_EID
-            text = (
-                f"Invalid msg length: ID = 0x{done.msg_id:X},  CC = {done.fcn_code}, "
-                f"Len = {done.length}, Expected = {done.expected}"
-            )
+            event, text = ev.LEN_ERR_EID, done.length_text()
         self.error_counter += 1
         self._send(event, text, ev.ERROR)
 
@@ -132,10 +129,10 @@ class EsTask:
 
     def _restart(self, packet: bytes) -> None:
         kind = pk.RESTART_COMMAND.unpack(packet, CMD_HEADER_SIZE)["RestartType"]
-        if kind not in (1, POWER_ON):
+        if kind not in (RST_TYPE_PROCESSOR, RST_TYPE_POWERON):
             self._reject(ev.BOOT_ERR_EID, f"Invalid cFE restart type: {kind}")
             return
-        name = "PROCESSOR" if kind == 1 else "POWERON"
+        name = "PROCESSOR" if kind == RST_TYPE_PROCESSOR else "POWERON"
         self.es.write_to_sys_log(f"CFE_ES_ResetCFE: {name} RESET called from CFE_ES_ResetCFE (Commanded).")
         self.es.on_reset(f"{name} RESET (Commanded)")
 
@@ -171,7 +168,7 @@ class EsTask:
             return ev.START_NULL_APP_NAME_ERR_EID, f"{command}App Name is empty."
         if fields["Priority"] > 255:
             return ev.START_PRIORITY_ERR_EID, f"{command}Priority is too large: {fields['Priority']}."
-        if fields["ExceptionAction"] > PROC_RESTART:
+        if fields["ExceptionAction"] > EXCEPTION_PROC_RESTART:
             text = f"{command}Invalid Exception Action: {fields['ExceptionAction']}."
             return ev.START_EXC_ACTION_ERR_EID, text
         return None
@@ -284,8 +281,8 @@ class EsTask:
             "RegisteredExternalApps": sum(not app.is_core and app.state <= RUNNING for app in es.apps),
             "RegisteredTasks": sum(len(app.tasks) for app in es.apps),
             "RegisteredLibs": len(es.libs),
-            "ResetType": POWER_ON,
-            "ResetSubtype": POWER_CYCLE,
+            "ResetType": RST_TYPE_POWERON,
+            "ResetSubtype": RST_SUBTYPE_POWER_CYCLE,
             "ProcessorResets": self.background.processor_resets,
             "MaxProcessorResets": es.config.es_max_processor_resets,
             "BootSource": 1,

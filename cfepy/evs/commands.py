@@ -115,11 +115,7 @@ class EvsCommands:
             text = f"Invalid command code -- ID = 0x{done.msg_id:08x}, CC = {done.fcn_code}"
             self._error(ev.CFE_EVS_ERR_CC_EID, text)
         else:
-            text = (
-                f"Invalid msg length: ID = 0x{done.msg_id:X},  CC = {done.fcn_code}, "
-                f"Len = {done.length}, Expected = {done.expected}"
-            )
-            self._error(ev.CFE_EVS_LEN_ERR_EID, text)
+            self._error(ev.CFE_EVS_LEN_ERR_EID, done.length_text())
 
     def _done(self, event_id: int, text: str) -> bool:
         self._core.send_own(event_id, ev.DEBUG, text)

@@ -1,12 +1,14 @@
 """Event types and the event ids of Event Services, with NASA's names and numbers (cfe_evs_eventids.h).
 
-Imports nothing of cfepy.
+Imports only cfepy.ports.
 """
 
 from __future__ import annotations
 
-DEBUG, INFORMATION, ERROR, CRITICAL = 1, 2, 3, 4
-"""Event types (CFE_EVS_EventType_Enum_t)."""
+from cfepy.ports import CRITICAL as CRITICAL
+from cfepy.ports import DEBUG as DEBUG
+from cfepy.ports import ERROR as ERROR
+from cfepy.ports import INFORMATION as INFORMATION
 
 CFE_EVS_NOOP_EID = 0
 CFE_EVS_STARTUP_EID = 1

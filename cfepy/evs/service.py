@@ -1,7 +1,6 @@
-"""Event Services as applications and the other services call them (cfe_evs.h), and the making of an event.
+"""Event Services as applications and the other services call them (cfe_evs.h), and the task CFE_EVS.
 
-An event goes to the event log, to the console by way of the output ports, and onto the Software Bus. Imports no other
-service.
+How an event is made and where it goes is in `cfepy.evs.core`. Imports no other service.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from cfepy.evs.events import (
 )
 from cfepy.evs.log import DISCARD, OVERWRITE, EventLog
 from cfepy.ids import ES_APPID_BASE, get_base
-from cfepy.ports import Caller, Ports
+from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY, Caller, Ports
 from cfepy.rtos import Kernel
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -37,8 +36,6 @@ from cfepy.versions import version_string
 
 PIPE_DEPTH = 32
 PIPE_NAME = "EVS_CMD_PIPE"
-CORE_READY = 3
-PEND_FOREVER = -1
 
 _U16_MAX = 0xFFFF
 _U32_MAX = 0xFFFFFFFF
@@ -96,7 +93,7 @@ class EventServices(EventCore):
         ports.sb.subscribe(pk.CFE_EVS_SEND_HK_MID, pipe)
         self.own_app_id = ports.es.get_app_id()
         self.send_own(CFE_EVS_STARTUP_EID, INFORMATION, f"cFE EVS Initialized: {version_string('CFE_EVS')}")
-        ports.es.wait_for_system_state(CORE_READY, self.config.es_core_max_startup_ms)
+        ports.es.wait_for_system_state(SYSTEM_CORE_READY, self.config.es_core_max_startup_ms)
         while True:
             ports.es.increment_task_counter()
             packet = ports.sb.receive_buffer(pipe, PEND_FOREVER)

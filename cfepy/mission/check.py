@@ -84,7 +84,7 @@ def _check_names(script: Path, entries: list[Entry]) -> Iterator[Finding]:
 
 
 def _check_code(script: Path, folder: Path, entry: Entry) -> Iterator[Finding]:
-    if not entry.path.startswith(FILES):
+    if not entry.path.startswith(FILES) or ".." in entry.path:
         text = f"{entry.path} is not below /cf, which is the mission's folder; write {FILES}..."
         yield Finding(script, entry.line, text)
         return

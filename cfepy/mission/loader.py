@@ -166,8 +166,10 @@ def find_code(file: str, folder: Path) -> Path | str | None:
 def find_node(file: str, folder: Path) -> Path | None:
     """The script of a ROS node behind a virtual path below /cf: x.py, or a file x, as ROS scripts are often called.
 
-    OSAL never opens it, so OSAL's limits for file names do not hold for it.
+    OSAL never opens it, so OSAL's limits for file names do not hold for it; it must be below /cf all the same.
     """
+    if ".." in file:
+        return None
     found = find_code(file, folder)
     if isinstance(found, Path):
         return found

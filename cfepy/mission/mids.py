@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from cfepy.console import Console
-from cfepy.es.startup_script import Entry, parse
+from cfepy.es.startup_script import entries
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.mission import Mission
 from cfepy.mission.msg_names import names_of
@@ -80,7 +80,7 @@ def _rows(mission: Mission) -> list[MidRow]:
     assert isinstance(bus, WatchedBus)
     names = names_of(mission.spec)
     ros = {row.msg_id: row for row in mission.ros.topics()} if mission.ros is not None else {}
-    nodes = {entry.name for entry in _entries(mission) if entry.symbol == NODE_SYMBOL}
+    nodes = {entry.name for entry in entries(mission.spec.script.read_bytes()) if entry.symbol == NODE_SYMBOL}
     found = []
     for msg_id in sorted({*bus.routes, *bus.senders, *ros}):
         row, route = ros.get(msg_id), bus.routes.get(msg_id)
@@ -93,7 +93,3 @@ def _rows(mission: Mission) -> list[MidRow]:
             subscribers = subscribers - nodes | set(row.subscribers)
         found.append(MidRow(msg_id, name, kind, sorted(senders), sorted(subscribers)))
     return found
-
-
-def _entries(mission: Mission) -> list[Entry]:
-    return [entry for entry in parse(mission.spec.script.read_bytes()) if isinstance(entry, Entry)]

@@ -16,6 +16,7 @@ from cfepy import versions
 from cfepy.app import Cfe
 from cfepy.console import Console
 from cfepy.es import Boot, CoreApp, EsTask, ExecutiveServices, ObjectTable
+from cfepy.es.startup_script import entries
 from cfepy.evs import EventServices
 from cfepy.mission.loader import NODE_SYMBOL, ModuleLoader, find_code
 from cfepy.mission.spec import MissionSpec, read_mission
@@ -168,10 +169,8 @@ class Mission:
 
     def _provide_tables(self) -> None:
         """Put the default tables of shipped apps into /cf, where the mission has none of its own."""
-        from cfepy.es.startup_script import Entry, parse
-
-        for entry in parse(self._script):
-            if not isinstance(entry, Entry) or entry.symbol == NODE_SYMBOL:
+        for entry in entries(self._script):
+            if entry.symbol == NODE_SYMBOL:
                 continue
             code = find_code(entry.path, self.spec.folder)
             if isinstance(code, Path) and code.name == "__init__.py":

@@ -12,21 +12,20 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from cfepy.es.startup_script import Entry, parse
+from cfepy.es.startup_script import entries
 from cfepy.mission.loader import NODE_SYMBOL, find_code
 from cfepy.mission.spec import MissionSpec
-from cfepy.msg import topics
+from cfepy.msg import is_valid_msg_id, topics
 
 SUFFIX = "_MID"
 CORE_SERVICES = ("ES", "EVS", "SB", "TBL", "TIME")
-HIGHEST_MSG_ID = 0x1FFF
 
 
 def names_of(spec: MissionSpec) -> dict[int, str]:
     """MsgId to name, as far as it can be told without running the mission; core services come first, topics last."""
     names = core_names()
-    for entry in parse(spec.script.read_bytes()):
-        if isinstance(entry, Entry) and entry.symbol != NODE_SYMBOL:
+    for entry in entries(spec.script.read_bytes()):
+        if entry.symbol != NODE_SYMBOL:
             for name, msg_id in declared(find_code(entry.path, spec.folder)):
                 names.setdefault(msg_id, _with_prefix(name, entry.name))
     for topic in spec.ros.topics.values():
@@ -77,7 +76,7 @@ def _msg_id(node: ast.expr) -> int | None:
         topic = node.args[0].value
         if function.endswith("_topic_id_to_msg_id") and hasattr(topics, function) and isinstance(topic, int):
             value = getattr(topics, function)(topic)
-    return value if isinstance(value, int) and 0 < value <= HIGHEST_MSG_ID else None
+    return value if isinstance(value, int) and is_valid_msg_id(value) else None
 
 
 def _with_prefix(name: str, owner: str) -> str:

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from cfepy.es.records import APP_ERROR, STATE_NAMES
-from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, parse
+from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, entries, parse
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.mission.mission import NS_PER_S, Mission
 from cfepy.mission.msg_names import names_of
@@ -297,4 +297,4 @@ def _libraries(mission: Mission) -> list[Entry]:
 
 
 def _entries(mission: Mission) -> list[Entry]:
-    return [entry for entry in parse(mission.spec.script.read_bytes()) if isinstance(entry, Entry)]
+    return entries(mission.spec.script.read_bytes())

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes.config import NodeConfig, RosConfig, TopicConfig
 from cfepy.psp.marked_yaml import Marked, load
 from cfepy.resources import shipped
@@ -19,7 +20,6 @@ from cfepy.status import UsageError
 STARTUP_SCRIPT = "startup.scr"
 MISSION_FILE = "mission.yaml"
 SECTIONS = ("name", "board", "nodes", "topics", "params")
-HIGHEST_MSG_ID = 0x1FFF
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +104,15 @@ def _named(section: Marked | None, read: Any) -> dict[str, Any]:
 
 
 def read_node(app: str, entry: Marked) -> NodeConfig:
+    """One entry under `nodes:`.
+
+    Args:
+        app: its key, the cFE name of the node's application.
+        entry: its value.
+
+    Raises:
+        UsageError: an unknown key, or a value that cannot be.
+    """
     fields = entry.mapping(["name", "namespace", "remap", "params", "args", "env"])
     namespace = fields["namespace"].text() if "namespace" in fields else "/"
     if not namespace.startswith("/"):
@@ -130,14 +139,23 @@ def _topics(section: Marked | None) -> dict[str, TopicConfig]:
 
 
 def read_topic(name: str, entry: Marked) -> TopicConfig:
+    """One entry under `topics:`.
+
+    Args:
+        name: its key, the topic's resolved name.
+        entry: its value.
+
+    Raises:
+        UsageError: an unknown key, a missing or impossible MsgId, a name without "/".
+    """
     if not name.startswith("/"):
         raise entry.fail(f'is the topic {name!r}; a topic name here begins with "/"')
     fields = entry.mapping(["msg_id", "raw"])
     if "msg_id" not in fields:
         raise entry.fail("needs a msg_id, such as `msg_id: 0x0901`")
     msg_id = fields["msg_id"].value
-    if not isinstance(msg_id, int) or not 0 < msg_id <= HIGHEST_MSG_ID:
-        raise fields["msg_id"].fail(f"is {msg_id!r}; a MsgId is a number from 1 to 0x{HIGHEST_MSG_ID:X}")
+    if not isinstance(msg_id, int) or not 0 < msg_id <= HIGHEST_VALID_MSG_ID:
+        raise fields["msg_id"].fail(f"is {msg_id!r}; a MsgId is a number from 1 to 0x{HIGHEST_VALID_MSG_ID:X}")
     raw = fields["raw"].value if "raw" in fields else False
     if not isinstance(raw, bool):
         raise fields["raw"].fail(f"is {raw!r}; write true or false")

@@ -34,6 +34,11 @@ class Dispatch(NamedTuple):
     expected: int
     result: object = None
 
+    def length_text(self) -> str:
+        """What the event of a core service says of a packet of the wrong length (TBL has words of its own)."""
+        sizes = f"Len = {self.length}, Expected = {self.expected}"
+        return f"Invalid msg length: ID = 0x{self.msg_id:X},  CC = {self.fcn_code}, {sizes}"
+
 
 class CommandTable:
     """Handlers by message id and function code.

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
     from cfepy.rtos import Task
 
-NS_PER_S = 1_000_000_000
 POLLS = 16  # so many calls of an uncontended lock cost one charge: a loop that polls under a lock makes progress
 MAX_WAIT_S = 1e9
 

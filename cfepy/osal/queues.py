@@ -142,14 +142,6 @@ class QueueApi(Core):
         record = self._queue(queue_id)
         return QueueInfo(record.name, record.creator)
 
-    def kernel_queue(self, queue_id: int) -> Queue:
-        """The kernel object behind a queue, for code that moves messages on a hot path (a pipe).
-
-        Raises:
-            OsalError: OS_ERR_INVALID_ID.
-        """
-        return self._queue(queue_id).queue
-
     def _queue(self, queue_id: int) -> OsQueue:
         record = self._find_queue(queue_id)
         if record is None:

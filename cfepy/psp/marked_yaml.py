@@ -14,6 +14,7 @@ from typing import Any
 from cfepy.status import UsageError
 
 MOST = (1 << 62) - 1  # what times in ns can hold
+MOST_VALUES = 100_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +112,11 @@ def load(path: Path) -> Marked:
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)
     try:
         node = loader.get_single_node()
-        return Marked(None, path, 1, "") if node is None else _mark(loader, node, path, "")
+        if node is None:
+            return Marked(None, path, 1, "")
+        if _written_out(node, {}) > MOST_VALUES:
+            raise UsageError(f"has more than {MOST_VALUES:,} values when its aliases are written out", file=path)
+        return _mark(loader, node, path, "")
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = None if mark is None else mark.line + 1
@@ -124,6 +129,17 @@ def load(path: Path) -> Marked:
         raise UsageError(f"is not YAML: {error}", file=path) from None
     finally:
         loader.dispose()
+
+
+def _written_out(node: Any, known: dict[int, int]) -> int:
+    """How many values a node has with its aliases written out; each node is counted once."""
+    if node.id == "scalar":
+        return 1
+    size = known.get(id(node))
+    if size is None:
+        inner = node.value if node.id == "sequence" else (each for pair in node.value for each in pair)
+        size = known[id(node)] = 1 + sum(_written_out(each, known) for each in inner)
+    return size
 
 
 def _mark(loader: Any, node: Any, path: Path, field: str) -> Marked:

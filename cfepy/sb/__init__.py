@@ -3,7 +3,8 @@
 The five services do not import each other; what SB needs of them it finds in its `Ports`.
 """
 
-from cfepy.sb.bus import PEND_FOREVER, POLL, SoftwareBus
+from cfepy.ports import PEND_FOREVER
+from cfepy.sb.bus import POLL, SoftwareBus
 from cfepy.sb.core import BusCosts
 from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE
 from cfepy.sb.task import SbTask

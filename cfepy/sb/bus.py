@@ -11,10 +11,10 @@ import struct
 
 from cfepy.config import PlatformConfig
 from cfepy.msg import CMD_HEADER_SIZE, compute_checksum
-from cfepy.ports import Ports
+from cfepy.ports import PEND_FOREVER, Ports
 from cfepy.rtos import FOREVER, TIMEOUT, Kernel
 from cfepy.sb import events as ev
-from cfepy.sb.core import BusCosts, error
+from cfepy.sb.core import BusCosts
 from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE, PipeServices
 from cfepy.sb.routing import SECONDARY, Destination, Pipe, Route
 from cfepy.sb.subscriptions import SubscriptionServices
@@ -27,7 +27,6 @@ from cfepy.status import (
 )
 from cfepy.trace import BATCH
 
-PEND_FOREVER = -1
 POLL = 0
 
 BUFFER_BYTES = 64  # of a buffer descriptor in front of each message (CFE_SB_BufferD_t)
@@ -136,11 +135,6 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         """
         self.transmit_msg(pack_empty_telemetry(msg_id, 0xC000) + payload)
 
-    def has_subscribers(self, msg_id: int) -> bool:
-        """Whether anybody would get a message."""
-        route = self.routes.get(msg_id)
-        return route is not None and bool(route.active)
-
     def _stamp(self, now: int) -> None:
         """Keep the spacecraft time of this instant, as the header wants it."""
         self._time = self.ports.time.stamp().to_bytes(6, "big")
@@ -217,7 +211,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
             text = f"Send Err:Invalid MsgId(0x{msg_id:x})in msg,App {self.caller_name()}"
             self.counters.msg_send_error += 1
             self.report_once(ev.SEND_INV_MSGID_EID, ev.ERROR, text)
-            raise error(CFE_SB_BAD_ARGUMENT, text)
+            raise CfeError(CFE_SB_BAD_ARGUMENT, text)
         self.counters.no_subscribers += 1
         self.unrouted.sent[msg_id] = self.unrouted.sent.get(msg_id, 0) + 1
         text = f"No subscribers for MsgId 0x{msg_id:x},sender {self.caller_name()}"
@@ -235,7 +229,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
     def _send_error(self, event_id: int, status: int, text: str) -> CfeError:
         self.counters.msg_send_error += 1
         self.report_once(event_id, ev.ERROR, text)
-        return error(status, text)
+        return CfeError(status, text)
 
     def _no_buffer(self, msg_id: int, packet: bytes) -> CfeError:
         self._queued_bytes -= len(packet)
@@ -270,13 +264,13 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         else:
             text = f"Rcv Err:Bad Input Arg:BufPtr 0x0,pipe {pipe.name},t/o {timeout_ms},app {app}"
             self.report_once(ev.RCV_BAD_ARG_EID, ev.ERROR, text)
-        return error(CFE_SB_BAD_ARGUMENT, text)
+        return CfeError(CFE_SB_BAD_ARGUMENT, text)
 
     def _read_error(self, pipe: Pipe) -> CfeError:
         self.counters.internal_error += 1
         text = f"Pipe Read Err,pipe {pipe.name},app {self.caller_name()},stat -1"
         self.report_once(ev.Q_RD_ERR_EID, ev.ERROR, text)
-        return error(CFE_SB_PIPE_RD_ERR, text)
+        return CfeError(CFE_SB_PIPE_RD_ERR, text)
 
     # -- memory ----------------------------------------------------------------------------------------------------
 

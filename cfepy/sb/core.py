@@ -13,7 +13,7 @@ from cfepy.ids import SB_PIPEID_BASE, IdTable
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
 from cfepy.sb.routing import Pipe, Route
-from cfepy.status import CFE_SB_MAX_PIPES_MET, CfeError
+from cfepy.status import CFE_SB_MAX_PIPES_MET
 
 
 @dataclass(slots=True)
@@ -125,8 +125,3 @@ class BusCore:
     def is_valid_msg_id(self, msg_id: int) -> bool:
         """Whether a MsgId is in 1..CFE_PLATFORM_SB_HIGHEST_VALID_MSGID (CFE_SB_IsValidMsgId)."""
         return 0 < msg_id <= self.config.sb_highest_valid_msg_id
-
-
-def error(status: int, text: str) -> CfeError:
-    """The error that a bus call raises after it reported the event of the same text."""
-    return CfeError(status, text)

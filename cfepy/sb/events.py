@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from cfepy.ports import DEBUG as DEBUG
+from cfepy.ports import ERROR as ERROR
+from cfepy.ports import INFORMATION as INFORMATION
+
 INIT_EID = 1
 CR_PIPE_BAD_ARG_EID = 2
 MAX_PIPES_MET_EID = 3
@@ -55,7 +59,3 @@ GETPIPEIDBYNAME_EID = 65
 GETPIPEIDBYNAME_NAME_ERR_EID = 67
 LEN_ERR_EID = 68
 CR_PIPE_NAME_TAKEN_EID = 69
-
-DEBUG = 1
-INFORMATION = 2
-ERROR = 3

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from cfepy.osal.limits import OS_MAX_API_NAME
 from cfepy.sb import events as ev
-from cfepy.sb.core import BusCore, error
+from cfepy.sb.core import BusCore
 from cfepy.sb.routing import Pipe
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_PIPES_MET, CFE_SB_PIPE_CR_ERR, CfeError
 
 PIPEOPTS_IGNOREMINE = 1
 SLOT_BYTES = 8  # a queue slot holds a pointer to a buffer
 PIPE_BYTES = 32  # CFE_SB_PipeD_t
-MAX_NAME = 19  # OS_MAX_API_NAME less the final NUL
 
 
 class PipeServices(BusCore):
@@ -34,7 +34,7 @@ class PipeServices(BusCore):
         if not 0 < depth <= limit or not name:
             text = f"CreatePipeErr:Bad Input Arg:app={app},ptr=0x0,depth={depth},maxdepth={limit}"
             raise self._create_error(ev.CR_PIPE_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
-        if len(name) > MAX_NAME:
+        if len(name) >= OS_MAX_API_NAME:
             text = f"CreatePipeErr:OS_QueueCreate returned -13,app {app}"
             raise self._create_error(ev.CR_PIPE_ERR_EID, CFE_SB_PIPE_CR_ERR, text)
         if len(self.pipes) >= self.config.sb_max_pipes:
@@ -59,7 +59,7 @@ class PipeServices(BusCore):
     def _create_error(self, event_id: int, status: int, text: str) -> CfeError:
         self.counters.create_pipe_error += 1
         self.report(event_id, ev.ERROR, text)
-        return error(status, text)
+        return CfeError(status, text)
 
     def delete_pipe(self, pipe_id: int) -> None:
         """Delete a pipe of the calling application, its subscriptions and its messages (CFE_SB_DeletePipe).
@@ -120,7 +120,7 @@ class PipeServices(BusCore):
         if pipe is None:
             text = f"Pipe Id Error:Bad Argument,Id={pipe_id},Requestor {self.caller_name()}"
             self.report(ev.GETPIPENAME_ID_ERR_EID, ev.ERROR, text)
-            raise error(CFE_SB_BAD_ARGUMENT, text)
+            raise CfeError(CFE_SB_BAD_ARGUMENT, text)
         return pipe.name
 
     def get_pipe_id_by_name(self, name: str) -> int:
@@ -132,12 +132,12 @@ class PipeServices(BusCore):
         self.counters.get_pipe_id_by_name_error += 1
         text = f"Pipe ID By Name Error:Bad Argument,Requestor {self.caller_name()}"
         self.report(ev.GETPIPEIDBYNAME_NAME_ERR_EID, ev.ERROR, text)
-        raise error(CFE_SB_BAD_ARGUMENT, text)
+        raise CfeError(CFE_SB_BAD_ARGUMENT, text)
 
     def pipe_id_to_index(self, pipe_id: int) -> int:
         """Slot number of a pipe, 0 to the number of pipes less one (CFE_SB_PipeId_ToIndex)."""
         if self.find_pipe(pipe_id) is None:
-            raise error(CFE_SB_BAD_ARGUMENT, f"pipe id 0x{pipe_id:x} is not in use")
+            raise CfeError(CFE_SB_BAD_ARGUMENT, f"pipe id 0x{pipe_id:x} is not in use")
         return self.pipes.index(pipe_id)
 
     def cleanup_app(self, app_id: int) -> None:
@@ -149,4 +149,4 @@ class PipeServices(BusCore):
     def _opts_error(self, event_id: int, text: str) -> CfeError:
         self.counters.pipe_opts_error += 1
         self.report(event_id, ev.ERROR, text)
-        return error(CFE_SB_BAD_ARGUMENT, text)
+        return CfeError(CFE_SB_BAD_ARGUMENT, text)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cfepy.sb import events as ev
-from cfepy.sb.core import BusCore, error
+from cfepy.sb.core import BusCore
 from cfepy.sb.routing import GLOBAL, LOCAL, Destination, Pipe, Route
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_DESTS_MET, CFE_SB_MAX_MSGS_MET, CfeError
 
@@ -116,8 +116,8 @@ class SubscriptionServices(BusCore):
     def _subscribe_error(self, event_id: int, status: int, text: str) -> CfeError:
         self.counters.subscribe_error += 1
         self.report(event_id, ev.ERROR, text)
-        return error(status, text)
+        return CfeError(status, text)
 
     def _refused(self, event_id: int, text: str) -> CfeError:
         self.report(event_id, ev.ERROR, text)
-        return error(CFE_SB_BAD_ARGUMENT, text)
+        return CfeError(CFE_SB_BAD_ARGUMENT, text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cfepy.msg import CMD_HEADER_SIZE, CommandTable, telemetry
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, DONE
+from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY
 from cfepy.sb import events as ev
 from cfepy.sb import packets as pk
 from cfepy.sb.bus import SoftwareBus
@@ -19,8 +20,6 @@ FILTERS = (
     (ev.MSGID_LIM_ERR_EID, 0xFFF0),
     (ev.Q_FULL_ERR_EID, 0xFFF0),
 )
-CORE_READY = 3
-MAX_STARTUP_MS = 30000
 
 
 class SbTask:
@@ -52,10 +51,10 @@ class SbTask:
         ports.sb.subscribe(pk.CMD_MID, pipe)
         ports.sb.subscribe(pk.SEND_HK_MID, pipe)
         ports.evs.send_event(ev.INIT_EID, ev.INFORMATION, f"cFE SB Initialized: {version_string('CFE_SB')}")
-        ports.es.wait_for_system_state(CORE_READY, MAX_STARTUP_MS)
+        ports.es.wait_for_system_state(SYSTEM_CORE_READY, self.bus.config.es_core_max_startup_ms)
         while True:
             ports.es.increment_task_counter()
-            packet = ports.sb.receive_buffer(pipe, -1)
+            packet = ports.sb.receive_buffer(pipe, PEND_FOREVER)
             if packet is not None:
                 self.process(packet)
 
@@ -70,11 +69,7 @@ class SbTask:
             event, text = ev.BAD_CMD_CODE_EID, f"Invalid Cmd, Unexpected Command Code {done.fcn_code}"
         else:
             assert done.outcome == BAD_LENGTH
-            event = ev.LEN_ERR_EID
-            text = (
-                f"Invalid msg length: ID = 0x{done.msg_id:X},  CC = {done.fcn_code}, "
-                f"Len = {done.length}, Expected = {done.expected}"
-            )
+            event, text = ev.LEN_ERR_EID, done.length_text()
         self.bus.counters.command_error += 1
         self.ports.evs.send_event(event, ev.ERROR, text)
 

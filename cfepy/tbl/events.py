@@ -1,9 +1,10 @@
-"""Event ids of Table Services, with NASA's names and numbers (cfe_tbl_eventids.h). Imports nothing of cfepy."""
+"""Event ids of Table Services, with NASA's names and numbers (cfe_tbl_eventids.h). Imports only cfepy.ports."""
 
 from __future__ import annotations
 
-DEBUG, INFORMATION, ERROR = 1, 2, 3
-"""Event types (CFE_EVS_EventType_Enum_t); a fourth, critical, is not used by Table Services."""
+from cfepy.ports import DEBUG as DEBUG
+from cfepy.ports import ERROR as ERROR
+from cfepy.ports import INFORMATION as INFORMATION
 
 CFE_TBL_INIT_INF_EID = 1
 CFE_TBL_NOOP_INF_EID = 10

@@ -11,7 +11,7 @@ from cfepy.fs import FileCategory, FileHeader, get_default_extension, get_defaul
 from cfepy.fs.header import SUBTYPE_TBL_REG
 from cfepy.msg import CMD_HEADER_SIZE, CommandTable, command, get_user_data, telemetry
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, Dispatch
-from cfepy.ports import Ports
+from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY, Ports
 from cfepy.status import CFE_TBL_ERR_INVALID_NAME, CfeError, OsalError
 from cfepy.tbl import events as eid
 from cfepy.tbl import packets
@@ -24,8 +24,6 @@ from cfepy.versions import version_string
 
 PIPE_NAME = "TBL_CMD_PIPE"
 PIPE_DEPTH = 12
-PEND_FOREVER = -1
-CORE_READY = 3
 REGISTRY_FILE = "/ram/cfe_tbl_reg.log"
 REGISTRY_DESCRIPTION = "Table Registry"
 APP_NAME = "CFE_TBL"
@@ -82,7 +80,7 @@ class TableTask:
         ports.sb.subscribe(packets.CMD_MID, pipe)
         text = f"cFE TBL Initialized: {version_string(APP_NAME)}"
         ports.evs.send_event(eid.CFE_TBL_INIT_INF_EID, eid.INFORMATION, text)
-        ports.es.wait_for_system_state(CORE_READY, self._config.es_core_max_startup_ms)
+        ports.es.wait_for_system_state(SYSTEM_CORE_READY, self._config.es_core_max_startup_ms)
         while True:
             ports.es.increment_task_counter()
             packet = ports.sb.receive_buffer(pipe, PEND_FOREVER)

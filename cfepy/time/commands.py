@@ -88,11 +88,7 @@ class TimeCommands:
             event_id = ev.CFE_TIME_CC_ERR_EID
             text = f"Invalid command code -- ID = 0x{done.msg_id:X}, CC = {done.fcn_code}"
         else:
-            event_id = ev.CFE_TIME_LEN_ERR_EID
-            text = (
-                f"Invalid msg length: ID = 0x{done.msg_id:X},  CC = {done.fcn_code}, "
-                f"Len = {done.length}, Expected = {done.expected}"
-            )
+            event_id, text = ev.CFE_TIME_LEN_ERR_EID, done.length_text()
         self.errors += done.outcome != BAD_MSG_ID
         self._ports.evs.send_event(event_id, ev.ERROR, text)
 

@@ -1,9 +1,10 @@
-"""Event ids of Time Services, with NASA's names and numbers (cfe_time_eventids.h). Imports nothing of cfepy."""
+"""Event ids of Time Services, with NASA's names and numbers (cfe_time_eventids.h). Imports only cfepy.ports."""
 
 from __future__ import annotations
 
-DEBUG, INFORMATION, ERROR = 1, 2, 3
-"""Event types (CFE_EVS_EventType_Enum_t); a fourth, critical, is not used by Time Services."""
+from cfepy.ports import DEBUG as DEBUG
+from cfepy.ports import ERROR as ERROR
+from cfepy.ports import INFORMATION as INFORMATION
 
 CFE_TIME_INIT_EID = 1
 CFE_TIME_NOOP_EID = 4

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cfepy.config import PlatformConfig
 from cfepy.msg import CMD_HEADER_SIZE, command
-from cfepy.ports import Ports
+from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY, Ports
 from cfepy.rtos import Kernel, Semaphore
 from cfepy.time import events as ev
 from cfepy.time import packets as pk
@@ -27,8 +27,6 @@ ONE_HZ_TASK = ("TIME_ONEHZ_TASK", 8192, 25)
 
 TIMER_NAME = "cFS-1Hz"
 TIMER_PRIORITY = 0
-CORE_READY = 3
-PEND_FOREVER = -1
 
 
 class TimeTask:
@@ -83,7 +81,7 @@ class TimeTask:
     def main(self) -> None:
         """The task CFE_TIME (CFE_TIME_TaskMain)."""
         pipe = self._init()
-        self._ports.es.wait_for_system_state(CORE_READY, self._config.es_core_max_startup_ms)
+        self._ports.es.wait_for_system_state(SYSTEM_CORE_READY, self._config.es_core_max_startup_ms)
         while True:
             self._ports.es.increment_task_counter()
             packet = self._ports.sb.receive_buffer(pipe, PEND_FOREVER)

@@ -110,6 +110,13 @@ def test_a_node_may_be_called_what_ros_scripts_are_called(tmp_path: Path) -> Non
     assert check(tmp_path, line + "!") == []
 
 
+def test_a_node_from_outside_the_folder(tmp_path: Path) -> None:
+    (tmp_path / "mission").mkdir()
+    (tmp_path / "talker.py").write_text("import rospy\n")
+    found = check(tmp_path / "mission", "CFE_APP, /cf/../talker.py, __main__, TALKER, 60, 16384, 0, 0;\n!")
+    assert [line for _, line, text in found if "/cf/../talker.py is not below /cf" in text] == [1]
+
+
 def test_nothing_is_executed(tmp_path: Path) -> None:
     (tmp_path / "app.py").write_text("raise SystemExit('executed')\ndef Main(cfe): ...\n")
     assert check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!") == []

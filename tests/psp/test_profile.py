@@ -10,6 +10,8 @@ from cfepy.config import PlatformConfig
 from cfepy.psp.profile import DEFAULT_NODE_CALL_NS, MemoryRegion, available_boards, load_profile
 from cfepy.status import UsageError
 
+DOUBLED = "".join(f", a{i}: &a{i} [*a{i - 1}, *a{i - 1}]" for i in range(1, 40))
+
 
 def test_shipped_boards() -> None:
     assert {"linux", "rx64m"} <= set(available_boards())
@@ -101,6 +103,7 @@ def test_unknown_boards() -> None:
         ("data_flash: 99999999 MiB", "it must be at most 4096 MiB"),
         ("limits: {es_cds_size: 99999999999999999999999}", "it must be at most 2147483647"),
         ("tick_ns: 99999999999999999999999", "it must be at most 4611686018427387903"),
+        ("limits: {a0: &a0 [x, x]" + DOUBLED + "}", "has more than 100,000 values"),
         ("sram: &x [*x]", "has an alias of something inside itself"),
         ("sram: " + "[" * 3000 + "]" * 3000, "is nested too deeply"),
     ],
