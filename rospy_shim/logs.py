@@ -9,10 +9,11 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
+from cfepy.rtos.units import NS_PER_S
 from rospy_shim.genpy import Time as MessageTime
 from rospy_shim.graph import ROSOUT
 from rospy_shim.msgs import message_class
-from rospy_shim.rostime import NS, nanoseconds
+from rospy_shim.rostime import nanoseconds
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -137,7 +138,7 @@ class Logs:
         """A line on the console: warnings and worse on stderr."""
         text = self._formatter.format(record)
         level = _SHOWN.get(record.levelno, record.levelname)
-        seconds, rest = divmod(self._node.universe.clock.epoch_ns + self._node.kernel.now, NS)
+        seconds, rest = divmod(self._node.universe.clock.epoch_ns + self._node.kernel.now, NS_PER_S)
         streams = self._node.universe.importer.modules["sys"]
         stream = streams.stderr if record.levelno >= 30 else streams.stdout
         stream.write(f"[{level}] [{seconds}.{rest // 1000:06d}]: {text}\n")
@@ -147,7 +148,7 @@ class Logs:
         if link is None or not link.get_num_connections():
             return
         log = message_class("rosgraph_msgs/Log")()
-        log.header.stamp = MessageTime(*divmod(self._node.universe.clock.epoch_ns + self._node.kernel.now, NS))
+        log.header.stamp = MessageTime(*divmod(self._node.universe.clock.epoch_ns + self._node.kernel.now, NS_PER_S))
         log.level = _ROS_LEVELS.get(record.levelno, INFO)
         log.name = self._node.names.name
         log.msg = record.getMessage()

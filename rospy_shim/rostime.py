@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from cfepy.rtos.units import NS_PER_S
 from rospy_shim import genpy
 from rospy_shim.exceptions import ROSInitException
 
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rospy_shim.node import Node
-
-NS = 1_000_000_000
 
 
 def nanoseconds(duration: Any) -> int:
@@ -26,8 +25,8 @@ def nanoseconds(duration: Any) -> int:
         duration: a genpy Duration, or seconds as a number.
     """
     if isinstance(duration, genpy.Duration):
-        return duration.secs * NS + duration.nsecs
-    return round(float(duration) * NS) if not isinstance(duration, int) else duration * NS
+        return duration.secs * NS_PER_S + duration.nsecs
+    return round(float(duration) * NS_PER_S) if not isinstance(duration, int) else duration * NS_PER_S
 
 
 class Duration(genpy.Duration):
@@ -97,7 +96,7 @@ class RosClock:
             if cost:
                 charge(cost)
             value = new(kind)
-            value.secs, value.nsecs = divmod(epoch_ns + kernel.now, NS)
+            value.secs, value.nsecs = divmod(epoch_ns + kernel.now, NS_PER_S)
             return value
 
         return get_rostime
@@ -118,7 +117,7 @@ class RosClock:
 
     def at(self, when_ns: int) -> Time:
         """An instant as a Time of this node."""
-        return self.Time(*divmod(when_ns, NS))
+        return self.Time(*divmod(when_ns, NS_PER_S))
 
     def is_rostime_initialized(self) -> bool:
         """Whether `init_node` has run."""

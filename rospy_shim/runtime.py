@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes import Universe
 from cfepy.nodes.config import NodeConfig, RosConfig
+from cfepy.rtos.units import NS_PER_S
 from rospy_shim.graph import Graph, Topic, TopicRow
 from rospy_shim.modules import RosModules
 from rospy_shim.msgs import make_module
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from cfepy.console import Console
     from cfepy.rtos import Kernel
 
-NS_PER_S = 1_000_000_000
 APP_ERROR = 3  # CFE_ES_RunStatus_APP_ERROR
 
 

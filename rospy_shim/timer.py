@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rospy_shim.rostime import NS, Duration, Time
+from cfepy.rtos.units import NS_PER_S
+from rospy_shim.rostime import Duration, Time
 
 if TYPE_CHECKING:
     from rospy_shim.node import Node
@@ -59,7 +60,7 @@ def make_timer(node: Node) -> type:
         def run(self) -> None:
             """The thread."""
             clock, life = node.clock, node.life
-            rate = node.Rate(NS / self._period.to_nsec(), reset=self._reset)
+            rate = node.Rate(NS_PER_S / self._period.to_nsec(), reset=self._reset)
             expected = clock.get_rostime() + self._period
             last_expected = last_real = last_duration = None
             while not life.is_shutdown() and not self._shutdown:
@@ -70,7 +71,7 @@ def make_timer(node: Node) -> type:
                 self._callback(TimerEvent(last_expected, last_real, expected, real, last_duration))
                 if self._oneshot:
                     break
-                last_duration = (clock.now_ns() - real.to_nsec()) / NS
+                last_duration = (clock.now_ns() - real.to_nsec()) / NS_PER_S
                 last_expected, last_real = expected, real
                 expected += self._period
 

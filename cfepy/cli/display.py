@@ -10,7 +10,8 @@ import io
 import sys
 from typing import TYPE_CHECKING, Protocol, TextIO
 
-from cfepy.rtos.realtime import NS_PER_S, Stopwatch
+from cfepy.rtos.realtime import Stopwatch
+from cfepy.rtos.units import NS_PER_S
 
 if TYPE_CHECKING:
     from rich.text import Text

@@ -16,7 +16,8 @@ from cfepy.cli.display import Display
 from cfepy.cli.main import INTERRUPTED
 from cfepy.mission import Mission
 from cfepy.mission.results import Mark, mark
-from cfepy.rtos.realtime import NS_PER_S, Pacer, Stopwatch
+from cfepy.rtos.realtime import Pacer, Stopwatch
+from cfepy.rtos.units import NS_PER_S
 
 FIRST_PIECE_NS = 10_000_000
 LEAST_PIECE_NS = 1_000_000

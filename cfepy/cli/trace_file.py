@@ -12,7 +12,7 @@ from types import TracebackType
 from cfepy import trace as tr
 from cfepy.mission import Mission
 from cfepy.mission.msg_names import names_of
-from cfepy.rtos.realtime import NS_PER_S
+from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
 
 HOST = "host"

@@ -280,7 +280,6 @@ class AppServices(EsCore):
         The tasks go first, so that their `finally` blocks still find what they clean up.
         """
         history = self.history_of(app.name)
-        history.last_state = app.state
         for task_id in [*(each for each in app.tasks if each != app.main_task_id), app.main_task_id]:
             self._end_task(app, task_id)
         for task in [task for task in self.kernel.tasks if task.owner is app]:

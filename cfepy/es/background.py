@@ -5,8 +5,8 @@ from __future__ import annotations
 from cfepy.es.records import Fault
 from cfepy.es.service import ExecutiveServices
 from cfepy.es.startup_script import EXCEPTION_RESTART_APP
-from cfepy.osal.limits import NS_PER_MS
 from cfepy.rtos import Semaphore
+from cfepy.rtos.units import NS_PER_MS
 from cfepy.status import CfeError
 
 TASK_NAME = "ES_BG_TASK"

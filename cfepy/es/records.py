@@ -87,7 +87,6 @@ class AppHistory:
     deaths: int = 0
     error_exits: int = 0
     cpu_ns: int = 0
-    last_state: int = EARLY_INIT
     last_error: BaseException | None = None
 
 

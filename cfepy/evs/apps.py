@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from cfepy.config import PlatformConfig
+from cfepy.rtos.units import NS_PER_MS
 
 ALL_TYPES = 0x0F
 """A bit for each event type: DEBUG 1, INFORMATION 2, ERROR 4, CRITICAL 8."""
@@ -19,7 +20,6 @@ MAX_FILTER_COUNT = 0xFFFF
 MAX_SQUELCHED = 255
 
 EVENT_COST = 1000
-_NS_PER_MS = 1_000_000
 
 
 @dataclass(slots=True)
@@ -100,7 +100,7 @@ class Squelch:
         if not self.burst:
             return True, False
         full = self.burst * EVENT_COST
-        credit = (now - self._credited_at) // _NS_PER_MS * self.per_second
+        credit = (now - self._credited_at) // NS_PER_MS * self.per_second
         if credit >= EVENT_COST:
             self._credited_at = now
             self.tokens = min(full, self.tokens + credit)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.es import startup_script
-from cfepy.es.startup_script import CFE_APP, CFE_LIB, Entry, parse
+from cfepy.es.startup_script import CFE_APP, CFE_LIB, Entry
 from cfepy.mission import sources
 from cfepy.mission.check_file import CheckedFile, check_file
 from cfepy.mission.loader import NODE_SYMBOL, find_code, find_node
@@ -49,7 +49,7 @@ def check_mission(mission: str, board: str | None = None) -> list[Finding]:
     script = find_script(mission)
     folder = script.parent
     data = script.read_bytes()
-    entries = [entry for entry in parse(data) if isinstance(entry, Entry)]
+    entries = startup_script.entries(data)
     found = [Finding(script, note.line, note.explanation) for note in startup_script.check(data)]
     found += _check_names(script, entries)
     for entry in entries:

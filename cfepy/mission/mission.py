@@ -29,6 +29,7 @@ from cfepy.psp.memory import MemoryBudget, object_sizes
 from cfepy.psp.profile import BoardProfile, load_profile
 from cfepy.rtos import Kernel, Task
 from cfepy.rtos.policy import Policy
+from cfepy.rtos.units import NS_PER_S
 from cfepy.rtos.watchdog import StallWatch
 from cfepy.sb import BusCosts, SbTask, SoftwareBus
 from cfepy.tbl import TableServices
@@ -37,7 +38,6 @@ from cfepy.trace import Trace
 
 BOOT_PRIORITY = 0
 EVS_PRIORITY, SB_PRIORITY, ES_PRIORITY, TIME_PRIORITY, TBL_PRIORITY = 61, 64, 68, 60, 70
-NS_PER_S = 1_000_000_000
 UNIX_AT_CFE_EPOCH = 315_532_800  # 1980-01-01 in seconds since 1970-01-01
 SHUTDOWN_NS = 2_000_000_000  # virtual time that nodes get at the end of a run for their shutdown hooks
 
@@ -120,7 +120,7 @@ class Mission:
         sb = bus(kernel, ports, config, BusCosts(costs.call_ns, costs.byte_ps))
         evs = EventServices(kernel, ports, config, console, self.files.write_file)
         time = TimeServices(kernel, ports, config)
-        tbl = TableServices(kernel, ports, config, self.files, console)
+        tbl = TableServices(kernel, ports, config, self.files)
         ports.es, ports.syslog, ports.sb, ports.evs, ports.time, ports.tbl = es, es.syslog, sb, evs, time, tbl
         time.clock.on_jump = sb.forget_time
         self.cfe = Cfe(es, sb, evs, time, tbl, self.osal, self.psp)
@@ -229,7 +229,6 @@ class Mission:
         """End every task; the numbers stay readable."""
         for app in self.cfe.es.apps:
             history = self.cfe.es.history_of(app.name)
-            history.last_state = app.state
             history.cpu_ns += sum(task.cpu_ns for task in self.kernel.tasks if task.owner is app)
         self.kernel.shutdown()
         self._watch.end()

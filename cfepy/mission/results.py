@@ -12,9 +12,10 @@ from typing import Any
 from cfepy.es.records import APP_ERROR, STATE_NAMES
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, entries, parse
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
-from cfepy.mission.mission import NS_PER_S, Mission
+from cfepy.mission.mission import Mission
 from cfepy.mission.msg_names import names_of
 from cfepy.mission.tracebacks import described
+from cfepy.rtos.units import NS_PER_S
 
 EVENT_TYPES = {DEBUG: "DEBUG", INFORMATION: "INFORMATION", ERROR: "ERROR", CRITICAL: "CRITICAL"}
 NOT_STARTED = "NOT STARTED"

@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 from cfepy.ids import OS_BINSEM_BASE, OS_COUNTSEM_BASE
 from cfepy.osal.core import Core, ObjectTable, OsObject, Setup
-from cfepy.osal.limits import NS_PER_MS, OS_CHECK, OS_PEND, SEM_VALUE_MAX
+from cfepy.osal.limits import OS_CHECK, OS_PEND, SEM_VALUE_MAX
 from cfepy.rtos import TIMEOUT, Semaphore
+from cfepy.rtos.units import NS_PER_MS
 from cfepy.status import OS_ERR_INVALID_ARGUMENT, OS_INVALID_SEM_VALUE, OS_SEM_FAILURE, OsalError
 
 

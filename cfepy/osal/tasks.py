@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 
 from cfepy.ids import OS_TASK_BASE
 from cfepy.osal.core import Core, ObjectTable, OsObject, Setup, check_size
-from cfepy.osal.limits import NS_PER_MS, OS_MAX_TASK_PRIORITY
+from cfepy.osal.limits import OS_MAX_TASK_PRIORITY
 from cfepy.rtos import Task
+from cfepy.rtos.units import NS_PER_MS
 from cfepy.status import (
     OS_ERR_INVALID_ARGUMENT,
     OS_ERR_INVALID_ID,

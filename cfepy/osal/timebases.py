@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from cfepy.ids import OS_TIMEBASE_BASE
 from cfepy.osal.core import Core, ObjectTable, OsObject, Setup
-from cfepy.osal.limits import NS_PER_MS, NS_PER_US
 from cfepy.rtos import FOREVER, Kernel, Task, WaitList
+from cfepy.rtos.units import NS_PER_MS, NS_PER_US
 from cfepy.status import OS_ERR_OBJECT_IN_USE, OS_TIMER_ERR_INVALID_ARGS, OsalError
 
 TIMEBASE_PRIORITY = 0

@@ -12,11 +12,11 @@ from pathlib import Path
 from cfepy.config import PlatformConfig
 from cfepy.psp.marked_yaml import Marked, load
 from cfepy.resources import shipped
+from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
 
 DEFAULT_NODE_CALL_NS = 1000
 _UNITS = {"B": 1, "KiB": 1024, "MiB": 1024 * 1024}
-_NS_PER_S = 1_000_000_000
 MOST_BYTES = 1 << 32  # a board with more needs none of this
 MOST_LIMIT = (1 << 31) - 1
 
@@ -32,7 +32,7 @@ class MemoryRegion:
 
 @dataclass(frozen=True, slots=True)
 class MemoryCosts:
-    """RAM that kernel and cFE objects take, bytes each; 0 costs nothing."""
+    """RAM that the kernel's objects take, bytes each; 0 costs nothing."""
 
     task_control_block: int = 0
     queue_control_block: int = 0
@@ -40,12 +40,6 @@ class MemoryCosts:
     semaphore: int = 0
     mutex: int = 0
     timer: int = 0
-    app_record: int = 0
-    pipe: int = 0
-    route: int = 0
-    destination: int = 0
-    buffer_header: int = 0
-    table_record: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +84,7 @@ class BoardProfile:
 
     def cycles_ns(self, cycles: int) -> int:
         """Nanoseconds that some processor cycles take, rounded up; 0 on a board without a clock rate."""
-        return -(-cycles * _NS_PER_S // self.cpu_hz) if self.cpu_hz else 0
+        return -(-cycles * NS_PER_S // self.cpu_hz) if self.cpu_hz else 0
 
     def config(self, base: PlatformConfig | None = None) -> PlatformConfig:
         """The platform configuration under this board's limits.

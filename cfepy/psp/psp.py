@@ -23,6 +23,7 @@ from cfepy.psp.profile import BoardProfile
 from cfepy.psp.retained import EEPROM_BYTES, Retained
 from cfepy.psp.watchdog import Watchdog
 from cfepy.rtos import Kernel
+from cfepy.rtos.units import NS_PER_S
 from cfepy.status import CFE_PSP_ERROR, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError, status_to_string
 
 RST_TYPE_PROCESSOR = 1
@@ -44,7 +45,6 @@ RESTART_DELAY_MS = 10_000
 EEPROM_ADDRESS = 0x1000_0000
 RESET_AREA_ADDRESS = 0x2000_0000
 USER_RESERVED_ADDRESS = 0x3000_0000
-_NS_PER_S = 1_000_000_000
 
 # The modules of NASA's Linux PSP that there is a counterpart of here, with their ids there and what they say.
 _MODULES = (
@@ -209,7 +209,7 @@ class Psp(AddressSpace, AbsentHardware):
 
     def get_timebase(self) -> Timebase:
         """The same as whole seconds and ns (CFE_PSP_Get_Timebase)."""
-        return Timebase(*divmod(self.kernel.now, _NS_PER_S))
+        return Timebase(*divmod(self.kernel.now, NS_PER_S))
 
     def get_timer_ticks_per_second(self) -> int:
         """Ticks per second of the lower part of `get_timebase` (CFE_PSP_GetTimerTicksPerSecond)."""

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from cfepy.osal.limits import NS_PER_MS
 from cfepy.rtos import Kernel, WaitList
+from cfepy.rtos.units import NS_PER_MS
 
 WATCHDOG_MIN = 0
 WATCHDOG_MAX = 0xFFFFFFFF

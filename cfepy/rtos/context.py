@@ -36,11 +36,8 @@ class Context(Protocol):
         Wait for the baton, which comes at the task's next kernel call, and raise `error` in a task that makes none.
         """
 
-    def stack_of(self, task: Task) -> list[str]:
-        """The formatted stack of a task that is not running, for reports."""
-
     def stack_of_running(self, task: Task, host_ident: int) -> list[str]:
-        """The same of the running task, seen from another OS thread; `host_ident` is the thread of the host."""
+        """The formatted stack of the running task, seen from another OS thread; `host_ident` is the host's."""
 
 
 def make_context(name: str) -> Context:

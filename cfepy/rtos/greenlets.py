@@ -6,7 +6,6 @@ running task only, and thread-bound C libraries see a single thread.
 
 from __future__ import annotations
 
-import traceback
 from collections.abc import Callable
 from typing import Any
 
@@ -54,10 +53,6 @@ class GreenletContext:
 
     def interrupt(self, running: Callable[[], Task], host: Task, error: type[BaseException]) -> None:
         """Nothing to do: a signal is raised in the running task itself, which is on the host's own thread."""
-
-    def stack_of(self, task: Task) -> list[str]:
-        frame = task.carrier.gr_frame
-        return traceback.format_stack(frame) if frame is not None else []
 
     def stack_of_running(self, task: Task, host_ident: int) -> list[str]:
         from cfepy.rtos.threads import stack_of_thread

@@ -10,8 +10,8 @@ import time
 from collections.abc import Callable
 
 from cfepy.rtos.kernel import Kernel
+from cfepy.rtos.units import NS_PER_S
 
-NS_PER_S = 1_000_000_000
 STEP_NS = 1_000_000  # wall time: what is due within a millisecond runs in one go
 PATIENCE_NS = 50_000_000  # wall time: longest sleep
 

@@ -123,9 +123,6 @@ class ThreadContext:
                 raise_in_thread(task.carrier.ident, error)
             patience = min(2 * patience, LAST_PATIENCE_S)  # a second error must not hit a task that is ending already
 
-    def stack_of(self, task: Task) -> list[str]:
-        return stack_of_thread(task.carrier.ident)
-
     def stack_of_running(self, task: Task, host_ident: int) -> list[str]:
         return stack_of_thread(task.carrier.ident)
 

@@ -8,7 +8,6 @@ cfepy.ids, cfepy.ports, cfepy.rtos, cfepy.status and its neighbours here; other 
 from __future__ import annotations
 
 from cfepy.config import PlatformConfig
-from cfepy.console import Console
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
 from cfepy.status import (
@@ -41,10 +40,9 @@ class TableServices(TableAccess):
         ports: the other services.
         config: limits and identities.
         files: where table files are.
-        console: not written to; given to every service alike.
     """
 
-    def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, files: Files, console: Console) -> None:
+    def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, files: Files) -> None:
         shared_size = max(config.tbl_max_sngl_table_size, config.tbl_max_dbl_table_size)
         memory = BufferMemory(config.tbl_buf_memory_bytes, config.tbl_max_simultaneous_loads, shared_size)
         self._pool_bytes = config.tbl_buf_memory_bytes

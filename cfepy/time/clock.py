@@ -12,7 +12,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cfepy.rtos import Kernel
-from cfepy.time.systime import MASK_64, NS_PER_SECOND, SysTime, from_ticks, ticks_of_ns
+from cfepy.rtos.units import NS_PER_S
+from cfepy.time.systime import MASK_64, SysTime, from_ticks, ticks_of_ns
 
 CLOCK_INVALID, CLOCK_VALID, CLOCK_FLYWHEEL = -1, 0, 1
 """Clock states (CFE_TIME_ClockState_Enum_t)."""
@@ -110,14 +111,14 @@ class SpacecraftTime:
 
     def now(self) -> SysTime:
         """Spacecraft time, which is TAI."""
-        return from_ticks(self._offset - (-(self._kernel.now << 32) // NS_PER_SECOND))
+        return from_ticks(self._offset - (-(self._kernel.now << 32) // NS_PER_S))
 
     def stamp(self) -> int:
         """Spacecraft time as the 48-bit integer of a telemetry header; costs an attribute look-up while time stands."""
         now = self._kernel.now
         if now != self.stamp_at:
             self.stamp_at = now
-            self.stamp_now = (self._offset - (-(now << 32) // NS_PER_SECOND) & MASK_64) >> 16
+            self.stamp_now = (self._offset - (-(now << 32) // NS_PER_S) & MASK_64) >> 16
         return self.stamp_now
 
     def state(self) -> int:

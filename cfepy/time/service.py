@@ -12,6 +12,7 @@ from cfepy.config import PlatformConfig
 from cfepy.ids import ES_APPID_BASE, to_index
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel, Semaphore
+from cfepy.rtos.units import NS_PER_S
 from cfepy.status import (
     CFE_TIME_BAD_ARGUMENT,
     CFE_TIME_CALLBACK_NOT_REGISTERED,
@@ -21,7 +22,7 @@ from cfepy.status import (
 from cfepy.time import systime as st
 from cfepy.time.clock import SpacecraftTime
 from cfepy.time.commands import TimeCommands
-from cfepy.time.systime import NS_PER_SECOND, SysTime, from_ticks, to_ticks
+from cfepy.time.systime import SysTime, from_ticks, to_ticks
 from cfepy.time.task import TimeTask
 from cfepy.time.telemetry import RESET_AREA_EXISTING, clock_info
 from cfepy.time.tone import Tone
@@ -91,7 +92,7 @@ class TimeServices:
         clock.delay = to_ticks(start.delay)
         clock.set(met=to_ticks(start.met), stcf=to_ticks(start.stcf), latch=clock.local())
         self.tone.virtual_met = start.met.seconds
-        self._task.whole_second_ns = self._kernel.now - (start.met.subseconds * NS_PER_SECOND >> 32)
+        self._task.whole_second_ns = self._kernel.now - (start.met.subseconds * NS_PER_S >> 32)
 
     def task_main(self) -> None:
         """The main task of CFE_TIME (CFE_TIME_TaskMain)."""

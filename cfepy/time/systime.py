@@ -2,7 +2,7 @@
 
 A time is 32 bits of seconds and 32 bits of 2**-32 s. Within Time Services one 64-bit integer of 2**-32 s stands for it,
 here called ticks, so that adding, carrying and rolling over are a single addition. Pure functions; imports only
-cfepy.status.
+cfepy.rtos.units and cfepy.status.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import NamedTuple
 
+from cfepy.rtos.units import NS_PER_S
 from cfepy.status import CFE_TIME_BAD_ARGUMENT, CfeError
 
 MASK_32 = 0xFFFFFFFF
 MASK_64 = 0xFFFFFFFFFFFFFFFF
-NS_PER_SECOND = 1_000_000_000
 EPOCH_YEAR = 1980
 
 A_LT_B = -1
@@ -46,7 +46,7 @@ def from_ticks(ticks: int) -> SysTime:
 
 def ticks_of_ns(duration_ns: int) -> int:
     """Nanoseconds as 2**-32 s, rounded up, so that the way back gives the same (OS_TimeGetSubsecondsPart)."""
-    return -(-(duration_ns << 32) // NS_PER_SECOND)
+    return -(-(duration_ns << 32) // NS_PER_S)
 
 
 def add(first: tuple[int, int], second: tuple[int, int]) -> SysTime:

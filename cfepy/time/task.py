@@ -10,11 +10,12 @@ from cfepy.config import PlatformConfig
 from cfepy.msg import CMD_HEADER_SIZE, command
 from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY, Ports
 from cfepy.rtos import Kernel, Semaphore
+from cfepy.rtos.units import NS_PER_S
 from cfepy.time import events as ev
 from cfepy.time import packets as pk
 from cfepy.time.clock import SpacecraftTime
 from cfepy.time.commands import TimeCommands
-from cfepy.time.systime import NS_PER_SECOND, ticks_of_ns
+from cfepy.time.systime import ticks_of_ns
 from cfepy.time.telemetry import fields_of
 from cfepy.time.tone import SECOND, Tone
 from cfepy.versions import version_string
@@ -125,12 +126,12 @@ class TimeTask:
     def _timer(self) -> None:
         """The timer: it keeps to the instants at which MET is whole, so that a tone never moves the clock."""
         kernel = self._kernel
-        due = kernel.now + NS_PER_SECOND - (kernel.now - self.whole_second_ns) % NS_PER_SECOND
+        due = kernel.now + NS_PER_S - (kernel.now - self.whole_second_ns) % NS_PER_S
         self._tone.signal_latch = ticks_of_ns(due) - SECOND
         while True:
             kernel.delay(due - kernel.now)
             self.interrupt(ticks_of_ns(due))
-            due += NS_PER_SECOND
+            due += NS_PER_S
 
     def interrupt(self, latch: int) -> None:
         """The local 1 Hz signal (CFE_TIME_Local1HzISR).

@@ -8,7 +8,6 @@ from typing import Any, cast
 import pytest
 
 from cfepy.config import PlatformConfig
-from cfepy.console import Console
 from cfepy.msg import command
 from cfepy.status import OS_FS_ERR_PATH_INVALID, OsalError
 from cfepy.tbl import TableImage, TableServices, build, packets
@@ -40,7 +39,7 @@ class Bench:
             memory=SimpleNamespace(claim=lambda owner, kind, size: self.claims.append((owner, kind, size))),
         )
         config = PlatformConfig().with_limits(dict(limits))
-        self.tbl = TableServices(self.kernel, cast(Any, ports), config, self, Console(quiet=True))
+        self.tbl = TableServices(self.kernel, cast(Any, ports), config, self)
         self.tbl.registry.services_app_id = TBL_APP_ID
         self.as_app("APP")
 
