@@ -290,9 +290,14 @@ class CfeError(Exception):
         """NASA's name of the status."""
         return name_of(self.status)
 
+    @property
+    def hex(self) -> str:
+        """The status as NASA's texts print it: "0xCA000003"."""
+        return f"0x{self.status & 0xFFFFFFFF:08X}"
+
     def __str__(self) -> str:
         small = _LOWEST_SMALL_STATUS < self.status <= 0
-        number = str(self.status) if small else f"0x{self.status & 0xFFFFFFFF:08X}"
+        number = str(self.status) if small else self.hex
         return f"{self.name} ({number}): {self.text}" if self.text else f"{self.name} ({number})"
 
 

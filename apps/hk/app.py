@@ -74,7 +74,7 @@ class HkApp:
         try:
             cfe.evs.register()
         except CfeError as error:
-            cfe.es.write_to_sys_log(f"HK: error registering for event services: 0x{error.status & 0xFFFFFFFF:08X}")
+            cfe.es.write_to_sys_log(f"HK: error registering for event services: {error.hex}")
             raise
         with self._reporting(eid.HK_CR_PIPE_ERR_EID, "Error Creating SB Pipe"):
             self._pipe = cfe.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
@@ -126,7 +126,7 @@ class HkApp:
         try:
             packet = cfe.sb.receive_buffer(self._pipe, WAKEUP_MS)
         except CfeError as error:
-            text = f"HK_APP Exiting due to CFE_SB_RcvMsg error 0x{error.status & 0xFFFFFFFF:08X}"
+            text = f"HK_APP Exiting due to CFE_SB_RcvMsg error {error.hex}"
             cfe.evs.send_err(eid.HK_RCV_MSG_ERR_EID, text)
             cfe.es.write_to_sys_log(text)
             self.run_status = APP_ERROR
@@ -213,7 +213,7 @@ class HkApp:
         try:
             _expect_success(self._cfe.tbl.validate(self._copy_table))
         except CfeError as error:
-            text = f"Unexpected CFE_TBL_Validate return (0x{error.status & 0xFFFFFFFF:08X}) for Copy Table"
+            text = f"Unexpected CFE_TBL_Validate return ({error.hex}) for Copy Table"
             self._cfe.evs.send_err(eid.HK_UNEXPECTED_TBLVLD_RET_EID, text)
 
     def _look_after_runtime_table(self) -> None:
@@ -231,7 +231,7 @@ class HkApp:
         try:
             yield
         except CfeError as error:
-            self._cfe.evs.send_err(event_id, f"{text}{separator}RC=0x{error.status & 0xFFFFFFFF:08X}")
+            self._cfe.evs.send_err(event_id, f"{text}{separator}RC={error.hex}")
             raise
 
     @contextmanager
@@ -240,7 +240,7 @@ class HkApp:
         try:
             yield
         except CfeError as error:
-            status = f"0x{error.status & 0xFFFFFFFF:08X}"
+            status = error.hex
             self._cfe.evs.send_crit(event_id, f"Unexpected CFE_TBL_{function} return ({status}) for {table} Table")
             raise
 

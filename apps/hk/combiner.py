@@ -60,7 +60,7 @@ class Combiner:
         try:
             block = self._cfe.es.get_pool_buf(self._pool, size)
         except CfeError as error:
-            text = f"ES_GetPoolBuf for size {size} returned 0x{error.status & 0xFFFFFFFF:04X}"
+            text = f"ES_GetPoolBuf for size {size} returned {error.hex}"
             self._cfe.evs.send_err(eid.HK_MEM_POOL_MALLOC_FAILED_EID, f"HK Processing New Table: {text}")
             return
         self._packets[msg_id] = CombinedPacket(msg_id, block, indices)
@@ -69,7 +69,7 @@ class Combiner:
         try:
             self._cfe.sb.subscribe(msg_id, self._pipe)
         except CfeError as error:
-            text = f"SB_Subscribe for Mid 0x{msg_id:08X} returned 0x{error.status & 0xFFFFFFFF:04X}"
+            text = f"SB_Subscribe for Mid 0x{msg_id:08X} returned {error.hex}"
             self._cfe.evs.send_err(eid.HK_CANT_SUBSCRIBE_TO_SB_PKT_EID, f"HK Processing New Table:{text}")
             return
         self._subscribed.add(msg_id)
@@ -80,7 +80,7 @@ class Combiner:
             try:
                 self._cfe.es.put_pool_buf(self._pool, packet.block)
             except CfeError as error:
-                text = f"pkt:0x{packet.block.offset:08X} ret 0x{error.status & 0xFFFFFFFF:04X}, hdl 0x{self._pool:08x}"
+                text = f"pkt:0x{packet.block.offset:08X} ret {error.hex}, hdl 0x{self._pool:08x}"
                 self._cfe.evs.send_err(eid.HK_MEM_POOL_FREE_FAILED_EID, f"HK TearDown: ES_putPoolBuf Err {text}")
         for msg_id in sorted(self._subscribed):
             self._cfe.sb.unsubscribe(msg_id, self._pipe)

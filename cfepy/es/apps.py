@@ -27,6 +27,7 @@ from cfepy.es.records import (
 )
 from cfepy.es.tables import EsCore
 from cfepy.osal.limits import OS_MAX_API_NAME
+from cfepy.psp.psp import RST_TYPE_PROCESSOR
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_ES_ERR_DUPLICATE_NAME,
@@ -179,7 +180,7 @@ class AppServices(EsCore):
     def _exit_core(self, app: AppRecord, status: int) -> None:
         if status == CORE_APP_INIT_ERROR:
             self.write_to_sys_log(f"CFE_ES_ExitApp: CORE Application {app.name} Had an Init Error.")
-            self.on_reset(f"core application {app.name} had an init error")
+            self.on_reset(RST_TYPE_PROCESSOR, f"core application {app.name} had an init error")
         elif status == CORE_APP_RUNTIME_ERROR:
             self.write_to_sys_log(f"CFE_ES_ExitApp: CORE Application {app.name} Had a Runtime Error.")
         else:
@@ -262,7 +263,7 @@ class AppServices(EsCore):
                 history.restarts += 1
             except CfeError as failure:
                 failed = True
-                detail = f"Failed: AppCreate Error 0x{failure.status & 0xFFFFFFFF:08X}."
+                detail = f"Failed: AppCreate Error {failure.hex}."
         action, done, error = {
             APP_EXIT: ("Exit", ev.EXIT_APP_INF_EID, ev.EXIT_APP_ERR_EID),
             APP_ERROR: ("Exit", ev.ERREXIT_APP_INF_EID, ev.ERREXIT_APP_ERR_EID),

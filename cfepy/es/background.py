@@ -5,6 +5,7 @@ from __future__ import annotations
 from cfepy.es.records import Fault
 from cfepy.es.service import ExecutiveServices
 from cfepy.es.startup_script import EXCEPTION_RESTART_APP
+from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.rtos import Semaphore
 from cfepy.rtos.units import NS_PER_MS
 from cfepy.status import CfeError
@@ -67,8 +68,10 @@ class BackgroundTask:
         limit = es.config.es_max_processor_resets
         if self.processor_resets >= limit:
             es.write_to_sys_log(f"CFE_ES_RunExceptionScan: Maximum Processor Reset count reached ({limit})")
+            reset_type = RST_TYPE_POWERON
         else:
+            reset_type = RST_TYPE_PROCESSOR
             es.write_to_sys_log(
                 f"CFE_ES_RunExceptionScan: Processor Reset count not reached ({self.processor_resets}/{limit})"
             )
-        es.on_reset(f"{app.name}: {fault.reason}")
+        es.on_reset(reset_type, f"{app.name}: {fault.reason}")

@@ -45,7 +45,9 @@ class EsCore:
         self.history: dict[str, AppHistory] = {}
         self.faults: list[Fault] = []
         self.system_state = SYSTEM_EARLY_INIT
-        self.on_reset: Callable[[str], object] = lambda reason: None  # the processor is to be reset; the mission's part
+        self.on_reset: Callable[[int, str], object] = lambda reset_type, reason: (
+            None
+        )  # the mission resets the processor
 
     def write_to_sys_log(self, text: str) -> None:
         """Add a line to the system log (CFE_ES_WriteToSysLog)."""

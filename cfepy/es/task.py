@@ -134,7 +134,7 @@ class EsTask:
             return
         name = "PROCESSOR" if kind == RST_TYPE_PROCESSOR else "POWERON"
         self.es.write_to_sys_log(f"CFE_ES_ResetCFE: {name} RESET called from CFE_ES_ResetCFE (Commanded).")
-        self.es.on_reset(f"{name} RESET (Commanded)")
+        self.es.on_reset(kind, f"{name} RESET (Commanded)")
 
     def _start_app(self, packet: bytes) -> None:
         fields = pk.START_APP_COMMAND.unpack(packet, CMD_HEADER_SIZE)
@@ -150,7 +150,7 @@ class EsTask:
             params = StartParams(file, fields["AppEntryPoint"], stack, fields["Priority"], action)
             app_id = self.es.create_app(name, params)
         except CfeError as failure:
-            status = f"0x{failure.status & 0xFFFFFFFF:08X}"
+            status = failure.hex
             self._reject(ev.START_ERR_EID, f"Failed to start {name} from {file}, RC = {status}")
             return
         self._accept(ev.START_INF_EID, f"Started {name} from {file}, AppID = {app_id}")
@@ -196,13 +196,13 @@ class EsTask:
         try:
             app_id = self.es.get_app_id_by_name(name)
         except CfeError as missing:
-            status = f"0x{missing.status & 0xFFFFFFFF:08X}"
+            status = missing.hex
             self._reject(unknown, f"{action} Application {name}, GetAppIDByName failed. RC = {status}.")
             return
         try:
             call(app_id)
         except CfeError as failure:
-            self._reject(failed, f"{action} Application {name} Failed, RC = 0x{failure.status & 0xFFFFFFFF:08X}")
+            self._reject(failed, f"{action} Application {name} Failed, RC = {failure.hex}")
             return
         self._accept(begun, f"{action} Application {name} Initiated.", ev.DEBUG)
 
@@ -211,7 +211,7 @@ class EsTask:
         try:
             info = self.es.get_app_info(self.es.get_app_id_by_name(name))
         except CfeError as missing:
-            status = f"0x{missing.status & 0xFFFFFFFF:08X}"
+            status = missing.hex
             text = f"Failed to send {name} application data: GetAppIDByName Failed, RC = {status}"
             self._reject(ev.ONE_APPID_ERR_EID, text)
             return

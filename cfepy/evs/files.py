@@ -86,7 +86,7 @@ class EventFiles:
                 name, default, get_default_mount_point(category), get_default_extension(category)
             )
         except CfeError as error:
-            text = f"{command} Command Error: CFE_FS_ParseInputFileNameEx() = 0x{error.status & 0xFFFFFFFF:08X}"
+            text = f"{command} Command Error: CFE_FS_ParseInputFileNameEx() = {error.hex}"
             self._core.send_own(failed, ev.ERROR, text)
             return None
         try:

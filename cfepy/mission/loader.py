@@ -111,10 +111,9 @@ class ModuleLoader:
         if not callable(function):
             self._console.write(f"OS_SymbolLookup: {file} has no function {symbol}")
             raise SymbolError(OS_ERROR, symbol)
-        kind = _kind_without_body(function)
-        if kind is not None:
-            text = f"{symbol} of {file} is {kind}: calling it runs nothing; make it a plain function"
-            self._console.write(f"OS_SymbolLookup: {text}")
+        fault = _fault_of(function)
+        if fault is not None:
+            self._console.write(f"OS_SymbolLookup: {symbol} of {file} {fault}")
             raise SymbolError(OS_ERROR, symbol)
         found: Callable[[Any], object] = function
         return found
@@ -197,11 +196,20 @@ def _spec(found: Path | str, name: str) -> importlib.machinery.ModuleSpec | None
     return importlib.util.spec_from_file_location(name, found, submodule_search_locations=inner)
 
 
-def _kind_without_body(function: Callable[..., Any]) -> str | None:
-    """What a function is whose call only makes an object; None for a usual one."""
+def _fault_of(function: Callable[..., Any]) -> str | None:
+    """Why a function cannot be an entry point, and what to do; None when it can."""
+    plain = "calling it runs nothing; make it a plain function"
     if inspect.iscoroutinefunction(function) or inspect.isasyncgenfunction(function):
-        return "async"
-    return "a generator (it has a yield)" if inspect.isgeneratorfunction(function) else None
+        return f"is async: {plain}"
+    if inspect.isgeneratorfunction(function):
+        return f"is a generator (it has a yield): {plain}"
+    try:
+        inspect.signature(function).bind(None)
+    except TypeError:
+        return f"does not take one argument, the handle of the services; write `def {function.__name__}(cfe):`"
+    except ValueError:
+        return None  # a function of C that does not tell
+    return None
 
 
 def _stem(file: str) -> str:

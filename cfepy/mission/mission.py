@@ -252,10 +252,9 @@ class Mission:
         self.console.write(app_traceback(error))
         return self.cfe.es.take_fault(task, error, reason(error))
 
-    def _reset(self, why: str) -> None:
+    def _reset(self, reset_type: int, why: str) -> None:
         self.reset_reason = why
-        kind = 2 if self.es_task.background.processor_resets >= self.config.es_max_processor_resets else 1
-        self.psp.restart(kind)
+        self.psp.restart(reset_type)
 
     def _restart(self, reset_type: int) -> None:
         """The PSP restarts the processor: in this release the run ends there."""

@@ -85,7 +85,7 @@ class TableServices(TableAccess):
                 return access.handle.with_status(CFE_TBL_WARN_DUPLICATE)
             access = self.registry.add(Table(full_name, size, options, validate, app_id))
         except CfeError as error:
-            text = f"{app_name} Failed to Register table '{name}', Status=0x{error.status & 0xFFFFFFFF:08X}"
+            text = f"{app_name} Failed to Register table '{name}', Status={error.hex}"
             self._event(eid.CFE_TBL_REGISTER_ERR_EID, eid.ERROR, text)
             raise
         if options & OPT_CRITICAL:
@@ -104,7 +104,7 @@ class TableServices(TableAccess):
         try:
             return self.registry.connect(self.registry.by_name(full_name), app_id).handle
         except CfeError as error:
-            text = f"{app_name} Failed to Share '{full_name}', Status=0x{error.status & 0xFFFFFFFF:08X}"
+            text = f"{app_name} Failed to Share '{full_name}', Status={error.hex}"
             self._event(eid.CFE_TBL_SHARE_ERR_EID, eid.ERROR, text)
             raise
 
@@ -113,7 +113,7 @@ class TableServices(TableAccess):
         try:
             self.registry.release(self._access("Unregister", handle))
         except CfeError as error:
-            text = f"{self._caller()[1]} Failed to Unregister '?', Status=0x{error.status & 0xFFFFFFFF:08X}"
+            text = f"{self._caller()[1]} Failed to Unregister '?', Status={error.hex}"
             self._event(eid.CFE_TBL_UNREGISTER_ERR_EID, eid.ERROR, text)
             raise
 
@@ -189,7 +189,7 @@ class TableServices(TableAccess):
         try:
             access = self._access("Update", handle, owner_only=True)
         except CfeError as error:
-            text = f"{self._caller()[1]} Failed to update table, Status=0x{error.status & 0xFFFFFFFF:08X}"
+            text = f"{self._caller()[1]} Failed to update table, Status={error.hex}"
             self._event(eid.CFE_TBL_UPDATE_ERR_EID, eid.ERROR, text)
             raise
         table = access.table

@@ -236,7 +236,7 @@ class TableTask:
             existed = self._files.exists(path)
             size, entries = self._write_registry(path)
         except OsalError as error:
-            text = f"Error creating dump file '{path}', Status=0x{error.status & 0xFFFFFFFF:08X}"
+            text = f"Error creating dump file '{path}', Status={error.hex}"
             self._error(eid.CFE_TBL_CREATING_DUMP_FILE_ERR_EID, text)
             return True  # NASA counts the command when it is queued, before the file is opened
         except CfeError:
@@ -317,7 +317,7 @@ class TableTask:
         try:
             self._ports.sb.transmit_msg(bytes(packet))
         except CfeError as error:
-            text = f"Manage Notification Pkt Error(Status=0x{error.status & 0xFFFFFFFF:08X})"
+            text = f"Manage Notification Pkt Error(Status={error.hex})"
             self._error(eid.CFE_TBL_FAIL_NOTIFY_SEND_ERR_EID, text)
             return False
         return True

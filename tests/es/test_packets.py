@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from cfepy.es import packets as pk
 from cfepy.msg import Layout
 from tests.es.harness import Lab
@@ -59,3 +61,14 @@ def sent(lab: Lab, msg_id: int, code: int, payload: bytes, answer: int, layout: 
     lab.mission.run(1)
     assert got[0][0] << 8 | got[0][1] == answer
     return layout.unpack(got[0], 16)
+
+
+@pytest.mark.parametrize(("kind", "name"), [(1, "PROCESSOR"), (2, "POWERON")])
+def test_a_commanded_reset_ends_the_run_as_what_was_asked_for(tmp_path: Path, kind: int, name: str) -> None:
+    lab = Lab(tmp_path)
+    payload = pk.RESTART_COMMAND.pack(RestartType=kind)
+    lab.cfe.sb.transmit_msg(bytes(lab.cfe.msg.command(pk.CMD_MID, pk.RESTART_CC, payload)))
+    lab.mission.run(1)
+    assert f"CFE_PSP: Exiting cFE with {name} Reset status." in lab.lines
+    assert lab.mission.reset_reason == f"{name} RESET (Commanded)"
+    lab.mission.close()

@@ -54,6 +54,8 @@ def test_a_library_whose_init_fails_is_not_loaded(tmp_path: Path, statement: str
     [
         ("async def Main(cfe):\n    pass", "Main of /cf/app.so is async: calling it runs nothing"),
         ("def Main(cfe):\n    yield", "Main of /cf/app.so is a generator (it has a yield): calling it runs nothing"),
+        ("def Main():\n    pass", "Main of /cf/app.so does not take one argument, the handle of the services"),
+        ("def Main(cfe, more):\n    pass", "write `def Main(cfe):`"),
     ],
 )
 def test_an_entry_point_that_would_not_run_is_refused(tmp_path: Path, source: str, said: str) -> None:
