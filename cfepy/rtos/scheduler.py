@@ -92,7 +92,7 @@ class Scheduler:
         task = self.current
         if task.dying:
             self._refuse(task)
-        if type(timeout_ns) is not int:
+        if timeout_ns != FOREVER and type(timeout_ns) is not int:
             timeout_ns = whole(timeout_ns)
         if waits and waits[-1].priority > task.priority:
             at = len(waits)
