@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from benchmarks import floor
 from benchmarks.measure import rate
@@ -133,9 +134,9 @@ def bus(contexts: tuple[str, ...]) -> dict[str, float]:
     """Figures by name: rates in 1/s, and ratios to the floor measured in the same run."""
     figures: dict[str, float] = {"floor.queue_and_header": rate(floor.queue_and_header)}
     for context in contexts:
-        figures[f"floor.hand_overs.{context}"] = rate(lambda: floor.hand_overs(context))  # noqa: B023
+        figures[f"floor.hand_overs.{context}"] = rate(partial(floor.hand_overs, context))
         for measure in (one_task, ping_pong, fan_out, fan_out_tasks):
-            figures[f"{measure.__name__}.{context}"] = rate(lambda: measure(context))  # noqa: B023
+            figures[f"{measure.__name__}.{context}"] = rate(partial(measure, context))
         one, floor_one = figures[f"one_task.{context}"], figures["floor.queue_and_header"]
         figures[f"one_task.{context}.times_floor"] = floor_one / one
         pair = figures[f"floor.hand_overs.{context}"]

@@ -11,6 +11,7 @@ from cfepy.es.records import (
     SYSTEM_APPS_INIT,
     SYSTEM_CORE_STARTUP,
     SYSTEM_OPERATIONAL,
+    AppRecord,
     Entry,
     StartParams,
 )
@@ -90,7 +91,7 @@ class Boot:
         for core in self.table.core_apps:
             params = StartParams("", core.name, self.es.config.es_start_task_stack_size, core.priority)
             app = self.es.app(self.es.create_app(core.name, params, core.entry))
-            self._wait(self.es.config.es_core_max_startup_ms, lambda app=app: app.state >= RUNNING)  # type: ignore[misc]
+            self._wait_until_running(app)
         self.log("CFE_ES_CreateObjects: Finished ES CreateObject table entries.")
 
     def start_applications(self) -> None:
@@ -113,6 +114,9 @@ class Boot:
                 self.es.create_app(entry.name, params)
         except CfeError:
             pass  # it is in the system log; as in cFE the next entry gets its chance
+
+    def _wait_until_running(self, app: AppRecord) -> bool:
+        return self._wait(self.es.config.es_core_max_startup_ms, lambda: app.state >= RUNNING)
 
     def _wait_for_apps(self, state: int) -> bool:
         return self._wait(self.es.config.es_startup_script_timeout_ms, lambda: self.es.reached(state))
