@@ -253,11 +253,9 @@ class Mission:
         return self.cfe.es.take_fault(task, error, reason(error))
 
     def _reset(self, reset_type: int, why: str) -> None:
-        self.reset_reason = why
-        self.psp.restart(reset_type)
+        self.psp.restart(reset_type, why)
 
-    def _restart(self, reset_type: int) -> None:
+    def _restart(self, reset_type: int, why: str) -> None:
         """The PSP restarts the processor: in this release the run ends there."""
-        if self.reset_reason is None:
-            self.reset_reason = f"CFE_PSP_Restart({reset_type})"
+        self.reset_reason = why
         self.kernel.stop()

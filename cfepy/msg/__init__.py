@@ -5,6 +5,7 @@ Pure functions on bytes, usable without a mission. Imports only cfepy.status.
 
 from __future__ import annotations
 
+from cfepy.msg.dictionary import Command, Telemetry
 from cfepy.msg.dispatch import CommandTable, Dispatch
 from cfepy.msg.extended import (
     get_eds_version,
@@ -85,12 +86,14 @@ __all__ = [
     "MAX_SEQUENCE_COUNT",
     "PRIMARY_HEADER_SIZE",
     "TLM_HEADER_SIZE",
+    "Command",
     "CommandTable",
     "Dispatch",
     "Layout",
     "MsgType",
     "Packet",
     "SegmentationFlag",
+    "Telemetry",
     "cmd_topic_id_to_msg_id",
     "command",
     "compute_checksum",

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from cfepy.msg.dictionary import Command
 from cfepy.msg.header import CMD_HEADER_SIZE, Packet, get_msg_id
 from cfepy.status import CFE_MSG_BAD_ARGUMENT, CfeError
 
@@ -43,7 +44,8 @@ class Dispatch(NamedTuple):
 class CommandTable:
     """Handlers by message id and function code.
 
-    A handler gets the whole packet as bytes. Fill the table once with `add` and `add_message`, then `dispatch`.
+    A handler gets the whole packet as bytes. Fill the table once with `handle` (or `add` and `add_message`), then
+    `dispatch`.
     """
 
     __slots__ = ("_commands", "_messages")
@@ -51,6 +53,21 @@ class CommandTable:
     def __init__(self) -> None:
         self._commands: dict[int, dict[int, tuple[int, Handler]]] = {}
         self._messages: dict[int, tuple[int, Handler]] = {}
+
+    def handle(self, command: Command, handler: Handler) -> None:
+        """Handle a declared command.
+
+        Args:
+            command: its MsgId, function code and length count.
+            handler: called with the packet.
+
+        Raises:
+            CfeError: CFE_MSG_BAD_ARGUMENT when it has a handler already.
+        """
+        if command.code is None:
+            self.add_message(command.msg_id, command.length, handler)
+        else:
+            self.add(command.msg_id, command.code, command.length, handler)
 
     def add(self, msg_id: int, fcn_code: int, length: int, handler: Handler) -> None:
         """Handle one function code of a command message.

@@ -1,0 +1,87 @@
+"""Commands and telemetry by name: what an app declares once, for its own dispatch and for every tool on the ground.
+
+A service or an app has its declarations in one module, gathered in `COMMANDS` and `TELEMETRY`; an app offers these two
+names beside its entry point, where tools find them. Imports only its neighbours in cfepy.msg.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from cfepy.msg.header import CMD_HEADER_SIZE, TLM_HEADER_SIZE
+from cfepy.msg.layout import Layout
+from cfepy.msg.secondary import command
+
+_EMPTY = Layout("no payload", [])
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command, or a request without function codes such as the one for housekeeping.
+
+    Args:
+        name: as ground tools know it, NASA's without the ending: "CFE_ES_NOOP".
+        msg_id: its MsgId.
+        code: the function code; None for a message that has none.
+        payload: layout of what follows the 8-byte header.
+        text: what it does, for tools.
+    """
+
+    name: str
+    msg_id: int
+    code: int | None = None
+    payload: Layout = _EMPTY
+    text: str = ""
+
+    @property
+    def length(self) -> int:
+        """Bytes of the whole packet."""
+        return CMD_HEADER_SIZE + self.payload.size
+
+    def packet(self, values: Mapping[str, Any] | None = None, /, **more: Any) -> bytes:
+        """The command as bytes, checksum included; a field not given is zero.
+
+        Raises:
+            UsageError: an unknown field, or a value that does not fit.
+        """
+        return bytes(command(self.msg_id, self.code or 0, self.payload.pack(values, **more)))
+
+    def read(self, packet: bytes | bytearray | memoryview) -> dict[str, Any]:
+        """The payload's fields.
+
+        Raises:
+            CfeError: CFE_STATUS_WRONG_MSG_LENGTH when the packet is too short.
+        """
+        return self.payload.unpack(packet, CMD_HEADER_SIZE)
+
+
+@dataclass(frozen=True, slots=True)
+class Telemetry:
+    """A telemetry packet.
+
+    Args:
+        name: as ground tools know it, NASA's without the ending: "CFE_ES_HK_TLM".
+        msg_id: its MsgId.
+        payload: layout of what follows the 16-byte header.
+        text: what it tells, for tools.
+    """
+
+    name: str
+    msg_id: int
+    payload: Layout = _EMPTY
+    text: str = ""
+
+    @property
+    def length(self) -> int:
+        """Bytes of the whole packet."""
+        return TLM_HEADER_SIZE + self.payload.size
+
+    def read(self, packet: bytes | bytearray | memoryview) -> dict[str, Any]:
+        """The payload's fields.
+
+        Raises:
+            CfeError: CFE_STATUS_WRONG_MSG_LENGTH when the packet is too short.
+        """
+        return self.payload.unpack(packet, TLM_HEADER_SIZE)
