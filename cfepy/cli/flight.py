@@ -72,7 +72,7 @@ class Flight:
 
     def _goes_on(self) -> bool:
         mission = self.mission
-        return mission.kernel.now < self._until_ns and mission.reset_reason is None and not self.interrupts.asked
+        return mission.kernel.now < self._until_ns and not self.interrupts.asked
 
     def _free_step(self, until_ns: int) -> None:
         """As fast as it goes: a piece of virtual time that takes some 80 to 250 ms of wall time."""

@@ -10,7 +10,8 @@ from cfepy.mission.results import Results, TopicResult
 
 def show(results: Results, stream: TextIO) -> None:
     """Print all tables and the line about speed."""
-    show_tables([_topics(results), _apps(results), _events(results), *_pipes(results), *_memory(results)], stream)
+    tables = [_topics(results), _apps(results), _events(results)]
+    show_tables([*tables, *_resets(results), *_pipes(results), *_memory(results)], stream)
     line = f"{results.virtual_s:.3f} virtual s in {results.wall_s:.3f} s: {results.speed:.1f} x real time"
     print(f"\n{line}, board {results.board}, {results.tasks} tasks, seed {results.seed}", file=stream)
 
@@ -62,6 +63,13 @@ def _events(results: Results) -> Table:
     for name, count in results.events.items():
         table.add(name, count)
     return table
+
+
+def _resets(results: Results) -> list[Table]:
+    table = Table("Resets", ("at, s", "type", "why"), right=(0,))
+    for reset in results.resets:
+        table.add(f"{reset.at_s:.3f}", reset.type, reset.reason)
+    return [table] if table.rows else []
 
 
 def _pipes(results: Results) -> list[Table]:

@@ -117,7 +117,7 @@ def _explain(results: Results, arguments: argparse.Namespace, interrupted: bool)
         print(f'cfepy: "cfepy check {arguments.mission}" says what is wrong with the mission', file=sys.stderr)
     if interrupted:
         print(f"cfepy: ended by Ctrl-C after {results.virtual_s:g} virtual seconds", file=sys.stderr)
-    elif results.booted_s is None and results.reset is None:
+    elif results.booted_s is None:
         text = f"not OPERATIONAL after {results.virtual_s:g} virtual seconds; run it for longer (--for)"
         print(f"cfepy: {text}", file=sys.stderr)
 

@@ -14,10 +14,14 @@ from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, entries, p
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.mission.mission import Mission
 from cfepy.mission.msg_names import names_of
+from cfepy.mission.processor import CORE_APPS
+from cfepy.mission.record import Reset, Traffic
 from cfepy.mission.tracebacks import described
+from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.rtos.units import NS_PER_S
 
 EVENT_TYPES = {DEBUG: "DEBUG", INFORMATION: "INFORMATION", ERROR: "ERROR", CRITICAL: "CRITICAL"}
+RESET_TYPES = {RST_TYPE_PROCESSOR: "PROCESSOR", RST_TYPE_POWERON: "POWERON"}
 NOT_STARTED = "NOT STARTED"
 ENDED = "ENDED"
 TOLERANCE = 1.1  # of a measured rate: what was sent shortly before the mission was operational counts too
@@ -76,6 +80,16 @@ class PipeResult:
 
 
 @dataclass(frozen=True, slots=True)
+class ResetResult:
+    """A reset of the processor: when in virtual s, "PROCESSOR" or "POWERON", why, and whether it was a failure."""
+
+    at_s: float
+    type: str
+    reason: str
+    fault: bool
+
+
+@dataclass(frozen=True, slots=True)
 class MemoryResult:
     """The board's RAM in bytes; `limit` is None on a board without one."""
 
@@ -106,31 +120,25 @@ def mark(mission: Mission, wall_ns: int) -> Mark:
         wall_ns: wall-clock time that the run took, in ns.
     """
     sb, memory = mission.cfe.sb, mission.memory
+    traffic = mission.record.traffic(sb, ())
     return Mark(
         mission.kernel.now,
         wall_ns,
-        sent_by_msg_id(mission),
+        {msg_id: count.sent for msg_id, count in traffic.items()},
         {app.name: STATE_NAMES[app.state] for app in mission.cfe.es.apps},
         [PipeResult(pipe.name, pipe.app_name, pipe.depth, pipe.peak, pipe.send_errors) for pipe in sb.pipes],
         MemoryResult(memory.used, memory.peak, memory.limit, memory.by_owner()),
-        mission.sb_task.housekeeping(),
+        mission.processor.sb_task.housekeeping(),
     )
-
-
-def sent_by_msg_id(mission: Mission) -> dict[int, int]:
-    """How many messages of each MsgId were transmitted so far."""
-    sent = {route.msg_id: route.sent for route in mission.cfe.sb.routes.values()}
-    for msg_id, count in mission.cfe.sb.unrouted.sent.items():
-        sent[msg_id] = sent.get(msg_id, 0) + count
-    return sent
 
 
 @dataclass(frozen=True, slots=True)
 class Results:
     """The numbers of a run; `to_dict` gives the JSON form. Times in s, `speed` is virtual time by wall time.
 
-    `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` says, a line each, why
-    the run did not end well, `script_problems` what of the startup script could not be started.
+    `booted_s` is of the first boot, `resets` are in order; pipes, memory and `sb` are of the processor since the last
+    one. `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` says, a line each,
+    why the run did not end well, `script_problems` what of the startup script could not be started.
     """
 
     mission: str
@@ -142,7 +150,7 @@ class Results:
     tasks: str
     trace: str
     booted_s: float | None
-    reset: str | None
+    resets: list[ResetResult]
     max_publish_hz: int
     topics: list[TopicResult]
     apps: list[AppResult]
@@ -164,10 +172,9 @@ class Results:
             trace: the digest of the run, from before the tasks were ended.
         """
         virtual_s, wall_s = at.now_ns / NS_PER_S, at.wall_ns / NS_PER_S
-        evs = mission.cfe.evs
-        core = {app.name for app in mission.cfe.es.apps if app.is_core}
-        own_errors = {name: count for name, count in sorted(evs.errors_by_app.items()) if name not in core}
-        apps = _apps(mission, at, core)
+        record = mission.record
+        own_errors = {name: count for name, count in sorted(record.errors_by_app.items()) if name not in CORE_APPS}
+        apps = _apps(mission, at)
         return cls(
             mission=mission.spec.name,
             virtual_s=virtual_s,
@@ -178,11 +185,11 @@ class Results:
             tasks=mission.tasks,
             trace=trace,
             booted_s=None if mission.booted is None else mission.booted / NS_PER_S,
-            reset=mission.reset_reason,
+            resets=[_reset(each) for each in mission.record.resets],
             max_publish_hz=mission.board.max_publish_hz,
             topics=_topics(mission, at),
             apps=apps,
-            events={name: evs.counts.get(kind, 0) for kind, name in EVENT_TYPES.items()},
+            events={name: record.event_counts.get(kind, 0) for kind, name in EVENT_TYPES.items()},
             own_errors=own_errors,
             sb=at.sb,
             pipes=at.pipes,
@@ -196,37 +203,44 @@ class Results:
         return asdict(self)
 
 
+def _reset(reset: Reset) -> ResetResult:
+    return ResetResult(reset.at_ns / NS_PER_S, RESET_TYPES[reset.reset_type], reset.reason, reset.fault)
+
+
 def _topics(mission: Mission, at: Mark) -> list[TopicResult]:
     names = names_of(mission.spec)
-    ros = {row.msg_id: row for row in mission.ros.topics()} if mission.ros is not None else {}
-    sb = mission.cfe.sb
-    since_boot_ns = at.now_ns - (mission.booted or 0)
-    limit_hz = mission.board.max_publish_hz
+    rows = mission.record.topics | {row.msg_id: row for row in mission.processor.topics()}
     found = []
-    for msg_id, sent in sorted(sent_by_msg_id(mission).items()):
-        route, row = sb.routes.get(msg_id), ros.get(msg_id)
-        delivered, by_limit, by_pipe = route.totals() if route is not None else (0, 0, 0)
-        by_segment = row.dropped if row is not None else 0
-        rate_hz = at.sent.get(msg_id, 0) * NS_PER_S / since_boot_ns if since_boot_ns else 0.0
-        found.append(
-            TopicResult(
-                name=row.name if row is not None else names.get(msg_id, f"0x{msg_id:04X}"),
-                msg_id=msg_id,
-                type=row.type if row is not None else kind_of(msg_id),
-                sent=sent,
-                delivered=delivered,
-                waiting=sum(each.puts - each.gets for each in (*route.destinations, *route.gone)) if route else 0,
-                dropped=by_limit + by_pipe + by_segment,
-                dropped_limit=by_limit,
-                dropped_pipe_full=by_pipe,
-                dropped_segment=by_segment,
-                no_subscriber=sb.unrouted.sent.get(msg_id, 0),
-                held_back=row.held_back if row is not None else 0,
-                rate_hz=round(rate_hz, 3),
-                too_fast=bool(limit_hz) and rate_hz > limit_hz * TOLERANCE,
-            )
-        )
+    for msg_id, count in mission.record.traffic(mission.cfe.sb, mission.processor.topics()).items():
+        row = rows.get(msg_id)
+        name = row.name if row is not None else names.get(msg_id, f"0x{msg_id:04X}")
+        kind = row.type if row is not None else kind_of(msg_id)
+        found.append(_topic(name, msg_id, kind, count, _rate(mission, at, msg_id), mission.board.max_publish_hz))
     return found
+
+
+def _rate(mission: Mission, at: Mark, msg_id: int) -> float:
+    since_boot_ns = at.now_ns - (mission.booted or 0)
+    return at.sent.get(msg_id, 0) * NS_PER_S / since_boot_ns if since_boot_ns else 0.0
+
+
+def _topic(name: str, msg_id: int, kind: str, count: Traffic, rate_hz: float, limit_hz: int) -> TopicResult:
+    return TopicResult(
+        name=name,
+        msg_id=msg_id,
+        type=kind,
+        sent=count.sent,
+        delivered=count.delivered,
+        waiting=count.waiting,
+        dropped=count.dropped_limit + count.dropped_pipe_full + count.dropped_segment,
+        dropped_limit=count.dropped_limit,
+        dropped_pipe_full=count.dropped_pipe_full,
+        dropped_segment=count.dropped_segment,
+        no_subscriber=count.no_subscriber,
+        held_back=count.held_back,
+        rate_hz=round(rate_hz, 3),
+        too_fast=bool(limit_hz) and rate_hz > limit_hz * TOLERANCE,
+    )
 
 
 def kind_of(msg_id: int) -> str:
@@ -234,7 +248,7 @@ def kind_of(msg_id: int) -> str:
     return "command" if msg_id & 0x1000 else "telemetry"
 
 
-def _apps(mission: Mission, at: Mark, core: set[str]) -> list[AppResult]:
+def _apps(mission: Mission, at: Mark) -> list[AppResult]:
     found = []
     end_ns = mission.kernel.now
     for history in mission.cfe.es.history.values():
@@ -247,7 +261,7 @@ def _apps(mission: Mission, at: Mark, core: set[str]) -> list[AppResult]:
                 restarts=history.restarts,
                 deaths=history.deaths,
                 error=None if error is None else described(error),
-                core=history.name in core,
+                core=history.name in CORE_APPS,
             )
         )
     known = {app.name for app in found}
@@ -280,8 +294,9 @@ def _problems(mission: Mission, apps: list[AppResult], own_errors: dict[str, int
     found += [f"{name} ended with CFE_ES_RunStatus_APP_ERROR" for name in _failed(mission)]
     for name, count in own_errors.items():
         found.append(f"{name} sent {count} ERROR or CRITICAL event{'s' if count > 1 else ''}")
-    if mission.reset_reason is not None:
-        found.append(f"the processor was reset: {mission.reset_reason}")
+    for reset in mission.record.resets:
+        if reset.fault:
+            found.append(f"the processor was reset at {reset.at_ns / NS_PER_S:g} s: {reset.reason}")
     return found
 
 

@@ -16,6 +16,7 @@ from cfepy.console import Console
 from cfepy.ids import OS_TIMEBASE_BASE, IdTable, get_base
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.limits import OS_MAX_API_NAME, SIZE_MAX
+from cfepy.osal.network import Network
 from cfepy.rtos import Kernel, Task
 from cfepy.status import (
     OS_ERR_INCORRECT_OBJ_STATE,
@@ -69,6 +70,7 @@ class Setup:
         config: limits.
         console: where OS_printf goes.
         files: the virtual file system.
+        network: what sockets are plugged into.
         memory: accounts for stacks and objects; None does not count.
         sizes: what an object takes.
         call_ns: virtual CPU time of a call.
@@ -80,6 +82,7 @@ class Setup:
     config: PlatformConfig
     console: Console
     files: FileSystem = field(default_factory=FileSystem)
+    network: Network = field(default_factory=Network)
     memory: Ledger | None = None
     sizes: ObjectSizes = field(default_factory=ObjectSizes)
     call_ns: int = 0

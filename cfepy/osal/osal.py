@@ -13,6 +13,7 @@ from cfepy.osal.core import Ledger, ObjectSizes, Setup
 from cfepy.osal.disks import DiskApi
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.idmap import IdMapApi
+from cfepy.osal.network import Network
 from cfepy.rtos import Kernel
 
 
@@ -24,6 +25,7 @@ class Osal(CleanupApi, DiskApi, IdMapApi):
         config: limits (cfepy.config).
         console: where `printf` writes.
         files: the virtual file system; None makes one with an empty /cf and /ram.
+        network: what sockets are plugged into; None makes one of its own.
         memory: accounts for stacks and objects, None does not count.
         sizes: what the operating system takes for each object, in bytes.
         call_ns: virtual CPU time that a call takes.
@@ -38,6 +40,7 @@ class Osal(CleanupApi, DiskApi, IdMapApi):
         console: Console | None = None,
         *,
         files: FileSystem | None = None,
+        network: Network | None = None,
         memory: Ledger | None = None,
         sizes: ObjectSizes | None = None,
         call_ns: int = 0,
@@ -50,6 +53,7 @@ class Osal(CleanupApi, DiskApi, IdMapApi):
                 config or PlatformConfig(),
                 console or Console(),
                 files or FileSystem(),
+                network or Network(),
                 memory,
                 sizes or ObjectSizes(),
                 call_ns,

@@ -79,7 +79,7 @@ class Psp(AddressSpace, AbsentHardware):
         console: where its lines go.
         osal: for the software time base.
         retained: memory that outlives a processor reset; None makes a new one.
-        on_restart: called with the reset type and the reason when somebody asks for a restart; None stops the run.
+        on_restart: called with the reset type, the reason and whether it is a fault; None stops the run.
         on_watchdog: called when the watchdog bites; None for none, as on Linux.
     """
 
@@ -101,7 +101,7 @@ class Psp(AddressSpace, AbsentHardware):
         osal: Osal,
         *,
         retained: Retained | None = None,
-        on_restart: Callable[[int, str], object] | None = None,
+        on_restart: Callable[[int, str, bool], object] | None = None,
         on_watchdog: Callable[[], object] | None = None,
     ) -> None:
         super().__init__()
@@ -152,12 +152,13 @@ class Psp(AddressSpace, AbsentHardware):
         self.retained.next_reset_type = RST_TYPE_PROCESSOR  # what happens when the run ends without a restart
         return self._restart_type
 
-    def restart(self, reset_type: int, reason: str = "CFE_PSP_Restart") -> None:
+    def restart(self, reset_type: int, reason: str = "CFE_PSP_Restart", fault: bool = False) -> None:
         """Reset the processor, and record how it starts again (CFE_PSP_Restart). A task does not come back from it.
 
         Args:
             reset_type: RST_TYPE_PROCESSOR or RST_TYPE_POWERON.
             reason: for the report of the run.
+            fault: something failed; otherwise somebody asked for it.
         """
         is_poweron = reset_type == RST_TYPE_POWERON
         self.console.write(f"CFE_PSP: Exiting cFE with {'POWERON' if is_poweron else 'PROCESSOR'} Reset status.")
@@ -165,7 +166,7 @@ class Psp(AddressSpace, AbsentHardware):
         self.retained.next_reset_type = reset_type
         self.retained.exited = True
         if self.on_restart is not None:
-            self.on_restart(reset_type, reason)
+            self.on_restart(reset_type, reason, fault)
         else:
             self.kernel.stop()
         if self.kernel.current is not self.kernel.host:

@@ -220,12 +220,17 @@ class Kernel(Scheduler):
         if self.current is not self.host:
             heappush(self.ready, (-1, 0, self.host))
 
-    def shutdown(self) -> None:
-        """Unwind every task, youngest first, and let their threads go. The host calls it at the end."""
+    def unwind(self) -> None:
+        """End every task, youngest first; the clock and the trace go on. The host calls it when a computer is reset."""
         while self.tasks:
             self.kill(self.tasks[-1])
         self.ready.clear()
         self.timers.clear()
+        self._last = None
+
+    def shutdown(self) -> None:
+        """Unwind every task and let their threads go. The host calls it at the end."""
+        self.unwind()
         if self._frozen:
             gc.unfreeze()
             self._frozen = False

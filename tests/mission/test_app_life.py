@@ -54,7 +54,7 @@ def test_an_app_that_dies_is_restarted_with_fresh_variables(tmp_path: Path) -> N
     assert "start 2" not in text
     assert "CFE_ES_RestartApp: Restart Application CRASH Initiated" in text
     assert "Restart Application CRASH Completed, AppID=1114119" in text
-    assert mission.reset_reason is None
+    assert not mission.record.resets
 
 
 def test_the_traceback_is_the_apps_own(tmp_path: Path) -> None:
@@ -71,9 +71,11 @@ def test_the_traceback_is_the_apps_own(tmp_path: Path) -> None:
 def test_exception_action_1_resets_the_processor(tmp_path: Path) -> None:
     folder = write_mission(tmp_path, APP.format("crash", "CRASH", 1) + "!", crash=CRASHING)
     mission = fly(folder, 20)
-    assert mission.reset_reason == "CRASH: ValueError: a wheel fell off (crash.py:13)"
+    first = mission.record.resets[0]
+    assert first.reason == "CRASH: ValueError: a wheel fell off (crash.py:13)"
+    assert first.fault
+    assert first.at_ns < 3_000_000_000
     assert "CFE_PSP: Exiting cFE with PROCESSOR Reset status." in mission.console.lines
-    assert mission.kernel.now < 3_000_000_000
 
 
 def test_an_app_that_returns_has_exited(tmp_path: Path) -> None:

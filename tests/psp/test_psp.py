@@ -145,7 +145,7 @@ def test_a_task_does_not_come_back_from_a_restart(board: Board) -> None:
 
 def test_the_mission_may_handle_a_restart() -> None:
     kinds: list[int] = []
-    board = Board(on_restart=lambda kind, reason: kinds.append(kind))
+    board = Board(on_restart=lambda kind, reason, fault: kinds.append(kind))
     with board.kernel:
         board.psp.restart(2)
     assert kinds == [2]

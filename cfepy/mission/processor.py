@@ -1,0 +1,198 @@
+"""`Processor`: what lives between two resets of the simulated computer: OSAL, PSP, the services, ROS, and the boot.
+
+A reset throws a processor away and makes a new one on the same machine, as a real one loses what was in its RAM.
+"""
+
+from __future__ import annotations
+
+import importlib
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cfepy import versions
+from cfepy.app import Cfe
+from cfepy.config import PlatformConfig
+from cfepy.console import Console
+from cfepy.es import Boot, CoreApp, EsTask, ExecutiveServices, ObjectTable
+from cfepy.evs import EventServices
+from cfepy.mission.loader import ModuleLoader
+from cfepy.mission.record import RunRecord
+from cfepy.mission.spec import MissionSpec
+from cfepy.osal import FileSystem, Osal
+from cfepy.osal.network import Network
+from cfepy.ports import Ports
+from cfepy.psp import Psp
+from cfepy.psp.cpu import CpuCosts
+from cfepy.psp.memory import MemoryBudget, object_sizes
+from cfepy.psp.profile import BoardProfile
+from cfepy.psp.retained import Retained
+from cfepy.rtos import Kernel
+from cfepy.rtos.units import NS_PER_S
+from cfepy.sb import BusCosts, SbTask, SoftwareBus
+from cfepy.tbl import TableServices
+from cfepy.time import TimeServices
+
+BOOT_PRIORITY = 0
+EVS_PRIORITY, SB_PRIORITY, ES_PRIORITY, TIME_PRIORITY, TBL_PRIORITY = 61, 64, 68, 60, 70
+CORE_APPS = ("CFE_EVS", "CFE_SB", "CFE_ES", "CFE_TIME", "CFE_TBL")
+UNIX_AT_CFE_EPOCH = 315_532_800  # 1980-01-01 in seconds since 1970-01-01
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """What a reset leaves alone, and what a processor is made of.
+
+    `retained` is the memory that outlives a processor reset, `network` what sockets are plugged into, `bus` the class
+    of the Software Bus, `on_restart` what the PSP calls for a reset: (type, reason, fault).
+    """
+
+    spec: MissionSpec
+    seed: int
+    board: BoardProfile
+    config: PlatformConfig
+    kernel: Kernel
+    console: Console
+    files: FileSystem
+    network: Network
+    retained: Retained
+    record: RunRecord
+    bus: type[SoftwareBus]
+    on_restart: Callable[[int, str, bool], object]
+
+    @property
+    def epoch_ns(self) -> int:
+        """Unix time in ns at virtual time 0: the spacecraft's clock, as ROS nodes read it."""
+        return (UNIX_AT_CFE_EPOCH + self.config.time_def_met_secs + self.config.time_def_stcf_secs) * NS_PER_S
+
+
+class Processor:
+    """One power cycle; its boot task is ready to run when it was made.
+
+    Args:
+        machine: what it is made of.
+        start_ns: how long after now the board comes up.
+
+    Attributes:
+        cfe: the handle that apps get.
+        ports, osal, psp, memory, loader, es_task, sb_task: the parts.
+        ros: the ROS side (`rospy_shim.runtime.RosRuntime`), made when the first node starts; None before.
+        booted: virtual ns at which it became OPERATIONAL, None before.
+    """
+
+    def __init__(self, machine: Machine, start_ns: int = 0) -> None:
+        self.machine = machine
+        self.ros: Any = None
+        self.booted: int | None = None
+        self._start_ns = start_ns
+        self._build(CpuCosts.of_board(machine.board))
+        machine.kernel.spawn("CFE_ES_Main", self._boot, BOOT_PRIORITY)
+
+    def _build(self, costs: CpuCosts) -> None:
+        machine = self.machine
+        kernel, config, console = machine.kernel, machine.config, machine.console
+        self.ports = ports = Ports()
+        self.memory = ports.memory = MemoryBudget(machine.board)
+        self.osal = Osal(
+            kernel,
+            config,
+            console,
+            files=machine.files,
+            network=machine.network,
+            memory=self.memory,
+            sizes=object_sizes(machine.board),
+            call_ns=costs.call_ns,
+            byte_ps=costs.byte_ps,
+            epoch_ns=machine.epoch_ns,
+        )
+        self.psp = Psp(
+            kernel,
+            machine.board,
+            config,
+            console,
+            self.osal,
+            retained=machine.retained,
+            on_restart=machine.on_restart,
+        )
+        self.loader = ModuleLoader(machine.files, machine.spec.folder, console, lambda: self.cfe, self._run_node)
+        es = ExecutiveServices(kernel, ports, config, self.osal, console, self.loader)
+        es.on_reset = self.psp.restart
+        sb = machine.bus(kernel, ports, config, BusCosts(costs.call_ns, costs.byte_ps))
+        evs = EventServices(kernel, ports, config, console, machine.files.write_file)
+        time = TimeServices(kernel, ports, config)
+        tbl = TableServices(kernel, ports, config, machine.files)
+        ports.es, ports.syslog, ports.sb, ports.evs, ports.time, ports.tbl = es, es.syslog, sb, evs, time, tbl
+        time.clock.on_jump = sb.forget_time
+        record = machine.record
+        es.history, evs.counts, evs.errors_by_app = record.history, record.event_counts, record.errors_by_app
+        self.cfe = Cfe(es, sb, evs, time, tbl, self.osal, self.psp)
+        self.sb_task = SbTask(sb)
+        checksum = zlib.crc32(versions.CFE_VERSION.encode()) & 0xFFFF
+        self.es_task = EsTask(es, machine.spec.name, self._build_text(), checksum)
+
+    def _build_text(self) -> str:
+        machine = self.machine
+        who = f"cfepy@{machine.config.processor_name}"
+        return f"Build cfepy {versions.CFE_VERSION} by {who}, config {machine.board.name}"
+
+    def _boot(self) -> None:
+        """The processor's main task: PSP first, then the executive."""
+        if self._start_ns:
+            self.machine.kernel.delay(self._start_ns)
+        self.psp.boot()
+        cfe = self.cfe
+        nothing = bool  # what C does here, Python did when it made the objects
+        table = ObjectTable(
+            calls=(
+                ("CFE_Config_Init", nothing),
+                ("CFE_ES_CDSEarlyInit", nothing),
+                ("CFE_EVS_EarlyInit", cfe.evs.early_init),
+                ("CFE_SB_EarlyInit", cfe.sb.early_init),
+                ("CFE_TIME_EarlyInit", cfe.time.early_init),
+                ("CFE_TBL_EarlyInit", cfe.tbl.early_init),
+                ("CFE_FS_EarlyInit", nothing),
+            ),
+            core_apps=(
+                CoreApp("CFE_EVS", cfe.evs.task_main, EVS_PRIORITY),
+                CoreApp("CFE_SB", self.sb_task.task_main, SB_PRIORITY),
+                CoreApp("CFE_ES", self.es_task.task_main, ES_PRIORITY),
+                CoreApp("CFE_TIME", cfe.time.task_main, TIME_PRIORITY),
+                CoreApp("CFE_TBL", cfe.tbl.task_main, TBL_PRIORITY),
+            ),
+        )
+        Boot(cfe.es, table, self.machine.spec.script.read_bytes(), self._operational).main()
+
+    def _operational(self) -> None:
+        self.booted = self.machine.kernel.now
+
+    def _run_node(self, script: Path, app_name: str) -> None:
+        machine = self.machine
+        if self.ros is None:
+            runtime = importlib.import_module("rospy_shim.runtime")
+            self.ros = runtime.RosRuntime(
+                self.cfe,
+                machine.kernel,
+                machine.spec.ros,
+                seed=machine.seed,
+                epoch_ns=machine.epoch_ns,
+                node_call_ns=machine.board.node_call_ns,
+                max_publish_hz=machine.board.max_publish_hz,
+                console=machine.console,
+            )
+        self.ros.run_node(script, app_name)
+
+    def topics(self) -> list[Any]:
+        """The rows of ROS's topics (`rospy_shim.graph.TopicRow`)."""
+        return [] if self.ros is None else list(self.ros.topics())
+
+    def end(self) -> None:
+        """End every task and object and let go of the applications' code; the numbers stay readable."""
+        kernel = self.machine.kernel
+        for app in self.cfe.es.apps:
+            history = self.cfe.es.history_of(app.name)
+            history.cpu_ns += sum(task.cpu_ns for task in kernel.tasks if task.owner is app)
+        self.osal.delete_all_objects()  # first, since it calls the tasks' delete handlers
+        kernel.unwind()
+        self.loader.forget()
