@@ -12,9 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from types import ModuleType
 
-from cfepy import fs, msg
+from cfepy import msg
+from cfepy.config_api import ConfigServices
 from cfepy.es import ExecutiveServices
 from cfepy.evs import EventServices
+from cfepy.fs.services import FileServices
 from cfepy.osal import Osal
 from cfepy.psp import Psp
 from cfepy.sb import SoftwareBus
@@ -25,9 +27,9 @@ from cfepy.time import TimeServices
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cfe:
-    """The services of one mission: `es`, `sb`, `evs`, `time`, `tbl`; below them `os` and `psp`; helpers `msg`, `fs`.
+    """The services of one mission: `es`, `sb`, `evs`, `time`, `tbl`, `fs`, `config`; below them `os` and `psp`.
 
-    `msg` and `fs` are the modules `cfepy.msg` (packet headers) and `cfepy.fs` (file headers, CRC).
+    `msg` is the module `cfepy.msg` (packet headers).
     """
 
     es: ExecutiveServices
@@ -37,8 +39,9 @@ class Cfe:
     tbl: TableServices
     os: Osal
     psp: Psp
+    fs: FileServices
+    config: ConfigServices
     msg: ModuleType = msg
-    fs: ModuleType = fs
 
 
 __all__ = ["Cfe", "CfeError"]

@@ -5,7 +5,17 @@ A board profile may lower them (`PlatformConfig.with_limits`); nothing else chan
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+
+ES_MEM_BLOCK_SIZES = (8, 16, 32, 48, 64, 96, 128, 160, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768, 80000)
+"""Bytes of the blocks in memory pools and in the CDS (CFE_PLATFORM_ES_MEM_BLOCK_SIZE_01 and on)."""
+
+SB_MEM_BLOCK_SIZES = (8, 16, 20, 36, 64, 96, 128, 160, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768)
+"""Bytes of the blocks in the Software Bus's pool, but for the largest (CFE_PLATFORM_SB_MEM_BLOCK_SIZE_01 and on)."""
+
+SB_LARGEST_BLOCK_MORE = 128
+"""The largest block of that pool is the largest message and so many bytes (CFE_PLATFORM_SB_MAX_BLOCK_SIZE)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +44,15 @@ class PlatformConfig:
     es_startup_script_timeout_ms: int = 1000
     es_core_max_startup_ms: int = 30000
     es_system_log_size: int = 3072
+    es_default_por_syslog_mode: int = 0
+    es_default_pr_syslog_mode: int = 1
+    es_er_log_entries: int = 20
+    es_perf_data_buffer_size: int = 10000
+    es_ram_disk_percent_reserved: int = 30
     es_max_processor_resets: int = 2
     es_cds_size: int = 131072
+    es_cds_max_num_entries: int = 512
+    es_max_gen_counters: int = 8
 
     sb_max_pipes: int = 64
     sb_max_msg_ids: int = 256
@@ -62,13 +79,35 @@ class PlatformConfig:
     tbl_max_sngl_table_size: int = 16384
     tbl_max_dbl_table_size: int = 16384
     tbl_buf_memory_bytes: int = 524288
+    tbl_max_critical_tables: int = 32
+    tbl_valid_scid: tuple[int, ...] = ()
+    tbl_valid_prid: tuple[int, ...] = ()
 
     time_def_met_secs: int = 1000
     time_def_stcf_secs: int = 1000000
+    time_def_met_subs: int = 0
+    time_def_stcf_subs: int = 0
     time_def_leaps: int = 37
-    time_start_fly_secs: int = 2
+    time_cfg_default_utc: bool = False
+    time_cfg_client: bool = False
+    time_cfg_fake_tone: bool = True
+    time_at_tone_will_be: bool = False
+    time_cfg_signal: bool = False
+    time_cfg_source: bool = False
+    time_cfg_src_met: bool = False
+    time_cfg_src_gps: bool = False
+    time_cfg_src_time: bool = False
+    time_min_elapsed: int = 0
+    time_max_elapsed: int = 200000
+    time_max_delta_secs: int = 0
+    time_max_delta_subs: int = 500000
+    time_max_local_secs: int = 27
+    time_max_local_subs: int = 0
+    time_cfg_tone_limit: int = 20000
+    time_cfg_start_fly: int = 2
+    time_cfg_latch_fly: int = 8
 
-    def with_limits(self, limits: dict[str, int | str]) -> PlatformConfig:
+    def with_limits(self, limits: Mapping[str, int | str | tuple[int, ...]]) -> PlatformConfig:
         """A copy with some values replaced.
 
         Args:

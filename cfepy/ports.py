@@ -7,8 +7,8 @@ numbers that a service gives to another. Imports nothing of cfepy.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import Protocol
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Protocol
 
 DEBUG, INFORMATION, ERROR, CRITICAL = 1, 2, 3, 4
 """Event types (CFE_EVS_EventType_Enum_t), for `Events.send_event`."""
@@ -31,12 +31,18 @@ class Caller(Protocol):
 class SysLog(Protocol):
     """The ES system log (CFE_ES_WriteToSysLog)."""
 
-    def write_to_sys_log(self, text: str) -> None:
+    def write_to_sys_log(self, text: str) -> object:
         """Add one line, stamped with the spacecraft time, and show it on the console."""
 
 
+class Block(Protocol):
+    """A block of a memory pool; `memory` is its bytes."""
+
+    memory: memoryview
+
+
 class AppTable(Protocol):
-    """What ES knows of applications and their life."""
+    """What ES knows of applications and their life, and the memory that it lends."""
 
     def get_app_id(self) -> int:
         """AppId of the application that the current task belongs to (CFE_ES_GetAppID)."""
@@ -63,6 +69,38 @@ class AppTable(Protocol):
 
     def increment_task_counter(self) -> None:
         """Count one cycle of the calling task (CFE_ES_IncrementTaskCounter)."""
+
+    def perf_log_entry(self, marker: int) -> None:
+        """Note that the code with a performance id begins (CFE_ES_PerfLogEntry)."""
+
+    def perf_log_exit(self, marker: int) -> None:
+        """Note that it ends (CFE_ES_PerfLogExit)."""
+
+    def pool_create(self, size: int, owner: str = "") -> int:
+        """Make a memory pool (CFE_ES_PoolCreate); `owner` is for the board's books when no application calls."""
+
+    def pool_create_ex_with_alignment(
+        self, size: int, block_sizes: Sequence[int], use_mutex: bool, *, owner: str = ""
+    ) -> int:
+        """Make a memory pool of given block sizes (CFE_ES_PoolCreateEx_WithAlignment); `owner` as above."""
+
+    def get_pool_buf(self, pool_id: int, size: int) -> Block:
+        """Take a block of a pool (CFE_ES_GetPoolBuf)."""
+
+    def put_pool_buf(self, pool_id: int, block: Any) -> int:
+        """Give a block back that `get_pool_buf` gave (CFE_ES_PutPoolBuf)."""
+
+    def register_cds_ex(self, block_size: int, full_name: str, critical_table: bool) -> tuple[int, int]:
+        """Handle and status of a block of the Critical Data Store (CFE_ES_RegisterCDSEx)."""
+
+    def copy_to_cds(self, handle: int, data: bytes | bytearray | memoryview) -> None:
+        """Save a block's data (CFE_ES_CopyToCDS)."""
+
+    def restore_from_cds(self, handle: int) -> bytes:
+        """A block's data (CFE_ES_RestoreFromCDS)."""
+
+    def delete_cds(self, full_name: str, called_by_tbl_services: bool = False) -> None:
+        """Delete a block whose owner is gone (CFE_ES_DeleteCDS)."""
 
 
 class Bus(Protocol):
@@ -99,10 +137,10 @@ class Events(Protocol):
     def register(self, filters: Iterable[tuple[int, int]] = ()) -> None:
         """Register the calling application with its (event id, mask) filters (CFE_EVS_Register)."""
 
-    def send_event(self, event_id: int, event_type: int, text: str) -> None:
+    def send_event(self, event_id: int, event_type: int, text: str) -> object:
         """Send an event of the calling application (CFE_EVS_SendEvent)."""
 
-    def send_event_with_app_id(self, event_id: int, event_type: int, app_id: int, text: str) -> None:
+    def send_event_with_app_id(self, event_id: int, event_type: int, app_id: int, text: str) -> object:
         """Send an event in the name of an application (CFE_EVS_SendEventWithAppID)."""
 
     def cleanup_app(self, app_id: int) -> None:
@@ -135,6 +173,19 @@ class Cleanup(Protocol):
         """Release everything that an application holds."""
 
 
+class Files(Protocol):
+    """File Services, as the other services use them."""
+
+    def write_header(self, filedes: int, file_header: Any) -> int:
+        """Write a cFE header, with ids and time filled in, at the start of an open file (CFE_FS_WriteHeader)."""
+
+    def background_file_dump_request(self, meta: Any) -> None:
+        """Have a file written by the background task (CFE_FS_BackgroundFileDumpRequest)."""
+
+    def run_background_file_dump(self, elapsed_ms: int) -> bool:
+        """Write some of the files that wait; whether more is to do (CFE_FS_RunBackgroundFileDump)."""
+
+
 class Memory(Protocol):
     """The board's memory, as far as it is counted."""
 
@@ -148,7 +199,7 @@ class Memory(Protocol):
 class Ports:
     """The services of one mission, as they see each other; filled in by `cfepy.mission`."""
 
-    __slots__ = ("es", "evs", "memory", "sb", "syslog", "tbl", "time")
+    __slots__ = ("es", "evs", "fs", "memory", "sb", "syslog", "tbl", "time")
 
     es: AppTable
     syslog: SysLog
@@ -157,3 +208,4 @@ class Ports:
     time: SpacecraftClock
     tbl: Cleanup
     memory: Memory
+    fs: Files

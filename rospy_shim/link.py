@@ -220,7 +220,7 @@ class Link:
         """Remember who sends the next packet of the topic, since a packet cannot say."""
         route = self._routes.get(self.msg_id)
         if self.topic is not None and route is not None:
-            self.topic.notes[route.sequence & 0x3FFF] = (self.header, index)
+            self.topic.notes[(route.sequence + 1) & 0x3FFF] = (self.header, index)
 
     def _wait_for_room(self) -> None:
         kernel = self.node.kernel

@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 LAYERS = [
-    {"status", "ids", "trace", "console", "versions", "config", "ports", "resources", "__init__"},
+    {"status", "ids", "trace", "console", "versions", "config", "config_api", "ports", "resources", "__init__"},
     {"rtos"},
     {"osal"},
     {"psp", "msg", "fs"},
@@ -19,6 +19,7 @@ LAYERS = [
     {"app"},
     {"nodes", "apps"},
     {"mission"},
+    {"io"},
     {"cli", "__main__"},
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
@@ -26,6 +27,7 @@ SERVICES = {"es", "sb", "evs", "time", "tbl"}
 HOST_MODULES = {"time", "random", "threading", "_thread", "socket", "select", "datetime", "secrets", "uuid", "asyncio"}
 MAY_TOUCH_THE_HOST = {
     "rtos": "task contexts, pacing and the stall watch are made of the host's threads and clock",
+    "io": "joins the virtual network of a paced run to real sockets on the loopback interface",
     "nodes": "puts virtual modules in the place of these, and takes constants and types from the real ones",
 }
 

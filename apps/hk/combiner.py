@@ -31,12 +31,14 @@ class Combiner:
         cfe: the app's handle.
         pipe: where the inputs shall arrive.
         pool: the memory pool that the packets live in.
+        discard_incomplete: a packet that lacks data is not sent.
     """
 
-    def __init__(self, cfe: Cfe, pipe: int, pool: int) -> None:
+    def __init__(self, cfe: Cfe, pipe: int, pool: int, discard_incomplete: bool) -> None:
         self._cfe = cfe
         self._pipe = pipe
         self._pool = pool
+        self._discard_incomplete = discard_incomplete
         self._entries: list[CopyEntry] = []
         self._packets: dict[int, CombinedPacket] = {}
         self._inputs: dict[int, list[int]] = {}
@@ -61,7 +63,7 @@ class Combiner:
             block = self._cfe.es.get_pool_buf(self._pool, size)
         except CfeError as error:
             text = f"ES_GetPoolBuf for size {size} returned {error.hex}"
-            self._cfe.evs.send_err(eid.HK_MEM_POOL_MALLOC_FAILED_EID, f"HK Processing New Table: {text}")
+            self._cfe.evs.send_err(eid.MEM_POOL_MALLOC_FAILED_EID, f"HK Processing New Table: {text}")
             return
         self._packets[msg_id] = CombinedPacket(msg_id, block, indices)
 
@@ -70,7 +72,7 @@ class Combiner:
             self._cfe.sb.subscribe(msg_id, self._pipe)
         except CfeError as error:
             text = f"SB_Subscribe for Mid 0x{msg_id:08X} returned {error.hex}"
-            self._cfe.evs.send_err(eid.HK_CANT_SUBSCRIBE_TO_SB_PKT_EID, f"HK Processing New Table:{text}")
+            self._cfe.evs.send_err(eid.CANT_SUBSCRIBE_TO_SB_PKT_EID, f"HK Processing New Table:{text}")
             return
         self._subscribed.add(msg_id)
 
@@ -81,7 +83,7 @@ class Combiner:
                 self._cfe.es.put_pool_buf(self._pool, packet.block)
             except CfeError as error:
                 text = f"pkt:0x{packet.block.offset:08X} ret {error.hex}, hdl 0x{self._pool:08x}"
-                self._cfe.evs.send_err(eid.HK_MEM_POOL_FREE_FAILED_EID, f"HK TearDown: ES_putPoolBuf Err {text}")
+                self._cfe.evs.send_err(eid.MEM_POOL_FREE_FAILED_EID, f"HK TearDown: ES_putPoolBuf Err {text}")
         for msg_id in sorted(self._subscribed):
             self._cfe.sb.unsubscribe(msg_id, self._pipe)
         self._packets, self._inputs, self._subscribed = {}, {}, set()
@@ -103,27 +105,29 @@ class Combiner:
         if too_short:
             text = f"MID:0x{msg_id:08X}, Length:{len(packet)}, Count:{too_short}"
             self._cfe.evs.send_err(
-                eid.HK_ACCESSING_PAST_PACKET_END_EID, f"HK table definition exceeds packet length. {text}"
+                eid.ACCESSING_PAST_PACKET_END_EID, f"HK table definition exceeds packet length. {text}"
             )
 
     def send(self, msg_id: int) -> tuple[int, int]:
-        """Send a combined packet, whether or not all of it came in, and wait for all of it anew.
+        """Send a combined packet, unless it lacks data and such are discarded, and wait for all of it anew.
 
         Returns:
-            How many packets were sent, and how many of them lacked data: (0, 0), (1, 0) or (1, 1).
+            How many packets were sent, and how many lacked data: (0, 0), (1, 0), (1, 1), or (0, 1) when discarded.
         """
         packet = self._packets.get(msg_id)
         if packet is None:
             text = f"Combined HK Packet 0x{msg_id:08X} is not found in current HK Copy Table"
-            self._cfe.evs.send_info(eid.HK_UNKNOWN_COMBINED_PACKET_EID, text)
+            self._cfe.evs.send_info(eid.UNKNOWN_COMBINED_PACKET_EID, text)
             return 0, 0
         lacking = bool(packet.missing)
         if lacking:
             input_mid = self._entries[min(packet.missing)].input_mid
             text = f"Combined Packet 0x{msg_id:08X} missing data from Input Pkt 0x{input_mid:08X}"
-            self._cfe.evs.send_dbg(eid.HK_OUTPKT_MISSING_DATA_EID, text)
-        self._cfe.sb.transmit_msg(packet.block.memory)
+            self._cfe.evs.send_dbg(eid.OUTPKT_MISSING_DATA_EID, text)
         packet.missing = set(packet.entries)
+        if lacking and self._discard_incomplete:
+            return 0, 1
+        self._cfe.sb.transmit_msg(packet.block.memory)
         return 1, int(lacking)
 
     def fill_runtime_table(self, table: memoryview) -> None:

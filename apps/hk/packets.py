@@ -1,8 +1,12 @@
-"""HK's messages and tables: message ids, function codes, layouts (hk_msg.h, hk_tbl.h, hk_platform_cfg.h)."""
+"""HK's messages and tables: ids, function codes, layouts (hk_msgstruct.h, hk_tblstruct.h, hk_internal_cfg.h).
+
+`COMMANDS`, `TELEMETRY` and `TABLES` are what tools on the ground find.
+"""
 
 from __future__ import annotations
 
-from cfepy.msg import Layout, local_cmd_topic_id_to_msg_id, local_tlm_topic_id_to_msg_id
+from cfepy.msg import Command, Layout, Telemetry, local_cmd_topic_id_to_msg_id, local_tlm_topic_id_to_msg_id
+from cfepy.tbl import TableType
 
 CMD_MID = local_cmd_topic_id_to_msg_id(0x9A)
 SEND_HK_MID = local_cmd_topic_id_to_msg_id(0x9B)
@@ -16,7 +20,7 @@ RESET_COUNTERS_CC = 1
 COPY_TABLE_ENTRIES = 128
 MAX_COMBINED_PACKET_SIZE = 1500
 
-SEND_COMBINED_PKT = Layout("HK_SendCombinedPkt_Payload", [("OutMsgToSend", "u32")])
+SEND_COMBINED_PKT_PAYLOAD = Layout("HK_SendCombinedPkt_Payload", [("OutMsgToSend", "u32")])
 
 HOUSEKEEPING = Layout(
     "HK_HkTlm_Payload",
@@ -45,3 +49,29 @@ COPY_TABLE_ENTRY = Layout(
 RUNTIME_TABLE_ENTRY = Layout(
     "HK_RuntimeTableEntry", [("OutputPktAddr", "u64"), ("InputMidSubscribed", "u8"), ("DataPresent", "u8")]
 )
+
+NOOP = Command("HK_NOOP", CMD_MID, NOOP_CC, text="Answer with an event.")
+RESET_COUNTERS = Command("HK_RESET_COUNTERS", CMD_MID, RESET_COUNTERS_CC, text="Set the counters to 0.")
+SEND_HK = Command("HK_SEND_HK", SEND_HK_MID, text="Send the housekeeping packet, and look after the tables.")
+SEND_COMBINED_PKT = Command(
+    "HK_SEND_COMBINED_PKT",
+    SEND_COMBINED_PKT_MID,
+    payload=SEND_COMBINED_PKT_PAYLOAD,
+    text="Send a combined packet of the copy table.",
+)
+
+COMMANDS = (NOOP, RESET_COUNTERS, SEND_HK, SEND_COMBINED_PKT)
+
+HK_TLM = Telemetry("HK_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "HK's counters.")
+
+TELEMETRY = (HK_TLM,)
+
+COPY_TABLE = TableType(
+    "HK.CopyTable", COPY_TABLE_ENTRY, COPY_TABLE_ENTRIES, "/cf/hk_cpy_tbl.tbl", description="HK Copy Tbl"
+)
+"""What is copied from where to where."""
+
+RUNTIME_TABLE = TableType("HK.RuntimeTable", RUNTIME_TABLE_ENTRY, COPY_TABLE_ENTRIES, description="HK Runtime Tbl")
+"""What HK made of each entry of the copy table; it can only be dumped."""
+
+TABLES = (COPY_TABLE, RUNTIME_TABLE)

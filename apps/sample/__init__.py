@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 from .app import SAMPLE_APP_Main
+from .messages import COMMANDS, TABLES, TELEMETRY
 
-__all__ = ["SAMPLE_APP_Main"]
+__all__ = ["COMMANDS", "TABLES", "TELEMETRY", "SAMPLE_APP_Main"]

@@ -7,30 +7,40 @@ own with the handle `cfe`, through which the app reaches everything: `cfe.CFE_se
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from cfepy.app import Cfe
 from cfepy.es import APP_ERROR
-from cfepy.msg import CMD_HEADER_SIZE, CommandTable, get_user_data, telemetry
+from cfepy.msg import CommandTable, telemetry
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID
 from cfepy.sb import PEND_FOREVER
 from cfepy.status import CfeError
+from cfepy.versions import version_string
 
 from . import events, messages
+from .library import call_library
 
-VERSION = "v1.0.0"
+VERSION = "equuleus-rc1+dev54"
+VERSION_TEXT = version_string("Sample App", VERSION, "Equuleus", "v1.1.0")
+PERF_ID = 91
 
 
 def SAMPLE_APP_Main(cfe: Cfe) -> None:
     """Start, then do one message after another until cFE wants the app to end."""
+    cfe.es.perf_log_entry(PERF_ID)
     app = SampleApp(cfe)
     try:
         app.start()
-    except CfeError as error:
-        cfe.es.write_to_sys_log(f"SAMPLE_APP: cannot start: {error}")
+    except CfeError:  # it was reported where it happened
         cfe.es.exit_app(APP_ERROR)  # does not return
     while cfe.es.run_loop():
-        packet = cfe.sb.receive_buffer(app.pipe, PEND_FOREVER)
+        cfe.es.perf_log_exit(PERF_ID)
+        packet = app.receive()
+        cfe.es.perf_log_entry(PERF_ID)
         if packet is not None:
             app.handle(packet)
+    cfe.es.perf_log_exit(PERF_ID)
     cfe.es.exit_app()
 
 
@@ -41,27 +51,56 @@ class SampleApp:
         self.cfe = cfe
         self.accepted = 0
         self.rejected = 0
-        # Which function handles which command, and how long that command must be.
+        # Which function handles which command; each command says itself how long it must be.
         self.commands = CommandTable()
-        self.commands.add_message(messages.SEND_HK_MID, CMD_HEADER_SIZE, self.send_hk)
-        for fcn_code, size, handler in (
-            (messages.NOOP_CC, 0, self.noop),
-            (messages.RESET_COUNTERS_CC, 0, self.reset_counters),
-            (messages.PROCESS_CC, 0, self.process),
-            (messages.DISPLAY_PARAM_CC, messages.DISPLAY_PARAM.size, self.display_param),
-        ):
-            self.commands.add(messages.CMD_MID, fcn_code, CMD_HEADER_SIZE + size, handler)
+        self.commands.handle(messages.SEND_HK, self.send_hk)
+        self.commands.handle(messages.NOOP, self.noop)
+        self.commands.handle(messages.RESET_COUNTERS, self.reset_counters)
+        self.commands.handle(messages.PROCESS, self.process)
+        self.commands.handle(messages.DISPLAY_PARAM, self.display_param)
 
     def start(self) -> None:
-        """Register with the services: events first, so that anything after can be reported."""
+        """Register with the services: events first, so that anything after can be reported.
+
+        Raises:
+            CfeError: a service refused; an event says so.
+        """
         cfe = self.cfe
-        cfe.evs.register()
-        self.pipe = cfe.sb.create_pipe(depth=32, name="SAMPLE_APP_CMD_PIPE")
-        cfe.sb.subscribe(messages.SEND_HK_MID, self.pipe)
-        cfe.sb.subscribe(messages.CMD_MID, self.pipe)
-        self.table = cfe.tbl.register("ExampleTable", messages.EXAMPLE_TABLE.size, validate=check_table)
-        cfe.tbl.load(self.table, "/cf/sample_app_tbl.tbl")
-        cfe.evs.send_info(events.INIT_INF_EID, f"Sample App Initialized.Sample App {VERSION}")
+        try:
+            cfe.evs.register()
+        except CfeError as error:
+            cfe.es.write_to_sys_log(f"Sample App: Error Registering Events, RC = {_hex(error)}")
+            raise
+        with self.reporting(events.CR_PIPE_ERR_EID, "Error creating SB Command Pipe"):
+            self.pipe = cfe.sb.create_pipe(depth=32, name="SAMPLE_APP_CMD_PIPE")
+        with self.reporting(events.SUB_HK_ERR_EID, "Error Subscribing to HK request"):
+            cfe.sb.subscribe(messages.SEND_HK_MID, self.pipe)
+        with self.reporting(events.SUB_CMD_ERR_EID, "Error Subscribing to Commands"):
+            cfe.sb.subscribe(messages.CMD_MID, self.pipe)
+        try:
+            with self.reporting(events.TABLE_REG_ERR_EID, "Error Registering Example Table"):
+                self.table = cfe.tbl.register("ExampleTable", messages.EXAMPLE_TABLE.size, validate=check_table)
+            cfe.tbl.load(self.table, messages.TABLE.file)  # CFE_TBL itself reports when this fails
+        finally:
+            cfe.evs.send_info(events.INIT_INF_EID, f"Sample App Initialized.{VERSION_TEXT}")
+
+    @contextmanager
+    def reporting(self, event_id: int, text: str) -> Iterator[None]:
+        """Send an error event when a service refuses what is done inside."""
+        try:
+            yield
+        except CfeError as error:
+            self.cfe.evs.send_err(event_id, f"Sample App: {text}, RC = {_hex(error)}")
+            raise
+
+    def receive(self) -> bytes | None:
+        """Wait for the next message; when the pipe is broken, the app ends."""
+        try:
+            return self.cfe.sb.receive_buffer(self.pipe, PEND_FOREVER)
+        except CfeError:
+            self.cfe.evs.send_err(events.PIPE_ERR_EID, "SAMPLE APP: SB Pipe Read Error, App Will Exit")
+            self.cfe.es.exit_app(APP_ERROR)  # does not return
+            return None
 
     def handle(self, packet: bytes) -> None:
         """Give a message to its handler, or tell the ground why not."""
@@ -70,7 +109,6 @@ class SampleApp:
             text = f"SAMPLE: invalid command packet,MID = 0x{done.msg_id:x}"
             self.cfe.evs.send_err(events.MID_ERR_EID, text)
         elif done.outcome == BAD_CODE:
-            self.rejected += 1
             self.cfe.evs.send_err(events.CC_ERR_EID, f"Invalid ground command code: CC = {done.fcn_code}")
         elif done.outcome == BAD_LENGTH:
             self.rejected += 1
@@ -98,18 +136,25 @@ class SampleApp:
     def process(self, packet: bytes) -> None:
         """Use the table: get its address, read, release it soon, so that it can be updated."""
         self.accepted += 1
-        image, _ = self.cfe.tbl.get_address(self.table)
+        cfe = self.cfe
+        image, _ = cfe.tbl.get_address(self.table)
         values = messages.EXAMPLE_TABLE.unpack(image)
-        self.cfe.tbl.release_address(self.table)
-        text = f"Example Table Value 1: {values['Int1']}  Value 2: {values['Int2']}"
-        self.cfe.es.write_to_sys_log(f"Sample App: {text}")
+        cfe.es.write_to_sys_log(f"Sample App: Example Table Value 1: {values['Int1']}  Value 2: {values['Int2']}")
+        cfe.es.write_to_sys_log(f"Sample App: CRC: 0x{cfe.tbl.get_info(messages.TABLE.name).crc:08X}\n\n")
+        cfe.tbl.release_address(self.table)
+        call_library(cfe)
 
     def display_param(self, packet: bytes) -> None:
-        """A command with a payload: unpack it with its layout."""
+        """A command with a payload: read its fields."""
         self.accepted += 1
-        given = messages.DISPLAY_PARAM.unpack(get_user_data(packet))
+        given = messages.DISPLAY_PARAM.read(packet)
         text = f"SAMPLE_APP: ValU32={given['ValU32']}, ValI16={given['ValI16']}, ValStr={given['ValStr']}"
         self.cfe.evs.send_info(events.VALUE_INF_EID, text)
+
+
+def _hex(error: CfeError) -> str:
+    """A status as C prints an int cast to unsigned long."""
+    return f"0x{error.status & 0xFFFFFFFFFFFFFFFF:08X}"
 
 
 def check_table(image: memoryview) -> int:

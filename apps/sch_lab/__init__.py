@@ -1,7 +1,11 @@
-"""SCH_LAB, the scheduler app: sends the commands of its table, each every so many ticks. NASA's sch_lab v2.3.0."""
+"""SCH_LAB, the scheduler app: sends the commands of its table, each every so many ticks. NASA's sch_lab v2.3.0.
+
+It has neither commands nor telemetry of its own.
+"""
 
 from __future__ import annotations
 
 from .app import SCH_LAB_AppMain
+from .schedule import TABLES
 
-__all__ = ["SCH_LAB_AppMain"]
+__all__ = ["TABLES", "SCH_LAB_AppMain"]

@@ -10,12 +10,12 @@ from cfepy.es import APP_ERROR
 from cfepy.msg import local_cmd_topic_id_to_msg_id
 from cfepy.sb import POLL
 from cfepy.status import CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CFE_SUCCESS, CfeError, OsalError
+from cfepy.versions import version_string
 
 from . import schedule
 
-VERSION = "SCH Lab v1.0.0"
+VERSION = version_string("SCH Lab", "equuleus-rc1+dev29", "Equuleus", "v2.3.0")
 TABLE_NAME = "ScheduleTable"
-TABLE_FILE = "/cf/sch_lab_table.tbl"
 TIME_ONEHZ_MID = local_cmd_topic_id_to_msg_id(0x11)
 PIPE_NAME = "SCH_LAB_CMD_PIPE"
 PIPE_DEPTH = 8
@@ -80,7 +80,7 @@ class Scheduler:
             step = "Registering"
             handle = cfe.tbl.register(TABLE_NAME, schedule.TABLE.size)
             step = "Loading Table"
-            status = cfe.tbl.load(handle, TABLE_FILE)
+            status = cfe.tbl.load(handle, schedule.SCHEDULE_TABLE.file)
             if status != CFE_SUCCESS:
                 raise CfeError(status)
             step = "Getting Table's Address"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cfepy.msg import Layout, command
-from cfepy.tbl import TableImage
+from cfepy.tbl import TableImage, TableType
 
 MAX_ENTRIES = 32
 MAX_PAYLOAD = 64
@@ -23,6 +23,11 @@ ENTRY = Layout(
 
 TABLE = Layout("SCH_LAB_ScheduleTable", [("TickRate", "u32"), ("Config", (ENTRY, MAX_ENTRIES))])
 """TickRate is in ticks a second."""
+
+SCHEDULE_TABLE = TableType(
+    "SCH_LAB.ScheduleTable", TABLE, file="/cf/sch_lab_table.tbl", description="Schedule Lab MsgID Table"
+)
+TABLES = (SCHEDULE_TABLE,)
 
 
 class Entry:
@@ -66,7 +71,7 @@ def read(table: bytes | memoryview) -> tuple[int, list[Entry]]:
 
 
 def image(name: str, tick_rate: int, rows: list[tuple[int, int, int, bytes]]) -> TableImage:
-    """A schedule table.
+    """A schedule table's file.
 
     Args:
         name: full name, "SCH_LAB.ScheduleTable" unless the app is called otherwise.
@@ -80,4 +85,4 @@ def image(name: str, tick_rate: int, rows: list[tuple[int, int, int, bytes]]) ->
         {"MessageID": mid, "PacketRate": period, "FcnCode": code, "PayloadLength": len(data), "MessageBuffer": data}
         for mid, period, code, data in rows
     ]
-    return TableImage(name, TABLE.pack(TickRate=tick_rate, Config=config), "Schedule Lab MsgID Table")
+    return SCHEDULE_TABLE.image({"TickRate": tick_rate, "Config": config})._replace(name=name)

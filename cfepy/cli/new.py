@@ -22,7 +22,8 @@ TEMPLATES = Path(__file__).with_name("templates")
 APP_SUFFIX = "_app"
 LONGEST_APP = 14  # its entry point, NAME_Main, must fit the 19 characters that cFE takes
 LONGEST = {"app": LONGEST_APP, "mission": LONGEST_APP - len(APP_SUFFIX)}
-TAKEN = ("cfepy", "rospy", "rospy_shim", "std_msgs", "sample", "hk", "sch_lab")
+TAKEN = ("cfepy", "rospy", "rospy_shim", "std_msgs", "sample", "sample_lib", "hk", "sch", "sch_lab", "sch_lib")
+LIBRARY = "library"  # the sample's use of the sample library, which nothing of one's own needs
 FIRST_TOPIC, TOPIC_PAIRS = 0xA0, 0x30  # topic ids of new apps: behind those of NASA's apps, before those of ROS topics
 
 Files = dict[str, bytes]
@@ -97,6 +98,8 @@ def _package(name: str) -> Files:
     sample = shipped("apps") / "sample"
     files: Files = {}
     for source in sorted([*sample.glob("*.py"), *sample.glob("tables/*.py")]):
+        if source.stem == LIBRARY:
+            continue
         path = source.relative_to(sample).as_posix().replace("sample_app_tbl", name)
         files[f"{name}/{path}"] = _renamed(source.read_text(encoding="utf-8"), name).encode()
     table = image.read((sample / "tables/sample_app_tbl.tbl").read_bytes())
@@ -106,6 +109,7 @@ def _package(name: str) -> Files:
 
 
 def _renamed(text: str, name: str) -> str:
+    text = "".join(line for line in text.splitlines(keepends=True) if LIBRARY not in line)
     title = name.replace("_", " ").title()
     topic = FIRST_TOPIC + 2 * (zlib.crc32(name.encode()) % TOPIC_PAIRS)
     for old, new in (
@@ -116,9 +120,13 @@ def _renamed(text: str, name: str) -> str:
         ("sample_app_tbl", name),
         ("SAMPLE_APP_CMD_PIPE", f"{name.upper()}_PIPE"),
         ("SAMPLE_APP", name.upper()),
+        ("SAMPLE APP", title),
         ("SAMPLE:", f"{name.upper()}:"),
         ("SampleApp", title.replace(" ", "")),
-        ("Sample App Initialized.Sample App", f"{title} initialized, version"),
+        ('VERSION_TEXT = version_string("Sample App", VERSION, "Equuleus", "v1.1.0")\n', ""),
+        ("from cfepy.versions import version_string\n", ""),
+        ("equuleus-rc1+dev54", "v1.0.0"),
+        ("Sample App Initialized.{VERSION_TEXT}", f"{title} initialized, version {{VERSION}}"),
         ("Sample App", title),
         ("0x82", f"0x{topic:02X}"),
         ("0x83", f"0x{topic + 1:02X}"),

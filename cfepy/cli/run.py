@@ -7,17 +7,28 @@ import contextlib
 import json
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cfepy.cli import report
 from cfepy.cli.display import Display, make_display
 from cfepy.cli.flight import Flight, Interrupts
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.saved_files import save_files, saving_to
 from cfepy.cli.trace_file import TraceFile
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec, read_mission
 from cfepy.mission.results import Results
 from cfepy.rtos.policy import SeededRandom
+from cfepy.rtos.units import NS_PER_S
+from cfepy.sb import SoftwareBus
 from cfepy.status import CfeError, UsageError
+
+if TYPE_CHECKING:
+    from cfepy.io.host_network import HostNetwork
+    from cfepy.mission.script import ScriptRun
+    from cfepy.mission.script_verdicts import Outcome
+
+DEFAULT_S = 10.0
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,32 +45,61 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace, interrupts: Interrupts) -> int:
+    if arguments.port and arguments.realtime is None:
+        raise UsageError("without --realtime no port is opened on this computer", field="--port")
     spec = read_mission(arguments.mission)
     numbers = _output(arguments.json)
+    folder = saving_to(arguments.save_files)
+    script = _script(arguments, spec)
     try:
-        flight = _fly(arguments, spec, interrupts)
+        flight = _fly(arguments, spec, interrupts, script)
     except CfeError as error:
         print(f"cfepy: {spec.script}: the mission cannot boot: {error}", file=sys.stderr)
         return BAD_USAGE
     results = Results.of(flight.mission, flight.at, flight.trace)
-    unwritten = None if numbers is None else _write(numbers, results)
+    unwritten = None if numbers is None else _write(numbers, results, flight.outcome)
     report.show(results, sys.stdout)
+    if flight.outcome is not None:
+        print(f"\n{flight.outcome.text()}")
     _explain(results, arguments, interrupts.asked)
+    if folder is not None:
+        save_files(flight.mission.files, folder)
     print(f"trace: {results.trace}", flush=True)
     if unwritten is not None:
         raise unwritten
-    return _status(results, interrupts.asked)
+    return _status(results, interrupts.asked, flight.outcome)
 
 
-def _fly(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupts) -> Flight:
+def _script(arguments: argparse.Namespace, spec: MissionSpec) -> ScriptRun | None:
+    """The script that the command line names; only a run with one imports what it needs."""
+    if arguments.script is None:
+        return None
+    from cfepy.mission.dictionary import dictionary_of
+    from cfepy.mission.script import ScriptRun
+    from cfepy.mission.script_text import read_script
+
+    return ScriptRun(read_script(arguments.script, spec, dictionary_of(spec)), arguments.stop_on_failure)
+
+
+def _duration(arguments: argparse.Namespace, script: ScriptRun | None) -> float:
+    """Virtual seconds that the run takes; with a script, at most."""
+    if arguments.seconds is not None:
+        return float(arguments.seconds)
+    return DEFAULT_S if script is None else script.script.longest_ns / NS_PER_S
+
+
+def _fly(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupts, script: ScriptRun | None) -> Flight:
+    seconds = _duration(arguments, script)
     flight: Flight | None = None
     try:
         with contextlib.ExitStack() as stack:
             trace = stack.enter_context(TraceFile(arguments.trace)) if arguments.trace else None
-            display = make_display(arguments.quiet, arguments.seconds)
+            display = make_display(arguments.quiet, seconds)
             stack.callback(display.close)
-            mission = stack.enter_context(_mission(arguments, spec, display, trace))
-            flight = Flight(mission, arguments.seconds, arguments.realtime, display, interrupts)
+            mission = stack.enter_context(_mission(arguments, spec, display, trace, script))
+            ends_with_script = arguments.seconds is None
+            bridge = None if arguments.realtime is None else stack.enter_context(_bridge(arguments, mission, display))
+            flight = Flight(mission, seconds, arguments.realtime, display, interrupts, script, ends_with_script, bridge)
             flight.go()
     except KeyboardInterrupt:
         if flight is None or not flight.trace:
@@ -68,7 +108,13 @@ def _fly(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupt
     return flight
 
 
-def _mission(arguments: argparse.Namespace, spec: MissionSpec, display: Display, trace: TraceFile | None) -> Mission:
+def _mission(
+    arguments: argparse.Namespace,
+    spec: MissionSpec,
+    display: Display,
+    trace: TraceFile | None,
+    script: ScriptRun | None,
+) -> Mission:
     try:
         mission = Mission(
             spec,
@@ -78,6 +124,7 @@ def _mission(arguments: argparse.Namespace, spec: MissionSpec, display: Display,
             console=Console(sink=display.line),
             policy=SeededRandom(arguments.seed) if arguments.schedule == "random" else None,
             trace_sink=None if trace is None else trace.write,
+            bus=SoftwareBus if script is None else script.bus,
         )
     except UsageError:
         raise
@@ -85,7 +132,16 @@ def _mission(arguments: argparse.Namespace, spec: MissionSpec, display: Display,
         raise UsageError(str(error), field="--tasks") from None
     if trace is not None:
         trace.watch(mission)
+    if script is not None:
+        script.begin(mission)
     return mission
+
+
+def _bridge(arguments: argparse.Namespace, mission: Mission, display: Display) -> HostNetwork:
+    """Real ports for the mission's; only a paced run has them, and only it imports what they need."""
+    from cfepy.io.host_network import HostNetwork
+
+    return HostNetwork(mission, dict(arguments.port), display.line)
 
 
 def _output(file: str | None) -> Path | None:
@@ -100,10 +156,13 @@ def _output(file: str | None) -> Path | None:
     return path
 
 
-def _write(file: Path, results: Results) -> UsageError | None:
+def _write(file: Path, results: Results, outcome: Outcome | None) -> UsageError | None:
     """Write the numbers; an error is returned, for the report of a long run must not be lost with them."""
+    numbers = results.to_dict()
+    if outcome is not None:
+        numbers["script"] = outcome.to_dict()
     try:
-        file.write_text(json.dumps(results.to_dict(), indent=2) + "\n", encoding="utf-8")
+        file.write_text(json.dumps(numbers, indent=2) + "\n", encoding="utf-8")
     except OSError as error:
         return UsageError(f"could not be written: {error.strerror}", file=str(file), field="--json")
     return None
@@ -122,9 +181,11 @@ def _explain(results: Results, arguments: argparse.Namespace, interrupted: bool)
         print(f"cfepy: {text}", file=sys.stderr)
 
 
-def _status(results: Results, interrupted: bool) -> int:
+def _status(results: Results, interrupted: bool, outcome: Outcome | None) -> int:
     if interrupted:
         return INTERRUPTED
+    if outcome is not None:
+        return ENDED_WELL if outcome.ok else FOUND_PROBLEMS
     if results.script_problems or results.problems:
         return FOUND_PROBLEMS
     return ENDED_WELL if results.booted_s is not None else BAD_USAGE

@@ -16,12 +16,18 @@ from cfepy.es.records import (
     StartParams,
 )
 from cfepy.es.service import ExecutiveServices
-from cfepy.es.startup_script import CFE_LIB, BadLine, parse
+from cfepy.es.startup_script import CFE_LIB, EXCEPTION_PROC_RESTART, BadLine, parse
 from cfepy.es.startup_script import Entry as ScriptEntry
+from cfepy.es.volatile_disk import initialize_file_systems
 from cfepy.ports import SYSTEM_CORE_READY
-from cfepy.status import CfeError
+from cfepy.psp.psp import RST_TYPE_PROCESSOR
+from cfepy.status import CFE_ES_OPERATION_TIMED_OUT, CfeError, OsalError
 
 NONVOL_STARTUP_FILE = "/cf/cfe_es_startup.scr"
+VOLATILE_STARTUP_FILE = "/ram/cfe_es_startup.scr"
+PANIC_CORE_APP = 6  # CFE_PSP_PANIC_CORE_APP
+PANIC_DELAY_MS = 500
+BOOT_SOURCE = 1  # what NASA's Linux PSP hands to CFE_ES_Main
 
 
 class CoreApp(NamedTuple):
@@ -64,13 +70,15 @@ class Boot:
 
     def main(self) -> None:
         """The main task of the processor."""
-        self.log("CFE_ES_SetupResetVariables: POWER ON RESET due to Power Cycle (Power Cycle).")
+        start = self.es.psp.get_restart_type()
+        self.es.setup_reset_variables(start.reset_type, start.subtype, BOOT_SOURCE)
         self.log("CFE_ES_Main: CFE_ES_Main in EARLY_INIT state")
-        self.es.console.write("CFE_PSP: CFE_PSP_AttachExceptions called")
+        initialize_file_systems(self.es, start.reset_type)
+        self.es.psp.attach_exceptions()
         self._enter(SYSTEM_CORE_STARTUP, "CORE_STARTUP")
         self._create_objects()
         self._enter(SYSTEM_CORE_READY, "CORE_READY")
-        self.start_applications()
+        self.start_applications(start.reset_type)
         if not self._wait_for_apps(LATE_INIT):
             self.log("CFE_ES_Main: Startup Sync failed - Applications may not have all initialized")
         self._enter(SYSTEM_APPS_INIT, "APPS_INIT")
@@ -87,22 +95,56 @@ class Boot:
         self.log("CFE_ES_CreateObjects: Starting Object Creation calls.")
         for name, call in self.table.calls:
             self.log(f"CFE_ES_CreateObjects: Calling {name}")
-            call()
+            try:
+                call()
+            except CfeError as error:
+                self._panic(f"Error returned when calling function: {name}: EC = {error.hex}")
         for core in self.table.core_apps:
-            params = StartParams("", core.name, self.es.config.es_start_task_stack_size, core.priority)
-            app = self.es.app(self.es.create_app(core.name, params, core.entry))
-            self._wait_until_running(app)
+            try:
+                self._start_core_app(core)
+            except CfeError as error:
+                self._panic(f"OS_TaskCreate error creating core App: {core.name}: EC = {error.hex}")
         self.log("CFE_ES_CreateObjects: Finished ES CreateObject table entries.")
 
-    def start_applications(self) -> None:
-        """Start what the startup script names (CFE_ES_StartApplications)."""
-        self.log(f"CFE_ES_StartApplications: Opened ES App Startup file: {NONVOL_STARTUP_FILE}")
-        for entry in parse(self.script):
+    def _start_core_app(self, core: CoreApp) -> None:
+        """Start a core application and wait until it runs."""
+        stack_size = self.es.config.es_start_task_stack_size
+        params = StartParams("", "", stack_size, core.priority, EXCEPTION_PROC_RESTART)
+        app = self.es.app(self.es.create_app(core.name, params, core.entry))
+        if not self._wait_until_running(app):
+            raise CfeError(CFE_ES_OPERATION_TIMED_OUT, f"{core.name} does not come up")
+
+    def _panic(self, text: str) -> None:
+        """The executive cannot go on: say so, and let the board do what it does then."""
+        self.log(f"CFE_ES_CreateObjects: {text}")
+        self.es.osal.task_delay(PANIC_DELAY_MS)
+        self.es.psp.panic(PANIC_CORE_APP)
+
+    def start_applications(self, reset_type: int) -> None:
+        """Start what the startup script names (CFE_ES_StartApplications).
+
+        Args:
+            reset_type: RST_TYPE_*; after a processor reset a script on the RAM disk comes first.
+        """
+        script = self._volatile_script() if reset_type == RST_TYPE_PROCESSOR else None
+        file = VOLATILE_STARTUP_FILE if script is not None else NONVOL_STARTUP_FILE
+        self.log(f"CFE_ES_StartApplications: Opened ES App Startup file: {file}")
+        for entry in parse(self.script if script is None else script):
             if isinstance(entry, BadLine):
                 for text in entry.log_texts:
                     self.log(text)
             else:
                 self._start(entry)
+
+    def _volatile_script(self) -> bytes | None:
+        try:
+            return self.es.osal.files.read_file(VOLATILE_STARTUP_FILE)
+        except OsalError:
+            self.log(
+                f"CFE_ES_StartApplications: Cannot Open Volatile Startup file: {VOLATILE_STARTUP_FILE}, "
+                "Trying Nonvolatile."
+            )
+            return None
 
     def _start(self, entry: ScriptEntry) -> None:
         self.log(entry.log_text)

@@ -1,26 +1,17 @@
-"""Message ids, function codes and packet layouts of Executive Services (default_cfe_es_msgstruct.h)."""
+"""The packets and files of Executive Services: commands, telemetry, records (default_cfe_es_msgstruct.h).
+
+Payload layouts come first, then the declarations of commands and telemetry. Imports only cfepy.msg.
+"""
 
 from __future__ import annotations
 
-from cfepy.msg import Layout
+from cfepy.msg import Command, Layout, Telemetry
 
 CMD_MID = 0x1806
 SEND_HK_MID = 0x1808
 HK_TLM_MID = 0x0800
 APP_TLM_MID = 0x080B
 MEMSTATS_TLM_MID = 0x0810
-
-NOOP_CC = 0
-RESET_COUNTERS_CC = 1
-RESTART_CC = 2
-START_APP_CC = 4
-STOP_APP_CC = 5
-RESTART_APP_CC = 6
-RELOAD_APP_CC = 7
-QUERY_ONE_CC = 8
-CLEAR_SYS_LOG_CC = 10
-OVER_WRITE_SYS_LOG_CC = 18
-SEND_MEM_POOL_STATS_CC = 22
 
 HOUSEKEEPING = Layout(
     "CFE_ES_HousekeepingTlm_Payload_t",
@@ -109,8 +100,71 @@ POOL_STATS = Layout(
 )
 POOL_STATS_TLM = Layout("CFE_ES_PoolStatsTlm_Payload_t", [("PoolHandle", "u32"), ("PoolStats", POOL_STATS)])
 
-RESTART_COMMAND = Layout("CFE_ES_RestartCmd_Payload_t", [("RestartType", "u16")])
-START_APP_COMMAND = Layout(
+TASK_INFO = Layout(
+    "CFE_ES_TaskInfo_t",
+    [
+        ("TaskId", "u32"),
+        ("ExecutionCounter", "u32"),
+        ("TaskName", "char[20]"),
+        ("AppId", "u32"),
+        ("AppName", "char[20]"),
+        ("StackSize", "u64"),
+        ("Priority", "u16"),
+        ("Spare", "u8[2]"),
+    ],
+)
+
+_DEBUG_VARIABLES = Layout(
+    "CFE_ES_DebugVariables_t",
+    [("DebugFlag", "u32"), ("WatchdogWriteFlag", "u32"), ("PrintfEnabledFlag", "u32"), ("LastAppId", "u32")],
+)
+_SYS_TIME = Layout("CFE_TIME_SysTime_t", [("Seconds", "u32"), ("Subseconds", "u32")])
+ER_LOG_BASE_INFO = Layout(
+    "CFE_ES_ERLog_BaseInfo_t",
+    [
+        ("LogEntryType", "u32"),
+        ("ResetType", "u32"),
+        ("ResetSubtype", "u32"),
+        ("BootSource", "u32"),
+        ("ProcessorResetCount", "u32"),
+        ("MaxProcessorResetCount", "u32"),
+        ("DebugVars", _DEBUG_VARIABLES),
+        ("TimeCode", _SYS_TIME),
+        ("Description", "char[80]"),
+    ],
+)
+ER_LOG_FILE_ENTRY = Layout(
+    "CFE_ES_ERLog_FileEntry_t",
+    [("BaseInfo", ER_LOG_BASE_INFO), ("ContextSize", "u32"), ("AppID", "u32"), ("Context", "u8[256]")],
+)
+CDS_REG_DUMP_RECORD = Layout(
+    "CFE_ES_CDSRegDumpRec_t",
+    [("Handle", "u32"), ("Size", "u64"), ("Table", "bool"), ("Name", "char[40]"), ("ByteAlignSpare", "u8[3]")],
+)
+PERF_METADATA = Layout(
+    "CFE_ES_PerfMetaData_t",
+    [
+        ("Version", "u8"),
+        ("Endian", "u8"),
+        ("Spare", "u8[2]"),
+        ("TimerTicksPerSecond", "u32"),
+        ("TimerLow32Rollover", "u32"),
+        ("State", "u32"),
+        ("Mode", "u32"),
+        ("TriggerCount", "u32"),
+        ("DataStart", "u32"),
+        ("DataEnd", "u32"),
+        ("DataCount", "u32"),
+        ("InvalidMarkerReported", "u32"),
+        ("FilterTriggerMaskSize", "u32"),
+        ("FilterMask", "u32[4]"),
+        ("TriggerMask", "u32[4]"),
+    ],
+)
+PERF_ENTRY = Layout("CFE_ES_PerfDataEntry_t", [("Data", "u32"), ("TimerUpper32", "u32"), ("TimerLower32", "u32")])
+
+_RESTART = Layout("CFE_ES_RestartCmd_Payload_t", [("RestartType", "u16")])
+_START_APP = Layout(
     "CFE_ES_StartAppCmd_Payload_t",
     [
         ("Application", "char[20]"),
@@ -121,7 +175,89 @@ START_APP_COMMAND = Layout(
         ("Priority", "u16"),
     ],
 )
-APP_NAME_COMMAND = Layout("CFE_ES_AppNameCmd_Payload_t", [("Application", "char[20]")])
-APP_RELOAD_COMMAND = Layout("CFE_ES_AppReloadCmd_Payload_t", [("Application", "char[20]"), ("AppFileName", "char[64]")])
-OVER_WRITE_SYS_LOG_COMMAND = Layout("CFE_ES_OverWriteSysLogCmd_Payload_t", [("Mode", "u32")])
-POOL_COMMAND = Layout("CFE_ES_SendMemPoolStatsCmd_Payload_t", [("Application", "char[20]"), ("PoolHandle", "u32")])
+_APP_NAME = Layout("CFE_ES_AppNameCmd_Payload_t", [("Application", "char[20]")])
+_APP_RELOAD = Layout("CFE_ES_AppReloadCmd_Payload_t", [("Application", "char[20]"), ("AppFileName", "char[64]")])
+_FILE_NAME = Layout("CFE_ES_FileNameCmd_Payload_t", [("FileName", "char[64]")])
+_LOG_MODE = Layout("CFE_ES_OverWriteSysLogCmd_Payload_t", [("Mode", "u32")])
+_START_PERF = Layout("CFE_ES_StartPerfCmd_Payload_t", [("TriggerMode", "u32")])
+_STOP_PERF = Layout("CFE_ES_StopPerfCmd_Payload_t", [("DataFileName", "char[64]")])
+_FILTER_MASK = Layout("CFE_ES_SetPerfFilterMaskCmd_Payload_t", [("FilterMaskNum", "u32"), ("FilterMask", "u32")])
+_TRIGGER_MASK = Layout("CFE_ES_SetPerfTrigMaskCmd_Payload_t", [("TriggerMaskNum", "u32"), ("TriggerMask", "u32")])
+_MAX_PR_COUNT = Layout("CFE_ES_SetMaxPRCountCmd_Payload_t", [("MaxPRCount", "u16")])
+_CDS_NAME = Layout("CFE_ES_DeleteCDSCmd_Payload_t", [("CdsName", "char[40]")])
+_POOL = Layout("CFE_ES_SendMemPoolStatsCmd_Payload_t", [("Application", "char[20]"), ("PoolHandle", "u32")])
+_DUMP_FILE = Layout("CFE_ES_DumpCDSRegistryCmd_Payload_t", [("DumpFilename", "char[64]")])
+_NOTHING = Layout("no payload", [])
+
+
+def _command(name: str, code: int, text: str, payload: Layout = _NOTHING) -> Command:
+    return Command(f"CFE_ES_{name}", CMD_MID, code, payload, text)
+
+
+NOOP = _command("NOOP", 0, "Do nothing but say which versions run.")
+RESET_COUNTERS = _command("RESET_COUNTERS", 1, "Set both command counters to zero.")
+RESTART = _command("RESTART", 2, "Reset the processor: 1 keeps what is retained, 2 is a power-on reset.", _RESTART)
+START_APP = _command("START_APP", 4, "Load an application and start it.", _START_APP)
+STOP_APP = _command("STOP_APP", 5, "End an application and clean up after it.", _APP_NAME)
+RESTART_APP = _command("RESTART_APP", 6, "End an application and start it again.", _APP_NAME)
+RELOAD_APP = _command("RELOAD_APP", 7, "End an application and start it again from another file.", _APP_RELOAD)
+QUERY_ONE = _command("QUERY_ONE", 8, "Send a packet about an application or a library.", _APP_NAME)
+QUERY_ALL = _command("QUERY_ALL", 9, "Write a file about all applications and libraries.", _FILE_NAME)
+CLEAR_SYS_LOG = _command("CLEAR_SYS_LOG", 10, "Empty the system log.")
+WRITE_SYS_LOG = _command("WRITE_SYS_LOG", 11, "Write the system log to a file.", _FILE_NAME)
+CLEAR_ER_LOG = _command("CLEAR_ER_LOG", 12, "Empty the exception and reset log.")
+WRITE_ER_LOG = _command("WRITE_ER_LOG", 13, "Write the exception and reset log to a file.", _FILE_NAME)
+START_PERF_DATA = _command("START_PERF_DATA", 14, "Begin to collect performance data.", _START_PERF)
+STOP_PERF_DATA = _command("STOP_PERF_DATA", 15, "Stop collecting and write the data to a file.", _STOP_PERF)
+SET_PERF_FILTER_MASK = _command(
+    "SET_PERF_FILTER_MASK", 16, "Choose which of 32 performance ids are recorded.", _FILTER_MASK
+)
+SET_PERF_TRIGGER_MASK = _command(
+    "SET_PERF_TRIGGER_MASK", 17, "Choose which of 32 performance ids are triggers.", _TRIGGER_MASK
+)
+OVER_WRITE_SYS_LOG = _command("OVER_WRITE_SYS_LOG", 18, "Set what a full system log does with a line.", _LOG_MODE)
+RESET_PR_COUNT = _command("RESET_PR_COUNT", 19, "Set the count of processor resets to zero.")
+SET_MAX_PR_COUNT = _command(
+    "SET_MAX_PR_COUNT", 20, "Set how many processor resets there may be before a power-on reset.", _MAX_PR_COUNT
+)
+DELETE_CDS = _command("DELETE_CDS", 21, "Delete a block of the critical data store.", _CDS_NAME)
+SEND_MEM_POOL_STATS = _command("SEND_MEM_POOL_STATS", 22, "Send a packet about a memory pool.", _POOL)
+DUMP_CDS_REGISTRY = _command(
+    "DUMP_CDS_REGISTRY", 23, "Write the registry of the critical data store to a file.", _DUMP_FILE
+)
+QUERY_ALL_TASKS = _command("QUERY_ALL_TASKS", 24, "Write a file about all tasks.", _FILE_NAME)
+SEND_HK = Command("CFE_ES_SEND_HK", SEND_HK_MID, text="Send the housekeeping packet.")
+
+COMMANDS: tuple[Command, ...] = (
+    NOOP,
+    RESET_COUNTERS,
+    RESTART,
+    START_APP,
+    STOP_APP,
+    RESTART_APP,
+    RELOAD_APP,
+    QUERY_ONE,
+    QUERY_ALL,
+    CLEAR_SYS_LOG,
+    WRITE_SYS_LOG,
+    CLEAR_ER_LOG,
+    WRITE_ER_LOG,
+    START_PERF_DATA,
+    STOP_PERF_DATA,
+    SET_PERF_FILTER_MASK,
+    SET_PERF_TRIGGER_MASK,
+    OVER_WRITE_SYS_LOG,
+    RESET_PR_COUNT,
+    SET_MAX_PR_COUNT,
+    DELETE_CDS,
+    SEND_MEM_POOL_STATS,
+    DUMP_CDS_REGISTRY,
+    QUERY_ALL_TASKS,
+    SEND_HK,
+)
+
+HK_TLM = Telemetry("CFE_ES_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Housekeeping of Executive Services.")
+APP_TLM = Telemetry("CFE_ES_APP_TLM", APP_TLM_MID, APP_INFO, "One application or library.")
+MEMSTATS_TLM = Telemetry("CFE_ES_MEMSTATS_TLM", MEMSTATS_TLM_MID, POOL_STATS_TLM, "One memory pool.")
+
+TELEMETRY: tuple[Telemetry, ...] = (HK_TLM, APP_TLM, MEMSTATS_TLM)

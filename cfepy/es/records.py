@@ -32,6 +32,12 @@ SYS_DELETE = 7
 CORE_APP_INIT_ERROR = 8
 CORE_APP_RUNTIME_ERROR = 9
 
+CORE, EXTERNAL, LIBRARY = 1, 2, 3
+"""Types of modules (CFE_ES_AppType_*)."""
+
+APP_RESTART = 3
+"""Beside RST_TYPE_*: only one application starts again (CFE_ES_APP_RESTART)."""
+
 Entry = Callable[[], object]
 
 
@@ -96,32 +102,33 @@ class LibRecord:
 
     name: str
     file: str
+    symbol: str
     lib_id: int = 0
 
 
-class Fault(NamedTuple):
-    """A task that died of an exception, until the background scan deals with it."""
+@dataclass(slots=True, eq=False)
+class GenCounter:
+    """A generic counter."""
 
-    app: AppRecord
-    task_id: int
-    reason: str
+    name: str
+    count: int = 0
 
 
 class AppInfo(NamedTuple):
-    """What CFE_ES_GetAppInfo tells about an application."""
+    """What is known of an application or a library (CFE_ES_AppInfo_t); `type` is CORE, EXTERNAL or LIBRARY."""
 
-    app_id: int
+    resource_id: int
     type: int
     name: str
     entry_point: str
     file_name: str
-    stack_size: int
-    exception_action: int
-    priority: int
-    main_task_id: int
-    main_task_name: str
-    execution_counter: int
-    num_of_child_tasks: int
+    stack_size: int = 0
+    exception_action: int = 0
+    priority: int = 0
+    main_task_id: int = 0
+    main_task_name: str = ""
+    execution_counter: int = 0
+    num_of_child_tasks: int = 0
 
 
 class TaskInfo(NamedTuple):

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from cfepy.config import PlatformConfig
 from cfepy.console import Console
+from cfepy.es.reset_data import DISCARD, OVERWRITE, SysLogData
 from cfepy.ports import Ports
+from cfepy.status import (
+    CFE_ES_BAD_ARGUMENT,
+    CFE_ES_ERR_SYS_LOG_FULL,
+    CFE_ES_ERR_SYS_LOG_TRUNCATED,
+    CFE_SUCCESS,
+    CfeError,
+)
 
-OVERWRITE = 0
-DISCARD = 1
+TIME_TEXT_SIZE = 24  # CFE_TIME_PRINTED_STRING_SIZE: a printed time and its NUL
 
 
 class SystemLog:
@@ -15,46 +23,65 @@ class SystemLog:
     Args:
         ports: for the time.
         console: where lines are shown.
-        size: bytes of the buffer.
+        config: sizes.
     """
 
-    def __init__(self, ports: Ports, console: Console, size: int) -> None:
-        self.ports = ports
-        self.console = console
-        self.size = size
-        self.mode = OVERWRITE
-        self.entries: list[str] = []
-        self.bytes_used = 0
+    def __init__(self, ports: Ports, console: Console, config: PlatformConfig) -> None:
+        self._ports = ports
+        self._console = console
+        self._max_line = config.evs_max_message_length + TIME_TEXT_SIZE
+        self.data = SysLogData(bytearray(config.es_system_log_size))
 
-    def write_to_sys_log(self, text: str) -> None:
+    @property
+    def size(self) -> int:
+        """Bytes of the buffer."""
+        return len(self.data.memory)
+
+    def write_to_sys_log(self, text: str) -> int:
         """Add a line (CFE_ES_WriteToSysLog).
 
-        When the buffer is full, OVERWRITE gives up the oldest lines, DISCARD the new one. A line longer than half the
-        buffer is cut.
-        """
-        line = f"{self.ports.time.text()} {text.rstrip()}"[: self.size // 2]
-        self.console.write(line)
-        self.append(line + "\n")
+        When it does not fit, OVERWRITE goes on at the top of the buffer, where the oldest lines are; DISCARD cuts it,
+        and takes none at all once there is no room for a time stamp. 146 bytes of a line are kept, stamp included.
 
-    def append(self, line: str) -> None:
-        """Put a finished line into the buffer."""
-        length = _size(line)
-        if self.mode == DISCARD and self.bytes_used + length > self.size:
-            return
-        self.entries.append(line)
-        self.bytes_used += length
-        while self.bytes_used > self.size:
-            self.bytes_used -= _size(self.entries.pop(0))
+        Returns:
+            CFE_SUCCESS, or why not all of it is there: CFE_ES_ERR_SYS_LOG_TRUNCATED, CFE_ES_ERR_SYS_LOG_FULL.
+        """
+        line = f"{self._ports.time.text()} {text}".encode("utf-8", "backslashreplace")[: self._max_line].rstrip()
+        status = self._append(line + b"\n")
+        self._console.write(line.decode("utf-8", "replace"))
+        return status
+
+    def _append(self, line: bytes) -> int:
+        log, size = self.data, len(self.data.memory)
+        length, begin, status = len(line), log.write_index, CFE_SUCCESS
+        if length > size // 2:
+            length, status = size // 2, CFE_ES_ERR_SYS_LOG_TRUNCATED
+        if begin + length > size:
+            if log.mode == OVERWRITE:
+                log.end_index, begin = begin, 0
+            elif begin < size - TIME_TEXT_SIZE:
+                length, status = size - begin, CFE_ES_ERR_SYS_LOG_TRUNCATED
+            else:
+                return CFE_ES_ERR_SYS_LOG_FULL
+        log.write_index = begin + length
+        log.memory[begin : log.write_index] = line[: length - 1] + b"\n"
+        log.end_index = max(log.end_index, log.write_index)
+        log.entries += 1
+        return status
+
+    def set_mode(self, mode: int) -> None:
+        """OVERWRITE or DISCARD; CFE_ES_BAD_ARGUMENT for anything else (CFE_ES_SysLogSetMode)."""
+        if mode not in (OVERWRITE, DISCARD):
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"system log mode {mode}")
+        self.data.mode = mode
 
     def clear(self) -> None:
         """Forget all lines (CFE_ES_SysLogClear)."""
-        self.entries.clear()
-        self.bytes_used = 0
+        self.data.write_index = self.data.end_index = self.data.entries = 0
 
-    def text(self) -> str:
-        """Everything in the buffer."""
-        return "".join(self.entries)
-
-
-def _size(line: str) -> int:
-    return len(line.encode("utf-8", "backslashreplace"))
+    def read(self) -> bytes:
+        """The text, oldest line first; what is left of a line that was written over in part does not count."""
+        log = self.data
+        rest = bytes(log.memory[log.write_index : log.end_index])
+        whole = rest.partition(b"\n")[2]
+        return whole + bytes(log.memory[: log.write_index])

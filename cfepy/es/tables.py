@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
+from cfepy.es.erlog import MAX_CONTEXT, ExceptionResetLog
+from cfepy.es.perf import PerformanceLog
 from cfepy.es.pools import MemPool
-from cfepy.es.records import SYSTEM_EARLY_INIT, AppHistory, AppRecord, Fault, LibRecord, Loader, TaskRecord
+from cfepy.es.records import SYSTEM_EARLY_INIT, AppHistory, AppRecord, GenCounter, LibRecord, Loader, TaskRecord
+from cfepy.es.reset_data import ResetData
 from cfepy.es.syslog import SystemLog
-from cfepy.ids import ES_APPID_BASE, ES_LIBID_BASE, ES_POOLID_BASE, IdTable
+from cfepy.ids import ES_APPID_BASE, ES_COUNTID_BASE, ES_LIBID_BASE, ES_POOLID_BASE, IdTable
 from cfepy.osal import Osal
 from cfepy.ports import Ports
-from cfepy.rtos import Kernel
-from cfepy.status import CFE_ES_ERR_NAME_NOT_FOUND, CFE_ES_ERR_RESOURCEID_NOT_VALID, CfeError
+from cfepy.psp import Psp
+from cfepy.rtos import Kernel, Semaphore
+from cfepy.rtos.units import NS_PER_MS
+from cfepy.status import CFE_ES_ERR_NAME_NOT_FOUND, CFE_ES_ERR_RESOURCEID_NOT_VALID, CfeError, OsalError
 
 
 class EsCore:
@@ -24,34 +27,68 @@ class EsCore:
         ports: the other services.
         config: limits.
         osal: where tasks are made.
+        psp: the board: how it was started, what it retained, and where resets begin.
         console: where the system log shows.
         loader: finds the code of applications.
     """
 
     def __init__(
-        self, kernel: Kernel, ports: Ports, config: PlatformConfig, osal: Osal, console: Console, loader: Loader
+        self,
+        kernel: Kernel,
+        ports: Ports,
+        config: PlatformConfig,
+        osal: Osal,
+        psp: Psp,
+        console: Console,
+        loader: Loader,
     ) -> None:
         self.kernel = kernel
         self.ports = ports
         self.config = config
         self.osal = osal
+        self.psp = psp
         self.console = console
         self.loader = loader
-        self.syslog = SystemLog(ports, console, config.es_system_log_size)
+        self.faulty_apps: dict[int, AppRecord] = {}  # by the TaskId that the exception storage of the board knows
+        self.reset = ResetData(config, psp.get_timer_ticks_per_second(), psp.get_timer_low32_rollover())
+        self.syslog = SystemLog(ports, console, config)
+        self.er_log = ExceptionResetLog(ports, self.reset, self._context_of)
+        self.perf_log = PerformanceLog(
+            self.reset.perf, config.es_perf_data_buffer_size, psp.get_timebase, self.syslog.write_to_sys_log
+        )
         self.apps: IdTable[AppRecord] = IdTable(ES_APPID_BASE, config.es_max_applications)
         self.libs: IdTable[LibRecord] = IdTable(ES_LIBID_BASE, config.es_max_libraries)
         self.pools: IdTable[MemPool] = IdTable(ES_POOLID_BASE, config.es_max_memory_pools)
         self.pool_owners: dict[int, tuple[AppRecord | None, int]] = {}
+        self.counters: IdTable[GenCounter] = IdTable(ES_COUNTID_BASE, config.es_max_gen_counters)
         self.history: dict[str, AppHistory] = {}
-        self.faults: list[Fault] = []
         self.system_state = SYSTEM_EARLY_INIT
-        self.on_reset: Callable[[int, str], object] = lambda reset_type, reason: (
-            None
-        )  # the mission resets the processor
+        self._background = Semaphore(kernel, 0, 1, "ES_BG_SEM")
 
-    def write_to_sys_log(self, text: str) -> None:
-        """Add a line to the system log (CFE_ES_WriteToSysLog)."""
-        self.syslog.write_to_sys_log(text)
+    def keep_in(self, reset: ResetData) -> None:
+        """Go on with the logs and counters that the memory of the board retained."""
+        self.reset = self.er_log.reset = reset
+        self.syslog.data = reset.syslog
+        self.perf_log.data = reset.perf
+
+    def _context_of(self, context_id: int) -> bytes:
+        """The processor context of an exception; empty when the board does not know it (any more)."""
+        try:
+            return self.psp.exception_copy_context(context_id, MAX_CONTEXT)
+        except OsalError:
+            return b""
+
+    def write_to_sys_log(self, text: str) -> int:
+        """Add a line to the system log (CFE_ES_WriteToSysLog); see `SystemLog.write_to_sys_log`."""
+        return self.syslog.write_to_sys_log(text)
+
+    def background_wakeup(self) -> None:
+        """Let the background task run at once (CFE_ES_BackgroundWakeup)."""
+        self._background.give()
+
+    def background_wait(self, timeout_ms: int) -> None:
+        """Wait for `background_wakeup`, or for some time."""
+        self._background.take(timeout_ms * NS_PER_MS)
 
     def app_of_caller(self) -> AppRecord | None:
         """The application of the running task, or None."""

@@ -5,8 +5,46 @@ The five services do not import each other; what EVS needs of them it finds in i
 
 from __future__ import annotations
 
-from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
+from cfepy.evs.events import (
+    CRITICAL,
+    DEBUG,
+    ERROR,
+    EVERY_FOURTH_ONE,
+    EVERY_OTHER_ONE,
+    EVERY_OTHER_TWO,
+    FIRST_4_STOP,
+    FIRST_8_STOP,
+    FIRST_16_STOP,
+    FIRST_32_STOP,
+    FIRST_64_STOP,
+    FIRST_ONE_STOP,
+    FIRST_TWO_STOP,
+    INFORMATION,
+    NO_FILTER,
+)
 from cfepy.evs.log import EventLog
-from cfepy.evs.service import EventServices
+from cfepy.evs.packets import COMMANDS, TELEMETRY
+from cfepy.evs.service import EVENT_FILTER_BINARY, EventServices
 
-__all__ = ["CRITICAL", "DEBUG", "ERROR", "INFORMATION", "EventLog", "EventServices"]
+__all__ = [
+    "COMMANDS",
+    "CRITICAL",
+    "DEBUG",
+    "ERROR",
+    "EVENT_FILTER_BINARY",
+    "EVERY_FOURTH_ONE",
+    "EVERY_OTHER_ONE",
+    "EVERY_OTHER_TWO",
+    "FIRST_4_STOP",
+    "FIRST_8_STOP",
+    "FIRST_16_STOP",
+    "FIRST_32_STOP",
+    "FIRST_64_STOP",
+    "FIRST_ONE_STOP",
+    "FIRST_TWO_STOP",
+    "INFORMATION",
+    "NO_FILTER",
+    "TELEMETRY",
+    "EventLog",
+    "EventServices",
+]

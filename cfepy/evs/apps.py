@@ -48,15 +48,15 @@ class Filters:
         self._index()
 
     def _index(self) -> None:
-        self._by_id = {slot.event_id: slot for slot in reversed(self.slots) if slot.event_id != FREE_SLOT}
+        self._by_id = {slot.event_id: slot for slot in reversed(self.slots)}
 
     def find(self, event_id: int) -> BinFilter | None:
-        """The filter of an event, the first one if there are two."""
+        """The filter of an event, the first one if there are two; FREE_SLOT finds a free slot (EVS_FindEventID)."""
         return self._by_id.get(event_id)
 
     def add(self, event_id: int, mask: int) -> bool:
         """Use a free slot; False when there is none."""
-        slot = next((slot for slot in self.slots if slot.event_id == FREE_SLOT), None)
+        slot = self._by_id.get(FREE_SLOT)
         if slot is None:
             return False
         slot.event_id, slot.mask, slot.count = event_id, mask, 0

@@ -9,17 +9,12 @@ from cfepy.config import PlatformConfig
 from cfepy.console import Console
 from cfepy.evs import packets as pk
 from cfepy.evs.apps import AppEvents
-from cfepy.evs.events import (
-    CFE_EVS_ERR_UNREGISTERED_EVS_APP,
-    CFE_EVS_FILTER_MAX_EID,
-    CFE_EVS_SQUELCHED_ERR_EID,
-    ERROR,
-    INFORMATION,
-)
+from cfepy.evs.events import ERR_UNREGISTERED_EVS_APP, ERROR, FILTER_MAX_EID, INFORMATION, SQUELCHED_ERR_EID
 from cfepy.evs.log import EventLog
 from cfepy.msg import PRIMARY_HEADER_SIZE, TLM_HEADER_SIZE, Layout, init
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
+from cfepy.status import CFE_EVS_APP_SQUELCHED, CFE_SUCCESS
 
 TRUNCATED = b"$"
 PORTS = (1, 2, 3, 4)
@@ -32,8 +27,8 @@ def _primary_header(msg_id: int, payload: Layout) -> bytes:
     return bytes(init(msg_id, TLM_HEADER_SIZE + payload.size)[:PRIMARY_HEADER_SIZE])
 
 
-_LONG_HEADER = _primary_header(pk.CFE_EVS_LONG_EVENT_MSG_MID, pk.LONG_EVENT)
-_SHORT_HEADER = _primary_header(pk.CFE_EVS_SHORT_EVENT_MSG_MID, pk.SHORT_EVENT)
+_LONG_HEADER = _primary_header(pk.LONG_EVENT_MSG_MID, pk.LONG_EVENT)
+_SHORT_HEADER = _primary_header(pk.SHORT_EVENT_MSG_MID, pk.SHORT_EVENT)
 
 
 class EventCore:
@@ -70,7 +65,7 @@ class EventCore:
 
     def dispatch(
         self, app: AppEvents, event_id: int, event_type: int, text: str, time: tuple[int, int] | None = None
-    ) -> None:
+    ) -> int:
         """Send an event of an application, unless its filters or its flood brake hold it back.
 
         Args:
@@ -79,14 +74,19 @@ class EventCore:
             event_type: 1 to 4.
             text: what happened.
             time: spacecraft time that it shows; None for now.
+
+        Returns:
+            CFE_SUCCESS, also for an event that a filter held back; CFE_EVS_APP_SQUELCHED.
         """
         if self._is_filtered(app, event_id, event_type):
-            return
+            return CFE_SUCCESS
         admitted, announce = app.squelch.admit(self.kernel.now)
         if announce:
-            self.send_own(CFE_EVS_SQUELCHED_ERR_EID, ERROR, f"Events squelched, AppName = {app.name}")
-        if admitted:
-            self._generate(app, event_id, event_type, text, time)
+            self.send_own(SQUELCHED_ERR_EID, ERROR, f"Events squelched, AppName = {app.name}")
+        if not admitted:
+            return CFE_EVS_APP_SQUELCHED
+        self._generate(app, event_id, event_type, text, time)
+        return CFE_SUCCESS
 
     def send_own(self, event_id: int, event_type: int, text: str) -> None:
         """Send an event of Event Services itself, which has no flood brake; nothing before its task runs."""
@@ -98,7 +98,7 @@ class EventCore:
         """Count and tell that an application sends events without being registered."""
         self.unregistered_count += 1
         text = f"App {name} not registered with Event Services. Unable to send event."
-        self.send_own(CFE_EVS_ERR_UNREGISTERED_EVS_APP, ERROR, text)
+        self.send_own(ERR_UNREGISTERED_EVS_APP, ERROR, text)
         self.ports.syslog.write_to_sys_log(f"EVS_NotRegistered: {text}")
 
     def _is_filtered(self, app: AppEvents, event_id: int, event_type: int) -> bool:
@@ -107,7 +107,7 @@ class EventCore:
             text = (
                 f"Max filter count reached, AppName = {app.name}, EventID = 0x{event_id:08x}: Filter locked until reset"
             )
-            self.send_own(CFE_EVS_FILTER_MAX_EID, INFORMATION, text)
+            self.send_own(FILTER_MAX_EID, INFORMATION, text)
         return is_filtered
 
     def _generate(

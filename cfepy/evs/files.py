@@ -1,20 +1,18 @@
 """The files that Event Services writes on command: its event log, and what it knows of every application.
 
-Stands for CFE_EVS_WriteLogDataFileCmd and CFE_EVS_WriteAppDataFileCmd. It makes the bytes; who writes them is given by
-the mission.
+Stands for CFE_EVS_WriteLogDataFileCmd and CFE_EVS_WriteAppDataFileCmd. Imports cfepy.osal and cfepy.fs, no service.
 """
 
 from __future__ import annotations
-
-from collections.abc import Callable, Mapping
-from typing import Any
 
 from cfepy.evs import events as ev
 from cfepy.evs import packets as pk
 from cfepy.evs.apps import AppEvents
 from cfepy.evs.core import EventCore
+from cfepy.evs.replies import Replies
 from cfepy.evs.telemetry import apps_by_slot
 from cfepy.fs import (
+    HEADER_SIZE,
     FileCategory,
     get_default_extension,
     get_default_mount_point,
@@ -23,7 +21,9 @@ from cfepy.fs import (
     stamp_header,
 )
 from cfepy.fs.header import SUBTYPE_EVS_APPDATA, SUBTYPE_EVS_EVENTLOG
-from cfepy.status import CfeError
+from cfepy.osal import Osal
+from cfepy.osal.limits import OS_FILE_FLAG_CREATE, OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY
+from cfepy.status import CfeError, OsalError
 
 DEFAULT_LOG_FILE = "/ram/cfe_evs.log"
 DEFAULT_APP_DATA_FILE = "/ram/cfe_evs_app.dat"
@@ -34,68 +34,88 @@ class EventFiles:
 
     Args:
         core: what is written.
-        write_file: writes bytes to a path.
+        osal: its files.
     """
 
-    def __init__(self, core: EventCore, write_file: Callable[[str, bytes], object]) -> None:
+    def __init__(self, core: EventCore, osal: Osal) -> None:
         self._core = core
-        self._write_file = write_file
+        self._osal = osal
+        self._replies = Replies(core)
 
-    def log_file(self) -> bytes:
-        """The event log as a file: the cFE header and the long event packets, oldest first."""
-        return self._header("cFE EVS Log File", SUBTYPE_EVS_EVENTLOG) + b"".join(self._core.log.entries())
-
-    def app_data_file(self) -> bytes:
-        """All registered applications as a file: the cFE header and a record for each."""
-        records = b"".join(_record(app) for app in apps_by_slot(self._core))
-        return self._header("EVS Application Data File", SUBTYPE_EVS_APPDATA) + records
-
-    def write_log(self, fields: Mapping[str, Any]) -> bool:
-        """Handle the command that writes the event log."""
-        count = len(self._core.log.entries())
-        path = self._write(
-            fields["Filename"], DEFAULT_LOG_FILE, self.log_file(), "Write Log File", ev.CFE_EVS_ERR_CRLOGFILE_EID
-        )
-        if path is None:
+    def write_log(self, packet: bytes) -> bool:
+        """Write the event log: the cFE header and the long event packets, oldest first."""
+        name = pk.WRITE_LOG_DATA_FILE.read(packet)["LogFilename"]
+        opened = self._open(name, DEFAULT_LOG_FILE, "Write Log File", ev.ERR_CRLOGFILE_EID)
+        if opened is None:
             return False
-        text = f"Write Log File Command: {count} event log entries written to {path}"
-        self._core.send_own(ev.CFE_EVS_WRLOG_EID, ev.DEBUG, text)
-        return True
+        path, descriptor = opened
+        try:
+            return self._write_log(path, descriptor)
+        finally:
+            self._osal.close(descriptor)
 
-    def write_app_data(self, fields: Mapping[str, Any]) -> bool:
-        """Handle the command that writes what is known of applications."""
-        count = len(self._core.apps)
-        path = self._write(
-            fields["Filename"],
-            DEFAULT_APP_DATA_FILE,
-            self.app_data_file(),
-            "Write App Data",
-            ev.CFE_EVS_ERR_CRDATFILE_EID,
-        )
-        if path is None:
+    def _write_log(self, path: str, descriptor: int) -> bool:
+        written = self._write(descriptor, self._header("cFE EVS Log File", SUBTYPE_EVS_EVENTLOG))
+        if written != HEADER_SIZE:
+            what = f"WriteHdr RC: {written}, Expected: {HEADER_SIZE}, filename = {path}"
+            return self._replies.refuse(ev.WRITE_HEADER_ERR_EID, f"Write File Header to Log File Error: {what}")
+        entries = self._core.log.entries()
+        for entry in entries:
+            status = self._write(descriptor, entry)
+            if status < 0:
+                text = f"Write Log File Command Error: OS_write = {status}, filename = {path}"
+                return self._replies.refuse(ev.ERR_WRLOGFILE_EID, text)
+        text = f"Write Log File Command: {len(entries)} event log entries written to {path}"
+        return self._replies.done(ev.WRLOG_EID, text)
+
+    def write_app_data(self, packet: bytes) -> bool:
+        """Write what is known of applications: the cFE header and a record for each that is registered."""
+        name = pk.WRITE_APP_DATA_FILE.read(packet)["AppDataFilename"]
+        opened = self._open(name, DEFAULT_APP_DATA_FILE, "Write App Data", ev.ERR_CRDATFILE_EID)
+        if opened is None:
             return False
-        text = f"Write App Data Command: {count} application data entries written to {path}"
-        self._core.send_own(ev.CFE_EVS_WRDAT_EID, ev.DEBUG, text)
-        return True
+        path, descriptor = opened
+        try:
+            return self._write_app_data(path, descriptor)
+        finally:
+            self._osal.close(descriptor)
 
-    def _write(self, name: str, default: str, data: bytes, command: str, failed: int) -> str | None:
-        """Write a file; its path, or None after an event."""
+    def _write_app_data(self, path: str, descriptor: int) -> bool:
+        if self._write(descriptor, self._header("EVS Application Data File", SUBTYPE_EVS_APPDATA)) != HEADER_SIZE:
+            return False  # NASA's sends no event here
+        apps = apps_by_slot(self._core)
+        for count, app in enumerate(apps):
+            status = self._write(descriptor, _record(app))
+            if status < 0:
+                where = f"At entry = {count}, OS_write = {status}, filename = {path}"
+                return self._replies.refuse(ev.ERR_WRDATFILE_EID, f"Write App Data Command Error: {where}")
+        text = f"Write App Data Command: {len(apps)} application data entries written to {path}"
+        return self._replies.done(ev.WRDAT_EID, text)
+
+    def _open(self, name: str, default: str, command: str, failed: int) -> tuple[str, int] | None:
+        """Path and descriptor of a new file; None after an event."""
         category = FileCategory.BINARY_DATA_DUMP
         try:
             path = parse_input_file_name_ex(
                 name, default, get_default_mount_point(category), get_default_extension(category)
             )
         except CfeError as error:
-            text = f"{command} Command Error: CFE_FS_ParseInputFileNameEx() = {error.hex}"
-            self._core.send_own(failed, ev.ERROR, text)
+            self._replies.refuse(failed, f"{command} Command Error: CFE_FS_ParseInputFileNameEx() = {error.hex}")
             return None
         try:
-            self._write_file(path, data)
-        except CfeError as error:
+            flags = OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE
+            return path, self._osal.open_create(path, flags, OS_WRITE_ONLY)
+        except OsalError as error:
             text = f"{command} Command Error: OS_OpenCreate = {error.status}, filename = {path}"
-            self._core.send_own(failed, ev.ERROR, text)
+            self._replies.refuse(failed, text)
             return None
-        return path
+
+    def _write(self, descriptor: int, data: bytes) -> int:
+        """How many bytes were written, or the status of a failure."""
+        try:
+            return self._osal.write(descriptor, data)
+        except OsalError as error:
+            return error.status
 
     def _header(self, description: str, subtype: int) -> bytes:
         core = self._core

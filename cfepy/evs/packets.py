@@ -1,36 +1,39 @@
-"""Message ids, function codes and packet layouts of Event Services (default_cfe_evs_msgstruct.h). Imports cfepy.msg."""
+"""Commands and telemetry of Event Services: message ids, function codes, layouts (default_cfe_evs_msgstruct.h).
+
+Imports cfepy.msg.
+"""
 
 from __future__ import annotations
 
-from cfepy.msg import Layout
+from cfepy.msg import Command, Layout, Telemetry
 
-CFE_EVS_CMD_MID = 0x1801
-CFE_EVS_SEND_HK_MID = 0x1809
-CFE_EVS_HK_TLM_MID = 0x0801
-CFE_EVS_LONG_EVENT_MSG_MID = 0x0808
-CFE_EVS_SHORT_EVENT_MSG_MID = 0x0809
+CMD_MID = 0x1801
+SEND_HK_MID = 0x1809
+HK_TLM_MID = 0x0801
+LONG_EVENT_MSG_MID = 0x0808
+SHORT_EVENT_MSG_MID = 0x0809
 
-CFE_EVS_NOOP_CC = 0
-CFE_EVS_RESET_COUNTERS_CC = 1
-CFE_EVS_ENABLE_EVENT_TYPE_CC = 2
-CFE_EVS_DISABLE_EVENT_TYPE_CC = 3
-CFE_EVS_SET_EVENT_FORMAT_MODE_CC = 4
-CFE_EVS_ENABLE_APP_EVENT_TYPE_CC = 5
-CFE_EVS_DISABLE_APP_EVENT_TYPE_CC = 6
-CFE_EVS_ENABLE_APP_EVENTS_CC = 7
-CFE_EVS_DISABLE_APP_EVENTS_CC = 8
-CFE_EVS_RESET_APP_COUNTER_CC = 9
-CFE_EVS_SET_FILTER_CC = 10
-CFE_EVS_ENABLE_PORTS_CC = 11
-CFE_EVS_DISABLE_PORTS_CC = 12
-CFE_EVS_RESET_FILTER_CC = 13
-CFE_EVS_RESET_ALL_FILTERS_CC = 14
-CFE_EVS_ADD_EVENT_FILTER_CC = 15
-CFE_EVS_DELETE_EVENT_FILTER_CC = 16
-CFE_EVS_WRITE_APP_DATA_FILE_CC = 17
-CFE_EVS_WRITE_LOG_DATA_FILE_CC = 18
-CFE_EVS_SET_LOG_MODE_CC = 19
-CFE_EVS_CLEAR_LOG_CC = 20
+NOOP_CC = 0
+RESET_COUNTERS_CC = 1
+ENABLE_EVENT_TYPE_CC = 2
+DISABLE_EVENT_TYPE_CC = 3
+SET_EVENT_FORMAT_MODE_CC = 4
+ENABLE_APP_EVENT_TYPE_CC = 5
+DISABLE_APP_EVENT_TYPE_CC = 6
+ENABLE_APP_EVENTS_CC = 7
+DISABLE_APP_EVENTS_CC = 8
+RESET_APP_COUNTER_CC = 9
+SET_FILTER_CC = 10
+ENABLE_PORTS_CC = 11
+DISABLE_PORTS_CC = 12
+RESET_FILTER_CC = 13
+RESET_ALL_FILTERS_CC = 14
+ADD_EVENT_FILTER_CC = 15
+DELETE_EVENT_FILTER_CC = 16
+WRITE_APP_DATA_FILE_CC = 17
+WRITE_LOG_DATA_FILE_CC = 18
+SET_LOG_MODE_CC = 19
+CLEAR_LOG_CC = 20
 
 FORMAT_SHORT, FORMAT_LONG = 0, 1
 """CFE_EVS_MsgFormat_Enum_t."""
@@ -113,4 +116,139 @@ APP_EVENT_COMMAND = Layout("CFE_EVS_AppNameEventIDCmd_Payload_t", [("AppName", "
 APP_FILTER_COMMAND = Layout(
     "CFE_EVS_AppNameEventIDMaskCmd_Payload_t", [("AppName", "char[20]"), ("EventID", "u16"), ("Mask", "u16")]
 )
-FILE_COMMAND = Layout("CFE_EVS_LogFileCmd_Payload_t", [("Filename", "char[64]")])
+LOG_FILE_COMMAND = Layout("CFE_EVS_LogFileCmd_Payload_t", [("LogFilename", "char[64]")])
+APP_DATA_COMMAND = Layout("CFE_EVS_AppDataCmd_Payload_t", [("AppDataFilename", "char[64]")])
+
+NOOP = Command("CFE_EVS_NOOP", CMD_MID, NOOP_CC, text="Answer with an event.")
+RESET_COUNTERS = Command("CFE_EVS_RESET_COUNTERS", CMD_MID, RESET_COUNTERS_CC, text="Set the counters to 0.")
+ENABLE_EVENT_TYPE = Command(
+    "CFE_EVS_ENABLE_EVENT_TYPE",
+    CMD_MID,
+    ENABLE_EVENT_TYPE_CC,
+    BIT_MASK_COMMAND,
+    "Let all applications send events of some types.",
+)
+DISABLE_EVENT_TYPE = Command(
+    "CFE_EVS_DISABLE_EVENT_TYPE",
+    CMD_MID,
+    DISABLE_EVENT_TYPE_CC,
+    BIT_MASK_COMMAND,
+    "Hold back events of some types of all applications.",
+)
+SET_EVENT_FORMAT_MODE = Command(
+    "CFE_EVS_SET_EVENT_FORMAT_MODE",
+    CMD_MID,
+    SET_EVENT_FORMAT_MODE_CC,
+    FORMAT_COMMAND,
+    "Send events short, 0, or long, 1.",
+)
+ENABLE_APP_EVENT_TYPE = Command(
+    "CFE_EVS_ENABLE_APP_EVENT_TYPE",
+    CMD_MID,
+    ENABLE_APP_EVENT_TYPE_CC,
+    APP_MASK_COMMAND,
+    "Let an application send events of some types.",
+)
+DISABLE_APP_EVENT_TYPE = Command(
+    "CFE_EVS_DISABLE_APP_EVENT_TYPE",
+    CMD_MID,
+    DISABLE_APP_EVENT_TYPE_CC,
+    APP_MASK_COMMAND,
+    "Hold back events of some types of an application.",
+)
+ENABLE_APP_EVENTS = Command(
+    "CFE_EVS_ENABLE_APP_EVENTS", CMD_MID, ENABLE_APP_EVENTS_CC, APP_COMMAND, "Let an application send events."
+)
+DISABLE_APP_EVENTS = Command(
+    "CFE_EVS_DISABLE_APP_EVENTS", CMD_MID, DISABLE_APP_EVENTS_CC, APP_COMMAND, "Hold back an application's events."
+)
+RESET_APP_COUNTER = Command(
+    "CFE_EVS_RESET_APP_COUNTER",
+    CMD_MID,
+    RESET_APP_COUNTER_CC,
+    APP_COMMAND,
+    "Set the counts of an application's sent and squelched events to 0.",
+)
+SET_FILTER = Command(
+    "CFE_EVS_SET_FILTER", CMD_MID, SET_FILTER_CC, APP_FILTER_COMMAND, "Change the mask of an event's filter."
+)
+ENABLE_PORTS = Command(
+    "CFE_EVS_ENABLE_PORTS", CMD_MID, ENABLE_PORTS_CC, BIT_MASK_COMMAND, "Write events to some output ports."
+)
+DISABLE_PORTS = Command(
+    "CFE_EVS_DISABLE_PORTS", CMD_MID, DISABLE_PORTS_CC, BIT_MASK_COMMAND, "Write no events to some output ports."
+)
+RESET_FILTER = Command(
+    "CFE_EVS_RESET_FILTER", CMD_MID, RESET_FILTER_CC, APP_EVENT_COMMAND, "Let the filter of an event count from 0."
+)
+RESET_ALL_FILTERS = Command(
+    "CFE_EVS_RESET_ALL_FILTERS",
+    CMD_MID,
+    RESET_ALL_FILTERS_CC,
+    APP_COMMAND,
+    "Let all filters of an application count from 0.",
+)
+ADD_EVENT_FILTER = Command(
+    "CFE_EVS_ADD_EVENT_FILTER", CMD_MID, ADD_EVENT_FILTER_CC, APP_FILTER_COMMAND, "Give an event a filter."
+)
+DELETE_EVENT_FILTER = Command(
+    "CFE_EVS_DELETE_EVENT_FILTER",
+    CMD_MID,
+    DELETE_EVENT_FILTER_CC,
+    APP_EVENT_COMMAND,
+    "Take the filter of an event away.",
+)
+WRITE_APP_DATA_FILE = Command(
+    "CFE_EVS_WRITE_APP_DATA_FILE",
+    CMD_MID,
+    WRITE_APP_DATA_FILE_CC,
+    APP_DATA_COMMAND,
+    "Write what is known of all applications to a file.",
+)
+WRITE_LOG_DATA_FILE = Command(
+    "CFE_EVS_WRITE_LOG_DATA_FILE",
+    CMD_MID,
+    WRITE_LOG_DATA_FILE_CC,
+    LOG_FILE_COMMAND,
+    "Write the event log to a file.",
+)
+SET_LOG_MODE = Command(
+    "CFE_EVS_SET_LOG_MODE",
+    CMD_MID,
+    SET_LOG_MODE_CC,
+    LOG_MODE_COMMAND,
+    "Let a full event log overwrite the oldest event, 0, or discard the new one, 1.",
+)
+CLEAR_LOG = Command("CFE_EVS_CLEAR_LOG", CMD_MID, CLEAR_LOG_CC, text="Empty the event log.")
+SEND_HK = Command("CFE_EVS_SEND_HK", SEND_HK_MID, text="Send the housekeeping packet.")
+
+COMMANDS: tuple[Command, ...] = (
+    NOOP,
+    RESET_COUNTERS,
+    ENABLE_EVENT_TYPE,
+    DISABLE_EVENT_TYPE,
+    SET_EVENT_FORMAT_MODE,
+    ENABLE_APP_EVENT_TYPE,
+    DISABLE_APP_EVENT_TYPE,
+    ENABLE_APP_EVENTS,
+    DISABLE_APP_EVENTS,
+    RESET_APP_COUNTER,
+    SET_FILTER,
+    ENABLE_PORTS,
+    DISABLE_PORTS,
+    RESET_FILTER,
+    RESET_ALL_FILTERS,
+    ADD_EVENT_FILTER,
+    DELETE_EVENT_FILTER,
+    WRITE_APP_DATA_FILE,
+    WRITE_LOG_DATA_FILE,
+    SET_LOG_MODE,
+    CLEAR_LOG,
+    SEND_HK,
+)
+
+HK_TLM = Telemetry("CFE_EVS_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Counters and settings, and those of 16 applications.")
+LONG_EVENT_MSG = Telemetry("CFE_EVS_LONG_EVENT_MSG", LONG_EVENT_MSG_MID, LONG_EVENT, "An event with its text.")
+SHORT_EVENT_MSG = Telemetry("CFE_EVS_SHORT_EVENT_MSG", SHORT_EVENT_MSG_MID, SHORT_EVENT, "An event without its text.")
+
+TELEMETRY: tuple[Telemetry, ...] = (HK_TLM, LONG_EVENT_MSG, SHORT_EVENT_MSG)

@@ -5,7 +5,8 @@ How an event is made and where it goes is in `cfepy.evs.core`. Imports no other 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from typing import Any
 
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
@@ -13,15 +14,11 @@ from cfepy.evs import packets as pk
 from cfepy.evs.apps import AppEvents
 from cfepy.evs.commands import EvsCommands
 from cfepy.evs.core import EventCore
-from cfepy.evs.events import (
-    CFE_EVS_STARTUP_EID,
-    CRITICAL,
-    DEBUG,
-    ERROR,
-    INFORMATION,
-)
+from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION, STARTUP_EID
+from cfepy.evs.files import EventFiles
 from cfepy.evs.log import DISCARD, OVERWRITE, EventLog
 from cfepy.ids import ES_APPID_BASE, get_base
+from cfepy.osal import Osal
 from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY, Caller, Ports
 from cfepy.rtos import Kernel
 from cfepy.status import (
@@ -30,12 +27,19 @@ from cfepy.status import (
     CFE_EVS_APP_NOT_REGISTERED,
     CFE_EVS_EVT_NOT_REGISTERED,
     CFE_EVS_INVALID_PARAMETER,
+    CFE_EVS_UNKNOWN_FILTER,
     CfeError,
 )
 from cfepy.versions import version_string
 
 PIPE_DEPTH = 32
 PIPE_NAME = "EVS_CMD_PIPE"
+MAIN_PERF_ID = 2
+EVENT_FILTER_BINARY = 0
+"""The only filter scheme (CFE_EVS_EventFilter_BINARY)."""
+
+KEPT = "EVS"
+"""Name of the event log among the objects that outlive a processor reset."""
 
 _U16_MAX = 0xFFFF
 _U32_MAX = 0xFFFFFFFF
@@ -44,16 +48,15 @@ _U32_MAX = 0xFFFFFFFF
 class EventServices(EventCore):
     """Events of one processor.
 
-    A call that sends an event returns nothing and does not tell whether a filter or the flood brake held it back;
-    housekeeping does.
+    A call that sends an event returns CFE_SUCCESS, also when a filter held it back, or CFE_EVS_APP_SQUELCHED when the
+    flood brake did, which is no error that an application has to handle.
 
     Args:
         kernel: the processor; its virtual time refills the flood brakes.
         ports: the other services.
         config: limits and defaults.
         console: where the output ports write.
-        write_file: writes bytes to a file of a path in the file system of the mission, for the commands that dump to
-            files; None leaves these commands out.
+        osal: writes the files that commands ask for.
     """
 
     def __init__(
@@ -62,41 +65,46 @@ class EventServices(EventCore):
         ports: Ports,
         config: PlatformConfig,
         console: Console,
-        write_file: Callable[[str, bytes], object] | None = None,
+        osal: Osal,
     ) -> None:
         super().__init__(kernel, ports, config, console)
-        self.commands = EvsCommands(self, write_file)
+        self.commands = EvsCommands(self, EventFiles(self, osal))
 
     # -- life ------------------------------------------------------------------------------------------------------
 
-    def early_init(self, kept: EventLog | None = None) -> None:
+    def early_init(self, kept: dict[str, Any]) -> None:
         """Get the event log ready, before any task exists (CFE_EVS_EarlyInit).
 
         Args:
-            kept: the log of before a processor reset; None starts with an empty one.
+            kept: objects that outlive a processor reset; "EVS" is the event log of before. It is put there anew.
         """
-        if kept is None:
+        log: EventLog | None = kept.get(KEPT)
+        if log is None:
             text = "Event Log cleared following power-on reset"
-        elif kept.mode not in (OVERWRITE, DISCARD):
-            text = f"Event Log cleared, {kept.summary()}"
+        elif log.mode not in (OVERWRITE, DISCARD):
+            text = f"Event Log cleared, {log.summary()}"
         else:
-            self.log = kept
-            text = f"Event Log restored, {kept.summary()}"
+            self.log = log
+            text = f"Event Log restored, {log.summary()}"
+        kept[KEPT] = self.log
         self.ports.syslog.write_to_sys_log(f"CFE_EVS_EarlyInit: {text}")
 
     def task_main(self) -> None:
         """The task CFE_EVS (CFE_EVS_TaskMain)."""
         ports = self.ports
+        ports.es.perf_log_entry(MAIN_PERF_ID)
         self.register()
         pipe = ports.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
-        ports.sb.subscribe(pk.CFE_EVS_CMD_MID, pipe)
-        ports.sb.subscribe(pk.CFE_EVS_SEND_HK_MID, pipe)
+        ports.sb.subscribe(pk.CMD_MID, pipe)
+        ports.sb.subscribe(pk.SEND_HK_MID, pipe)
         self.own_app_id = ports.es.get_app_id()
-        self.send_own(CFE_EVS_STARTUP_EID, INFORMATION, f"cFE EVS Initialized: {version_string('CFE_EVS')}")
+        self.send_own(STARTUP_EID, INFORMATION, f"cFE EVS Initialized: {version_string('CFE_EVS')}")
         ports.es.wait_for_system_state(SYSTEM_CORE_READY, self.config.es_core_max_startup_ms)
         while True:
             ports.es.increment_task_counter()
+            ports.es.perf_log_exit(MAIN_PERF_ID)
             packet = ports.sb.receive_buffer(pipe, PEND_FOREVER)
+            ports.es.perf_log_entry(MAIN_PERF_ID)
             if packet is not None:
                 self.commands.process(packet)
 
@@ -107,19 +115,23 @@ class EventServices(EventCore):
 
     # -- registration and filters ----------------------------------------------------------------------------------
 
-    def register(self, filters: Iterable[tuple[int, int]] = ()) -> None:
+    def register(self, filters: Iterable[tuple[int, int]] = (), filter_scheme: int = EVENT_FILTER_BINARY) -> None:
         """Register the calling application; again, with all counters at 0, if it was (CFE_EVS_Register).
 
         Args:
             filters: (event id, mask) pairs. An event passes when its count, from 0, and the mask have no bit in
                 common: mask 0xFFFC lets the first four pass, 0x0001 every other one. Of more than
                 `evs_max_event_filters` only the first are used.
+            filter_scheme: EVENT_FILTER_BINARY; there is no other.
 
         Raises:
-            CfeError: CFE_EVS_APP_ILLEGAL_APP_ID outside of an application, CFE_ES_BAD_ARGUMENT for a filter that is
-                not two 16-bit numbers.
+            CfeError: CFE_EVS_APP_ILLEGAL_APP_ID outside of an application, CFE_EVS_UNKNOWN_FILTER, CFE_ES_BAD_ARGUMENT
+                for a filter that is not two 16-bit numbers. An application that was registered is no more then.
         """
         caller = self._caller()
+        self.apps.pop(caller.app_id, None)
+        if filter_scheme != EVENT_FILTER_BINARY:
+            raise CfeError(CFE_EVS_UNKNOWN_FILTER, f"filter scheme {filter_scheme!r}, there is only 0, the binary one")
         wanted = list(filters)
         for pair in wanted:
             _check_filter(pair)
@@ -150,35 +162,42 @@ class EventServices(EventCore):
 
     # -- events ----------------------------------------------------------------------------------------------------
 
-    def send_event(self, event_id: int, event_type: int, text: str) -> None:
-        """Send an event of the calling application (CFE_EVS_SendEvent).
+    def send_event(self, event_id: int, event_type: int, text: str, *values: object) -> int:
+        """Send an event of the calling application (CFE_EVS_SendEvent; the macro CFE_EVS_Send is `send`).
 
         Args:
             event_id: 0 to 65535.
             event_type: DEBUG 1, INFORMATION 2, ERROR 3 or CRITICAL 4; any other is never sent.
             text: what happened; only 121 bytes of it fit, the last one then is "$".
+            values: put into the text as by printf; without any, "%" stands for itself.
+
+        Returns:
+            CFE_SUCCESS or CFE_EVS_APP_SQUELCHED.
 
         Raises:
             CfeError: CFE_EVS_APP_ILLEGAL_APP_ID outside of an application, CFE_EVS_APP_NOT_REGISTERED,
-                CFE_EVS_INVALID_PARAMETER for a text or an id that is none.
+                CFE_EVS_INVALID_PARAMETER for a text or an id that is none, or values that do not fit the text.
         """
         caller: Caller | None = self.kernel.current.owner
         app = self.apps.get(caller.app_id) if caller is not None else None
         if app is None:
             app = self._registered_caller(report=True)
-        _check_event(event_id, text)
-        self.dispatch(app, event_id, event_type, text)
+        return self.dispatch(app, event_id, event_type, _checked(event_id, text, values))
 
-    def send_event_with_app_id(self, event_id: int, event_type: int, app_id: int, text: str) -> None:
+    send = send_event
+
+    def send_event_with_app_id(self, event_id: int, event_type: int, app_id: int, text: str, *values: object) -> int:
         """Send an event in the name of an application (CFE_EVS_SendEventWithAppID).
-
-        AppId 0, which a core service has before its task runs, sends nothing.
 
         Args:
             event_id: as for `send_event`.
             event_type: as for `send_event`.
             app_id: the application whose event it is, with its filters and types.
             text: as for `send_event`.
+            values: as for `send_event`.
+
+        Returns:
+            CFE_SUCCESS or CFE_EVS_APP_SQUELCHED.
 
         Raises:
             CfeError: CFE_EVS_APP_ILLEGAL_APP_ID for an id of something else, CFE_EVS_APP_NOT_REGISTERED,
@@ -186,15 +205,14 @@ class EventServices(EventCore):
         """
         app = self.apps.get(app_id)
         if app is None:
-            if not app_id:
-                return
             if get_base(app_id) != ES_APPID_BASE:
                 raise CfeError(CFE_EVS_APP_ILLEGAL_APP_ID, f"0x{app_id:x} is not an AppId")
             raise self._not_registered(app_id)
-        _check_event(event_id, text)
-        self.dispatch(app, event_id, event_type, text)
+        return self.dispatch(app, event_id, event_type, _checked(event_id, text, values))
 
-    def send_timed_event(self, time: tuple[int, int], event_id: int, event_type: int, text: str) -> None:
+    def send_timed_event(
+        self, time: tuple[int, int], event_id: int, event_type: int, text: str, *values: object
+    ) -> int:
         """Send an event with another time than now (CFE_EVS_SendTimedEvent).
 
         The time shows in the log and on the console; the bus stamps its copy anew.
@@ -204,31 +222,35 @@ class EventServices(EventCore):
             event_id: as for `send_event`.
             event_type: as for `send_event`.
             text: as for `send_event`.
+            values: as for `send_event`.
+
+        Returns:
+            CFE_SUCCESS or CFE_EVS_APP_SQUELCHED.
 
         Raises:
             CfeError: as `send_event`.
         """
         app = self._registered_caller(report=True)
-        _check_event(event_id, text)
+        text = _checked(event_id, text, values)
         if not all(0 <= part <= _U32_MAX for part in time):
             raise CfeError(CFE_EVS_INVALID_PARAMETER, f"{time} is no time, its parts are numbers of 32 bits")
-        self.dispatch(app, event_id, event_type, text, time)
+        return self.dispatch(app, event_id, event_type, text, time)
 
-    def send_dbg(self, event_id: int, text: str) -> None:
-        """Send a DEBUG event (CFE_EVS_SendDbg); errors as `send_event`."""
-        self.send_event(event_id, DEBUG, text)
+    def send_dbg(self, event_id: int, text: str, *values: object) -> int:
+        """Send a DEBUG event (CFE_EVS_SendDbg); otherwise as `send_event`."""
+        return self.send_event(event_id, DEBUG, text, *values)
 
-    def send_info(self, event_id: int, text: str) -> None:
-        """Send an INFORMATION event (CFE_EVS_SendInfo); errors as `send_event`."""
-        self.send_event(event_id, INFORMATION, text)
+    def send_info(self, event_id: int, text: str, *values: object) -> int:
+        """Send an INFORMATION event (CFE_EVS_SendInfo); otherwise as `send_event`."""
+        return self.send_event(event_id, INFORMATION, text, *values)
 
-    def send_err(self, event_id: int, text: str) -> None:
-        """Send an ERROR event (CFE_EVS_SendErr); errors as `send_event`."""
-        self.send_event(event_id, ERROR, text)
+    def send_err(self, event_id: int, text: str, *values: object) -> int:
+        """Send an ERROR event (CFE_EVS_SendErr); otherwise as `send_event`."""
+        return self.send_event(event_id, ERROR, text, *values)
 
-    def send_crit(self, event_id: int, text: str) -> None:
-        """Send a CRITICAL event (CFE_EVS_SendCrit); errors as `send_event`."""
-        self.send_event(event_id, CRITICAL, text)
+    def send_crit(self, event_id: int, text: str, *values: object) -> int:
+        """Send a CRITICAL event (CFE_EVS_SendCrit); otherwise as `send_event`."""
+        return self.send_event(event_id, CRITICAL, text, *values)
 
     # -- who calls -------------------------------------------------------------------------------------------------
 
@@ -262,11 +284,16 @@ class EventServices(EventCore):
             return f"0x{app_id:x}"  # it ended meanwhile
 
 
-def _check_event(event_id: int, text: str) -> None:
+def _checked(event_id: int, text: str, values: tuple[object, ...]) -> str:
+    """The text of an event with its values put in."""
     if not isinstance(text, str):
         raise CfeError(CFE_EVS_INVALID_PARAMETER, f"the text of event {event_id!r} is {text!r}, not a text")
     if not isinstance(event_id, int) or not 0 <= event_id <= _U16_MAX:
         raise CfeError(CFE_EVS_INVALID_PARAMETER, f"event id is {event_id!r}, it must be 0 to {_U16_MAX}")
+    try:
+        return text % values if values else text
+    except (TypeError, ValueError) as error:
+        raise CfeError(CFE_EVS_INVALID_PARAMETER, f"{text!r} does not go with {values}: {error}") from None
 
 
 def _check_filter(pair: tuple[int, int]) -> None:

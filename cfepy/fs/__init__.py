@@ -1,6 +1,6 @@
-"""File services on bytes and text (CFE_FS): file and table headers, CRC, file names.
+"""File services (CFE_FS): on bytes and text, file and table headers, CRC, file names; in `services`, `cfe.fs`.
 
-Usable without a mission. Imports only cfepy.status.
+What is exported here is usable without a mission and imports only cfepy.status.
 """
 
 from __future__ import annotations

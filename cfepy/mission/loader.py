@@ -54,6 +54,7 @@ class ModuleLoader:
         self._handle = handle
         self._run_node = run_node
         self._names = ModuleNames()
+        self._libraries: list[ModuleType] = []
 
     def exists(self, file: str) -> bool:
         """Whether there is code behind a virtual path."""
@@ -81,33 +82,38 @@ class ModuleLoader:
         if symbol == NODE_SYMBOL:
             script = self._script(file)
             return lambda: self._run_node(script, app_name)
-        main = self._symbol(file, symbol, app_name)
+        main = self._function(self.load_module(file, app_name), file, symbol)
         return lambda: main(self._handle())
 
     def load_library(self, file: str, symbol: str) -> Callable[[int], object]:
         """The init function of a library; one that is called NULL does nothing. Errors as `load`."""
-        if symbol == "NULL":
-            self._module(file, f"library {file}")
-            return lambda lib_id: 0
-        init = self._symbol(file, symbol, f"library {file}")
-        return lambda lib_id: self._init_library(init)
+        module = self.load_module(file, f"library {file}")
+        init = None if symbol == "NULL" else self._function(module, file, symbol)
+        return lambda lib_id: self._init_library(module, init)
+
+    def library_symbol(self, name: str) -> object | None:
+        """What a name stands for in a library that was loaded, the first one that has it; None when none has it."""
+        return next((getattr(module, name) for module in self._libraries if hasattr(module, name)), None)
 
     def forget(self) -> None:
         """Take the modules of this mission out of the process, with those that they consist of."""
         self._names.forget()
 
-    def _init_library(self, init: Callable[[Any], object]) -> object:
+    def _init_library(self, module: ModuleType, init: Callable[[Any], object] | None) -> object:
         """What the init function returns; a negative number when it fails, so that the boot goes on without it."""
         try:
-            return init(self._handle())
+            result = 0 if init is None else init(self._handle())
         except (TaskExit, KeyboardInterrupt):
             raise
         except BaseException as error:
             self._console.write(app_traceback(error))
             return OS_ERROR
+        if not isinstance(result, int) or result == 0:  # as ES judges it
+            self._libraries.append(module)
+        return result
 
-    def _symbol(self, file: str, symbol: str, owner: str) -> Callable[[Any], object]:
-        function = getattr(self._module(file, owner), symbol, None)
+    def _function(self, module: ModuleType, file: str, symbol: str) -> Callable[[Any], object]:
+        function = getattr(module, symbol, None)
         if not callable(function):
             self._console.write(f"OS_SymbolLookup: {file} has no function {symbol}")
             raise SymbolError(OS_ERROR, symbol)
@@ -124,22 +130,24 @@ class ModuleLoader:
             raise self._missing(file)
         return found
 
-    def _module(self, file: str, owner: str) -> ModuleType:
+    def load_module(self, file: str, owner: str) -> ModuleType:
+        """Execute the code behind a virtual path anew, for an application or another owner (OS_ModuleLoad).
+
+        Raises:
+            OsalError: there is no such file, or executing it failed (the traceback is on the console).
+        """
         found = self.find(file)
         if found is None:
             raise self._missing(file)
-        spec = _spec(found, self._names.new(owner))
-        if spec is None or spec.loader is None:
-            raise self._missing(file)
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[spec.name] = module
         try:
-            spec.loader.exec_module(module)
+            module = execute(found, self._names.new(owner))
         except (TaskExit, KeyboardInterrupt):
             raise
         except BaseException as error:  # also sys.exit(): it is the module that ends, not the process
             self._console.write(app_traceback(error))
             raise OsalError(OS_ERROR, f"{file}: {described(error)}") from error
+        if module is None:
+            raise self._missing(file)
         return module
 
     def _missing(self, file: str) -> OsalError:
@@ -160,6 +168,21 @@ def find_code(file: str, folder: Path) -> Path | str | None:
             if candidate.is_file():
                 return candidate
     return _installed(str(stem).replace("/", "."))
+
+
+def execute(found: Path | str, name: str) -> ModuleType | None:
+    """Execute what `find_code` found, as a module of this name; None when there is nothing to execute.
+
+    Raises:
+        BaseException: whatever the code raises.
+    """
+    spec = _spec(found, name)
+    if spec is None or spec.loader is None:
+        return None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
 
 
 def find_node(file: str, folder: Path) -> Path | None:

@@ -16,32 +16,9 @@ from cfepy.mission.mission import Mission
 from cfepy.mission.msg_names import names_of
 from cfepy.mission.results import kind_of
 from cfepy.mission.spec import MissionSpec
-from cfepy.sb import SoftwareBus
+from cfepy.mission.watch import Seen, watching
 
 LOOK_S = 10.0
-
-
-class WatchedBus(SoftwareBus):
-    """A Software Bus that keeps, for each MsgId, which applications transmitted it."""
-
-    def __init__(self, *arguments: Any, **options: Any) -> None:
-        super().__init__(*arguments, **options)
-        self.senders: dict[int, set[str]] = {}
-
-    def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
-        """See `SoftwareBus.transmit_msg`."""
-        if len(packet) > 1:
-            self._note(packet[0] << 8 | packet[1])
-        super().transmit_msg(packet, is_origination)
-
-    def transmit_telemetry(self, msg_id: int, payload: bytes) -> None:
-        """See `SoftwareBus.transmit_telemetry`."""
-        self._note(msg_id)
-        super().transmit_telemetry(msg_id, payload)
-
-    def _note(self, msg_id: int) -> None:
-        owner = self.kernel.current.owner
-        self.senders.setdefault(msg_id, set()).add("host" if owner is None else owner.name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,21 +47,25 @@ def survey(spec: MissionSpec, board: str | None = None) -> list[MidRow]:
         CfeError: it cannot boot.
         UsageError: no such board.
     """
-    with Mission(spec, board=board, console=Console(quiet=True), bus=WatchedBus) as mission:
+    senders: dict[int, set[str]] = {}
+
+    def note(seen: Seen) -> None:
+        senders.setdefault(seen.msg_id, set()).add(seen.sender)
+
+    with Mission(spec, board=board, console=Console(quiet=True), bus=watching(note, lambda msg_id: True)) as mission:
         mission.run(LOOK_S)
-        return _rows(mission)
+        return _rows(mission, senders)
 
 
-def _rows(mission: Mission) -> list[MidRow]:
+def _rows(mission: Mission, senders_of: dict[int, set[str]]) -> list[MidRow]:
     bus = mission.cfe.sb
-    assert isinstance(bus, WatchedBus)
     names = names_of(mission.spec)
     ros = {row.msg_id: row for row in mission.ros.topics()} if mission.ros is not None else {}
     nodes = {entry.name for entry in entries(mission.spec.script.read_bytes()) if entry.symbol == NODE_SYMBOL}
     found = []
-    for msg_id in sorted({*bus.routes, *bus.senders, *ros}):
+    for msg_id in sorted({*bus.routes, *senders_of, *ros}):
         row, route = ros.get(msg_id), bus.routes.get(msg_id)
-        senders = set(bus.senders.get(msg_id, ()))
+        senders = set(senders_of.get(msg_id, ()))
         subscribers = {each.pipe.app_name for each in route.destinations} if route is not None else set()
         name, kind = names.get(msg_id, f"0x{msg_id:04X}"), kind_of(msg_id)
         if row is not None:  # ROS knows the nodes by their own names

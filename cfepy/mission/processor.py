@@ -15,9 +15,11 @@ from typing import Any
 from cfepy import versions
 from cfepy.app import Cfe
 from cfepy.config import PlatformConfig
+from cfepy.config_api import ConfigServices
 from cfepy.console import Console
 from cfepy.es import Boot, CoreApp, EsTask, ExecutiveServices, ObjectTable
 from cfepy.evs import EventServices
+from cfepy.fs.services import FileServices
 from cfepy.mission.loader import ModuleLoader
 from cfepy.mission.record import RunRecord
 from cfepy.mission.spec import MissionSpec
@@ -95,6 +97,7 @@ class Processor:
         kernel, config, console = machine.kernel, machine.config, machine.console
         self.ports = ports = Ports()
         self.memory = ports.memory = MemoryBudget(machine.board)
+        sizes = object_sizes(machine.board)
         self.osal = Osal(
             kernel,
             config,
@@ -102,7 +105,7 @@ class Processor:
             files=machine.files,
             network=machine.network,
             memory=self.memory,
-            sizes=object_sizes(machine.board),
+            sizes=sizes,
             call_ns=costs.call_ns,
             byte_ps=costs.byte_ps,
             epoch_ns=machine.epoch_ns,
@@ -117,17 +120,19 @@ class Processor:
             on_restart=machine.on_restart,
         )
         self.loader = ModuleLoader(machine.files, machine.spec.folder, console, lambda: self.cfe, self._run_node)
-        es = ExecutiveServices(kernel, ports, config, self.osal, console, self.loader)
-        es.on_reset = self.psp.restart
-        sb = machine.bus(kernel, ports, config, BusCosts(costs.call_ns, costs.byte_ps))
-        evs = EventServices(kernel, ports, config, console, machine.files.write_file)
+        self.osal.modules = self.loader
+        es = ExecutiveServices(kernel, ports, config, self.osal, self.psp, console, self.loader)
+        fs = ports.fs = FileServices(self.osal, ports, config, es.background_wakeup)
+        sb = machine.bus(kernel, ports, config, BusCosts(costs.call_ns, costs.byte_ps, sizes.queue, sizes.queue_slot))
+        evs = EventServices(kernel, ports, config, console, self.osal)
         time = TimeServices(kernel, ports, config)
         tbl = TableServices(kernel, ports, config, machine.files)
         ports.es, ports.syslog, ports.sb, ports.evs, ports.time, ports.tbl = es, es.syslog, sb, evs, time, tbl
         time.clock.on_jump = sb.forget_time
         record = machine.record
         es.history, evs.counts, evs.errors_by_app = record.history, record.event_counts, record.errors_by_app
-        self.cfe = Cfe(es, sb, evs, time, tbl, self.osal, self.psp)
+        registry = ConfigServices(config, machine.spec.name)
+        self.cfe = Cfe(es, sb, evs, time, tbl, self.osal, self.psp, fs, registry)
         self.sb_task = SbTask(sb)
         checksum = zlib.crc32(versions.CFE_VERSION.encode()) & 0xFFFF
         self.es_task = EsTask(es, machine.spec.name, self._build_text(), checksum)
@@ -142,15 +147,15 @@ class Processor:
         if self._start_ns:
             self.machine.kernel.delay(self._start_ns)
         self.psp.boot()
-        cfe = self.cfe
+        cfe, kept = self.cfe, self.machine.retained.kept
         nothing = bool  # what C does here, Python did when it made the objects
         table = ObjectTable(
             calls=(
                 ("CFE_Config_Init", nothing),
-                ("CFE_ES_CDSEarlyInit", nothing),
-                ("CFE_EVS_EarlyInit", cfe.evs.early_init),
+                ("CFE_ES_CDSEarlyInit", cfe.es.cds_early_init),
+                ("CFE_EVS_EarlyInit", lambda: cfe.evs.early_init(kept)),
                 ("CFE_SB_EarlyInit", cfe.sb.early_init),
-                ("CFE_TIME_EarlyInit", cfe.time.early_init),
+                ("CFE_TIME_EarlyInit", lambda: cfe.time.early_init(kept)),
                 ("CFE_TBL_EarlyInit", cfe.tbl.early_init),
                 ("CFE_FS_EarlyInit", nothing),
             ),

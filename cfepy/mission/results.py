@@ -126,7 +126,7 @@ def mark(mission: Mission, wall_ns: int) -> Mark:
         wall_ns,
         {msg_id: count.sent for msg_id, count in traffic.items()},
         {app.name: STATE_NAMES[app.state] for app in mission.cfe.es.apps},
-        [PipeResult(pipe.name, pipe.app_name, pipe.depth, pipe.peak, pipe.send_errors) for pipe in sb.pipes],
+        [PipeResult(pipe.name, pipe.app_name, pipe.depth, pipe.peak, pipe.dropped) for pipe in sb.pipes],
         MemoryResult(memory.used, memory.peak, memory.limit, memory.by_owner()),
         mission.processor.sb_task.housekeeping(),
     )

@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 import struct
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from cfepy.status import CFE_STATUS_WRONG_MSG_LENGTH, CfeError, UsageError
 
@@ -31,6 +31,15 @@ _SCALARS = {
     "bool": ("?", 1),
 }
 _TYPE = re.compile(r"(\w+)((?:\[\d+\])*)")
+
+
+class Cell(NamedTuple):
+    """One number or text of a struct: `path` is "PacketID.AppName" or "Counts[3]", `type` "u16" or "char[20]"."""
+
+    path: str
+    type: str
+    offset: int
+    size: int
 
 
 class _Scalar:
@@ -53,6 +62,9 @@ class _Scalar:
 
     def build(self, leaves: Iterator[Any]) -> Any:
         return next(leaves)
+
+    def cells(self, path: str, at: int) -> Iterator[Cell]:
+        yield Cell(path, _name_of_code(self.code), at, self.size)
 
     def zero(self) -> Any:
         return 0
@@ -80,6 +92,9 @@ class _Text:
     def build(self, leaves: Iterator[Any]) -> Any:
         text: bytes = next(leaves)
         return text.partition(b"\0")[0].decode("utf-8", "surrogateescape")
+
+    def cells(self, path: str, at: int) -> Iterator[Cell]:
+        yield Cell(path, f"char[{self.size}]", at, self.size)
 
     def zero(self) -> Any:
         return b""
@@ -109,6 +124,10 @@ class _Array:
 
     def build(self, leaves: Iterator[Any]) -> Any:
         return [self.item.build(leaves) for _ in range(self.count)]
+
+    def cells(self, path: str, at: int) -> Iterator[Cell]:
+        for number in range(self.count):
+            yield from self.item.cells(f"{path}[{number}]", at + number * self.item.size)
 
     def zero(self) -> Any:
         return ()
@@ -212,6 +231,17 @@ class Layout:
     def build(self, leaves: Iterator[Any]) -> dict[str, Any]:
         """This struct's values, taken from the leaves of the struct around it."""
         return {field: kind.build(leaves) for field, kind in self._fields.items()}
+
+    def cells(self, path: str = "", at: int = 0) -> Iterator[Cell]:
+        """Every number and text in order, those of nested structs and arrays too, for tools that show or fill it.
+
+        Args:
+            path: of this struct in the one around it.
+            at: offset of this struct in bytes.
+        """
+        prefix = f"{path}." if path else ""
+        for field, kind in self._fields.items():
+            yield from kind.cells(prefix + field, at + self.offsets[field])
 
     def zero(self) -> dict[str, Any]:
         """What stands for an all-zero struct."""

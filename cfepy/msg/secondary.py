@@ -40,10 +40,10 @@ _TIME = slice(6, 12)
 
 
 def _check_kind(packet: Packet, kind: int, size: int, what: str) -> None:
+    if len(packet) >= PRIMARY_HEADER_SIZE and packet[0] & _KIND_MASK != kind:
+        raise CfeError(CFE_MSG_WRONG_MSG_TYPE, f"message 0x{packet[0]:02X}{packet[1]:02X} has no {what}")
     if len(packet) < size:
         raise bad_argument(f"a packet of {len(packet)} bytes has no {what}")
-    if packet[0] & _KIND_MASK != kind:
-        raise CfeError(CFE_MSG_WRONG_MSG_TYPE, f"message 0x{packet[0]:02X}{packet[1]:02X} has no {what}")
 
 
 def get_fcn_code(packet: Packet) -> int:

@@ -14,6 +14,7 @@ from cfepy.ids import (
     OS_CONDVAR_BASE,
     OS_COUNTSEM_BASE,
     OS_DIR_BASE,
+    OS_MODULE_BASE,
     OS_MUTEX_BASE,
     OS_QUEUE_BASE,
     OS_RWLOCK_BASE,
@@ -24,10 +25,13 @@ from cfepy.ids import (
 )
 from cfepy.osal.condvars import CondVarApi
 from cfepy.osal.core import OsObject, Setup
-from cfepy.osal.files import FileApi
+from cfepy.osal.directories import DirectoryApi
+from cfepy.osal.modules import ModuleApi
 from cfepy.osal.mutexes import MutexApi
+from cfepy.osal.paths import PathApi
 from cfepy.osal.queues import QueueApi
 from cfepy.osal.rwlocks import RwLockApi
+from cfepy.osal.select import SelectApi
 from cfepy.osal.semaphores import SemaphoreApi
 from cfepy.osal.tasks import OsTask, TaskApi
 from cfepy.osal.timers import TimerApi
@@ -41,7 +45,19 @@ class Leftover(NamedTuple):
     error: OsalError
 
 
-class CleanupApi(TaskApi, QueueApi, SemaphoreApi, MutexApi, CondVarApi, RwLockApi, TimerApi, FileApi):
+class CleanupApi(
+    TaskApi,
+    QueueApi,
+    SemaphoreApi,
+    MutexApi,
+    CondVarApi,
+    RwLockApi,
+    TimerApi,
+    SelectApi,
+    PathApi,
+    DirectoryApi,
+    ModuleApi,
+):
     """Deletion of everything that belongs to somebody."""
 
     def __init__(self, setup: Setup) -> None:
@@ -59,6 +75,7 @@ class CleanupApi(TaskApi, QueueApi, SemaphoreApi, MutexApi, CondVarApi, RwLockAp
             OS_DIR_BASE: self.directory_close,
             OS_CONDVAR_BASE: self.cond_var_delete,
             OS_RWLOCK_BASE: self.rw_lock_delete,
+            OS_MODULE_BASE: self.module_unload,
         }
 
     def delete_objects_of(self, owner: Any) -> list[Leftover]:

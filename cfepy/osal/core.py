@@ -15,7 +15,13 @@ from cfepy.config import PlatformConfig
 from cfepy.console import Console
 from cfepy.ids import OS_TIMEBASE_BASE, IdTable, get_base
 from cfepy.osal.filesystem import FileSystem
-from cfepy.osal.limits import OS_MAX_API_NAME, SIZE_MAX
+from cfepy.osal.limits import (
+    OS_EVENT_RESOURCE_ALLOCATED,
+    OS_EVENT_RESOURCE_CREATED,
+    OS_EVENT_RESOURCE_DELETED,
+    OS_MAX_API_NAME,
+    SIZE_MAX,
+)
 from cfepy.osal.network import Network
 from cfepy.rtos import Kernel, Task
 from cfepy.status import (
@@ -47,6 +53,10 @@ class Ledger(Protocol):
 
     def release(self, token: int) -> None:
         """Give a claim back."""
+
+    @property
+    def free(self) -> int | None:
+        """Bytes left; None where there is no limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +119,8 @@ class OsObject:
 
 
 Record = TypeVar("Record", bound=OsObject)
+EventHandler = Callable[[int, int, Any], int | None]
+"""Told of every object: OS_EVENT_*, the id, None; a status other than 0 refuses a new one (OS_EventHandler_t)."""
 
 
 class ObjectTable(IdTable[Record]):
@@ -163,7 +175,7 @@ class ObjectTable(IdTable[Record]):
 
     def check_name(self, name: str) -> None:
         """Raise OS_ERR_NAME_TOO_LONG for a name that is, by default one of more than 19 bytes."""
-        if len(name.encode()) >= self.name_limit:
+        if len(name.encode("utf-8", "replace")) >= self.name_limit:
             raise OsalError(
                 OS_ERR_NAME_TOO_LONG, f"{self.kind} name {name!r} has more than {self.name_limit - 1} characters"
             )
@@ -189,6 +201,7 @@ class Core:
         self._byte_cost = setup.byte_ps
         self._task_ids: dict[Task, int] = {}
         self._tables: dict[int, ObjectTable[Any]] = {}
+        self._event_handler: EventHandler | None = None
 
     def _table(self, kind: str, base: int, capacity: int, name_limit: int = OS_MAX_API_NAME) -> ObjectTable[Any]:
         table: ObjectTable[Any] = ObjectTable(kind, base, capacity, name_limit)
@@ -204,14 +217,31 @@ class Core:
         if memory is not None:
             record.claim = memory.claim(_owner_name(record.owner), kind, size)
         try:
-            return table.add(record)
+            object_id = table.add(record)
         except OsalError:
             self._release(record)
             raise
+        if self._event_handler is not None:
+            self._announce(table, record)
+        return object_id
 
     def _unregister(self, table: ObjectTable[Record], record: Record) -> None:
         table.drop(record)
         self._release(record)
+        self._notify(OS_EVENT_RESOURCE_DELETED, record.id)
+
+    def _announce(self, table: ObjectTable[Record], record: Record) -> None:
+        """Tell the event handler of a new object, which it may refuse (OS_ObjectIdAllocateNew)."""
+        status = self._notify(OS_EVENT_RESOURCE_ALLOCATED, record.id)
+        if status:
+            table.drop(record)
+            self._release(record)
+            raise OsalError(status, f"the event handler refuses {table.kind} {record.name}")
+        self._notify(OS_EVENT_RESOURCE_CREATED, record.id)
+
+    def _notify(self, event: int, object_id: int) -> int:
+        """The event handler's answer, 0 when there is none (OS_NotifyEvent)."""
+        return 0 if self._event_handler is None else self._event_handler(event, object_id, None) or 0
 
     def _release(self, record: OsObject) -> None:
         if self._setup.memory is not None and record.claim:

@@ -6,15 +6,21 @@ CFE_ES_InitializeFileSystems. May import cfepy.ids, status and its neighbours in
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.ids import OS_FILESYS_BASE, OS_STREAM_BASE
 from cfepy.osal.core import Core, ObjectTable, OsObject, Setup
 from cfepy.osal.filesystem import RAM_BLOCK_BYTES, FileSystem
-from cfepy.osal.limits import OS_FS_DEV_NAME_LEN, OS_FS_VOL_NAME_LEN, OS_MAX_FILE_SYSTEMS, OS_MAX_NUM_OPEN_FILES
+from cfepy.osal.limits import (
+    OS_FS_DEV_NAME_LEN,
+    OS_FS_VOL_NAME_LEN,
+    OS_MAX_FILE_SYSTEMS,
+    OS_MAX_NUM_OPEN_FILES,
+    OS_MAX_PATH_LEN,
+)
 from cfepy.osal.volumes import Volume
 from cfepy.status import (
-    OS_ERR_INCORRECT_OBJ_STATE,
     OS_ERR_NAME_NOT_FOUND,
     OS_ERR_NO_FREE_IDS,
     OS_FS_ERR_DEVICE_NOT_FREE,
@@ -45,9 +51,16 @@ class FileSystemInfo(NamedTuple):
 
 
 class OsDisk(OsObject):
-    """The record of a file system; its name is that of the device, or the virtual path of a fixed map."""
+    """The record of a file system; its name is that of the device, or the virtual path of a fixed map.
 
-    __slots__ = ("block_size", "mount_point", "physical", "volume")
+    Attributes:
+        volume: its files.
+        physical: what OS_FS_GetPhysDriveName says.
+        mount_point: where it shows, "" nowhere.
+        is_known: whether NASA's Linux OSAL would know what kind of disk it is, and mount it.
+    """
+
+    __slots__ = ("block_size", "is_known", "mount_point", "physical", "volume")
 
     def __init__(self, name: str, volume: Volume, block_size: int, physical: str = "", mount_point: str = "") -> None:
         super().__init__(name)
@@ -55,6 +68,7 @@ class OsDisk(OsObject):
         self.block_size = block_size
         self.physical = physical or f"RAM:{name}"
         self.mount_point = mount_point
+        self.is_known = True
 
 
 class DiskApi(Core):
@@ -63,8 +77,9 @@ class DiskApi(Core):
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
         self._mounts: FileSystem = setup.files
+        self._mounts.forget_guests()
         self._disks: ObjectTable[OsDisk] = self._table(
-            "file system", OS_FILESYS_BASE, OS_MAX_FILE_SYSTEMS, OS_FS_DEV_NAME_LEN
+            "file system", OS_FILESYS_BASE, OS_MAX_FILE_SYSTEMS, OS_MAX_PATH_LEN
         )
         for point in setup.files.mount_points():
             volume = setup.files.volume(point)
@@ -76,7 +91,7 @@ class DiskApi(Core):
 
         Args:
             devname: the device, e.g. "/ramdev1".
-            volname: the volume, e.g. "RAM1".
+            volname: the volume; only one whose name begins with "RAM" can be mounted.
             blocksize: bytes of a block.
             numblocks: how many blocks.
 
@@ -88,9 +103,11 @@ class DiskApi(Core):
         self._check(volname, OS_FS_VOL_NAME_LEN)
         if not devname or not volname:
             raise OsalError(OS_FS_ERR_PATH_INVALID, "a file system needs names for its device and its volume")
-        disk = OsDisk(devname, Volume(capacity=blocksize * numblocks), blocksize, f"{volname}:{devname}")
-        try:
-            self._register(self._disks, disk, "disk", blocksize * numblocks)
+        size = blocksize * numblocks
+        disk = OsDisk(devname, Volume(capacity=size), blocksize, f"{volname}:{devname}")
+        disk.is_known = volname.startswith("RAM")
+        try:  # the board's own disk is memory beside the RAM that is counted
+            self._register(self._disks, disk, "disk", 0 if devname == RAM_DEVICE else size)
         except OsalError as error:
             status = OS_FS_ERR_DEVICE_NOT_FREE if error.status == OS_ERR_NO_FREE_IDS else error.status
             raise OsalError(status, error.text) from error
@@ -100,45 +117,50 @@ class DiskApi(Core):
         self.mkfs(devname, volname, blocksize, numblocks)
 
     def rmfs(self, devname: str) -> None:
-        """Remove a file system with all that is in it (OS_rmfs).
+        """Remove a file system with all that is in it, mounted or not (OS_rmfs).
 
         Raises:
-            OsalError: OS_ERR_NAME_NOT_FOUND, OS_ERR_INCORRECT_OBJ_STATE while it is mounted.
+            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
         """
+        self._check(devname, OS_MAX_PATH_LEN)
         disk = self._disk(devname)
         if disk.mount_point:
-            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"{devname} is mounted at {disk.mount_point}")
+            self._mounts.unmount(disk.mount_point)
         self._unregister(self._disks, disk)
 
     def mount(self, devname: str, mountpoint: str) -> None:
         """Let a disk appear at a virtual path (OS_mount).
 
         Raises:
-            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_PATH_INVALID, OS_ERR_NAME_NOT_FOUND when there is no such
-                disk, when it is mounted already, or something else is mounted there.
+            OsalError: OS_FS_ERR_PATH_TOO_LONG; OS_ERR_NAME_NOT_FOUND for all else: there is no such disk, its volume is
+                no RAM disk ("RAM..."), it is mounted already, something else is mounted there, or the path is none.
         """
         self._check(devname, OS_FS_DEV_NAME_LEN)
+        self._check(mountpoint, OS_MAX_PATH_LEN)
         disk = self._disk(devname)
-        if disk.mount_point or mountpoint in self._mounts.mount_points():
-            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"{devname} cannot be mounted at {mountpoint}: one is in use")
-        self._mounts.mount(mountpoint, disk.volume)
+        if disk.mount_point or mountpoint in self._mounts.mount_points() or not disk.is_known:
+            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"{devname} cannot be mounted at {mountpoint}")
+        try:
+            self._mounts.mount(mountpoint, disk.volume, guest=True)
+        except OsalError as error:
+            raise OsalError(OS_ERR_NAME_NOT_FOUND, error.text) from error
         disk.mount_point = mountpoint
 
     def unmount(self, mountpoint: str) -> None:
         """Take a disk out of the virtual paths, with its files (OS_unmount).
 
         Raises:
-            OsalError: OS_ERR_NAME_NOT_FOUND.
+            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
         """
         disk = self._mounted(mountpoint)
         self._mounts.unmount(disk.mount_point)
         disk.mount_point = ""
 
-    def file_sys_add_fixed_map(self, volume: Volume, virt_path: str) -> int:
-        """Show a volume at a virtual path for good (OS_FileSysAddFixedMap).
+    def file_sys_add_fixed_map(self, phys_path: str | Path, virt_path: str) -> int:
+        """Show a folder of the host at a virtual path for good (OS_FileSysAddFixedMap); it is only ever read.
 
         Args:
-            volume: instead of NASA's path of the host: `Volume(Path(...))` shows a folder of it.
+            phys_path: the folder; one that does not exist shows as an empty one.
             virt_path: where, e.g. "/data".
 
         Returns:
@@ -147,17 +169,22 @@ class DiskApi(Core):
         Raises:
             OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_PATH_INVALID, OS_ERR_NAME_TAKEN, OS_ERR_NO_FREE_IDS.
         """
-        self._check(virt_path, OS_FS_DEV_NAME_LEN)
-        disk = OsDisk(virt_path, volume, RAM_BLOCK_BYTES, str(volume.host or ""), virt_path)
+        self._check(virt_path, OS_MAX_PATH_LEN)
+        volume = Volume(Path(phys_path))
+        disk = OsDisk(virt_path, volume, RAM_BLOCK_BYTES, str(phys_path), virt_path)
         disk_id = self._register(self._disks, disk, "disk", 0)
-        self._mounts.mount(virt_path, volume)
+        try:
+            self._mounts.mount(virt_path, volume, guest=True)
+        except OsalError:
+            self._unregister(self._disks, disk)
+            raise
         return disk_id
 
     def file_sys_stat_volume(self, name: str) -> VolumeStat:
         """Size and free space of the volume of a path (OS_FileSysStatVolume).
 
         Raises:
-            OsalError: OS_ERR_NAME_NOT_FOUND.
+            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
         """
         disk = self._mounted(name)
         volume = disk.volume
@@ -167,14 +194,22 @@ class DiskApi(Core):
         return VolumeStat(disk.block_size, volume.capacity // disk.block_size, free // disk.block_size)
 
     def chkfs(self, name: str, repair: bool = False) -> None:
-        """Check a file system: in memory nothing breaks (OS_chkfs); OS_ERR_NAME_NOT_FOUND when there is none."""
+        """Check a file system: in memory nothing breaks (OS_chkfs).
+
+        Args:
+            name: a path on it.
+            repair: without effect.
+
+        Raises:
+            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
+        """
         self._mounted(name)
 
     def fs_get_phys_drive_name(self, mount_point: str) -> str:
         """What is mounted at a path: a folder of the host, or a RAM volume (OS_FS_GetPhysDriveName).
 
         Raises:
-            OsalError: OS_ERR_NAME_NOT_FOUND.
+            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
         """
         return self._mounted(mount_point).physical
 
@@ -199,7 +234,7 @@ class DiskApi(Core):
         return f"{physical}/{place.path}" if place.path else physical
 
     def _check(self, name: str, limit: int) -> None:
-        if len(name.encode()) >= limit:
+        if len(name.encode("utf-8", "replace")) >= limit:
             raise OsalError(OS_FS_ERR_PATH_TOO_LONG, f"{name!r} has {limit} characters or more")
 
     def _disk(self, devname: str) -> OsDisk:
@@ -209,6 +244,7 @@ class DiskApi(Core):
         raise OsalError(OS_ERR_NAME_NOT_FOUND, f"there is no file system {devname}")
 
     def _mounted(self, path: str) -> OsDisk:
+        self._check(path, OS_MAX_PATH_LEN)
         for disk in self._disks:
             if disk.mount_point and (path == disk.mount_point or path.startswith(disk.mount_point + "/")):
                 return disk

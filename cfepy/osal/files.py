@@ -1,24 +1,23 @@
-"""OSAL's file and directory functions (osapi-file.h, osapi-dir.h) on the virtual file system.
+"""OSAL's functions on open files (osapi-file.h) on the virtual file system; those by path are in cfepy.osal.paths.
 
-A read gives bytes, b"" at the end of the file. Reading and writing never wait, so there are no timed forms here. May
-import cfepy.ids, status and its neighbours in cfepy.osal.
+A read gives bytes, b"" at the end of the file, and never waits; cfepy.osal.streams adds sockets, and with them the
+timed forms. May import cfepy.ids, status and its neighbours in cfepy.osal.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
-from cfepy.ids import OS_DIR_BASE, OS_STREAM_BASE
+from cfepy.ids import OS_STREAM_BASE
 from cfepy.osal.core import Core, ObjectTable, OsObject, Setup, check_size
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.limits import (
     OS_FILE_FLAG_CREATE,
     OS_FILE_FLAG_NONE,
     OS_FILE_FLAG_TRUNCATE,
-    OS_FILESTAT_MODE_DIR,
     OS_FILESTAT_MODE_READ,
     OS_FILESTAT_MODE_WRITE,
-    OS_MAX_NUM_OPEN_DIRS,
     OS_MAX_NUM_OPEN_FILES,
     OS_READ_ONLY,
     OS_READ_WRITE,
@@ -29,15 +28,21 @@ from cfepy.osal.limits import (
     PS_PER_NS,
 )
 from cfepy.osal.volumes import Node
-from cfepy.status import OS_ERROR, OS_FS_ERR_PATH_INVALID, OsalError
+from cfepy.status import (
+    OS_ERR_NO_FREE_IDS,
+    OS_ERR_OPERATION_NOT_SUPPORTED,
+    OS_ERR_OUTPUT_TOO_LARGE,
+    OS_ERROR,
+    OS_FS_ERR_PATH_INVALID,
+    OsalError,
+)
 
-
-class FileStat(NamedTuple):
-    """What `stat` tells (os_fstat_t): mode bits, bytes, and virtual time of the last change in ns."""
-
-    file_mode: int
-    file_size: int
-    file_time_ns: int
+ACCESS_BITS = {
+    OS_READ_ONLY: OS_FILESTAT_MODE_READ,
+    OS_WRITE_ONLY: OS_FILESTAT_MODE_WRITE,
+    OS_READ_WRITE: OS_FILESTAT_MODE_READ | OS_FILESTAT_MODE_WRITE,
+}
+"""What a file's mode must allow to be opened with an access mode, and what `chmod` makes of one."""
 
 
 class FileInfo(NamedTuple):
@@ -48,38 +53,35 @@ class FileInfo(NamedTuple):
     is_valid: bool
 
 
-class OsFile(OsObject):
-    """The record of an open file."""
+class OsStream(OsObject):
+    """The record of what a descriptor stands for: an open file, or a socket, which has no path."""
 
-    __slots__ = ("access", "node", "path", "position")
+    __slots__ = ("path",)
 
-    def __init__(self, name: str, path: str, node: Node, access: int) -> None:
+    def __init__(self, name: str, path: str = "") -> None:
         super().__init__(name)
         self.path = path
+
+
+class OsFile(OsStream):
+    """The record of an open file."""
+
+    __slots__ = ("access", "node", "position")
+
+    def __init__(self, name: str, path: str, node: Node, access: int) -> None:
+        super().__init__(name, path)
         self.node = node
         self.access = access
         self.position = 0
 
 
-class OsDirectory(OsObject):
-    """The record of an open folder."""
-
-    __slots__ = ("entries", "position")
-
-    def __init__(self, name: str, entries: list[str]) -> None:
-        super().__init__(name)
-        self.entries = entries
-        self.position = 0
-
-
 class FileApi(Core):
-    """The functions on files, by path and by descriptor, and on folders."""
+    """The functions on descriptors."""
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
         self.files: FileSystem = setup.files
-        self._streams: ObjectTable[OsFile] = self._table("file", OS_STREAM_BASE, OS_MAX_NUM_OPEN_FILES)
-        self._directories: ObjectTable[OsDirectory] = self._table("directory", OS_DIR_BASE, OS_MAX_NUM_OPEN_DIRS)
+        self._streams: ObjectTable[OsStream] = self._table("file", OS_STREAM_BASE, OS_MAX_NUM_OPEN_FILES)
         self._opened = 0
 
     def open_create(self, path: str, flags: int = OS_FILE_FLAG_NONE, access_mode: int = OS_READ_ONLY) -> int:
@@ -94,13 +96,20 @@ class FileApi(Core):
             The descriptor.
 
         Raises:
-            OsalError: OS_ERROR for a bad mode or no such file; OS_FS_ERR_* for the path; OS_ERR_NO_FREE_IDS.
+            OsalError: OS_ERROR for a bad mode, no such file, or one that may not be used so (`chmod`); OS_FS_ERR_* for
+                the path; OS_ERR_NO_FREE_IDS.
         """
-        if access_mode not in (OS_READ_ONLY, OS_WRITE_ONLY, OS_READ_WRITE):
+        if access_mode not in ACCESS_BITS:
             raise OsalError(OS_ERROR, f"access mode {access_mode} for {path}")
+        self.files.translate(path)
+        if len(self._streams) == self._streams.capacity:  # before the file is made or emptied
+            raise OsalError(OS_ERR_NO_FREE_IDS, f"{path} would be one open file too many")
         node = self.files.open_node(path) if flags & OS_FILE_FLAG_CREATE else self.files.find(path)
         if node is None:
             raise OsalError(OS_ERROR, f"there is no file {path}")
+        needed = ACCESS_BITS[access_mode] | (OS_FILESTAT_MODE_WRITE if flags & OS_FILE_FLAG_TRUNCATE else 0)
+        if needed & ~node.mode:
+            raise OsalError(OS_ERROR, f"the mode of {path} forbids to open it like this")
         if flags & OS_FILE_FLAG_TRUNCATE:
             node.data.clear()
         return self._register(self._streams, OsFile(self._next_name(), path, node, access_mode), "file", 0)
@@ -116,7 +125,7 @@ class FileApi(Core):
             OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR when it is not open for reading.
         """
         check_size(nbytes, "read")
-        stream = self._stream(filedes)
+        stream = self._file(filedes)
         if stream.access == OS_WRITE_ONLY:
             raise OsalError(OS_ERROR, f"{stream.path} is not open for reading")
         data = bytes(stream.node.data[stream.position : stream.position + nbytes])
@@ -132,7 +141,7 @@ class FileApi(Core):
                 full.
         """
         check_size(len(data), "write")
-        stream = self._stream(filedes)
+        stream = self._file(filedes)
         if stream.access == OS_READ_ONLY:
             raise OsalError(OS_ERROR, f"{stream.path} is not open for writing")
         end = stream.position + len(data)
@@ -149,7 +158,7 @@ class FileApi(Core):
         Raises:
             OsalError: OS_ERR_INVALID_ID, OS_ERROR for a bad `whence` or a place before the start.
         """
-        stream = self._stream(filedes)
+        stream = self._file(filedes)
         origins = {OS_SEEK_SET: 0, OS_SEEK_CUR: stream.position, OS_SEEK_END: len(stream.node.data)}
         if whence not in origins or origins[whence] + offset < 0:
             raise OsalError(OS_ERROR, f"seek by {offset} from {whence} in {stream.path}")
@@ -157,51 +166,22 @@ class FileApi(Core):
         return stream.position
 
     def file_allocate(self, filedes: int, offset: int, length: int) -> None:
-        """Make a file at least `offset + length` bytes long (OS_FileAllocate), or OS_ERROR when there is no room."""
-        self._grow(self._stream(filedes), offset + length)
-
-    def file_truncate(self, filedes: int, length: int) -> None:
-        """Make a file `length` bytes long (OS_FileTruncate), or OS_ERROR when there is no room."""
-        stream = self._stream(filedes)
-        self._grow(stream, length)
-        del stream.node.data[length:]
-
-    def stat(self, path: str) -> FileStat:
-        """Facts about a file or folder (OS_stat).
+        """Make a file at least `offset + length` bytes long (OS_FileAllocate).
 
         Raises:
-            OsalError: OS_ERROR when there is none; OS_FS_ERR_* for the path.
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_OUTPUT_TOO_LARGE when there is no room, OS_ERROR for a negative offset,
+                a length below 1, or a descriptor that is not open for writing.
         """
-        node = self.files.find(path)
-        mode = OS_FILESTAT_MODE_READ | OS_FILESTAT_MODE_WRITE
-        if node is not None:
-            return FileStat(mode, len(node.data), node.modified_ns)
-        if self.files.is_folder(path):
-            return FileStat(mode | OS_FILESTAT_MODE_DIR, 0, 0)
-        raise OsalError(OS_ERROR, f"there is nothing at {path}")
+        self._resize(filedes, lambda size: max(size, offset + length), offset >= 0 and length > 0)
 
-    def remove(self, path: str) -> None:
-        """Remove a file (OS_remove); OS_ERROR when there is none, OS_FS_ERR_* for the path."""
-        self.files.remove(path)
+    def file_truncate(self, filedes: int, length: int) -> None:
+        """Make a file `length` bytes long, shorter or longer (OS_FileTruncate).
 
-    def rename(self, old_filename: str, new_filename: str) -> None:
-        """Rename a file within a volume (OS_rename); OS_ERROR when that cannot be, OS_FS_ERR_* for the paths."""
-        self.files.rename(old_filename, new_filename)
-        for _, stream in self._streams.items():
-            if stream.path == old_filename:
-                stream.path = new_filename
-
-    def cp(self, src: str, dest: str) -> None:
-        """Copy a file (OS_cp); OS_ERROR when there is none or no room, OS_FS_ERR_* for the paths."""
-        self.files.write_file(dest, self.files.read_file(src), self.kernel.now)
-
-    def mv(self, src: str, dest: str) -> None:
-        """Move a file, to another volume too (OS_mv); errors as `cp`."""
-        try:
-            self.rename(src, dest)
-        except OsalError:
-            self.cp(src, dest)
-            self.remove(src)
+        Raises:
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_OUTPUT_TOO_LARGE when there is no room, OS_ERROR for a negative length
+                or a descriptor that is not open for writing.
+        """
+        self._resize(filedes, lambda size: length, length >= 0)
 
     def fd_get_info(self, filedes: int) -> FileInfo:
         """Facts about a descriptor (OS_FDGetInfo), or OS_ERR_INVALID_ID."""
@@ -229,50 +209,12 @@ class FileApi(Core):
         for filedes, _ in self._streams.items():
             self.close(filedes)
 
-    def mkdir(self, path: str) -> None:
-        """Make a folder (OS_mkdir); OS_ERROR when that cannot be, OS_FS_ERR_* for the path."""
-        self.files.make_folder(path)
-
-    def rmdir(self, path: str) -> None:
-        """Remove an empty folder (OS_rmdir); OS_ERROR when it is none, OS_FS_ERR_* for the path."""
-        self.files.remove_folder(path)
-
-    def directory_open(self, path: str) -> int:
-        """Open a folder to read its names, sorted (OS_DirectoryOpen).
-
-        Raises:
-            OsalError: OS_ERROR when there is none; OS_FS_ERR_* for the path; OS_ERR_NO_FREE_IDS.
-        """
-        return self._register(
-            self._directories, OsDirectory(self._next_name(), self.files.list_dir(path)), "directory", 0
-        )
-
-    def directory_close(self, dir_id: int) -> None:
-        """Close a folder (OS_DirectoryClose), or OS_ERR_INVALID_ID."""
-        self._unregister(self._directories, self._directory(dir_id))
-
-    def directory_read(self, dir_id: int) -> str | None:
-        """The next name, None after the last one, where NASA's returns OS_ERROR (OS_DirectoryRead).
-
-        Raises:
-            OsalError: OS_ERR_INVALID_ID.
-        """
-        directory = self._directory(dir_id)
-        if directory.position >= len(directory.entries):
-            return None
-        directory.position += 1
-        return directory.entries[directory.position - 1]
-
-    def directory_rewind(self, dir_id: int) -> None:
-        """Begin again with the first name (OS_DirectoryRewind), or OS_ERR_INVALID_ID."""
-        self._directory(dir_id).position = 0
-
     def _next_name(self) -> str:
         """Open files have no names in OSAL, records here do."""
         self._opened += 1
         return f"#{self._opened}"
 
-    def _stream(self, filedes: int) -> OsFile:
+    def _stream(self, filedes: int) -> OsStream:
         if self._cost:
             self.kernel.charge(self._cost)
         stream = self._streams.lookup(filedes)
@@ -280,15 +222,29 @@ class FileApi(Core):
             raise self._streams.missing(filedes)
         return stream
 
-    def _directory(self, dir_id: int) -> OsDirectory:
-        directory = self._directories.lookup(dir_id)
-        if directory is None:
-            raise self._directories.missing(dir_id)
-        return directory
+    def _file(self, filedes: int) -> OsFile:
+        """As `_stream`, for what only a file can do."""
+        stream = self._stream(filedes)
+        if not isinstance(stream, OsFile):
+            raise OsalError(OS_ERR_OPERATION_NOT_SUPPORTED, f"descriptor {filedes:#x} is a socket")
+        return stream
 
     def _charge_bytes(self, count: int) -> None:
         if self._byte_cost:
             self.kernel.charge(count * self._byte_cost // PS_PER_NS)
+
+    def _resize(self, filedes: int, new_size: Callable[[int], int], is_valid: bool) -> None:
+        stream = self._file(filedes)
+        if not is_valid or stream.access == OS_READ_ONLY:
+            raise OsalError(OS_ERROR, f"{stream.path} cannot get that size through this descriptor")
+        data = stream.node.data
+        size = new_size(len(data))
+        try:
+            self._grow(stream, size)
+        except OsalError as error:
+            raise OsalError(OS_ERR_OUTPUT_TOO_LARGE, error.text) from error
+        del data[size:]
+        stream.node.modified_ns = self.kernel.now
 
     def _grow(self, stream: OsFile, size: int) -> None:
         missing = size - len(stream.node.data)

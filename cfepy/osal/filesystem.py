@@ -41,9 +41,15 @@ class FileSystem:
 
     def __init__(self, cf: Path | None = None, ram_bytes: int | None = RAM_BLOCK_BYTES * RAM_BLOCKS) -> None:
         self._mounts: dict[str, Volume] = {"/cf": Volume(cf), "/ram": Volume(capacity=ram_bytes)}
+        self._own = dict(self._mounts)  # what is there again after a reset
 
-    def mount(self, mount_point: str, volume: Volume) -> None:
+    def mount(self, mount_point: str, volume: Volume, guest: bool = False) -> None:
         """Let a volume appear at a path such as "/data".
+
+        Args:
+            mount_point: the path.
+            volume: what appears there.
+            guest: flight software mounts it, so a reset takes it away, unless it took the place of one that stays.
 
         Raises:
             OsalError: OS_FS_ERR_PATH_INVALID.
@@ -51,6 +57,12 @@ class FileSystem:
         if not mount_point.startswith("/") or mount_point.endswith("/"):
             raise OsalError(OS_FS_ERR_PATH_INVALID, f"mount point {mount_point!r}; write it as /name")
         self._mounts[mount_point] = volume
+        if not guest or mount_point in self._own:
+            self._own[mount_point] = volume
+
+    def forget_guests(self) -> None:
+        """The processor starts anew: what flight software mounted is gone, what it unmounted is back."""
+        self._mounts = dict(self._own)
 
     def unmount(self, mount_point: str) -> Volume:
         """Take a volume out; its files stay in it.
@@ -72,6 +84,15 @@ class FileSystem:
             raise OsalError(OS_ERR_NAME_NOT_FOUND, f"nothing is mounted at {mount_point}")
         return self._mounts[mount_point]
 
+    def written(self) -> dict[str, bytes]:
+        """Every file that the mission wrote and did not remove: virtual path to content."""
+        return {
+            f"{mount_point}/{path}": bytes(node.data)
+            for mount_point, volume in sorted(self._mounts.items())
+            for path in volume.written()
+            if (node := volume.node(path)) is not None
+        }
+
     def mount_points(self) -> list[str]:
         """The paths at which volumes are mounted, sorted."""
         return sorted(self._mounts)
@@ -83,9 +104,9 @@ class FileSystem:
             OsalError: OS_FS_ERR_PATH_TOO_LONG (64 characters or more), OS_FS_ERR_NAME_TOO_LONG (a last part of 20 or
                 more), OS_FS_ERR_PATH_INVALID (not absolute, not below a mount point, or with "..").
         """
-        if len(path.encode()) >= OS_MAX_PATH_LEN:
+        if len(path.encode("utf-8", "replace")) >= OS_MAX_PATH_LEN:
             raise OsalError(OS_FS_ERR_PATH_TOO_LONG, f"{path!r} has {OS_MAX_PATH_LEN} characters or more")
-        if "/" in path and len(path.rpartition("/")[2].encode()) >= OS_MAX_FILE_NAME:
+        if "/" in path and len(path.rpartition("/")[2].encode("utf-8", "replace")) >= OS_MAX_FILE_NAME:
             raise OsalError(OS_FS_ERR_NAME_TOO_LONG, f"the name in {path!r} has {OS_MAX_FILE_NAME} characters or more")
         if not path.startswith("/") or ".." in path:
             raise OsalError(OS_FS_ERR_PATH_INVALID, f'{path!r} must begin with "/" and be without ".."')

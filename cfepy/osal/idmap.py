@@ -18,7 +18,7 @@ from cfepy.osal.limits import (
     OS_OBJECT_CREATOR_ANY,
     OS_VERSION_NUMBER,
 )
-from cfepy.status import OS_ERR_INVALID_ID, OsalError, name_of, status_to_string
+from cfepy.status import OS_ERR_INVALID_ID, OsalError, name_of, status_to_string, to_signed
 
 
 class IdMapApi(Core):
@@ -28,6 +28,7 @@ class IdMapApi(Core):
     object_id_from_integer = staticmethod(from_integer)
     object_id_equal = staticmethod(equal)
     object_id_defined = staticmethod(is_defined)
+    status_to_integer = staticmethod(to_signed)
     status_to_string = staticmethod(status_to_string)
 
     def __init__(self, setup: Setup) -> None:

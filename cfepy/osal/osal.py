@@ -8,16 +8,17 @@ from __future__ import annotations
 
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
-from cfepy.osal.cleanup import CleanupApi
+from cfepy.osal.application import ApplicationApi
 from cfepy.osal.core import Ledger, ObjectSizes, Setup
 from cfepy.osal.disks import DiskApi
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.idmap import IdMapApi
 from cfepy.osal.network import Network
+from cfepy.osal.shell import ShellApi
 from cfepy.rtos import Kernel
 
 
-class Osal(CleanupApi, DiskApi, IdMapApi):
+class Osal(ShellApi, ApplicationApi, DiskApi, IdMapApi):
     """The whole interface; see the modules beside this one for its parts.
 
     Args:
@@ -61,7 +62,3 @@ class Osal(CleanupApi, DiskApi, IdMapApi):
                 epoch_ns,
             )
         )
-
-    def delete_all_objects(self) -> None:
-        """Delete every object and task but the caller (OS_DeleteAllObjects)."""
-        self._delete_where(lambda record: not self._is_caller(record))

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from cfepy.ids import OS_TASK_BASE
 from cfepy.osal.core import Core, ObjectTable, OsObject, Setup, check_size
-from cfepy.osal.limits import OS_MAX_TASK_PRIORITY
+from cfepy.osal.limits import OS_EVENT_TASK_STARTUP, OS_MAX_TASK_PRIORITY
 from cfepy.rtos import Task
 from cfepy.rtos.units import NS_PER_MS
 from cfepy.status import (
@@ -201,6 +201,7 @@ class TaskApi(Core):
         """What an OSAL task runs."""
         record.task = task = self.kernel.current
         self._task_ids[task] = record.id
+        self._notify(OS_EVENT_TASK_STARTUP, record.id)
         try:
             record.entry()
         finally:

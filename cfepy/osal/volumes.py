@@ -9,13 +9,22 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from cfepy.osal.limits import OS_FILESTAT_MODE_READ, OS_FILESTAT_MODE_WRITE
+
 
 @dataclass(slots=True)
 class Node:
-    """The content of a file, and when it was last written, in ns of virtual time (0: as it came with the mission)."""
+    """A file.
+
+    Attributes:
+        data: its content.
+        modified_ns: when it was last written, in ns of virtual time; 0 as it came with the mission.
+        mode: what may be done with it, OS_FILESTAT_MODE_READ and _WRITE.
+    """
 
     data: bytearray = field(default_factory=bytearray)
     modified_ns: int = 0
+    mode: int = OS_FILESTAT_MODE_READ | OS_FILESTAT_MODE_WRITE
 
 
 class Volume:
@@ -86,6 +95,10 @@ class Volume:
     def has_room(self, size: int) -> bool:
         """Whether `size` more bytes fit."""
         return self.capacity is None or self.used() + size <= self.capacity
+
+    def written(self) -> list[str]:
+        """Paths of the files that a mission wrote, sorted; those that came with it are not among them."""
+        return sorted(path for path, node in self._nodes.items() if node.modified_ns or self.host is None)
 
     def clear(self) -> None:
         """Remove everything that is in memory (format)."""

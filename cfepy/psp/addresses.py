@@ -1,8 +1,8 @@
-"""Memory by address (CFE_PSP_Mem*, CFE_PSP_Eeprom*, CFE_PSP_Port*): the table of memory ranges and what lies in them.
+"""Memory by address (CFE_PSP_Mem*): the table of memory ranges and what lies in them.
 
 Ranges hold bytes here when somebody attached an area to them, as the PSP does with the retained areas and the EEPROM;
-NASA's Linux PSP refuses direct RAM access, so reading and writing RAM works better here than there. I/O ports exist
-nowhere, see `cfepy.psp.absent`. May import cfepy.status only.
+NASA's Linux PSP refuses direct RAM access, so reading and writing RAM works better here than there. May import
+cfepy.status only.
 """
 
 from __future__ import annotations
@@ -44,6 +44,7 @@ class AddressSpace:
     """The memory ranges of a board, and their bytes."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._ranges = [MemRange()] * MEM_TABLE_SIZE
         self._areas: dict[int, bytearray] = {}  # by number of the range
 
@@ -132,23 +133,11 @@ class AddressSpace:
 
     def mem_cpy(self, dest: int, src: int, size: int) -> None:
         """Copy bytes between addresses (CFE_PSP_MemCpy), or CFE_PSP_INVALID_MEM_*."""
-        self._view(dest, size)[:] = bytes(self._view(src, size))
+        self._view(dest, size, is_write=True)[:] = bytes(self._view(src, size))
 
     def mem_set(self, dest: int, value: int, size: int) -> None:
         """Set all bytes of a stretch (CFE_PSP_MemSet), or CFE_PSP_INVALID_MEM_*."""
-        self._view(dest, size)[:] = bytes([value & 0xFF]) * size
-
-    def eeprom_write8(self, address: int, value: int) -> None:
-        """Change a byte of EEPROM (CFE_PSP_EepromWrite8), or CFE_PSP_INVALID_MEM_*."""
-        self._write(address, value, 1, MEM_EEPROM)
-
-    def eeprom_write16(self, address: int, value: int) -> None:
-        """Change a 16-bit word of EEPROM (CFE_PSP_EepromWrite16); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
-        self._write(address, value, 2, MEM_EEPROM)
-
-    def eeprom_write32(self, address: int, value: int) -> None:
-        """Change a 32-bit word of EEPROM (CFE_PSP_EepromWrite32); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
-        self._write(address, value, 4, MEM_EEPROM)
+        self._view(dest, size, is_write=True)[:] = bytes([value & 0xFF]) * size
 
     def _check_number(self, range_num: int) -> None:
         if not 0 <= range_num < MEM_TABLE_SIZE:
@@ -161,11 +150,15 @@ class AddressSpace:
                 return number
         raise OsalError(CFE_PSP_INVALID_MEM_ADDR, f"there is no memory at {address:#x}")
 
-    def _view(self, address: int, size: int, memory_type: int = MEM_ANY) -> memoryview:
+    def _view(self, address: int, size: int, memory_type: int = MEM_ANY, is_write: bool = False) -> memoryview:
         self.mem_validate_range(address, size, memory_type)
         number = self._range_of(address)
+        self._check_access(self._ranges[number].memory_type, is_write)
         offset = address - self._ranges[number].start_addr
         return memoryview(self._areas[number])[offset : offset + size]
+
+    def _check_access(self, memory_type: int, is_write: bool) -> None:
+        """For kinds of memory that cannot always be read or written; see `cfepy.psp.eeprom`."""
 
     def _read(self, address: int, size: int) -> int:
         _check_alignment(address, size)
@@ -173,7 +166,8 @@ class AddressSpace:
 
     def _write(self, address: int, value: int, size: int, memory_type: int) -> None:
         _check_alignment(address, size)
-        self._view(address, size, memory_type)[:] = (value & (1 << 8 * size) - 1).to_bytes(size, "little")
+        data = (value & (1 << 8 * size) - 1).to_bytes(size, "little")
+        self._view(address, size, memory_type, is_write=True)[:] = data
 
 
 def _check_alignment(address: int, size: int) -> None:

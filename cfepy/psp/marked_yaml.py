@@ -90,6 +90,16 @@ class Marked:
             raise self.fail(f"is {self.plain()!r}, it must be text; put it in quotes")
         return self.value
 
+    def flag(self) -> bool:
+        """The value as true or false.
+
+        Raises:
+            UsageError: it is something else.
+        """
+        if not isinstance(self.value, bool):
+            raise self.fail(f"is {self.plain()!r}, it must be true or false")
+        return self.value
+
     def plain(self) -> Any:
         """The value without its marks."""
         if isinstance(self.value, dict):

@@ -20,6 +20,9 @@ _UNITS = {"B": 1, "KiB": 1024, "MiB": 1024 * 1024}
 MOST_BYTES = 1 << 32  # a board with more needs none of this
 MOST_LIMIT = (1 << 31) - 1
 
+Limit = int | str | tuple[int, ...]
+"""A value of `PlatformConfig`."""
+
 
 @dataclass(frozen=True, slots=True)
 class MemoryRegion:
@@ -28,6 +31,15 @@ class MemoryRegion:
     name: str
     size: int
     retained: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class PortRange:
+    """Registers of a device: its name, the first address, and how many bytes."""
+
+    name: str
+    address: int
+    size: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +65,8 @@ class BoardProfile:
         tick_ns: the kernel's clock tick, to which delays are rounded up; 0 for none.
         program_flash, data_flash: bytes; 0 for no limit.
         sram: regions of RAM; none for no limit.
+        ports: I/O ports; none on a board without.
+        watchdog_max_ms: the longest time of the watchdog, which resets the processor; 0 for one that does nothing.
         context_switch_cycles: processor cycles to go from one task to another.
         syscall_cycles: cycles of a kernel call.
         copy_cycles_per_byte: cycles to copy one byte of a message.
@@ -69,12 +83,14 @@ class BoardProfile:
     program_flash: int = 0
     data_flash: int = 0
     sram: tuple[MemoryRegion, ...] = ()
+    ports: tuple[PortRange, ...] = ()
+    watchdog_max_ms: int = 0
     context_switch_cycles: int = 0
     syscall_cycles: int = 0
     copy_cycles_per_byte: int = 0
     max_publish_hz: int = 0
     node_call_ns: int = DEFAULT_NODE_CALL_NS
-    limits: dict[str, int | str] = field(default_factory=dict)
+    limits: dict[str, Limit] = field(default_factory=dict)
     memory_costs: MemoryCosts = MemoryCosts()
 
     @property
@@ -122,6 +138,7 @@ def load_profile(name_or_path: str | Path) -> BoardProfile:
 _SIZES = ("program_flash", "data_flash")
 _NUMBERS = (
     "cpu_hz",
+    "watchdog_max_ms",
     "tick_ns",
     *_SIZES,
     "context_switch_cycles",
@@ -174,16 +191,34 @@ def _region(entry: Marked) -> MemoryRegion:
         if needed not in parts:
             raise entry.fail(f"has no {needed}; write a region as {{name: ecc, size: 512 KiB}}")
     retained = parts.get("retained")
-    if retained is not None and not isinstance(retained.value, bool):
-        raise retained.fail(f"is {retained.value!r}, it must be true or false")
-    return MemoryRegion(parts["name"].text(), _size(parts["size"]), retained is not None and retained.value)
+    return MemoryRegion(parts["name"].text(), _size(parts["size"]), retained is not None and retained.flag())
 
 
-def _limits(entry: Marked) -> dict[str, int | str]:
+def _ports(entry: Marked) -> tuple[PortRange, ...]:
+    return tuple(_port_range(item) for item in entry.items())
+
+
+def _port_range(entry: Marked) -> PortRange:
+    parts = entry.mapping(["name", "address", "size"])
+    for needed in ("name", "address", "size"):
+        if needed not in parts:
+            raise entry.fail(f"has no {needed}; write ports as {{name: gpio, address: 0x8C000, size: 64}}")
+    return PortRange(parts["name"].text(), parts["address"].integer(highest=MOST_BYTES), _size(parts["size"]))
+
+
+def _limits(entry: Marked) -> dict[str, Limit]:
     defaults = PlatformConfig()
-    limits: dict[str, int | str] = {}
+    limits: dict[str, Limit] = {}
     for name, item in entry.mapping([known.name for known in fields(PlatformConfig)]).items():
-        limits[name] = item.text() if isinstance(getattr(defaults, name), str) else item.integer(1, MOST_LIMIT)
+        default = getattr(defaults, name)
+        if isinstance(default, str):
+            limits[name] = item.text()
+        elif isinstance(default, bool):
+            limits[name] = item.flag()
+        elif isinstance(default, tuple):
+            limits[name] = tuple(each.integer() for each in item.items())
+        else:
+            limits[name] = item.integer(min(1, default), MOST_LIMIT)
     return limits
 
 
@@ -192,4 +227,4 @@ def _memory_costs(entry: Marked) -> MemoryCosts:
     return MemoryCosts(**{name: item.integer() for name, item in parts.items()})
 
 
-_PARTS = {"sram": _sram, "limits": _limits, "memory_costs": _memory_costs}
+_PARTS = {"sram": _sram, "ports": _ports, "limits": _limits, "memory_costs": _memory_costs}

@@ -18,10 +18,13 @@ from cfepy.osal.clock import time_from_total_nanoseconds
 from cfepy.osal.limits import OS_BUILD_NUMBER, OS_VERSION_NUMBER
 from cfepy.psp import endian
 from cfepy.psp.absent import AbsentHardware
-from cfepy.psp.addresses import MEM_ATTR_READWRITE, MEM_EEPROM, MEM_RAM, AddressSpace
+from cfepy.psp.addresses import MEM_ATTR_READWRITE, MEM_EEPROM, MEM_RAM
+from cfepy.psp.eeprom import EepromSpace
+from cfepy.psp.exceptions import ExceptionApi
+from cfepy.psp.ports import PortSpace
 from cfepy.psp.profile import BoardProfile
 from cfepy.psp.retained import EEPROM_BYTES, Retained
-from cfepy.psp.watchdog import Watchdog
+from cfepy.psp.watchdog import WATCHDOG_MAX, Watchdog
 from cfepy.rtos import Kernel
 from cfepy.rtos.units import NS_PER_S
 from cfepy.status import CFE_PSP_ERROR, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError, status_to_string
@@ -50,9 +53,16 @@ USER_RESERVED_ADDRESS = 0x3000_0000
 _MODULES = (
     ("soft_timebase", 0x0110FF00, f"Instantiated software timebase '{SOFT_TIMEBASE_NAME}' running at 10000 usec"),
     ("ram_notimpl", 0x0110FF03, "Physical RAM access not implemented"),
-    ("port_notimpl", 0x0110FF04, "I/O Port access not implemented"),
     ("endian_api", 0x0110FF07, "Host CPU Endian=LITTLE"),
 )
+
+
+_PORTS_NOTIMPL = ("port_notimpl", 0x0110FF04, "I/O Port access not implemented")
+_PORTS_DIRECT = ("port_direct", 0x0110FF04, "Using DIRECT memory mapped PORT implementation")
+_MEMORY_REMOVED = """\
+CFE_PSP: Critical Data Store Shared memory segment removed
+Reset Area Shared memory segment removed
+User Reserved Area Shared memory segment removed"""
 
 
 class RestartType(NamedTuple):
@@ -69,7 +79,7 @@ class Timebase(NamedTuple):
     lower: int
 
 
-class Psp(AddressSpace, AbsentHardware):
+class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware):
     """One board.
 
     Args:
@@ -80,7 +90,6 @@ class Psp(AddressSpace, AbsentHardware):
         osal: for the software time base.
         retained: memory that outlives a processor reset; None makes a new one.
         on_restart: called with the reset type, the reason and whether it is a fault; None stops the run.
-        on_watchdog: called when the watchdog bites; None for none, as on Linux.
     """
 
     hto_be16 = be16_to_h = staticmethod(endian.swap_16)
@@ -102,7 +111,6 @@ class Psp(AddressSpace, AbsentHardware):
         *,
         retained: Retained | None = None,
         on_restart: Callable[[int, str, bool], object] | None = None,
-        on_watchdog: Callable[[], object] | None = None,
     ) -> None:
         super().__init__()
         self.kernel = kernel
@@ -116,7 +124,12 @@ class Psp(AddressSpace, AbsentHardware):
             else Retained(cds_bytes=config.es_cds_size, eeprom_bytes=profile.data_flash or EEPROM_BYTES)
         )
         self.on_restart = on_restart
-        self.watchdog = Watchdog(kernel, on_watchdog)
+        self.exceptions = self.retained.exceptions
+        has_watchdog = profile.watchdog_max_ms > 0
+        self.watchdog = Watchdog(kernel, self._bite if has_watchdog else None, profile.watchdog_max_ms or WATCHDOG_MAX)
+        self.declare_ports(profile.ports)
+        if profile.data_flash:
+            self.protect_eeprom()
         self._restart_type = RestartType(RST_TYPE_POWERON, RST_SUBTYPE_POWER_CYCLE)
         self.watchdog_init = self.watchdog.init
         self.watchdog_enable = self.watchdog.enable
@@ -126,17 +139,18 @@ class Psp(AddressSpace, AbsentHardware):
 
     # -- start and end ---------------------------------------------------------------------------------------------
 
-    def boot(self, reset_type: int = 0, subtype: int = RST_SUBTYPE_POWER_CYCLE) -> RestartType:
-        """Start the board, up to where NASA's PSP calls CFE_ES_Main (OS_Application_Startup).
+    def boot(self, reset_type: int = 0, subtype: int = 0) -> RestartType:
+        """Start the board, up to where NASA's PSP calls CFE_ES_Main (CFE_PSP_Main, OS_Application_Startup).
 
         Args:
             reset_type: RST_TYPE_PROCESSOR or RST_TYPE_POWERON; 0 takes what the last restart asked for.
-            subtype: one of RST_SUBTYPE_*.
+            subtype: one of RST_SUBTYPE_*; 0 takes what the hardware says.
 
         Returns:
             The type of the start: power-on when nothing else was asked for.
         """
-        self._announce(subtype)
+        known_subtype = subtype or self.retained.next_subtype
+        self._announce(known_subtype)
         self._start_modules()
         self._map_memory()
         if self.retained.next_reset_type:
@@ -144,12 +158,16 @@ class Psp(AddressSpace, AbsentHardware):
             self.console.write(f"CFE_PSP: {how} exit from previous cFE instance")
         wanted = reset_type or self.retained.next_reset_type
         is_processor = wanted == RST_TYPE_PROCESSOR
-        self._restart_type = RestartType(RST_TYPE_PROCESSOR if is_processor else RST_TYPE_POWERON, subtype)
+        self._restart_type = RestartType(
+            RST_TYPE_PROCESSOR if is_processor else RST_TYPE_POWERON, known_subtype or RST_SUBTYPE_POWER_CYCLE
+        )
         self.console.write(f"CFE_PSP: Starting the cFE with a {'PROCESSOR' if is_processor else 'POWER ON'} reset.")
         if not is_processor:
             self._clear_memory()
         self.retained.exited = False
-        self.retained.next_reset_type = RST_TYPE_PROCESSOR  # what happens when the run ends without a restart
+        self.retained.next_subtype = 0
+        # What comes when it ends without a restart: once a processor reset, then from scratch.
+        self.retained.next_reset_type = RST_TYPE_POWERON if is_processor else RST_TYPE_PROCESSOR
         return self._restart_type
 
     def restart(self, reset_type: int, reason: str = "CFE_PSP_Restart", fault: bool = False) -> None:
@@ -162,9 +180,20 @@ class Psp(AddressSpace, AbsentHardware):
         """
         is_poweron = reset_type == RST_TYPE_POWERON
         self.console.write(f"CFE_PSP: Exiting cFE with {'POWERON' if is_poweron else 'PROCESSOR'} Reset status.")
+        if is_poweron:
+            self.console.write(_MEMORY_REMOVED)
         self.console.write("\nCFE_PSP: Shutdown initiated - Exiting cFE")
-        self.retained.next_reset_type = reset_type
-        self.retained.exited = True
+        self.retained.next_reset_type = 0 if is_poweron else reset_type  # the boot record is removed too
+        self.retained.exited = not is_poweron
+        self._reset(reset_type, reason, fault)
+
+    def _bite(self) -> None:
+        """The watchdog resets the processor; software has no say in it."""
+        self.retained.next_reset_type = RST_TYPE_PROCESSOR
+        self.retained.next_subtype = RST_SUBTYPE_HW_WATCHDOG
+        self._reset(RST_TYPE_PROCESSOR, f"the watchdog was not served for {self.watchdog.value_ms} ms", True)
+
+    def _reset(self, reset_type: int, reason: str, fault: bool) -> None:
         if self.on_restart is not None:
             self.on_restart(reset_type, reason, fault)
         else:
@@ -186,10 +215,6 @@ class Psp(AddressSpace, AbsentHardware):
     def get_restart_type(self) -> RestartType:
         """Type and subtype of the start of this run (CFE_PSP_GetRestartType)."""
         return self._restart_type
-
-    def attach_exceptions(self) -> None:
-        """Tell that exceptions are watched from now on (CFE_PSP_AttachExceptions); the kernel always does."""
-        self.console.write("CFE_PSP: CFE_PSP_AttachExceptions called")
 
     # -- who and when ----------------------------------------------------------------------------------------------
 
@@ -276,7 +301,11 @@ class Psp(AddressSpace, AbsentHardware):
     status_to_string = staticmethod(status_to_string)
 
     def _announce(self, subtype: int) -> None:
-        self.console.write(f"CFE_PSP: Default Reset SubType = {subtype}")
+        """Say who this is; a subtype of 0 is one that nobody gave."""
+        if subtype:
+            self.console.write(f"CFE_PSP: Reset SubType: {subtype}")
+        else:
+            self.console.write(f"CFE_PSP: Default Reset SubType = {RST_SUBTYPE_POWER_CYCLE}")
         self.console.write(f"CFE_PSP: Default CPU ID = {self.config.processor_id}")
         self.console.write(f"CFE_PSP: Default Spacecraft ID = {self.config.spacecraft_id}")
         self.console.write(f"CFE_PSP: Default CPU Name: {self.config.processor_name}")
@@ -284,7 +313,8 @@ class Psp(AddressSpace, AbsentHardware):
     def _start_modules(self) -> None:
         timebase = self.osal.time_base_create(SOFT_TIMEBASE_NAME)
         self.osal.time_base_set(timebase, SOFT_TIMEBASE_PERIOD_US, SOFT_TIMEBASE_PERIOD_US)
-        for name, module_id, says in _MODULES:
+        ports = _PORTS_DIRECT if self.profile.ports else _PORTS_NOTIMPL
+        for name, module_id, says in (*_MODULES[:2], ports, *_MODULES[2:]):
             self.console.write(f"CFE_PSP: initializing module '{name}' with ID {module_id:08x}")
             self.console.write(f"CFE_PSP: {says}")
 

@@ -1,12 +1,14 @@
 """Memory that outlives a reset: the boot record, the reset area, the CDS, the user reserved area, and the EEPROM.
 
 The mission keeps one `Retained` for each simulated processor and hands it to the `Psp` of every boot. It stands for the
-shared memory segments of NASA's Linux PSP (cfe_psp_memory.c). Imports nothing of cfepy.
+shared memory segments of NASA's Linux PSP (cfe_psp_memory.c). May import cfepy.psp.exceptions only.
 """
 
 from __future__ import annotations
 
 from typing import Any
+
+from cfepy.psp.exceptions import ExceptionStorage
 
 RESET_AREA_BYTES = 16384
 CDS_BYTES = 131072
@@ -35,12 +37,15 @@ class Retained:
         self.cds = bytearray(cds_bytes)
         self.user_reserved = bytearray(user_bytes)
         self.eeprom = bytearray(eeprom_bytes)
+        self.exceptions = ExceptionStorage()
         self.kept: dict[str, Any] = {}  # by service: system log, event log, reset counters
         self.next_reset_type = 0  # 0: nothing was recorded yet
+        self.next_subtype = 0  # why the hardware reset the processor, 0 when software did
         self.exited = False  # the last run ended by a restart
 
     def clear(self) -> None:
         """A power-on reset: all but the EEPROM is gone, also for those who hold the areas."""
         for area in (self.reset_area, self.cds, self.user_reserved):
             area[:] = bytes(len(area))
+        self.exceptions.clear()
         self.kept.clear()

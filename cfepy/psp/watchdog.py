@@ -1,7 +1,7 @@
 """The watchdog of a board (CFE_PSP_Watchdog*): if nobody serves it in time, it bites.
 
-NASA's Linux PSP only keeps the value. Here it counts virtual time and calls `on_bite`, where a mission hooks in a
-processor reset; without a hook it keeps the value, as on Linux. May import cfepy.rtos and cfepy.osal.
+NASA's Linux PSP only keeps the value. On a board that has a watchdog it counts virtual time and calls `on_bite`, which
+resets the processor; without that it keeps the value, as on Linux. May import cfepy.rtos only.
 """
 
 from __future__ import annotations
@@ -22,12 +22,16 @@ class Watchdog:
     Args:
         kernel: the clock.
         on_bite: called in a task of priority 0 when the time is over; None for a dog without teeth.
+        longest_ms: the most that it can count.
     """
 
-    def __init__(self, kernel: Kernel, on_bite: Callable[[], object] | None = None) -> None:
+    def __init__(
+        self, kernel: Kernel, on_bite: Callable[[], object] | None = None, longest_ms: int = WATCHDOG_MAX
+    ) -> None:
         self.kernel = kernel
         self.on_bite = on_bite
-        self.value_ms = WATCHDOG_MAX
+        self.longest_ms = longest_ms
+        self.value_ms = longest_ms
         self.enabled = False
         self.bites = 0
         self._deadline = 0
@@ -36,7 +40,7 @@ class Watchdog:
 
     def init(self) -> None:
         """Set the longest time and stop counting (CFE_PSP_WatchdogInit)."""
-        self.value_ms = WATCHDOG_MAX
+        self.value_ms = self.longest_ms
         self.enabled = False
 
     def enable(self) -> None:
@@ -60,8 +64,8 @@ class Watchdog:
         self._deadline = self.kernel.now + self.value_ms * NS_PER_MS
 
     def set(self, value_ms: int) -> None:
-        """Change the time in ms, and begin the count anew (CFE_PSP_WatchdogSet)."""
-        self.value_ms = value_ms
+        """Change the time in ms, to the longest there is if it is longer, and begin anew (CFE_PSP_WatchdogSet)."""
+        self.value_ms = min(value_ms, self.longest_ms)
         self.service()
         if self._watching:
             self.kernel.wake_first(self._waits)

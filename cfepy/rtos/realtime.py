@@ -1,7 +1,8 @@
 """The wall clock, for those who look at a run from outside: a stopwatch, and pacing virtual time to real time.
 
 Pacing is a wrapper around running the kernel, not a mode of it: it sleeps until the next event is due, then lets the
-kernel run. So a paced run has the trace of a free one. This is one of the few modules that may read the wall clock.
+kernel run. So a paced run has the trace of a free one. Whoever brings input from outside gives the pacer another way of
+sleeping, one that ends when there is some. This is one of the few modules that may read the wall clock.
 """
 
 from __future__ import annotations
@@ -36,14 +37,22 @@ class Pacer:
         kernel: the kernel to pace, at the moment that pacing starts.
         run_until: runs it until a virtual time in ns: `Kernel.run`, or what wraps it.
         factor: virtual seconds for a real one, more than 0.
+        wait: sleeps for so many real seconds, more than 0, or less when there is input for the run.
     """
 
-    def __init__(self, kernel: Kernel, run_until: Callable[[int], object], factor: float = 1.0) -> None:
+    def __init__(
+        self,
+        kernel: Kernel,
+        run_until: Callable[[int], object],
+        factor: float = 1.0,
+        wait: Callable[[float], object] = time.sleep,
+    ) -> None:
         if not factor > 0:
             raise ValueError(f"factor is {factor}, it must be more than 0")
         self._kernel = kernel
         self._run_until = run_until
         self._factor = factor
+        self._wait = wait
         self._virtual_start = kernel.now
         self._watch = Stopwatch()
 
@@ -60,7 +69,8 @@ class Pacer:
         target = min(max(idle_until, self._due(elapsed + STEP_NS)), until_ns)
         ahead = self._wall_of(target) - self._watch.elapsed_ns()
         if ahead > 0:
-            time.sleep(ahead / NS_PER_S)
+            self._wait(ahead / NS_PER_S)
+            target = min(target, self._due(self._watch.elapsed_ns()))  # earlier when input ended the wait
         self._run_until(max(target, self._kernel.now))
 
     def _due(self, wall_ns: int) -> int:

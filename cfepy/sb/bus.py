@@ -14,25 +14,26 @@ from cfepy.msg import CMD_HEADER_SIZE, compute_checksum
 from cfepy.ports import PEND_FOREVER, Ports
 from cfepy.rtos import FOREVER, TIMEOUT, Kernel
 from cfepy.sb import events as ev
+from cfepy.sb.buffers import BUFFER_BYTES
 from cfepy.sb.core import BusCosts
+from cfepy.sb.pipe import Pipe
 from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE, PipeServices
-from cfepy.sb.routing import SECONDARY, Destination, Pipe, Route
+from cfepy.sb.routing import SECONDARY, Destination, Route
 from cfepy.sb.subscriptions import SubscriptionServices
 from cfepy.status import (
     CFE_SB_BAD_ARGUMENT,
     CFE_SB_BUF_ALOC_ERR,
-    CFE_SB_MSG_TOO_BIG,
     CFE_SB_PIPE_RD_ERR,
+    OS_ERR_INVALID_ID,
     CfeError,
 )
 from cfepy.trace import BATCH
 
 POLL = 0
 
-BUFFER_BYTES = 64  # of a buffer descriptor in front of each message (CFE_SB_BufferD_t)
 SECONDARY_BIT = SECONDARY >> 8
 unpack_primary = struct.Struct(">HH").unpack_from
-pack_primary = struct.Struct(">HHH").pack
+pack_telemetry = struct.Struct(">HHH6s").pack
 pack_empty_telemetry = struct.Struct(">HH12x").pack
 
 
@@ -41,19 +42,13 @@ class SoftwareBus(PipeServices, SubscriptionServices):
 
     def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, costs: BusCosts | None = None) -> None:
         super().__init__(kernel, ports, config, costs)
-        self._queued_bytes = 0  # of waiting messages, once per pipe: at least what the pool holds
         self._stamped_at = -1
         self._time = bytes(6)
         self._max_size = config.sb_max_msg_size
-        self._pool_size = config.sb_buf_memory_bytes
         self._pipe_of = self.pipes.records
         self._record = kernel.record
         self._records = kernel.trace.records if kernel.trace is not None else []
         self._flush = kernel.trace.flush if kernel.trace is not None else _nothing
-
-    def early_init(self) -> None:
-        """Book the memory of the message pool, before any task exists (CFE_SB_EarlyInit)."""
-        self.ports.memory.claim("CFE_SB", "message pool", self._pool_size)
 
     # -- transmitting ----------------------------------------------------------------------------------------------
 
@@ -71,30 +66,33 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         """
         size = len(packet)
         if not 6 < size <= self._max_size:
-            raise self._bad_size(packet)
+            self.check_header(packet, size)
         msg_id, bits = unpack_primary(packet)
         route = self.routes.get(msg_id)
         if route is None:
-            self._no_route(msg_id)
+            self._no_route(packet)
             return
+        if self._queued_bytes + size > self._known_bytes and self.pool_is_full(packet):
+            raise self._no_buffer(packet)
         kernel = self.kernel
         if not is_origination:
             packet = self._relayed(route, packet)
         else:
-            sequence = route.sequence
-            route.sequence = sequence + 1
+            sequence = route.sequence + 1
+            route.sequence = sequence
             bits = bits & 0xC000 | sequence & 0x3FFF
             if route.is_telemetry and size > 11:
                 now = kernel.now
                 if now != self._stamped_at:
                     self._stamp(now)
-                packet = pack_primary(msg_id, bits, size - 7) + self._time + packet[12:]
+                packet = pack_telemetry(msg_id, bits, size - 7, self._time) + packet[12:]
             else:
                 packet = self._originated(packet, bits)
         if self._record is not None:
             self._record(packet)
         if self.costs is not None:
             kernel.charge(self.costs.of(size))
+        weight = size + BUFFER_BYTES
         failures: list[tuple[int, Destination]] | None = None
         for destination in route.active:
             pipe = destination.pipe
@@ -107,6 +105,8 @@ class SoftwareBus(PipeServices, SubscriptionServices):
                 continue
             waits = pipe.waits
             if waits:
+                if not pipe.peak:
+                    pipe.peak = 1
                 destination.puts = puts + 1
                 kernel.make_ready(waits.pop(0), (packet, destination))
                 continue
@@ -116,9 +116,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
                 destination.overflow_drops += 1
                 failures = [*(failures or ()), (ev.Q_FULL_ERR_EID, destination)]
                 continue
-            self._queued_bytes = queued = self._queued_bytes + size
-            if queued > self._pool_size and self._pool_is_full(packet):
-                raise self._no_buffer(msg_id, packet)
+            self._queued_bytes += weight
             destination.puts = puts + 1
             items.append((packet, destination))
             if waiting >= pipe.peak:
@@ -158,7 +156,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         """A packet from elsewhere, as it is."""
         if (packet[4] << 8 | packet[5]) + 7 != len(packet):
             text = f"Send Err:Bad input argument,Arg 0x0,App {self.caller_name()}"
-            raise self._send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
+            raise self.send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
         route.relayed += 1
         return bytes(packet)
 
@@ -179,7 +177,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         """
         pipe = self._pipe_of.get(pipe_id)
         if pipe is None or timeout_ms < PEND_FOREVER:
-            raise self._receive_error(pipe, pipe_id, timeout_ms)
+            raise self._receive_error(pipe_id, timeout_ms)
         if self.costs is not None:
             self.kernel.charge(self.costs.call_ns)
         items = pipe.items
@@ -187,7 +185,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         destination: Destination
         if items:
             packet, destination = items.popleft()
-            self._queued_bytes -= len(packet)
+            self._queued_bytes -= len(packet) + BUFFER_BYTES
         elif timeout_ms == POLL:
             return None
         else:
@@ -206,64 +204,48 @@ class SoftwareBus(PipeServices, SubscriptionServices):
 
     # -- what can go wrong -----------------------------------------------------------------------------------------
 
-    def _no_route(self, msg_id: int) -> None:
-        if not self.is_valid_msg_id(msg_id):
-            text = f"Send Err:Invalid MsgId(0x{msg_id:x})in msg,App {self.caller_name()}"
-            self.counters.msg_send_error += 1
-            self.report_once(ev.SEND_INV_MSGID_EID, ev.ERROR, text)
-            raise CfeError(CFE_SB_BAD_ARGUMENT, text)
+    def _no_route(self, packet: bytes | bytearray) -> None:
+        self.check_header(packet, len(packet))
+        msg_id = packet[0] << 8 | packet[1]
         self.counters.no_subscribers += 1
         self.unrouted.sent[msg_id] = self.unrouted.sent.get(msg_id, 0) + 1
         text = f"No subscribers for MsgId 0x{msg_id:x},sender {self.caller_name()}"
         self.report_once(ev.SEND_NO_SUBS_EID, ev.INFORMATION, text)
 
-    def _bad_size(self, packet: bytes | bytearray) -> CfeError:
-        size, limit = len(packet), self.config.sb_max_msg_size
-        if size < 7:
-            text = f"Send Err:Bad input argument,Arg 0x0,App {self.caller_name()}"
-            return self._send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
-        msg_id = packet[0] << 8 | packet[1]
-        text = f"Send Err:Msg Too Big MsgId=0x{msg_id:x},app={self.caller_name()},size={size},MaxSz={limit}"
-        return self._send_error(ev.MSG_TOO_BIG_EID, CFE_SB_MSG_TOO_BIG, text)
-
-    def _send_error(self, event_id: int, status: int, text: str) -> CfeError:
-        self.counters.msg_send_error += 1
-        self.report_once(event_id, ev.ERROR, text)
-        return CfeError(status, text)
-
-    def _no_buffer(self, msg_id: int, packet: bytes) -> CfeError:
-        self._queued_bytes -= len(packet)
-        text = (
-            f"Send Err:Request for Buffer Failed. MsgId 0x{msg_id:x},app {self.caller_name()},"
-            f"size {len(packet) + BUFFER_BYTES}"
-        )
-        return self._send_error(ev.GET_BUF_ERR_EID, CFE_SB_BUF_ALOC_ERR, text)
+    def _no_buffer(self, packet: bytes | bytearray) -> CfeError:
+        where = f"MsgId 0x{packet[0] << 8 | packet[1]:x},app {self.caller_name()},size {len(packet)}"
+        return self.send_error(ev.GET_BUF_ERR_EID, CFE_SB_BUF_ALOC_ERR, f"Send Err:Request for Buffer Failed. {where}")
 
     def _report_failures(self, msg_id: int, failures: list[tuple[int, Destination]]) -> None:
         self.counters.msg_send_error += 1
-        sender = self.caller_name()
         for event_id, destination in failures:
-            pipe = destination.pipe
-            pipe.send_errors += 1
             if self._record is not None:
-                self._record(pipe.drop_mark)
-            if event_id == ev.MSGID_LIM_ERR_EID:
-                self.counters.msg_limit_error += 1
-                text = f"Msg Limit Err,MsgId 0x{msg_id:x},pipe {pipe.name},sender {sender}"
-            else:
-                self.counters.pipe_overflow_error += 1
-                text = f"Pipe Overflow,MsgId 0x{msg_id:x},pipe {pipe.name},sender {sender}"
-            self.report_once(event_id, ev.ERROR, text)
+                self._record(destination.pipe.drop_mark)
+            self._report_failure(event_id, msg_id, destination.pipe)
 
-    def _receive_error(self, pipe: Pipe | None, pipe_id: int, timeout_ms: int) -> CfeError:
+    def _report_failure(self, event_id: int, msg_id: int, pipe: Pipe) -> None:
+        where = f"MsgId 0x{msg_id:x},pipe {pipe.name},sender {self.caller_name()}"
+        if event_id == ev.MSGID_LIM_ERR_EID:
+            self.counters.msg_limit_error += 1
+            pipe.send_errors += 1
+            self.report_once(event_id, ev.ERROR, f"Msg Limit Err,{where}")
+        elif not pipe.is_closed():
+            self.counters.pipe_overflow_error += 1
+            pipe.overflows += 1
+            self.report_once(event_id, ev.ERROR, f"Pipe Overflow,{where}")
+        else:
+            self.counters.internal_error += 1
+            self.report_once(ev.Q_WR_ERR_EID, ev.ERROR, f"Pipe Write Err,{where},stat {OS_ERR_INVALID_ID}")
+
+    def _receive_error(self, pipe_id: int, timeout_ms: int) -> CfeError:
         self.counters.msg_receive_error += 1
         app = self.caller_name()
-        if pipe is None:
+        if timeout_ms < PEND_FOREVER:
+            text = f"Rcv Err:Bad Input Arg:BufPtr 0x0,pipe [n/a],t/o {timeout_ms},app {app}"
+            self.report_once(ev.RCV_BAD_ARG_EID, ev.ERROR, text)
+        else:
             text = f"Rcv Err:PipeId {pipe_id} does not exist,app {app}"
             self.report_once(ev.BAD_PIPEID_EID, ev.ERROR, text)
-        else:
-            text = f"Rcv Err:Bad Input Arg:BufPtr 0x0,pipe {pipe.name},t/o {timeout_ms},app {app}"
-            self.report_once(ev.RCV_BAD_ARG_EID, ev.ERROR, text)
         return CfeError(CFE_SB_BAD_ARGUMENT, text)
 
     def _read_error(self, pipe: Pipe) -> CfeError:
@@ -271,18 +253,6 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         text = f"Pipe Read Err,pipe {pipe.name},app {self.caller_name()},stat -1"
         self.report_once(ev.Q_RD_ERR_EID, ev.ERROR, text)
         return CfeError(CFE_SB_PIPE_RD_ERR, text)
-
-    # -- memory ----------------------------------------------------------------------------------------------------
-
-    def pool_use(self) -> tuple[int, int]:
-        """(bytes, buffers) of the messages that wait in pipes; a message in several pipes is one buffer."""
-        packets = {id(item[0]): len(item[0]) for pipe in self.pipes for item in pipe.items}
-        return sum(packets.values()) + BUFFER_BYTES * len(packets), len(packets)
-
-    def _pool_is_full(self, packet: bytes) -> bool:
-        """The quick count, which takes a message once a pipe and keeps those of deleted pipes, is over: count again."""
-        self._queued_bytes = len(packet) + sum(len(item[0]) for pipe in self.pipes for item in pipe.items)
-        return self.pool_use()[0] + len(packet) + BUFFER_BYTES > self.config.sb_buf_memory_bytes
 
 
 def _nothing() -> None:

@@ -6,14 +6,18 @@ code (CFE_SB_RequestToSendEvent) a task that is about to send an event does not 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from contextlib import suppress
+from dataclasses import dataclass, field, fields
 
 from cfepy.config import PlatformConfig
 from cfepy.ids import SB_PIPEID_BASE, IdTable
+from cfepy.msg import Packet
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
-from cfepy.sb.routing import Pipe, Route
-from cfepy.status import CFE_SB_MAX_PIPES_MET
+from cfepy.sb import events as ev
+from cfepy.sb.pipe import Pipe
+from cfepy.sb.routing import Route, RoutingTable
+from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_PIPES_MET, CFE_SB_MSG_TOO_BIG, CfeError
 
 
 @dataclass(slots=True)
@@ -34,6 +38,13 @@ class Counters:
     pipe_overflow_error: int = 0
     msg_limit_error: int = 0
 
+    def reset(self) -> None:
+        """Set all to 0 but two that NASA's code leaves (CFE_SB_ResetCounters)."""
+        kept = {"pipe_opts_error", "get_pipe_id_by_name_error"}
+        for each in fields(self):
+            if each.name not in kept:
+                setattr(self, each.name, 0)
+
 
 @dataclass(slots=True)
 class Peaks:
@@ -48,13 +59,16 @@ class Peaks:
 
 @dataclass(slots=True)
 class BusCosts:
-    """Virtual CPU time of bus calls on a board; zeros on a host without limits.
+    """What the bus costs on a board; zeros on a host without limits.
 
-    `call_ns` a call, `byte_ps` picoseconds for each byte copied.
+    Virtual CPU time: `call_ns` a call, `byte_ps` picoseconds for each byte copied. Bytes of RAM: `queue` the control
+    block of a queue, `queue_slot` a place in it besides the message.
     """
 
     call_ns: int = 0
     byte_ps: int = 0
+    queue: int = 0
+    queue_slot: int = 0
 
     def of(self, size: int) -> int:
         """ns for a call that copies `size` bytes."""
@@ -75,21 +89,30 @@ class BusCore:
         kernel: the processor.
         ports: the other services.
         config: limits.
-        costs: virtual CPU time of calls.
+        costs: virtual CPU time of calls, and RAM of pipes.
+
+    Attributes:
+        routing: the routing table; `routes` is its dictionary.
+        subscriptions: pairs of MsgId and pipe.
+        reporting: whether each subscription is told to other processors.
     """
 
     def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, costs: BusCosts | None = None) -> None:
         self.kernel = kernel
         self.ports = ports
         self.config = config
+        self.sizes = costs or BusCosts()
         self.costs = costs if costs is not None and (costs.call_ns or costs.byte_ps) else None
         self.counters = Counters()
         self.peaks = Peaks()
         self.pipes: IdTable[Pipe] = IdTable(SB_PIPEID_BASE, config.sb_max_pipes, full=CFE_SB_MAX_PIPES_MET)
-        self.routes: dict[int, Route] = {}
+        self.routing = RoutingTable(config.sb_max_msg_ids, config.sb_highest_valid_msg_id)
+        self.routes: dict[int, Route] = self.routing.routes
+        self.subscriptions = 0
+        self.reporting = False
         self.unrouted = Unrouted()
         self.app_id = 0  # of the SB application itself, in whose name events are sent
-        self._reporting: set[tuple[int, int]] = set()
+        self._sending: set[tuple[int, int]] = set()
 
     def caller_name(self) -> str:
         """Name of the calling task as SB's events give it: "APP", or "APP.TASK" for a child task."""
@@ -100,19 +123,48 @@ class BusCore:
         return f"{app}.{task.name}"
 
     def report(self, event_id: int, event_type: int, text: str) -> None:
-        """Send an event of SB."""
-        self.ports.evs.send_event_with_app_id(event_id, event_type, self.app_id, text)
+        """Send an event of SB; before its task runs there is nobody in whose name it could be sent."""
+        with suppress(CfeError):
+            self.ports.evs.send_event_with_app_id(event_id, event_type, self.app_id, text)
 
     def report_once(self, event_id: int, event_type: int, text: str) -> None:
         """Send an event of SB, unless the calling task is in the middle of sending the same one."""
         key = (self.kernel.current.ident, event_id)
-        if key in self._reporting:
+        if key in self._sending:
             return
-        self._reporting.add(key)
+        self._sending.add(key)
         try:
             self.report(event_id, event_type, text)
         finally:
-            self._reporting.discard(key)
+            self._sending.discard(key)
+
+    def send_error(self, event_id: int, status: int, text: str) -> CfeError:
+        """Report that a message cannot be sent; the error to raise."""
+        self.counters.msg_send_error += 1
+        self.report_once(event_id, ev.ERROR, text)
+        return CfeError(status, text)
+
+    def check_header(self, packet: Packet, size: int) -> None:
+        """Check length, MsgId and size of a packet that shall be sent, in this order.
+
+        Args:
+            packet: the packet.
+            size: bytes of it that shall be sent.
+
+        Raises:
+            CfeError: CFE_SB_BAD_ARGUMENT, CFE_SB_MSG_TOO_BIG.
+        """
+        app, limit = self.caller_name(), self.config.sb_max_msg_size
+        if len(packet) < 7:
+            text = f"Send Err:Bad input argument,Arg 0x0,App {app}"
+            raise self.send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
+        msg_id = packet[0] << 8 | packet[1]
+        if not self.is_valid_msg_id(msg_id):
+            text = f"Send Err:Invalid MsgId(0x{msg_id:x})in msg,App {app}"
+            raise self.send_error(ev.SEND_INV_MSGID_EID, CFE_SB_BAD_ARGUMENT, text)
+        if size > limit:
+            text = f"Send Err:Msg Too Big MsgId=0x{msg_id:x},app={app},size={size},MaxSz={limit}"
+            raise self.send_error(ev.MSG_TOO_BIG_EID, CFE_SB_MSG_TOO_BIG, text)
 
     def find_pipe(self, pipe_id: int) -> Pipe | None:
         """The pipe of an id, or None."""

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+from cfepy.ids import SB_PIPEID_BASE, to_index
 from cfepy.osal.limits import OS_MAX_API_NAME
 from cfepy.sb import events as ev
-from cfepy.sb.core import BusCore
-from cfepy.sb.routing import Pipe
-from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_PIPES_MET, CFE_SB_PIPE_CR_ERR, CfeError
+from cfepy.sb.buffers import BufferServices
+from cfepy.sb.pipe import Pipe
+from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_PIPES_MET, CFE_SB_PIPE_CR_ERR, OS_ERR_NAME_TOO_LONG, CfeError
 
 PIPEOPTS_IGNOREMINE = 1
-SLOT_BYTES = 8  # a queue slot holds a pointer to a buffer
-PIPE_BYTES = 32  # CFE_SB_PipeD_t
+POINTER_BYTES = 4  # what is in a queue is the address of a buffer; boards whose RAM is counted have 32 bits
 
 
-class PipeServices(BusCore):
+class PipeServices(BufferServices):
     """The CFE_SB_*Pipe* functions."""
 
     def create_pipe(self, depth: int, name: str) -> int:
@@ -34,12 +34,12 @@ class PipeServices(BusCore):
         if not 0 < depth <= limit or not name:
             text = f"CreatePipeErr:Bad Input Arg:app={app},ptr=0x0,depth={depth},maxdepth={limit}"
             raise self._create_error(ev.CR_PIPE_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
-        if len(name) >= OS_MAX_API_NAME:
-            text = f"CreatePipeErr:OS_QueueCreate returned -13,app {app}"
-            raise self._create_error(ev.CR_PIPE_ERR_EID, CFE_SB_PIPE_CR_ERR, text)
         if len(self.pipes) >= self.config.sb_max_pipes:
             text = f"CreatePipeErr:Max Pipes({self.config.sb_max_pipes})In Use.app {app}"
             raise self._create_error(ev.MAX_PIPES_MET_EID, CFE_SB_MAX_PIPES_MET, text)
+        if len(name.encode("utf-8", "replace")) >= OS_MAX_API_NAME:
+            text = f"CreatePipeErr:OS_QueueCreate returned {OS_ERR_NAME_TOO_LONG},app {app}"
+            raise self._create_error(ev.CR_PIPE_ERR_EID, CFE_SB_PIPE_CR_ERR, text)
         if any(pipe.name == name for pipe in self.pipes):
             text = f"CreatePipeErr:OS_QueueCreate failed, name taken (app={app}, name={name})"
             raise self._create_error(ev.CR_PIPE_NAME_TAKEN_EID, CFE_SB_PIPE_CR_ERR, text)
@@ -47,7 +47,8 @@ class PipeServices(BusCore):
 
     def _add_pipe(self, depth: int, name: str, app: str) -> int:
         owner = self.kernel.current.owner
-        claim = self.ports.memory.claim(getattr(owner, "name", "host"), f"pipe {name}", depth * SLOT_BYTES + PIPE_BYTES)
+        size = self.sizes.queue + depth * (self.sizes.queue_slot + POINTER_BYTES)
+        claim = self.ports.memory.claim(getattr(owner, "name", "host"), f"pipe {name}", size)
         pipe = Pipe(self.kernel, depth, name, owner)
         pipe.claim = claim
         pipe_id = self.pipes.create(pipe)
@@ -75,17 +76,21 @@ class PipeServices(BusCore):
             text = f"Pipe Delete Error:Caller({self.caller_name()}) is not the owner of pipe {pipe_id}"
             raise self._create_error(ev.DEL_PIPE_ERR2_EID, CFE_SB_BAD_ARGUMENT, text)
         self.remove_pipe(pipe)
-        self.report(ev.PIPE_DELETED_EID, ev.DEBUG, f"Pipe Deleted:id {pipe_id},owner {pipe.app_name}")
+        self._report_deleted(pipe)
 
     def remove_pipe(self, pipe: Pipe) -> None:
         """Delete a pipe, whoever asks: at clean-up of an application."""
         for route in self.routes.values():
             destination = route.find(pipe)
             if destination is not None:
-                route.remove(destination)
+                self.remove_destination(route, destination)
         self.pipes.delete(pipe.pipe_id)
         self.ports.memory.release(pipe.claim)
+        pipe.depth = 0  # so that a transmission that is under way finds it full, and no longer there
         pipe.close(None)
+
+    def _report_deleted(self, pipe: Pipe) -> None:
+        self.report(ev.PIPE_DELETED_EID, ev.DEBUG, f"Pipe Deleted:id {pipe.pipe_id},owner {pipe.app_name}")
 
     def set_pipe_opts(self, pipe_id: int, opts: int) -> None:
         """Set the options of a pipe of the calling application (CFE_SB_SetPipeOpts).
@@ -135,16 +140,20 @@ class PipeServices(BusCore):
         raise CfeError(CFE_SB_BAD_ARGUMENT, text)
 
     def pipe_id_to_index(self, pipe_id: int) -> int:
-        """Slot number of a pipe, 0 to the number of pipes less one (CFE_SB_PipeId_ToIndex)."""
-        if self.find_pipe(pipe_id) is None:
-            raise CfeError(CFE_SB_BAD_ARGUMENT, f"pipe id 0x{pipe_id:x} is not in use")
-        return self.pipes.index(pipe_id)
+        """Slot number of a pipe, 0 to the number of pipes less one (CFE_SB_PipeId_ToIndex).
+
+        Raises:
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID: it is no pipe's id. That the pipe exists is not checked.
+        """
+        return to_index(pipe_id, SB_PIPEID_BASE, self.config.sb_max_pipes)
 
     def cleanup_app(self, app_id: int) -> None:
-        """Delete every pipe of an application that ends (CFE_SB_CleanUpApp)."""
+        """Delete every pipe of an application that ends, and take back its buffers (CFE_SB_CleanUpApp)."""
         for pipe in list(self.pipes):
             if pipe.app_id == app_id:
                 self.remove_pipe(pipe)
+                self._report_deleted(pipe)
+        self.release_buffers_of(app_id)
 
     def _opts_error(self, event_id: int, text: str) -> CfeError:
         self.counters.pipe_opts_error += 1

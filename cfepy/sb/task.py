@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from cfepy.msg import CMD_HEADER_SIZE, CommandTable, telemetry
+from cfepy.msg import CommandTable, telemetry
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, DONE
 from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY
 from cfepy.sb import events as ev
 from cfepy.sb import packets as pk
 from cfepy.sb.bus import SoftwareBus
-from cfepy.sb.core import Counters
+from cfepy.sb.files import BusFiles
+from cfepy.sb.reports import tell_all
 from cfepy.sb.routing import Destination
 from cfepy.versions import version_string
 
 PIPE_DEPTH = 32
 PIPE_NAME = "SB_CMD_PIPE"
+MAIN_PERF_ID = 4  # CFE_MISSION_SB_MAIN_PERF_ID
 FILTERS = (
     (ev.SEND_NO_SUBS_EID, 0xFFFC),
     (ev.DUP_SUBSCRIP_EID, 0xFFFC),
@@ -28,33 +30,42 @@ class SbTask:
     def __init__(self, bus: SoftwareBus) -> None:
         self.bus = bus
         self.ports = bus.ports
+        self.files = BusFiles(bus)
         self.commands = CommandTable()
-        self.pool_handle = 0
-        size = CMD_HEADER_SIZE
-        for code, length, handler in (
-            (pk.NOOP_CC, size, self._noop),
-            (pk.RESET_COUNTERS_CC, size, self._reset_counters),
-            (pk.SEND_SB_STATS_CC, size, self._send_statistics),
-            (pk.ENABLE_ROUTE_CC, size + pk.ROUTE_COMMAND.size, self._enable_route),
-            (pk.DISABLE_ROUTE_CC, size + pk.ROUTE_COMMAND.size, self._disable_route),
+        for command, handler in (
+            (pk.NOOP, self._noop),
+            (pk.RESET_COUNTERS, self._reset_counters),
+            (pk.SEND_SB_STATS, self._send_statistics),
+            (pk.WRITE_ROUTING_INFO, self.files.write_routing_info),
+            (pk.ENABLE_ROUTE, self._enable_route),
+            (pk.DISABLE_ROUTE, self._disable_route),
+            (pk.WRITE_PIPE_INFO, self.files.write_pipe_info),
+            (pk.WRITE_MAP_INFO, self.files.write_map_info),
+            (pk.SEND_HK, self._send_housekeeping),
+            (pk.ENABLE_SUB_REPORTING, self._enable_reports),
+            (pk.DISABLE_SUB_REPORTING, self._disable_reports),
+            (pk.SEND_PREV_SUBS, self._send_previous),
         ):
-            self.commands.add(pk.CMD_MID, code, length, handler)
-        self.commands.add_message(pk.SEND_HK_MID, size, self._send_housekeeping)
+            self.commands.handle(command, handler)
 
     def task_main(self) -> None:
         """The main task of CFE_SB (CFE_SB_TaskMain)."""
         ports = self.ports
+        ports.es.perf_log_entry(MAIN_PERF_ID)
         self.bus.app_id = ports.es.get_app_id()
         ports.evs.register(FILTERS)
         ports.syslog.write_to_sys_log(f"CFE_SB_AppInit: Registered {len(FILTERS)} events for filtering")
         pipe = ports.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
         ports.sb.subscribe(pk.CMD_MID, pipe)
         ports.sb.subscribe(pk.SEND_HK_MID, pipe)
+        ports.sb.subscribe(pk.SUB_RPT_CTRL_MID, pipe)
         ports.evs.send_event(ev.INIT_EID, ev.INFORMATION, f"cFE SB Initialized: {version_string('CFE_SB')}")
         ports.es.wait_for_system_state(SYSTEM_CORE_READY, self.bus.config.es_core_max_startup_ms)
         while True:
             ports.es.increment_task_counter()
+            ports.es.perf_log_exit(MAIN_PERF_ID)
             packet = ports.sb.receive_buffer(pipe, PEND_FOREVER)
+            ports.es.perf_log_entry(MAIN_PERF_ID)
             if packet is not None:
                 self.process(packet)
 
@@ -82,7 +93,7 @@ class SbTask:
 
     def _reset_counters(self, packet: bytes) -> None:
         self.ports.evs.send_event(ev.CMD1_RCVD_EID, ev.DEBUG, "Reset Counters Cmd Rcvd")
-        self.bus.counters = Counters()
+        self.bus.counters.reset()
 
     def _send_housekeeping(self, packet: bytes) -> None:
         self.ports.sb.transmit_msg(bytes(telemetry(pk.HK_TLM_MID, pk.HOUSEKEEPING.pack(self.housekeeping()))))
@@ -99,7 +110,7 @@ class SbTask:
         self._switch_route(packet, False, ev.DSBL_RTE1_EID, ev.DSBL_RTE2_EID, ev.DSBL_RTE3_EID)
 
     def _switch_route(self, packet: bytes, active: bool, unknown: int, done: int, invalid: int) -> None:
-        fields = pk.ROUTE_COMMAND.unpack(packet, CMD_HEADER_SIZE)
+        fields = pk.ENABLE_ROUTE.read(packet)
         msg_id, pipe_id = fields["MsgId"], fields["Pipe"]
         command = "Enbl" if active else "Disable"
         where = f"Msg 0x{msg_id:x},Pipe {pipe_id}"
@@ -121,13 +132,23 @@ class SbTask:
             self.ports.evs.send_event(done, ev.DEBUG, text)
             self.bus.counters.command += 1
 
+    # -- requests about subscriptions, which are not counted -------------------------------------------------------
+
+    def _enable_reports(self, packet: bytes) -> None:
+        self.bus.reporting = True
+
+    def _disable_reports(self, packet: bytes) -> None:
+        self.bus.reporting = False
+
+    def _send_previous(self, packet: bytes) -> None:
+        tell_all(self.bus)
+
     # -- telemetry -------------------------------------------------------------------------------------------------
 
     def housekeeping(self) -> dict[str, int]:
         """The fields of the housekeeping packet; 8-bit counters wrap as NASA's do."""
         counters = self.bus.counters
-        used, _ = self.bus.pool_use()
-        self.bus.peaks.memory = max(self.bus.peaks.memory, used)
+        used, _ = self.bus.note_peaks()
         names = {
             "CommandCounter": counters.command,
             "CommandErrorCounter": counters.command_error,
@@ -144,7 +165,7 @@ class SbTask:
         wide = {
             "PipeOverflowErrorCounter": counters.pipe_overflow_error & 0xFFFF,
             "MsgLimitErrorCounter": counters.msg_limit_error & 0xFFFF,
-            "MemPoolHandle": self.pool_handle,
+            "MemPoolHandle": self.bus.pool_handle,
             "MemInUse": used,
             "UnmarkedMem": max(0, self.bus.config.sb_buf_memory_bytes - self.bus.peaks.memory),
         }
@@ -153,9 +174,7 @@ class SbTask:
     def statistics(self) -> dict[str, object]:
         """The fields of the statistics packet."""
         bus, config = self.bus, self.bus.config
-        used, buffers = bus.pool_use()
-        bus.peaks.memory = max(bus.peaks.memory, used)
-        bus.peaks.buffers = max(bus.peaks.buffers, buffers)
+        used, buffers = bus.note_peaks()
         return {
             "MsgIdsInUse": len(bus.routes),
             "PeakMsgIdsInUse": bus.peaks.msg_ids,
@@ -166,7 +185,7 @@ class SbTask:
             "MemInUse": used,
             "PeakMemInUse": bus.peaks.memory,
             "MaxMemAllowed": config.sb_buf_memory_bytes,
-            "SubscriptionsInUse": bus.subscriptions_in_use(),
+            "SubscriptionsInUse": bus.subscriptions,
             "PeakSubscriptionsInUse": bus.peaks.subscriptions,
             "MaxSubscriptionsAllowed": config.sb_max_msg_ids * config.sb_max_dest_per_pkt,
             "SBBuffersInUse": buffers,
@@ -179,6 +198,6 @@ class SbTask:
                     "CurrentQueueDepth": len(pipe.items),
                     "PeakQueueDepth": pipe.peak,
                 }
-                for pipe in list(bus.pipes)[:32]
+                for pipe in list(bus.pipes)[: pk.PIPES_IN_STATS]
             ],
         }

@@ -3,7 +3,20 @@
 from __future__ import annotations
 
 from cfepy.tbl.access import BAD_TABLE_HANDLE, TableInfo
-from cfepy.tbl.image import TableImage, build, pack_rows, read, unpack_rows, write_beside
+from cfepy.tbl.definition import TableType
+from cfepy.tbl.image import (
+    TableImage,
+    build,
+    is_intact,
+    mark_for,
+    mark_in,
+    pack_rows,
+    read,
+    unpack_rows,
+    with_mark,
+    write_beside,
+)
+from cfepy.tbl.packets import COMMANDS, TELEMETRY
 from cfepy.tbl.registry import (
     OPT_CRITICAL,
     OPT_DBL_BUFFER,
@@ -18,6 +31,7 @@ from cfepy.tbl.services import TableServices
 
 __all__ = [
     "BAD_TABLE_HANDLE",
+    "COMMANDS",
     "OPT_CRITICAL",
     "OPT_DBL_BUFFER",
     "OPT_DEFAULT",
@@ -25,13 +39,19 @@ __all__ = [
     "OPT_LOAD_DUMP",
     "OPT_SNGL_BUFFER",
     "OPT_USR_DEF_ADDR",
+    "TELEMETRY",
     "TableHandle",
     "TableImage",
     "TableInfo",
     "TableServices",
+    "TableType",
     "build",
+    "is_intact",
+    "mark_for",
+    "mark_in",
     "pack_rows",
     "read",
     "unpack_rows",
+    "with_mark",
     "write_beside",
 ]

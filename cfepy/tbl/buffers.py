@@ -1,13 +1,14 @@
 """The memory that table images live in: a table's own one or two buffers, and the load buffers that tables share.
 
-Stands for cfe_tbl_loadbuff.c. Images never move; only which buffer is active changes. Imports only cfepy.fs and
-cfepy.status.
+Stands for cfe_tbl_loadbuff.c. All come out of one memory pool of Executive Services. Images never move; only which
+buffer is active changes. Imports only cfepy.fs, cfepy.ports and cfepy.status.
 """
 
 from __future__ import annotations
 
 from cfepy.fs import calculate_crc
-from cfepy.status import CFE_ES_ERR_MEM_BLOCK_SIZE, CFE_TBL_ERR_NO_BUFFER_AVAIL, CfeError
+from cfepy.ports import Block, Ports
+from cfepy.status import CFE_TBL_ERR_NO_BUFFER_AVAIL, CfeError
 
 _FIRST_ADDRESS = 0x10000
 _ALIGNMENT = 8
@@ -22,6 +23,7 @@ class Buffer:
         data: the bytes; all of the buffer, of which a shared one uses only `content_size`.
         content_size: bytes that belong to the table now.
         address: a number for telemetry; nothing can be read through it.
+        block: what it is in the pool; None for memory of an app.
         source: where the image came from, for LastFileLoaded.
         file_time: (seconds, subseconds) of the file it came from.
         crc: CRC-16 of the content at load time.
@@ -33,6 +35,7 @@ class Buffer:
     __slots__ = (
         "activate_requested",
         "address",
+        "block",
         "content_size",
         "crc",
         "data",
@@ -42,8 +45,9 @@ class Buffer:
         "source",
     )
 
-    def __init__(self, data: memoryview, address: int, place: int) -> None:
+    def __init__(self, data: memoryview, address: int, place: int, block: Block | None = None) -> None:
         self.data = data
+        self.block = block
         self.address = address
         self.place = place
         self.content_size = len(data)
@@ -87,19 +91,35 @@ class Buffer:
 
 
 class BufferMemory:
-    """The table buffer pool: counts what is taken of CFE_PLATFORM_TBL_BUF_MEMORY_BYTES and lends the shared buffers.
+    """The table buffer pool, and the shared buffers that are lent out of it.
 
     Args:
-        limit: bytes in all.
+        ports: has Executive Services, and with them the pool.
+        size: bytes of the pool (CFE_PLATFORM_TBL_BUF_MEMORY_BYTES).
         shared: how many load buffers the tables share (CFE_PLATFORM_TBL_MAX_SIMULTANEOUS_LOADS).
         shared_size: bytes of each.
+
+    Attributes:
+        pool_id: the pool's handle.
     """
 
-    def __init__(self, limit: int, shared: int, shared_size: int) -> None:
-        self.limit = limit
-        self.used = 0
+    def __init__(self, ports: Ports, size: int, shared: int, shared_size: int) -> None:
+        self._ports = ports
+        self._size = size
+        self._shared = shared
+        self._shared_size = shared_size
         self._next_address = _FIRST_ADDRESS
-        self._free = [self.allocate(shared_size, place) for place in range(shared)]
+        self._free: list[Buffer] = []
+        self.pool_id = 0
+
+    def early_init(self) -> None:
+        """Make the pool and take the shared buffers out of it.
+
+        Raises:
+            CfeError: there is no room for them.
+        """
+        self.pool_id = self._ports.es.pool_create(self._size, "CFE_TBL")
+        self._free = [self.allocate(self._shared_size, place) for place in range(self._shared)]
 
     @property
     def free_shared(self) -> int:
@@ -112,23 +132,17 @@ class BufferMemory:
         Raises:
             CfeError: CFE_ES_ERR_MEM_BLOCK_SIZE when the pool has no room for it.
         """
-        if self.used + size > self.limit:
-            text = f"a table buffer of {size} bytes, with {self.used} of {self.limit} taken; raise tbl_buf_memory_bytes"
-            raise CfeError(CFE_ES_ERR_MEM_BLOCK_SIZE, text)
-        self.used += size
-        address = self._next_address
-        self._next_address += size + -size % _ALIGNMENT
-        return Buffer(memoryview(bytearray(size)), address, place)
+        block = self._ports.es.get_pool_buf(self.pool_id, size)
+        return Buffer(block.memory, self._address_for(size), place, block)
 
     def external(self, data: Bytes, place: int) -> Buffer:
         """A buffer over memory of an app, which stays the app's (CFE_TBL_OPT_USR_DEF_ADDR); it costs nothing here."""
-        address = self._next_address
-        self._next_address += len(data) + -len(data) % _ALIGNMENT
-        return Buffer(memoryview(data), address, place)
+        return Buffer(memoryview(data), self._address_for(len(data)), place)
 
     def free(self, buffer: Buffer) -> None:
         """Give a table's own buffer back."""
-        self.used -= len(buffer.data)
+        if buffer.block is not None:
+            self._ports.es.put_pool_buf(self.pool_id, buffer.block)
 
     def acquire_shared(self) -> Buffer:
         """Borrow the shared buffer with the lowest number.
@@ -146,3 +160,8 @@ class BufferMemory:
         """Give a shared buffer back."""
         self._free.append(buffer)
         self._free.sort(key=lambda each: each.place)
+
+    def _address_for(self, size: int) -> int:
+        address = self._next_address
+        self._next_address += size + -size % _ALIGNMENT
+        return address

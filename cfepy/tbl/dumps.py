@@ -20,9 +20,9 @@ from cfepy.status import (
 )
 from cfepy.tbl import events as eid
 from cfepy.tbl.buffers import Buffer, BufferMemory
-from cfepy.tbl.loads import Files
 from cfepy.tbl.packets import ACTIVE_BUFFER, INACTIVE_BUFFER
 from cfepy.tbl.registry import Dump, Table
+from cfepy.tbl.table_file import Files
 
 DESCRIPTION = "Table Dump Image"
 

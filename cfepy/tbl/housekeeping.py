@@ -96,6 +96,7 @@ class Housekeeping:
             "FailedValCounter": self._failures & _BYTE,
             "NumValRequests": self._requests & _BYTE,
             "NumFreeSharedBufs": self._memory.free_shared,
+            "MemPoolHandle": self._memory.pool_id,
             "LastFileLoaded": self.last_file_loaded,
             "LastFileDumped": self._dumps.last_file,
             "LastTableLoaded": self.last_table_loaded,

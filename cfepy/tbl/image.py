@@ -1,7 +1,11 @@
 """Table files made and read by people and tools: headers and image in one, from field values (elf2cfetbl's job).
 
 A mission describes its tables as Python values and a layout; this turns them into the bytes that CFE_TBL_Load accepts.
-Imports only cfepy.fs, cfepy.msg and cfepy.status.
+
+cFE's table files carry no check value. A file may be given one here, an integrity mark: the reserved word of its table
+header, which is 0 in all others and which NASA's cFE does not look at, then says "CR" and the CRC of the whole file. It
+is the CRC of CFE_ES_CalculateCRC, so that flight software can check it too. A marked file of which a bit is wrong is
+never loaded; a file without mark loads as ever. Imports only cfepy.fs, cfepy.msg and cfepy.status.
 """
 
 from __future__ import annotations
@@ -10,13 +14,18 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cfepy.fs import FileHeader, read_table_file, write_table_file
+from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE, FileHeader, crc16, read_table_file, write_table_file
 from cfepy.msg import Layout
 from cfepy.status import UsageError
 from cfepy.tbl.packets import FULL_NAME_SIZE
 
 SPACECRAFT_ID = 66
 PROCESSOR_ID = 1
+
+MARK_TAG = 0x43520000
+"""The upper half of an integrity mark: "CR"."""
+
+_MARK = slice(HEADER_SIZE, HEADER_SIZE + 4)
 
 
 class TableImage(NamedTuple):
@@ -62,6 +71,37 @@ def read(data: bytes) -> TableImage:
     ids = header.spacecraft_id, header.processor_id
     time = header.time_seconds, header.time_subseconds
     return TableImage(table.table_name, image[: table.num_bytes], header.description, table.offset, *ids, time)
+
+
+def mark_for(data: bytes) -> int:
+    """The integrity mark that belongs into a table file: MARK_TAG and the CRC of the file with a mark of 0.
+
+    Args:
+        data: the whole file, whether or not it has a mark.
+    """
+    return MARK_TAG | crc16(data[HEADER_SIZE + 4 :], crc16(bytes(4), crc16(data[:HEADER_SIZE])))
+
+
+def mark_in(data: bytes) -> int:
+    """The integrity mark that a table file has; 0 for none."""
+    return int.from_bytes(data[_MARK], "big")
+
+
+def with_mark(data: bytes) -> bytes:
+    """A table file with its integrity mark.
+
+    Raises:
+        UsageError: it is too short for a table file.
+    """
+    if len(data) < HEADER_SIZE + TABLE_HEADER_SIZE:
+        raise UsageError(f"a table file has {HEADER_SIZE + TABLE_HEADER_SIZE} bytes at least, this one {len(data)}")
+    return data[:HEADER_SIZE] + mark_for(data).to_bytes(4, "big") + data[HEADER_SIZE + 4 :]
+
+
+def is_intact(data: bytes) -> bool:
+    """Whether a table file has no integrity mark, or the one that belongs to it."""
+    mark = mark_in(data)
+    return mark == 0 or mark == mark_for(data)
 
 
 def pack_rows(row: Layout, rows: Sequence[Mapping[str, Any]], capacity: int) -> bytes:

@@ -1,27 +1,16 @@
-"""The messages of Table Services: message ids, function codes and payload layouts (cfe_tbl_msg.h).
+"""The messages of Table Services, commands and telemetry, each declared with its layout (cfe_tbl_msg.h).
 
-Also the record of a registry dump file. Imports only cfepy.msg.
+Also the records of a registry dump file and of the critical table registry. Imports only cfepy.msg.
 """
 
 from __future__ import annotations
 
-from cfepy.msg import Layout, local_cmd_topic_id_to_msg_id, local_tlm_topic_id_to_msg_id
+from cfepy.msg import Command, Layout, Telemetry, local_cmd_topic_id_to_msg_id, local_tlm_topic_id_to_msg_id
 
 CMD_MID = local_cmd_topic_id_to_msg_id(0x04)
 SEND_HK_MID = local_cmd_topic_id_to_msg_id(0x0C)
 HK_TLM_MID = local_tlm_topic_id_to_msg_id(0x04)
 REG_TLM_MID = local_tlm_topic_id_to_msg_id(0x0C)
-
-NOOP_CC = 0
-RESET_COUNTERS_CC = 1
-LOAD_CC = 2
-DUMP_CC = 3
-VALIDATE_CC = 4
-ACTIVATE_CC = 5
-DUMP_REGISTRY_CC = 6
-SEND_REGISTRY_CC = 7
-DELETE_CDS_CC = 8
-ABORT_LOAD_CC = 9
 
 INACTIVE_BUFFER = 0
 ACTIVE_BUFFER = 1
@@ -37,17 +26,15 @@ _OWNER = f"char[{OWNER_NAME_SIZE}]"
 
 SYS_TIME = Layout("CFE_TIME_SysTime", [("Seconds", "u32"), ("Subseconds", "u32")])
 
-FILE_COMMAND = Layout("CFE_TBL_LoadCmd_Payload", [("Filename", _PATH)])
-"""LOAD and DUMP_REGISTRY."""
-
-NAME_COMMAND = Layout("CFE_TBL_ActivateCmd_Payload", [("TableName", _FULL_NAME)])
-"""ACTIVATE, SEND_REGISTRY, DELETE_CDS and ABORT_LOAD."""
-
-DUMP_COMMAND = Layout(
+_LOAD = Layout("CFE_TBL_LoadCmd_Payload", [("LoadFilename", _PATH)])
+_DUMP = Layout(
     "CFE_TBL_DumpCmd_Payload", [("ActiveTableFlag", "u16"), ("TableName", _FULL_NAME), ("DumpFilename", _PATH)]
 )
-VALIDATE_COMMAND = Layout("CFE_TBL_ValidateCmd_Payload", [("ActiveTableFlag", "u16"), ("TableName", _FULL_NAME)])
+_VALIDATE = Layout("CFE_TBL_ValidateCmd_Payload", [("ActiveTableFlag", "u16"), ("TableName", _FULL_NAME)])
+_TABLE_NAME = Layout("CFE_TBL_ActivateCmd_Payload", [("TableName", _FULL_NAME)])
+_DUMP_REGISTRY = Layout("CFE_TBL_DumpRegistryCmd_Payload", [("DumpFilename", _PATH)])
 NOTIFY_COMMAND = Layout("CFE_TBL_NotifyCmd_Payload", [("Parameter", "u32")])
+"""What `CFE_TBL_NotifyByMessage` sends to an owner."""
 
 HOUSEKEEPING = Layout(
     "CFE_TBL_HousekeepingTlm_Payload",
@@ -117,6 +104,55 @@ REGISTRY_RECORD = Layout(
         ("CriticalTable", "bool"),
     ],
 )
+
+
+CRITICAL_RECORD = Layout(
+    "CFE_TBL_CritRegRec_t",
+    [
+        ("CDSHandle", "u32"),
+        ("FileTime", SYS_TIME),
+        ("TimeOfLastUpdate", SYS_TIME),
+        ("LastFileLoaded", _PATH),
+        ("Name", _FULL_NAME),
+        ("TableLoadedOnce", "bool"),
+    ],
+)
+
+
+def _command(name: str, code: int, payload: Layout, text: str) -> Command:
+    return Command(f"CFE_TBL_{name}", CMD_MID, code, payload, text)
+
+
+_NOTHING = Layout("no payload", [])
+NOOP = _command("NOOP", 0, _NOTHING, "Say in an event that Table Services run, and their version.")
+RESET_COUNTERS = _command("RESET_COUNTERS", 1, _NOTHING, "Set the command and validation counters to zero.")
+LOAD = _command("LOAD", 2, _LOAD, "Read a table file into the inactive image of its table.")
+DUMP = _command("DUMP", 3, _DUMP, "Write the active (1) or inactive (0) image of a table to a file.")
+VALIDATE = _command("VALIDATE", 4, _VALIDATE, "Have the active (1) or inactive (0) image of a table validated.")
+ACTIVATE = _command("ACTIVATE", 5, _TABLE_NAME, "Let a table's owner switch to the validated inactive image.")
+DUMP_REGISTRY = _command("DUMP_REGISTRY", 6, _DUMP_REGISTRY, "Write the registry of all tables to a file.")
+SEND_REGISTRY = _command("SEND_REGISTRY", 7, _TABLE_NAME, "Send a table's registry entry with the next housekeeping.")
+DELETE_CDS = _command("DELETE_CDS", 8, _TABLE_NAME, "Delete what the CDS holds of a critical table without owner.")
+ABORT_LOAD = _command("ABORT_LOAD", 9, _TABLE_NAME, "Give up a load that was begun.")
+SEND_HK = Command("CFE_TBL_SEND_HK", SEND_HK_MID, text="Send housekeeping; also writes the dumps that are ready.")
+
+COMMANDS: tuple[Command, ...] = (
+    NOOP,
+    RESET_COUNTERS,
+    LOAD,
+    DUMP,
+    VALIDATE,
+    ACTIVATE,
+    DUMP_REGISTRY,
+    SEND_REGISTRY,
+    DELETE_CDS,
+    ABORT_LOAD,
+    SEND_HK,
+)
+
+HK_TLM = Telemetry("CFE_TBL_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Counters, and what was last validated and loaded.")
+REG_TLM = Telemetry("CFE_TBL_REG_TLM", REG_TLM_MID, REGISTRY_PACKET, "The registry entry of one table.")
+TELEMETRY: tuple[Telemetry, ...] = (HK_TLM, REG_TLM)
 
 
 def sys_time(time: tuple[int, int]) -> dict[str, int]:

@@ -95,6 +95,7 @@ class Table:
         buffers: its own one or two; none for a user-defined address.
         active: the image that apps see; None until the first load.
         loading: the image of a load in progress.
+        cds_handle: the block of the CDS that keeps a critical table's image; 0 for all others.
         accesses: the handles on it.
         notify: (message id, function code, parameter) of the owner's wish to be told of requests.
     """
@@ -105,7 +106,7 @@ class Table:
         self.double_buffered = bool(options & OPT_DBL_BUFFER)
         self.dump_only = bool(options & OPT_DUMP_ONLY)
         self.user_defined = bool(options & _USR_DEF_BIT)
-        self.critical = False
+        self.cds_handle = UNDEFINED
         self.validator = validator
         self.owner = owner
         self.reg_id = UNDEFINED
@@ -119,6 +120,11 @@ class Table:
         self.validation: Validation | None = None
         self.dump: Dump | None = None
         self.notify: tuple[int, int, int] | None = None
+
+    @property
+    def critical(self) -> bool:
+        """Whether its image outlives a processor reset."""
+        return self.cds_handle != UNDEFINED
 
     @property
     def is_update_pending(self) -> bool:

@@ -11,8 +11,8 @@ from cfepy.config import PlatformConfig
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
 from cfepy.status import (
-    CFE_ES_NOT_IMPLEMENTED,
     CFE_SUCCESS,
+    CFE_TBL_ERR_INVALID_NAME,
     CFE_TBL_INFO_DUMP_PENDING,
     CFE_TBL_INFO_NO_VALIDATION_PENDING,
     CFE_TBL_INFO_TABLE_LOCKED,
@@ -26,9 +26,11 @@ from cfepy.status import (
 from cfepy.tbl import events as eid
 from cfepy.tbl.access import TableAccess
 from cfepy.tbl.buffers import BufferMemory, Bytes
+from cfepy.tbl.critical import CriticalTables
 from cfepy.tbl.dumps import Dumps
-from cfepy.tbl.loads import Files, Loads, Refused, TableFile
+from cfepy.tbl.loads import Loads
 from cfepy.tbl.registry import OPT_CRITICAL, Registry, Table, TableHandle, Validator
+from cfepy.tbl.table_file import Files, Refused, TableFile
 from cfepy.tbl.task import TableTask
 
 
@@ -44,16 +46,19 @@ class TableServices(TableAccess):
 
     def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, files: Files) -> None:
         shared_size = max(config.tbl_max_sngl_table_size, config.tbl_max_dbl_table_size)
-        memory = BufferMemory(config.tbl_buf_memory_bytes, config.tbl_max_simultaneous_loads, shared_size)
-        self._pool_bytes = config.tbl_buf_memory_bytes
+        memory = BufferMemory(ports, config.tbl_buf_memory_bytes, config.tbl_max_simultaneous_loads, shared_size)
+        self._config = config
+        self._memory = memory
+        self._critical = CriticalTables(ports, config.tbl_max_critical_tables)
         super().__init__(kernel, ports, Registry(config, memory))
-        self._loads = Loads(self.registry, memory, ports, files)
+        self._loads = Loads(self.registry, memory, ports, files, self._critical)
         self._dumps = Dumps(memory, config, ports, files)
-        self.task = TableTask(ports, config, files, self.registry, self._loads, self._dumps, memory)
+        self.task = TableTask(ports, config, files, self.registry, self._loads, self._dumps, memory, self._critical)
 
     def early_init(self) -> None:
-        """What is done before any task runs (CFE_TBL_EarlyInit): the table buffer pool takes its RAM."""
-        self._ports.memory.claim("CFE_TBL", "table buffers", self._pool_bytes)
+        """What is done before any task runs (CFE_TBL_EarlyInit): the buffer pool, and the critical table registry."""
+        self._memory.early_init()
+        self._critical.early_init()
 
     def task_main(self) -> None:
         """The whole of the CFE_TBL task."""
@@ -67,12 +72,13 @@ class TableServices(TableAccess):
         Args:
             name: 1 to 15 characters; the full name is "APP.name".
             size: bytes.
-            options: OPT_* joined by |. No Critical Data Store holds tables yet: OPT_CRITICAL gives an ordinary table.
+            options: OPT_* joined by |. With OPT_CRITICAL the image outlives a processor reset.
             validate: called with each image before it is used, or None to take any.
 
         Returns:
-            The handle; `handle.status` is CFE_SUCCESS, CFE_TBL_WARN_DUPLICATE (the app has that table already) or
-            CFE_TBL_WARN_NOT_CRITICAL.
+            The handle; `handle.status` is CFE_SUCCESS, CFE_TBL_WARN_DUPLICATE (the app has that table already),
+            CFE_TBL_INFO_RECOVERED_TBL (a critical table with its image from before the reset) or
+            CFE_TBL_WARN_NOT_CRITICAL (the CDS did not take it).
 
         Raises:
             CfeError: the status that NASA's function returns; an event tells the ground too.
@@ -88,11 +94,14 @@ class TableServices(TableAccess):
             text = f"{app_name} Failed to Register table '{name}', Status={error.hex}"
             self._event(eid.CFE_TBL_REGISTER_ERR_EID, eid.ERROR, text)
             raise
-        if options & OPT_CRITICAL:
-            status = CFE_ES_NOT_IMPLEMENTED & 0xFFFFFFFF
-            self._log("Register", f"Failed to register '{full_name}' as a CDS (ErrCode=0x{status:08X})")
-            return access.handle.with_status(CFE_TBL_WARN_NOT_CRITICAL)
-        return access.handle
+        return access.handle.with_status(self._make_critical(access.table)) if options & OPT_CRITICAL else access.handle
+
+    def _make_critical(self, table: Table) -> int:
+        try:
+            return self._critical.register(table)
+        except CfeError as error:
+            self._log("Register", f"Failed to register '{table.name}' as a CDS (ErrCode={error.hex})")
+            return CFE_TBL_WARN_NOT_CRITICAL
 
     def share(self, full_name: str) -> TableHandle:
         """A handle on another app's table, "APP.name" (CFE_TBL_Share).
@@ -104,6 +113,8 @@ class TableServices(TableAccess):
         try:
             return self.registry.connect(self.registry.by_name(full_name), app_id).handle
         except CfeError as error:
+            if error.status == CFE_TBL_ERR_INVALID_NAME:
+                self._log("Share", f"Table '{full_name}' not found in Registry")
             text = f"{app_name} Failed to Share '{full_name}', Status={error.hex}"
             self._event(eid.CFE_TBL_SHARE_ERR_EID, eid.ERROR, text)
             raise
@@ -136,7 +147,7 @@ class TableServices(TableAccess):
         """
         access = self._access("Load", handle, owner_only=True)
         table, caller = access.table, self._caller()[1]
-        file = TableFile(source) if isinstance(source, str) else None
+        file = TableFile(source, self._config) if isinstance(source, str) else None
         try:
             self._loads.reserve(table, from_file=file is not None)
         except Refused as refused:
@@ -273,6 +284,7 @@ class TableServices(TableAccess):
         table.active.recompute_crc()
         for other in table.accesses:
             other.updated = other.updated or other.app_id != access.app_id
+        self._critical.save(table)
 
     def notify_by_message(self, handle: int, msg_id: int, fcn_code: int, parameter: int) -> None:
         """Have a command sent whenever the ground asks for something of the table (CFE_TBL_NotifyByMessage).

@@ -6,7 +6,8 @@ The five services do not import each other; what TIME needs of them it finds in 
 from __future__ import annotations
 
 from cfepy.time.clock import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID
-from cfepy.time.service import ResetVars, TimeServices
+from cfepy.time.packets import COMMANDS, TELEMETRY
+from cfepy.time.service import TimeServices
 from cfepy.time.systime import (
     A_GT_B,
     A_LT_B,
@@ -14,6 +15,7 @@ from cfepy.time.systime import (
     SysTime,
     add,
     compare,
+    copy,
     micro2sub_secs,
     print_,
     sub2micro_secs,
@@ -26,12 +28,14 @@ __all__ = [
     "CLOCK_FLYWHEEL",
     "CLOCK_INVALID",
     "CLOCK_VALID",
+    "COMMANDS",
     "EQUAL",
-    "ResetVars",
+    "TELEMETRY",
     "SysTime",
     "TimeServices",
     "add",
     "compare",
+    "copy",
     "micro2sub_secs",
     "print_",
     "sub2micro_secs",

@@ -1,34 +1,37 @@
-"""Message ids, function codes and packet layouts of Time Services (default_cfe_time_msgstruct.h). Imports cfepy.msg."""
+"""Commands and telemetry of Time Services: message ids, function codes, layouts (default_cfe_time_msgstruct.h).
+
+Imports cfepy.msg.
+"""
 
 from __future__ import annotations
 
-from cfepy.msg import Layout
+from cfepy.msg import Command, Layout, Telemetry
 
-CFE_TIME_CMD_MID = 0x1805
-CFE_TIME_SEND_HK_MID = 0x180D
-CFE_TIME_TONE_CMD_MID = 0x1810
-CFE_TIME_ONEHZ_CMD_MID = 0x1811
-CFE_TIME_DATA_CMD_MID = 0x1860
-CFE_TIME_SEND_CMD_MID = 0x1862
-CFE_TIME_HK_TLM_MID = 0x0805
-CFE_TIME_DIAG_TLM_MID = 0x0806
+CMD_MID = 0x1805
+SEND_HK_MID = 0x180D
+TONE_CMD_MID = 0x1810
+ONEHZ_CMD_MID = 0x1811
+DATA_CMD_MID = 0x1860
+SEND_CMD_MID = 0x1862
+HK_TLM_MID = 0x0805
+DIAG_TLM_MID = 0x0806
 
-CFE_TIME_NOOP_CC = 0
-CFE_TIME_RESET_COUNTERS_CC = 1
-CFE_TIME_SEND_DIAGNOSTIC_CC = 2
-CFE_TIME_SET_SOURCE_CC = 3
-CFE_TIME_SET_STATE_CC = 4
-CFE_TIME_ADD_DELAY_CC = 5
-CFE_TIME_SUB_DELAY_CC = 6
-CFE_TIME_SET_TIME_CC = 7
-CFE_TIME_SET_MET_CC = 8
-CFE_TIME_SET_STCF_CC = 9
-CFE_TIME_SET_LEAP_SECONDS_CC = 10
-CFE_TIME_ADD_ADJUST_CC = 11
-CFE_TIME_SUB_ADJUST_CC = 12
-CFE_TIME_ADD_ONE_HZ_ADJUSTMENT_CC = 13
-CFE_TIME_SUB_ONE_HZ_ADJUSTMENT_CC = 14
-CFE_TIME_SET_SIGNAL_CC = 15
+NOOP_CC = 0
+RESET_COUNTERS_CC = 1
+SEND_DIAGNOSTIC_CC = 2
+SET_SOURCE_CC = 3
+SET_STATE_CC = 4
+ADD_DELAY_CC = 5
+SUB_DELAY_CC = 6
+SET_TIME_CC = 7
+SET_MET_CC = 8
+SET_STCF_CC = 9
+SET_LEAP_SECONDS_CC = 10
+ADD_ADJUST_CC = 11
+SUB_ADJUST_CC = 12
+ADD_ONE_HZ_ADJUSTMENT_CC = 13
+SUB_ONE_HZ_ADJUSTMENT_CC = 14
+SET_SIGNAL_CC = 15
 
 SYS_TIME = Layout("CFE_TIME_SysTime_t", [("Seconds", "u32"), ("Subseconds", "u32")])
 
@@ -105,3 +108,94 @@ STATE_COMMAND = Layout("CFE_TIME_StateCmd_Payload_t", [("ClockState", "i16")])
 SOURCE_COMMAND = Layout("CFE_TIME_SourceCmd_Payload_t", [("TimeSource", "i16")])
 SIGNAL_COMMAND = Layout("CFE_TIME_SignalCmd_Payload_t", [("ToneSource", "i16")])
 LEAPS_COMMAND = Layout("CFE_TIME_LeapsCmd_Payload_t", [("LeapSeconds", "i16")])
+
+RESET_VARS = Layout(
+    "CFE_TIME_ResetVars_t",
+    [
+        ("Signature", "u32"),
+        ("LeapSeconds", "i16"),
+        ("ClockSignal", "u16"),
+        ("CurrentMET", SYS_TIME),
+        ("CurrentSTCF", SYS_TIME),
+        ("CurrentDelay", SYS_TIME),
+    ],
+)
+
+NOOP = Command("CFE_TIME_NOOP", CMD_MID, NOOP_CC, text="Answer with an event.")
+RESET_COUNTERS = Command("CFE_TIME_RESET_COUNTERS", CMD_MID, RESET_COUNTERS_CC, text="Set the counters to 0.")
+SEND_DIAGNOSTIC = Command("CFE_TIME_SEND_DIAGNOSTIC", CMD_MID, SEND_DIAGNOSTIC_CC, text="Send the diagnostic packet.")
+SET_SOURCE = Command(
+    "CFE_TIME_SET_SOURCE", CMD_MID, SET_SOURCE_CC, SOURCE_COMMAND, "Take the time from inside, 1, or outside, 2."
+)
+SET_STATE = Command(
+    "CFE_TIME_SET_STATE",
+    CMD_MID,
+    SET_STATE_CC,
+    STATE_COMMAND,
+    "Say that the time is wrong, -1, or right, 0, or let the clock go on without a tone, 1.",
+)
+ADD_DELAY = Command(
+    "CFE_TIME_ADD_DELAY", CMD_MID, ADD_DELAY_CC, TIME_COMMAND, "Tell a client how much too late its tone comes."
+)
+SUB_DELAY = Command(
+    "CFE_TIME_SUB_DELAY", CMD_MID, SUB_DELAY_CC, TIME_COMMAND, "Tell a client how much too early its tone comes."
+)
+SET_TIME = Command("CFE_TIME_SET_TIME", CMD_MID, SET_TIME_CC, TIME_COMMAND, "Set the spacecraft time through STCF.")
+SET_MET = Command("CFE_TIME_SET_MET", CMD_MID, SET_MET_CC, TIME_COMMAND, "Set the mission elapsed time.")
+SET_STCF = Command("CFE_TIME_SET_STCF", CMD_MID, SET_STCF_CC, TIME_COMMAND, "Set what is added to MET.")
+SET_LEAP_SECONDS = Command(
+    "CFE_TIME_SET_LEAP_SECONDS", CMD_MID, SET_LEAP_SECONDS_CC, LEAPS_COMMAND, "Set the seconds that TAI is before UTC."
+)
+ADD_ADJUST = Command("CFE_TIME_ADD_ADJUST", CMD_MID, ADD_ADJUST_CC, TIME_COMMAND, "Add to STCF once.")
+SUB_ADJUST = Command("CFE_TIME_SUB_ADJUST", CMD_MID, SUB_ADJUST_CC, TIME_COMMAND, "Subtract from STCF once.")
+ADD_ONE_HZ_ADJUSTMENT = Command(
+    "CFE_TIME_ADD_ONE_HZ_ADJUSTMENT",
+    CMD_MID,
+    ADD_ONE_HZ_ADJUSTMENT_CC,
+    ONE_HZ_COMMAND,
+    "Add to STCF every second.",
+)
+SUB_ONE_HZ_ADJUSTMENT = Command(
+    "CFE_TIME_SUB_ONE_HZ_ADJUSTMENT",
+    CMD_MID,
+    SUB_ONE_HZ_ADJUSTMENT_CC,
+    ONE_HZ_COMMAND,
+    "Subtract from STCF every second.",
+)
+SET_SIGNAL = Command(
+    "CFE_TIME_SET_SIGNAL", CMD_MID, SET_SIGNAL_CC, SIGNAL_COMMAND, "Take the primary tone, 1, or the redundant one, 2."
+)
+SEND_HK = Command("CFE_TIME_SEND_HK", SEND_HK_MID, text="Send the housekeeping packet.")
+TONE_CMD = Command("CFE_TIME_TONE_CMD", TONE_CMD_MID, text="Tell that there was a tone.")
+ONEHZ_CMD = Command("CFE_TIME_ONEHZ_CMD", ONEHZ_CMD_MID, text="Tell that a second is over.")
+DATA_CMD = Command("CFE_TIME_DATA_CMD", DATA_CMD_MID, payload=TONE_DATA, text="Tell the time at the tone.")
+SEND_CMD = Command("CFE_TIME_SEND_CMD", SEND_CMD_MID, text="Ask a server for the time at the tone.")
+
+COMMANDS: tuple[Command, ...] = (
+    NOOP,
+    RESET_COUNTERS,
+    SEND_DIAGNOSTIC,
+    SET_SOURCE,
+    SET_STATE,
+    ADD_DELAY,
+    SUB_DELAY,
+    SET_TIME,
+    SET_MET,
+    SET_STCF,
+    SET_LEAP_SECONDS,
+    ADD_ADJUST,
+    SUB_ADJUST,
+    ADD_ONE_HZ_ADJUSTMENT,
+    SUB_ONE_HZ_ADJUSTMENT,
+    SET_SIGNAL,
+    SEND_HK,
+    TONE_CMD,
+    ONEHZ_CMD,
+    DATA_CMD,
+    SEND_CMD,
+)
+
+HK_TLM = Telemetry("CFE_TIME_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Counters, clock state, MET and STCF.")
+DIAG_TLM = Telemetry("CFE_TIME_DIAG_TLM", DIAG_TLM_MID, DIAGNOSTIC, "All that the clock knows of itself.")
+
+TELEMETRY: tuple[Telemetry, ...] = (HK_TLM, DIAG_TLM)

@@ -1,12 +1,12 @@
 """Time Services as applications and the other services call them (cfe_time.h).
 
-MET, STCF, leap seconds, TAI and UTC on the kernel's virtual time; spacecraft time is TAI. Imports no other service.
+MET, STCF, leap seconds, TAI and UTC on the kernel's virtual time. Imports no other service.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any
 
 from cfepy.config import PlatformConfig
 from cfepy.ids import ES_APPID_BASE, to_index
@@ -16,27 +16,22 @@ from cfepy.rtos.units import NS_PER_S
 from cfepy.status import (
     CFE_TIME_BAD_ARGUMENT,
     CFE_TIME_CALLBACK_NOT_REGISTERED,
+    CFE_TIME_NOT_IMPLEMENTED,
     CFE_TIME_TOO_MANY_SYNCH_CALLBACKS,
     CfeError,
 )
+from cfepy.time import reset_vars
 from cfepy.time import systime as st
 from cfepy.time.clock import SpacecraftTime
 from cfepy.time.commands import TimeCommands
-from cfepy.time.systime import SysTime, from_ticks, to_ticks
+from cfepy.time.settings import TimeSettings
+from cfepy.time.systime import SysTime, from_ticks
 from cfepy.time.task import TimeTask
-from cfepy.time.telemetry import RESET_AREA_EXISTING, clock_info
+from cfepy.time.telemetry import clock_info
 from cfepy.time.tone import Tone
+from cfepy.time.tone_data import ToneDataSender
 
 SynchCallback = Callable[[], object]
-
-
-class ResetVars(NamedTuple):
-    """What outlives a processor reset (CFE_TIME_ResetVars_t)."""
-
-    met: SysTime
-    stcf: SysTime
-    delay: SysTime
-    leap_seconds: int
 
 
 class TimeServices:
@@ -51,7 +46,6 @@ class TimeServices:
         clock: reference state, and the cached telemetry stamp `clock.stamp_now` of `clock.stamp_at`.
         tone: the tone's state and counters.
         commands: counters of the commands.
-        reset_vars: as of the last housekeeping packet, to be given to `early_init` after a processor reset.
         now: spacecraft time as SysTime.
         stamp: spacecraft time for a telemetry header, seconds << 16 | upper subseconds.
     """
@@ -60,39 +54,35 @@ class TimeServices:
     stamp: Callable[[], int]
 
     def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig) -> None:
-        self.clock = SpacecraftTime(kernel)
+        self._settings = settings = TimeSettings.of(config)
+        self.clock = SpacecraftTime(kernel, settings.utc, settings.client)
         self.now = self.clock.now
         self.stamp = self.clock.stamp
-        self.reset_vars: ResetVars | None = None
         self._kernel = kernel
         self._ports = ports
         self._config = config
         self._callbacks: dict[int, SynchCallback] = {}
+        self._kept: dict[str, Any] = {}
         tone_ready = Semaphore(kernel, 0, 1, "TIME_TONE_SEM")
-        self.tone = Tone(self.clock, ports, config.time_start_fly_secs, tone_ready.give, self._notify)
-        self.commands = TimeCommands(ports, self.clock, self.tone, self._save)
-        self._task = TimeTask(kernel, ports, config, self.clock, self.tone, self.commands, tone_ready)
+        self.tone = Tone(self.clock, settings, ports, tone_ready.give, self._notify)
+        self.commands = TimeCommands(ports, self.clock, self.tone, settings, self._save)
+        self._sender = ToneDataSender(ports, self.clock, self.tone, settings)
+        self._task = TimeTask(kernel, ports, config, settings, self.tone, self._sender, self.commands, tone_ready)
 
-    def early_init(self, saved: ResetVars | None = None) -> None:
+    def early_init(self, kept: dict[str, Any]) -> None:
         """Start the clock, before any task exists (CFE_TIME_EarlyInit).
 
         Args:
-            saved: what `reset_vars` was before a processor reset; None starts with the configured values.
+            kept: objects that outlive a processor reset; "TIME" are the reset variables. They are put there anew with
+                each housekeeping packet.
         """
-        config, clock = self._config, self.clock
-        start = saved or ResetVars(
-            SysTime(config.time_def_met_secs, 0),
-            SysTime(config.time_def_stcf_secs, 0),
-            SysTime(0, 0),
-            config.time_def_leaps,
-        )
-        if saved is not None:
-            self.commands.reset_area = RESET_AREA_EXISTING
-        clock.leap_seconds = start.leap_seconds
-        clock.delay = to_ticks(start.delay)
-        clock.set(met=to_ticks(start.met), stcf=to_ticks(start.stcf), latch=clock.local())
-        self.tone.virtual_met = start.met.seconds
-        self._task.whole_second_ns = self._kernel.now - (start.met.subseconds * NS_PER_S >> 32)
+        clock = self.clock
+        self._kept = kept
+        self.commands.data_store = reset_vars.start(kept, clock, self.tone, self._settings)
+        clock.update(latch=clock.local())
+        met = from_ticks(clock.reference.met)
+        self.tone.virtual_met = met.seconds
+        self._task.whole_second_ns = self._kernel.now - (met.subseconds * NS_PER_S >> 32)
 
     def task_main(self) -> None:
         """The main task of CFE_TIME (CFE_TIME_TaskMain)."""
@@ -103,10 +93,7 @@ class TimeServices:
         self._callbacks.pop(app_id, None)
 
     def _save(self) -> None:
-        clock = self.clock
-        self.reset_vars = ResetVars(
-            from_ticks(clock.current_met()), from_ticks(clock.stcf), from_ticks(clock.delay), clock.leap_seconds
-        )
+        reset_vars.save(self._kept, self.clock, self.tone)
 
     # -- what time it is -------------------------------------------------------------------------------------------
 
@@ -115,7 +102,7 @@ class TimeServices:
         return st.print_(self.clock.now())
 
     def get_time(self) -> SysTime:
-        """Spacecraft time, which is TAI (CFE_TIME_GetTime)."""
+        """Spacecraft time: TAI, or UTC when so configured (CFE_TIME_GetTime)."""
         return self.clock.now()
 
     def get_tai(self) -> SysTime:
@@ -140,11 +127,11 @@ class TimeServices:
 
     def get_stcf(self) -> SysTime:
         """Spacecraft time correlation factor, what is added to MET (CFE_TIME_GetSTCF)."""
-        return from_ticks(self.clock.stcf)
+        return from_ticks(self.clock.reference.stcf)
 
     def get_leap_seconds(self) -> int:
         """Seconds that TAI is ahead of UTC (CFE_TIME_GetLeapSeconds)."""
-        return self.clock.leap_seconds
+        return self.clock.reference.leap_seconds
 
     def get_clock_state(self) -> int:
         """-1 not set, 0 valid, 1 flywheel (CFE_TIME_GetClockState)."""
@@ -157,6 +144,7 @@ class TimeServices:
     # -- arithmetic ------------------------------------------------------------------------------------------------
 
     add = staticmethod(st.add)
+    copy = staticmethod(st.copy)
     subtract = staticmethod(st.subtract)
     compare = staticmethod(st.compare)
     sub2micro_secs = staticmethod(st.sub2micro_secs)
@@ -165,7 +153,8 @@ class TimeServices:
 
     def met2sc_time(self, met: tuple[int, int]) -> SysTime:
         """The spacecraft time that a mission elapsed time is (CFE_TIME_MET2SCTime)."""
-        return st.add(met, self.get_stcf())
+        tai = st.add(met, self.get_stcf())
+        return st.subtract(tai, (self.get_leap_seconds(), 0)) if self._settings.utc else tai
 
     # -- signals ---------------------------------------------------------------------------------------------------
 
@@ -202,12 +191,46 @@ class TimeServices:
         """Call the callbacks in the order of the applications' slots (CFE_TIME_NotifyTimeSynchApps)."""
         slots = self._config.es_max_applications
         for app_id in sorted(self._callbacks, key=lambda app_id: to_index(app_id, ES_APPID_BASE, slots)):
-            self._callbacks[app_id]()
+            callback = self._callbacks.get(app_id)
+            if callback is not None:  # one that was called before may have ended this one's application
+                callback()
 
     def local1hz_isr(self) -> None:
         """A local 1 Hz signal from a board without timers (CFE_TIME_Local1HzISR)."""
         self._task.interrupt(self.clock.local())
 
     def external_tone(self) -> None:
-        """A tone from outside (CFE_TIME_ExternalTone)."""
+        """A tone from outside, at this instant (CFE_TIME_ExternalTone)."""
         self.tone.interrupt(self.clock.local())
+
+    def external_met(self, new_met: tuple[int, int]) -> None:
+        """Tell the MET at the tone, as seconds and subseconds (CFE_TIME_ExternalMET).
+
+        Raises:
+            CfeError: CFE_TIME_NOT_IMPLEMENTED without `time_cfg_src_met`; NASA's does not even compile then.
+        """
+        self._need_source("met")
+        self._sender.send_met(new_met)
+
+    def external_gps(self, new_time: tuple[int, int], new_leaps: int) -> None:
+        """Tell the spacecraft time at the tone and its leap seconds (CFE_TIME_ExternalGPS).
+
+        Raises:
+            CfeError: CFE_TIME_NOT_IMPLEMENTED without `time_cfg_src_gps`.
+        """
+        self._need_source("gps")
+        self._sender.send_time(new_time, new_leaps)
+
+    def external_time(self, new_time: tuple[int, int]) -> None:
+        """Tell the spacecraft time at the tone (CFE_TIME_ExternalTime).
+
+        Raises:
+            CfeError: CFE_TIME_NOT_IMPLEMENTED without `time_cfg_src_time`.
+        """
+        self._need_source("time")
+        self._sender.send_time(new_time)
+
+    def _need_source(self, source: str) -> None:
+        if self._settings.external != source:
+            text = f"the board's limits have to say time_cfg_source: true, time_cfg_src_{source}: true"
+            raise CfeError(CFE_TIME_NOT_IMPLEMENTED, text)

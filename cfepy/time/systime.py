@@ -49,6 +49,11 @@ def ticks_of_ns(duration_ns: int) -> int:
     return -(-(duration_ns << 32) // NS_PER_S)
 
 
+def copy(time: tuple[int, int]) -> SysTime:
+    """Another time of the same value (the macro CFE_TIME_Copy); a SysTime never changes, so sharing it does as well."""
+    return SysTime(*time)
+
+
 def add(first: tuple[int, int], second: tuple[int, int]) -> SysTime:
     """The sum; seconds beyond 32 bits roll over (CFE_TIME_Add)."""
     return from_ticks(to_ticks(first) + to_ticks(second))

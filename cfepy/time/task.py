@@ -7,17 +7,17 @@ CFE_TIME_Local1HzTask and the timer "cFS-1Hz". Imports no other service.
 from __future__ import annotations
 
 from cfepy.config import PlatformConfig
-from cfepy.msg import CMD_HEADER_SIZE, command
 from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY, Ports
 from cfepy.rtos import Kernel, Semaphore
 from cfepy.rtos.units import NS_PER_S
 from cfepy.time import events as ev
 from cfepy.time import packets as pk
-from cfepy.time.clock import SpacecraftTime
 from cfepy.time.commands import TimeCommands
+from cfepy.time.settings import TimeSettings
 from cfepy.time.systime import ticks_of_ns
-from cfepy.time.telemetry import fields_of
-from cfepy.time.tone import SECOND, Tone
+from cfepy.time.telemetry import ticks_of
+from cfepy.time.tone import SECOND, Tone, ToneData
+from cfepy.time.tone_data import ToneDataSender
 from cfepy.versions import version_string
 
 PIPE_DEPTH = 12
@@ -26,6 +26,7 @@ TONE_TASK = ("TIME_TONE_TASK", 4096, 25)
 ONE_HZ_TASK = ("TIME_ONEHZ_TASK", 8192, 25)
 """Name, stack in bytes, priority of the child tasks."""
 
+MAIN_PERF_ID, ONE_HZ_PERF_ID, ONE_HZ_TASK_PERF_ID, TONE_TASK_PERF_ID = 6, 8, 10, 11
 TIMER_NAME = "cFS-1Hz"
 TIMER_PRIORITY = 0
 
@@ -37,12 +38,13 @@ class TimeTask:
         kernel: the processor.
         ports: the other services.
         config: limits.
-        clock: the clock.
+        settings: server or client, simulated tone or not.
         tone: the tone.
+        sender: sends the time at the tone.
         commands: handles the pipe; the tone's messages are added to its table.
+        tone_ready: given at each good tone.
 
     Attributes:
-        tone_ready: given at each good tone.
         one_hz_ready: given at each local 1 Hz signal.
         whole_second_ns: a virtual time at which MET had no subseconds; the 1 Hz signal keeps to it.
     """
@@ -52,40 +54,44 @@ class TimeTask:
         kernel: Kernel,
         ports: Ports,
         config: PlatformConfig,
-        clock: SpacecraftTime,
+        settings: TimeSettings,
         tone: Tone,
+        sender: ToneDataSender,
         commands: TimeCommands,
         tone_ready: Semaphore,
     ) -> None:
-        self.tone_ready = tone_ready
         self.one_hz_ready = Semaphore(kernel, 0, 1, "TIME_ONEHZ_SEM")
         self.whole_second_ns = 0
         self._kernel = kernel
         self._ports = ports
         self._config = config
-        self._clock = clock
+        self._settings = settings
         self._tone = tone
         self._commands = commands
+        self._tone_ready = tone_ready
         self._one_hz_latch = 0
-        self._signals = [bytes(command(mid, 0)) for mid in (pk.CFE_TIME_TONE_CMD_MID, pk.CFE_TIME_SEND_CMD_MID)]
-        self._one_hz_signal = bytes(command(pk.CFE_TIME_ONEHZ_CMD_MID, 0))
-        for mid, size, handler in (
-            (pk.CFE_TIME_ONEHZ_CMD_MID, CMD_HEADER_SIZE, self._one_hz_command),
-            (pk.CFE_TIME_TONE_CMD_MID, CMD_HEADER_SIZE, self._tone_command),
-            (pk.CFE_TIME_SEND_CMD_MID, CMD_HEADER_SIZE, self._send_command),
-            (pk.CFE_TIME_DATA_CMD_MID, CMD_HEADER_SIZE + pk.TONE_DATA.size, self._data_command),
-        ):
-            commands.table.add_message(mid, size, handler)
+        told = [pk.TONE_CMD, pk.SEND_CMD] if settings.fake_tone else [pk.TONE_CMD]
+        self._signals = [command.packet() for command in told]
+        self._one_hz_signal = pk.ONEHZ_CMD.packet()
+        commands.table.handle(pk.ONEHZ_CMD, self._one_hz_command)
+        commands.table.handle(pk.TONE_CMD, lambda packet: tone.take_signal())
+        commands.table.handle(pk.DATA_CMD, self._data_command)
+        if not settings.client:
+            commands.table.handle(pk.SEND_CMD, lambda packet: sender.send())
 
     # -- tasks -----------------------------------------------------------------------------------------------------
 
     def main(self) -> None:
         """The task CFE_TIME (CFE_TIME_TaskMain)."""
+        es = self._ports.es
+        es.perf_log_entry(MAIN_PERF_ID)
         pipe = self._init()
-        self._ports.es.wait_for_system_state(SYSTEM_CORE_READY, self._config.es_core_max_startup_ms)
+        es.wait_for_system_state(SYSTEM_CORE_READY, self._config.es_core_max_startup_ms)
         while True:
-            self._ports.es.increment_task_counter()
+            es.increment_task_counter()
+            es.perf_log_exit(MAIN_PERF_ID)
             packet = self._ports.sb.receive_buffer(pipe, PEND_FOREVER)
+            es.perf_log_entry(MAIN_PERF_ID)
             if packet is not None:
                 self._commands.process(packet)
 
@@ -95,39 +101,50 @@ class TimeTask:
         ports.es.create_child_task(TONE_TASK[0], self._tone_task, TONE_TASK[1], TONE_TASK[2])
         ports.es.create_child_task(ONE_HZ_TASK[0], self._one_hz_task, ONE_HZ_TASK[1], ONE_HZ_TASK[2])
         pipe = ports.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
-        ports.sb.subscribe(pk.CFE_TIME_SEND_HK_MID, pipe)
-        for mid in (pk.CFE_TIME_TONE_CMD_MID, pk.CFE_TIME_DATA_CMD_MID, pk.CFE_TIME_ONEHZ_CMD_MID):
-            ports.sb.subscribe_local(mid, pipe, self._config.sb_default_msg_limit)
-        ports.sb.subscribe(pk.CFE_TIME_SEND_CMD_MID, pipe)
-        ports.sb.subscribe(pk.CFE_TIME_CMD_MID, pipe)
+        ports.sb.subscribe(pk.SEND_HK_MID, pipe)
+        for mid in (pk.TONE_CMD_MID, pk.DATA_CMD_MID, pk.ONEHZ_CMD_MID):
+            if self._settings.client:
+                ports.sb.subscribe(mid, pipe)
+            else:
+                ports.sb.subscribe_local(mid, pipe, self._config.sb_default_msg_limit)
+        if not self._settings.client:
+            ports.sb.subscribe(pk.SEND_CMD_MID, pipe)
+        ports.sb.subscribe(pk.CMD_MID, pipe)
         text = f"cFE TIME Initialized: {version_string('CFE_TIME')}"
-        ports.evs.send_event(ev.CFE_TIME_INIT_EID, ev.INFORMATION, text)
+        ports.evs.send_event(ev.INIT_EID, ev.INFORMATION, text)
         self._kernel.spawn(TIMER_NAME, self._timer, TIMER_PRIORITY)
         return pipe
 
     def _tone_task(self) -> None:
+        ports = self._ports
         while True:
-            self._ports.es.increment_task_counter()
-            self.tone_ready.take()
+            ports.es.increment_task_counter()
+            self._tone_ready.take()
+            ports.es.perf_log_entry(TONE_TASK_PERF_ID)
             for signal in self._signals:
-                self._ports.sb.transmit_msg(signal)
+                ports.sb.transmit_msg(signal)
             self._tone.counters.tone_task += 1
+            ports.es.perf_log_exit(TONE_TASK_PERF_ID)
 
     def _one_hz_task(self) -> None:
+        ports = self._ports
         while True:
-            self._ports.es.increment_task_counter()
+            ports.es.increment_task_counter()
             self.one_hz_ready.take()
+            ports.es.perf_log_entry(ONE_HZ_TASK_PERF_ID)
             if self._tone.auto_start_fly:
                 self._tone.auto_start_fly = False
-                self._ports.evs.send_event(ev.CFE_TIME_FLY_ON_EID, ev.INFORMATION, "Start FLYWHEEL")
-            self._ports.sb.transmit_msg(self._one_hz_signal)
+                ports.evs.send_event(ev.FLY_ON_EID, ev.INFORMATION, "Start FLYWHEEL")
+            ports.sb.transmit_msg(self._one_hz_signal)
             self._tone.counters.local_task += 1
+            ports.es.perf_log_exit(ONE_HZ_TASK_PERF_ID)
 
     def _timer(self) -> None:
         """The timer: it keeps to the instants at which MET is whole, so that a tone never moves the clock."""
         kernel = self._kernel
         due = kernel.now + NS_PER_S - (kernel.now - self.whole_second_ns) % NS_PER_S
-        self._tone.signal_latch = ticks_of_ns(due) - SECOND
+        if self._settings.fake_tone:
+            self._tone.signal_latch = ticks_of_ns(due) - SECOND  # so that the first tone is a good one
         while True:
             kernel.delay(due - kernel.now)
             self.interrupt(ticks_of_ns(due))
@@ -147,23 +164,13 @@ class TimeTask:
 
     def _one_hz_command(self, packet: bytes) -> None:
         """A second is over; it also makes the simulated tone (CFE_TIME_OneHzCmd)."""
+        self._ports.es.perf_log_entry(ONE_HZ_PERF_ID)
         self._tone.one_hz()
-        self._tone.interrupt(self._one_hz_latch)
-
-    def _tone_command(self, packet: bytes) -> None:
-        self._tone.counters.tone_signal += 1
+        self._ports.es.perf_log_exit(ONE_HZ_PERF_ID)
+        if self._settings.fake_tone:
+            self._tone.interrupt(self._one_hz_latch)
 
     def _data_command(self, packet: bytes) -> None:
-        self._tone.data()
-
-    def _send_command(self, packet: bytes) -> None:
-        """Somebody asks for the time at the tone (CFE_TIME_ToneSend)."""
-        clock = self._clock
-        met = clock.current_met() >> 32 if clock.flying else self._tone.virtual_met
-        payload = pk.TONE_DATA.pack(
-            AtToneMET={"Seconds": met},
-            AtToneSTCF=fields_of(clock.stcf),
-            AtToneLeapSeconds=clock.leap_seconds,
-            AtToneState=clock.state(),
-        )
-        self._ports.sb.transmit_msg(bytes(command(pk.CFE_TIME_DATA_CMD_MID, 0, payload)))
+        fields = pk.DATA_CMD.read(packet)
+        met, stcf = (ticks_of(fields[name]) for name in ("AtToneMET", "AtToneSTCF"))
+        self._tone.take_data(ToneData(met, stcf, fields["AtToneLeapSeconds"], fields["AtToneState"]))

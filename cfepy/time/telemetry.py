@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from cfepy.time import tone as tn
-from cfepy.time.clock import SpacecraftTime
-from cfepy.time.systime import MASK_32, from_ticks
-from cfepy.time.tone import Tone
+from cfepy.time.clock import ADD, SpacecraftTime
+from cfepy.time.systime import MASK_32, from_ticks, to_ticks
+from cfepy.time.tone import SIGNAL_PRIMARY, SOURCE_INTERNAL, Tone
 
 FLAG_CLKSET = 0x8000
 FLAG_FLYING = 0x4000
@@ -20,27 +19,25 @@ FLAG_ADD1HZ = 0x0100
 FLAG_ADDTCL = 0x0080
 FLAG_SERVER = 0x0040
 FLAG_GDTONE = 0x0020
+FLAG_REFERR = 0x0010
 """Clock state flags (CFE_TIME_FLAG_*)."""
-
-SOURCE_INTERNAL = 1
-SIGNAL_PRIMARY = 1
-MAX_LOCAL_CLOCK = (27, 0)
-"""CFE_PLATFORM_TIME_MAX_LOCAL_SECS, _SUBS; reported only, the simulated clock never rolls over."""
-
-RESET_AREA_NEW, RESET_AREA_EXISTING = 3, 4
-"""Where the start values came from (DataStoreStatus)."""
 
 
 def clock_info(clock: SpacecraftTime, tone: Tone) -> int:
-    """The clock state flags (CFE_TIME_GetClockInfo)."""
-    flags = FLAG_SRCINT | FLAG_SIGPRI | FLAG_ADDTCL | FLAG_SERVER
+    """The clock state flags (CFE_TIME_GetClockInfo); FLAG_REFERR is never set, since a reference is always whole."""
+    reference = clock.reference
+    flags = 0
     for is_set, flag in (
-        (clock.was_set, FLAG_CLKSET),
-        (clock.flying, FLAG_FLYING),
-        (tone.server_flying, FLAG_SRVFLY),
+        (reference.was_set, FLAG_CLKSET),
+        (reference.flying, FLAG_FLYING),
+        (tone.source == SOURCE_INTERNAL, FLAG_SRCINT),
+        (tone.signal == SIGNAL_PRIMARY, FLAG_SIGPRI),
+        (clock.server_flying, FLAG_SRVFLY),
         (tone.forced_to_fly, FLAG_CMDFLY),
-        (tone.adjustments.one_time_direction == tn.ADD, FLAG_ADDADJ),
-        (tone.adjustments.one_hz_direction == tn.ADD, FLAG_ADD1HZ),
+        (tone.adjustments.one_time_direction == ADD, FLAG_ADDADJ),
+        (tone.adjustments.one_hz_direction == ADD, FLAG_ADD1HZ),
+        (reference.delay_direction == ADD, FLAG_ADDTCL),
+        (not tone.settings.client, FLAG_SERVER),
         (tone.good, FLAG_GDTONE),
     ):
         if is_set:
@@ -54,6 +51,11 @@ def fields_of(ticks: int) -> dict[str, int]:
     return {"Seconds": time.seconds, "Subseconds": time.subseconds}
 
 
+def ticks_of(fields: Mapping[str, int]) -> int:
+    """The time that the fields of a CFE_TIME_SysTime_t are, in ticks."""
+    return to_ticks((fields["Seconds"], fields["Subseconds"]))
+
+
 def housekeeping(clock: SpacecraftTime, tone: Tone, commands: int, errors: int) -> Mapping[str, object]:
     """Fields of the housekeeping packet; 8-bit counters wrap.
 
@@ -63,48 +65,51 @@ def housekeeping(clock: SpacecraftTime, tone: Tone, commands: int, errors: int) 
         commands: command counter.
         errors: command error counter.
     """
+    reference = clock.reference
     return {
         "CommandCounter": commands & 0xFF,
         "CommandErrorCounter": errors & 0xFF,
         "ClockStateFlags": clock_info(clock, tone),
         "ClockStateAPI": clock.state(),
-        "LeapSeconds": clock.leap_seconds,
+        "LeapSeconds": reference.leap_seconds,
         "MET": fields_of(clock.current_met()),
-        "STCF": fields_of(clock.stcf),
-        "AdjustmentFactor": fields_of(tone.adjustments.one_hz),
+        "STCF": fields_of(reference.stcf),
+        "AdjustmentFactor": fields_of(reference.delay if tone.settings.client else tone.adjustments.one_hz),
     }
 
 
-def diagnostic(clock: SpacecraftTime, tone: Tone, version_at_reset: int, reset_area: int) -> Mapping[str, object]:
+def diagnostic(clock: SpacecraftTime, tone: Tone, version_at_reset: int, data_store: int) -> Mapping[str, object]:
     """Fields of the diagnostic packet.
 
     Args:
         clock: the clock.
         tone: the tone.
         version_at_reset: `clock.version` when counters were reset.
-        reset_area: RESET_AREA_NEW or RESET_AREA_EXISTING.
+        data_store: where the start values came from (cfepy.time.reset_vars).
     """
+    settings = tone.settings
     return {
         **_times(clock, tone),
         **_states(clock, tone),
         **_counts(tone),
         "VersionCounter": clock.version - version_at_reset & MASK_32,
         "VirtualMET": tone.virtual_met,
-        "MinElapsed": tn.MIN_ELAPSED,
-        "MaxElapsed": tn.MAX_ELAPSED,
-        "MaxLocalClock": {"Seconds": MAX_LOCAL_CLOCK[0], "Subseconds": MAX_LOCAL_CLOCK[1]},
-        "ToneOverLimit": tn.TONE_OVER_LIMIT,
-        "ToneUnderLimit": tn.TONE_UNDER_LIMIT,
-        "DataStoreStatus": reset_area,
+        "MinElapsed": settings.min_elapsed,
+        "MaxElapsed": settings.max_elapsed,
+        "MaxLocalClock": {"Seconds": settings.max_local.seconds, "Subseconds": settings.max_local.subseconds},
+        "ToneOverLimit": settings.tone_over_limit,
+        "ToneUnderLimit": settings.tone_under_limit,
+        "DataStoreStatus": data_store,
     }
 
 
 def _times(clock: SpacecraftTime, tone: Tone) -> dict[str, object]:
+    reference = clock.reference
     times = {
-        "AtToneMET": clock.met,
-        "AtToneSTCF": clock.stcf,
-        "AtToneDelay": clock.delay,
-        "AtToneLatch": clock.latch,
+        "AtToneMET": reference.met,
+        "AtToneSTCF": reference.stcf,
+        "AtToneDelay": reference.delay,
+        "AtToneLatch": reference.latch,
         "TimeSinceTone": clock.since_tone(),
         "CurrentLatch": clock.local(),
         "CurrentMET": clock.current_met(),
@@ -119,19 +124,20 @@ def _times(clock: SpacecraftTime, tone: Tone) -> dict[str, object]:
 
 
 def _states(clock: SpacecraftTime, tone: Tone) -> dict[str, object]:
+    reference = clock.reference
     return {
-        "AtToneLeapSeconds": clock.leap_seconds,
+        "AtToneLeapSeconds": reference.leap_seconds,
         "ClockStateAPI": clock.state(),
-        "ClockSetState": int(clock.was_set),
-        "ClockFlyState": int(clock.flying),
-        "ClockSource": SOURCE_INTERNAL,
-        "ClockSignal": SIGNAL_PRIMARY,
-        "ServerFlyState": int(tone.server_flying),
+        "ClockSetState": int(reference.was_set),
+        "ClockFlyState": int(reference.flying),
+        "ClockSource": tone.source,
+        "ClockSignal": tone.signal,
+        "ServerFlyState": int(clock.server_flying),
         "Forced2Fly": int(tone.forced_to_fly),
         "ClockStateFlags": clock_info(clock, tone),
         "OneTimeDirection": tone.adjustments.one_time_direction,
         "OneHzDirection": tone.adjustments.one_hz_direction,
-        "DelayDirection": tn.ADD,
+        "DelayDirection": reference.delay_direction,
     }
 
 

@@ -1,10 +1,11 @@
-"""Time at the tone: each second a tone tells when, a message tells which time it was, and the pair sets the clock.
+"""Time at the tone: a tone tells when, a message tells which time it was, and the pair sets the clock.
 
-This is a time server with a simulated tone and an internal source, cFE's default: the local 1 Hz interrupt makes the
-tone, and MET counts tones (CFE_TIME_Tone1HzISR, CFE_TIME_ToneVerify, CFE_TIME_Local1HzStateMachine). Without a good
-pair for some seconds the clock goes on by itself, which is called flywheel mode. A tone is taken at the instant its
-interrupt was due, not when the task got round to it: on a real processor that delay shakes the time and makes flywheel
-mode come and go. Imports no other service.
+A server with a simulated tone, cFE's default, makes the tone of its local 1 Hz signal and counts MET in tones; one with
+an external source takes MET or STCF from the message; a client takes all of the message (CFE_TIME_Tone1HzISR,
+CFE_TIME_ToneVerify, CFE_TIME_ToneUpdate, CFE_TIME_Local1HzStateMachine). Without a good pair for some seconds the clock
+goes on by itself, which is called flywheel mode. A simulated tone is taken at the instant its interrupt was due, not
+when the task got round to it: on a real processor that delay shakes the time and makes flywheel mode come and go.
+Imports no other service.
 """
 
 from __future__ import annotations
@@ -13,24 +14,18 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from cfepy.ports import Ports
-from cfepy.time.clock import SpacecraftTime
-from cfepy.time.events import CFE_TIME_FLY_OFF_EID, INFORMATION
-from cfepy.time.systime import MASK_32, micro2sub_secs
+from cfepy.time.clock import ADD, CLOCK_FLYWHEEL, CLOCK_INVALID, SpacecraftTime
+from cfepy.time.events import FLY_OFF_EID, INFORMATION
+from cfepy.time.settings import TimeSettings
+from cfepy.time.systime import MASK_32
 
 SECOND = 1 << 32
-ADD, SUBTRACT = 1, 2
-"""Directions of an adjustment (CFE_TIME_AdjustDirection_Enum_t)."""
+TONE_PERF_ID = 7
+SOURCE_INTERNAL, SOURCE_EXTERNAL = 1, 2
+"""Where the time comes from (CFE_TIME_SourceSelect_Enum_t)."""
 
-MIN_ELAPSED = 0
-MAX_ELAPSED = micro2sub_secs(200_000)
-"""How long after the tone its message may come, in ticks (CFE_MISSION_TIME_MIN_ELAPSED, _MAX_ELAPSED)."""
-
-TONE_OVER_LIMIT = micro2sub_secs(20_000)
-TONE_UNDER_LIMIT = micro2sub_secs(1_000_000 - 20_000)
-"""How far from a second after the last one a tone may come (CFE_PLATFORM_TIME_CFG_TONE_LIMIT)."""
-
-LATCH_FLY_SECS = 8
-"""In flywheel mode the reference is renewed when it is this old (CFE_PLATFORM_TIME_CFG_LATCH_FLY)."""
+SIGNAL_PRIMARY, SIGNAL_REDUNDANT = 1, 2
+"""Where the tone comes from (CFE_TIME_ToneSignalSelect_Enum_t)."""
 
 
 @dataclass(slots=True)
@@ -58,18 +53,30 @@ class Adjustments:
     one_hz_direction: int = ADD
 
 
+@dataclass(frozen=True, slots=True)
+class ToneData:
+    """What a message tells of a tone (CFE_TIME_ToneDataCmd_Payload_t); times in ticks."""
+
+    met: int = 0
+    stcf: int = 0
+    leap_seconds: int = 0
+    state: int = CLOCK_INVALID
+
+
 @dataclass(slots=True)
 class Tone:
     """The tone's state.
 
     Args:
         clock: what it sets.
+        settings: who this processor is, and the windows that tones and messages must keep to.
         ports: for its events.
-        start_fly_secs: flywheel mode starts so many seconds after the last good pair.
         give_tone: wakes the task that tells everybody about the tone.
         notify: calls those who asked to be told of every tone.
 
     Attributes:
+        source: SOURCE_INTERNAL or SOURCE_EXTERNAL.
+        signal: SIGNAL_PRIMARY or SIGNAL_REDUNDANT.
         good: the last tone came a second after the one before.
         virtual_met: seconds of MET, counted in good tones.
         forced_to_fly: a command wants flywheel mode, so that pairs do not set the clock.
@@ -79,20 +86,25 @@ class Tone:
     """
 
     clock: SpacecraftTime
+    settings: TimeSettings
     ports: Ports
-    start_fly_secs: int
     give_tone: Callable[[], object]
     notify: Callable[[], object]
     counters: Counters = field(default_factory=Counters)
     adjustments: Adjustments = field(default_factory=Adjustments)
+    source: int = field(init=False)
+    signal: int = SIGNAL_PRIMARY
     good: bool = False
     virtual_met: int = 0
     forced_to_fly: bool = False
-    server_flying: bool = True
     auto_start_fly: bool = False
     signal_latch: int = 0
     data_latch: int = 0
+    _pending: ToneData = field(default_factory=ToneData, init=False)
     _previous: tuple[int, int] = field(default=(0, 0), init=False)
+
+    def __post_init__(self) -> None:
+        self.source = SOURCE_EXTERNAL if self.settings.can_select_source else SOURCE_INTERNAL
 
     def interrupt(self, latch: int) -> None:
         """A tone came (CFE_TIME_Tone1HzISR).
@@ -100,9 +112,10 @@ class Tone:
         Args:
             latch: local time of the tone, in ticks.
         """
+        self.ports.es.perf_log_entry(TONE_PERF_ID)
         elapsed = latch - self.signal_latch
         self.signal_latch = latch
-        self.good = TONE_UNDER_LIMIT < elapsed < SECOND + TONE_OVER_LIMIT
+        self.good = self.settings.tone_under_limit < elapsed < SECOND + self.settings.tone_over_limit
         if self.good:
             self.counters.tone_interrupt += 1
             self.virtual_met = self.virtual_met + 1 & MASK_32
@@ -110,56 +123,87 @@ class Tone:
             self.notify()
         else:
             self.counters.tone_interrupt_error += 1
+        self.ports.es.perf_log_exit(TONE_PERF_ID)
 
-    def data(self) -> None:
-        """The message came that tells the time at the last tone (CFE_TIME_ToneData).
+    def take_signal(self) -> None:
+        """The message came that says that there was a tone (CFE_TIME_ToneSignal)."""
+        if self.settings.will_be:
+            self._verify(self.data_latch, self.signal_latch)
+        self.counters.tone_signal += 1
 
-        Its content is this server's own, so only its coming counts.
-        """
+    def take_data(self, data: ToneData) -> None:
+        """The message came that tells the time at a tone (CFE_TIME_ToneData)."""
         self.data_latch = self.clock.local()
-        if self._is_pair():
-            self.counters.tone_match += 1
-            if not self.forced_to_fly:
-                self._update()
-        else:
-            self.counters.tone_match_error += 1
+        self._pending = data
+        if not self.settings.will_be:
+            self._verify(self.signal_latch, self.data_latch)
         self.counters.tone_data += 1
 
-    def _is_pair(self) -> bool:
-        """Whether tone and message are both new and close together (CFE_TIME_ToneVerify)."""
-        signal, data = self._previous
-        self._previous = (self.signal_latch, self.data_latch)
-        is_new = signal != self.signal_latch and data != self.data_latch
-        return is_new and MIN_ELAPSED <= self.data_latch - self.signal_latch <= MAX_ELAPSED
+    def _verify(self, first: int, second: int) -> None:
+        """Set the clock when tone and message are both new and close together (CFE_TIME_ToneVerify)."""
+        old_first, old_second = self._previous
+        self._previous = (first, second)
+        is_new = first != old_first and second != old_second
+        if not is_new or not self.settings.min_elapsed <= second - first <= self.settings.max_elapsed:
+            self.counters.tone_match_error += 1
+            return
+        self.counters.tone_match += 1
+        if not self.forced_to_fly:
+            self._update()
 
     def _update(self) -> None:
         """Set the clock from the pair (CFE_TIME_ToneUpdate)."""
-        clock = self.clock
-        was_flying = clock.flying
+        was_flying = self.clock.reference.flying
+        changes = self._client_update() if self.settings.client else self._server_update(was_flying)
+        self.clock.update(latch=self.signal_latch, flying=False, **changes)
         if was_flying:
-            self.virtual_met = clock.current_met() >> 32  # tones may have been missed
-            clock.flying = self.server_flying = False
-        clock.set(met=self.virtual_met << 32, latch=self.signal_latch)
-        if was_flying:
-            self.ports.evs.send_event(CFE_TIME_FLY_OFF_EID, INFORMATION, "Stop FLYWHEEL")
+            self.ports.evs.send_event(FLY_OFF_EID, INFORMATION, "Stop FLYWHEEL")
+
+    def _server_update(self, was_flying: bool) -> dict[str, int]:
+        """What a server takes from a message: with an internal source nothing, since it wrote the message itself."""
+        data = self._pending
+        self.clock.server_flying = False
+        if self.source == SOURCE_INTERNAL:
+            if was_flying:
+                self.virtual_met = self.clock.current_met() >> 32  # tones may have been missed
+            return {"met": self.virtual_met << 32}
+        if self.settings.external == "met":
+            self.virtual_met = data.met >> 32
+            return {"met": data.met}
+        changes = {"met": self.virtual_met << 32, "stcf": data.stcf}
+        if self.settings.external == "gps":
+            changes["leap_seconds"] = data.leap_seconds
+        return changes
+
+    def _client_update(self) -> dict[str, int]:
+        """What a client takes from a message: everything."""
+        data = self._pending
+        self.clock.server_flying = data.state == CLOCK_FLYWHEEL
+        return {
+            "met": data.met,
+            "stcf": data.stcf,
+            "leap_seconds": data.leap_seconds,
+            "was_set": data.state != CLOCK_INVALID,
+        }
 
     def one_hz(self) -> None:
         """What is to be done every second before its tone (CFE_TIME_Local1HzStateMachine)."""
         clock, adjustments = self.clock, self.adjustments
         if adjustments.one_hz:
             self.adjust(adjustments.one_hz, adjustments.one_hz_direction)
-        elapsed = clock.since_tone() >> 32
-        if not clock.flying and elapsed >= self.start_fly_secs:
+        elapsed, reference = clock.since_tone(), clock.reference
+        if not reference.flying and elapsed >> 32 >= self.settings.start_fly_secs:
             self.fly()
             self.auto_start_fly = True
-        elif clock.flying and elapsed >= LATCH_FLY_SECS:
-            clock.set(met=clock.current_met(), latch=clock.local())
+        elif reference.flying and elapsed >> 32 >= self.settings.latch_fly_secs:
+            clock.update(met=reference.met + elapsed, latch=reference.latch + elapsed)
 
     def fly(self) -> None:
         """Go on without a tone."""
-        self.clock.flying = self.server_flying = True
-        self.clock.note_change()
+        if not self.settings.client:
+            self.clock.server_flying = True
+        self.clock.update(flying=True)
 
     def adjust(self, ticks: int, direction: int) -> None:
         """Add to STCF, or take away."""
-        self.clock.set(stcf=self.clock.stcf + (ticks if direction == ADD else -ticks))
+        self.clock.update(stcf=self.clock.reference.stcf + (ticks if direction == ADD else -ticks))

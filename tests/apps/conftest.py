@@ -12,7 +12,7 @@ import pytest
 from cfepy.es import APP_EXIT
 from cfepy.es.pools import MemPool, PoolBlock
 from cfepy.msg import command
-from cfepy.status import CfeError
+from cfepy.status import OS_ERROR, CfeError, OsalError
 from tests.tbl.conftest import Bench
 
 APPS = Path(__file__).parents[2] / "apps"
@@ -32,6 +32,7 @@ class AppBench(Bench):
         refuse: function names ("sb.subscribe") to statuses that they fail with.
         subscriptions: MsgIds subscribed to at this moment.
         exit_status: what the app ended with.
+        symbols: what libraries offer, by name.
     """
 
     def __init__(self, name: str) -> None:
@@ -41,6 +42,7 @@ class AppBench(Bench):
         self.exit_status: int | None = None
         self.pool: MemPool | None = None
         self.printed: list[str] = []
+        self.symbols: dict[str, object] = {}
         self._script: list[Step] = []
         self.cfe: Any = SimpleNamespace(
             es=SimpleNamespace(
@@ -50,7 +52,10 @@ class AppBench(Bench):
                 pool_create=self._pool_create,
                 get_pool_buf=self._get_pool_buf,
                 put_pool_buf=self._put_pool_buf,
+                perf_log_entry=lambda marker: None,
+                perf_log_exit=lambda marker: None,
             ),
+            os=SimpleNamespace(symbol_lookup=self._symbol),
             sb=SimpleNamespace(
                 create_pipe=self._create_pipe,
                 subscribe=self._subscribe,
@@ -84,6 +89,11 @@ class AppBench(Bench):
     def _exit(self, status: int = APP_EXIT) -> None:
         self.exit_status = status
         raise Ended
+
+    def _symbol(self, name: str) -> object:
+        if name not in self.symbols:
+            raise OsalError(OS_ERROR, f"no library has {name}")
+        return self.symbols[name]
 
     def _pool_create(self, size: int) -> int:
         self._check("es.pool_create")

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from apps.hk import HK_AppMain, packets
+from apps.hk import COMMANDS, TABLES, HK_AppMain, packets, run
+from apps.hk import TELEMETRY as TLM
 from apps.hk.copy_table import find_fault
 from apps.hk.tables import hk_cpy_tbl
 from cfepy.es import APP_ERROR, APP_EXIT
@@ -23,9 +24,10 @@ from cfepy.status import (
     CFE_TBL_INFO_VALIDATION_PENDING,
     CfeError,
 )
-from cfepy.tbl import TableImage, build, pack_rows, read
+from cfepy.tbl import TableImage, build, read
 from cfepy.tbl import packets as tbl_packets
 from tests.apps.conftest import APPS, POOL_ID, AppBench, cmd
+from tests.declared import assert_as_recorded, assert_complete
 from tests.layouts import assert_same
 
 DATA = Path(__file__).parents[1] / "data"
@@ -33,8 +35,8 @@ TELEMETRY = {
     packet["mid"]: bytes.fromhex(packet["hex"])
     for packet in json.loads((DATA / "packets.json").read_text())["telemetry"]
 }
-SEND_1 = cmd(packets.SEND_COMBINED_PKT_MID, 0, packets.SEND_COMBINED_PKT.pack(OutMsgToSend=0x089C))
-SEND_HK = cmd(packets.SEND_HK_MID)
+SEND_1 = packets.SEND_COMBINED_PKT.packet(OutMsgToSend=0x089C)
+SEND_HK = packets.SEND_HK.packet()
 CORE = hk_cpy_tbl.CORE_HK_MIDS
 
 
@@ -52,8 +54,7 @@ def own(bench: AppBench) -> list[tuple[int, int, str]]:
 
 def table(*rows: tuple[int, int, int, int, int]) -> bytes:
     keys = packets.COPY_TABLE_ENTRY.fields
-    dicts = [dict(zip(keys, row, strict=True)) for row in rows]
-    return pack_rows(packets.COPY_TABLE_ENTRY, dicts, packets.COPY_TABLE_ENTRIES)
+    return packets.COPY_TABLE.pack([dict(zip(keys, row, strict=True)) for row in rows])
 
 
 @pytest.mark.parametrize(
@@ -62,12 +63,28 @@ def table(*rows: tuple[int, int, int, int, int]) -> bytes:
         (packets.HOUSEKEEPING, "HK_HkTlm_Payload_t"),
         (packets.COPY_TABLE_ENTRY, "HK_CopyTableEntry_t"),
         (packets.RUNTIME_TABLE_ENTRY, "HK_RuntimeTableEntry_t"),
-        (packets.SEND_COMBINED_PKT, "HK_SendCombinedPkt_Payload_t"),
+        (packets.SEND_COMBINED_PKT_PAYLOAD, "HK_SendCombinedPkt_Payload_t"),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
 def test_layouts_are_those_of_c(layout: Layout, struct: str) -> None:
     assert_same(layout, struct)
+
+
+def test_declarations_are_complete_and_as_recorded() -> None:
+    assert_complete(packets)
+    assert_as_recorded(packets, 4)
+
+
+def test_all_is_declared() -> None:
+    assert [(command.name, command.msg_id, command.code, command.length) for command in COMMANDS] == [
+        ("HK_NOOP", 0x189A, 0, 8),
+        ("HK_RESET_COUNTERS", 0x189A, 1, 8),
+        ("HK_SEND_HK", 0x189B, None, 8),
+        ("HK_SEND_COMBINED_PKT", 0x189C, None, 12),
+    ]
+    assert [(telemetry.name, telemetry.msg_id, telemetry.length) for telemetry in TLM] == [("HK_HK_TLM", 0x089B, 28)]
+    assert [(table.name, table.size) for table in TABLES] == [("HK.CopyTable", 2048), ("HK.RuntimeTable", 2048)]
 
 
 def test_shipped_table_is_what_its_definition_says() -> None:
@@ -96,6 +113,16 @@ def test_combined_packet_of_recorded_housekeeping(hk: AppBench) -> None:
     assert len(own(hk)) == 1
 
 
+def test_with_nasas_table_the_combined_packet_is_nasas(hk: AppBench) -> None:
+    """Its table copies the spare bytes in front of the payloads, so that only zeros are combined."""
+    hk.files["/cf/hk_cpy_tbl.tbl"] = (DATA / "hk_cpy_tbl.tbl").read_bytes()
+    hk.run(HK_AppMain, *(TELEMETRY[mid] for mid in CORE), SEND_1)
+    (packet,) = hk.sent
+    real = TELEMETRY[0x089C]
+    assert len(packet) == len(real) == 32
+    assert (packet[:2], packet[4:6], packet[12:]) == (real[:2], real[4:6], real[12:])
+
+
 def test_missing_data_is_told_and_the_packet_sent_all_the_same(hk: AppBench) -> None:
     hk.run(HK_AppMain, *(TELEMETRY[mid] for mid in CORE), SEND_1, TELEMETRY[CORE[0]], SEND_1, SEND_HK)
     assert own(hk)[1:] == [(12, 1, "Combined Packet 0x0000089C missing data from Input Pkt 0x00000805")]
@@ -105,8 +132,18 @@ def test_missing_data_is_told_and_the_packet_sent_all_the_same(hk: AppBench) -> 
     assert values["MemPoolHandle"] == POOL_ID
 
 
+def test_incomplete_packets_may_be_discarded(hk: AppBench) -> None:
+    whole = [TELEMETRY[mid] for mid in CORE]
+    hk.run(lambda cfe: run(cfe, discard_incomplete=True), *whole[1:], SEND_1, *whole, SEND_1, SEND_HK)
+    assert own(hk)[1:] == [(12, 1, "Combined Packet 0x0000089C missing data from Input Pkt 0x00000801")]
+    combined, own_packet = hk.sent
+    assert combined[16:] == b"".join(packet[16:20] for packet in whole)
+    values = packets.HK_TLM.read(own_packet)
+    assert (values["CombinedPacketsSent"], values["MissingDataCtr"]) == (1, 1)
+
+
 def test_commands(hk: AppBench) -> None:
-    unknown = cmd(packets.SEND_COMBINED_PKT_MID, 0, packets.SEND_COMBINED_PKT.pack(OutMsgToSend=0x089D))
+    unknown = packets.SEND_COMBINED_PKT.packet(OutMsgToSend=0x089D)
     hk.run(
         HK_AppMain,
         cmd(packets.CMD_MID, packets.NOOP_CC),
@@ -143,26 +180,25 @@ def test_new_table_from_the_ground(hk: AppBench) -> None:
     hk.files["/cf/new.tbl"] = build(TableImage("HK.CopyTable", table((0x0883, 16, 0x089D, 16, 2))))
 
     def load() -> None:
-        hk.ground(tbl_packets.LOAD_CC, tbl_packets.FILE_COMMAND.pack(Filename="/cf/new.tbl"))
-        payload = tbl_packets.VALIDATE_COMMAND.pack(ActiveTableFlag=0, TableName="HK.CopyTable")
-        hk.ground(tbl_packets.VALIDATE_CC, payload)
+        hk.ground(tbl_packets.LOAD, LoadFilename="/cf/new.tbl")
+        hk.ground(tbl_packets.VALIDATE, ActiveTableFlag=0, TableName="HK.CopyTable")
 
     def activate() -> None:
-        hk.named(tbl_packets.ACTIVATE_CC, "HK.CopyTable")
+        hk.named(tbl_packets.ACTIVATE, "HK.CopyTable")
 
-    send_2 = cmd(packets.SEND_COMBINED_PKT_MID, 0, packets.SEND_COMBINED_PKT.pack(OutMsgToSend=0x089D))
+    send_2 = packets.SEND_COMBINED_PKT.packet(OutMsgToSend=0x089D)
     hk.run(HK_AppMain, load, None, activate, None, bytes(telemetry(0x0883, b"XY")), send_2, SEND_1)
     assert hk.subscriptions == {0x189A, 0x189B, 0x189C, 0x0883}
     assert hk.sent[0][16:] == b"XY"
     assert hk.events[-1][0] == 11
     assert hk.exit_status == APP_EXIT
     assert hk.pool is not None
-    assert sum(block.in_use for block in hk.pool.blocks.values()) == 1
+    assert sum(row["NumCreated"] - row["NumFree"] for row in hk.pool.blocks.block_stats()) == 1
 
 
 def test_runtime_table_can_be_dumped(hk: AppBench) -> None:
-    payload = tbl_packets.DUMP_COMMAND.pack(ActiveTableFlag=1, TableName="HK.RuntimeTable", DumpFilename="/ram/rt.tbl")
-    hk.run(HK_AppMain, TELEMETRY[0x0801], lambda: hk.ground(tbl_packets.DUMP_CC, payload), None)
+    wish = {"ActiveTableFlag": 1, "TableName": "HK.RuntimeTable", "DumpFilename": "/ram/rt.tbl"}
+    hk.run(HK_AppMain, TELEMETRY[0x0801], lambda: hk.ground(tbl_packets.DUMP, **wish), None)
     hk.send_hk()
     data = read(hk.files["/ram/rt.tbl"]).data
     rows = [packets.RUNTIME_TABLE_ENTRY.unpack(data, at) for at in range(0, len(data), 16)]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from apps.sample.app import VERSION_TEXT
 from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.msg import command
@@ -20,6 +21,7 @@ CFE_APP, hk,      HK_AppMain,      HK,         65, 16384, 0x0, 0;
 !
 """
 TABLE = "SAMPLE_APP.ExampleTable"
+SAMPLE_STARTED = f"SAMPLE_APP 1: Sample App Initialized.{VERSION_TEXT}"
 
 
 class Session:
@@ -29,11 +31,10 @@ class Session:
         (folder / "startup.scr").write_text(STARTUP)
         self.mission = Mission(str(folder), tasks=tasks, console=Console(quiet=True))
 
-    def events(self, seconds: int, *commands: tuple[int, int, bytes]) -> list[str]:
+    def events(self, seconds: int, *commands: bytes) -> list[str]:
         """Send commands, run for some virtual seconds; what apps and Table Services said meanwhile, without times."""
         before = len(self.mission.console.lines)
-        for msg_id, fcn_code, payload in commands:
-            packet = bytes(command(msg_id, fcn_code, payload))
+        for packet in commands:
             self.mission.kernel.spawn("ground", partial(self.mission.cfe.sb.transmit_msg, packet, False), 10)
         self.mission.run(seconds)
         lines = [line.partition(" 66/1/")[2] for line in self.mission.console.lines[before:]]
@@ -49,26 +50,24 @@ def session(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Session]
 
 def test_a_day_in_orbit(session: Session) -> None:
     assert session.events(3)[1:] == [
-        "SAMPLE_APP 1: Sample App Initialized.Sample App v1.0.0",
+        SAMPLE_STARTED,
         "HK 1: HK Initialized.  Version 7.0.0.0",
     ]
-    load = (packets.CMD_MID, packets.LOAD_CC, packets.FILE_COMMAND.pack(Filename="/cf/sample_app_tbl.tbl"))
-    payload = packets.VALIDATE_COMMAND.pack(ActiveTableFlag=0, TableName=TABLE)
-    validate = (packets.CMD_MID, packets.VALIDATE_CC, payload)
-    activate = (packets.CMD_MID, packets.ACTIVATE_CC, packets.NAME_COMMAND.pack(TableName=TABLE))
+    load = packets.LOAD.packet(LoadFilename="/cf/sample_app_tbl.tbl")
+    validate = packets.VALIDATE.packet(ActiveTableFlag=0, TableName=TABLE)
+    activate = packets.ACTIVATE.packet(TableName=TABLE)
     assert [line.partition(":")[0] for line in session.events(3, load, validate)] == ["CFE_TBL 12", "CFE_TBL 36"]
     assert session.events(3, activate) == [f"CFE_TBL 37: SAMPLE_APP Successfully Updated '{TABLE}'"]
-    payload = packets.DUMP_COMMAND.pack(ActiveTableFlag=1, TableName=TABLE, DumpFilename="/ram/ex.tbl")
     where = f"dump,table={TABLE},app=CFE_TBL,file=/ram/ex.tbl"
-    dump = (packets.CMD_MID, packets.DUMP_CC, payload)
+    dump = packets.DUMP.packet(ActiveTableFlag=1, TableName=TABLE, DumpFilename="/ram/ex.tbl")
     assert session.events(2, dump) == [f"CFE_TBL 14: {where}:Successfully dumped table"]
     assert read(session.mission.files.read_file("/ram/ex.tbl")).data == bytes([1, 0, 2, 0])
 
 
 def test_restarted_app_has_its_table_again(session: Session) -> None:
     session.mission.run(2)
-    restart = (0x1806, 6, b"SAMPLE_APP".ljust(20, b"\0"))
-    assert session.events(9, restart)[-1] == "SAMPLE_APP 1: Sample App Initialized.Sample App v1.0.0"
+    restart = bytes(command(0x1806, 6, b"SAMPLE_APP".ljust(20, b"\0")))
+    assert session.events(9, restart)[-1] == SAMPLE_STARTED
     assert session.mission.cfe.tbl.get_info(TABLE).num_users == 1
 
 
@@ -76,7 +75,7 @@ def test_both_kinds_of_task_contexts_give_one_trace(tmp_path: Path) -> None:
     digests = set()
     for tasks in ("thread", "greenlet"):
         session = Session(tmp_path, tasks)
-        session.events(5, (packets.CMD_MID, packets.NOOP_CC, b""))
+        session.events(5, packets.NOOP.packet())
         digests.add(session.mission.trace.digest())
         session.mission.close()
     assert len(digests) == 1

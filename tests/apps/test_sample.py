@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from apps.sample import SAMPLE_APP_Main, messages
+from apps.sample import COMMANDS, TABLES, TELEMETRY, SAMPLE_APP_Main, messages
 from apps.sample.tables import sample_app_tbl
+from cfepy.console import Console
 from cfepy.es import APP_ERROR, APP_EXIT
+from cfepy.mission import Mission
 from cfepy.msg import get_msg_id
 from cfepy.status import CFE_SB_BAD_ARGUMENT
 from cfepy.tbl import TableImage, build
 from tests.apps.conftest import APPS, AppBench, cmd
-
-SEND_HK = cmd(messages.SEND_HK_MID)
 
 
 @pytest.fixture
@@ -25,33 +27,42 @@ def test_shipped_table_is_what_its_definition_says() -> None:
 
 
 def test_its_way_through_a_session(sample: AppBench) -> None:
-    display = messages.DISPLAY_PARAM.pack(ValU32=7, ValI16=-2, ValStr="hello")
+    sample.symbols["SAMPLE_LIB_Function"] = lambda cfe: sample.printed.append("called")
     sample.run(
         SAMPLE_APP_Main,
-        cmd(messages.CMD_MID, messages.NOOP_CC),
-        cmd(messages.CMD_MID, messages.PROCESS_CC),
-        cmd(messages.CMD_MID, messages.DISPLAY_PARAM_CC, display),
+        messages.NOOP.packet(),
+        messages.PROCESS.packet(),
+        messages.DISPLAY_PARAM.packet(ValU32=7, ValI16=-2, ValStr="hello"),
         cmd(messages.CMD_MID, 99),
-        cmd(messages.CMD_MID, messages.NOOP_CC, b"x"),
+        cmd(messages.CMD_MID, 0, b"x"),
         cmd(0x1999),
-        SEND_HK,
-        cmd(messages.CMD_MID, messages.RESET_COUNTERS_CC),
-        SEND_HK,
+        messages.SEND_HK.packet(),
+        messages.RESET_COUNTERS.packet(),
+        messages.SEND_HK.packet(),
     )
+    version = "equuleus-rc1+dev54"
+    text = f"Sample App Initialized.Sample App {version} (Equuleus) v1.1.0 Official Release, EDS disabled"
     assert sample.events[1:] == [
-        (1, 2, "Sample App Initialized.Sample App v1.0.0"),
-        (3, 2, "SAMPLE: NOOP command v1.0.0"),
+        (1, 2, text),
+        (3, 2, f"SAMPLE: NOOP command {version}"),
         (8, 2, "SAMPLE_APP: ValU32=7, ValI16=-2, ValStr=hello"),
         (2, 3, "Invalid ground command code: CC = 99"),
         (6, 3, "Invalid Msg length: ID = 0x1882,  CC = 0, Len = 9, Expected = 8"),
         (5, 3, "SAMPLE: invalid command packet,MID = 0x1999"),
         (4, 2, "SAMPLE: RESET command"),
     ]
-    assert sample.log == ["Sample App: Example Table Value 1: 1  Value 2: 2"]
+    assert sample.log == ["Sample App: Example Table Value 1: 1  Value 2: 2", "Sample App: CRC: 0x00009C00\n\n"]
+    assert sample.printed == ["called"]
     first, second = sample.sent
-    assert (get_msg_id(first), len(first), first[16:]) == (0x0883, 20, bytes([2, 3, 0, 0]))
+    assert (get_msg_id(first), len(first), first[16:]) == (0x0883, 20, bytes([1, 3, 0, 0]))
     assert second[16:] == bytes(4)
     assert sample.exit_status == APP_EXIT
+
+
+def test_without_its_library_it_says_so(sample: AppBench) -> None:
+    sample.run(SAMPLE_APP_Main, messages.PROCESS.packet(), messages.NOOP.packet())
+    assert sample.log[-1] == "Sample App: no library has SAMPLE_LIB_Function"
+    assert sample.events[-1][0] == 3
 
 
 def test_table_out_of_range_is_refused_at_start(sample: AppBench) -> None:
@@ -59,10 +70,54 @@ def test_table_out_of_range_is_refused_at_start(sample: AppBench) -> None:
     sample.files["/cf/sample_app_tbl.tbl"] = build(image)
     sample.run(SAMPLE_APP_Main)
     assert sample.exit_status == APP_ERROR
-    assert sample.log[-1].startswith("SAMPLE_APP: cannot start: ")
+    assert [event[0] for event in sample.events][-1] == 1  # the start is announced all the same
 
 
-def test_no_pipe_no_app(sample: AppBench) -> None:
-    sample.refuse["sb.create_pipe"] = CFE_SB_BAD_ARGUMENT
+@pytest.mark.parametrize(
+    ("function", "event"),
+    [
+        ("sb.create_pipe", (9, 3, "Sample App: Error creating SB Command Pipe, RC = 0xFFFFFFFFCA000003")),
+        ("sb.subscribe", (10, 3, "Sample App: Error Subscribing to HK request, RC = 0xFFFFFFFFCA000003")),
+        ("sb.receive_buffer", (7, 3, "SAMPLE APP: SB Pipe Read Error, App Will Exit")),
+    ],
+)
+def test_what_the_bus_refuses_ends_it(sample: AppBench, function: str, event: tuple[int, int, str]) -> None:
+    sample.refuse[function] = CFE_SB_BAD_ARGUMENT
+    sample.run(SAMPLE_APP_Main, None)
+    assert (sample.exit_status, sample.sent, sample.events[-1]) == (APP_ERROR, [], event)
+
+
+def test_no_event_services_no_app(sample: AppBench) -> None:
+    sample.refuse["evs.register"] = CFE_SB_BAD_ARGUMENT
     sample.run(SAMPLE_APP_Main)
-    assert (sample.exit_status, sample.sent) == (APP_ERROR, [])
+    assert sample.log == ["Sample App: Error Registering Events, RC = 0xFFFFFFFFCA000003"]
+    assert sample.exit_status == APP_ERROR
+
+
+def test_declarations() -> None:
+    assert [(each.name, each.msg_id, each.code) for each in COMMANDS] == [
+        ("SAMPLE_APP_NOOP", 0x1882, 0),
+        ("SAMPLE_APP_RESET_COUNTERS", 0x1882, 1),
+        ("SAMPLE_APP_PROCESS", 0x1882, 2),
+        ("SAMPLE_APP_DISPLAY_PARAM", 0x1882, 3),
+        ("SAMPLE_APP_SEND_HK", 0x1883, None),
+    ]
+    assert [(each.name, each.msg_id, each.length) for each in TELEMETRY] == [("SAMPLE_APP_HK_TLM", 0x0883, 20)]
+    assert [(each.name, each.size, each.file) for each in TABLES] == [
+        ("SAMPLE_APP.ExampleTable", 4, "/cf/sample_app_tbl.tbl")
+    ]
+
+
+def test_the_library_in_a_mission(tmp_path: Path) -> None:
+    (tmp_path / "startup.scr").write_text(
+        "CFE_LIB, sample_lib, SAMPLE_LIB_Init, SAMPLE_LIB, 0, 0, 0x0, 0;\n"
+        "CFE_APP, sample, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
+    )
+    with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
+        mission.run(2)
+        mission.cfe.sb.transmit_msg(messages.PROCESS.packet())
+        mission.run(1)
+        lines = mission.console.lines
+    start = "SAMPLE Lib Initialized.Sample Lib v7.0.0+dev0 (Draco) v7.0.0 Official Release, EDS disabled"
+    assert start in lines
+    assert lines[-1] == "SAMPLE_LIB_Function called, buffer='SAMPLE DATA'"

@@ -65,7 +65,9 @@ def test_layouts_are_those_of_c(layout: Layout, struct: str) -> None:
 
 def test_start(sch: SchBench) -> None:
     sch.run(SCH_LAB_AppMain)
-    assert sch.printed == ["SCH Lab Initialized.SCH Lab v1.0.0\n"]
+    assert sch.printed == [
+        "SCH Lab Initialized.SCH Lab equuleus-rc1+dev29 (Equuleus) v2.3.0 Official Release, EDS disabled\n"
+    ]
     assert sch.timer_set == (1_000_000, 10_000)
     assert sch.subscriptions == {0x1811}
     assert sch.exit_status == APP_EXIT

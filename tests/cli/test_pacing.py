@@ -48,3 +48,17 @@ def test_the_trace_is_that_of_a_free_run() -> None:
 def test_a_factor_that_makes_no_sense(factor: float) -> None:
     with Kernel("thread") as kernel, pytest.raises(ValueError, match="more than 0"):
         Pacer(kernel, kernel.run, factor)
+
+
+def test_a_wait_that_ends_early_takes_the_run_to_that_instant() -> None:
+    """Whoever brings input ends the wait; the input then enters where the clock on the wall is."""
+    waits: list[float] = []
+    with Kernel("thread", Trace()) as kernel:
+        ticking(kernel, NS_PER_S)
+        watch = Stopwatch()
+        pacer = Pacer(kernel, kernel.run, wait=waits.append)
+        while len(waits) < 3:
+            pacer.step(1_000_000 * NS_PER_S)
+            assert kernel.now <= watch.elapsed_ns()
+    assert all(0 < wait <= 0.05 for wait in waits)
+    assert kernel.now > 0

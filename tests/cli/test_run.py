@@ -189,7 +189,7 @@ def test_the_trace_file(make_mission: Write, tmp_path: Path) -> None:
     file = tmp_path / "trace.txt"
     run(make_mission("Chatty"), "--quiet", "--trace", str(file))
     lines = file.read_text().splitlines()
-    assert any(line.endswith("CHATTY send 0x0890 sequence 0 length 20") for line in lines)
+    assert any(line.endswith("CHATTY send 0x0890 sequence 1 length 20") for line in lines)
     assert any(line.endswith("CHATTY drop at CHATTY") for line in lines)
     assert any(" console " in line and "OPERATIONAL" in line for line in lines)
     assert any(line.endswith(" CHATTY dispatch") for line in lines)

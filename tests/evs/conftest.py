@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import pytest
 
@@ -12,6 +12,7 @@ from cfepy.console import Console
 from cfepy.evs import EventServices
 from cfepy.evs import packets as pk
 from cfepy.msg import TLM_HEADER_SIZE, command, get_msg_id
+from cfepy.osal import FileSystem, Osal
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
 from cfepy.status import CFE_ES_ERR_NAME_NOT_FOUND, CFE_ES_ERR_RESOURCEID_NOT_VALID, CfeError
@@ -43,11 +44,14 @@ class World:
         self.apps = {app.app_id: app for app in (App(EVS_ID, "CFE_EVS", True), App(APP_ID, "HK"), App(MUTE_ID, "MUTE"))}
         self.packets: list[bytes] = []
         self.log: list[str] = []
-        self.files: dict[str, bytes] = {}
+        self.perf: list[int] = []
         self.console = Console(quiet=True)
         ports = Ports()
         ports.es = ports.sb = ports.syslog = ports.time = self
-        self.evs = EventServices(self.kernel, ports, config or PlatformConfig(), self.console, self.files.__setitem__)
+        self.kept: dict[str, Any] = {}
+        self.files = FileSystem()
+        osal = Osal(self.kernel, console=self.console, files=self.files)
+        self.evs = EventServices(self.kernel, ports, config or PlatformConfig(), self.console, osal)
 
     # -- peers -----------------------------------------------------------------------------------------------------
 
@@ -70,6 +74,12 @@ class World:
 
     def increment_task_counter(self) -> None:
         pass
+
+    def perf_log_entry(self, marker: int) -> None:
+        self.perf.append(marker)
+
+    def perf_log_exit(self, marker: int) -> None:
+        self.perf.append(-marker)
 
     def create_pipe(self, depth: int, name: str) -> int:
         return 1
@@ -103,7 +113,7 @@ class World:
 
     def start(self) -> None:
         """Run the task of EVS up to its main loop."""
-        self.evs.early_init()
+        self.evs.early_init(self.kept)
         self.kernel.spawn("CFE_EVS", self.evs.task_main, 61, self.apps[EVS_ID])
         self.kernel.run(self.kernel.now + 1000)
         self.packets.clear()
@@ -120,19 +130,19 @@ class World:
         """Send an event of HK."""
         self.call(lambda: self.evs.send_event(event_id, event_type, text))
 
-    def command(self, code: int, payload: bytes = b"", msg_id: int = pk.CFE_EVS_CMD_MID) -> None:
+    def command(self, code: int, payload: bytes = b"", msg_id: int = pk.CMD_MID) -> None:
         """Give EVS a command."""
         self.call(lambda: self.evs.commands.process(bytes(command(msg_id, code, payload))), EVS_ID)
 
     def sent(self) -> list[Sent]:
         """The long events on the bus."""
-        return [_event(packet) for packet in self.packets if get_msg_id(packet) == pk.CFE_EVS_LONG_EVENT_MSG_MID]
+        return [_event(packet) for packet in self.packets if get_msg_id(packet) == pk.LONG_EVENT_MSG_MID]
 
     def housekeeping(self) -> dict[str, object]:
         """The fields of a fresh housekeeping packet."""
-        self.command(0, msg_id=pk.CFE_EVS_SEND_HK_MID)
+        self.command(0, msg_id=pk.SEND_HK_MID)
         packet = self.packets[-1]
-        assert get_msg_id(packet) == pk.CFE_EVS_HK_TLM_MID
+        assert get_msg_id(packet) == pk.HK_TLM_MID
         return pk.HOUSEKEEPING.unpack(packet, TLM_HEADER_SIZE)
 
 

@@ -8,11 +8,10 @@ import pytest
 
 from cfepy.evs import DEBUG, ERROR, INFORMATION
 from cfepy.evs import packets as pk
-from cfepy.evs.commands import EvsCommands
-from cfepy.evs.files import EventFiles
 from cfepy.fs import read_header
-from cfepy.msg import Layout, command
-from cfepy.status import OS_ERROR, OsalError
+from cfepy.msg import Layout
+from cfepy.osal import Volume
+from tests.declared import assert_as_recorded, assert_complete
 from tests.evs.conftest import APP_ID, EVS_ID, World
 from tests.layouts import assert_same
 
@@ -32,6 +31,11 @@ def name(app: str = "HK") -> bytes:
 
 def u16(*values: int) -> bytes:
     return b"".join(value.to_bytes(2, "little") for value in values)
+
+
+def test_declarations_are_complete_and_as_recorded() -> None:
+    assert_complete(pk)
+    assert_as_recorded(pk, 6)
 
 
 @pytest.mark.parametrize(
@@ -112,10 +116,11 @@ BAD_COMMANDS = [
     (5, name() + b"\0\0", 40, "Bit Mask = 0x00000000 out of range: CC = 5"),
     (6, name() + b"\xff\0", 40, "Bit Mask = 0x000000ff out of range: CC = 6"),
     (7, name("MUTE"), 7, "MUTE not registered with EVS: CC = 7"),
+    (6, name("MUTE") + b"\1\0", 7, "MUTE not registered with EVS,: CC = 6"),
     (7, name("NOBODY"), 9, "Unable to retrieve application ID for NOBODY: CC = 7"),
     (8, name("NOBODY"), 9, "Disable App Events Command: Unable to retrieve application ID for NOBODY: CC = 8"),
     (9, name("NOBODY"), 9, "Reset Event Counter Command: Unable to retrieve application ID for NOBODY: CC = 9"),
-    (10, name() + u16(6, 1), 6, "HK Event ID 6 not registered for filtering: CC = 10"),
+    (10, name() + u16(6, 1), 6, "HK Event ID 6 not registered for filtering: CC = 10 "),
     (11, b"\0\0", 40, "Bit Mask = 0x00000000 out of range: CC = 11"),
     (12, b"\x20\0", 40, "Bit Mask = 0x00000020 out of range: CC = 12"),
     (13, name() + u16(6), 6, "HK Event ID 6 not registered for filtering: CC = 13"),
@@ -124,6 +129,12 @@ BAD_COMMANDS = [
         name() + u16(5, 1),
         37,
         "Add Filter Command:AppName = HK, EventID = 0x00000005 is already registered for filtering",
+    ),
+    (
+        15,
+        name() + u16(0xFFFF, 1),
+        37,
+        "Add Filter Command:AppName = HK, EventID = 0x0000ffff is already registered for filtering",
     ),
     (16, name() + u16(6), 6, "HK Event ID 6 not registered for filtering: CC = 16"),
     (19, b"\2\0", 39, "Set Log Mode Command Error: Log Mode = 2"),
@@ -148,56 +159,56 @@ def test_a_strange_message_is_refused(world: World) -> None:
 
 
 def test_event_types_are_switched_for_all_and_for_one(world: World) -> None:
-    world.command(pk.CFE_EVS_ENABLE_EVENT_TYPE_CC, b"\1\0")
+    world.command(pk.ENABLE_EVENT_TYPE_CC, b"\1\0")
     assert {app.types for app in world.evs.apps.values()} == {0x0F}
-    world.command(pk.CFE_EVS_DISABLE_EVENT_TYPE_CC, b"\2\0")
+    world.command(pk.DISABLE_EVENT_TYPE_CC, b"\2\0")
     assert {app.types for app in world.evs.apps.values()} == {0x0D}
-    world.command(pk.CFE_EVS_DISABLE_APP_EVENT_TYPE_CC, name() + b"\x0c\0")
+    world.command(pk.DISABLE_APP_EVENT_TYPE_CC, name() + b"\x0c\0")
     assert world.evs.apps[APP_ID].types == 0x01
-    world.command(pk.CFE_EVS_ENABLE_APP_EVENT_TYPE_CC, name() + b"\2\0")
+    world.command(pk.ENABLE_APP_EVENT_TYPE_CC, name() + b"\2\0")
     assert world.evs.apps[APP_ID].types == 0x03
 
 
 def test_an_app_is_silenced_as_a_whole(world: World) -> None:
-    world.command(pk.CFE_EVS_DISABLE_APP_EVENTS_CC, name())
+    world.command(pk.DISABLE_APP_EVENTS_CC, name())
     world.send(1, ERROR)
     assert world.sent() == []
-    world.command(pk.CFE_EVS_ENABLE_APP_EVENTS_CC, name())
+    world.command(pk.ENABLE_APP_EVENTS_CC, name())
     world.send(1, ERROR)
     assert len(world.sent()) == 1
 
 
 def test_filters_are_added_changed_and_deleted(world: World) -> None:
-    world.command(pk.CFE_EVS_ADD_EVENT_FILTER_CC, name() + u16(5, 0xFFFF))
+    world.command(pk.ADD_EVENT_FILTER_CC, name() + u16(5, 0xFFFF))
     world.send(5)
     world.send(5)
     assert len(world.sent()) == 1
-    world.command(pk.CFE_EVS_SET_FILTER_CC, name() + u16(5, 0))
+    world.command(pk.SET_FILTER_CC, name() + u16(5, 0))
     world.send(5)
     assert len(world.sent()) == 2
-    world.command(pk.CFE_EVS_DELETE_EVENT_FILTER_CC, name() + u16(5))
+    world.command(pk.DELETE_EVENT_FILTER_CC, name() + u16(5))
     assert world.evs.apps[APP_ID].filters.find(5) is None
 
 
 def test_there_is_an_end_to_filters(world: World) -> None:
     for event_id in range(9):
-        world.command(pk.CFE_EVS_ADD_EVENT_FILTER_CC, name() + u16(event_id, 1))
+        world.command(pk.ADD_EVENT_FILTER_CC, name() + u16(event_id, 1))
     text = "Add Filter Command: number of registered filters has reached max = 8"
     assert world.sent() == [("CFE_EVS", 11, ERROR, text)]
 
 
 def test_the_log_keeps_the_first_or_the_last_events(world: World) -> None:
-    world.command(pk.CFE_EVS_CLEAR_LOG_CC)
+    world.command(pk.CLEAR_LOG_CC)
     for number in range(25):
         world.send(1, text=str(number))
     assert [entry[48:50] for entry in world.evs.log.entries()] == [str(n).encode().ljust(2, b"\0") for n in range(20)]
     assert world.housekeeping()["LogOverflowCounter"] == 5
-    world.command(pk.CFE_EVS_SET_LOG_MODE_CC, b"\0\0")
+    world.command(pk.SET_LOG_MODE_CC, b"\0\0")
     for number in range(25, 30):
         world.send(1, text=str(number))
     numbers = [int(entry[48:50].strip(b"\0")) for entry in world.evs.log.entries()]
     assert numbers == [*range(5, 20), *range(25, 30)]
-    world.command(pk.CFE_EVS_CLEAR_LOG_CC)
+    world.command(pk.CLEAR_LOG_CC)
     assert world.evs.log.entries() == []
     assert world.evs.log.mode == 0
 
@@ -205,11 +216,14 @@ def test_the_log_keeps_the_first_or_the_last_events(world: World) -> None:
 def test_a_log_survives_a_processor_reset(world: World) -> None:
     world.send(1)
     after = World()
-    after.evs.early_init(world.evs.log)
+    after.evs.early_init(world.kept)
     assert after.log == ["CFE_EVS_EarlyInit: Event Log restored, n=2, c=2, f=0, m=1, o=0"]
+    assert after.evs.log is world.evs.log
     world.evs.log.mode = 7
-    after.evs.early_init(world.evs.log)
-    assert after.log[-1] == "CFE_EVS_EarlyInit: Event Log cleared, n=2, c=2, f=0, m=7, o=0"
+    third = World()
+    third.evs.early_init(world.kept)
+    assert third.log == ["CFE_EVS_EarlyInit: Event Log cleared, n=2, c=2, f=0, m=7, o=0"]
+    assert world.kept["EVS"] is third.evs.log is not world.evs.log
 
 
 def test_housekeeping(world: World) -> None:
@@ -243,7 +257,7 @@ def test_housekeeping(world: World) -> None:
 
 def test_reset_counters_is_not_counted_itself(loud: World) -> None:
     loud.command(0)
-    loud.command(pk.CFE_EVS_RESET_COUNTERS_CC)
+    loud.command(pk.RESET_COUNTERS_CC)
     fields = loud.housekeeping()
     assert (fields["CommandCounter"], fields["MessageSendCounter"]) == (0, 1)
     assert loud.sent()[-1].text == "Reset Counters Command Received"
@@ -252,8 +266,8 @@ def test_reset_counters_is_not_counted_itself(loud: World) -> None:
 def test_the_log_file_is_made_as_the_real_one(world: World) -> None:
     """Same header but for application and time, same record length, same first record but for its time."""
     real = (DATA / "cfe_evs.log").read_bytes()
-    world.command(pk.CFE_EVS_WRITE_LOG_DATA_FILE_CC, bytes(64))
-    ours = world.files["/ram/cfe_evs.log"]
+    world.command(pk.WRITE_LOG_DATA_FILE_CC, bytes(64))
+    ours = world.files.read_file("/ram/cfe_evs.log")
     assert ours[:20] == real[:20]
     assert read_header(ours).description == "cFE EVS Log File"
     assert len(ours) == 64 + 172
@@ -261,20 +275,55 @@ def test_the_log_file_is_made_as_the_real_one(world: World) -> None:
     assert ours[76:236] == real[76:236]
 
 
-def test_a_file_that_cannot_be_written_is_an_event(world: World) -> None:
-    def refuse(path: str, data: bytes) -> None:
-        raise OsalError(OS_ERROR, "no")
+def test_the_app_data_file_is_made_as_the_real_one(world: World) -> None:
+    """Same header but for the time; the records of EVS and SB, which registers NASA's filters, are the real ones."""
+    real = (DATA / "cfe_evs_app.dat").read_bytes()
+    world.evs.apps.clear()
+    world.call(lambda: world.evs.register(), EVS_ID)
+    world.evs.apps[EVS_ID].sent = 2
+    world.call(lambda: world.evs.register([(14, 0xFFFC), (7, 0xFFFC), (17, 0xFFF0), (25, 0xFFF0)]), APP_ID)
+    app = world.evs.apps[APP_ID]
+    app.name, app.sent, app.filters.slots[0].count = "CFE_SB", 6, 0x16
+    world.command(pk.WRITE_APP_DATA_FILE_CC, bytes(64))
+    ours = world.files.read_file("/ram/cfe_evs_app.dat")
+    assert len(real) == 64 + 9 * pk.APP_DATA_RECORD.size
+    assert ours[:24] == real[:24]
+    assert ours[32:] == real[32 : 64 + 2 * 92]
 
-    files = EventFiles(world.evs, refuse)
-    world.call(lambda: files.write_log({"Filename": "x"}), EVS_ID)
-    world.call(lambda: files.write_app_data({"Filename": "/ram/.dat"}), EVS_ID)
+
+def test_a_file_that_cannot_be_opened_is_an_event(world: World) -> None:
+    world.command(pk.WRITE_LOG_DATA_FILE_CC, pk.LOG_FILE_COMMAND.pack(LogFilename="/ram/none/x"))
+    world.command(pk.WRITE_APP_DATA_FILE_CC, pk.APP_DATA_COMMAND.pack(AppDataFilename="/ram/none/x"))
+    world.command(pk.WRITE_APP_DATA_FILE_CC, pk.APP_DATA_COMMAND.pack(AppDataFilename="/ram/.dat"))
     assert [(event.event_id, event.text) for event in world.sent()] == [
-        (3, "Write Log File Command Error: OS_OpenCreate = -1, filename = /ram/x"),
+        (3, "Write Log File Command Error: OS_OpenCreate = -1, filename = /ram/none/x"),
+        (13, "Write App Data Command Error: OS_OpenCreate = -1, filename = /ram/none/x"),
         (13, "Write App Data Command Error: CFE_FS_ParseInputFileNameEx() = 0xC6000002"),
     ]
+    assert world.evs.commands.errors == 3
 
 
-def test_without_a_file_system_there_are_no_file_commands(world: World) -> None:
-    commands = EvsCommands(world.evs, None)
-    world.call(lambda: commands.process(bytes(command(pk.CFE_EVS_CMD_MID, 18, bytes(64)))), EVS_ID)
-    assert world.sent()[-1].event_id == 15
+@pytest.mark.parametrize(
+    ("room", "events"),
+    [
+        (60, [(14, "Write File Header to Log File Error: WriteHdr RC: -1, Expected: 64, filename = /ram/x")]),
+        (
+            64 + 2 * 172 - 1,
+            [
+                (2, "Write Log File Command Error: OS_write = -1, filename = /ram/x"),
+                (12, "Write App Data Command Error: At entry = 1, OS_write = -1, filename = /ram/x"),
+            ],
+        ),
+    ],
+)
+def test_a_full_disk_is_told_of(world: World, room: int, events: list[tuple[int, str]]) -> None:
+    world.send(1)
+    for number in range(2):
+        disk = Volume(capacity=room if number == 0 else min(room, 64 + 92))
+        world.files.unmount("/ram")
+        world.files.mount("/ram", disk)
+        payload = (pk.LOG_FILE_COMMAND.pack(LogFilename="x"), pk.APP_DATA_COMMAND.pack(AppDataFilename="x"))[number]
+        world.command((pk.WRITE_LOG_DATA_FILE_CC, pk.WRITE_APP_DATA_FILE_CC)[number], payload)
+    told = [(event.event_id, event.text) for event in world.sent() if event.app == "CFE_EVS"]
+    assert told == events
+    assert world.evs.commands.errors == 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from cfepy import evs
 from cfepy.config import PlatformConfig
 from cfepy.evs import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.evs import packets as pk
@@ -12,8 +13,11 @@ from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_EVS_APP_ILLEGAL_APP_ID,
     CFE_EVS_APP_NOT_REGISTERED,
+    CFE_EVS_APP_SQUELCHED,
     CFE_EVS_EVT_NOT_REGISTERED,
     CFE_EVS_INVALID_PARAMETER,
+    CFE_EVS_UNKNOWN_FILTER,
+    CFE_SUCCESS,
     CfeError,
 )
 from tests.evs.conftest import APP_ID, EVS_ID, MUTE_ID, Sent, World
@@ -22,12 +26,13 @@ READY = "cFE EVS Initialized: CFE_EVS v7.0.0+dev0 (Draco) v7.0.0 Official Releas
 
 
 def test_it_tells_that_it_is_ready(fresh: World) -> None:
-    fresh.evs.early_init()
+    fresh.evs.early_init(fresh.kept)
     fresh.kernel.spawn("CFE_EVS", fresh.evs.task_main, 61, fresh.apps[EVS_ID])
     fresh.kernel.run(1000)
     assert fresh.log == ["CFE_EVS_EarlyInit: Event Log cleared following power-on reset"]
     assert fresh.console.lines == [f"EVS Port1 T1001000 66/1/CFE_EVS 1: {READY}"]
     assert fresh.sent() == [Sent("CFE_EVS", 1, INFORMATION, READY)]
+    assert fresh.perf == [2, -2]
 
 
 def test_a_long_event_has_the_bytes_of_the_real_one(world: World) -> None:
@@ -145,9 +150,21 @@ def test_an_app_that_ended_is_named_by_its_id(world: World) -> None:
         world.call(lambda: world.evs.send_event_with_app_id(1, 2, gone, "x"))
 
 
-def test_a_core_service_whose_task_does_not_run_yet_sends_nothing(world: World) -> None:
-    world.call(lambda: world.evs.send_event_with_app_id(1, ERROR, 0, "too early"))
-    assert world.sent() == []
+@pytest.mark.parametrize("event_type", [DEBUG, INFORMATION, ERROR, CRITICAL])
+def test_nobody_has_app_id_0(world: World, event_type: int) -> None:
+    with pytest.raises(CfeError) as caught:
+        world.call(lambda: world.evs.send_event_with_app_id(0, event_type, 0, "OK"))
+    assert caught.value.status == CFE_EVS_APP_ILLEGAL_APP_ID
+
+
+def test_values_go_into_the_text_as_printf_puts_them(world: World) -> None:
+    world.call(lambda: world.evs.send(1, INFORMATION, "%d %u 0x%08lX %s%%", -5, 7, 0xBEEF, "x"))
+    world.call(lambda: world.evs.send_err(2, "100%"))
+    assert [event.text for event in world.sent()] == ["-5 7 0x0000BEEF x%", "100%"]
+    for text, value in (("%d", "x"), ("none", 1), ("%d %d", 1)):
+        with pytest.raises(CfeError) as caught:
+            world.call(lambda text=text, value=value: world.evs.send_info(1, text, value))  # type: ignore[misc]
+        assert caught.value.status == CFE_EVS_INVALID_PARAMETER
 
 
 @pytest.mark.parametrize(("event_id", "text"), [(-1, "x"), (65536, "x"), ("1", "x"), (1, None)])
@@ -168,7 +185,19 @@ def test_a_cleaned_up_app_is_not_registered_any_more(world: World) -> None:
 
 @pytest.mark.parametrize(
     ("mask", "passed"),
-    [(0, range(20)), (1, range(0, 20, 2)), (2, [0, 1, 4, 5, 8, 9, 12, 13, 16, 17]), (0xFFFC, range(4)), (0xFFFF, [0])],
+    [
+        (evs.NO_FILTER, range(20)),
+        (evs.EVERY_OTHER_ONE, range(0, 20, 2)),
+        (evs.EVERY_OTHER_TWO, [0, 1, 4, 5, 8, 9, 12, 13, 16, 17]),
+        (evs.EVERY_FOURTH_ONE, range(0, 20, 4)),
+        (evs.FIRST_ONE_STOP, range(1)),
+        (evs.FIRST_TWO_STOP, range(2)),
+        (evs.FIRST_4_STOP, range(4)),
+        (evs.FIRST_8_STOP, range(8)),
+        (evs.FIRST_16_STOP, range(16)),
+        (evs.FIRST_32_STOP, range(20)),
+        (evs.FIRST_64_STOP, range(20)),
+    ],
 )
 def test_a_filter_passes_what_count_and_mask_say(world: World, mask: int, passed: list[int]) -> None:
     """cEVS3104.2: an event is filtered out when its count and the mask have a bit in common."""
@@ -222,6 +251,14 @@ def test_a_filter_is_two_numbers(world: World, bad: object) -> None:
     assert caught.value.status == CFE_ES_BAD_ARGUMENT
 
 
+def test_there_is_one_filter_scheme_and_asking_for_another_costs_the_registration(world: World) -> None:
+    with pytest.raises(CfeError) as caught:
+        world.call(lambda: world.evs.register([], 1))
+    assert caught.value.status == CFE_EVS_UNKNOWN_FILTER
+    with pytest.raises(CfeError, match="CFE_EVS_APP_NOT_REGISTERED"):
+        world.send(1)
+
+
 # -- the flood brake -----------------------------------------------------------------------------------------------
 
 
@@ -241,6 +278,18 @@ def test_a_flood_is_cut_after_a_burst_and_told_of_once(world: World) -> None:
     assert [int(event.text) for event in events[:-1]] == list(range(32))
     app_data = world.housekeeping()["AppData"]
     assert app_data[1]["AppMessageSquelchedCounter"] == 68  # type: ignore[index]
+
+
+def test_the_sender_learns_what_became_of_an_event(world: World) -> None:
+    """Held back by the type or by a filter is success, held back by the brake is not, as in NASA's evs_send_test.c."""
+    send = world.evs.send_event
+    world.call(lambda: world.evs.register([(9, 0xFFFF)]))
+    results = [world.call(lambda kind=kind: send(0, kind, "OK")) for kind in (DEBUG, INFORMATION)]  # type: ignore[misc]
+    results += [world.call(lambda: send(9, ERROR, "OK")) for _ in range(31)]
+    assert set(results) == {CFE_SUCCESS}
+    _flood(world, 32)
+    assert world.call(lambda: send(0, ERROR, "too much")) == CFE_EVS_APP_SQUELCHED
+    assert world.call(lambda: world.evs.send_timed_event((1000, 1000), 0, ERROR, "too")) == CFE_EVS_APP_SQUELCHED
 
 
 def test_after_a_flood_events_come_back_at_fifteen_a_second(world: World) -> None:

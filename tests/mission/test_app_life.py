@@ -139,7 +139,7 @@ def held(mission: Mission) -> dict[str, int]:
         "apps": len(cfe.es.apps),
         "pools": len(cfe.es.pools),
         "pipes": len(cfe.sb.pipes),
-        "subscriptions": cfe.sb.subscriptions_in_use(),
+        "subscriptions": cfe.sb.subscriptions,
         "memory": mission.memory.used,
         "ready": len(mission.kernel.ready),
     }

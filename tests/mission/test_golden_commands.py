@@ -17,13 +17,13 @@ from tests.mission.flights import write_mission
 COMMANDS: list[dict[str, Any]] = json.loads((Path(__file__).parents[1] / "data" / "command_events.json").read_text())
 STARTUP = """
     CFE_APP, sample, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
+    CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;
+    CFE_APP, to_lab, TO_LAB_AppMain, TO_LAB, 70, 16384, 0x0, 0;
     CFE_APP, sch_lab, SCH_LAB_AppMain, SCH_LAB, 80, 16384, 0x0, 0;
     CFE_APP, hk,     HK_AppMain,      HK,         90, 16384, 0x0, 0;
     !
 """
 NOT_HERE_YET = {
-    "TO_LAB": "there is no TO_LAB yet",
-    "CI_LAB": "there is no CI_LAB yet",
     "ES QUERY_ALL": "ES writes no files yet",
     "ES WRITE_SYS_LOG": "ES writes no files yet",
     "ES WRITE_ER_LOG": "ES writes no files yet",

@@ -9,9 +9,12 @@ from types import ModuleType
 
 import pytest
 
+from apps.to_lab import packets as to_lab
 from cfepy.cli.main import main
 from cfepy.console import Console
 from cfepy.mission import Mission, shipped_missions
+from cfepy.mission.ground import GroundLink
+from cfepy.mission.script import run_script
 from cfepy.resources import shipped
 from cfepy.tbl import build
 
@@ -46,6 +49,12 @@ def test_capture_catches_the_debris() -> None:
         assert dropped == 0
     assert flight.cfe.evs.errors_by_app == {}
     assert not flight.record.resets
+
+
+def test_capture_passes_its_own_checks() -> None:
+    outcome = run_script("capture", MISSIONS / "capture" / "checks.txt", console=Console(quiet=True))
+    assert outcome.ok, outcome.text()
+    assert len(outcome.verdicts) > 15
 
 
 def test_hk_carries_the_nodes_housekeeping_to_a_node() -> None:
@@ -133,7 +142,7 @@ def test_over_the_boards_memory_the_report_says_who_uses_what(tmp_path: Path) ->
     (folder / "startup.scr").write_text(script.replace("LISTENER, 90,  8192", "LISTENER, 90,  500000"))
     flight, lines = fly(str(folder), 3)
     text = "\n".join(lines)
-    assert "CFE_ES_AppCreate: AppCreate Error: TaskCreate LISTENER Failed." in text
+    assert "CFE_ES_StartAppTask: AppCreate Error: TaskCreate LISTENER Failed." in text
     assert "LISTENER asks for 500256 bytes (stack)" in text
     assert "RAM of rx64m" in text
     assert "CFE_TBL" in text
@@ -155,3 +164,15 @@ def test_an_application_that_does_not_fit_fails_the_run(tmp_path: Path, capsys: 
     captured = capsys.readouterr()
     assert "NOT STARTED" in captured.out
     assert "LISTENER could not be started" in captured.err
+
+
+def test_lab_is_nasas_sample_mission() -> None:
+    with Mission("lab", console=Console(quiet=True)) as flight, GroundLink(flight) as ground:
+        flight.run(2)
+        ground.send(to_lab.OUTPUT_ENABLE.packet(dest_IP="127.0.0.1"))
+        flight.run(4)
+        down = {int.from_bytes(packet[:2], "big") for _, packet in ground.received()}
+    housekeeping = {0x0800, 0x0801, 0x0803, 0x0804, 0x0805, 0x0880, 0x0883, 0x0884}
+    assert down == housekeeping | {0x0808}
+    assert not flight.record.resets
+    assert flight.cfe.evs.errors_by_app == {}

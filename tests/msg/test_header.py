@@ -82,6 +82,12 @@ def test_wrong_kind() -> None:
         assert caught.value.status == status.CFE_MSG_WRONG_MSG_TYPE
 
 
+def test_a_short_packet_of_the_wrong_kind_is_of_the_wrong_kind_first() -> None:
+    with pytest.raises(CfeError) as caught:
+        msg.get_msg_time(msg.command(0x1806, 0))
+    assert caught.value.status == status.CFE_MSG_WRONG_MSG_TYPE
+
+
 def test_checksum_covers_the_size_of_the_header_only() -> None:
     packet = msg.command(0x1806, 3, b"\x01\x02")
     padded = packet + b"\xff\x01"

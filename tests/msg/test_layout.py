@@ -131,3 +131,25 @@ def test_bad_types(kind: str) -> None:
 def test_a_field_twice() -> None:
     with pytest.raises(UsageError, match=r"T\.A: is declared twice"):
         Layout("T", [("A", "u8"), ("A", "u8")])
+
+
+def test_cells_are_every_number_and_text_where_it_lies() -> None:
+    inner = Layout("Inner", [("Id", "u8"), ("Name", "char[3]")])
+    outer = Layout(
+        "Outer", [("A", "u8"), ("B", "u32"), ("In", (inner, 2)), ("Grid", "u16[2][2]"), ("Names", "char[2][2]")]
+    )
+    assert [tuple(cell) for cell in outer.cells()] == [
+        ("A", "u8", 0, 1),
+        ("B", "u32", 4, 4),
+        ("In[0].Id", "u8", 8, 1),
+        ("In[0].Name", "char[3]", 9, 3),
+        ("In[1].Id", "u8", 12, 1),
+        ("In[1].Name", "char[3]", 13, 3),
+        ("Grid[0][0]", "u16", 16, 2),
+        ("Grid[0][1]", "u16", 18, 2),
+        ("Grid[1][0]", "u16", 20, 2),
+        ("Grid[1][1]", "u16", 22, 2),
+        ("Names[0]", "char[2]", 24, 2),
+        ("Names[1]", "char[2]", 26, 2),
+    ]
+    assert outer.size == 28

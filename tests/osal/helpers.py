@@ -14,11 +14,32 @@ from cfepy.trace import Trace
 MS = 1_000_000
 
 
+class Ledger:
+    """Counts memory, as a board's budget does."""
+
+    def __init__(self, free: int) -> None:
+        self.free: int | None = free
+        self._claims: list[int] = [0]
+
+    def claim(self, owner: str, kind: str, size: int) -> int:
+        """Take some."""
+        assert self.free is not None
+        self.free -= size
+        self._claims.append(size)
+        return len(self._claims) - 1
+
+    def release(self, token: int) -> None:
+        """Give it back."""
+        assert self.free is not None
+        self.free += self._claims[token]
+        self._claims[token] = 0
+
+
 class Bench:
     """One kernel with an Osal on it."""
 
     def __init__(self, **setup: Any) -> None:
-        self.kernel = Kernel("thread", Trace())
+        self.kernel = Kernel(setup.pop("context", "thread"), Trace())
         self.console = Console(quiet=True)
         self.os = Osal(self.kernel, setup.pop("config", PlatformConfig()), self.console, **setup)
         self.log: list[Any] = []

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.osal import FileSystem, Volume
+from cfepy.osal import FileSystem
 from cfepy.status import (
-    OS_ERR_INCORRECT_OBJ_STATE,
     OS_ERR_NAME_NOT_FOUND,
     OS_ERR_NAME_TAKEN,
     OS_ERROR,
@@ -16,7 +15,7 @@ from cfepy.status import (
     OS_FS_ERR_PATH_INVALID,
     OS_FS_ERR_PATH_TOO_LONG,
 )
-from tests.osal.helpers import Bench
+from tests.osal.helpers import Bench, Ledger
 from tests.osal.test_queues import status_of
 
 
@@ -27,7 +26,6 @@ def test_the_life_of_a_ram_disk(bench: Bench) -> None:
     os.files.write_file("/scratch/x", bytes(600))
     assert os.file_sys_stat_volume("/scratch") == (512, 4, 2)
     assert status_of(os.files.write_file, "/scratch/y", bytes(1500)) == OS_ERROR
-    assert status_of(os.rmfs, "/ramdev1") == OS_ERR_INCORRECT_OBJ_STATE
     os.chkfs("/scratch")
     os.unmount("/scratch")
     assert status_of(os.files.read_file, "/scratch/x") == OS_FS_ERR_PATH_INVALID
@@ -79,6 +77,85 @@ def test_mounting_twice(bench: Bench) -> None:
 
 def test_a_fixed_map(bench: Bench, tmp_path: Path) -> None:
     (tmp_path / "x").write_bytes(b"host")
-    bench.os.file_sys_add_fixed_map(Volume(tmp_path), "/data")
+    bench.os.file_sys_add_fixed_map(str(tmp_path), "/data")
     assert bench.os.files.read_file("/data/x") == b"host"
-    assert status_of(bench.os.file_sys_add_fixed_map, Volume(), "/data") == OS_ERR_NAME_TAKEN
+    bench.os.files.write_file("/data/x", b"flight")
+    assert (tmp_path / "x").read_bytes() == b"host"
+    assert bench.os.fs_get_phys_drive_name("/data") == str(tmp_path)
+    add = bench.os.file_sys_add_fixed_map
+    assert status_of(add, tmp_path, "/data") == OS_ERR_NAME_TAKEN
+    assert status_of(add, tmp_path, "/" + "d" * 63) == OS_FS_ERR_PATH_TOO_LONG
+    assert status_of(add, tmp_path, "data") == OS_FS_ERR_PATH_INVALID
+    add(tmp_path / "nothing", "/a_path/of_more_than/the_32_characters/of_a_device")
+    assert bench.os.files.list_dir("/a_path/of_more_than/the_32_characters/of_a_device") == []
+    bench.os.unmount("/data")
+    assert not bench.os.files.exists("/data/x")
+
+
+def test_a_disk_that_is_removed_while_it_is_mounted(bench: Bench) -> None:
+    bench.os.mkfs("/ramdev1", "RAM1", 512, 4)
+    bench.os.mount("/ramdev1", "/scratch")
+    bench.os.rmfs("/ramdev1")
+    assert not bench.os.files.exists("/scratch")
+    bench.os.mkfs("/ramdev1", "RAM1", 512, 4)
+    bench.os.mount("/ramdev1", "/scratch")
+
+
+def test_only_ram_disks_can_be_mounted(bench: Bench) -> None:
+    bench.os.mkfs("/ssrdev0", "SSR1", 512, 4)
+    assert status_of(bench.os.mount, "/ssrdev0", "/ssr") == OS_ERR_NAME_NOT_FOUND
+    bench.os.mkfs("/ramdev1", "RAM1", 512, 4)
+    assert status_of(bench.os.mount, "/ramdev1", "scratch") == OS_ERR_NAME_NOT_FOUND
+
+
+@pytest.mark.parametrize(
+    "function", ["rmfs", "unmount", "chkfs", "file_sys_stat_volume", "fs_get_phys_drive_name", "translate_path"]
+)
+def test_long_names(bench: Bench, function: str) -> None:
+    assert status_of(getattr(bench.os, function), "/" + "n" * 63) == OS_FS_ERR_PATH_TOO_LONG
+    assert status_of(bench.os.mount, "/ramdev0", "/" + "n" * 63) == OS_FS_ERR_PATH_TOO_LONG
+
+
+def test_formatting_the_boards_own_disk(bench: Bench) -> None:
+    os = bench.os
+    os.files.write_file("/ram/x", bytes(512))
+    assert os.file_sys_stat_volume("/ram").blocks_free == 4095
+    os.unmount("/ram")
+    os.rmfs("/ramdev0")
+    os.mkfs("/ramdev0", "RAM", 512, 4096)
+    os.mount("/ramdev0", "/ram")
+    assert os.files.list_dir("/ram") == []
+    assert os.file_sys_stat_volume("/ram").blocks_free == 4096
+
+
+def test_disks_count_against_the_memory_except_the_boards_own() -> None:
+    ledger = Ledger(free=3000)
+    bench = Bench(memory=ledger)
+    bench.os.mkfs("/ramdev1", "RAM1", 512, 4)
+    assert ledger.free == 3000 - 2048
+    bench.os.unmount("/ram")
+    bench.os.rmfs("/ramdev0")
+    bench.os.mkfs("/ramdev0", "RAM", 512, 4096)
+    assert ledger.free == 3000 - 2048
+    bench.os.rmfs("/ramdev1")
+    assert ledger.free == 3000
+
+
+def test_after_a_reset_the_boards_own_disks_are_there_and_guests_are_gone() -> None:
+    files = FileSystem()
+    first = Bench(files=files).os
+    first.mkfs("/ramdev1", "RAM1", 512, 4)
+    first.mount("/ramdev1", "/guest")
+    first.unmount("/ram")
+    first.rmfs("/ramdev0")
+    first.mkfs("/ramdev0", "RAM", 512, 4096)
+    first.mount("/ramdev0", "/ram")
+    files.write_file("/ram/x", b"kept")
+    files.write_file("/cf/x", b"kept")
+    second = Bench(files=files).os
+    assert files.mount_points() == ["/cf", "/ram"]
+    assert (files.read_file("/ram/x"), files.read_file("/cf/x")) == (b"kept", b"kept")
+    second.unmount("/ram")
+    second.mkfs("/ramdev1", "RAM1", 512, 4)
+    Bench(files=files)
+    assert files.read_file("/ram/x") == b"kept"

@@ -1,4 +1,4 @@
-"""The virtual file system, and OSAL's file and directory functions on it."""
+"""The virtual file system, and OSAL's functions on open files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from cfepy.osal import FileSystem, Volume
 from cfepy.osal.limits import (
     OS_FILE_FLAG_CREATE,
     OS_FILE_FLAG_TRUNCATE,
-    OS_FILESTAT_MODE_DIR,
     OS_MAX_NUM_OPEN_FILES,
     OS_READ_ONLY,
     OS_READ_WRITE,
@@ -24,12 +23,13 @@ from cfepy.status import (
     OS_ERR_INVALID_SIZE,
     OS_ERR_NAME_NOT_FOUND,
     OS_ERR_NO_FREE_IDS,
+    OS_ERR_OUTPUT_TOO_LARGE,
     OS_ERROR,
     OS_FS_ERR_NAME_TOO_LONG,
     OS_FS_ERR_PATH_INVALID,
     OS_FS_ERR_PATH_TOO_LONG,
 )
-from tests.osal.helpers import MS, Bench
+from tests.osal.helpers import Bench
 from tests.osal.test_queues import status_of
 
 
@@ -194,45 +194,39 @@ def test_descriptors_by_name(bench: Bench) -> None:
     assert not os.file_open_check("/ram/y")
 
 
-def test_stat(bench: Bench) -> None:
-    bench.os.mkdir("/ram/d")
-    bench.run(lambda: (bench.os.task_delay(5), bench.os.files.write_file("/ram/x", b"123", bench.kernel.now)))
-    assert bench.os.stat("/ram/x")[1:] == (3, 5 * MS)
-    assert bench.os.stat("/ram/d").file_mode & OS_FILESTAT_MODE_DIR
-    assert status_of(bench.os.stat, "/ram/none") == OS_ERROR
-
-
-def test_copy_and_move_between_volumes(bench: Bench) -> None:
-    os = bench.os
-    os.files.write_file("/ram/x", b"content")
-    os.cp("/ram/x", "/cf/y")
-    os.mv("/cf/y", "/ram/z")
-    assert os.files.read_file("/ram/z") == b"content"
-    assert not os.files.exists("/cf/y")
-    os.mv("/ram/z", "/ram/w")
-    os.remove("/ram/w")
-    assert status_of(os.remove, "/ram/w") == OS_ERROR
-
-
 def test_truncate_and_allocate(bench: Bench) -> None:
     os = bench.os
     filedes = os.open_create("/ram/x", OS_FILE_FLAG_CREATE, OS_READ_WRITE)
     os.write(filedes, b"123456")
     os.file_truncate(filedes, 3)
-    os.file_allocate(filedes, 0, 5)
+    os.file_allocate(filedes, 2, 3)
+    os.file_allocate(filedes, 0, 1)
     assert os.files.read_file("/ram/x") == b"123\0\0"
+    os.file_truncate(filedes, 7)
+    assert os.files.read_file("/ram/x") == b"123\0\0\0\0"
+    reader = os.open_create("/ram/x")
+    for call, arguments, status in (
+        (os.file_allocate, (filedes, -1, 5), OS_ERROR),
+        (os.file_allocate, (filedes, 0, 0), OS_ERROR),
+        (os.file_truncate, (filedes, -1), OS_ERROR),
+        (os.file_truncate, (reader, 0), OS_ERROR),
+        (os.file_allocate, (reader, 0, 9), OS_ERROR),
+        (os.file_allocate, (filedes, 0, 1 << 30), OS_ERR_OUTPUT_TOO_LARGE),
+        (os.file_truncate, (filedes, 1 << 30), OS_ERR_OUTPUT_TOO_LARGE),
+        (os.file_truncate, (0, 1), OS_ERR_INVALID_ID),
+    ):
+        assert status_of(call, *arguments) == status
+    assert os.files.read_file("/ram/x") == b"123\0\0\0\0"
 
 
-def test_directories(bench: Bench) -> None:
+def test_one_open_file_too_many_is_neither_made_nor_emptied(bench: Bench) -> None:
     os = bench.os
-    os.mkdir("/ram/d")
-    for name in ("b", "a"):
-        os.files.write_file(f"/ram/d/{name}", b"")
-    dir_id = os.directory_open("/ram/d")
-    names = [os.directory_read(dir_id) for _ in range(3)]
-    os.directory_rewind(dir_id)
-    assert [*names, os.directory_read(dir_id)] == ["a", "b", None, "a"]
-    os.directory_close(dir_id)
-    assert status_of(os.directory_read, dir_id) == OS_ERR_INVALID_ID
-    assert status_of(os.directory_open, "/ram/none") == OS_ERROR
-    assert status_of(os.rmdir, "/ram/d") == OS_ERROR
+    os.files.write_file("/ram/x", b"content")
+    for _ in range(OS_MAX_NUM_OPEN_FILES):
+        os.open_create("/ram/x")
+    flags = OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE
+    assert status_of(os.open_create, "/ram/x", flags, OS_WRITE_ONLY) == OS_ERR_NO_FREE_IDS
+    assert status_of(os.open_create, "/ram/y", flags, OS_WRITE_ONLY) == OS_ERR_NO_FREE_IDS
+    assert status_of(os.open_create, "y", flags, OS_WRITE_ONLY) == OS_FS_ERR_PATH_INVALID
+    assert os.files.list_dir("/ram") == ["x"]
+    assert os.files.read_file("/ram/x") == b"content"

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from spacepackets.ccsds.spacepacket import (  # type: ignore[import-untyped]  # it ships no types
     PacketType,
     SequenceFlags,
+    SpacePacket,
     SpacePacketHeader,
 )
 
@@ -59,6 +60,41 @@ def test_same_bytes(
     assert msg.get_segmentation_flag(packet) is flag
     assert msg.get_sequence_count(packet) == count
     assert msg.get_size(packet) == size
+
+
+@given(
+    msg_id=st.integers(1, 0x1FFF),
+    flag=st.sampled_from(list(FLAGS)),
+    count=st.integers(0, 0x3FFF),
+    body=st.binary(min_size=1, max_size=300),
+)
+def test_a_whole_packet_of_any_valid_msg_id_goes_there_and_back(
+    msg_id: int, flag: SegmentationFlag, count: int, body: bytes
+) -> None:
+    packet = msg.init(msg_id, 6 + len(body))
+    packet[6:] = body
+    msg.set_segmentation_flag(packet, flag)
+    msg.set_sequence_count(packet, count)
+    theirs = SpacePacketHeader.unpack(bytes(packet))
+    assert (theirs.ccsds_version, theirs.packet_type) == (0, PacketType(msg_id >> 12))
+    assert (theirs.sec_header_flag, theirs.apid) == (bool(msg_id & 0x800), msg_id & 0x7FF)
+    assert (theirs.seq_flags, theirs.seq_count, theirs.packet_len) == (FLAGS[flag], count, len(packet))
+    again = bytes(SpacePacket(theirs, body[:0], body).pack())
+    assert again == packet
+    assert (msg.get_msg_id(again), msg.get_segmentation_flag(again)) == (msg_id, flag)
+    assert (msg.get_sequence_count(again), msg.get_size(again)) == (count, len(again))
+
+
+@given(st.integers(0x1800, 0x1FFF), st.integers(0, 127), st.binary(max_size=200))
+def test_commands_and_telemetry_have_headers_that_others_read(msg_id: int, code: int, payload: bytes) -> None:
+    for packet, kind in (
+        (msg.command(msg_id, code, payload), PacketType.TC),
+        (msg.telemetry(msg_id & 0x0FFF, payload), PacketType.TM),
+    ):
+        theirs = SpacePacketHeader.unpack(bytes(packet))
+        assert (theirs.packet_type, theirs.apid, theirs.packet_len) == (kind, msg_id & 0x7FF, len(packet))
+        assert (theirs.sec_header_flag, theirs.seq_flags) == (True, SequenceFlags.UNSEGMENTED)
+        assert bytes(theirs.pack()) == packet[:6]
 
 
 @given(st.integers(0x1800, 0x1FFF), st.integers(0, 127), st.binary(max_size=200))

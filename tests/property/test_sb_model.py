@@ -134,6 +134,15 @@ class BusAgainstModel(RuleBasedStateMachine):
         assert counters.no_subscribers == self.unrouted
 
     @invariant()
+    def the_pool_is_counted_right(self) -> None:
+        if not hasattr(self, "bench"):
+            return
+        waiting = {message[1] for pipe in self.pipes.values() for message in pipe.waiting}
+        subscriptions = sum(len(route) for route in self.routes.values())
+        assert self.bus.pool_use() == (len(waiting) * (20 + 64) + subscriptions * 32, len(waiting))
+        assert self.bus.peaks.memory >= self.bus.pool_use()[0]
+
+    @invariant()
     def routes_agree(self) -> None:
         if not hasattr(self, "bench"):
             return

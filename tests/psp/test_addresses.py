@@ -6,19 +6,21 @@ from collections.abc import Callable
 
 import pytest
 
-from cfepy.psp import Retained
+from cfepy.psp import BoardProfile, Retained
 from cfepy.psp.addresses import (
     MEM_ANY,
     MEM_ATTR_READWRITE,
     MEM_EEPROM,
     MEM_INVALID,
     MEM_RAM,
-    AddressSpace,
     MemRange,
 )
+from cfepy.psp.eeprom import EepromSpace
 from cfepy.status import (
+    CFE_PSP_ERROR,
     CFE_PSP_ERROR_ADDRESS_MISALIGNED,
     CFE_PSP_ERROR_NOT_IMPLEMENTED,
+    CFE_PSP_ERROR_TIMEOUT,
     CFE_PSP_INVALID_MEM_ADDR,
     CFE_PSP_INVALID_MEM_ATTR,
     CFE_PSP_INVALID_MEM_RANGE,
@@ -32,9 +34,9 @@ RAM, EEPROM = 0x1000, 0x8000
 
 
 @pytest.fixture
-def memory() -> AddressSpace:
+def memory() -> EepromSpace:
     """64 bytes of RAM and 32 of EEPROM."""
-    made = AddressSpace()
+    made = EepromSpace()
     made.mem_range_set(0, MEM_RAM, RAM, 64, 4, MEM_ATTR_READWRITE)
     made.mem_range_set(5, MEM_EEPROM, EEPROM, 32, 4, MEM_ATTR_READWRITE)
     return made
@@ -46,7 +48,7 @@ def _status(call: Callable[[], object]) -> int:
     return caught.value.status
 
 
-def test_words_are_little_endian(memory: AddressSpace) -> None:
+def test_words_are_little_endian(memory: EepromSpace) -> None:
     memory.mem_write32(RAM, 0x12345678)
     memory.mem_write16(RAM + 4, 0xABCD)
     memory.mem_write8(RAM + 6, 0x1EF)
@@ -55,14 +57,14 @@ def test_words_are_little_endian(memory: AddressSpace) -> None:
     assert memory.mem_read32(RAM + 4) == 0x00EFABCD
 
 
-def test_copy_and_set(memory: AddressSpace) -> None:
+def test_copy_and_set(memory: EepromSpace) -> None:
     memory.mem_set(RAM, 0xAA, 8)
     memory.mem_cpy(RAM + 4, RAM + 6, 4)
     memory.mem_cpy(EEPROM, RAM, 8)
     assert memory.mem_read32(EEPROM + 4) == 0x0000AAAA
 
 
-def test_eeprom_is_written_by_its_own_functions(memory: AddressSpace) -> None:
+def test_eeprom_is_written_by_its_own_functions(memory: EepromSpace) -> None:
     memory.eeprom_write32(EEPROM, 0x01020304)
     memory.eeprom_write16(EEPROM + 4, 0x0506)
     memory.eeprom_write8(EEPROM + 6, 7)
@@ -81,11 +83,11 @@ def test_eeprom_is_written_by_its_own_functions(memory: AddressSpace) -> None:
         (RAM, 4, MEM_INVALID, CFE_PSP_INVALID_MEM_TYPE),
     ],
 )
-def test_invalid_ranges(memory: AddressSpace, address: int, size: int, memory_type: int, status: int) -> None:
+def test_invalid_ranges(memory: EepromSpace, address: int, size: int, memory_type: int, status: int) -> None:
     assert _status(lambda: memory.mem_validate_range(address, size, memory_type)) == status
 
 
-def test_bad_definitions(memory: AddressSpace) -> None:
+def test_bad_definitions(memory: EepromSpace) -> None:
     def define(number: int = 1, kind: int = MEM_RAM, word: int = 4, attributes: int = 3) -> None:
         memory.mem_range_set(number, kind, 0, 8, word, attributes)
 
@@ -99,7 +101,7 @@ def test_bad_definitions(memory: AddressSpace) -> None:
     assert memory.mem_ranges() == 10
 
 
-def test_words_must_be_aligned(memory: AddressSpace) -> None:
+def test_words_must_be_aligned(memory: EepromSpace) -> None:
     assert _status(lambda: memory.mem_read16(RAM + 1)) == CFE_PSP_ERROR_ADDRESS_MISALIGNED
     assert _status(lambda: memory.mem_write32(RAM + 2, 0)) == CFE_PSP_ERROR_ADDRESS_MISALIGNED
 
@@ -123,3 +125,52 @@ def test_absent_hardware_says_so() -> None:
     with board.kernel:
         assert _status(lambda: board.psp.port_read8(0)) == CFE_PSP_ERROR_NOT_IMPLEMENTED
         assert _status(lambda: board.psp.eeprom_write_enable(0)) == CFE_PSP_ERROR_NOT_IMPLEMENTED
+        assert _status(board.psp.get_kernel_text_segment_info) == CFE_PSP_ERROR_NOT_IMPLEMENTED
+        assert _status(board.psp.get_cfe_text_segment_info) == CFE_PSP_ERROR_NOT_IMPLEMENTED
+        assert _status(lambda: board.psp.init_ssr(1, 2, "SSR")) == CFE_PSP_ERROR
+        assert len(board.psp.get_volatile_disk_mem()) == 0
+        board.psp.flush_caches(1, RAM, 4)
+        assert board.console.lines == ["CFE_PSP_FlushCaches called -- Currently no Linux/OSX/Cygwin implementation"]
+
+
+def test_eeprom_that_can_be_protected() -> None:
+    board = Board(profile=BoardProfile("flash", data_flash=64))
+    with board.kernel:
+        psp = board.psp
+        psp.boot()
+        eeprom = psp.mem_range_get(1).start_addr
+        assert psp.mem_range_get(1).size == 64
+
+        def writes() -> list[int]:
+            return [
+                _status_or_0(call)
+                for call in (
+                    lambda: psp.eeprom_write8(eeprom, 1),
+                    lambda: psp.mem_set(eeprom, 2, 4),
+                    lambda: psp.mem_cpy(eeprom, psp.mem_range_get(0).start_addr, 4),
+                )
+            ]
+
+        assert writes() == [CFE_PSP_ERROR_TIMEOUT] * 3
+        assert psp.mem_read32(eeprom) == 0
+        psp.eeprom_write_enable(0)
+        assert writes() == [0] * 3
+        psp.eeprom_write16(eeprom + 2, 7)
+        psp.eeprom_write_disable(0)
+        assert writes() == [CFE_PSP_ERROR_TIMEOUT] * 3
+        psp.eeprom_write_enable(0)
+        psp.eeprom_power_down(0)
+        assert writes() == [CFE_PSP_ERROR_TIMEOUT] * 3
+        assert _status(lambda: psp.mem_read8(eeprom)) == CFE_PSP_ERROR_TIMEOUT
+        psp.eeprom_power_up(0)
+        assert psp.mem_read16(eeprom + 2) == 7
+        for function in ("write_enable", "write_disable", "power_up", "power_down"):
+            assert _status(lambda name=function: getattr(psp, f"eeprom_{name}")(1)) == CFE_PSP_ERROR
+
+
+def _status_or_0(call: Callable[[], object]) -> int:
+    try:
+        call()
+    except OsalError as error:
+        return error.status
+    return 0

@@ -34,6 +34,7 @@ def test_rx64m() -> None:
     assert MemoryRegion("standby", 8 << 10, retained=True) in board.sram
     assert board.cycles_ns(1) == 9
     assert board.cycles_ns(300) == 2500
+    assert (board.watchdog_max_ms, board.ports) == (34_952, ())
 
 
 def test_rx64m_pools_and_core_stacks_fit_its_memory() -> None:
@@ -58,6 +59,14 @@ def test_a_file_by_path(tmp_path: Path) -> None:
     board = load_profile(write(tmp_path, "name: mine\ncpu_hz:\nprogram_flash: 2 MiB\nlimits: {sb_max_pipes: 5}\n"))
     assert (board.name, board.cpu_hz, board.program_flash) == ("mine", 0, 2 << 20)
     assert board.config().sb_max_pipes == 5
+
+
+def test_limits_are_numbers_or_switches(tmp_path: Path) -> None:
+    text = "name: mine\nlimits: {time_cfg_fake_tone: false, time_def_met_subs: 0, time_cfg_client: true}\n"
+    config = load_profile(write(tmp_path, text)).config()
+    assert (config.time_cfg_fake_tone, config.time_def_met_subs, config.time_cfg_client) == (False, 0, True)
+    with pytest.raises(UsageError, match="limits.time_cfg_client: is 1, it must be true or false"):
+        load_profile(write(tmp_path, "name: mine\nlimits: {time_cfg_client: 1}\n"))
 
 
 @pytest.mark.parametrize(

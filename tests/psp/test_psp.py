@@ -15,6 +15,7 @@ from cfepy.rtos import Kernel
 from cfepy.status import CFE_PSP_ERROR, CfeError, OsalError
 
 MS = 1_000_000
+TEST_BOARD = BoardProfile("test")
 BOOT = """\
 CFE_PSP: Default Reset SubType = 1
 CFE_PSP: Default CPU ID = 1
@@ -39,13 +40,13 @@ CFE_PSP: Clearing out CFE User Reserved Shared memory segment.
 class Board:
     """A PSP with everything below it."""
 
-    def __init__(self, retained: Retained | None = None, **hooks: Any) -> None:
+    def __init__(self, retained: Retained | None = None, profile: BoardProfile = TEST_BOARD, **hooks: Any) -> None:
         self.kernel = Kernel("thread")
         self.console = Console(quiet=True)
         self.osal = Osal(self.kernel, PlatformConfig(), self.console)
         self.psp = Psp(
             self.kernel,
-            BoardProfile("test"),
+            profile,
             PlatformConfig(),
             self.console,
             self.osal,
@@ -113,10 +114,39 @@ def test_a_processor_reset_keeps_memory_and_a_power_on_reset_clears_it() -> None
         assert third.psp.read_from_cds(8, 8) == bytes(8)
         assert bytes(third.psp.get_user_reserved_area()[:2]) == bytes(2)
         assert not retained.kept
-    fourth = Board(retained)
-    with fourth.kernel:
-        assert fourth.psp.boot(2, 5) == RestartType(2, 5)
-        assert "CFE_PSP: Abnormal exit from previous cFE instance" in fourth.console.lines
+
+
+def test_the_end_of_a_run_without_a_restart_is_told_at_the_next() -> None:
+    retained = Retained()
+    starts: list[tuple[int, str]] = []
+    for _ in range(4):
+        board = Board(retained)
+        with board.kernel:
+            reset_type = board.psp.boot().reset_type
+        starts.append((reset_type, next((line for line in board.console.lines if "previous" in line), "")))
+    abnormal = "CFE_PSP: Abnormal exit from previous cFE instance"
+    assert starts == [(2, ""), (1, abnormal), (2, abnormal), (1, abnormal)]
+
+
+def test_a_power_on_restart_removes_the_boot_record_too() -> None:
+    retained = Retained()
+    first = Board(retained)
+    with first.kernel:
+        first.psp.boot()
+        first.psp.restart(2)
+    assert first.console.lines[-6:] == [
+        "CFE_PSP: Exiting cFE with POWERON Reset status.",
+        "CFE_PSP: Critical Data Store Shared memory segment removed",
+        "Reset Area Shared memory segment removed",
+        "User Reserved Area Shared memory segment removed",
+        "",
+        "CFE_PSP: Shutdown initiated - Exiting cFE",
+    ]
+    second = Board(retained)
+    with second.kernel:
+        assert second.psp.boot(0, 5) == RestartType(2, 5)
+        assert second.console.lines[0] == "CFE_PSP: Reset SubType: 5"
+        assert not [line for line in second.console.lines if "previous" in line]
 
 
 def test_the_cds_has_ends(board: Board) -> None:
@@ -179,44 +209,74 @@ def _served(board: Board, psp: Psp, times: int, period_ms: int) -> None:
     board.osal.task_create("SERVER", server, 100, 50)
 
 
+class Watched(Board):
+    """A board with a watchdog that counts to 10 s at most; `resets` are the times in ms at which it bit."""
+
+    def __init__(self, retained: Retained | None = None) -> None:
+        self.resets: list[int] = []
+        profile = BoardProfile("watched", watchdog_max_ms=10_000)
+        super().__init__(retained, profile, on_restart=self._reset)
+
+    def _reset(self, reset_type: int, reason: str, fault: bool) -> None:
+        assert (reset_type, fault) == (1, True)
+        assert "watchdog was not served" in reason
+        self.resets.append(self.kernel.now // MS)
+
+
 def test_the_watchdog_bites_when_nobody_serves_it() -> None:
-    bites: list[int] = []
-    board = Board(on_watchdog=lambda: bites.append(board.kernel.now // MS))
+    board = Watched()
     with board.kernel:
         board.psp.watchdog_set(100)
         board.psp.watchdog_enable()
         _served(board, board.psp, 5, 80)
         board.kernel.run(until_ns=2000 * MS)
-        assert bites == [500]
-        assert board.psp.watchdog.bites == 1
+    assert board.resets == [500]
+    assert board.psp.watchdog.bites == 1
+
+
+def test_a_bite_is_told_apart_at_the_next_start() -> None:
+    retained = Retained()
+    board = Watched(retained)
+    with board.kernel:
+        board.psp.boot()
+        board.psp.watchdog_set(100)
         board.psp.watchdog_enable()
-        board.kernel.run(until_ns=4000 * MS)
-        assert bites == [500, 2100]
+        board.kernel.run(until_ns=2000 * MS)
+        assert not [line for line in board.console.lines if "Exiting" in line]
+    second = Board(retained)
+    with second.kernel:
+        assert second.psp.boot() == RestartType(1, 4)
+        assert second.console.lines[0] == "CFE_PSP: Reset SubType: 4"
+        assert "CFE_PSP: Abnormal exit from previous cFE instance" in second.console.lines
+        second.psp.restart(1)
+    third = Board(retained)
+    with third.kernel:
+        assert third.psp.boot() == RestartType(1, 1)
 
 
 def test_a_disabled_watchdog_does_not_bite() -> None:
-    bites: list[int] = []
-    board = Board(on_watchdog=lambda: bites.append(1))
+    board = Watched()
     with board.kernel:
         board.psp.watchdog_set(100)
         board.psp.watchdog_enable()
         board.psp.watchdog_disable()
         board.kernel.run(until_ns=2000 * MS)
         board.psp.watchdog_init()
-        assert board.psp.watchdog_get() == 0xFFFFFFFF
-    assert bites == []
+        assert board.psp.watchdog_get() == 10_000
+        board.psp.watchdog_set(10_001)
+        assert board.psp.watchdog_get() == 10_000
+    assert board.resets == []
 
 
 def test_a_shorter_time_counts_at_once() -> None:
-    bites: list[int] = []
-    board = Board(on_watchdog=lambda: bites.append(board.kernel.now // MS))
+    board = Watched()
     with board.kernel:
         board.psp.watchdog_set(5000)
         board.psp.watchdog_enable()
         board.kernel.run(until_ns=10 * MS)
         board.psp.watchdog_set(100)
         board.kernel.run(until_ns=2000 * MS)
-    assert bites == [110]
+    assert board.resets == [110]
 
 
 def test_a_watchdog_without_teeth_keeps_its_value(board: Board) -> None:
@@ -225,3 +285,5 @@ def test_a_watchdog_without_teeth_keeps_its_value(board: Board) -> None:
     board.kernel.run(until_ns=2000 * MS)
     assert board.psp.watchdog_get() == 1
     assert not board.kernel.tasks
+    board.psp.watchdog_init()
+    assert board.psp.watchdog_get() == 0xFFFFFFFF

@@ -247,7 +247,7 @@ def test_raw_topic_carries_packets(tmp_path: Path) -> None:
         'rospy.Subscriber("/raw", UInt8MultiArray, lambda m: print(m.data.hex()))\nrospy.spin()',
         topics={"/raw": TopicConfig("/raw", 0x0777, raw=True)},
     )
-    assert result.printed["sub"] == ["0777c000000361626364"]
+    assert result.printed["sub"] == ["0777c001000361626364"]
     assert result.printed["pub"] == ["/raw carries packets of MsgId 0x0777, and these bytes begin with 0x3132"]
 
 

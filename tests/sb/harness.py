@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from cfepy.config import PlatformConfig
+from cfepy.fs.background import FileWriteEvent, FileWriteMetaData
 from cfepy.msg import telemetry
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
@@ -42,6 +44,9 @@ class Clock:
     def stamp(self) -> int:
         return 1001000 << 16 | 0x8000
 
+    def now(self) -> tuple[int, int]:
+        return 1001000, 0x80000000
+
 
 class Memory:
     """Books nothing."""
@@ -53,14 +58,49 @@ class Memory:
         pass
 
 
+class Log:
+    """Keeps the lines of the system log."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    def write_to_sys_log(self, text: str) -> None:
+        self.lines.append(text)
+
+
+class Files:
+    """Keeps what is to be written; `write` does it at once, without a header."""
+
+    def __init__(self) -> None:
+        self.waiting: list[FileWriteMetaData] = []
+
+    def background_file_dump_request(self, meta: FileWriteMetaData) -> None:
+        meta.is_pending = True
+        self.waiting.append(meta)
+
+    def write(self) -> bytes:
+        """Write the oldest."""
+        meta = self.waiting.pop(0)
+        data, number, is_last = b"", 0, False
+        while not is_last:
+            record, is_last = meta.get_data(number)
+            data += record
+            number += 1
+        meta.is_pending = False
+        meta.on_event(FileWriteEvent.COMPLETE, 0, number, 0, len(data))
+        return data
+
+
 class Bench:
     """A kernel, a bus, and what it reported."""
 
-    def __init__(self, context: str = "thread", **limits: int) -> None:
+    def __init__(self, context: str = "thread", **limits: Any) -> None:
         self.kernel = Kernel(context, Trace())
         self.events = Events()
         ports = Ports()
+        self.log, self.files = Log(), Files()
         ports.evs, ports.time, ports.memory = self.events, Clock(), Memory()
+        ports.syslog, ports.fs = self.log, self.files  # type: ignore[assignment]  # what SB asks of them
         self.bus = SoftwareBus(self.kernel, ports, PlatformConfig(**limits))
         ports.sb = self.bus
         self.apps: dict[str, App] = {}

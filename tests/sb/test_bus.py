@@ -69,7 +69,7 @@ def test_origination_fills_in_sequence_and_time(bench: Bench) -> None:
     for _ in range(2):
         bench.bus.transmit_msg(packet(MID, b"x"))
     first, second = drain(bench, pipe)
-    assert (get_sequence_count(first), get_sequence_count(second)) == (0, 1)
+    assert (get_sequence_count(first), get_sequence_count(second)) == (1, 2)
     assert get_msg_time(second) == (1001000, 0x80000000)
 
 
@@ -187,6 +187,8 @@ def test_bad_receives(bench: Bench) -> None:
         assert isinstance(error, CfeError)
         assert error.status == CFE_SB_BAD_ARGUMENT
     assert bench.events.ids() == [19, 18]
+    assert bench.events.sent[-1][1] == "Rcv Err:Bad Input Arg:BufPtr 0x0,pipe [n/a],t/o -2,app A"
+    assert bench.bus.counters.msg_receive_error == 2
 
 
 def test_a_reader_of_a_deleted_pipe_is_told(bench: Bench) -> None:
@@ -205,6 +207,39 @@ def test_a_reader_of_a_deleted_pipe_is_told(bench: Bench) -> None:
     assert caught == [CFE_SB_PIPE_RD_ERR]
 
 
+def test_a_pipe_that_goes_away_while_a_message_is_on_its_way(bench: Bench) -> None:
+    doomed = subscriber(bench, "DOOMED")
+
+    def deleter() -> None:
+        pipe = bench.bus.create_pipe(1, "FIRST")
+        bench.bus.subscribe(MID, pipe)
+        bench.bus.receive_buffer(pipe, PEND_FOREVER)
+        bench.bus.cleanup_app(bench.apps["DOOMED"].app_id)
+
+    bench.spawn("DELETER", deleter, priority=10)
+    bench.kernel.run(0)
+    assert bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID))) is None
+    assert bench.events.sent[-1] == (26, "Pipe Write Err,MsgId 0x881,pipe DOOMED_PIPE,sender SENDER,stat -16")
+    assert (bench.bus.counters.internal_error, bench.bus.counters.pipe_overflow_error) == (1, 0)
+    assert isinstance(bench.do("A", lambda: bench.bus.receive_buffer(doomed, POLL)), CfeError)
+
+
+def test_a_message_for_a_waiting_reader_counts_for_the_peak(bench: Bench) -> None:
+    pipe = subscriber(bench, "A")
+    bench.spawn("A", lambda: bench.bus.receive_buffer(pipe, PEND_FOREVER))
+    bench.kernel.run(0)
+    bench.bus.transmit_msg(packet(MID))
+    assert bench.bus.pipes.get(pipe).peak == 1
+
+
+def test_send_errors_count_message_limits_alone(bench: Bench) -> None:
+    limited, small = subscriber(bench, "LIMITED", limit=1), subscriber(bench, "SMALL", depth=1, limit=9)
+    for _ in range(3):
+        bench.bus.transmit_msg(packet(MID))
+    assert [bench.bus.pipes.get(pipe).send_errors for pipe in (limited, small)] == [2, 0]
+    assert [bench.bus.pipes.get(pipe).dropped for pipe in (limited, small)] == [2, 2]
+
+
 def test_ignoring_ones_own_messages(bench: Bench) -> None:
     pipe = subscriber(bench, "A")
     bench.do("A", lambda: bench.bus.set_pipe_opts(pipe, 1))
@@ -219,4 +254,4 @@ def test_transmit_telemetry_is_transmit_msg_without_the_header(bench: Bench) -> 
     bench.bus.transmit_telemetry(MID, b"payload")
     first, second = drain(bench, pipe)
     assert first[:2] + first[4:] == second[:2] + second[4:]
-    assert (get_sequence_count(first), get_sequence_count(second)) == (0, 1)
+    assert (get_sequence_count(first), get_sequence_count(second)) == (1, 2)

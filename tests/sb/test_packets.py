@@ -12,6 +12,11 @@ def test_layouts_are_nasas() -> None:
     assert_same(pk.HOUSEKEEPING, "CFE_SB_HousekeepingTlm_Payload_t")
     assert_same(pk.STATISTICS, "CFE_SB_StatsTlm_Payload_t")
     assert_same(pk.PIPE_DEPTH_STATS, "CFE_SB_PipeDepthStats_t")
+    assert_same(pk.SUBSCRIPTION_ENTRY, "CFE_SB_SubEntries_t")
+    assert_same(pk.ROUTING_FILE_ENTRY, "CFE_SB_RoutingFileEntry_t")
+    assert_same(pk.PIPE_FILE_ENTRY, "CFE_SB_PipeInfoEntry_t")
+    assert_same(pk.MAP_FILE_ENTRY, "CFE_SB_MsgMapFileEntry_t")
+    assert (pk.ONESUB_TLM.length, pk.ALLSUBS_TLM.length) == (32, 268)
 
 
 def test_housekeeping_and_statistics_count_what_happened() -> None:
@@ -25,10 +30,11 @@ def test_housekeeping_and_statistics_count_what_happened() -> None:
     bench.do("B", lambda: bench.bus.transmit_msg(packet(0x882)))
     housekeeping = pk.HOUSEKEEPING.unpack(pk.HOUSEKEEPING.pack(task.housekeeping()))
     assert housekeeping["PipeOverflowErrorCounter"] == housekeeping["NoSubscribersCounter"] == 1
-    assert housekeeping["MemInUse"] == 2 * (36 + 64)
-    assert housekeeping["UnmarkedMem"] == 524288 - housekeeping["MemInUse"]
+    assert housekeeping["MemInUse"] == 32 + 2 * (36 + 64)
+    assert housekeeping["UnmarkedMem"] == 524288 - (32 + 3 * (36 + 64)), "the third one was there while it was sent"
     statistics = pk.STATISTICS.unpack(pk.STATISTICS.pack(task.statistics()))
     assert (statistics["PipesInUse"], statistics["SubscriptionsInUse"], statistics["SBBuffersInUse"]) == (1, 1, 2)
+    assert statistics["PeakSBBuffersInUse"] == 3
     assert statistics["PipeDepthStats"][0] == {
         "PipeId": pipe,
         "MaxQueueDepth": 2,

@@ -7,7 +7,9 @@ from collections.abc import Iterator
 import pytest
 
 from cfepy.status import (
+    CFE_ES_ERR_RESOURCEID_NOT_VALID,
     CFE_SB_BAD_ARGUMENT,
+    CFE_SB_BUF_ALOC_ERR,
     CFE_SB_MAX_DESTS_MET,
     CFE_SB_MAX_MSGS_MET,
     CFE_SB_MAX_PIPES_MET,
@@ -108,5 +110,40 @@ def test_cleanup_takes_everything_of_an_app(bench: Bench) -> None:
     bench.do("A", lambda: bench.bus.subscribe(0x801, pipe))
     bench.bus.cleanup_app(bench.apps["A"].app_id)
     assert len(bench.bus.pipes) == 0
-    assert bench.bus.subscriptions_in_use() == 0
+    assert bench.bus.subscriptions == 0
     assert status(bench.do("A", lambda: bench.bus.receive_buffer(pipe, 0))) == CFE_SB_BAD_ARGUMENT
+
+
+def test_a_full_pipe_table_is_found_before_a_bad_name(bench: Bench) -> None:
+    for number in range(3):
+        bench.do("A", lambda: bench.bus.create_pipe(5, f"P{number}"))  # noqa: B023  # called at once
+    assert status(bench.do("A", lambda: bench.bus.create_pipe(5, "N" * 20))) == CFE_SB_MAX_PIPES_MET
+
+
+def test_index_of_a_pipe(bench: Bench) -> None:
+    assert bench.bus.pipe_id_to_index(0x160002) == 2
+    for bad in (0, 0x110001):
+        with pytest.raises(CfeError) as caught:
+            bench.bus.pipe_id_to_index(bad)
+        assert caught.value.status == CFE_ES_ERR_RESOURCEID_NOT_VALID
+
+
+def test_a_subscription_that_the_pool_has_no_room_for() -> None:
+    bench = Bench(sb_buf_memory_bytes=40)
+    pipe = bench.do("A", lambda: bench.bus.create_pipe(5, "P"))
+    assert isinstance(pipe, int)
+    assert bench.do("A", lambda: bench.bus.subscribe(0x801, pipe)) is None
+    assert status(bench.do("A", lambda: bench.bus.subscribe(0x802, pipe))) == CFE_SB_BUF_ALOC_ERR
+    assert bench.events.sent[-1] == (20, "Subscribe Err:Request for Destination Blk failed for Msg 0x802")
+    assert bench.bus.counters.subscribe_error == 1
+    bench.do("A", lambda: bench.bus.unsubscribe(0x801, pipe))
+    assert bench.do("A", lambda: bench.bus.subscribe(0x802, pipe)) is None
+    bench.kernel.shutdown()
+
+
+def test_local_and_global_scope_in_the_event(bench: Bench) -> None:
+    pipe = bench.do("A", lambda: bench.bus.create_pipe(5, "P"))
+    assert isinstance(pipe, int)
+    for call, scope in ((bench.bus.unsubscribe, 1), (bench.bus.unsubscribe_local, 0)):
+        assert status(bench.do("A", lambda: call(0, pipe))) == CFE_SB_BAD_ARGUMENT  # noqa: B023  # called at once
+        assert bench.events.sent[-1][1] == f"Unsubscribe Err:Bad Arg,MsgId 0x0,PipeId {pipe},app A,scope {scope}"

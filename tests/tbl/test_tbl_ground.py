@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cfepy.fs import crc16, read_header
-from cfepy.msg import Layout, command, get_msg_id
+from cfepy.msg import Command, Layout, command, get_msg_id
 from cfepy.status import (
     CFE_SUCCESS,
     CFE_TBL_INFO_DUMP_PENDING,
@@ -17,22 +17,21 @@ from cfepy.status import (
 )
 from cfepy.tbl import OPT_DBL_BUFFER, OPT_DUMP_ONLY, packets, read
 from tests.layouts import assert_same
-from tests.tbl.conftest import NOW, Bench
+from tests.tbl.conftest import NOW, POOL_ID, Bench
 
 NAME = "APP.T"
 
 
 def load_file(bench: Bench, path: str = "/cf/t.tbl") -> None:
-    bench.ground(packets.LOAD_CC, packets.FILE_COMMAND.pack(Filename=path))
+    bench.ground(packets.LOAD, LoadFilename=path)
 
 
 def validate(bench: Bench, flag: int, name: str = NAME) -> None:
-    bench.ground(packets.VALIDATE_CC, packets.VALIDATE_COMMAND.pack(ActiveTableFlag=flag, TableName=name))
+    bench.ground(packets.VALIDATE, ActiveTableFlag=flag, TableName=name)
 
 
 def dump(bench: Bench, flag: int, path: str = "/ram/t.tbl", name: str = NAME) -> None:
-    payload = packets.DUMP_COMMAND.pack(ActiveTableFlag=flag, TableName=name, DumpFilename=path)
-    bench.ground(packets.DUMP_CC, payload)
+    bench.ground(packets.DUMP, ActiveTableFlag=flag, TableName=name, DumpFilename=path)
 
 
 @pytest.fixture
@@ -65,13 +64,13 @@ def test_the_whole_way_of_a_load(loaded: Bench) -> None:
     where = "LoadFile,app=CFE_TBL,file=/cf/t.tbl,tbl=APP.T"
     assert loaded.take_events() == [(12, 2, f"{where}:Successful load into 'APP.T' working buffer")]
     assert loaded.tbl.get_status(handle) == CFE_SUCCESS
-    loaded.named(packets.ACTIVATE_CC, NAME)
+    loaded.named(packets.ACTIVATE, NAME)
     assert loaded.take_events() == [(81, 3, "Cannot activate table 'APP.T'. Inactive image not Validated")]
     validate(loaded, packets.INACTIVE_BUFFER)
     assert loaded.tbl.get_status(handle) == CFE_TBL_INFO_VALIDATION_PENDING
     assert loaded.tbl.manage(handle) == CFE_SUCCESS
     assert loaded.take_events() == [(36, 2, "APP validation successful for inactive 'APP.T'")]
-    loaded.named(packets.ACTIVATE_CC, NAME)
+    loaded.named(packets.ACTIVATE, NAME)
     assert loaded.tbl.get_status(handle) == CFE_TBL_INFO_UPDATE_PENDING
     assert loaded.tbl.manage(handle) == CFE_TBL_INFO_UPDATED
     assert bytes(loaded.tbl.get_address(handle)[0]) == b"new."
@@ -91,11 +90,11 @@ def test_bad_image_from_the_ground_never_gets_active(loaded: Bench) -> None:
     loaded.take_events()
     loaded.tbl.manage(loaded.handle)  # type: ignore[attr-defined]
     assert loaded.take_events() == [(96, 3, "APP validation failed for inactive 'APP.T', Status=0xFFFFFFFF")]
-    loaded.named(packets.ACTIVATE_CC, NAME)
+    loaded.named(packets.ACTIVATE, NAME)
     assert loaded.take_events()[0][0] == 81
     values = loaded.send_hk()
     assert (values["FailedValCounter"], values["LastValStatus"], values["NumLoadPending"]) == (1, -1, 1)
-    loaded.named(packets.ABORT_LOAD_CC, NAME)
+    loaded.named(packets.ABORT_LOAD, NAME)
     assert loaded.take_events() == [(21, 2, "Table Load Aborted for 'APP.T'")]
     assert loaded.send_hk()["NumFreeSharedBufs"] == 4
 
@@ -103,7 +102,7 @@ def test_bad_image_from_the_ground_never_gets_active(loaded: Bench) -> None:
 def test_events_of_the_recorded_session(bench: Bench) -> None:
     bench.tbl.register("T", 4)
     validate(bench, packets.INACTIVE_BUFFER)
-    bench.named(packets.ACTIVATE_CC, NAME)
+    bench.named(packets.ACTIVATE, NAME)
     assert bench.take_events() == [
         (66, 3, "No Buffer for Table 'APP.T' present"),
         (70, 3, "Cannot activate table 'APP.T'. No Inactive image available"),
@@ -118,15 +117,15 @@ def test_table_without_validator_is_taken_as_valid(bench: Bench) -> None:
     validate(bench, packets.INACTIVE_BUFFER)
     text = "Tbl Services assumes 'APP.T' is valid. No Validation Function has been registered"
     assert bench.take_events() == [(23, 2, text)]
-    bench.named(packets.ACTIVATE_CC, NAME)
+    bench.named(packets.ACTIVATE, NAME)
     assert bench.tbl.manage(handle) == CFE_TBL_INFO_UPDATED
 
 
 @pytest.mark.parametrize(
-    "fcn_code", [packets.ACTIVATE_CC, packets.SEND_REGISTRY_CC, packets.ABORT_LOAD_CC], ids=["activate", "reg", "abort"]
+    "wish", [packets.ACTIVATE, packets.SEND_REGISTRY, packets.ABORT_LOAD], ids=["activate", "reg", "abort"]
 )
-def test_unknown_tables(bench: Bench, fcn_code: int) -> None:
-    bench.named(fcn_code, "NO.SUCH")
+def test_unknown_tables(bench: Bench, wish: Command) -> None:
+    bench.named(wish, "NO.SUCH")
     assert bench.take_events() == [(57, 3, "Unable to locate 'NO.SUCH' in Table Registry")]
 
 
@@ -244,7 +243,7 @@ def test_active_image_can_be_validated_too(loaded: Bench) -> None:
 
 
 def test_registry_packet_is_sent_once(loaded: Bench) -> None:
-    loaded.named(packets.SEND_REGISTRY_CC, NAME)
+    loaded.named(packets.SEND_REGISTRY, NAME)
     loaded.send_hk()
     assert [get_msg_id(packet) for packet in loaded.sent] == [packets.HK_TLM_MID, packets.REG_TLM_MID]
     values = packets.REGISTRY_PACKET.unpack(loaded.sent[1][16:])
@@ -256,12 +255,16 @@ def test_registry_packet_is_sent_once(loaded: Bench) -> None:
 
 def test_registry_file(loaded: Bench) -> None:
     loaded.tbl.register("U", 8, OPT_DUMP_ONLY)
-    loaded.ground(packets.DUMP_REGISTRY_CC, bytes(64))
-    loaded.ground(packets.DUMP_REGISTRY_CC, bytes(64))
+    for _ in range(2):
+        loaded.ground(packets.DUMP_REGISTRY)
+        loaded.background()
+    loaded.ground(packets.DUMP_REGISTRY, DumpFilename="/ram/none/x.log")
+    loaded.background()
     size = 64 + 2 * packets.REGISTRY_RECORD.size
     assert loaded.take_events() == [
-        (22, 1, f"Successfully dumped Table Registry to '/ram/cfe_tbl_reg.log':Size={size},Entries=2"),
-        (15, 1, f"Successfully overwrote '/ram/cfe_tbl_reg.log' with Table Registry:Size={size},Entries=2"),
+        (22, 1, f"Successfully dumped Table Registry to '/ram/cfe_tbl_reg.log':Size={size},Entries=128"),
+        (15, 1, f"Successfully overwrote '/ram/cfe_tbl_reg.log' with Table Registry:Size={size},Entries=128"),
+        (62, 3, "Error creating dump file '/ram/none/x.log', Status=0xFFFFFFE5"),
     ]
     data = loaded.files["/ram/cfe_tbl_reg.log"]
     assert (read_header(data).subtype, read_header(data).description) == (9, "Table Registry")
@@ -270,13 +273,13 @@ def test_registry_file(loaded: Bench) -> None:
 
 
 def test_other_commands(bench: Bench) -> None:
-    bench.ground(packets.NOOP_CC)
-    bench.ground(99)
-    bench.ground(packets.NOOP_CC, b"x")
-    bench.tbl.task.handle(bytes(command(0x1999, 0)))
+    bench.ground(packets.NOOP)
+    bench.receive(bytes(command(packets.CMD_MID, 99)))
+    bench.receive(bytes(command(packets.CMD_MID, 0, b"x")))
+    bench.receive(bytes(command(0x1999, 0)))
     bench.tbl.register("T", 4)
-    bench.named(packets.DELETE_CDS_CC, NAME)
-    bench.named(packets.DELETE_CDS_CC, "NO.SUCH")
+    bench.named(packets.DELETE_CDS, NAME)
+    bench.named(packets.DELETE_CDS, "NO.SUCH")
     events = bench.take_events()
     assert events[0][2].startswith("No-op Cmd Rcvd: CFE_TBL v")
     assert [(event_id, text) for event_id, _, text in events[1:]] == [
@@ -287,11 +290,21 @@ def test_other_commands(bench: Bench) -> None:
         (84, "Table 'NO.SUCH' is not found in Critical Table Registry"),
     ]
     assert bench.send_hk()["CommandErrorCounter"] == 3
-    bench.ground(packets.RESET_COUNTERS_CC)
+    bench.ground(packets.RESET_COUNTERS)
     assert bench.take_events() == [(11, 1, "Reset Counters command")]
     assert bench.send_hk()["CommandErrorCounter"] == 0
 
 
-def test_pool_is_booked_at_early_init(bench: Bench) -> None:
-    bench.tbl.early_init()
-    assert bench.claims == [("CFE_TBL", "table buffers", 524288)]
+def test_pool_is_made_at_early_init(bench: Bench) -> None:
+    assert bench.pools == [(524288, "CFE_TBL")]
+    assert bench.send_hk()["MemPoolHandle"] == POOL_ID
+    assert bench.table_pool.statistics()["NumBlocksRequested"] == 4
+
+
+def test_a_validation_computes_a_crc_of_its_own(loaded: Bench) -> None:
+    handle = loaded.handle  # type: ignore[attr-defined]
+    loaded.tbl.get_address(handle)[0][0] = ord("X")
+    validate(loaded, packets.ACTIVE_BUFFER)
+    loaded.tbl.manage(handle)
+    assert loaded.send_hk()["LastValCrc"] == crc16(b"Xld.")
+    assert loaded.tbl.get_info(NAME).crc == crc16(b"old.")

@@ -6,9 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.fs import crc16
 from cfepy.msg import Layout
 from cfepy.status import UsageError
-from cfepy.tbl import TableImage, build, pack_rows, read, unpack_rows, write_beside
+from cfepy.tbl import TableImage, build, is_intact, mark_in, pack_rows, read, unpack_rows, with_mark, write_beside
+from cfepy.tbl.image import MARK_TAG
 from tests.layouts import DATA
 
 ROW = Layout("Row", [("A", "u8"), ("B", "u32")])
@@ -47,7 +49,30 @@ def test_written_beside_its_definition(tmp_path: Path) -> None:
     assert read(path.read_bytes()) == image
 
 
-@pytest.mark.parametrize("name", ["hk_cpy_tbl", "sample_app_tbl", "sch_lab_table"])
+@pytest.mark.parametrize("name", ["hk_cpy_tbl", "sample_app_tbl", "sch_lab_table", "to_lab_sub"])
 def test_files_of_elf2cfetbl_are_built_to_the_byte(name: str) -> None:
     data = (DATA / f"{name}.tbl").read_bytes()
     assert build(read(data)) == data
+
+
+def test_a_mark_is_the_reserved_word_and_nothing_else() -> None:
+    plain = build(TableImage("APP.T", b"1234", "a table"))
+    marked = with_mark(plain)
+    assert (mark_in(plain), mark_in(marked)) == (0, MARK_TAG | crc16(plain))
+    assert marked[:64] + bytes(4) + marked[68:] == plain
+    assert read(marked) == read(plain)
+    assert with_mark(marked) == marked
+
+
+def test_which_files_are_intact() -> None:
+    marked = with_mark(build(TableImage("APP.T", b"1234")))
+    assert is_intact(build(TableImage("APP.T", b"1234")))
+    assert is_intact(marked)
+    assert not is_intact(marked[:-1] + b"5")
+    assert not is_intact(marked + b"5")
+    with pytest.raises(UsageError):
+        with_mark(b"no table file")
+
+
+def test_files_of_elf2cfetbl_have_no_mark() -> None:
+    assert mark_in((DATA / "sample_app_tbl.tbl").read_bytes()) == 0

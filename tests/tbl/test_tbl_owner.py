@@ -11,6 +11,8 @@ from cfepy.status import (
     CFE_STATUS_VALIDATION_FAILURE,
     CFE_SUCCESS,
     CFE_TBL_ERR_ACCESS,
+    CFE_TBL_ERR_BAD_PROCESSOR_ID,
+    CFE_TBL_ERR_BAD_SPACECRAFT_ID,
     CFE_TBL_ERR_DUMP_ONLY,
     CFE_TBL_ERR_DUPLICATE_DIFF_SIZE,
     CFE_TBL_ERR_DUPLICATE_NOT_OWNED,
@@ -36,7 +38,6 @@ from cfepy.status import (
     CFE_TBL_INFO_TABLE_LOCKED,
     CFE_TBL_INFO_UPDATED,
     CFE_TBL_WARN_DUPLICATE,
-    CFE_TBL_WARN_NOT_CRITICAL,
     CFE_TBL_WARN_PARTIAL_LOAD,
     CFE_TBL_WARN_SHORT_FILE,
     CfeError,
@@ -46,6 +47,11 @@ from cfepy.tbl import (
     OPT_DBL_BUFFER,
     OPT_DUMP_ONLY,
     OPT_USR_DEF_ADDR,
+    TableImage,
+    build,
+    mark_for,
+    mark_in,
+    with_mark,
 )
 from tests.tbl.conftest import NOW, Bench
 
@@ -115,15 +121,11 @@ def test_duplicates(bench: Bench) -> None:
     assert failure(bench.tbl.register, "T", 4) == CFE_TBL_ERR_DUPLICATE_NOT_OWNED
 
 
-def test_critical_tables_are_ordinary_ones_for_now(bench: Bench) -> None:
-    assert bench.tbl.register("T", 4, OPT_CRITICAL).status == CFE_TBL_WARN_NOT_CRITICAL
-    assert "Failed to register 'APP.T' as a CDS" in bench.log[0]
-
-
 def test_limits_leave_nothing_behind() -> None:
-    bench = Bench(tbl_max_num_tables=2, tbl_max_num_handles=3, tbl_buf_memory_bytes=4 * 16384 + 100)
+    shared, small = 4 * (32 + 16384), 32 + 48
+    bench = Bench(tbl_max_num_tables=2, tbl_max_num_handles=3, tbl_buf_memory_bytes=shared + 2 * small)
     bench.tbl.register("A", 40)
-    assert failure(bench.tbl.register, "BIG", 80) == CFE_ES_ERR_MEM_BLOCK_SIZE
+    assert failure(bench.tbl.register, "BIG", 200) == CFE_ES_ERR_MEM_BLOCK_SIZE
     bench.tbl.register("B", 40)
     assert failure(bench.tbl.register, "C", 1) == CFE_TBL_ERR_REGISTRY_FULL
     bench.tbl.share("APP.A")
@@ -329,3 +331,32 @@ def test_handle_ids(bench: Bench) -> None:
     assert bench.tbl.handle_id_is_defined(handle)
     assert not bench.tbl.handle_id_is_defined(0)
     assert bench.tbl.handle_id_is_equal(handle, bench.tbl.handle_id_as_int(handle))
+
+
+def test_files_for_others_are_refused_where_that_is_configured() -> None:
+    bench = Bench(tbl_valid_scid=(0x42, 0x43), tbl_valid_prid=(1,))
+    handle = bench.tbl.register("T", 4)
+    bench.put("/cf/t.tbl", "APP.T", b"abcd")
+    assert bench.tbl.load(handle, "/cf/t.tbl") == CFE_SUCCESS
+    bench.take_events()
+    bench.files["/cf/s.tbl"] = build(TableImage("APP.T", b"abcd", spacecraft_id=0x44))
+    assert failure(bench.tbl.load, handle, "/cf/s.tbl") == CFE_TBL_ERR_BAD_SPACECRAFT_ID
+    bench.files["/cf/p.tbl"] = build(TableImage("APP.T", b"abcd", processor_id=2))
+    assert failure(bench.tbl.load, handle, "/cf/p.tbl") == CFE_TBL_ERR_BAD_PROCESSOR_ID
+    where = "LoadFile,app=APP,file=/cf/{}.tbl,tbl=[unknown]:"
+    assert bench.take_events() == [
+        (97, 3, where.format("s") + "Invalid Spacecraft ID (0x00000044)"),
+        (98, 3, where.format("p") + "Invalid Processor ID (0x00000002)"),
+    ]
+
+
+def test_a_file_with_a_wrong_mark_is_refused(bench: Bench) -> None:
+    handle = bench.tbl.register("T", 4)
+    good = with_mark(build(TableImage("APP.T", b"abcd")))
+    bench.files["/cf/t.tbl"] = good
+    assert bench.tbl.load(handle, "/cf/t.tbl") == CFE_SUCCESS
+    bench.take_events()
+    bench.files["/cf/t.tbl"] = good[:-1] + b"e"
+    assert failure(bench.tbl.load, handle, "/cf/t.tbl") == CFE_STATUS_VALIDATION_FAILURE
+    text = f"File is damaged, mark = 0x{mark_in(good):08x}, expected 0x{mark_for(good[:-1] + b'e'):08x}"
+    assert bench.take_events() == [(61, 3, f"LoadFile,app=APP,file=/cf/t.tbl,tbl=APP.T:{text}")]

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
+from cfepy.msg import Command
+from cfepy.ports import ERROR
 from cfepy.status import CfeError
-from cfepy.tbl import OPT_DBL_BUFFER, TableImage, build, packets, read
+from cfepy.tbl import OPT_DBL_BUFFER, TableImage, build, packets, read, with_mark
 from tests.tbl.conftest import Bench
 
 SIZE = 8
@@ -55,8 +58,29 @@ def test_every_flipped_bit_of_the_headers_is_found_or_harmless() -> None:
             assert content(bench) == NEW
             harmless.add(bit // 8)
     header_length_ids_time_description = set(range(8, 64))
-    reserved_and_bytes_after_the_name = set(range(64, 68)) | set(range(76 + len("APP.T") + 1, 116))
-    assert harmless == header_length_ids_time_description | reserved_and_bytes_after_the_name
+    bytes_after_the_name = set(range(76 + len("APP.T") + 1, 116))
+    assert harmless == header_length_ids_time_description | bytes_after_the_name
+
+
+@pytest.mark.parametrize("by_ground", [False, True], ids=["owner", "ground"])
+def test_with_a_mark_every_flipped_bit_is_found(by_ground: bool) -> None:
+    bench, handle = loaded_bench()
+    marked = with_mark(GOOD)
+    for bit in range(len(marked) * 8):
+        damaged = bytearray(marked)
+        damaged[bit // 8] ^= 1 << bit % 8
+        bench.take_events()
+        if by_ground:
+            bench.files["/cf/t.tbl"] = bytes(damaged)
+            bench.ground(packets.LOAD, LoadFilename="/cf/t.tbl")
+            assert content(bench) == OLD
+            assert bench.tbl.registry.by_name("APP.T").loading is None
+        else:
+            assert not load_damaged(bench, handle, bytes(damaged)), f"bit {bit}"
+        (event,) = bench.take_events()
+        assert event[1] == ERROR, f"bit {bit}"
+    assert load_damaged(bench, handle, marked)
+    assert content(bench) == NEW
 
 
 @given(st.binary(max_size=160) | st.integers(0, len(GOOD)).map(lambda end: GOOD[:end]))
@@ -114,17 +138,16 @@ class TableLife(RuleBasedStateMachine):
     def load_from_ground(self, data: bytes) -> None:
         before = content(self.bench)
         self.bench.put("/cf/t.tbl", "APP.T", data)
-        self.bench.ground(packets.LOAD_CC, packets.FILE_COMMAND.pack(Filename="/cf/t.tbl"))
+        self.bench.ground(packets.LOAD, LoadFilename="/cf/t.tbl")
         assert content(self.bench) == before
 
     @rule(flag=st.sampled_from([0, 1]))
     def validate(self, flag: int) -> None:
-        payload = packets.VALIDATE_COMMAND.pack(ActiveTableFlag=flag, TableName="APP.T")
-        self.bench.ground(packets.VALIDATE_CC, payload)
+        self.bench.ground(packets.VALIDATE, ActiveTableFlag=flag, TableName="APP.T")
 
-    @rule(code=st.sampled_from([packets.ACTIVATE_CC, packets.ABORT_LOAD_CC]))
-    def command(self, code: int) -> None:
-        self.bench.named(code, "APP.T")
+    @rule(wish=st.sampled_from([packets.ACTIVATE, packets.ABORT_LOAD]))
+    def command(self, wish: Command) -> None:
+        self.bench.named(wish, "APP.T")
 
     @rule()
     def manage(self) -> None:
@@ -132,8 +155,7 @@ class TableLife(RuleBasedStateMachine):
 
     @rule(flag=st.sampled_from([0, 1]))
     def dump(self, flag: int) -> None:
-        payload = packets.DUMP_COMMAND.pack(ActiveTableFlag=flag, TableName="APP.T", DumpFilename="/ram/t.tbl")
-        self.bench.ground(packets.DUMP_CC, payload)
+        self.bench.ground(packets.DUMP, ActiveTableFlag=flag, TableName="APP.T", DumpFilename="/ram/t.tbl")
         self.bench.send_hk()
 
     @rule(app=st.sampled_from(["APP", "OTHER"]))

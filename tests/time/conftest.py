@@ -14,7 +14,6 @@ from cfepy.ports import Ports
 from cfepy.rtos import Kernel, WaitList
 from cfepy.time import TimeServices
 from cfepy.time import packets as pk
-from cfepy.time.service import ResetVars
 
 Result = TypeVar("Result")
 TIME_ID, APP_ID, OTHER_ID = 0x110004, 0x110006, 0x110007
@@ -31,10 +30,13 @@ class App(NamedTuple):
 class World:
     """TIME and what it needs; it is its own ES, bus, event services and board."""
 
-    def __init__(self, start_ns: int = 351_000_000, tick_ns: int = 0, saved: ResetVars | None = None) -> None:
+    def __init__(
+        self, start_ns: int = 351_000_000, tick_ns: int = 0, kept: dict[str, Any] | None = None, **config: Any
+    ) -> None:
         self.kernel = Kernel(tick_ns=tick_ns)
         self.events: list[tuple[int, str]] = []
         self.packets: list[bytes] = []
+        self.perf: list[int] = []
         self.lost: set[int] = set()
         self.jumps = 0
         self._pipe: deque[bytes] = deque()
@@ -42,10 +44,11 @@ class World:
         self._subscribed: set[int] = set()
         ports = Ports()
         ports.es = ports.sb = ports.evs = self
-        self.time = TimeServices(self.kernel, ports, PlatformConfig())
+        self.time = TimeServices(self.kernel, ports, PlatformConfig(**config))
         self.time.clock.on_jump = self._jumped
         self.kernel.run(start_ns)
-        self.time.early_init(saved)
+        self.kept = {} if kept is None else kept
+        self.time.early_init(self.kept)
         self.start_ns = self.kernel.now
 
     def _jumped(self) -> None:
@@ -67,6 +70,12 @@ class World:
 
     def increment_task_counter(self) -> None:
         pass
+
+    def perf_log_entry(self, marker: int) -> None:
+        self.perf.append(marker)
+
+    def perf_log_exit(self, marker: int) -> None:
+        self.perf.append(-marker)
 
     def create_child_task(
         self, name: str, entry: Callable[[], object], stack: int, priority: int, flags: int = 0
@@ -115,24 +124,24 @@ class World:
         self.kernel.run(self.kernel.now)
         return results[0]
 
-    def command(self, code: int, payload: bytes = b"", msg_id: int = pk.CFE_TIME_CMD_MID) -> None:
+    def command(self, code: int, payload: bytes = b"", msg_id: int = pk.CMD_MID) -> None:
         """Give TIME a command."""
         packet = bytes(command(msg_id, code, payload))
         self.call(lambda: self.time.commands.process(packet), TIME_ID)
 
     def housekeeping(self) -> dict[str, Any]:
         """The fields of a fresh housekeeping packet."""
-        self.command(0, msg_id=pk.CFE_TIME_SEND_HK_MID)
-        return self._last(pk.CFE_TIME_HK_TLM_MID, pk.HOUSEKEEPING, TLM_HEADER_SIZE)
+        self.command(0, msg_id=pk.SEND_HK_MID)
+        return self._last(pk.HK_TLM_MID, pk.HOUSEKEEPING, TLM_HEADER_SIZE)
 
     def diagnostic(self) -> dict[str, Any]:
         """The fields of a fresh diagnostic packet."""
-        self.command(pk.CFE_TIME_SEND_DIAGNOSTIC_CC)
-        return self._last(pk.CFE_TIME_DIAG_TLM_MID, pk.DIAGNOSTIC, TLM_HEADER_SIZE)
+        self.command(pk.SEND_DIAGNOSTIC_CC)
+        return self._last(pk.DIAG_TLM_MID, pk.DIAGNOSTIC, TLM_HEADER_SIZE)
 
     def tone_data(self) -> dict[str, Any]:
         """The fields of the last message about a tone."""
-        return self._last(pk.CFE_TIME_DATA_CMD_MID, pk.TONE_DATA, CMD_HEADER_SIZE)
+        return self._last(pk.DATA_CMD_MID, pk.TONE_DATA, CMD_HEADER_SIZE)
 
     def _last(self, msg_id: int, layout: Layout, offset: int) -> dict[str, Any]:
         packet = next(packet for packet in reversed(self.packets) if get_msg_id(packet) == msg_id)

@@ -18,7 +18,6 @@ from cfepy.status import (
 )
 from cfepy.time import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID, SysTime, TimeServices
 from cfepy.time import packets as pk
-from cfepy.time.service import ResetVars
 from tests.time.conftest import APP_ID, OTHER_ID, SECOND_NS, TIME_ID, World
 
 READY = "cFE TIME Initialized: CFE_TIME v7.0.0+dev0 (Draco) v7.0.0 Official Release, EDS disabled"
@@ -66,7 +65,7 @@ def test_the_stamp_is_made_once_an_instant(world: World) -> None:
     world.run(0.5)
     assert time.stamp() == 1_001_000 << 16 | 0x8000
     assert (clock.stamp_now, clock.stamp_at) == (time.stamp(), world.kernel.now)
-    clock.set(stcf=clock.stcf + (1 << 32))
+    clock.update(stcf=clock.reference.stcf + (1 << 32))
     assert clock.stamp_at == -1
     assert time.stamp() == 1_001_001 << 16 | 0x8000
 
@@ -98,6 +97,15 @@ def test_the_first_tone_ends_flywheel_mode_and_it_stays_so(world: World) -> None
     assert world.time.get_clock_info() == 0x33E0
 
 
+def test_a_second_leaves_its_marks_in_the_performance_log(world: World) -> None:
+    """Marks are NASA's, negative at the end of a piece of code: 10 and 11 tasks, 8 local signal, 7 tone, 6 CFE_TIME."""
+    world.start()
+    world.run(1.5)
+    world.perf.clear()
+    world.run(1)
+    assert world.perf == [10, -10, 6, 8, -8, 7, 11, -11, -7, -6, 6, -6, 6, -6, 6, -6]
+
+
 def test_every_second_tells_signal_request_and_data(world: World) -> None:
     world.start()
     world.run(1.5)
@@ -120,7 +128,7 @@ def test_without_data_the_clock_flies_after_two_seconds_and_comes_back(world: Wo
     world.start()
     world.run(3.5)
     world.events.clear()
-    world.lost.add(pk.CFE_TIME_DATA_CMD_MID)
+    world.lost.add(pk.DATA_CMD_MID)
     world.run(1)
     assert world.events == []
     world.run(3)
@@ -134,7 +142,7 @@ def test_without_data_the_clock_flies_after_two_seconds_and_comes_back(world: Wo
 
 def test_a_flying_clock_renews_its_reference(world: World) -> None:
     world.start()
-    world.lost.add(pk.CFE_TIME_DATA_CMD_MID)
+    world.lost.add(pk.DATA_CMD_MID)
     world.run(30.5)
     assert world.time.clock.since_tone() >> 32 < 9
     assert world.time.get_met() == (1030, 0x80000000)
@@ -144,7 +152,7 @@ def test_late_data_is_no_pair(world: World) -> None:
     world.start()
     world.run(5.5)
     matches = world.time.tone.counters.tone_match
-    data = next(packet for packet in world.packets if get_msg_id(packet) == pk.CFE_TIME_DATA_CMD_MID)
+    data = next(packet for packet in world.packets if get_msg_id(packet) == pk.DATA_CMD_MID)
     world.call(lambda: world.time.commands.process(data), TIME_ID)
     assert world.time.tone.counters.tone_match == matches
     assert world.time.tone.counters.tone_match_error == 1
@@ -166,24 +174,42 @@ def test_a_board_may_give_the_local_signal_itself(world: World) -> None:
     world.call(lambda: world.time.local1hz_isr())
     world.run(0.1)
     assert world.time.tone.counters.local_task == 1
-    assert get_msg_id(world.packets[0]) == pk.CFE_TIME_ONEHZ_CMD_MID
+    assert get_msg_id(world.packets[0]) == pk.ONEHZ_CMD_MID
 
 
 def test_a_processor_reset_keeps_the_time(make: Callable[..., World]) -> None:
     world = make()
     world.start()
     world.run(3.25)
-    world.command(pk.CFE_TIME_SET_LEAP_SECONDS_CC, b"\x07\x00")
+    world.command(pk.SET_LEAP_SECONDS_CC, b"\x07\x00")
     world.housekeeping()
-    saved = world.time.reset_vars
-    assert saved == ResetVars(SysTime(1003, 0x40000000), SysTime(1_000_000, 0), SysTime(0, 0), 7)
-    after = make(start_ns=0, saved=saved)
+    saved = pk.RESET_VARS.unpack(world.kept["TIME"])
+    assert saved == {
+        "Signature": 0xA5A55A5A,
+        "LeapSeconds": 7,
+        "ClockSignal": 1,
+        "CurrentMET": {"Seconds": 1003, "Subseconds": 0x40000000},
+        "CurrentSTCF": {"Seconds": 1_000_000, "Subseconds": 0},
+        "CurrentDelay": {"Seconds": 0, "Subseconds": 0},
+    }
+    after = make(start_ns=0, kept=world.kept)
     after.start()
-    assert after.time.get_met() == saved.met
+    assert after.time.get_met() == SysTime(1003, 0x40000000)
     assert after.diagnostic()["DataStoreStatus"] == 4
     after.run(10)
     assert after.time.get_met() == (1013, 0x40000000)
     assert after.time.get_leap_seconds() == 7
+
+
+@pytest.mark.parametrize("damage", [{"Signature": 1}, {"ClockSignal": 3}])
+def test_reset_variables_that_are_damaged_are_not_used(make: Callable[..., World], damage: dict[str, int]) -> None:
+    world = make()
+    world.command(pk.SET_LEAP_SECONDS_CC, b"\x07\x00")
+    world.housekeeping()
+    kept = {"TIME": pk.RESET_VARS.pack(pk.RESET_VARS.unpack(world.kept["TIME"]) | damage)}
+    after = make(kept=kept)
+    assert (after.time.get_met(), after.time.get_leap_seconds()) == ((1000, 0), 37)
+    assert after.diagnostic()["DataStoreStatus"] == 3
 
 
 # -- callbacks -----------------------------------------------------------------------------------------------------
@@ -201,6 +227,15 @@ def test_a_callback_is_called_at_every_good_tone(world: World) -> None:
     world.time.cleanup_app(OTHER_ID)
     world.run(3)
     assert calls == ["first", "second"]
+
+
+def test_a_callback_may_take_another_one_away(world: World) -> None:
+    calls: list[str] = []
+    world.call(lambda: world.time.register_synch_callback(lambda: world.time.cleanup_app(OTHER_ID)), APP_ID)
+    world.call(lambda: world.time.register_synch_callback(lambda: calls.append("other")), OTHER_ID)
+    world.start()
+    world.run(1.5)
+    assert calls == []
 
 
 def test_an_app_has_one_callback(world: World) -> None:
@@ -222,6 +257,6 @@ def test_clock_states(world: World) -> None:
     world.run(2)
     assert world.time.get_clock_state() == CLOCK_INVALID
     for state in (CLOCK_VALID, CLOCK_FLYWHEEL, CLOCK_INVALID):
-        world.command(pk.CFE_TIME_SET_STATE_CC, state.to_bytes(2, "little", signed=True))
+        world.command(pk.SET_STATE_CC, state.to_bytes(2, "little", signed=True))
         assert world.time.get_clock_state() == state
     assert CMD_HEADER_SIZE + pk.STATE_COMMAND.size == 10

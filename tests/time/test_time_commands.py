@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable
+from pathlib import Path
+
 import pytest
 
 from cfepy.msg import Layout, get_msg_id
+from cfepy.time import SysTime, add, subtract
 from cfepy.time import packets as pk
+from tests.declared import assert_as_recorded, assert_complete
 from tests.layouts import assert_same
 from tests.time.conftest import World
+
+DATA = Path(__file__).parent.parent / "data"
 
 
 def u32(*values: int) -> bytes:
@@ -27,6 +35,11 @@ def running(world: World) -> World:
     return world
 
 
+def test_declarations_are_complete_and_as_recorded() -> None:
+    assert_complete(pk)
+    assert_as_recorded(pk, 2)
+
+
 @pytest.mark.parametrize(
     ("layout", "c_name"),
     [
@@ -34,6 +47,7 @@ def running(world: World) -> World:
         (pk.HOUSEKEEPING, "CFE_TIME_HousekeepingTlm_Payload_t"),
         (pk.DIAGNOSTIC, "CFE_TIME_DiagnosticTlm_Payload_t"),
         (pk.TONE_DATA, "CFE_TIME_ToneDataCmd_Payload_t"),
+        (pk.RESET_VARS, "CFE_TIME_ResetVars_t"),
     ],
 )
 def test_layouts_are_those_of_c(layout: Layout, c_name: str) -> None:
@@ -54,6 +68,7 @@ OK_COMMANDS = [
     (11, u32(1, 2), 15, "STCF Adjust -- secs = 1, usecs = 2, ssecs = 0x218E, dir[1=Pos, 2=Neg] = 1"),
     (12, u32(1, 2), 15, "STCF Adjust -- secs = 1, usecs = 2, ssecs = 0x218E, dir[1=Pos, 2=Neg] = 2"),
     (13, u32(1, 255), 16, "STCF 1Hz Adjust -- secs = 1, ssecs = 0xFF, dir[1=Pos, 2=Neg] = 1"),
+    (13, u32(0xFFFFFFFF, 1), 16, "STCF 1Hz Adjust -- secs = -1, ssecs = 0x1, dir[1=Pos, 2=Neg] = 1"),
     (14, u32(1, 255), 16, "STCF 1Hz Adjust -- secs = 1, ssecs = 0xFF, dir[1=Pos, 2=Neg] = 2"),
 ]
 
@@ -104,12 +119,12 @@ def test_a_strange_message_is_told_of_but_not_counted(running: World) -> None:
 
 
 def test_a_short_message_about_the_tone_does_no_harm(running: World) -> None:
-    running.command(0, msg_id=pk.CFE_TIME_DATA_CMD_MID)
+    running.command(0, msg_id=pk.DATA_CMD_MID)
     assert running.events == [(49, "Invalid msg length: ID = 0x1860,  CC = 0, Len = 8, Expected = 28")]
 
 
 def test_setting_the_time_changes_stcf_only(running: World) -> None:
-    running.command(pk.CFE_TIME_SET_TIME_CC, u32(2_000_000, 250_000))
+    running.command(pk.SET_TIME_CC, u32(2_000_000, 250_000))
     assert running.time.get_time() == (2_000_000, 0x40000000)
     assert running.time.get_met() == (1003, 0x80000000)
     running.run(10)
@@ -117,7 +132,7 @@ def test_setting_the_time_changes_stcf_only(running: World) -> None:
 
 
 def test_a_met_that_was_set_is_counted_on_in_tones(running: World) -> None:
-    running.command(pk.CFE_TIME_SET_MET_CC, u32(7000, 0))
+    running.command(pk.SET_MET_CC, u32(7000, 0))
     assert running.time.get_met() == (7000, 0)
     running.run(0.5)
     assert running.time.get_met() == (7001, 0)
@@ -126,15 +141,15 @@ def test_a_met_that_was_set_is_counted_on_in_tones(running: World) -> None:
 
 
 def test_stcf_is_set_and_adjusted(running: World) -> None:
-    running.command(pk.CFE_TIME_SET_STCF_CC, u32(10, 0))
-    running.command(pk.CFE_TIME_ADD_ADJUST_CC, u32(5, 500_000))
-    running.command(pk.CFE_TIME_SUB_ADJUST_CC, u32(1, 0))
+    running.command(pk.SET_STCF_CC, u32(10, 0))
+    running.command(pk.ADD_ADJUST_CC, u32(5, 500_000))
+    running.command(pk.SUB_ADJUST_CC, u32(1, 0))
     assert running.time.get_stcf() == (14, 0x80000000)
     assert running.time.get_clock_info() & 0x300 == 0x100
 
 
 def test_stcf_drifts_with_every_second_when_told_to(running: World) -> None:
-    running.command(pk.CFE_TIME_SUB_ONE_HZ_ADJUSTMENT_CC, u32(0, 0x10000000))
+    running.command(pk.SUB_ONE_HZ_ADJUSTMENT_CC, u32(0, 0x10000000))
     running.run(4)
     assert running.time.get_stcf() == (999_999, 0xC0000000)
     assert running.housekeeping()["AdjustmentFactor"] == {"Seconds": 0, "Subseconds": 0x10000000}
@@ -142,11 +157,11 @@ def test_stcf_drifts_with_every_second_when_told_to(running: World) -> None:
 
 
 def test_forced_flywheel_ignores_tones_until_told_otherwise(running: World) -> None:
-    running.command(pk.CFE_TIME_SET_STATE_CC, i16(1))
+    running.command(pk.SET_STATE_CC, i16(1))
     running.run(20)
     assert running.events == [(7, "Set Clock State = FLYWHEEL")]
     assert running.time.get_clock_info() & 0x4C00 == 0x4C00
-    running.command(pk.CFE_TIME_SET_STATE_CC, i16(0))
+    running.command(pk.SET_STATE_CC, i16(0))
     running.run(1)
     assert running.events[1:] == [(7, "Set Clock State = VALID"), (21, "Stop FLYWHEEL")]
     assert running.time.get_clock_state() == 0
@@ -198,13 +213,46 @@ def test_diagnostics(running: World) -> None:
     assert fields["VirtualMET"] == 1003
 
 
+def test_diagnostics_have_the_bytes_of_the_real_ones(running: World) -> None:
+    """All that does not hang on the host's clock: configuration, states, STCF, flags, and the sums that hold within."""
+    packets = json.loads((DATA / "packets.json").read_text())["telemetry"]
+    (real,) = (bytes.fromhex(packet["hex"]) for packet in packets if packet["mid"] == pk.DIAG_TLM_MID)
+    running.diagnostic()
+    ours = running.packets[-1]
+    assert len(ours) == len(real) == pk.DIAG_TLM.length == 216
+    theirs, fields = pk.DIAG_TLM.read(real), pk.DIAG_TLM.read(ours)
+    moving = {name for name in fields if name.endswith(("Latch", "Counter")) or name.startswith("Current")}
+    moving |= {"AtToneMET", "TimeSinceTone", "VirtualMET"}
+    for name in fields.keys() - moving:
+        assert fields[name] == theirs[name], name
+    for packet in (fields, theirs):
+        time = {name: SysTime(*packet[name].values()) for name in packet if isinstance(packet[name], dict)}
+        assert add(time["AtToneMET"], time["TimeSinceTone"]) == time["CurrentMET"]
+        assert add(time["AtToneLatch"], time["TimeSinceTone"]) == time["CurrentLatch"]
+        assert add(time["CurrentMET"], time["AtToneSTCF"]) == time["CurrentTAI"]
+        assert subtract(time["CurrentTAI"], (37, 0)) == time["CurrentUTC"]
+        assert packet["VirtualMET"] == time["AtToneMET"].seconds
+
+
+def test_the_version_counts_updates_of_the_reference(make: Callable[..., World]) -> None:
+    """Two at the start, one at every tone, one for every command that sets something."""
+    world = make()
+    assert world.diagnostic()["VersionCounter"] == 2
+    world.start()
+    world.run(3.5)
+    assert world.diagnostic()["VersionCounter"] == 5
+    for code, payload in ((pk.SET_STCF_CC, u32(1, 0)), (pk.SET_STATE_CC, i16(0)), (pk.SET_LEAP_SECONDS_CC, i16(1))):
+        world.command(code, payload)
+    assert world.diagnostic()["VersionCounter"] == 8
+
+
 def test_reset_counters(running: World) -> None:
     running.command(99)
-    running.command(pk.CFE_TIME_RESET_COUNTERS_CC)
+    running.command(pk.RESET_COUNTERS_CC)
     assert running.events[-1] == (5, "Reset Counters command")
     fields = running.diagnostic()
     assert fields["ToneMatchCounter"] == fields["LocalIntCounter"] == fields["VersionCounter"] == 0
     assert (running.time.commands.count, running.time.commands.errors) == (1, 0)
     running.run(1)
     assert running.diagnostic()["ToneTaskCounter"] == 1
-    assert get_msg_id(running.packets[-1]) == pk.CFE_TIME_DIAG_TLM_MID
+    assert get_msg_id(running.packets[-1]) == pk.DIAG_TLM_MID

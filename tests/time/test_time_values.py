@@ -9,7 +9,19 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from cfepy.status import CFE_TIME_BAD_ARGUMENT, CfeError
-from cfepy.time import A_GT_B, A_LT_B, EQUAL, SysTime, add, compare, micro2sub_secs, print_, sub2micro_secs, subtract
+from cfepy.time import (
+    A_GT_B,
+    A_LT_B,
+    EQUAL,
+    SysTime,
+    add,
+    compare,
+    copy,
+    micro2sub_secs,
+    print_,
+    sub2micro_secs,
+    subtract,
+)
 from cfepy.time.systime import from_ticks, ticks_of_ns, to_ticks
 
 U32 = st.integers(0, 0xFFFFFFFF)
@@ -67,6 +79,16 @@ def test_a_time_is_earlier_than_one_that_follows_it(time: SysTime, later_by: int
     assert compare(time, add(time, from_ticks(later_by))) == A_LT_B
 
 
+@given(TIMES, TIMES, TIMES)
+def test_adding_has_no_order(first: SysTime, second: SysTime, third: SysTime) -> None:
+    assert add(add(first, second), third) == add(first, add(second, third))
+
+
+@given(TIMES)
+def test_a_copy_is_equal(time: SysTime) -> None:
+    assert copy(tuple(time)) == time  # type: ignore[arg-type]
+
+
 @given(TIMES)
 def test_ticks_stand_for_a_time(time: SysTime) -> None:
     assert from_ticks(to_ticks(time)) == time
@@ -76,7 +98,7 @@ def test_ticks_stand_for_a_time(time: SysTime) -> None:
 
 
 @pytest.mark.parametrize(
-    ("subseconds", "micros"), [(0, 0), (4294, 0), (4295, 1), (0x80000000, 500000), (0xFFFFFFFF, 999999)]
+    ("subseconds", "micros"), [(0, 0), (4294, 0), (4295, 1), (31000, 7), (0x80000000, 500000), (0xFFFFFFFF, 999999)]
 )
 def test_sub2micro_secs(subseconds: int, micros: int) -> None:
     assert sub2micro_secs(subseconds) == micros
@@ -84,7 +106,15 @@ def test_sub2micro_secs(subseconds: int, micros: int) -> None:
 
 @pytest.mark.parametrize(
     ("micros", "subseconds"),
-    [(0, 0), (1, 4295), (20000, 0x051EB852), (200000, 0x33333334), (999999, 0xFFFFEF3A), (1000000, 0xFFFFFFFF)],
+    [
+        (0, 0),
+        (1, 4295),
+        (64512, 277076931),
+        (20000, 0x051EB852),
+        (200000, 0x33333334),
+        (999999, 0xFFFFEF3A),
+        (1000000, 0xFFFFFFFF),
+    ],
 )
 def test_micro2sub_secs(micros: int, subseconds: int) -> None:
     """The values of the real diagnostic packet (tone limit, elapsed limit) are among them."""
@@ -94,6 +124,24 @@ def test_micro2sub_secs(micros: int, subseconds: int) -> None:
 @given(st.integers(0, 999_999))
 def test_microseconds_survive_the_way_to_subseconds_and_back(micros: int) -> None:
     assert sub2micro_secs(micro2sub_secs(micros)) == micros
+
+
+@given(U32, U32)
+def test_more_subseconds_are_not_fewer_microseconds(first: int, second: int) -> None:
+    less, more = sorted((first, second))
+    assert sub2micro_secs(less) <= sub2micro_secs(more)
+
+
+@given(st.integers(0, 1_100_000), st.integers(0, 1_100_000))
+def test_more_microseconds_are_not_fewer_subseconds(first: int, second: int) -> None:
+    less, more = sorted((first, second))
+    assert micro2sub_secs(less) <= micro2sub_secs(more)
+
+
+@given(U32)
+def test_subseconds_come_back_from_microseconds_within_one(subseconds: int) -> None:
+    """A microsecond is 4294.97 subseconds, so what is lost is less than that."""
+    assert 0 <= subseconds - micro2sub_secs(sub2micro_secs(subseconds)) + 1 <= 4295
 
 
 @given(st.integers(0, 2**62))

@@ -7,9 +7,9 @@ telemetry payloads start. After a change: `python -m apps.hk.tables.hk_cpy_tbl` 
 from __future__ import annotations
 
 from cfepy.msg import TLM_HEADER_SIZE
-from cfepy.tbl import TableImage, pack_rows, write_beside
+from cfepy.tbl import TableImage, write_beside
 
-from ..packets import COMBINED_PKT1_MID, COPY_TABLE_ENTRIES, COPY_TABLE_ENTRY
+from ..packets import COMBINED_PKT1_MID, COPY_TABLE
 
 CORE_HK_MIDS = (0x0801, 0x0805, 0x0803, 0x0800, 0x0804)
 """Housekeeping of EVS, TIME, SB, ES and TBL."""
@@ -29,7 +29,7 @@ ROWS = [
 
 def image() -> TableImage:
     """The table."""
-    return TableImage("HK.CopyTable", pack_rows(COPY_TABLE_ENTRY, ROWS, COPY_TABLE_ENTRIES), "HK Copy Tbl")
+    return COPY_TABLE.image(ROWS)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,128 @@
+"""CI_LAB's main task: start, commands, housekeeping (ci_lab_app.c, ci_lab_cmds.c, ci_lab_dispatch.c)."""
+
+from __future__ import annotations
+
+from cfepy.app import Cfe
+from cfepy.es import APP_ERROR
+from cfepy.msg import CommandTable, telemetry
+from cfepy.msg.dispatch import BAD_LENGTH, BAD_MSG_ID
+from cfepy.status import CfeError
+from cfepy.versions import version_string
+
+from . import events as eid
+from . import packets as pk
+from .uplink import Uplink
+
+VERSION = version_string("CI Lab App")
+VERSION_NUMBERS = "7.0.0.0"
+PIPE_NAME = "CI_LAB_CMD_PIPE"
+PIPE_DEPTH = 32
+WAKEUP_MS = 500
+BASE_UDP_PORT = 1234
+MAIN_TASK_PERF_ID = 32
+
+
+def CI_LAB_AppMain(cfe: Cfe) -> None:
+    """The entry point that the startup script names."""
+    cfe.es.perf_log_entry(MAIN_TASK_PERF_ID)
+    app = CommandIngest(cfe)
+    try:
+        app.start()
+    except CfeError:  # it was reported where it happened
+        cfe.es.exit_app(APP_ERROR)  # does not return
+    while cfe.es.run_loop():
+        cfe.es.perf_log_exit(MAIN_TASK_PERF_ID)
+        app.wait()
+    cfe.es.exit_app()
+
+
+class CommandIngest:
+    """CI_LAB's command counters and pipe; what arrives from the ground is `uplink`'s."""
+
+    def __init__(self, cfe: Cfe) -> None:
+        self._cfe = cfe
+        self._accepted = self._rejected = 0
+        self._scheduled = False
+        self._uplink = Uplink(cfe)
+        self._commands = CommandTable()
+        self._commands.handle(pk.NOOP, self._noop)
+        self._commands.handle(pk.RESET_COUNTERS, self._reset_counters)
+        self._commands.add_message(pk.SEND_HK_MID, 0, self._send_hk)
+        self._commands.add_message(pk.READ_UPLINK_MID, 0, self._read_uplink)
+
+    def start(self) -> None:
+        """Everything before the first message; what fails is reported, and the app goes on without it.
+
+        Raises:
+            CfeError: there is no pipe, without which the app would only spin.
+        """
+        cfe = self._cfe
+        try:
+            cfe.evs.register()
+        except CfeError as error:
+            cfe.es.write_to_sys_log(f"CI_LAB: Error registering for Event Services, RC = {error.hex}")
+        self._subscribe()
+        self._uplink.open(BASE_UDP_PORT + cfe.psp.get_processor_id() - 1)
+        cfe.os.task_install_delete_handler(self._uplink.close)
+        cfe.evs.send_info(eid.CI_LAB_INIT_INF_EID, f"CI Lab Initialized.{VERSION}")
+
+    def _subscribe(self) -> None:
+        cfe = self._cfe
+        try:
+            self._pipe = cfe.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
+        except CfeError as error:
+            cfe.evs.send_err(eid.CI_LAB_CR_PIPE_ERR_EID, f"Error creating SB Command Pipe, RC = {error.hex}")
+            raise
+        for msg_id, event_id, what in (
+            (pk.CMD_MID, eid.CI_LAB_SB_SUBSCRIBE_CMD_ERR_EID, "Commands"),
+            (pk.SEND_HK_MID, eid.CI_LAB_SB_SUBSCRIBE_HK_ERR_EID, "HK Request"),
+            (pk.READ_UPLINK_MID, eid.CI_LAB_SB_SUBSCRIBE_UL_ERR_EID, "Read Uplink Request"),
+        ):
+            try:
+                cfe.sb.subscribe(msg_id, self._pipe)
+            except CfeError as error:
+                cfe.evs.send_err(event_id, f"Error subscribing to SB {what}, RC = {error.hex}")
+
+    def wait(self) -> None:
+        """Do one message or wait half a second; then look at the socket, unless a scheduler says when."""
+        packet = self._cfe.sb.receive_buffer(self._pipe, WAKEUP_MS)
+        self._cfe.es.perf_log_entry(MAIN_TASK_PERF_ID)
+        if packet is not None:
+            self._handle(packet)
+        if self._uplink.is_open and not self._scheduled:
+            self._uplink.read()
+
+    def _handle(self, packet: bytes) -> None:
+        """Do a message. A function code that does not exist goes unnoticed, as in NASA's code."""
+        done = self._commands.dispatch(packet)
+        if done.outcome == BAD_LENGTH:
+            self._rejected += 1
+            sizes = f"Len = {done.length}, Expected = {done.expected}"
+            text = f"Invalid msg length: ID = 0x{done.msg_id:X},  CC = {done.fcn_code}, {sizes}"
+            self._cfe.evs.send_err(eid.CI_LAB_CMD_LEN_ERR_EID, text)
+        elif done.outcome == BAD_MSG_ID:
+            self._rejected += 1
+            self._cfe.evs.send_err(eid.CI_LAB_MID_ERR_EID, f"CI: invalid command packet,MID = 0x{done.msg_id:x}")
+
+    def _noop(self, packet: bytes) -> None:
+        self._accepted += 1
+        self._cfe.evs.send_info(eid.CI_LAB_NOOP_INF_EID, f"CI: NOOP command. Version {VERSION_NUMBERS}")
+
+    def _reset_counters(self, packet: bytes) -> None:
+        self._cfe.evs.send_info(eid.CI_LAB_RESET_INF_EID, "CI: RESET command")
+        self._accepted = self._rejected = 0
+        self._uplink.packets = self._uplink.errors = 0
+
+    def _read_uplink(self, packet: bytes) -> None:
+        self._scheduled = True
+        self._uplink.read()
+
+    def _send_hk(self, packet: bytes) -> None:
+        payload = pk.HOUSEKEEPING.pack(
+            CommandCounter=self._accepted & 0xFF,
+            CommandErrorCounter=self._rejected & 0xFF,
+            SocketConnected=self._uplink.is_open,
+            IngestPackets=self._uplink.packets & 0xFFFFFFFF,
+            IngestErrors=self._uplink.errors & 0xFFFFFFFF,
+        )
+        self._cfe.sb.transmit_msg(telemetry(pk.HK_TLM_MID, payload))

@@ -1,0 +1,30 @@
+"""SAMPLE_LIB, the smallest cFE library: an init function, and a function for apps to call. NASA's sample_lib v7.0.0.
+
+A library is code that a startup script loads before the apps (CFE_LIB). Its functions run in the task of the app that
+calls them. An app finds one by its name with `cfe.os.symbol_lookup`, which is the dynamic linker's part in C.
+"""
+
+from __future__ import annotations
+
+from cfepy.app import Cfe
+from cfepy.status import CFE_SUCCESS
+from cfepy.versions import version_string
+
+VERSION = version_string("Sample Lib")
+BUFFER = "SAMPLE DATA"
+
+
+def SAMPLE_LIB_Init(cfe: Cfe) -> int:
+    """The init function that the startup script names; anything but CFE_SUCCESS unloads the library again."""
+    cfe.os.printf(f"SAMPLE Lib Initialized.{VERSION}\n")
+    return CFE_SUCCESS
+
+
+def SAMPLE_LIB_Function(cfe: Cfe) -> int:
+    """What the library is good for: it prints its buffer.
+
+    Args:
+        cfe: the handle of the calling app.
+    """
+    cfe.os.printf(f"SAMPLE_LIB_Function called, buffer='{BUFFER}'\n")
+    return CFE_SUCCESS

@@ -1,0 +1,12 @@
+"""SCH, the scheduler app: 100 slots a second, in each of which it sends the messages that its tables say.
+
+NASA's SCH 2.2.2 on the interfaces of cFE 7: its commands, telemetry, tables, event ids and texts are NASA's. A mission
+has either SCH or SCH_LAB.
+"""
+
+from __future__ import annotations
+
+from .app import SCH_AppMain
+from .packets import COMMANDS, TABLES, TELEMETRY
+
+__all__ = ["COMMANDS", "TABLES", "TELEMETRY", "SCH_AppMain"]

@@ -1,0 +1,43 @@
+"""`cfepy export xtce`: write what a mission's packets mean for a ground system."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from cfepy.cli.main import BAD_USAGE, ENDED_WELL
+from cfepy.mission import read_mission
+from cfepy.mission.dictionary import dictionary_of
+from cfepy.mission.topics import surveyed_topics
+from cfepy.mission.xtce import xtce_of
+from cfepy.status import CfeError, UsageError
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Export the mission that the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: there is no such mission, or the file cannot be written.
+    """
+    spec = read_mission(arguments.mission)
+    dictionary = dictionary_of(spec)
+    try:
+        dictionary.learn(surveyed_topics(spec))
+    except CfeError as error:
+        print(f"cfepy: {spec.script}: the mission cannot boot: {error}", file=sys.stderr)
+        return BAD_USAGE
+    for problem in dictionary.problems:
+        print(f"cfepy: {problem}", file=sys.stderr)
+    document = xtce_of(spec.name, dictionary)
+    if arguments.output is None:
+        sys.stdout.write(document)
+        return ENDED_WELL
+    try:
+        Path(arguments.output).write_text(document, encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"cannot be written: {error.strerror}", file=arguments.output, field="--output") from None
+    return ENDED_WELL

@@ -1,0 +1,108 @@
+"""`cfepy log`: show what is in the files that cFE wrote."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from cfepy.cli.main import BAD_USAGE, ENDED_WELL
+from cfepy.cli.table import Table, show_tables
+from cfepy.mission.dump_files import Dump, read_dump, value_at
+from cfepy.mission.perf_data import timings
+from cfepy.mission.table_file import is_zero
+from cfepy.status import UsageError
+from cfepy.time import print_ as time_text
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Show the files that the command line names; one that cannot be read does not keep the others from being shown.
+
+    Returns:
+        The exit status.
+    """
+    shown: list[dict[str, Any]] = []
+    status = ENDED_WELL
+    for name in arguments.files:
+        try:
+            dump = read_dump(_bytes(name), name)
+            if arguments.json:
+                shown.append(_plain(dump, name))
+            else:
+                _show(dump, name)
+            if dump.problem:
+                raise UsageError(dump.problem, file=name)
+        except UsageError as error:
+            sys.stdout.flush()
+            print(f"cfepy: {error}", file=sys.stderr)
+            status = BAD_USAGE
+    if arguments.json:
+        print(json.dumps(shown, indent=2))
+    return status
+
+
+def _bytes(name: str) -> bytes:
+    try:
+        return Path(name).read_bytes()
+    except OSError as error:
+        raise UsageError(f"cannot be read: {error.strerror}", file=name) from None
+
+
+def _plain(dump: Dump, name: str) -> dict[str, Any]:
+    plain: dict[str, Any] = {"file": name, "kind": dump.kind, "header": dataclasses.asdict(dump.header)}
+    if dump.lines:
+        return {**plain, "lines": dump.lines}
+    return {**plain, **({"about": dump.about} if dump.about else {}), "records": dump.records}
+
+
+def _show(dump: Dump, name: str) -> None:
+    header = dump.header
+    when = time_text((header.time_seconds, header.time_subseconds))
+    print(f"{name}: {dump.kind}, {header.description!r}")
+    print(f"  written {when} on {header.spacecraft_id}/{header.processor_id} by 0x{header.application_id:08X}")
+    for line in dump.lines:
+        print(line)
+    if dump.about:
+        show_tables([_perf_entries(dump), _perf_timings(dump)], sys.stdout)
+    elif dump.columns:
+        show_tables([_records(dump)], sys.stdout)
+
+
+def _records(dump: Dump) -> Table:
+    numbers = [at for at, column in enumerate(dump.columns) if column.text is str and _is_number(dump, column.path)]
+    table = Table(f"{len(dump.records)} records", [column.title for column in dump.columns], right=numbers)
+    used = [record for record in dump.records if not is_zero(record)]
+    if len(used) < len(dump.records):
+        table.note = f"{len(dump.records) - len(used)} empty ones are left out"
+    for record in used:
+        table.add(*(column.text(value_at(record, column.path)) for column in dump.columns))
+    return table
+
+
+def _is_number(dump: Dump, path: str) -> bool:
+    return bool(dump.records) and isinstance(value_at(dump.records[0], path), int)
+
+
+def _perf_entries(dump: Dump) -> Table:
+    table = Table(f"{len(dump.records)} entries", ("us", "since last", "id", "what"), right=(0, 1, 2))
+    first = last = dump.records[0]["TimeUs"] if dump.records else 0.0
+    for record in dump.records:
+        time = record["TimeUs"]
+        what = "left" if record["IsExit"] else "entered"
+        table.add(f"{time - first:.1f}", f"{time - last:.1f}", str(record["Id"]), what)
+        last = time
+    return table
+
+
+def _perf_timings(dump: Dump) -> Table:
+    columns = ("id", "times", "least us", "mean us", "most us", "total us", "still inside", "left unseen")
+    table = Table("From entry to exit", columns, right=range(len(columns)))
+    for number, timing in timings(dump.records).items():
+        taken = timing.taken_us
+        numbers = (min(taken), sum(taken) / len(taken), max(taken), sum(taken)) if taken else ()
+        texts = [f"{value:.1f}" for value in numbers] or ["-"] * 4
+        table.add(str(number), len(taken), *texts, len(timing.open), timing.unpaired)
+    return table

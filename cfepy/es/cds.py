@@ -1,0 +1,258 @@
+"""The Critical Data Store (cfe_es_cds.c, cfe_es_cds_mempool.c): named blocks that outlive a processor reset.
+
+All of it is bytes in the PSP's CDS memory: a signature, the registry, a pool with the blocks, another signature. What a
+reset leaves is used again as far as it is whole: without the signatures nothing is, a damaged record or descriptor
+costs its block, damaged data show when their owner reads them. Imports only cfepy.fs, cfepy.ids, cfepy.psp,
+cfepy.status and its neighbours here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Iterator
+
+from cfepy.es.cds_registry import BLOCK_HEADER, FREE_RECORD, RECORD, CdsBlock, is_sound, pack, unpack
+from cfepy.es.pools import BUCKETS, MIN_ALIGNMENT, GenericPool, min_size
+from cfepy.fs import calculate_crc
+from cfepy.ids import ES_CDSBLOCKID_BASE, UNDEFINED, find_next, make, to_index
+from cfepy.psp import Psp
+from cfepy.psp.psp import RST_TYPE_PROCESSOR
+from cfepy.status import (
+    CFE_ES_BAD_ARGUMENT,
+    CFE_ES_CDS_ALREADY_EXISTS,
+    CFE_ES_CDS_BLOCK_CRC_ERR,
+    CFE_ES_CDS_INVALID_SIZE,
+    CFE_ES_ERR_NAME_NOT_FOUND,
+    CFE_ES_ERR_RESOURCEID_NOT_VALID,
+    CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
+    CFE_SUCCESS,
+    CfeError,
+)
+
+SIGNATURE_BEGIN = b"_CDSBeg_"
+SIGNATURE_END = b"_CDSEnd_"
+MAX_BLOCK_SIZE = (1 << 30) - BLOCK_HEADER.size
+
+_SIGNATURE_BYTES = 8
+_COUNT_BYTES = 4
+_REGISTRY_AT = _SIGNATURE_BYTES + _COUNT_BYTES
+
+
+class CriticalDataStore:
+    """The CDS of one processor.
+
+    Args:
+        psp: has the memory.
+        capacity: of the registry.
+        log: the system log.
+
+    Attributes:
+        is_available: whether it can be used; False before `early_init`, and on a board with too little memory for it.
+    """
+
+    def __init__(self, psp: Psp, capacity: int, log: Callable[[str], object]) -> None:
+        self.is_available = False
+        self._psp = psp
+        self._capacity = capacity
+        self._log = log
+        self._size = psp.get_cds_size() & ~3
+        self._pool_at = _REGISTRY_AT + capacity * RECORD.size
+        self._blocks: list[CdsBlock | None] = [None] * capacity
+        self._last_handle = make(ES_CDSBLOCKID_BASE, 0)
+
+    def __iter__(self) -> Iterator[CdsBlock]:
+        """The blocks in the order of the registry."""
+        return iter([block for block in self._blocks if block is not None])
+
+    # -- after a reset ---------------------------------------------------------------------------------------------
+
+    def early_init(self) -> None:
+        """Take over what the memory holds, or begin anew (CFE_ES_CDS_EarlyInit)."""
+        reserved = self._pool_at + _SIGNATURE_BYTES
+        required = reserved + min_size(BUCKETS, self._capacity)
+        if self._size < required:
+            self._log(f"CFE_ES_CDS_EarlyInit: CDS Size ({self._size}) less than required ({required})")
+            return
+        self._pool = GenericPool(
+            self._psp.read_from_cds,
+            lambda offset, data: self._psp.write_to_cds(data, offset),
+            self._log,
+            start=self._pool_at,
+            size=self._size - reserved,
+            alignment=MIN_ALIGNMENT,
+            sizes=BUCKETS,
+        )
+        if self._is_valid():
+            self._rebuild()
+        else:
+            self._begin_anew()
+        self.is_available = True
+
+    def _is_valid(self) -> bool:
+        """Whether there is a CDS of our kind (CFE_ES_ValidateCDS and the first check of CFE_ES_RebuildCDS)."""
+        read = self._psp.read_from_cds
+        after_reset = self._psp.get_restart_type().reset_type == RST_TYPE_PROCESSOR
+        begin, end = read(0, _SIGNATURE_BYTES), read(self._size - _SIGNATURE_BYTES, _SIGNATURE_BYTES)
+        if (begin, end) != (SIGNATURE_BEGIN, SIGNATURE_END):
+            if after_reset:
+                self._log("CFE_ES_ValidateCDS: No valid CDS found after a processor reset, it is made anew")
+            return False
+        count = int.from_bytes(read(_SIGNATURE_BYTES, _COUNT_BYTES), "little")
+        if count != self._capacity:
+            self._log(f"CFE_ES_RebuildCDS: Registry in CDS incorrect size ({count})")
+        return count == self._capacity
+
+    def _begin_anew(self) -> None:
+        """Wipe the CDS and make an empty one (CFE_ES_ClearCDS, _InitCDSSignatures, _InitCDSRegistry)."""
+        write = self._psp.write_to_cds
+        write(bytes(self._size), 0)
+        write(SIGNATURE_BEGIN, 0)
+        write(self._capacity.to_bytes(_COUNT_BYTES, "little"), _SIGNATURE_BYTES)
+        write(SIGNATURE_END, self._size - _SIGNATURE_BYTES)
+
+    def _rebuild(self) -> None:
+        """Take over the registry, as far as each record and the pool bear each other out (CFE_ES_RebuildCDS)."""
+        unclaimed = self._pool.rebuild()
+        for slot in range(self._capacity):
+            record = self._psp.read_from_cds(_REGISTRY_AT + slot * RECORD.size, RECORD.size)
+            if record == FREE_RECORD:
+                continue
+            block = unpack(record)
+            if is_sound(record) and self._is_whole(slot, block, unclaimed):
+                self._blocks[slot] = block
+                del unclaimed[block.offset]
+            else:
+                self._log(f"CFE_ES_RebuildCDS: Entry {slot} of the CDS registry or its block is damaged, it is dropped")
+                self._save(slot, None)
+        for offset in unclaimed:
+            self._free(offset)
+
+    def _is_whole(self, slot: int, block: CdsBlock, unclaimed: Container[int]) -> bool:
+        """Whether a record belongs into its slot, and the pool has a block like that, which nobody claimed yet."""
+        try:
+            found = self._pool.size_of(block.offset)
+            return found == block.size and block.offset in unclaimed and self._slot(block.handle) == slot
+        except CfeError:
+            return False
+
+    # -- blocks ----------------------------------------------------------------------------------------------------
+
+    def register(self, user_size: int, name: str, is_table: bool) -> tuple[int, int]:
+        """Reserve a block, or find it from before (CFE_ES_RegisterCDSEx).
+
+        Args:
+            user_size: bytes of data.
+            name: full name, "APP.Name".
+            is_table: whether it holds a critical table.
+
+        Returns:
+            The handle, and CFE_SUCCESS (a new block, all zeros) or CFE_ES_CDS_ALREADY_EXISTS.
+
+        Raises:
+            CfeError: CFE_ES_CDS_INVALID_SIZE, CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CFE_ES_ERR_MEM_BLOCK_SIZE.
+        """
+        if not 0 < user_size <= MAX_BLOCK_SIZE:
+            raise CfeError(CFE_ES_CDS_INVALID_SIZE, f"a CDS block of {user_size} bytes")
+        size = user_size + BLOCK_HEADER.size
+        block = self.find(name)
+        if block is not None and block.size == size:
+            return block.handle, CFE_ES_CDS_ALREADY_EXISTS
+        if block is not None:
+            self._remove(block)
+            handle, is_table = block.handle, block.is_table
+        else:
+            handle = self._next_handle()
+        block = CdsBlock(handle, self._pool.get(size), size, name, is_table)
+        self._blocks[self._slot(handle)] = block
+        self._save(self._slot(handle), block)
+        self.write(handle, bytes(user_size))
+        return handle, CFE_SUCCESS
+
+    def write(self, handle: int, data: bytes | bytearray | memoryview) -> None:
+        """Replace a block's data (CFE_ES_CDSBlockWrite).
+
+        Raises:
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_BAD_ARGUMENT (not as many bytes as the block has),
+                CFE_ES_POOL_BLOCK_INVALID (the block's descriptor is damaged).
+        """
+        block = self.get(handle)
+        if len(data) != block.user_size:
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"{len(data)} bytes for {block.name!r}, which has {block.user_size}")
+        try:
+            self._check(block)
+        except CfeError:
+            self._log("CFE_ES_CDSBlockWrite: Invalid Handle or Block Descriptor.")
+            raise
+        self._psp.write_to_cds(BLOCK_HEADER.pack(calculate_crc(data)), block.offset)
+        self._psp.write_to_cds(data, block.offset + BLOCK_HEADER.size)
+
+    def read(self, handle: int) -> bytes:
+        """A block's data (CFE_ES_CDSBlockRead).
+
+        Raises:
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_POOL_BLOCK_INVALID or CFE_ES_CDS_INVALID_SIZE (the block's
+                descriptor is damaged), CFE_ES_CDS_BLOCK_CRC_ERR (its data are).
+        """
+        block = self.get(handle)
+        self._check(block)
+        raw = self._psp.read_from_cds(block.offset, block.size)
+        data = raw[BLOCK_HEADER.size :]
+        if BLOCK_HEADER.unpack_from(raw)[0] != calculate_crc(data):
+            raise CfeError(CFE_ES_CDS_BLOCK_CRC_ERR, f"the data of CDS block {block.name!r} are damaged")
+        return data
+
+    def delete(self, name: str) -> None:
+        """Give a block back (the end of CFE_ES_DeleteCDS).
+
+        Raises:
+            CfeError: CFE_ES_ERR_NAME_NOT_FOUND.
+        """
+        self._remove(self.named(name))
+
+    def find(self, name: str) -> CdsBlock | None:
+        """The block of a full name, or None."""
+        return next((block for block in self if block.name == name), None)
+
+    def named(self, name: str) -> CdsBlock:
+        """The block of a full name, or CFE_ES_ERR_NAME_NOT_FOUND."""
+        block = self.find(name)
+        if block is None:
+            raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"no CDS block is called {name!r}")
+        return block
+
+    def get(self, handle: int) -> CdsBlock:
+        """The block of a handle, or CFE_ES_ERR_RESOURCEID_NOT_VALID."""
+        block = self._blocks[self._slot(handle)]
+        if block is None or block.handle != handle:
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"no CDS block has the handle 0x{handle:x}")
+        return block
+
+    def _check(self, block: CdsBlock) -> None:
+        if self._pool.size_of(block.offset) != block.size:
+            raise CfeError(CFE_ES_CDS_INVALID_SIZE, f"the size of CDS block {block.name!r} is damaged")
+
+    def _slot(self, handle: int) -> int:
+        return to_index(handle, ES_CDSBLOCKID_BASE, self._capacity)
+
+    def _next_handle(self) -> int:
+        handle = find_next(self._last_handle, self._capacity, lambda each: self._blocks[self._slot(each)] is not None)
+        if handle == UNDEFINED:
+            raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"the CDS has {self._capacity} blocks already")
+        self._last_handle = handle
+        return handle
+
+    def _remove(self, block: CdsBlock) -> None:
+        slot = self._slot(block.handle)
+        self._blocks[slot] = None
+        self._save(slot, None)
+        self._free(block.offset)
+
+    def _free(self, offset: int) -> None:
+        try:
+            self._pool.put(offset)
+        except CfeError as error:  # a damaged block is lost until the next power-on
+            text = f"Failed to free CDS Mem Block (Handle=0x{offset:08X})(Stat={error.hex})"
+            self._log(f"CFE_ES_DeleteCDS: {text}")
+
+    def _save(self, slot: int, block: CdsBlock | None) -> None:
+        record = FREE_RECORD if block is None else pack(block)
+        self._psp.write_to_cds(record, _REGISTRY_AT + slot * RECORD.size)

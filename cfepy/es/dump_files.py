@@ -1,0 +1,149 @@
+"""The files that Executive Services write at once: their headers, default names, and the events of what goes wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from cfepy.es import events as ev
+from cfepy.es.replies import Replies
+from cfepy.es.tables import EsCore
+from cfepy.fs import HEADER_SIZE, FileCategory, init_header, parse_input_file_name_ex
+from cfepy.fs import get_default_extension as extension_of
+from cfepy.fs import get_default_mount_point as mount_point_of
+from cfepy.fs import header as subtypes
+from cfepy.osal.limits import OS_FILE_FLAG_CREATE, OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY
+from cfepy.status import CfeError
+
+
+class Report(NamedTuple):
+    """An event about a file.
+
+    Its text may name `path`, `size` and `entries` (of the whole file, or of the block that failed), `status`, and
+    `code`, which is the status as a C unsigned int.
+    """
+
+    event_id: int
+    text: str
+
+
+class DumpFile(NamedTuple):
+    """A kind of file, and what is said when it is written, or cannot be: name, file, header or a record."""
+
+    description: str
+    subtype: int
+    default_name: str
+    written: Report
+    bad_name: Report
+    no_file: Report
+    no_header: Report
+    no_record: Report
+
+
+_APP_INFO = "Failed to write App Info file, "
+_TASK_INFO = "Failed to write Task Info file, "
+_COUNT_ERROR = Report(ev.FILEWRITE_ERR_EID, "File write,byte cnt err,file {path},request={size},status=0x{code:08x}")
+
+APP_INFO_FILE = DumpFile(
+    "ES Application Info file",
+    subtypes.SUBTYPE_ES_QUERYALL,
+    "/ram/cfe_es_app_info.log",
+    Report(ev.ALL_APPS_EID, "App Info file written to {path}, Entries={entries}, FileSize={size}"),
+    Report(ev.OSCREATE_ERR_EID, _APP_INFO + "CFE_FS_ParseInputFileNameEx RC = {code:08x}"),
+    Report(ev.OSCREATE_ERR_EID, _APP_INFO + "OS_OpenCreate RC = {status}"),
+    Report(ev.WRHDR_ERR_EID, _APP_INFO + "WriteHdr RC = 0x{code:08X}, exp {size}"),
+    Report(ev.TASKWR_ERR_EID, _APP_INFO + "Task write RC = {status}, exp {size}"),
+)
+TASK_INFO_FILE = DumpFile(
+    "ES Task Info file",
+    subtypes.SUBTYPE_ES_QUERYALLTASKS,
+    "/ram/cfe_es_taskinfo.log",
+    Report(ev.TASKINFO_EID, "Task Info file written to {path}, Entries={entries}, FileSize={size}"),
+    Report(ev.TASKINFO_OSCREATE_ERR_EID, _TASK_INFO + "CFE_FS_ParseInputFileNameEx RC = {code:08x}"),
+    Report(ev.TASKINFO_OSCREATE_ERR_EID, _TASK_INFO + "OS_OpenCreate RC = {status}"),
+    Report(ev.TASKINFO_WRHDR_ERR_EID, _TASK_INFO + "WriteHdr RC = 0x{code:08X}, exp {size}"),
+    Report(ev.TASKINFO_WR_ERR_EID, _TASK_INFO + "Task write RC = {status}, exp {size}"),
+)
+SYS_LOG_FILE = DumpFile(
+    "ES system log data file",
+    subtypes.SUBTYPE_ES_SYSLOG,
+    "/ram/cfe_es_syslog.log",
+    Report(ev.SYSLOG2_EID, "{path} written:Size={size},Entries={entries}"),
+    Report(ev.SYSLOG2_ERR_EID, "Error parsing file name RC = 0x{code:08X}"),
+    Report(ev.SYSLOG2_ERR_EID, "Error creating file {path}, RC = {status}"),
+    _COUNT_ERROR,
+    _COUNT_ERROR,
+)
+CDS_REGISTRY_FILE = DumpFile(
+    "CDS_Registry",
+    subtypes.SUBTYPE_ES_CDS_REG,
+    "/ram/cfe_cds_reg.log",
+    Report(ev.CDS_REG_DUMP_INF_EID, "Successfully dumped CDS Registry to '{path}':Size={size},Entries={entries}"),
+    Report(ev.CREATING_CDS_DUMP_ERR_EID, "Error parsing CDS dump filename, Status=0x{code:08X}"),
+    Report(ev.CREATING_CDS_DUMP_ERR_EID, "Error creating CDS dump file '{path}', Status={status}"),
+    Report(ev.WRITE_CFE_HDR_ERR_EID, "Error writing cFE File Header to '{path}', Status=0x{code:08X}"),
+    Report(ev.CDS_DUMP_ERR_EID, "Error writing CDS Registry to '{path}', Status={status}"),
+)
+
+
+def dump_path(name: str, default_name: str) -> str:
+    """The path of a dump file out of what a command says.
+
+    Raises:
+        CfeError: as `parse_input_file_name_ex`.
+    """
+    category = FileCategory.BINARY_DATA_DUMP
+    return parse_input_file_name_ex(name, default_name, mount_point_of(category), extension_of(category))
+
+
+def write_dump(es: EsCore, replies: Replies, kind: DumpFile, name: str, records: Iterable[bytes]) -> None:
+    """Write a file for a command, and answer the command.
+
+    Args:
+        es: whose services are used.
+        replies: how to answer.
+        kind: what file.
+        name: as the command gives it; empty for the default.
+        records: what follows the header.
+    """
+    dump = _Dump(es, kind)
+    try:
+        dump.write(name, records)
+    except CfeError as error:
+        failure = dump.trouble
+        text = failure.text.format(path=dump.path, size=dump.block, status=error.status, code=error.status & 0xFFFFFFFF)
+        replies.reject(failure.event_id, text)
+        return
+    text = kind.written.text.format(path=dump.path, size=dump.size, entries=dump.entries)
+    replies.accept(kind.written.event_id, text, ev.DEBUG)
+
+
+class _Dump:
+    """The writing of one file; `trouble` is what a failure at this moment would be."""
+
+    def __init__(self, es: EsCore, kind: DumpFile) -> None:
+        self._es = es
+        self._kind = kind
+        self.trouble = kind.bad_name
+        self.path = ""
+        self.block = self.size = HEADER_SIZE
+        self.entries = 0
+
+    def write(self, name: str, records: Iterable[bytes]) -> None:
+        osal = self._es.osal
+        self.path = dump_path(name, self._kind.default_name)
+        self.trouble = self._kind.no_file
+        filedes = osal.open_create(self.path, OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY)
+        try:
+            self._fill(filedes, records)
+        finally:
+            osal.close(filedes)
+
+    def _fill(self, filedes: int, records: Iterable[bytes]) -> None:
+        self.trouble = self._kind.no_header
+        self._es.ports.fs.write_header(filedes, init_header(self._kind.description, self._kind.subtype))
+        self.trouble = self._kind.no_record
+        for record in records:
+            self.block = len(record)
+            self.size += self._es.osal.write(filedes, record)
+            self.entries += 1

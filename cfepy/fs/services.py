@@ -1,0 +1,127 @@
+"""`FileServices`: what an application finds as `cfe.fs` (cFE's File Services).
+
+The functions of cfe_fs.h: those on open files and the background writes are methods here, the others are the pure
+functions of this package. Imports only cfepy.config, ports, status, cfepy.osal and its neighbours here.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+
+from cfepy.config import PlatformConfig
+from cfepy.fs import filename, header
+from cfepy.fs.background import BackgroundWriter, FileWriteMetaData
+from cfepy.fs.header import HEADER_SIZE, TIMESTAMP_OFFSET, FileHeader
+from cfepy.osal import Osal
+from cfepy.osal.limits import OS_SEEK_SET
+from cfepy.ports import Ports
+from cfepy.status import CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError
+
+
+class FileServices:
+    """One processor's File Services.
+
+    Args:
+        osal: reads and writes files.
+        ports: for the time and the writer's AppId.
+        config: for the ids in headers.
+        wake: lets the background task of Executive Services run at once.
+    """
+
+    init_header = staticmethod(header.init_header)
+    get_default_mount_point = staticmethod(filename.get_default_mount_point)
+    get_default_extension = staticmethod(filename.get_default_extension)
+    parse_input_file_name = staticmethod(filename.parse_input_file_name)
+    parse_input_file_name_ex = staticmethod(filename.parse_input_file_name_ex)
+    extract_filename_from_path = staticmethod(filename.extract_filename_from_path)
+
+    def __init__(self, osal: Osal, ports: Ports, config: PlatformConfig, wake: Callable[[], object]) -> None:
+        self._osal = osal
+        self._ports = ports
+        self._config = config
+        self._background = BackgroundWriter(osal, self.write_header, wake)
+        self.run_background_file_dump = self._background.run
+
+    def read_header(self, filedes: int) -> FileHeader:
+        """The cFE header of an open file, which then stands behind it (CFE_FS_ReadHeader).
+
+        Args:
+            filedes: descriptor from `cfe.os.open_create`.
+
+        Raises:
+            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL: not open for reading, or shorter than 64 bytes.
+        """
+        try:
+            self._osal.lseek(filedes, 0, OS_SEEK_SET)
+            data = self._osal.read(filedes, HEADER_SIZE)
+        except OsalError as error:
+            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
+        return header.read_header(data)
+
+    def write_header(self, filedes: int, file_header: FileHeader) -> int:
+        """Write a header at the start of an open file; ids, length and time are filled in (CFE_FS_WriteHeader).
+
+        Args:
+            filedes: descriptor from `cfe.os.open_create`.
+            file_header: gives description and subtype; from `init_header`.
+
+        Returns:
+            The bytes written: 64.
+
+        Raises:
+            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL: not open for writing, or the disk is full.
+        """
+        stamped = header.stamp_header(
+            file_header,
+            spacecraft_id=self._config.spacecraft_id,
+            processor_id=self._config.processor_id,
+            application_id=self._caller(),
+            time=self._ports.time.now(),
+        )
+        try:
+            self._osal.lseek(filedes, 0, OS_SEEK_SET)
+            return self._osal.write(filedes, stamped.pack())
+        except OsalError as error:
+            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
+
+    def set_timestamp(self, filedes: int, new_timestamp: tuple[int, int]) -> None:
+        """Change the time in the header of an open file (CFE_FS_SetTimestamp).
+
+        Args:
+            filedes: descriptor from `cfe.os.open_create`.
+            new_timestamp: seconds, and subseconds of 2**-32 s.
+
+        Raises:
+            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL: not open for writing.
+        """
+        try:
+            self._osal.lseek(filedes, TIMESTAMP_OFFSET, OS_SEEK_SET)
+            self._osal.write(filedes, struct.pack(">II", *new_timestamp))
+        except OsalError as error:
+            self._ports.syslog.write_to_sys_log(
+                f"CFE_FS_SetTimestamp: Failed to write timestamp (Status={error.status})"
+            )
+            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
+
+    def background_file_dump_request(self, meta: FileWriteMetaData) -> None:
+        """Have a file written by the background task (CFE_FS_BackgroundFileDumpRequest).
+
+        Args:
+            meta: what to write; it belongs to the writer until `is_pending` is False again.
+
+        Raises:
+            CfeError: CFE_FS_INVALID_PATH (no file name), CFE_STATUS_REQUEST_ALREADY_PENDING (this one, or too many).
+        """
+        self._background.request(meta)
+
+    def background_file_dump_is_pending(self, meta: FileWriteMetaData) -> bool:
+        """Whether a background write has not ended yet (CFE_FS_BackgroundFileDumpIsPending)."""
+        return meta.is_pending
+
+    def _caller(self) -> int:
+        """AppId of the caller, 0 outside any application."""
+        try:
+            return self._ports.es.get_app_id()
+        except CfeError:
+            return 0

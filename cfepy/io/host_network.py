@@ -1,0 +1,189 @@
+"""The bridge between a mission's virtual network and this computer's loopback interface.
+
+A port that an application binds opens on 127.0.0.1 too; what arrives there enters the mission at the virtual instant at
+which the run stands, with a note in the trace. A datagram that nobody in the mission is bound for goes out to
+127.0.0.1. No other interface is touched. The pacer sleeps in `wait`, which input ends; after every piece of the run
+`exchange` moves what there is. May import cfepy.mission and what is left of it.
+"""
+
+from __future__ import annotations
+
+import select
+import socket
+import time
+from collections.abc import Callable, Mapping
+from types import TracebackType
+
+from cfepy.io.connection import Connection
+from cfepy.mission.ground import GroundLink
+from cfepy.mission.mission import Mission
+from cfepy.osal.endpoints import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Place
+from cfepy.status import UsageError
+
+LOOPBACK = "127.0.0.1"
+MOST_AT_ONCE = 256  # datagrams of a port that are brought in between two pieces of a run
+UDP, TCP = "UDP", "TCP"
+
+
+class HostNetwork:
+    """Real sockets for the virtual ones of a mission.
+
+    A port that was opened stays open until the end, so that a reset of the processor does not give it away.
+
+    Args:
+        mission: the mission.
+        ports: ports of the mission that are to have another number on this computer; 0 takes any free one.
+        tell: gets a line about each port that was opened, and about what cannot be delivered.
+    """
+
+    def __init__(
+        self,
+        mission: Mission,
+        ports: Mapping[int, int] | None = None,
+        tell: Callable[[str], object] = lambda line: None,
+    ) -> None:
+        self._mission = mission
+        self._ports = dict(ports or {})
+        self._tell = tell
+        self._open: dict[tuple[str, int], socket.socket] = {}
+        self._connections: list[Connection] = []
+        self._outbox: list[Datagram] = []
+        self._anonymous = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._anonymous.setblocking(False)
+        self._foreign: list[str] = []
+        self._link = GroundLink(mission, self._outbox.append)
+
+    def __enter__(self) -> HostNetwork:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def host_port(self, port: int, protocol: str = UDP) -> int | None:
+        """The port on this computer that stands for a port of the mission; None when it is not open."""
+        opened = self._open.get((protocol, port))
+        return None if opened is None else int(opened.getsockname()[1])
+
+    def wait(self, seconds: float) -> None:
+        """Sleep, at most until there is something to bring in or to send on."""
+        readers = [opened for (protocol, port), opened in self._open.items() if protocol == UDP or self._has_room(port)]
+        readers += [connection.host for connection in self._connections if connection.wants_to_read]
+        writers = [connection.host for connection in self._connections if connection.wants_to_write]
+        if readers or writers:
+            select.select(readers, writers, [], seconds)
+        else:
+            time.sleep(seconds)
+
+    def exchange(self) -> None:
+        """Open what was bound meanwhile, bring in what arrived, send out what is to leave.
+
+        Raises:
+            UsageError: a port is taken on this computer.
+        """
+        self._mirror()
+        for (protocol, port), opened in list(self._open.items()):
+            if protocol == UDP:
+                self._bring_in(port, opened)
+            else:
+                self._accept(port, opened)
+        self._connections = [connection for connection in self._connections if connection.move()]
+        while self._outbox:
+            self._send_out(self._outbox.pop(0))
+
+    def close(self) -> None:
+        """Send out what is left, and close everything."""
+        while self._outbox:
+            self._send_out(self._outbox.pop(0))
+        for connection in self._connections:
+            connection.close()
+        for opened in (*self._open.values(), self._anonymous):
+            opened.close()
+        self._link.close()
+
+    # -- ports -------------------------------------------------------------------------------------------------------
+
+    def _mirror(self) -> None:
+        network = self._mission.network
+        for protocol, ports in ((UDP, network.datagrams), (TCP, network.streams)):
+            for (is_ip6, port), endpoints in ports.bound.items():
+                if not is_ip6 and (protocol, port) not in self._open and _is_public(endpoints[0]):
+                    self._open[protocol, port] = self._open_port(protocol, port)
+
+    def _open_port(self, protocol: str, port: int) -> socket.socket:
+        opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM if protocol == UDP else socket.SOCK_STREAM)
+        opened.setblocking(False)
+        try:
+            if protocol == TCP:
+                opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            opened.bind((LOOPBACK, self._ports.get(port, port)))
+            if protocol == TCP:
+                opened.listen()
+        except OSError as error:
+            opened.close()
+            where = f"{protocol} port {self._ports.get(port, port)} of {LOOPBACK} cannot be opened: {error.strerror}"
+            raise UsageError(f"{where}; give the mission's port {port} another: --port {port}=NUMBER") from None
+        self._tell(f"{protocol} port {port} is open at {LOOPBACK}:{opened.getsockname()[1]}")
+        return opened
+
+    # -- datagrams ---------------------------------------------------------------------------------------------------
+
+    def _bring_in(self, port: int, opened: socket.socket) -> None:
+        for _ in range(MOST_AT_ONCE):
+            try:
+                data, (host, source) = opened.recvfrom(LONGEST_DATAGRAM)
+            except OSError:  # nothing more there
+                return
+            self._link.send(data, port, Place(host, source))
+
+    def _send_out(self, datagram: Datagram) -> None:
+        target = datagram.target
+        if target.is_ip6 or not target.is_here:
+            self._refuse(target.host)
+            return
+        opened = self._open.get((UDP, datagram.source.port), self._anonymous)
+        try:
+            opened.sendto(datagram.data, (target.reached().host, self._ports.get(target.port, target.port)))
+        except OSError as error:
+            self._tell(f"a datagram for port {target.port} could not be sent: {error.strerror}")
+
+    def _refuse(self, host: str) -> None:
+        if host not in self._foreign:
+            self._foreign.append(host)
+            self._tell(f"datagrams for {host} are dropped: only {LOOPBACK} is connected")
+
+    # -- connections -------------------------------------------------------------------------------------------------
+
+    def _accept(self, port: int, opened: socket.socket) -> None:
+        place = Place(LOOPBACK, port)
+        while self._has_room(port):
+            try:
+                host, (name, source) = opened.accept()
+            except OSError:  # nobody more there
+                return
+            listener = self._listener(port)
+            if listener is None:
+                host.close()
+            else:
+                stream = listener.connect(Place(name, source), place)
+                self._connections.append(Connection(host, stream, self._note))
+
+    def _listener(self, port: int) -> Listener | None:
+        """Who takes connections at a port of the mission; None when nobody does any more."""
+        listener = self._mission.network.streams.find(Place(LOOPBACK, port))
+        return listener if listener is not None and listener.listening else None
+
+    def _has_room(self, port: int) -> bool:
+        """Whether a connection that waits on this computer can be brought in, or turned away."""
+        listener = self._listener(port)
+        return listener is None or listener.has_room
+
+    def _note(self, port: int, data: bytes) -> None:
+        mission = self._mission
+        mission.trace.note(f"stream to {port} at {mission.kernel.now}: {data.hex()}")
+
+
+def _is_public(endpoint: Endpoint) -> bool:
+    """Whether somebody outside could want to reach an endpoint."""
+    return endpoint.listening if isinstance(endpoint, Listener) else not endpoint.anonymous

@@ -1,0 +1,88 @@
+"""UDP datagrams to and from a flight computer: what a ground system needs of the host's sockets."""
+
+from __future__ import annotations
+
+import socket
+from types import TracebackType
+
+from cfepy.status import UsageError
+
+LARGEST = 65535
+
+
+def send(host: str, port: int, data: bytes) -> None:
+    """Send a datagram.
+
+    Args:
+        host: name or address.
+        port: 1 to 65535.
+        data: its bytes.
+
+    Raises:
+        UsageError: there is no such host, or no way to it.
+    """
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as plug:
+        try:
+            plug.sendto(data, (host, port))
+        except OSError as error:
+            raise UsageError(f"nothing can be sent there: {error.strerror or error}", file=f"{host}:{port}") from None
+
+
+def own_address(host: str) -> str:
+    """The address that a host sees this computer under.
+
+    Raises:
+        UsageError: there is no such host, or no way to it.
+    """
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as plug:
+        try:
+            plug.connect((host, 1))  # sends nothing, but finds the way
+        except OSError as error:
+            raise UsageError(f"there is no way there: {error.strerror or error}", file=host) from None
+        address: str = plug.getsockname()[0]
+        return address
+
+
+class Listener:
+    """A port that datagrams arrive at; use as a context manager.
+
+    Args:
+        host: address of this computer to listen at, "0.0.0.0" for any.
+        port: 1 to 65535, or 0 for one that is free.
+
+    Attributes:
+        port: the port.
+
+    Raises:
+        UsageError: the port is taken, or the address is not one of this computer's.
+    """
+
+    def __init__(self, host: str, port: int) -> None:
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            self._socket.bind((host, port))
+        except OSError as error:
+            self._socket.close()
+            text = f"cannot listen there: {error.strerror or error}"
+            raise UsageError(text, file=f"{host}:{port}") from None
+        self.port: int = self._socket.getsockname()[1]
+
+    def receive(self, timeout_s: float | None = None) -> bytes | None:
+        """The next datagram; None when none came in time.
+
+        Args:
+            timeout_s: longest time to wait in wall-clock s; None for no limit.
+        """
+        self._socket.settimeout(timeout_s)
+        try:
+            return self._socket.recv(LARGEST)
+        except TimeoutError:
+            return None
+
+    def __enter__(self) -> Listener:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self._socket.close()

@@ -1,0 +1,92 @@
+"""A command tried out: a mission is flown until it is OPERATIONAL, gets the command, and what follows is taken down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cfepy.console import Console
+from cfepy.evs.events import ERROR
+from cfepy.mission.dictionary import Dictionary
+from cfepy.mission.mission import Mission
+from cfepy.mission.script_packets import EVENT_IDS, Event
+from cfepy.mission.spec import MissionSpec
+from cfepy.mission.watch import Seen, watching
+from cfepy.msg import MsgType, get_msg_id, get_type
+from cfepy.rtos.units import NS_PER_MS, NS_PER_S
+from cfepy.status import CFE_ES_OPERATION_TIMED_OUT, CfeError
+
+LONGEST_BOOT_NS = 60 * NS_PER_S
+PIECE_NS = 10 * NS_PER_MS
+ANSWER_NS = 100 * NS_PER_MS  # in which a request for housekeeping is answered
+REQUEST = "_SEND_HK"
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What a command led to.
+
+    `receivers` are the applications that subscribe to it; `telemetry` has the last packet of each kind that they sent,
+    housekeeping included: they are asked for it.
+    """
+
+    sent_ns: int
+    receivers: list[str]
+    events: list[Event]
+    telemetry: list[Seen]
+
+    @property
+    def errors(self) -> list[Event]:
+        """The ERROR and CRITICAL events."""
+        return [event for event in self.events if event.event_type >= ERROR]
+
+
+def try_command(spec: MissionSpec, dictionary: Dictionary, packet: bytes, seconds: float) -> Trial:
+    """Fly a mission, and send it a command.
+
+    Args:
+        spec: the mission.
+        dictionary: tells how to ask for housekeeping.
+        packet: the command.
+        seconds: virtual time to wait for what it causes.
+
+    Raises:
+        CfeError: the mission cannot boot.
+        UsageError: no such board.
+    """
+    seen: list[Seen] = []
+    bus = watching(seen.append, lambda msg_id: True)
+    with Mission(spec, console=Console(quiet=True), bus=bus) as mission:
+        _boot(mission)
+        seen.clear()
+        receivers, sent_ns = _subscribers(mission, get_msg_id(packet)), mission.kernel.now
+        mission.cfe.sb.transmit_msg(packet, is_origination=False)
+        mission.run(seconds)
+        for request in dictionary.commands.values():
+            if request.name.endswith(REQUEST) and set(_subscribers(mission, request.msg_id)) & set(receivers):
+                mission.cfe.sb.transmit_msg(request.packet(), is_origination=False)
+        mission.run_until(mission.kernel.now + ANSWER_NS)
+    return Trial(sent_ns, receivers, [Event.of(each) for each in seen if _is_event(each)], _last(seen, receivers))
+
+
+def _boot(mission: Mission) -> None:
+    while mission.booted is None:
+        if mission.kernel.now >= LONGEST_BOOT_NS:
+            text = f"the mission is not OPERATIONAL after {LONGEST_BOOT_NS // NS_PER_S} virtual seconds"
+            raise CfeError(CFE_ES_OPERATION_TIMED_OUT, text)
+        mission.run_until(mission.kernel.now + PIECE_NS)
+
+
+def _subscribers(mission: Mission, msg_id: int) -> list[str]:
+    """Applications that get a MsgId."""
+    route = mission.cfe.sb.routes.get(msg_id)
+    return [] if route is None else list(dict.fromkeys(each.pipe.app_name for each in route.active))
+
+
+def _is_event(seen: Seen) -> bool:
+    return seen.msg_id in EVENT_IDS
+
+
+def _last(seen: list[Seen], senders: list[str]) -> list[Seen]:
+    """The last telemetry packet of each MsgId that came from these applications."""
+    own = [each for each in seen if each.sender in senders and not _is_event(each)]
+    return list({each.msg_id: each for each in own if get_type(each.packet) == MsgType.TLM}.values())

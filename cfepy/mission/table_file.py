@@ -1,0 +1,182 @@
+"""A table file taken apart for people: its headers, and its image as rows of named fields where the layout is known.
+
+`document` gives everything in a file as plain values, without zeros that can be left out; `cfepy.mission.table_yaml`
+turns it into a file that people edit, and back.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+from cfepy.fs import FileHeader, TableHeader, crc16, read_table_file
+from cfepy.status import CfeError, UsageError
+from cfepy.tbl import TableType
+from cfepy.tbl.image import mark_for, mark_in
+
+Find = Callable[[str], TableType | None]
+"""What a table is made of, by its full name; None when nobody declared it."""
+
+ROW = "row"
+"""Gives a row its number where empty ones before it are left out; fields of this name make that impossible."""
+
+HEADER_FIELDS = (
+    "description",
+    "spacecraft_id",
+    "processor_id",
+    "application_id",
+    "time_seconds",
+    "time_subseconds",
+)
+
+
+class Leaf(NamedTuple):
+    """A field of a table: its path, "rows[3].InputMid", and its value."""
+
+    path: str
+    value: Any
+
+
+@dataclass(frozen=True, slots=True)
+class TableFile:
+    """Headers, image, what follows the image, and the table's type if it is known."""
+
+    header: FileHeader
+    table: TableHeader
+    image: bytes
+    after: bytes = b""
+    kind: TableType | None = None
+
+    @property
+    def crc(self) -> int:
+        """CRC-16 of the image, as cFE shows it in telemetry once the whole table is loaded."""
+        return crc16(self.image)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the image is all of the table; where the type is not known it counts as such from offset 0."""
+        return self.table.offset == 0 and (self.kind is None or len(self.image) == self.kind.size)
+
+    def pack(self) -> bytes:
+        """The file's bytes."""
+        return self.header.pack() + self.table.pack() + self.image + self.after
+
+    @property
+    def is_marked(self) -> bool:
+        """Whether it has the integrity mark that belongs to it (`cfepy.tbl.image`)."""
+        data = self.pack()
+        return mark_in(data) == mark_for(data)
+
+    def marked(self) -> TableFile:
+        """This file with its integrity mark."""
+        return replace(self, table=replace(self.table, reserved=mark_for(self.pack())))
+
+    def rows(self) -> list[dict[str, Any]] | None:
+        """All rows of the table, those outside a partial image as zeros; None when they cannot stand for the image."""
+        kind, offset = self.kind, self.table.offset
+        if kind is None or offset + len(self.image) > kind.size:
+            return None
+        rows = kind.unpack(bytes(offset) + self.image + bytes(kind.size - offset - len(self.image)))
+        return rows if cut(kind.pack(rows), offset, len(self.image)) == self.image else None
+
+    def leaves(self) -> Iterator[Leaf]:
+        """Every field of every row; bytes in hexadecimal, sixteen at a time, when there are no rows."""
+        rows = self.rows()
+        if rows is not None:
+            yield from leaves_of(rows, "rows")
+            return
+        for at in range(0, len(self.image), 16):
+            yield Leaf(f"data[0x{self.table.offset + at:04X}]", self.image[at : at + 16].hex(" "))
+
+
+def cut(data: bytes, offset: int, size: int) -> bytes:
+    """Part of a table's bytes."""
+    return data[offset : offset + size]
+
+
+def leaves_of(value: Any, path: str) -> Iterator[Leaf]:
+    """The scalars in nested dicts and lists."""
+    if isinstance(value, dict):
+        for name, item in value.items():
+            yield from leaves_of(item, f"{path}.{name}")
+    elif isinstance(value, list):
+        for number, item in enumerate(value):
+            yield from leaves_of(item, f"{path}[{number}]")
+    else:
+        yield Leaf(path, value)
+
+
+def take_apart(data: bytes, find: Find, file: str) -> TableFile:
+    """Read a table file.
+
+    Args:
+        data: its bytes.
+        find: knows the types of tables.
+        file: its name, for errors.
+
+    Raises:
+        UsageError: it is no table file.
+    """
+    try:
+        header, table, image = read_table_file(data)
+    except CfeError as error:
+        raise UsageError(f"is no table file: {error.text}", file=file) from None
+    size = table.num_bytes
+    return TableFile(header, table, image[:size], image[size:], find(table.table_name))
+
+
+def document(file: TableFile) -> dict[str, Any]:
+    """Everything in a table file as plain values in the order in which people read them."""
+    values: dict[str, Any] = {"table": file.table.table_name}
+    values.update((name, getattr(file.header, name)) for name in HEADER_FIELDS)
+    if file.is_marked:
+        values["mark"] = True
+    elif file.table.reserved:
+        values["reserved"] = file.table.reserved
+    if not file.is_whole:
+        values["offset"] = file.table.offset
+        values["bytes"] = len(file.image)
+    rows = file.rows()
+    if rows is None or file.kind is None:
+        values["data"] = file.image.hex()
+    else:
+        values["rows"] = _used(rows, ROW not in file.kind.row.fields)
+    if file.after:
+        values["after"] = file.after.hex()
+    return values
+
+
+def _used(rows: list[dict[str, Any]], may_number: bool) -> list[dict[str, Any]]:
+    """The rows that are not all zero; with `may_number` false, empty ones between them stay in their place."""
+    used: list[dict[str, Any]] = []
+    following = 0
+    for number, row in enumerate(rows):
+        if is_zero(row):
+            continue
+        if number > following and may_number:
+            used.append({ROW: number, **_trimmed(row)})
+        else:
+            used += [{} for _ in range(following, number)] + [_trimmed(row)]
+        following = number + 1
+    return used
+
+
+def _trimmed(value: Any) -> Any:
+    """A value without the zeros at the ends of lists; an empty struct between others is {}."""
+    if isinstance(value, dict):
+        return {name: _trimmed(item) for name, item in value.items()}
+    if not isinstance(value, list):
+        return value
+    last = max((number for number, item in enumerate(value) if not is_zero(item)), default=-1)
+    return [{} if isinstance(item, dict) and is_zero(item) else _trimmed(item) for item in value[: last + 1]]
+
+
+def is_zero(value: Any) -> bool:
+    """Whether a value is what a field that is not given becomes."""
+    if isinstance(value, dict):
+        return all(is_zero(item) for item in value.values())
+    if isinstance(value, list):
+        return all(is_zero(item) for item in value)
+    return not value and not (isinstance(value, float) and math.copysign(1, value) < 0)

@@ -1,0 +1,105 @@
+"""ROS topics as telemetry: their packets by name, and what is in them as far as their message type is known.
+
+rospy_shim is loaded by name, and not before a topic's message is read. Imports cfepy.msg and cfepy.status.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from cfepy.console import Console
+from cfepy.es.startup_script import entries
+from cfepy.mission.loader import NODE_SYMBOL
+from cfepy.mission.mids import LOOK_S
+from cfepy.mission.mission import Mission
+from cfepy.mission.spec import MissionSpec
+from cfepy.msg import TLM_HEADER_SIZE, SegmentationFlag, get_segmentation_flag
+from cfepy.status import UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """A topic; the packet's payload is the message as ROS serialises it.
+
+    Args:
+        name: resolved, with its "/".
+        msg_id: its MsgId.
+        type: of its messages, such as "std_msgs/String"; empty when it is not known.
+        raw: the message's data are the whole packet's bytes, so they have no layout of their own.
+    """
+
+    name: str
+    msg_id: int
+    type: str = ""
+    raw: bool = False
+
+    @property
+    def text(self) -> str:
+        """What it tells, for tools."""
+        return f"ROS topic, {self.type or 'of a type that is known when the mission runs'}"
+
+    def read(self, packet: bytes) -> dict[str, Any]:
+        """The message's fields.
+
+        Raises:
+            UsageError: the type is not known, or the packet is no whole message.
+        """
+        if self.raw:
+            return {"data": bytes(packet)}
+        if not self.type:
+            raise UsageError("the type of its messages is not known")
+        if get_segmentation_flag(packet) != SegmentationFlag.UNSEGMENTED:
+            raise UsageError("a segment of a longer message")
+        try:
+            fields: dict[str, Any] = plain(message_class(self.type)._unpack(packet[TLM_HEADER_SIZE:]))
+        except Exception as error:  # whatever the generated code raises for bytes that are no such message
+            raise UsageError(f"no {self.type}: {error}") from None
+        return fields
+
+
+def message_class(kind: str) -> Any:
+    """The class of a message type, such as "std_msgs/String".
+
+    Raises:
+        UsageError: there is no such type among those that cfepy brings along.
+    """
+    return importlib.import_module("rospy_shim.msgs").message_class(kind)
+
+
+def plain(message: Any) -> Any:
+    """A message as nested dicts, lists, numbers and texts."""
+    names = getattr(message, "__slots__", None)
+    if names is not None and not isinstance(message, str | bytes):
+        return {name: plain(getattr(message, name)) for name in names}
+    return [plain(item) for item in message] if isinstance(message, list | tuple) else message
+
+
+def topics_of(mission: Mission) -> list[Topic]:
+    """The topics that there are in a running mission, by name."""
+    rows = [] if mission.ros is None else mission.ros.topics()
+    raw = {topic.name for topic in mission.spec.ros.topics.values() if topic.raw}
+    return [Topic(row.name, row.msg_id, row.type or "", row.name in raw) for row in rows]
+
+
+def surveyed_topics(spec: MissionSpec) -> list[Topic]:
+    """The topics of a mission with their types; a mission with nodes runs for 10 virtual seconds to find them.
+
+    Raises:
+        CfeError: it cannot boot.
+    """
+    if all(entry.symbol != NODE_SYMBOL for entry in entries(spec.script.read_bytes())):
+        return []
+    with Mission(spec, console=Console(quiet=True)) as mission:
+        mission.run(LOOK_S)
+        return topics_of(mission)
+
+
+def topic_id(spec: MissionSpec, name: str) -> int:
+    """The MsgId that a topic has or would have in a mission."""
+    pinned: Mapping[str, Any] = spec.ros.topics
+    if name in pinned:
+        return int(pinned[name].msg_id)
+    return int(importlib.import_module("rospy_shim.graph").msg_id_of(name))

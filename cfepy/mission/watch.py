@@ -1,0 +1,63 @@
+"""Looking on at the Software Bus of a mission: every packet, also those that nobody subscribed to.
+
+A look-on changes nothing: no subscription, no virtual time, no record in the trace. It goes on over resets, since each
+processor gets a bus of the class that is made here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from cfepy import msg
+from cfepy.msg import PRIMARY_HEADER_SIZE
+from cfepy.sb import SoftwareBus
+
+HOST = "host"
+
+
+class Seen(NamedTuple):
+    """A packet on the bus: when in virtual ns, its bytes as subscribers get them, the application that sent it."""
+
+    at_ns: int
+    packet: bytes
+    sender: str
+
+    @property
+    def msg_id(self) -> int:
+        """The packet's MsgId."""
+        return self.packet[0] << 8 | self.packet[1]
+
+
+def watching(take: Callable[[Seen], object], wanted: Callable[[int], bool]) -> type[SoftwareBus]:
+    """A class of Software Bus for `Mission(bus=...)` that shows what is sent.
+
+    Args:
+        take: gets each packet before its subscribers do; called inside the simulation, so it must not wait.
+        wanted: which MsgIds it gets.
+    """
+
+    class WatchedBus(SoftwareBus):
+        """A Software Bus that is looked at."""
+
+        def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
+            """See `SoftwareBus.transmit_msg`."""
+            if self._is_packet(packet) and wanted(packet[0] << 8 | packet[1]):
+                owner = self.kernel.current.owner
+                name: str = HOST if owner is None else owner.name
+                take(Seen(self.kernel.now, self._as_sent(packet) if is_origination else bytes(packet), name))
+            super().transmit_msg(packet, is_origination)
+
+        def _is_packet(self, packet: Any) -> bool:
+            return PRIMARY_HEADER_SIZE < len(packet) <= self.config.sb_max_msg_size
+
+        def _as_sent(self, packet: bytes | bytearray) -> bytes:
+            """With what origination fills in."""
+            copy = bytearray(packet)
+            route = self.routes.get(copy[0] << 8 | copy[1])
+            msg.set_size(copy, len(copy))
+            msg.set_sequence_count(copy, 0 if route is None else route.sequence & msg.MAX_SEQUENCE_COUNT)
+            msg.origination_action(copy, self.ports.time.stamp())
+            return bytes(copy)
+
+    return WatchedBus

@@ -1,0 +1,142 @@
+"""OSAL's functions on files by path (osapi-file.h): facts, access, removing, renaming, copying.
+
+OS_FILESTAT_MODE and its kin, macros on the result of `stat`, are functions here. May import cfepy.status and its
+neighbours in cfepy.osal.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cfepy.osal.clock import OS_TIME_TICK_RESOLUTION_NS, ClockApi, OsTime, time_get_total_seconds
+from cfepy.osal.files import ACCESS_BITS, FileApi
+from cfepy.osal.limits import (
+    OS_FILE_FLAG_CREATE,
+    OS_FILE_FLAG_TRUNCATE,
+    OS_FILESTAT_MODE_DIR,
+    OS_FILESTAT_MODE_EXEC,
+    OS_FILESTAT_MODE_READ,
+    OS_FILESTAT_MODE_WRITE,
+    OS_WRITE_ONLY,
+)
+from cfepy.status import OS_ERROR, OsalError
+
+_FOLDER_MODE = OS_FILESTAT_MODE_DIR | OS_FILESTAT_MODE_READ | OS_FILESTAT_MODE_WRITE | OS_FILESTAT_MODE_EXEC
+
+
+class FileStat(NamedTuple):
+    """What `stat` tells (os_fstat_t): OS_FILESTAT_MODE_* bits, local time of the last change, bytes."""
+
+    file_mode_bits: int
+    file_time: OsTime
+    file_size: int
+
+
+def filestat_mode(stats: FileStat) -> int:
+    """All OS_FILESTAT_MODE_* bits (OS_FILESTAT_MODE)."""
+    return stats.file_mode_bits
+
+
+def filestat_isdir(stats: FileStat) -> bool:
+    """Whether it is a folder (OS_FILESTAT_ISDIR)."""
+    return bool(stats.file_mode_bits & OS_FILESTAT_MODE_DIR)
+
+
+def filestat_exec(stats: FileStat) -> bool:
+    """Whether it can be executed, or looked into (OS_FILESTAT_EXEC)."""
+    return bool(stats.file_mode_bits & OS_FILESTAT_MODE_EXEC)
+
+
+def filestat_write(stats: FileStat) -> bool:
+    """Whether it can be written (OS_FILESTAT_WRITE)."""
+    return bool(stats.file_mode_bits & OS_FILESTAT_MODE_WRITE)
+
+
+def filestat_read(stats: FileStat) -> bool:
+    """Whether it can be read (OS_FILESTAT_READ)."""
+    return bool(stats.file_mode_bits & OS_FILESTAT_MODE_READ)
+
+
+def filestat_size(stats: FileStat) -> int:
+    """Bytes (OS_FILESTAT_SIZE)."""
+    return stats.file_size
+
+
+def filestat_time(stats: FileStat) -> int:
+    """Local time of the last change in whole seconds (OS_FILESTAT_TIME)."""
+    return time_get_total_seconds(stats.file_time)
+
+
+class PathApi(ClockApi, FileApi):
+    """The functions on files that are not open."""
+
+    filestat_mode = staticmethod(filestat_mode)
+    filestat_isdir = staticmethod(filestat_isdir)
+    filestat_exec = staticmethod(filestat_exec)
+    filestat_write = staticmethod(filestat_write)
+    filestat_read = staticmethod(filestat_read)
+    filestat_size = staticmethod(filestat_size)
+    filestat_time = staticmethod(filestat_time)
+
+    def stat(self, path: str) -> FileStat:
+        """Facts about a file or folder (OS_stat).
+
+        Raises:
+            OsalError: OS_ERROR when there is none; OS_FS_ERR_* for the path.
+        """
+        node = self.files.find(path)
+        if node is not None:
+            return FileStat(node.mode, self._local_time_at(node.modified_ns), len(node.data))
+        if self.files.is_folder(path):
+            return FileStat(_FOLDER_MODE, self._local_time_at(0), 0)
+        raise OsalError(OS_ERROR, f"there is nothing at {path}")
+
+    def chmod(self, path: str, access_mode: int) -> None:
+        """Say what may be done with a file (OS_chmod); descriptors that are open keep what they can do.
+
+        Args:
+            path: virtual path.
+            access_mode: OS_READ_ONLY, OS_WRITE_ONLY or OS_READ_WRITE; any other forbids both, as in NASA's.
+
+        Raises:
+            OsalError: OS_ERROR when there is no such file, or it can be neither read nor written; OS_FS_ERR_* for the
+                path.
+        """
+        node = self.files.find(path)
+        if node is None or not node.mode:
+            raise OsalError(OS_ERROR, f"{path} is no file that could be opened")
+        node.mode = ACCESS_BITS.get(access_mode, 0)
+
+    def remove(self, path: str) -> None:
+        """Remove a file (OS_remove); OS_ERROR when there is none, OS_FS_ERR_* for the path."""
+        self.files.remove(path)
+
+    def rename(self, old_filename: str, new_filename: str) -> None:
+        """Rename a file within a volume (OS_rename); OS_ERROR when that cannot be, OS_FS_ERR_* for the paths."""
+        self.files.rename(old_filename, new_filename)
+        for stream in self._streams:
+            if stream.path == old_filename:
+                stream.path = new_filename
+
+    def cp(self, src: str, dest: str) -> None:
+        """Copy a file (OS_cp).
+
+        Raises:
+            OsalError: OS_ERROR when there is none, it may not be read, the copy may not be written or there is no room;
+                OS_FS_ERR_* for the paths; OS_ERR_NO_FREE_IDS.
+        """
+        self.close(self.open_create(src))  # the copy itself needs no descriptor, but the right to open one
+        data = self.files.read_file(src)
+        self.close(self.open_create(dest, OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY))
+        self.files.write_file(dest, data, self.kernel.now)
+
+    def mv(self, src: str, dest: str) -> None:
+        """Move a file, to another volume too (OS_mv); errors as `cp`."""
+        try:
+            self.rename(src, dest)
+        except OsalError:
+            self.cp(src, dest)
+            self.remove(src)
+
+    def _local_time_at(self, virtual_ns: int) -> OsTime:
+        return OsTime(virtual_ns // OS_TIME_TICK_RESOLUTION_NS + self._local_offset)

@@ -1,0 +1,145 @@
+"""OSAL's network addresses (OS_SockAddr_t, OS_SocketAddr*): IPv4 and IPv6, as objects that are filled in step by step.
+
+May import cfepy.status and the network beside it.
+"""
+
+from __future__ import annotations
+
+from cfepy.osal.endpoints import Place
+from cfepy.status import (
+    OS_ERR_BAD_ADDRESS,
+    OS_ERR_INVALID_ARGUMENT,
+    OS_ERR_NOT_IMPLEMENTED,
+    OS_ERROR,
+    OS_INVALID_POINTER,
+    OsalError,
+)
+
+OS_SocketDomain_INVALID = 0
+OS_SocketDomain_INET = 1
+OS_SocketDomain_INET6 = 2
+
+ANY_HOST = {OS_SocketDomain_INET: "0.0.0.0", OS_SocketDomain_INET6: "::"}
+HIGHEST_PORT = 0xFFFF
+
+
+class SockAddr:
+    """A network address (OS_SockAddr_t); `socket_addr_init` makes one.
+
+    Args:
+        domain: OS_SocketDomain_INET or OS_SocketDomain_INET6; OS_SocketDomain_INVALID for one that is not filled in.
+        host: as text; None stands for all hosts.
+        port: 0 to 65535.
+    """
+
+    __slots__ = ("domain", "host", "port")
+
+    def __init__(self, domain: int = OS_SocketDomain_INVALID, host: str | None = None, port: int = 0) -> None:
+        self.domain = domain
+        self.host = host if host is not None else ANY_HOST.get(domain, "")
+        self.port = port
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, SockAddr) and (self.domain, self.place) == (other.domain, other.place)
+
+    __hash__ = None  # type: ignore[assignment]  # it can be changed
+
+    def __repr__(self) -> str:
+        return f"SockAddr({self.host}:{self.port})"
+
+    @property
+    def place(self) -> Place:
+        """The address as the network has it."""
+        return Place(self.host, self.port)
+
+
+def from_place(place: Place) -> SockAddr:
+    """The address of a place on the network."""
+    return SockAddr(OS_SocketDomain_INET6 if place.is_ip6 else OS_SocketDomain_INET, place.host, place.port)
+
+
+def socket_addr_init(domain: int) -> SockAddr:
+    """An address that stands for all hosts and no port (OS_SocketAddrInit).
+
+    Args:
+        domain: OS_SocketDomain_INET or OS_SocketDomain_INET6.
+
+    Raises:
+        OsalError: OS_ERR_NOT_IMPLEMENTED for any other domain.
+    """
+    if domain not in ANY_HOST:
+        raise OsalError(OS_ERR_NOT_IMPLEMENTED, f"there is no address domain {domain}")
+    return SockAddr(domain)
+
+
+def socket_addr_to_string(addr: SockAddr) -> str:
+    """The host of an address as text, without the port (OS_SocketAddrToString).
+
+    Raises:
+        OsalError: OS_INVALID_POINTER; OS_ERROR for an address without domain.
+    """
+    check_address(addr, OS_ERROR)
+    return addr.host
+
+
+def socket_addr_from_string(addr: SockAddr, string: str) -> None:
+    """Set the host of an address; its port stays (OS_SocketAddrFromString).
+
+    Args:
+        addr: is changed.
+        string: numbers as inet_pton takes them, "127.0.0.1" or "::1"; names are not looked up.
+
+    Raises:
+        OsalError: OS_INVALID_POINTER; OS_ERROR for a text that is no address of this domain.
+    """
+    import ipaddress
+
+    check_address(addr, OS_ERROR)
+    kind = ipaddress.IPv4Address if addr.domain == OS_SocketDomain_INET else ipaddress.IPv6Address
+    try:
+        host = str(kind(string))
+    except ValueError:
+        raise OsalError(OS_ERROR, f"{string!r} is no network address") from None
+    if "%" in host:
+        raise OsalError(OS_ERROR, f"{string!r} names an interface")
+    addr.host = host
+
+
+def socket_addr_get_port(addr: SockAddr) -> int:
+    """The port of an address (OS_SocketAddrGetPort).
+
+    Raises:
+        OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain.
+    """
+    check_address(addr)
+    return addr.port
+
+
+def socket_addr_set_port(addr: SockAddr, port_num: int) -> None:
+    """Set the port of an address (OS_SocketAddrSetPort).
+
+    Raises:
+        OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain; OS_ERR_INVALID_ARGUMENT for a
+            port that 16 bits cannot hold.
+    """
+    check_address(addr)
+    if not 0 <= port_num <= HIGHEST_PORT:
+        raise OsalError(OS_ERR_INVALID_ARGUMENT, f"there is no port {port_num}")
+    addr.port = port_num
+
+
+def check_address(addr: SockAddr | None, status: int = OS_ERR_BAD_ADDRESS) -> SockAddr:
+    """An address that can be used.
+
+    Args:
+        addr: what a caller gave.
+        status: for an address without domain.
+
+    Raises:
+        OsalError: OS_INVALID_POINTER for None, or `status`.
+    """
+    if addr is None:
+        raise OsalError(OS_INVALID_POINTER, "an address is missing")
+    if addr.domain not in ANY_HOST:
+        raise OsalError(status, "the address has no domain")
+    return addr

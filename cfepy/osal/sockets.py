@@ -1,0 +1,282 @@
+"""OSAL's sockets (osapi-sockets.h) on the virtual network: datagrams and streams, IPv4 and IPv6.
+
+A socket is a descriptor: stream sockets send and receive with `read` and `write` (`cfepy.osal.streams`). Waiting is in
+virtual time. May import ids, status and its neighbours in cfepy.osal.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cfepy.osal import sockaddr
+from cfepy.osal.clock import OsTime
+from cfepy.osal.datagrams import DatagramApi
+from cfepy.osal.endpoints import Place, Stream
+from cfepy.osal.limits import OS_MAX_API_NAME, OS_PEND
+from cfepy.osal.sockaddr import SockAddr, check_address, from_place
+from cfepy.osal.streams import OS_SocketType_DATAGRAM, OS_SocketType_STREAM, OsSocket, ns_of
+from cfepy.status import (
+    OS_ERR_INCORRECT_OBJ_STATE,
+    OS_ERR_INVALID_ARGUMENT,
+    OS_ERR_NAME_NOT_FOUND,
+    OS_ERR_NOT_IMPLEMENTED,
+    OS_ERROR,
+    OsalError,
+)
+
+OS_SocketShutdownMode_SHUT_READ = 1
+OS_SocketShutdownMode_SHUT_WRITE = 2
+OS_SocketShutdownMode_SHUT_READWRITE = 3
+OS_socket_option_UNDEFINED = 0
+OS_socket_option_IP_DSCP = 1
+DSCP_BITS = 0x3F
+
+
+class SocketInfo(NamedTuple):
+    """What `socket_get_info` tells (OS_socket_prop_t)."""
+
+    name: str
+    creator: int
+
+
+class SocketApi(DatagramApi):
+    """The OS_Socket* functions."""
+
+    socket_addr_init = staticmethod(sockaddr.socket_addr_init)
+    socket_addr_to_string = staticmethod(sockaddr.socket_addr_to_string)
+    socket_addr_from_string = staticmethod(sockaddr.socket_addr_from_string)
+    socket_addr_get_port = staticmethod(sockaddr.socket_addr_get_port)
+    socket_addr_set_port = staticmethod(sockaddr.socket_addr_set_port)
+
+    # -- opening and binding -----------------------------------------------------------------------------------------
+
+    def socket_open(self, domain: int, kind: int) -> int:
+        """Make a socket (OS_SocketOpen).
+
+        Args:
+            domain: OS_SocketDomain_INET or OS_SocketDomain_INET6.
+            kind: OS_SocketType_DATAGRAM or OS_SocketType_STREAM.
+
+        Returns:
+            Its id, good for `read`, `write` and `close` too.
+
+        Raises:
+            OsalError: OS_ERR_NOT_IMPLEMENTED for another domain or kind; OS_ERR_NO_FREE_IDS.
+        """
+        if kind not in (OS_SocketType_DATAGRAM, OS_SocketType_STREAM) or domain not in sockaddr.ANY_HOST:
+            raise OsalError(OS_ERR_NOT_IMPLEMENTED, f"there are no sockets of domain {domain} and type {kind}")
+        return self._register(self._streams, OsSocket(self._next_name(), domain, kind), "socket", 0)
+
+    def socket_bind_address(self, sock_id: int, addr: SockAddr) -> None:
+        """Give a socket its local address (OS_SocketBindAddress).
+
+        Args:
+            sock_id: the socket.
+            addr: where it is to be reached; port 0 takes any free one.
+
+        Raises:
+            OsalError: OS_INVALID_POINTER, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for a file,
+                OS_ERR_INCORRECT_OBJ_STATE when it is bound or connected, OS_ERR_BAD_ADDRESS; OS_ERROR when the
+                address is taken or is not on this network.
+        """
+        check_address(addr)
+        record = self._socket(sock_id)
+        if record.bound or record.connected:
+            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} is bound or connected")
+        self._take_place(record, addr.place)
+        self._entitle(record, addr.place)
+        record.bound = True
+
+    def socket_listen(self, sock_id: int) -> None:
+        """Let a stream socket take connections (OS_SocketListen).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for what is no stream socket,
+                OS_ERR_INCORRECT_OBJ_STATE when it is not bound, or listens, or is connected.
+        """
+        record = self._socket(sock_id, OS_SocketType_STREAM)
+        if not record.bound or record.connected or record.listener.listening:
+            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} cannot listen now")
+        record.listener.listening = True
+        record.endpoint = record.listener
+
+    def socket_bind(self, sock_id: int, addr: SockAddr) -> None:
+        """Bind a socket, and let a stream socket listen (OS_SocketBind); errors as the two functions above."""
+        self.socket_bind_address(sock_id, addr)
+        if self._socket(sock_id).kind == OS_SocketType_STREAM:
+            self.socket_listen(sock_id)
+
+    # -- connections -------------------------------------------------------------------------------------------------
+
+    def socket_connect(self, sock_id: int, addr: SockAddr, timeout_ms: int = OS_PEND) -> bool:
+        """Connect a stream socket, or tell a datagram socket whom to talk to (OS_SocketConnect).
+
+        Args:
+            sock_id: the socket.
+            addr: the other side.
+            timeout_ms: the longest time in ms that the other side may have no room; OS_PEND for no limit.
+
+        Returns:
+            False when the time was over first.
+
+        Raises:
+            OsalError: OS_INVALID_POINTER, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for a file,
+                OS_ERR_INCORRECT_OBJ_STATE for a connected stream socket, OS_ERR_BAD_ADDRESS; OS_ERROR when nobody
+                listens there.
+        """
+        return self._connect(sock_id, addr, ns_of(timeout_ms))
+
+    def socket_connect_abs(self, sock_id: int, addr: SockAddr, abs_timeout: OsTime) -> bool:
+        """As `socket_connect`, until a local time (OS_SocketConnectAbs)."""
+        return self._connect(sock_id, addr, self._ns_until(abs_timeout))
+
+    def _connect(self, sock_id: int, addr: SockAddr, timeout_ns: int) -> bool:
+        check_address(addr)
+        record = self._socket(sock_id)
+        if record.connected and record.kind == OS_SocketType_STREAM:
+            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} is connected")
+        if addr.domain != record.domain:
+            raise record.error(f"cannot be connected with {addr!r}: that is another domain")
+        if record.kind == OS_SocketType_DATAGRAM:
+            record.mailbox.peer = addr.place
+        elif not self._connect_stream(record, addr.place.reached(), timeout_ns):
+            return False
+        record.connected = True
+        return True
+
+    def _connect_stream(self, record: OsSocket, target: Place, timeout_ns: int) -> bool:
+        server = self.network.streams.find(target)
+        if server is None or not server.listening or record.listener.listening:
+            raise record.error(f"cannot be connected with {target.host}:{target.port}")
+
+        def decided() -> bool:
+            return server.has_room or not server.listening or record.deleted
+
+        if not self._await([record.endpoint, server], decided, timeout_ns):
+            return False
+        self._check_alive(record)
+        if not server.listening:
+            raise record.error(f"finds nobody at {target.host}:{target.port} any more")
+        source = record.listener.place or self._take_place(record, SockAddr(record.domain).place)
+        record.endpoint = server.connect(source.reached(), target)
+        return True
+
+    def socket_accept(self, sock_id: int, timeout_ms: int = OS_PEND) -> tuple[int, SockAddr] | None:
+        """Wait for somebody to connect (OS_SocketAccept).
+
+        Args:
+            sock_id: a listening socket.
+            timeout_ms: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
+
+        Returns:
+            The socket of the connection and the address of the other side; None when nobody came in that time.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for what is no stream socket,
+                OS_ERR_INCORRECT_OBJ_STATE when it is not bound, OS_ERROR when it does not listen, OS_ERR_NO_FREE_IDS.
+        """
+        return self._accept(sock_id, ns_of(timeout_ms))
+
+    def socket_accept_abs(self, sock_id: int, abs_timeout: OsTime) -> tuple[int, SockAddr] | None:
+        """As `socket_accept`, until a local time (OS_SocketAcceptAbs)."""
+        return self._accept(sock_id, self._ns_until(abs_timeout))
+
+    def _accept(self, sock_id: int, timeout_ns: int) -> tuple[int, SockAddr] | None:
+        record = self._socket(sock_id, OS_SocketType_STREAM)
+        if not record.bound or record.connected:
+            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} is not bound, or is connected")
+        server = record.listener
+        if not server.listening:
+            raise record.error("does not listen")
+        if not self._await([server], lambda: server.readable or record.deleted, timeout_ns):
+            return None
+        self._check_alive(record)
+        accepted = OsSocket(self._next_name(), record.domain, record.kind)
+        self._register(self._streams, accepted, "socket", 0)
+        stream = server.accept()
+        accepted.endpoint, accepted.connected = stream, True
+        self._entitle(accepted, stream.remote, f"-{record.name}")
+        return accepted.id, from_place(stream.remote)
+
+    def socket_shutdown(self, sock_id: int, mode: int) -> None:
+        """Read or write no more, and let the other side know (OS_SocketShutdown).
+
+        Args:
+            sock_id: a connected socket.
+            mode: OS_SocketShutdownMode_SHUT_READ, _SHUT_WRITE or _SHUT_READWRITE.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ARGUMENT, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for a file,
+                OS_ERR_INCORRECT_OBJ_STATE for a stream socket and OS_ERROR for a datagram socket without connection.
+        """
+        if mode not in (1, 2, 3):
+            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"there is no shutdown mode {mode}")
+        record = self._socket(sock_id)
+        if not record.connected:
+            is_stream = record.kind == OS_SocketType_STREAM
+            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE if is_stream else OS_ERROR, f"{record.name} is not connected")
+        if isinstance(record.endpoint, Stream):
+            record.endpoint.shut(bool(mode & 1), bool(mode & 2))
+
+    # -- facts and options -------------------------------------------------------------------------------------------
+
+    def socket_get_id_by_name(self, sock_name: str) -> int:
+        """Id of a socket by its address, "127.0.0.1:1234", of a connection "REMOTE-LOCAL" (OS_SocketGetIdByName).
+
+        Raises:
+            OsalError: OS_ERR_NAME_NOT_FOUND, or OS_ERR_NAME_TOO_LONG for 20 characters and more.
+        """
+        self._streams.check_name(sock_name)
+        for sock_id, record in self._streams.items():
+            if isinstance(record, OsSocket) and record.name == sock_name:
+                return sock_id
+        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"no socket is called {sock_name!r}")
+
+    def socket_get_info(self, sock_id: int) -> SocketInfo:
+        """Facts about a socket (OS_SocketGetInfo), or OS_ERR_INVALID_ID; the name is cut at 19 characters."""
+        record = self._stream(sock_id)
+        return SocketInfo(record.name[: OS_MAX_API_NAME - 1], record.creator)
+
+    def socket_get_option(self, sock_id: int, opt_id: int) -> int:
+        """An option of a socket (OS_SocketGetOption).
+
+        Args:
+            sock_id: the socket.
+            opt_id: OS_socket_option_IP_DSCP; OS_socket_option_UNDEFINED always reads 0.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ARGUMENT, OS_ERR_INVALID_ID; OS_ERROR for a file.
+        """
+        record = self._with_option(sock_id, opt_id)
+        return record.dscp if record is not None else 0
+
+    def socket_set_option(self, sock_id: int, opt_id: int, optval: int) -> None:
+        """Set an option of a socket (OS_SocketSetOption); the network does not look at it.
+
+        Args:
+            sock_id: the socket.
+            opt_id: OS_socket_option_IP_DSCP; OS_socket_option_UNDEFINED does nothing.
+            optval: the new value; 6 bits of it count.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ARGUMENT, OS_ERR_INVALID_ID; OS_ERROR for a file.
+        """
+        record = self._with_option(sock_id, opt_id)
+        if record is not None:
+            record.dscp = optval & DSCP_BITS
+
+    def _with_option(self, sock_id: int, opt_id: int) -> OsSocket | None:
+        """The socket that has an option; None for the option that nothing has."""
+        if opt_id not in (OS_socket_option_UNDEFINED, OS_socket_option_IP_DSCP):
+            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"there is no socket option {opt_id}")
+        record = self._stream(sock_id)
+        if opt_id == OS_socket_option_UNDEFINED:
+            return None
+        if not isinstance(record, OsSocket):
+            raise OsalError(OS_ERROR, f"descriptor {sock_id:#x} is a file")
+        return record
+
+    def _entitle(self, record: OsSocket, place: Place, more: str = "") -> None:
+        """Name a socket after its address, as OS_CreateSocketName does."""
+        self._streams.names.pop(record.name, None)
+        record.name = f"{place.host}:{place.port}{more}"

@@ -1,0 +1,220 @@
+"""Descriptors that may stand for sockets: reading, writing and closing them, and how their waiting works.
+
+On a file these are the functions of `cfepy.osal.files`, which never wait. May import cfepy.rtos, ids, status and its
+neighbours in cfepy.osal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from cfepy.osal.clock import OS_TIME_MAX, OS_TIME_TICK_RESOLUTION_NS, ClockApi, OsTime
+from cfepy.osal.core import Setup, check_size
+from cfepy.osal.endpoints import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Mailbox, Place, Stream
+from cfepy.osal.files import FileApi, OsStream
+from cfepy.osal.limits import OS_PEND
+from cfepy.osal.sockaddr import ANY_HOST
+from cfepy.rtos.task import FOREVER, WaitList
+from cfepy.rtos.units import NS_PER_MS
+from cfepy.status import OS_ERR_INCORRECT_OBJ_TYPE, OS_ERROR, OsalError
+
+OS_SocketType_DATAGRAM = 1
+OS_SocketType_STREAM = 2
+
+
+class OsSocket(OsStream):
+    """The record of a socket; its name is its address, once it has one.
+
+    Args:
+        name: until it has an address.
+        domain: OS_SocketDomain_INET or OS_SocketDomain_INET6.
+        kind: OS_SocketType_DATAGRAM or OS_SocketType_STREAM.
+
+    Attributes:
+        endpoint: its end of the network, whatever that is at the moment.
+        mailbox: what a datagram socket receives in.
+        listener: what holds the TCP port of a stream socket.
+        dscp: the option IP_DSCP.
+    """
+
+    __slots__ = ("bound", "connected", "domain", "dscp", "endpoint", "kind", "listener", "mailbox")
+
+    def __init__(self, name: str, domain: int, kind: int) -> None:
+        super().__init__(name)
+        self.domain = domain
+        self.kind = kind
+        self.mailbox = Mailbox()
+        self.listener = Listener()
+        self.endpoint: Endpoint = self.mailbox if kind == OS_SocketType_DATAGRAM else Endpoint()
+        self.bound = self.connected = False
+        self.dscp = 0
+
+    def error(self, what: str) -> OsalError:
+        """What the host's network code would refuse."""
+        return OsalError(OS_ERROR, f"socket {self.name} {what}")
+
+
+class StreamApi(ClockApi, FileApi):
+    """`read`, `write` and `close` for sockets and files, with time-outs."""
+
+    def __init__(self, setup: Setup) -> None:
+        super().__init__(setup)
+        self.network = setup.network
+
+    def read(self, filedes: int, nbytes: int) -> bytes:
+        """Read from a file, or wait for bytes from a socket (OS_read); b"" at the end.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR when it is not open for reading or connected.
+        """
+        return self._timed_read(filedes, nbytes, FOREVER) or b""
+
+    def timed_read(self, filedes: int, nbytes: int, timeout_ms: int = OS_PEND) -> bytes | None:
+        """As `read`, but wait so many ms at most; None when nothing came (OS_TimedRead)."""
+        return self._timed_read(filedes, nbytes, ns_of(timeout_ms))
+
+    def timed_read_abs(self, filedes: int, nbytes: int, abstime: OsTime) -> bytes | None:
+        """As `read`, but wait until a local time at most; None when nothing came (OS_TimedReadAbs)."""
+        return self._timed_read(filedes, nbytes, self._ns_until(abstime))
+
+    def write(self, filedes: int, data: bytes | bytearray | memoryview) -> int:
+        """Write to a file, or as much as fits to a socket once there is room (OS_write); how many bytes that were.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR when it is not open for writing, the disk is
+                full, or nobody will ever read it.
+        """
+        return self._timed_write(filedes, data, FOREVER) or 0
+
+    def timed_write(self, filedes: int, data: bytes | bytearray | memoryview, timeout_ms: int = OS_PEND) -> int | None:
+        """As `write`, but wait so many ms at most; None when there was no room (OS_TimedWrite)."""
+        return self._timed_write(filedes, data, ns_of(timeout_ms))
+
+    def timed_write_abs(self, filedes: int, data: bytes | bytearray | memoryview, abstime: OsTime) -> int | None:
+        """As `write`, but wait until a local time at most; None when there was no room (OS_TimedWriteAbs)."""
+        return self._timed_write(filedes, data, self._ns_until(abstime))
+
+    def close(self, filedes: int) -> None:
+        """Close a file or a socket (OS_close); a task that waits at the socket gets OS_ERR_INVALID_ID.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        stream = self._stream(filedes)
+        self._unregister(self._streams, stream)
+        if isinstance(stream, OsSocket):
+            self._unplug(stream)
+
+    def _timed_read(self, filedes: int, nbytes: int, timeout_ns: int) -> bytes | None:
+        check_size(nbytes, "read")
+        record = self._streams.lookup(filedes)
+        if not isinstance(record, OsSocket):
+            return super().read(filedes, nbytes)
+        self._stream(filedes)  # the call costs what it costs on a file
+        if record.kind == OS_SocketType_STREAM and not isinstance(record.endpoint, Stream):
+            raise record.error("is not connected")
+        if not self._wait_readable(record, timeout_ns):
+            return None
+        endpoint = record.endpoint
+        data = endpoint.read(nbytes) if isinstance(endpoint, Stream) else record.mailbox.take().data[:nbytes]
+        self._charge_bytes(len(data))
+        return data
+
+    def _timed_write(self, filedes: int, data: bytes | bytearray | memoryview, timeout_ns: int) -> int | None:
+        check_size(len(data), "write")
+        record = self._streams.lookup(filedes)
+        if not isinstance(record, OsSocket):
+            return super().write(filedes, data)
+        self._stream(filedes)
+        peer = record.mailbox.peer
+        if peer is not None:
+            return self._send(record, bytes(data), peer)
+        stream = record.endpoint
+        if not isinstance(stream, Stream):
+            raise record.error("is not connected")
+        if not self._await([stream], lambda: record.deleted or stream.writable, timeout_ns):
+            return None
+        self._check_alive(record)
+        count = stream.write(bytes(data))
+        if count is None:
+            raise record.error("has nobody at the other side")
+        self._charge_bytes(count)
+        return count
+
+    def _send(self, record: OsSocket, data: bytes, target: Place) -> int:
+        """Send a datagram."""
+        if len(data) > LONGEST_DATAGRAM:
+            raise record.error(f"cannot send {len(data)} bytes at once")
+        self._charge_bytes(len(data))
+        source = record.mailbox.place or self._take_place(record, Place(ANY_HOST[record.domain], 0))
+        self.network.send(Datagram(source.reached(), target, data))
+        return len(data)
+
+    # -- plugging in and out -----------------------------------------------------------------------------------------
+
+    def _take_place(self, record: OsSocket, place: Place) -> Place:
+        """Bind a socket on the network; where it is then."""
+        if record.kind == OS_SocketType_DATAGRAM:
+            taken = self.network.datagrams.bind(record.mailbox, place)
+        else:
+            taken = self.network.streams.bind(record.listener, place)
+        if taken is None:
+            raise record.error(f"cannot have the address {place.host}:{place.port}")
+        return taken
+
+    def _unplug(self, record: OsSocket) -> None:
+        """Take a closed socket off the network; whoever waits there finds it deleted."""
+        self.network.datagrams.release(record.mailbox)
+        self.network.streams.release(record.listener)
+        record.listener.close()
+        if isinstance(record.endpoint, Stream):
+            record.endpoint.close()
+        record.endpoint.changed()
+
+    # -- waiting -----------------------------------------------------------------------------------------------------
+
+    def _wait_readable(self, record: OsSocket, timeout_ns: int) -> bool:
+        endpoint = record.endpoint
+        if not self._await([endpoint], lambda: record.deleted or endpoint.readable, timeout_ns):
+            return False
+        self._check_alive(record)
+        return True
+
+    def _await(self, endpoints: Sequence[Endpoint], ready: Callable[[], bool], timeout_ns: int) -> bool:
+        """Wait until `ready` says so, which is asked again whenever an endpoint has changed; False after the time."""
+        kernel = self.kernel
+        until = kernel.now + timeout_ns
+        waits = WaitList("socket")
+        for endpoint in endpoints:
+            endpoint.watch(kernel, waits)
+        try:
+            while not ready():
+                if timeout_ns != FOREVER and kernel.now >= until:
+                    return False
+                kernel.wait_on(waits, FOREVER if timeout_ns == FOREVER else until - kernel.now)
+        finally:
+            for endpoint in endpoints:
+                endpoint.unwatch(kernel, waits)
+        return True
+
+    def _check_alive(self, record: OsSocket) -> None:
+        if record.deleted:
+            raise self._streams.gone(record)
+
+    def _ns_until(self, abs_timeout: OsTime) -> int:
+        """How long it is until a local time, in ns; FOREVER for OS_TIME_MAX."""
+        if abs_timeout == OS_TIME_MAX:
+            return FOREVER
+        return max(0, abs_timeout - self.get_local_time()) * OS_TIME_TICK_RESOLUTION_NS
+
+    def _socket(self, sock_id: int, kind: int | None = None) -> OsSocket:
+        """The record of a socket, of a certain kind; what is none is of the wrong type."""
+        record = self._stream(sock_id)
+        if not isinstance(record, OsSocket) or kind not in (None, record.kind):
+            raise OsalError(OS_ERR_INCORRECT_OBJ_TYPE, f"descriptor {sock_id:#x} is no such socket")
+        return record
+
+
+def ns_of(timeout_ms: int) -> int:
+    """A time-out of OSAL's in ns: OS_PEND, and all that is negative, is FOREVER."""
+    return timeout_ms * NS_PER_MS if timeout_ms >= 0 else FOREVER

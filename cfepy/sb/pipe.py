@@ -1,0 +1,58 @@
+"""`Pipe`: a queue of packets that belongs to an application (CFE_SB_PipeD_t). Imports only cfepy.trace and rtos."""
+
+from __future__ import annotations
+
+from cfepy import trace
+from cfepy.rtos import Kernel, Queue
+
+
+class Pipe(Queue):
+    """The queue and who owns it.
+
+    `send_errors` counts what a message limit kept out, as NASA's SendErrors does; `overflows` what did not fit in.
+
+    Args:
+        kernel: where its readers wait.
+        depth: messages that fit in.
+        name: unique on the bus.
+        owner: the application, as found in `Task.owner`; None outside any.
+    """
+
+    __slots__ = (
+        "app_id",
+        "app_name",
+        "claim",
+        "drop_mark",
+        "opts",
+        "overflows",
+        "owner",
+        "pipe_id",
+        "receive_mark",
+        "send_errors",
+    )
+
+    def __init__(self, kernel: Kernel, depth: int, name: str, owner: object) -> None:
+        super().__init__(kernel, depth, name)
+        self.waits.what = f"a message on pipe {name}"
+        self.owner = owner
+        self.app_id: int = getattr(owner, "app_id", 0)
+        self.app_name: str = getattr(owner, "name", "host")
+        self.opts = 0
+        self.send_errors = self.overflows = 0
+        self.claim = 0
+        self.identify(0)
+
+    def identify(self, pipe_id: int) -> None:
+        """Give the pipe the id under which its table keeps it."""
+        self.pipe_id = pipe_id
+        self.receive_mark = trace.mark(trace.RECEIVE, pipe_id)
+        self.drop_mark = trace.mark(trace.DROP, pipe_id)
+
+    @property
+    def dropped(self) -> int:
+        """Messages that did not come in."""
+        return self.send_errors + self.overflows
+
+    def is_closed(self) -> bool:
+        """Whether the pipe was deleted: nothing fits in any more."""
+        return self.depth == 0

@@ -1,0 +1,174 @@
+"""Critical tables: those whose image is kept in the Critical Data Store and comes back after a processor reset.
+
+Each has a CDS block of its own under the table's name. What else must be known of it, the file it came from and when,
+stands in the critical table registry, which is a CDS block too ("CFE_TBL.CritReg"). Stands for the critical part of
+cfe_tbl_internal.c. Imports only cfepy.ports, cfepy.status and its neighbours here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cfepy.ports import Ports
+from cfepy.status import CFE_ES_CDS_ALREADY_EXISTS, CFE_SUCCESS, CFE_TBL_INFO_RECOVERED_TBL, CfeError
+from cfepy.tbl.packets import CRITICAL_RECORD, sys_time
+from cfepy.tbl.registry import Table
+
+REGISTRY_NAME = "CFE_TBL.CritReg"
+
+
+@dataclass(slots=True, eq=False)
+class CriticalRecord:
+    """A record of the registry (CFE_TBL_CritRegRec_t); `handle` is 0 in a free one."""
+
+    handle: int = 0
+    name: str = ""
+    file_time: tuple[int, int] = (0, 0)
+    last_update: tuple[int, int] = (0, 0)
+    last_file: str = ""
+    loaded_once: bool = False
+
+    def begin(self, handle: int, name: str) -> None:
+        """Become the record of a table that was never loaded."""
+        self.handle, self.name = handle, name
+        self.file_time = self.last_update = (0, 0)
+        self.last_file, self.loaded_once = "", False
+
+    def pack(self) -> bytes:
+        """Its bytes in the CDS."""
+        return CRITICAL_RECORD.pack(
+            CDSHandle=self.handle,
+            FileTime=sys_time(self.file_time),
+            TimeOfLastUpdate=sys_time(self.last_update),
+            LastFileLoaded=self.last_file,
+            Name=self.name,
+            TableLoadedOnce=self.loaded_once,
+        )
+
+    def unpack(self, data: bytes, at: int) -> None:
+        """Take over what bytes of the CDS say."""
+        values = CRITICAL_RECORD.unpack(data, at)
+        self.handle, self.name = values["CDSHandle"], values["Name"]
+        self.file_time = values["FileTime"]["Seconds"], values["FileTime"]["Subseconds"]
+        self.last_update = values["TimeOfLastUpdate"]["Seconds"], values["TimeOfLastUpdate"]["Subseconds"]
+        self.last_file, self.loaded_once = values["LastFileLoaded"], values["TableLoadedOnce"]
+
+
+class CriticalTables:
+    """The critical table registry of a mission.
+
+    Args:
+        ports: has the CDS and the system log.
+        capacity: how many critical tables there may be.
+    """
+
+    def __init__(self, ports: Ports, capacity: int) -> None:
+        self._ports = ports
+        self._records = [CriticalRecord() for _ in range(capacity)]
+        self._handle = 0
+
+    def early_init(self) -> None:
+        """Find the registry in the CDS, or make it; without a CDS there are no critical tables."""
+        size = len(self._records) * CRITICAL_RECORD.size
+        try:
+            self._handle, status = self._ports.es.register_cds_ex(size, REGISTRY_NAME, critical_table=True)
+        except CfeError as error:
+            self._log("EarlyInit", f"Failed to create Critical Table Registry (Err={error.hex})")
+            return
+        if status != CFE_ES_CDS_ALREADY_EXISTS:
+            self._save("EarlyInit", "Failed to save Critical Table Registry")
+            return
+        try:
+            data = self._ports.es.restore_from_cds(self._handle)
+        except CfeError as error:
+            self._log("EarlyInit", f"Failed to recover Critical Table Registry (Err={error.hex})")
+            return
+        for number, record in enumerate(self._records):
+            record.unpack(data, number * CRITICAL_RECORD.size)
+
+    def register(self, table: Table) -> int:
+        """Make a new table critical, with the image it had before a reset if there is a good one.
+
+        Returns:
+            CFE_SUCCESS, or CFE_TBL_INFO_RECOVERED_TBL.
+
+        Raises:
+            CfeError: the CDS has no room for it, or there is no CDS; the table is an ordinary one then.
+        """
+        handle, status = self._ports.es.register_cds_ex(table.size, table.name, critical_table=True)
+        table.cds_handle = handle
+        if status == CFE_ES_CDS_ALREADY_EXISTS and self._restore(table):
+            return CFE_TBL_INFO_RECOVERED_TBL
+        record = self._of(handle) or self._of(0)
+        if record is None:
+            function = "RegisterWithCriticalTableRegistry"
+            self._log(function, f"Failed to find a free Crit Tbl Reg Rec for '{table.name}'")
+        else:
+            record.begin(handle, table.name)
+            self._save("RegisterWithCriticalTableRegistry", "Unable to update Critical Table Registry in CDS")
+        return CFE_SUCCESS
+
+    def _restore(self, table: Table) -> bool:
+        """Give a table the image that the CDS has; False when there is none, or it is not to be trusted."""
+        function = "RestoreTableDataFromCDS"
+        try:
+            data = self._ports.es.restore_from_cds(table.cds_handle)
+        except CfeError as error:
+            self._log(function, f"Failed to recover '{table.name}' from CDS (ErrCode={error.hex})")
+            return False
+        record = self._of(table.cds_handle)
+        if record is None or record.name != table.name or not record.loaded_once:
+            self._log(function, f"Failed to recover '{table.name}' info from CDS TblReg")
+            return False
+        buffer = table.next_buffer()
+        buffer.copy(data)
+        buffer.source, buffer.file_time = record.last_file, record.file_time
+        buffer.recompute_crc()
+        table.active, table.last_file, table.last_update = buffer, record.last_file, record.last_update
+        for access in table.accesses:
+            access.updated = True
+        return True
+
+    def save(self, table: Table) -> None:
+        """Keep the active image of a critical table; a failure is logged, and the table good all the same."""
+        active, function = table.active, "UpdateCriticalTblCDS"
+        if not table.cds_handle or active is None:
+            return
+        try:
+            self._ports.es.copy_to_cds(table.cds_handle, active.view())
+        except CfeError as error:
+            self._log(function, f"Unable to update Critical Table '{table.name}' in CDS (Err={error.hex})")
+            return
+        record = self._of(table.cds_handle)
+        if record is None:
+            self._log(function, f"Error finding '{table.name}' in Critical Table Registry")
+            return
+        record.file_time, record.last_update = active.file_time, table.last_update
+        record.last_file, record.loaded_once = table.last_file, True
+        self._save(function, "Unable to update Critical Table Registry in CDS")
+
+    def find(self, name: str) -> CriticalRecord | None:
+        """The record of a table's full name, also after its CDS was deleted, or None."""
+        return next((record for record in self._records if record.name == name), None)
+
+    def delete(self, record: CriticalRecord) -> None:
+        """Delete the CDS of a table that is not registered any more.
+
+        Raises:
+            CfeError: CFE_ES_CDS_WRONG_TYPE_ERR, CFE_ES_CDS_OWNER_ACTIVE_ERR, CFE_ES_ERR_NAME_NOT_FOUND.
+        """
+        self._ports.es.delete_cds(record.name, called_by_tbl_services=True)
+        record.handle = 0
+        self._save("DeleteCDSCmd", "Unable to update Critical Table Registry in CDS")
+
+    def _of(self, handle: int) -> CriticalRecord | None:
+        return next((record for record in self._records if record.handle == handle), None)
+
+    def _save(self, function: str, complaint: str) -> None:
+        try:
+            self._ports.es.copy_to_cds(self._handle, b"".join(record.pack() for record in self._records))
+        except CfeError as error:
+            self._log(function, f"{complaint} (Err={error.hex})")
+
+    def _log(self, function: str, text: str) -> None:
+        self._ports.syslog.write_to_sys_log(f"CFE_TBL_{function}: {text}")

@@ -1,0 +1,56 @@
+"""What outlives a processor reset: MET, STCF, tone delay, leap seconds and tone signal, in the bytes that C has.
+
+Stands for CFE_TIME_QueryResetVars and CFE_TIME_UpdateResetVars. Imports no other service.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cfepy.time.clock import SpacecraftTime
+from cfepy.time.packets import RESET_VARS
+from cfepy.time.settings import TimeSettings
+from cfepy.time.telemetry import fields_of, ticks_of
+from cfepy.time.tone import SIGNAL_PRIMARY, SIGNAL_REDUNDANT, Tone
+
+KEPT = "TIME"
+"""Name of these 32 bytes among the objects that outlive a processor reset."""
+
+SIGNATURE = 0xA5A55A5A
+RESET_AREA_NEW, RESET_AREA_EXISTING = 3, 4
+"""Where the start values came from (DataStoreStatus of the diagnostic packet)."""
+
+
+def start(kept: dict[str, Any], clock: SpacecraftTime, tone: Tone, settings: TimeSettings) -> int:
+    """Set the clock to what was kept, or to the configured values when that is not there or not sound.
+
+    Args:
+        kept: objects that outlive a processor reset.
+        clock: to be set.
+        tone: gets the tone signal.
+        settings: the configured values.
+
+    Returns:
+        RESET_AREA_EXISTING or RESET_AREA_NEW.
+    """
+    saved = RESET_VARS.unpack(kept.get(KEPT, bytes(RESET_VARS.size)))
+    if saved["Signature"] != SIGNATURE or saved["ClockSignal"] not in (SIGNAL_PRIMARY, SIGNAL_REDUNDANT):
+        clock.update(met=settings.default_met, stcf=settings.default_stcf, leap_seconds=settings.default_leap_seconds)
+        return RESET_AREA_NEW
+    tone.signal = saved["ClockSignal"]
+    met, stcf, delay = (ticks_of(saved[name]) for name in ("CurrentMET", "CurrentSTCF", "CurrentDelay"))
+    clock.update(met=met, stcf=stcf, delay=delay, leap_seconds=saved["LeapSeconds"])
+    return RESET_AREA_EXISTING
+
+
+def save(kept: dict[str, Any], clock: SpacecraftTime, tone: Tone) -> None:
+    """Keep the values of now; MET without the tone's delay, which is kept beside it."""
+    reference = clock.reference
+    kept[KEPT] = RESET_VARS.pack(
+        Signature=SIGNATURE,
+        LeapSeconds=reference.leap_seconds,
+        ClockSignal=tone.signal,
+        CurrentMET=fields_of(reference.met + clock.since_tone()),
+        CurrentSTCF=fields_of(reference.stcf),
+        CurrentDelay=fields_of(reference.delay),
+    )

@@ -1,0 +1,57 @@
+"""A mission with CI_LAB and TO_LAB and nothing else, and a ground system that talks to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from cfepy.console import Console
+from cfepy.mission import Mission
+from cfepy.mission.ground import GroundLink
+from cfepy.msg import Telemetry
+
+STARTUP = """\
+CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;
+CFE_APP, to_lab, TO_LAB_AppMain, TO_LAB, 70, 16384, 0x0, 0;
+!
+"""
+
+
+class Lab:
+    """The mission and the ground."""
+
+    def __init__(self, mission: Mission, ground: GroundLink) -> None:
+        self.mission = mission
+        self.ground = ground
+
+    def events(self, *packets: bytes, seconds: float = 1.5, app: str = "") -> list[str]:
+        """Send packets, run for a while; the events since, without their times, of one application or of all."""
+        before = len(self.mission.console.lines)
+        for packet in packets:
+            assert self.ground.send(packet)
+        self.mission.run(seconds)
+        lines = self.mission.console.lines[before:]
+        events = [line.partition(" 66/1/")[2] for line in lines if line.startswith("EVS Port1")]
+        return [event for event in events if event.startswith(app)]
+
+    def packets(self, telemetry: Telemetry) -> list[bytes]:
+        """Packets of a kind that came down since they were last asked for; all others are gone then."""
+        start = telemetry.msg_id.to_bytes(2, "big")
+        return [packet for _, packet in self.ground.received() if packet.startswith(start)]
+
+    def latest(self, telemetry: Telemetry, *requests: bytes) -> dict[str, Any]:
+        """Send requests, run for a while; the fields of the last packet of a kind that came down."""
+        self.events(*requests)
+        return telemetry.read(self.packets(telemetry)[-1])
+
+
+@contextmanager
+def lab(folder: Path, tasks: str = "thread", before: str = "", **options: Any) -> Iterator[Lab]:
+    """A booted mission in a folder; `before` are lines of its startup script in front of the two applications."""
+    (folder / "startup.scr").write_text(before + STARTUP)
+    mission = Mission(str(folder), tasks=tasks, console=Console(quiet=True), **options)
+    with mission, GroundLink(mission) as ground:
+        mission.run(1)
+        yield Lab(mission, ground)

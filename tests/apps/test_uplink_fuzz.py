@@ -1,0 +1,41 @@
+"""Damaged commands through CI_LAB: nothing dies, and every one of them is found in somebody's counters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.apps.uplink_fuzz import CI_LAB, SAMPLE, fly
+
+
+def survive(folder: Path, seed: int, count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Send damaged commands and check the books."""
+    books = fly(folder, seed, count, monkeypatch)
+    assert books.refused + books.deliverable == count
+    assert min(books.refused, books.handled[SAMPLE], books.handled[CI_LAB]) > count // 200  # all kinds occur
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_ten_thousand_damaged_commands(tmp_path: Path, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    survive(tmp_path, seed, 5_000, monkeypatch)
+
+
+@pytest.mark.slow
+def test_a_million_damaged_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    survive(tmp_path, 3, 1_000_000, monkeypatch)
+
+
+BROKE = {
+    "a file name that is no UTF-8": "1804c00200410266" + "2f63662fdcb0" + "ff" * 58,
+    "an address that is no UTF-8": "1880c0000011069b" + "ff" * 16,
+    "an application name that is no UTF-8": "1806c00000150866" + "fe" * 20,
+}
+
+
+@pytest.mark.parametrize("name", BROKE)
+def test_texts_that_are_no_texts(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    packet = bytes.fromhex(BROKE[name])
+    monkeypatch.setattr("tests.apps.uplink_fuzz.damaged", lambda seed, count: iter([packet] * count))
+    books = fly(tmp_path, 0, 3, monkeypatch)
+    assert books.deliverable == 3

@@ -1,0 +1,122 @@
+"""`cfepy cmd`: listing, showing, sending by UDP, and trying a command out in virtual time."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy.cli.main import main
+from cfepy.cli.target import Host, host_of
+from cfepy.io.udp import Listener
+from cfepy.status import UsageError
+from tests.cli.conftest import Write
+
+MISSION = "CFE_APP, sample, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
+
+
+@pytest.fixture
+def mission(make_mission: Write) -> str:
+    folder = make_mission("Quiet")
+    (folder / "startup.scr").write_text(MISSION)
+    return str(folder)
+
+
+@pytest.mark.parametrize(
+    ("text", "host"),
+    [
+        ("127.0.0.1", Host("127.0.0.1", 1234)),
+        ("10.0.0.7:99", Host("10.0.0.7", 99)),
+        ("localhost", Host("localhost", 1234)),
+        ("board.local:2000", Host("board.local", 2000)),
+        ("capture", None),
+        ("missions/capture", None),
+        ("C:/missions", None),
+    ],
+)
+def test_what_looks_like_a_computer(text: str, host: Host | None) -> None:
+    assert host_of(text, 1234) == host
+
+
+def test_a_port_that_cannot_be() -> None:
+    with pytest.raises(UsageError, match="70000 is no port"):
+        host_of("127.0.0.1:70000", 1234)
+
+
+def test_the_list(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cmd", "--list", "cfe_e*_noop"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[:3] for line in lines[3:]] == [["CFE_ES_NOOP", "0x1806", "0"], ["CFE_EVS_NOOP", "0x1801", "0"]]
+
+
+def test_the_list_of_a_mission_has_its_apps_alone(mission: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cmd", mission, "--list"]) == 0
+    shown = capsys.readouterr().out
+    assert "SAMPLE_APP_NOOP" in shown
+    assert "TO_LAB_NOOP" not in shown
+    assert main(["cmd", mission, "--list", "TO_LAB*"]) == 1
+
+
+def test_the_fields_of_a_command(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cmd", "--show", "SAMPLE_APP_DISPLAY_PARAM"]) == 0
+    shown = capsys.readouterr().out
+    assert ["ValI16", "i16", "12", "2"] in [line.split() for line in shown.splitlines()]
+    assert "MsgId 0x1882, function code 3, 24 bytes" in shown
+
+
+def test_the_bytes_of_a_command(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cmd", "--hex", "127.0.0.1", "CFE_ES_NOOP"]) == 0
+    assert capsys.readouterr().out == "1806c00000010020\n"
+
+
+def test_options_may_stand_between_the_words(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cmd", "127.0.0.1", "--hex", "SAMPLE_APP_DISPLAY_PARAM", "--for", "1", "ValU32=1", "ValI16=-1"]) == 0
+    assert capsys.readouterr().out.startswith("1882c000001103")
+
+
+def test_a_command_goes_to_a_computer(capsys: pytest.CaptureFixture[str]) -> None:
+    with Listener("127.0.0.1", 0) as ci_lab:
+        assert main(["cmd", f"127.0.0.1:{ci_lab.port}", "CFE_ES_NOOP"]) == 0
+        assert ci_lab.receive(5) == bytes.fromhex("1806c00000010020")
+    assert capsys.readouterr().out == f"CFE_ES_NOOP sent to 127.0.0.1:{ci_lab.port}, 8 bytes\n"
+
+
+def test_names_of_a_mission_for_a_computer(mission: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cmd", "--hex", "--mission", mission, "127.0.0.1", "SAMPLE_APP_NOOP"]) == 0
+    assert main(["cmd", "--hex", "--mission", mission, "127.0.0.1", "TO_LAB_NOOP"]) == 2
+    assert "no command is called TO_LAB_NOOP" in capsys.readouterr().err
+
+
+def test_a_command_tried_out(mission: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cmd", mission, "SAMPLE_APP_DISPLAY_PARAM", "ValU32=7", "ValStr=hello"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "0.600 SAMPLE_APP_DISPLAY_PARAM sent to SAMPLE_APP"
+    assert "ValU32=7, ValI16=0, ValStr=hello" in lines[1]
+    assert lines[-1].split()[1:4] == ["SAMPLE_APP_HK_TLM", "CommandErrorCounter=0", "CommandCounter=1"]
+
+
+def test_an_error_event_is_a_failure(mission: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cmd", mission, "CFE_EVS_DISABLE_APP_EVENTS", "AppName=NOBODY"]) == 1
+    assert " CFE_EVS 9 ERROR: " in capsys.readouterr().out
+
+
+def test_a_command_that_nobody_takes_is_a_failure(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = make_mission("Quiet")
+    source = "from cfepy.msg import Command\nCOMMANDS = (Command('QUIET_NOOP', 0x1890, 0),)\n"
+    (folder / "apps.py").write_text(source + (folder / "apps.py").read_text())
+    assert main(["cmd", str(folder), "QUIET_NOOP", "--for", "0.5"]) == 1
+    assert "QUIET_NOOP sent to nobody" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([], "say where to, and which command"),
+        (["127.0.0.1"], "say where to, and which command"),
+        (["127.0.0.1", "CFE_ES_NOP"], "no command is called CFE_ES_NOP; is CFE_ES_NOOP"),
+        (["127.0.0.1", "CFE_ES_NOOP", "X=1"], "X: CFE_ES_NOOP has no fields"),
+        (["no_such_mission", "CFE_ES_NOOP"], "no_such_mission: no startup script"),
+        (["--show", "CFE_ES_NOP"], "no command is called CFE_ES_NOP"),
+    ],
+)
+def test_bad_usage(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cmd", *words]) == 2
+    assert said in capsys.readouterr().err

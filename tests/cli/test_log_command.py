@@ -1,0 +1,64 @@
+"""`cfepy log`: what it prints of cFE's files, and of files that are none."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from tests.mission.test_dump_files import EXIT_BIT, perf_file
+
+DATA = Path(__file__).parents[1] / "data"
+
+
+def test_text(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["log", str(DATA / "cfe_cds_reg.log"), str(DATA / "cfe_es_syslog.log")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == f"{DATA / 'cfe_cds_reg.log'}: critical data store, 'CDS_Registry'"
+    assert lines[1] == "  written 1980-012-14:03:46.83914 on 66/1 by 0x00110003"
+    assert lines[5].split() == ["0x00150001", "4096", "yes", "CFE_TBL.CritReg"]
+    assert lines[8].startswith("1980-001-00:47:57.97927 CFE_ES_SetupResetVariables")
+
+
+def test_empty_records_are_left_out(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["log", str(DATA / "cfe_erlog.log")])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-1] == "  19 empty ones are left out"
+    assert len(lines) == 7
+
+
+def test_json(capsys: pytest.CaptureFixture[str]) -> None:
+    names = ["cfe_evs.log", "cfe_es_syslog.log", "cfe_erlog.log"]
+    assert main(["log", "--json", *(str(DATA / name) for name in names)]) == 0
+    events, log, resets = json.loads(capsys.readouterr().out)
+    assert events["kind"] == "event log"
+    assert events["header"]["processor_id"] == 1
+    assert events["records"][0]["PacketID"]["AppName"] == "CFE_EVS"
+    assert len(log["lines"]) == 28
+    assert len(resets["records"][0]["Context"]) == 256
+
+
+def test_performance_data(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "perf.dat"
+    path.write_bytes(perf_file((5, 0, 10), (5 | EXIT_BIT, 0, 12), (5, 0, 20), (5 | EXIT_BIT, 0, 24), (6, 0, 30)))
+    assert main(["log", str(path)]) == 0
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["10000.0", "8000.0", "5", "entered"] in rows
+    assert ["5", "2", "2000.0", "3000.0", "4000.0", "6000.0", "0", "0"] in rows
+    assert ["6", "0", "-", "-", "-", "-", "1", "0"] in rows
+
+
+def test_a_bad_file_does_not_hide_the_good_ones(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cut = tmp_path / "cut.dat"
+    cut.write_bytes((DATA / "cfe_sb_msgmap.dat").read_bytes()[:-3])
+    good = DATA / "cfe_cds_reg.log"
+    assert main(["log", "nowhere", str(cut), str(DATA / "sample_app_tbl.tbl"), str(good)]) == 2
+    out, err = capsys.readouterr()
+    assert "40 records" in out
+    assert "CFE_TBL.CritReg" in out
+    cannot_be_read, cut_off, table = err.splitlines()
+    assert "nowhere: cannot be read" in cannot_be_read
+    assert "is cut off: record 40 has 5 of 8 bytes" in cut_off
+    assert "cfepy tbl show" in table

@@ -1,0 +1,140 @@
+"""`cfepy tlm`: telemetry of a mission in virtual time, and of a flight computer over UDP."""
+
+from __future__ import annotations
+
+import json
+from types import TracebackType
+
+import pytest
+
+from cfepy.cli import tlm
+from cfepy.cli.main import main
+from cfepy.evs.packets import LONG_EVENT
+from cfepy.io.udp import Listener
+from cfepy.msg import get_fcn_code, get_msg_id, telemetry
+from tests.cli.conftest import Write
+
+EVENT = bytes(
+    telemetry(0x0808, LONG_EVENT.pack(PacketID={"AppName": "APP", "EventID": 3, "EventType": 2}, Message="all is well"))
+)
+
+
+class Datagrams:
+    """Stands for a port at which these datagrams arrive, and then no more."""
+
+    def __init__(self, *datagrams: bytes) -> None:
+        self.left = list(datagrams)
+        self.place = ("", 0)
+
+    def __call__(self, host: str, port: int) -> Datagrams:
+        self.place = (host, port)
+        return self
+
+    def receive(self, timeout_s: float | None = None) -> bytes | None:
+        if not self.left:
+            raise KeyboardInterrupt
+        return self.left.pop(0)
+
+    def __enter__(self) -> Datagrams:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        pass
+
+
+def arrives(monkeypatch: pytest.MonkeyPatch, *datagrams: bytes) -> Datagrams:
+    found = Datagrams(*datagrams)
+    monkeypatch.setattr(tlm.udp, "Listener", found)
+    return found
+
+
+def test_what_arrives_is_shown_by_name(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    port = arrives(monkeypatch, b"no packet", EVENT, bytes(telemetry(0x0999, b"\x01\x02")))
+    assert main(["tlm", "--count", "2"]) == 0
+    event, unknown = capsys.readouterr().out.splitlines()
+    assert " CFE_EVS_LONG_EVENT_MSG PacketID.AppName=APP PacketID.EventID=3 PacketID.EventType=2 " in event
+    assert 'Message="all is well"' in event
+    assert unknown.endswith(f" 0x0999 {bytes(telemetry(0x0999, bytes([1, 2]))).hex()} (its layout is not known)")
+    assert port.place == ("0.0.0.0", 1235)
+
+
+def test_only_what_was_asked_for(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    port = arrives(monkeypatch, EVENT, bytes(telemetry(0x0999, b"x")), EVENT)
+    assert main(["tlm", "127.0.0.1:7000", "0x0999", "--count", "1"]) == 0
+    assert "0x0999" in capsys.readouterr().out
+    assert port.place == ("127.0.0.1", 7000)
+
+
+def test_ctrl_c_ends_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    arrives(monkeypatch, EVENT)
+    assert main(["tlm"]) == 130
+    assert "all is well" in capsys.readouterr().out
+
+
+def test_json_lines(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    arrives(monkeypatch, EVENT, bytes(telemetry(0x0999, b"x")))
+    assert main(["tlm", "--json", "--count", "2"]) == 0
+    event, unknown = map(json.loads, capsys.readouterr().out.splitlines())
+    assert (event["name"], event["msg_id"], event["sequence"]) == ("CFE_EVS_LONG_EVENT_MSG", 0x0808, 0)
+    assert event["values"]["PacketID"]["AppName"] == "APP"
+    assert (unknown["values"], unknown["packet"]) == ({}, bytes(telemetry(0x0999, b"x")).hex())
+
+
+def test_to_lab_is_asked_to_send(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Listener("127.0.0.1", 0) as ci_lab:
+        arrives(monkeypatch, EVENT)
+        assert main(["tlm", "--enable", f"127.0.0.1:{ci_lab.port}", "--count", "1"]) == 0
+        packet = ci_lab.receive(5)
+    assert packet is not None
+    assert (get_msg_id(packet), get_fcn_code(packet)) == (0x1880, 6)
+    assert packet[8:].rstrip(b"\0") == b"127.0.0.1"
+
+
+def test_a_table_on_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    import io
+    import sys
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    arrives(monkeypatch, EVENT, EVENT, EVENT)
+    shown = Terminal()
+    monkeypatch.setattr(sys, "stdout", shown)
+    assert main(["tlm", "--count", "3"]) == 0
+    assert "CFE_EVS_LONG" in shown.getvalue()
+    assert "3" in shown.getvalue()
+
+
+# -- in virtual time ---------------------------------------------------------------------------------------------------
+
+
+def test_a_missions_telemetry_has_virtual_times(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = str(make_mission("Chatty"))
+    assert main(["tlm", folder, "CFE_EVS_LONG_EVENT_MSG", "0x0890", "--for", "1"]) == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert {line[1] for line in lines} == {"CFE_EVS_LONG_EVENT_MSG", "0x0890"}
+    times = [float(line[0]) for line in lines]
+    assert times == sorted(times)
+    assert 0 < times[0] < times[-1] <= 1
+
+
+def test_it_ends_after_so_many_packets(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = str(make_mission("Chatty"))
+    assert main(["tlm", folder, "0x0890", "--count", "3"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 3
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["CFE_ES_HK"], "no telemetry packet is called CFE_ES_HK; is CFE_ES_HK_TLM"),
+        (["--mission", "no_such_mission"], "no_such_mission: no startup script"),
+        (["127.0.0.1:0"], "0 is no port"),
+    ],
+)
+def test_bad_usage(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["tlm", *words]) == 2
+    assert said in capsys.readouterr().err

@@ -1,0 +1,97 @@
+"""Memory pools: NASA's functional tests of them (es_mempool_test.c) and the arithmetic behind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from cfepy.es.pools import BUCKETS, DESCRIPTOR, MemPool
+from cfepy.status import (
+    CFE_ES_BAD_ARGUMENT,
+    CFE_ES_BUFFER_NOT_IN_POOL,
+    CFE_ES_ERR_MEM_BLOCK_SIZE,
+    CFE_ES_POOL_BLOCK_INVALID,
+    CfeError,
+)
+
+
+def status_of(call: Callable[[], object]) -> int:
+    """The status of a call that must fail."""
+    with pytest.raises(CfeError) as caught:
+        call()
+    return caught.value.status
+
+
+def test_blocks_come_out_until_the_pool_is_full() -> None:
+    pool = MemPool("P", 1024)
+    block = pool.get(512)
+    assert (len(block.memory), block.offset) == (512, 32)
+    assert status_of(lambda: pool.get(512)) == CFE_ES_ERR_MEM_BLOCK_SIZE
+    assert pool.put(block) == 512
+    assert status_of(lambda: pool.get(2048)) == CFE_ES_ERR_MEM_BLOCK_SIZE
+    assert pool.get(300).offset == block.offset
+
+
+def test_statistics_are_those_of_c() -> None:
+    pool = MemPool("P", 1024)
+    first, _ = pool.get(100), pool.get(8)
+    pool.put(first)
+    pool.get(120)
+    pool.put(pool.get(10))
+    stats = pool.statistics()
+    tail = 32 + 128 + 32 + 8  # descriptors are put so that blocks begin at multiples of 16
+    tail = (tail + DESCRIPTOR.size + 15) // 16 * 16 + 16
+    assert (stats["PoolSize"], stats["NumFreeBytes"]) == (1024, 1024 - tail)
+    assert (stats["NumBlocksRequested"], stats["CheckErrCtr"]) == (3, 0)
+    rows = pool.blocks.block_stats()
+    assert [row["BlockSize"] for row in rows] == list(BUCKETS)
+    assert {row["BlockSize"]: (row["NumCreated"], row["NumFree"]) for row in rows if row["NumCreated"]} == {
+        8: (1, 0),
+        16: (1, 1),
+        128: (1, 0),
+    }
+
+
+def test_sizes_of_ones_own() -> None:
+    pool = MemPool("P", 400, sizes=(100, 20), alignment=4)
+    assert [pool.get(size).offset for size in (15, 50)] == [24, 68]
+    rows = pool.blocks.block_stats()
+    assert len(rows) == 17
+    assert [row["BlockSize"] for row in rows[:3]] == [20, 100, 0]
+    assert status_of(lambda: pool.get(101)) == CFE_ES_ERR_MEM_BLOCK_SIZE
+
+
+def test_pools_that_cannot_be() -> None:
+    assert status_of(lambda: MemPool("P", 400, alignment=12)) == CFE_ES_BAD_ARGUMENT
+    assert status_of(lambda: MemPool("P", 400, sizes=())) == CFE_ES_BAD_ARGUMENT
+    assert status_of(lambda: MemPool("P", 400, sizes=(8, 0))) == CFE_ES_ERR_MEM_BLOCK_SIZE
+
+
+def test_what_is_no_block_in_use_is_not_taken_back() -> None:
+    pool, other = MemPool("P", 1024), MemPool("Q", 1024)
+    block = pool.get(100)
+    assert pool.size_of(block) == 100
+    assert status_of(lambda: other.put(block)) == CFE_ES_BUFFER_NOT_IN_POOL
+    pool.put(block)
+    assert status_of(lambda: pool.put(block)) == CFE_ES_POOL_BLOCK_INVALID
+    assert status_of(lambda: pool.size_of(block)) == CFE_ES_POOL_BLOCK_INVALID
+    assert pool.statistics()["CheckErrCtr"] == 1
+
+
+def test_every_flip_of_a_bit_beside_the_size_in_a_descriptor_is_found() -> None:
+    for bit in [*range(8 * 8), *range(16 * 8, DESCRIPTOR.size * 8)]:
+        pool = MemPool("P", 1024)
+        block = pool.get(100)
+        at = block.offset - DESCRIPTOR.size + bit // 8
+        damaged = bytes([pool._read(at, 1)[0] ^ 1 << bit % 8])
+        pool._write(at, damaged)
+        assert status_of(lambda: pool.put(block)) == CFE_ES_POOL_BLOCK_INVALID, f"bit {bit}"  # noqa: B023
+
+
+def test_a_block_used_again_is_clean() -> None:
+    pool = MemPool("P", 1024)
+    block = pool.get(8)
+    block.memory[:] = b"leftover"
+    pool.put(block)
+    assert bytes(pool.get(8).memory) == bytes(8)

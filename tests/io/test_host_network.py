@@ -1,0 +1,218 @@
+"""Real sockets: a ground system on this computer talks to a paced mission, and to sockets of its own applications.
+
+Every test has ports of its own that the computer chose. None looks at the clock: the pacer is driven until what is
+expected is there, and a run that never brings it ends at a virtual time.
+"""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from apps.to_lab import packets as to_lab
+from cfepy.console import Console
+from cfepy.io.host_network import TCP, HostNetwork
+from cfepy.mission import Mission
+from cfepy.msg import command
+from cfepy.rtos.realtime import Pacer, Stopwatch
+from cfepy.rtos.units import NS_PER_S
+from cfepy.status import UsageError
+
+LOOPBACK = "127.0.0.1"
+FAST = 500.0  # virtual seconds for a real one
+PATIENCE_NS = 3_000 * NS_PER_S
+LAB = """\
+CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;
+CFE_APP, to_lab, TO_LAB_AppMain, TO_LAB, 70, 16384, 0x0, 0;
+!
+"""
+APPS = '''
+def Echo(cfe):
+    """Sends back what comes to TCP port 7, in capitals, until the other side has no more."""
+    server = cfe.os.socket_open(1, 2)
+    address = cfe.os.socket_addr_init(1)
+    cfe.os.socket_addr_set_port(address, 7)
+    cfe.os.socket_bind(server, address)
+    while True:
+        connection, _ = cfe.os.socket_accept(server)
+        while data := cfe.os.read(connection, 5000):
+            at = 0
+            while at < len(data):
+                at += cfe.os.write(connection, data[at:].upper())
+        cfe.os.close(connection)
+
+
+def Stranger(cfe):
+    """Sends a datagram to a host that is not here, twice, then one to a port of this one."""
+    sender = cfe.os.socket_open(1, 1)
+    address = cfe.os.socket_addr_init(1)
+    cfe.os.socket_addr_set_port(address, 1235)
+    for host in ("10.0.0.7", "10.0.0.7", "127.0.0.1"):
+        cfe.os.socket_addr_from_string(address, host)
+        cfe.os.socket_send_to(sender, host.encode(), address)
+    cfe.os.task_delay(1 << 30)
+'''
+
+
+class Session:
+    """A paced mission with real ports, and a ground system's UDP socket."""
+
+    def __init__(
+        self, mission: Mission, told: list[str], records: list[bytes], ground: socket.socket, bridge: HostNetwork
+    ) -> None:
+        self.mission = mission
+        self.told = told
+        self.records = records
+        self.ground = ground
+        self.bridge = bridge
+        self._pacer = Pacer(mission.kernel, self._run_until, FAST, bridge.wait)
+
+    def run_while(self, missing: Callable[[], bool]) -> None:
+        """Let the run go on until nothing is missing any more."""
+        while missing():
+            assert self.mission.kernel.now < PATIENCE_NS, "what was expected never came"
+            self._pacer.step(PATIENCE_NS)
+
+    def command(self, packet: bytes) -> None:
+        """Send a command to CI_LAB."""
+        self.ground.sendto(packet, (LOOPBACK, self.bridge.host_port(1234) or 0))
+
+    def console_has(self, text: str) -> bool:
+        return any(text in line for line in self.mission.console.lines)
+
+    def packet(self) -> bytes | None:
+        """What came to the ground, if anything."""
+        try:
+            return self.ground.recv(70_000)
+        except BlockingIOError:
+            return None
+
+    def _run_until(self, until_ns: int) -> None:
+        self.mission.run_until(until_ns)
+        self.bridge.exchange()
+
+
+@contextmanager
+def session(folder: Path, script: str, ci_port: int = 0) -> Iterator[Session]:
+    (folder / "startup.scr").write_text(script)
+    (folder / "apps.py").write_text(APPS)
+    told: list[str] = []
+    records: list[bytes] = []
+    with (
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground,
+        Mission(str(folder), console=Console(quiet=True), trace_sink=records.extend) as mission,
+    ):
+        ground.bind((LOOPBACK, 0))
+        ground.setblocking(False)
+        numbers = {1234: ci_port, 7: 0, 1235: ground.getsockname()[1]}
+        with HostNetwork(mission, numbers, told.append) as bridge:
+            yield Session(mission, told, records, ground, bridge)
+
+
+def test_a_noop_over_udp_yields_its_event_and_telemetry(tmp_path: Path) -> None:
+    with session(tmp_path, LAB) as lab:
+        lab.run_while(lambda: not lab.console_has("Awaiting enable command"))
+        lab.command(to_lab.OUTPUT_ENABLE.packet(dest_IP=LOOPBACK))
+        lab.run_while(lambda: not lab.console_has("telemetry output enabled"))
+        lab.command(bytes.fromhex("1880c001000100a7"))
+        received: list[bytes] = []
+
+        def missing() -> bool:
+            packet = lab.packet()
+            received.extend([] if packet is None else [packet])
+            return not any(packet[:2] == b"\x08\x08" and b"TO: NOOP command" in packet for packet in received)
+
+        lab.run_while(missing)
+        assert lab.console_has("66/1/TO_LAB 18: TO: NOOP command")
+        assert lab.told == [f"UDP port 1234 is open at {LOOPBACK}:{lab.bridge.host_port(1234)}"]
+
+
+def test_each_arrival_is_noted_with_its_instant(tmp_path: Path) -> None:
+    with session(tmp_path, LAB) as lab:
+        lab.run_while(lambda: lab.bridge.host_port(1234) is None)
+        lab.command(bytes.fromhex("1884c000000100a2"))
+        lab.run_while(lambda: not lab.console_has("CI: NOOP command"))
+        lab.mission.trace.flush()
+    uplinks = [record for record in lab.records if record.startswith(b"Nuplink to 1234 at ")]
+    assert [record.rpartition(b" ")[2] for record in uplinks] == [b"1884c000000100a2"]
+
+
+def test_input_ends_the_wait(tmp_path: Path) -> None:
+    with session(tmp_path, LAB) as lab:
+        lab.run_while(lambda: lab.bridge.host_port(1234) is None)
+        lab.command(b"wake up")
+        watch = Stopwatch()
+        lab.bridge.wait(30)
+        assert watch.elapsed_ns() < 15 * NS_PER_S
+
+
+def test_streams_both_ways_with_back_pressure(tmp_path: Path) -> None:
+    sent, received = bytes(range(97, 123)) * 20_000, bytearray()
+    with session(tmp_path, "CFE_APP, apps, Echo, ECHO, 60, 16384, 0x0, 0;\n!\n") as echo:
+        echo.run_while(lambda: echo.bridge.host_port(7, TCP) is None)
+        with socket.create_connection((LOOPBACK, echo.bridge.host_port(7, TCP) or 0)) as client:
+            client.setblocking(False)
+            unsent = memoryview(sent)
+
+            def missing() -> bool:
+                nonlocal unsent
+                if unsent:
+                    unsent = unsent[_send(client, unsent) :]
+                    if not unsent:
+                        client.shutdown(socket.SHUT_WR)
+                received.extend(_receive(client))
+                return len(received) < len(sent)
+
+            echo.run_while(missing)
+        assert bytes(received) == sent.upper()
+
+
+def test_only_this_computer_is_reached(tmp_path: Path) -> None:
+    with session(tmp_path, "CFE_APP, apps, Stranger, STRANGER, 60, 16384, 0x0, 0;\n!\n") as stranger:
+        received: list[bytes] = []
+
+        def missing() -> bool:
+            packet = stranger.packet()
+            received.extend([] if packet is None else [packet])
+            return not received
+
+        stranger.run_while(missing)
+        assert received == [LOOPBACK.encode()]
+        assert stranger.told == ["datagrams for 10.0.0.7 are dropped: only 127.0.0.1 is connected"]
+
+
+def test_a_port_that_is_taken(tmp_path: Path) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind((LOOPBACK, 0))
+        port = other.getsockname()[1]
+        with session(tmp_path, LAB, port) as lab, pytest.raises(UsageError, match=f"UDP port {port} .* 1234=NUMBER"):
+            lab.run_while(lambda: True)
+
+
+def test_a_reset_does_not_give_the_port_away(tmp_path: Path) -> None:
+    with session(tmp_path, LAB) as lab:
+        lab.run_while(lambda: lab.bridge.host_port(1234) is None)
+        port = lab.bridge.host_port(1234)
+        lab.command(bytes(command(0x1806, 2, b"\1\0")))  # ES's RESTART, a processor reset
+        lab.run_while(lambda: sum("Awaiting enable command" in line for line in lab.mission.console.lines) < 2)
+        assert lab.bridge.host_port(1234) == port
+        lab.command(bytes.fromhex("1884c000000100a2"))
+        lab.run_while(lambda: not lab.console_has("CI: NOOP command"))
+
+
+def _send(client: socket.socket, data: memoryview) -> int:
+    try:
+        return client.send(data)
+    except BlockingIOError:
+        return 0
+
+
+def _receive(client: socket.socket) -> bytes:
+    try:
+        return client.recv(100_000)
+    except BlockingIOError:
+        return b""

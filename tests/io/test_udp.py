@@ -1,0 +1,25 @@
+"""Datagrams to and from a flight computer, over the loopback interface."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy.io.udp import Listener, own_address, send
+from cfepy.status import UsageError
+
+
+def test_a_datagram_goes_there_and_arrives() -> None:
+    with Listener("127.0.0.1", 0) as listener:
+        send("127.0.0.1", listener.port, b"one")
+        send("127.0.0.1", listener.port, b"two")
+        assert (listener.receive(5), listener.receive(5)) == (b"one", b"two")
+        assert listener.receive(0.001) is None
+        with pytest.raises(UsageError, match=f"127.0.0.1:{listener.port}: cannot listen there"):
+            Listener("127.0.0.1", listener.port)
+
+
+def test_hosts_that_are_not_there() -> None:
+    assert own_address("127.0.0.1") == "127.0.0.1"
+    for call in (own_address, lambda host: send(host, 1, b"")):
+        with pytest.raises(UsageError, match=r"no\.such\.host\.invalid"):
+            call("no.such.host.invalid")

@@ -1,0 +1,497 @@
+"""OS_Socket*: what NASA's network-api-test asks for, and what a network in virtual time promises beside it."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import pytest
+
+from cfepy.osal.endpoints import DATAGRAM_BUFFER, DATAGRAM_OVERHEAD, STREAM_BUFFER, Datagram, Place
+from cfepy.osal.limits import OS_CHECK, OS_FILE_FLAG_CREATE, OS_READ_WRITE
+from cfepy.osal.network import Network
+from cfepy.osal.sockaddr import OS_SocketDomain_INET, OS_SocketDomain_INET6, OS_SocketDomain_INVALID, SockAddr
+from cfepy.osal.sockets import (
+    OS_socket_option_IP_DSCP,
+    OS_socket_option_UNDEFINED,
+    OS_SocketShutdownMode_SHUT_READ,
+    OS_SocketShutdownMode_SHUT_READWRITE,
+    OS_SocketShutdownMode_SHUT_WRITE,
+)
+from cfepy.osal.streams import OS_SocketType_DATAGRAM, OS_SocketType_STREAM
+from cfepy.status import (
+    OS_ERR_BAD_ADDRESS,
+    OS_ERR_INCORRECT_OBJ_STATE,
+    OS_ERR_INCORRECT_OBJ_TYPE,
+    OS_ERR_INVALID_ARGUMENT,
+    OS_ERR_INVALID_ID,
+    OS_ERR_INVALID_SIZE,
+    OS_ERR_NAME_NOT_FOUND,
+    OS_ERR_NAME_TOO_LONG,
+    OS_ERR_NO_FREE_IDS,
+    OS_ERR_NOT_IMPLEMENTED,
+    OS_ERR_OPERATION_NOT_SUPPORTED,
+    OS_ERROR,
+    OS_INVALID_POINTER,
+)
+from tests.osal.helpers import MS, Bench
+from tests.osal.test_queues import status_of
+
+INET, INET6 = OS_SocketDomain_INET, OS_SocketDomain_INET6
+DATAGRAM, STREAM = OS_SocketType_DATAGRAM, OS_SocketType_STREAM
+NO_SOCKET = 0x6FFFF
+
+
+def address(port: int, host: str = "127.0.0.1", domain: int = INET) -> SockAddr:
+    return SockAddr(domain, host, port)
+
+
+def bound(bench: Bench, port: int, kind: int = DATAGRAM, host: str = "127.0.0.1", domain: int = INET) -> int:
+    sock_id = bench.os.socket_open(domain, kind)
+    bench.os.socket_bind(sock_id, address(port, host, domain))
+    return sock_id
+
+
+def connection(bench: Bench, port: int = 9997) -> tuple[int, int, int]:
+    """A server, the client's end and the server's end of a connection."""
+    server, client = bound(bench, port, STREAM), bench.os.socket_open(INET, STREAM)
+    assert bench.os.socket_connect(client, address(port), OS_CHECK)
+    accepted = bench.os.socket_accept(server, OS_CHECK)
+    assert accepted is not None
+    return server, client, accepted[0]
+
+
+def a_file(bench: Bench) -> int:
+    return bench.os.open_create("/ram/test.txt", OS_FILE_FLAG_CREATE, OS_READ_WRITE)
+
+
+# -- addresses -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("domain", "text"), [(INET, "127.0.0.1"), (INET, "10.1.2.3"), (INET6, "::1"), (INET6, "fe80::2")]
+)
+def test_an_address_is_filled_in_step_by_step(bench: Bench, domain: int, text: str) -> None:
+    addr = bench.os.socket_addr_init(domain)
+    assert bench.os.socket_addr_to_string(addr) == {INET: "0.0.0.0", INET6: "::"}[domain]
+    bench.os.socket_addr_set_port(addr, 1234)
+    bench.os.socket_addr_from_string(addr, text)
+    assert (bench.os.socket_addr_to_string(addr), bench.os.socket_addr_get_port(addr)) == (text, 1234)
+
+
+@pytest.mark.parametrize("text", ["invalid", "localhost", "127.0.0", "127.0.0.1 ", "::1", "", "01.2.3.4"])
+def test_a_text_that_is_no_address_changes_nothing(bench: Bench, text: str) -> None:
+    addr = bench.os.socket_addr_init(INET)
+    assert status_of(bench.os.socket_addr_from_string, addr, text) == OS_ERROR
+    assert bench.os.socket_addr_to_string(addr) == "0.0.0.0"
+
+
+def test_addresses_without_domain_and_missing_ones(bench: Bench) -> None:
+    os, empty = bench.os, SockAddr()
+    assert status_of(os.socket_addr_init, OS_SocketDomain_INVALID) == OS_ERR_NOT_IMPLEMENTED
+    assert status_of(os.socket_addr_set_port, empty, 0xFFFF) == OS_ERR_BAD_ADDRESS
+    assert status_of(os.socket_addr_get_port, empty) == OS_ERR_BAD_ADDRESS
+    assert status_of(os.socket_addr_to_string, empty) == OS_ERROR
+    assert status_of(os.socket_addr_from_string, empty, "127.0.0.1") == OS_ERROR
+    for call in (os.socket_addr_to_string, os.socket_addr_get_port):
+        assert status_of(call, None) == OS_INVALID_POINTER
+    assert status_of(os.socket_addr_from_string, None, "127.0.0.1") == OS_INVALID_POINTER
+    assert status_of(os.socket_addr_set_port, None, 1) == OS_INVALID_POINTER
+    assert status_of(os.socket_addr_set_port, os.socket_addr_init(INET), 0x10000) == OS_ERR_INVALID_ARGUMENT
+
+
+# -- datagrams -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("domain", "host"), [(INET, "127.0.0.1"), (INET6, "::1")])
+def test_datagrams_both_ways(bench: Bench, domain: int, host: str) -> None:
+    first, second = bound(bench, 9999, DATAGRAM, host, domain), bound(bench, 9998, DATAGRAM, host, domain)
+    assert bench.os.socket_send_to(first, b"ping", address(9998, host, domain)) == 4
+    assert bench.os.socket_recv_from(second, 10) == (b"ping", address(9999, host, domain))
+    assert bench.os.socket_send_to(second, b"pong", address(9999, host, domain)) == 4
+    assert bench.os.socket_recv_from(first, 10) == (b"pong", address(9998, host, domain))
+
+
+def test_datagrams_keep_their_order_and_borders(bench: Bench) -> None:
+    sender, receiver = bench.os.socket_open(INET, DATAGRAM), bound(bench, 5000)
+    sent = [bytes([number]) * (number + 1) for number in range(20)]
+    for data in sent:
+        bench.os.socket_send_to(sender, data, address(5000))
+    assert [bench.os.socket_recv_from(receiver, 10)[0] for _ in sent] == [data[:10] for data in sent]  # type: ignore[index]
+    assert bench.os.socket_recv_from(receiver, 10, OS_CHECK) is None
+
+
+def test_a_receiver_waits_in_virtual_time(bench: Bench) -> None:
+    def receive() -> list[object]:
+        sock_id = bound(bench, 5000)
+        return [(bench.os.socket_recv_from(sock_id, 9, ms), bench.kernel.now // MS) for ms in (5, OS_CHECK, 50, -1)]
+
+    def send() -> None:
+        sock_id = bench.os.socket_open(INET, DATAGRAM)
+        for text in (b"one", b"two"):
+            bench.os.task_delay(20)
+            bench.os.socket_send_to(sock_id, text, address(5000))
+
+    bench.task(send)
+    outcome = bench.run(receive)
+    assert [(data and data[0], when) for data, when in outcome] == [(None, 5), (None, 5), (b"one", 20), (b"two", 40)]
+
+
+def test_absolute_time_outs(bench: Bench) -> None:
+    def receive() -> tuple[object, int]:
+        sock_id = bound(bench, 5000)
+        until = bench.os.time_from_relative_milliseconds(30)
+        bench.os.task_delay(10)
+        return bench.os.socket_recv_from_abs(sock_id, 9, until), bench.kernel.now // MS
+
+    assert bench.run(receive) == (None, 30)
+
+
+def test_a_socket_bound_to_all_hosts_gets_what_is_sent_to_any(bench: Bench) -> None:
+    receiver, sender = bound(bench, 5000, host="0.0.0.0"), bound(bench, 5001, host="0.0.0.0")
+    for host in ("127.0.0.1", "127.0.0.9", "0.0.0.0"):
+        bench.os.socket_send_to(sender, host.encode(), address(5000, host))
+        assert bench.os.socket_recv_from(receiver, 20, OS_CHECK) == (host.encode(), address(5001))
+
+
+def test_what_nobody_is_there_for_is_lost_or_goes_out(bench: Bench) -> None:
+    sender, seen = bound(bench, 5001), []
+    assert bench.os.socket_send_to(sender, b"x", address(5000)) == 1
+    bench.os.network.outlets.append(seen.append)
+    assert bench.os.socket_send_to(sender, b"y", address(5000, "10.0.0.7")) == 1
+    assert seen == [Datagram(Place("127.0.0.1", 5001), Place("10.0.0.7", 5000), b"y")]
+
+
+def test_a_full_mailbox_loses_the_newest(bench: Bench) -> None:
+    sender, receiver = bench.os.socket_open(INET, DATAGRAM), bound(bench, 5000)
+    room = DATAGRAM_BUFFER // (1 + DATAGRAM_OVERHEAD)
+    for number in range(room + 3):
+        bench.os.socket_send_to(sender, bytes([number & 0xFF]), address(5000))
+    numbers = [bench.os.socket_recv_from(receiver, 1, OS_CHECK) for _ in range(room)]
+    assert [data[0][0] for data in numbers if data] == [number & 0xFF for number in range(room)]
+    assert bench.os.socket_recv_from(receiver, 1, OS_CHECK) is None
+
+
+def test_a_connected_datagram_socket_knows_one_peer(bench: Bench) -> None:
+    first, second, third = bound(bench, 5001), bound(bench, 5002), bound(bench, 5003)
+    assert bench.os.socket_connect(first, address(5002))
+    assert bench.os.write(first, b"hello") == 5
+    assert bench.os.socket_recv_from(second, 9, OS_CHECK) == (b"hello", address(5001))
+    bench.os.socket_send_to(third, b"not you", address(5001))
+    bench.os.socket_send_to(second, b"you", address(5001))
+    assert bench.os.timed_read(first, 9, OS_CHECK) == b"you"
+    assert bench.os.timed_read(first, 9, OS_CHECK) is None
+
+
+def test_wrong_arguments_for_datagrams(bench: Bench) -> None:
+    os, file_id, loose = bench.os, a_file(bench), bench.os.socket_open(INET, DATAGRAM)
+    sock_id, stream = bound(bench, 9998), bench.os.socket_open(INET, STREAM)
+    for unknown, status in (
+        (0, OS_ERR_INVALID_ID),
+        (NO_SOCKET, OS_ERR_INVALID_ID),
+        (file_id, OS_ERR_INCORRECT_OBJ_TYPE),
+    ):
+        assert status_of(os.socket_bind, unknown, address(1)) == status
+        assert status_of(os.socket_recv_from, unknown, 4, 0) == status
+        assert status_of(os.socket_send_to, unknown, b"1", address(1)) == status
+    assert status_of(os.socket_recv_from, stream, 4, 0) == OS_ERR_INCORRECT_OBJ_TYPE
+    assert status_of(os.socket_send_to, stream, b"1", address(1)) == OS_ERR_INCORRECT_OBJ_TYPE
+    assert status_of(os.socket_recv_from, loose, 4, 0) == OS_ERR_INCORRECT_OBJ_STATE
+    assert status_of(os.socket_recv_from, sock_id, 0, 0) == OS_ERR_INVALID_SIZE
+    assert status_of(os.socket_send_to, sock_id, b"", address(1)) == OS_ERR_INVALID_SIZE
+    assert status_of(os.socket_send_to, sock_id, bytes(65_508), address(1)) == OS_ERROR
+    assert status_of(os.socket_send_to, sock_id, b"1", None) == OS_INVALID_POINTER
+    assert status_of(os.socket_send_to, sock_id, b"1", SockAddr()) == OS_ERR_BAD_ADDRESS
+    assert status_of(os.socket_send_to, sock_id, b"1", address(1, "::1", INET6)) == OS_ERROR
+    assert status_of(os.socket_open, INET, 3) == OS_ERR_NOT_IMPLEMENTED
+    assert status_of(os.socket_open, 3, DATAGRAM) == OS_ERR_NOT_IMPLEMENTED
+
+
+def test_binding(bench: Bench) -> None:
+    os, sock_id = bench.os, bound(bench, 9998)
+    other = os.socket_open(INET, DATAGRAM)
+    assert status_of(os.socket_bind, sock_id, address(9998)) == OS_ERR_INCORRECT_OBJ_STATE
+    assert status_of(os.socket_bind, other, None) == OS_INVALID_POINTER
+    assert status_of(os.socket_bind, other, SockAddr()) == OS_ERR_BAD_ADDRESS
+    assert status_of(os.socket_bind, other, address(9998)) == OS_ERROR
+    assert status_of(os.socket_bind, other, address(9998, "0.0.0.0")) == OS_ERROR
+    assert status_of(os.socket_bind, other, address(9998, "10.0.0.1")) == OS_ERROR
+    os.close(sock_id)
+    os.socket_bind(other, address(9998))
+
+
+def test_port_0_is_any_free_port(bench: Bench) -> None:
+    bound(bench, 32_768)
+    first, second, receiver = bound(bench, 0), bound(bench, 0), bound(bench, 5000)
+    for sock_id in (first, second):
+        bench.os.socket_send_to(sock_id, b"x", address(5000))
+    ports = [bench.os.socket_recv_from(receiver, 1, OS_CHECK)[1].port for _ in range(2)]  # type: ignore[index]
+    assert ports == [32_769, 32_770]
+
+
+def test_a_task_that_waits_at_a_closed_socket_is_told(bench: Bench) -> None:
+    sock_id = bound(bench, 5000)
+
+    def receive() -> None:
+        bench.log.append((status_of(bench.os.socket_recv_from, sock_id, 9), bench.kernel.now // MS))
+
+    def close() -> None:
+        bench.os.task_delay(7)
+        bench.os.close(sock_id)
+
+    bench.task(receive)
+    bench.run(close)
+    assert bench.log == [(OS_ERR_INVALID_ID, 7)]
+
+
+def test_processors_meet_on_one_network() -> None:
+    network = Network()
+    first, second = Bench(network=network), Bench(network=network)
+    with first.kernel, second.kernel:
+        receiver = bound(second, 1235)
+        first.os.socket_send_to(first.os.socket_open(INET, DATAGRAM), b"hello", address(1235))
+        first.os.delete_all_objects()
+        assert second.os.socket_recv_from(receiver, 9, OS_CHECK) == (b"hello", address(32_768))
+        assert [port for _, port in network.datagrams.bound] == [1235]
+
+
+# -- streams ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_server_and_its_clients(bench: Bench) -> None:
+    os = bench.os
+
+    def serve() -> None:
+        server = bound(bench, 9997, STREAM)
+        for _ in range(3):
+            accepted = os.socket_accept(server)
+            assert accepted is not None
+            data = os.read(accepted[0], 20)
+            os.write(accepted[0], data.upper())
+            os.write(accepted[0], bytes([len(data)]))
+            os.close(accepted[0])
+
+    def use() -> list[tuple[bytes, ...]]:
+        answers = []
+        for text in (b"a", b"bc", b"def"):
+            client = os.socket_open(INET, STREAM)
+            assert os.socket_connect(client, address(9997), 10)
+            os.write(client, text)
+            os.task_delay(1)
+            answers.append((os.timed_read(client, 20, 10) or b"", os.read(client, 20)))
+            os.close(client)
+        return answers
+
+    bench.task(serve, priority=90)
+    assert bench.run(use) == [(b"A\x01", b""), (b"BC\x02", b""), (b"DEF\x03", b"")]
+
+
+def test_a_stream_has_no_borders(bench: Bench) -> None:
+    _, client, served = connection(bench)
+    for text in (b"one", b"two", b"three"):
+        bench.os.write(client, text)
+    assert [bench.os.read(served, limit) for limit in (4, 3, 100)] == [b"onet", b"wot", b"hree"]
+    assert bench.os.timed_read(served, 5, OS_CHECK) is None
+
+
+def test_a_full_stream_holds_the_writer_back(bench: Bench) -> None:
+    _, client, served = connection(bench)
+
+    def write() -> None:
+        for data in (bytes(STREAM_BUFFER + 5), b"more"):
+            bench.log.append((bench.os.write(client, data), bench.kernel.now // MS))
+
+    def read() -> int:
+        assert bench.os.timed_write(client, b"x", OS_CHECK) is None
+        bench.os.task_delay(8)
+        return len(bench.os.read(served, 3)) + len(bench.os.read(served, STREAM_BUFFER))
+
+    bench.task(write, priority=90)
+    assert bench.run(read) == STREAM_BUFFER + 3
+    assert bench.log == [(STREAM_BUFFER, 0), (3, 8)]
+
+
+def test_the_end_of_a_stream(bench: Bench) -> None:
+    _, client, served = connection(bench)
+    bench.os.write(served, b"last")
+    bench.os.close(served)
+    assert [bench.os.read(client, 9), bench.os.read(client, 9)] == [b"last", b""]
+    assert status_of(bench.os.write, client, b"x") == OS_ERROR
+
+
+def test_shutdown(bench: Bench) -> None:
+    os = bench.os
+    server, client, served = connection(bench)
+    os.socket_shutdown(client, OS_SocketShutdownMode_SHUT_READ)
+    assert os.timed_read(client, 4, 10) == b""
+    assert os.write(client, b"still") == 5
+    os.socket_shutdown(client, OS_SocketShutdownMode_SHUT_WRITE)
+    assert status_of(os.write, client, b"x") == OS_ERROR
+    assert [os.read(served, 9), os.read(served, 9)] == [b"still", b""]
+    os.socket_shutdown(client, OS_SocketShutdownMode_SHUT_READWRITE)
+    for sock_id, mode, status in (
+        (client, 0, OS_ERR_INVALID_ARGUMENT),
+        (NO_SOCKET, 1, OS_ERR_INVALID_ID),
+        (a_file(bench), 1, OS_ERR_INCORRECT_OBJ_TYPE),
+        (server, 1, OS_ERR_INCORRECT_OBJ_STATE),
+        (bound(bench, 5000), 1, OS_ERROR),
+    ):
+        assert status_of(os.socket_shutdown, sock_id, mode) == status
+
+
+def test_a_waiting_connection_can_send_before_it_is_accepted(bench: Bench) -> None:
+    server, client = bound(bench, 9997, STREAM), bench.os.socket_open(INET, STREAM)
+    bench.os.socket_connect(client, address(9997))
+    bench.os.write(client, b"early")
+    accepted = bench.os.socket_accept(server, OS_CHECK)
+    assert accepted is not None
+    assert accepted[1] == address(32_768)
+    assert bench.os.read(accepted[0], 9) == b"early"
+
+
+def test_ten_connections_wait_to_be_accepted(bench: Bench) -> None:
+    def use() -> list[bool]:
+        server = bound(bench, 9997, STREAM)
+        clients = [bench.os.socket_open(INET, STREAM) for _ in range(11)]
+        connected = [bench.os.socket_connect(client, address(9997), 5) for client in clients]
+        bench.os.socket_accept(server)
+        return [*connected, bench.os.socket_connect(clients[-1], address(9997), 5)]
+
+    assert bench.run(use) == [True] * 10 + [False, True]
+
+
+def test_closing_a_socket_that_waits_to_be_connected(bench: Bench) -> None:
+    bound(bench, 9997, STREAM)
+    clients = [bench.os.socket_open(INET, STREAM) for _ in range(11)]
+    for client in clients[:10]:
+        bench.os.socket_connect(client, address(9997))
+
+    def close() -> None:
+        bench.os.task_delay(4)
+        bench.os.close(clients[10])
+
+    bench.task(lambda: bench.log.append(status_of(bench.os.socket_connect, clients[10], address(9997))), name="LATE")
+    bench.run(close)
+    assert bench.log == [OS_ERR_INVALID_ID]
+
+
+def test_wrong_states_of_streams(bench: Bench) -> None:
+    os, file_id, loose = bench.os, a_file(bench), bench.os.socket_open(INET, STREAM)
+    for unknown, status in (
+        (0, OS_ERR_INVALID_ID),
+        (NO_SOCKET, OS_ERR_INVALID_ID),
+        (file_id, OS_ERR_INCORRECT_OBJ_TYPE),
+        (bound(bench, 5000), OS_ERR_INCORRECT_OBJ_TYPE),
+        (loose, OS_ERR_INCORRECT_OBJ_STATE),
+    ):
+        assert status_of(os.socket_accept, unknown, 0) == status
+        assert status_of(os.socket_listen, unknown) == status
+    server, client, _ = connection(bench)
+    assert status_of(os.socket_listen, server) == OS_ERR_INCORRECT_OBJ_STATE
+    assert status_of(os.socket_connect, client, address(9997), 0) == OS_ERR_INCORRECT_OBJ_STATE
+    assert status_of(os.socket_bind, client, address(1)) == OS_ERR_INCORRECT_OBJ_STATE
+    assert status_of(os.socket_connect, file_id, address(9997), 0) == OS_ERR_INCORRECT_OBJ_TYPE
+    assert status_of(os.socket_connect, loose, None, 0) == OS_INVALID_POINTER
+    assert status_of(os.socket_connect, loose, address(9997, "::1", INET6), 0) == OS_ERROR
+    assert status_of(os.socket_connect, loose, address(1), 0) == OS_ERROR
+    assert status_of(os.socket_connect, server, address(9997), 0) == OS_ERROR
+    assert status_of(os.read, server, 4) == OS_ERROR
+    assert status_of(os.write, loose, b"x") == OS_ERROR
+    os.socket_bind_address(loose, address(4))
+    assert status_of(os.socket_accept, loose, 0) == OS_ERROR
+    assert status_of(os.timed_read, client, 0, 0) == OS_ERR_INVALID_SIZE
+    assert status_of(os.timed_read, NO_SOCKET, 4, 0) == OS_ERR_INVALID_ID
+    assert os.timed_read(client, 4, OS_CHECK) is None
+
+
+def test_a_closed_server_drops_those_who_wait(bench: Bench) -> None:
+    server, client = bound(bench, 9997, STREAM), bench.os.socket_open(INET, STREAM)
+    bench.os.socket_connect(client, address(9997))
+    bench.os.close(server)
+    assert bench.os.read(client, 9) == b""
+    assert status_of(bench.os.socket_connect, bench.os.socket_open(INET, STREAM), address(9997)) == OS_ERROR
+    bound(bench, 9997, STREAM)
+
+
+def test_descriptors_run_out_before_a_connection_is_lost(bench: Bench) -> None:
+    server, client = bound(bench, 9997, STREAM), bench.os.socket_open(INET, STREAM)
+    bench.os.socket_connect(client, address(9997))
+    more = [bench.os.socket_open(INET, STREAM) for _ in range(48)]
+    assert status_of(bench.os.socket_accept, server, 0) == OS_ERR_NO_FREE_IDS
+    bench.os.close(more[0])
+    assert bench.os.socket_accept(server, OS_CHECK) is not None
+
+
+# -- facts, options, descriptors ---------------------------------------------------------------------------------------
+
+
+def test_names_and_facts(bench: Bench) -> None:
+    os, sock_id = bench.os, bound(bench, 9999)
+    assert os.socket_get_info(sock_id) == ("127.0.0.1:9999", 0)
+    assert os.socket_get_id_by_name("127.0.0.1:9999") == sock_id
+    assert os.get_resource_name(sock_id) == "127.0.0.1:9999"
+    _, _, served = connection(bench)
+    assert os.get_resource_name(served) == "127.0.0.1:32768-127.0.0.1:9997"
+    assert os.socket_get_info(served).name == "127.0.0.1:32768-127"
+    assert status_of(os.socket_get_id_by_name, "NF") == OS_ERR_NAME_NOT_FOUND
+    assert status_of(os.socket_get_id_by_name, "N" * 20) == OS_ERR_NAME_TOO_LONG
+    assert status_of(os.socket_get_info, NO_SOCKET) == OS_ERR_INVALID_ID
+    assert bench.run(lambda: os.socket_get_info(os.socket_open(INET, STREAM)).creator == os.task_get_id())
+
+
+def test_options(bench: Bench) -> None:
+    os, sock_id, file_id = bench.os, bound(bench, 9999), a_file(bench)
+    assert os.socket_get_option(sock_id, OS_socket_option_IP_DSCP) == 0
+    os.socket_set_option(sock_id, OS_socket_option_IP_DSCP, 0x44)
+    os.socket_set_option(sock_id, OS_socket_option_UNDEFINED, 7)
+    assert os.socket_get_option(sock_id, OS_socket_option_IP_DSCP) == 0x04
+    assert os.socket_get_option(sock_id, OS_socket_option_UNDEFINED) == 0
+    assert status_of(os.socket_get_option, NO_SOCKET, 0) == OS_ERR_INVALID_ID
+    assert status_of(os.socket_set_option, NO_SOCKET, 0, 0) == OS_ERR_INVALID_ID
+    assert status_of(os.socket_get_option, sock_id, 2) == OS_ERR_INVALID_ARGUMENT
+    assert status_of(os.socket_set_option, sock_id, 2, 0) == OS_ERR_INVALID_ARGUMENT
+    assert status_of(os.socket_get_option, file_id, OS_socket_option_IP_DSCP) == OS_ERROR
+
+
+def test_what_only_files_can_do(bench: Bench) -> None:
+    sock_id = bound(bench, 9999)
+    assert status_of(bench.os.lseek, sock_id, 0, 0) == OS_ERR_OPERATION_NOT_SUPPORTED
+    file_id = a_file(bench)
+    assert bench.os.timed_write(file_id, b"text", 5) == 4
+    bench.os.lseek(file_id, 0, 0)
+    assert bench.os.timed_read(file_id, 9, 5) == b"text"
+
+
+def test_the_sockets_of_an_ended_application_are_closed(bench: Bench) -> None:
+    owner = object()
+    bench.task(lambda: bound(bench, 1234), owner=owner)
+    bench.kernel.run(MS)
+    assert bench.os.delete_objects_of(owner) == []
+    bound(bench, 1234)
+
+
+# -- determinism -------------------------------------------------------------------------------------------------------
+
+
+def test_traffic_of_many_tasks_is_the_same_on_threads_and_greenlets() -> None:
+    assert crowd("thread") == crowd("greenlet")
+
+
+def crowd(context: str) -> tuple[str, list[object]]:
+    """Four tasks of equal priority that echo to each other; the trace's digest, and who got what when."""
+    bench = Bench(context=context)
+    os = bench.os
+
+    def talk(number: int) -> None:
+        sock_id = bound(bench, 5000 + number)
+        os.task_delay(1)
+        for turn in range(10):
+            os.socket_send_to(sock_id, bytes([number, turn]), address(5000 + (number + turn) % 4))
+            received = os.socket_recv_from(sock_id, 9, number + turn)
+            bench.log.append((number, bench.kernel.now, received and received[0]))
+
+    with bench.kernel as kernel:
+        for number in range(4):
+            bench.task(partial(talk, number), name=f"TALK{number}")
+        kernel.run(1_000 * MS)
+        assert kernel.trace is not None
+        return kernel.trace.digest(), bench.log

@@ -1,0 +1,27 @@
+"""Missions that end with their test."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.requirements.flight import Flight
+
+
+@pytest.fixture
+def fly(tmp_path: Path) -> Iterator[Callable[..., Flight]]:
+    """Start missions; arguments as for `Flight`, without the folder."""
+    flights: list[Flight] = []
+
+    def start(*listen: int, **options: Any) -> Flight:
+        folder = tmp_path / str(len(flights))
+        folder.mkdir()
+        flights.append(Flight(folder, *listen, **options))
+        return flights[-1]
+
+    yield start
+    for flight in flights:
+        flight.mission.close()

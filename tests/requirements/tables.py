@@ -1,0 +1,90 @@
+"""A table of the application PROBE in a running mission, for the tests of Table Services."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from cfepy.status import CfeError
+from cfepy.tbl import TableHandle, TableImage, build
+from cfepy.tbl import packets as pk
+from tests.requirements.flight import Event, Flight
+
+NAME = "PROBE.T"
+SIZE = 8
+OLD, NEW = b"old data", b"new data"
+BAD = 0xFF
+"""A first byte that `validate` does not like."""
+
+
+def validate(image: memoryview) -> int:
+    """PROBE's validation function."""
+    return -5 if image[0] == BAD else 0
+
+
+class ProbeTable:
+    """PROBE.T, registered in the name of PROBE."""
+
+    def __init__(
+        self, flight: Flight, options: int = 0, validator: Callable[[memoryview], int] | None = validate
+    ) -> None:
+        self.flight = flight
+        self.handle: TableHandle = self.call("register", "T", SIZE, options, validator)
+
+    def call(self, function: str, *args: Any) -> Any:
+        """What a function of Table Services gives PROBE."""
+        return self.flight.call(lambda: getattr(self.flight.cfe.tbl, function)(*args))
+
+    def mine(self, function: str, *args: Any) -> Any:
+        """The same with PROBE's handle first."""
+        return self.call(function, self.handle, *args)
+
+    def status(self, function: str, *args: Any) -> int:
+        """The status that a function of PROBE's handle fails with."""
+        try:
+            result = self.mine(function, *args)
+        except CfeError as error:
+            return error.status
+        raise AssertionError(f"{function} gave {result!r}")
+
+    def content(self) -> bytes:
+        """The active image."""
+        data = bytes(self.mine("get_address")[0])
+        self.mine("release_address")
+        return data
+
+    def info(self) -> Any:
+        """What CFE_TBL_GetInfo tells of it."""
+        return self.call("get_info", NAME)
+
+    def upload(self, data: bytes, offset: int = 0, path: str = "/ram/t.tbl") -> list[Event]:
+        """Write a table file and LOAD it; the events."""
+        put(self.flight, data, offset, path)
+        return self.flight.send(pk.LOAD, LoadFilename=path)
+
+    def validate_inactive(self) -> None:
+        """VALIDATE the inactive image, and let the owner do it."""
+        self.flight.send(pk.VALIDATE, ActiveTableFlag=pk.INACTIVE_BUFFER, TableName=NAME)
+        self.mine("manage")
+
+    def activate(self) -> int:
+        """ACTIVATE, and let the owner manage; what that returned."""
+        self.flight.send(pk.ACTIVATE, TableName=NAME)
+        status: int = self.mine("manage")
+        return status
+
+
+def put(flight: Flight, data: bytes, offset: int = 0, path: str = "/ram/t.tbl", name: str = NAME) -> None:
+    """A table file on the RAM disk."""
+    flight.mission.files.write_file(path, build(TableImage(name, data, "a test", offset)))
+
+
+def housekeeping(flight: Flight) -> dict[str, Any]:
+    """The housekeeping packet of Table Services."""
+    return flight.ask(pk.SEND_HK, pk.HK_TLM)
+
+
+def registry(flight: Flight) -> dict[str, Any]:
+    """PROBE.T's registry entry in telemetry."""
+    flight.send(pk.SEND_REGISTRY, TableName=NAME)
+    return flight.ask(pk.SEND_HK, pk.REG_TLM)

@@ -1,0 +1,185 @@
+"""HK, requirement by requirement: commands, collecting, combined packets, housekeeping (HK1000 to HK4000)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from apps.hk import packets as hk
+from cfepy.evs import DEBUG, ERROR, INFORMATION
+from cfepy.evs import packets as evs
+from cfepy.msg import TLM_HEADER_SIZE, Command, get_msg_id, telemetry
+from cfepy.tbl import build
+from cfepy.tbl import packets as tbl
+from tests.requirements.covers import covers
+from tests.requirements.flight import Event, Flight
+
+Fly = Callable[..., Flight]
+APP = "CFE_APP, {0}, HK_AppMain, HK, 65, 16384, 0x0, 0;\n"
+DISCARDING = """
+    from cfepy.apps import hk
+
+    def HK_AppMain(cfe):
+        hk.run(cfe, discard_incomplete=True)
+"""
+FIRST, SECOND, COMBINED, OTHER = 0x0890, 0x0891, 0x089C, 0x089D
+ROWS = [(FIRST, 16, COMBINED, 16, 2), (SECOND, 18, COMBINED, 20, 4), (FIRST, 17, OTHER, 16, 1)]
+"""(input, its offset, output, its offset, bytes): two packets, with a gap in the first."""
+
+
+def rows(*entries: tuple[int, int, int, int, int]) -> list[dict[str, int]]:
+    return [dict(zip(hk.COPY_TABLE_ENTRY.fields, entry, strict=True)) for entry in entries]
+
+
+def start(fly: Fly, module: str = "hk", entries: list[tuple[int, int, int, int, int]] = ROWS, **sources: str) -> Flight:
+    """A mission with HK, whose copy table is the test's; DEBUG events of HK come down too."""
+    flight = fly(
+        hk.HK_TLM_MID,
+        COMBINED,
+        OTHER,
+        startup=APP.format(module),
+        sources=sources,
+        tables={"hk_cpy_tbl.tbl": build(hk.COPY_TABLE.image(rows(*entries)))},
+    )
+    flight.send(evs.ENABLE_APP_EVENT_TYPE, AppName="HK", BitMask=0x0F)
+    return flight
+
+
+@pytest.fixture
+def flight(fly: Fly) -> Flight:
+    return start(fly)
+
+
+def housekeeping(flight: Flight) -> dict[str, Any]:
+    return flight.ask(hk.SEND_HK, hk.HK_TLM)
+
+
+def feed(flight: Flight, msg_id: int, data: bytes) -> list[Event]:
+    """Send telemetry of an application; the events that come of it."""
+    flight.packets.clear()
+    flight.transmit(bytes(telemetry(msg_id, data)))
+    return flight.events()
+
+
+def combined(flight: Flight, msg_id: int = COMBINED) -> tuple[list[bytes], list[Event]]:
+    """Ask for a combined packet; the payloads that came, and the events."""
+    events = flight.send(hk.SEND_COMBINED_PKT, OutMsgToSend=msg_id)
+    return [packet[TLM_HEADER_SIZE:] for packet in flight.packets if get_msg_id(packet) == msg_id], events
+
+
+def missing(msg_id: int) -> list[Event]:
+    text = f"Combined Packet 0x0000089C missing data from Input Pkt 0x{msg_id:08X}"
+    return [Event("HK", 12, DEBUG, text)]
+
+
+@covers("HK1000", "HK1003")
+def test_HK1000_noop(flight: Flight) -> None:
+    assert flight.send(hk.NOOP) == [("HK", 4, INFORMATION, "HK No-op command, Version 7.0.0.0")]
+    assert housekeeping(flight)["CmdCounter"] == 1
+
+
+def test_HK1001_reset(flight: Flight) -> None:
+    flight.send(hk.NOOP)
+    flight.send(Command("unknown", hk.CMD_MID, 99))
+    combined(flight)
+    counters = ("CmdCounter", "ErrCounter", "CombinedPacketsSent", "MissingDataCtr")
+    assert [housekeeping(flight)[name] for name in counters] == [1, 1, 1, 1]
+    assert flight.send(hk.RESET_COUNTERS) == [("HK", 5, INFORMATION, "HK Reset Counters command received")]
+    assert [housekeeping(flight)[name] for name in counters] == [0, 0, 0, 0]
+
+
+@covers("HK1002", "HK1004")
+def test_HK1002_commands_are_rejected(flight: Flight) -> None:
+    for code in (hk.NOOP_CC, hk.RESET_COUNTERS_CC):
+        text = f"Cmd Msg with Bad length Rcvd: ID = 0x0000189A, CC = {code}, Exp Len = 8, Len = 12"
+        too_long = Command("too long", hk.CMD_MID, code, hk.SEND_COMBINED_PKT_PAYLOAD)
+        assert flight.send(too_long) == [("HK", 3, ERROR, text)]
+    text = "Cmd Msg with Invalid command code Rcvd -- ID = 0x0000189A, CC = 9"
+    assert flight.send(Command("unknown", hk.CMD_MID, 9)) == [("HK", 2, ERROR, text)]
+    text = "Msg with Bad length Rcvd: ID = 0x0000189C, Exp Len = 12, Len = 8"
+    assert flight.send(Command("too short", hk.SEND_COMBINED_PKT_MID)) == [("HK", 28, ERROR, text)]
+    values = housekeeping(flight)
+    assert (values["CmdCounter"], values["ErrCounter"], values["CombinedPacketsSent"]) == (0, 3, 0)
+
+
+@covers("HK2000", "HK2001")
+def test_HK2000_input_is_collected_and_combined(flight: Flight) -> None:
+    assert feed(flight, FIRST, b"ab") == []
+    assert feed(flight, SECOND, b"..CDEF") == []
+    assert combined(flight) == ([b"ab\0\0CDEF"], [])
+    assert combined(flight, OTHER) == ([b"b"], [])
+    feed(flight, FIRST, b"xy")
+    assert combined(flight) == ([b"xy\0\0CDEF"], missing(SECOND))
+
+
+def test_HK2000_1_a_bad_copy_table_is_refused(fly: Fly) -> None:
+    flight = start(fly, entries=[ROWS[0], (FIRST, 16, COMBINED, 1499, 2)])
+    text = "Invalid output offset+size: 1501 > 1500, mid 0x89c at entry index 1\n"
+    assert f"HK 36: HK Validate: {text}" in "\n".join(flight.mission.console.lines) + "\n"
+
+
+def test_HK2001_1_a_new_table_changes_the_packets(flight: Flight) -> None:
+    feed(flight, FIRST, b"ab")
+    table = build(hk.COPY_TABLE.image(rows((SECOND, 16, OTHER, 18, 1))))
+    flight.mission.files.write_file("/ram/new.tbl", table)
+    flight.send(tbl.LOAD, LoadFilename="/ram/new.tbl")
+    flight.send(tbl.VALIDATE, ActiveTableFlag=0, TableName="HK.CopyTable")
+    flight.run(2)
+    flight.send(tbl.ACTIVATE, TableName="HK.CopyTable")
+    flight.run(2)
+    feed(flight, SECOND, b"z")
+    assert combined(flight, OTHER) == ([b"\0\0z"], [])
+    text = "Combined HK Packet 0x0000089C is not found in current HK Copy Table"
+    assert combined(flight) == ([], [("HK", 11, INFORMATION, text)])
+
+
+@covers("HK2001.2", "HK2001.3")
+def test_HK2001_2_old_data_is_sent_again_and_told_of(flight: Flight) -> None:
+    feed(flight, FIRST, b"ab")
+    feed(flight, SECOND, b"..CDEF")
+    combined(flight)
+    feed(flight, SECOND, b"..GHIJ")
+    assert combined(flight) == ([b"ab\0\0GHIJ"], missing(FIRST))
+    assert housekeeping(flight)["MissingDataCtr"] == 1
+
+
+def test_HK2001_5_input_that_is_too_short_is_not_used(flight: Flight) -> None:
+    feed(flight, FIRST, b"ab")
+    feed(flight, SECOND, b"..CDEF")
+    text = "HK table definition exceeds packet length. MID:0x00000890, Length:16, Count:2"
+    assert feed(flight, FIRST, b"") == [("HK", 6, ERROR, text)]
+    assert combined(flight) == ([b"ab\0\0CDEF"], [])
+
+
+@pytest.mark.parametrize("late", [b"", b"x"])
+@covers("HK2001.6", "HK2001.7")
+def test_HK2001_6_packets_that_lack_data_may_be_discarded(fly: Fly, late: bytes) -> None:
+    """Data that is missing, or that is in a packet which is too short."""
+    flight = start(fly, "my_hk", my_hk=DISCARDING)
+    feed(flight, SECOND, b"..CDEF")
+    if late:
+        assert len(feed(flight, FIRST, late)) == 1
+    assert combined(flight) == ([], missing(FIRST))
+    feed(flight, FIRST, b"ab")
+    feed(flight, SECOND, b"..CDEF")
+    assert combined(flight) == ([b"ab\0\0CDEF"], [])
+    values = housekeeping(flight)
+    assert (values["CombinedPacketsSent"], values["MissingDataCtr"]) == (1, 1)
+
+
+@covers("HK3000", "HK4000")
+def test_HK3000_housekeeping(flight: Flight) -> None:
+    values = housekeeping(flight)
+    assert values.pop("MemPoolHandle") >> 16 == 0x14
+    assert set(values.values()) == {0}
+    assert len(flight.packets[0]) == 28
+    flight.send(hk.NOOP)
+    flight.send(Command("unknown", hk.CMD_MID, 99))
+    feed(flight, FIRST, b"ab")
+    combined(flight, OTHER)
+    combined(flight)
+    values = housekeeping(flight)
+    assert (values["CmdCounter"], values["ErrCounter"]) == (1, 1)
+    assert (values["CombinedPacketsSent"], values["MissingDataCtr"]) == (2, 1)

@@ -1,0 +1,227 @@
+"""Requirements of Table Services that the ground sees: commands, their events, telemetry and files (cTBL6000-6013)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from cfepy.fs import crc16
+from cfepy.msg import command
+from cfepy.ports import DEBUG, ERROR, INFORMATION
+from cfepy.status import CFE_TBL_INFO_UPDATED, CFE_TBL_INFO_VALIDATION_PENDING
+from cfepy.tbl import OPT_CRITICAL, OPT_DBL_BUFFER, OPT_DUMP_ONLY, read
+from cfepy.tbl import packets as pk
+from tests.requirements.covers import covers
+from tests.requirements.flight import Event, Flight
+from tests.requirements.tables import BAD, NAME, NEW, OLD, SIZE, ProbeTable, housekeeping, put, registry
+
+Fly = Callable[..., Flight]
+EVS_CMD_MID, ENABLE_APP_EVENT_TYPE_CC = 0x1801, 5
+LISTEN = pk.HK_TLM_MID, pk.REG_TLM_MID
+
+
+@pytest.fixture
+def table(fly: Fly) -> ProbeTable:
+    """PROBE.T, loaded with OLD."""
+    table = ProbeTable(fly(*LISTEN))
+    table.mine("load", OLD)
+    return table
+
+
+def ids(events: list[Event]) -> list[int]:
+    return [event.event_id for event in events]
+
+
+def test_cTBL6000_load_inactive_table_from_file(table: ProbeTable) -> None:
+    (event,) = table.upload(NEW)
+    assert (event.app, event.event_id, event.event_type) == ("CFE_TBL", 12, INFORMATION)
+    assert table.content() == OLD
+    dump = {"ActiveTableFlag": pk.INACTIVE_BUFFER, "TableName": NAME, "DumpFilename": "/ram/d.tbl"}
+    table.flight.send(pk.DUMP, **dump)
+    table.flight.send(pk.SEND_HK)
+    assert read(table.flight.mission.files.read_file("/ram/d.tbl")).data == NEW
+
+
+@covers("cTBL6000.1", "cTBL6000.4")
+def test_cTBL6000_1_partial_load_keeps_the_rest_of_the_active_table(table: ProbeTable) -> None:
+    assert ids(table.upload(b"XY", offset=2)) == [12]
+    assert ids(table.upload(b"ZZ", offset=6)) == [100]  # begun once, the inactive image is not begun again
+    table.validate_inactive()
+    table.activate()
+    assert table.content() == OLD[:2] + b"XY" + OLD[4:]
+
+
+@covers("cTBL6000.2", "cTBL6000.3", "cTBL6000.5", "cTBL6010")
+def test_cTBL6000_2_files_that_do_not_fit_are_refused(table: ProbeTable) -> None:
+    assert [(event.event_id, event.event_type) for event in table.upload(NEW + b"!")] == [(72, ERROR)]
+    put(table.flight, NEW)
+    path, files = "/ram/t.tbl", table.flight.mission.files
+    whole = files.read_file(path)
+    files.write_file(path, whole + b"!")
+    assert ids(table.flight.send(pk.LOAD, LoadFilename=path)) == [75]
+    files.write_file(path, whole[:-1])
+    assert ids(table.flight.send(pk.LOAD, LoadFilename=path)) == [71]
+    assert table.content() == OLD
+    table.call("register", "D", SIZE, OPT_DUMP_ONLY)
+    put(table.flight, NEW, name="PROBE.D")
+    assert ids(table.flight.send(pk.LOAD, LoadFilename=path)) == [79]
+    values = housekeeping(table.flight)
+    assert (values["CommandErrorCounter"], values["NumLoadPending"]) == (4, 0)
+
+
+def test_cTBL6001_dump_active_and_inactive(table: ProbeTable) -> None:
+    table.upload(NEW)
+    for which, path, image in (
+        (pk.ACTIVE_BUFFER, "/ram/a.tbl", OLD),
+        (pk.INACTIVE_BUFFER, "/ram/i.tbl", NEW),
+    ):
+        table.flight.send(pk.DUMP, ActiveTableFlag=which, TableName=NAME, DumpFilename=path)
+        assert ids(table.flight.send(pk.SEND_HK)) == [14]
+        assert read(table.flight.mission.files.read_file(path)).data == image
+
+
+@covers("cTBL6002", "cTBL6002.1", "cTBL6002.2", "cTBL6313")
+def test_cTBL6002_validate_both_images(table: ProbeTable) -> None:
+    assert ids(table.upload(bytes([BAD]) + NEW[1:])) == [12]
+    for which, image, result in ((pk.ACTIVE_BUFFER, OLD, 0), (pk.INACTIVE_BUFFER, bytes([BAD]) + NEW[1:], -5)):
+        table.flight.send(pk.VALIDATE, ActiveTableFlag=which, TableName=NAME)
+        assert table.mine("get_status") == CFE_TBL_INFO_VALIDATION_PENDING
+        table.mine("validate")
+        values = housekeeping(table.flight)
+        assert (values["LastValCrc"], values["LastValStatus"]) == (crc16(image), result)
+        assert (values["ActiveBuffer"], values["LastValTableName"]) == (which == pk.ACTIVE_BUFFER, NAME)
+    assert (values["SuccessValCounter"], values["FailedValCounter"], values["ValidationCounter"]) == (1, 1, 2)
+    assert values["NumValRequests"] == 2
+
+
+@covers("cTBL6003", "cTBL6003.1")
+def test_cTBL6003_activate_what_was_validated(table: ProbeTable) -> None:
+    table.upload(NEW)
+    (event,) = table.flight.send(pk.ACTIVATE, TableName=NAME)
+    assert (event.event_id, event.event_type) == (81, ERROR)
+    table.validate_inactive()
+    assert table.content() == OLD
+    assert table.activate() == CFE_TBL_INFO_UPDATED
+    assert table.content() == NEW
+
+
+def test_cTBL6003_1_1_an_image_that_failed_is_never_active(table: ProbeTable) -> None:
+    table.upload(bytes([BAD]) + NEW[1:])
+    table.validate_inactive()
+    assert ids(table.flight.send(pk.ACTIVATE, TableName=NAME)) == [81]
+    table.mine("manage")
+    assert table.content() == OLD
+
+
+def test_cTBL6003_1_2_without_validation_function_a_table_is_valid(fly: Fly) -> None:
+    table = ProbeTable(fly(), validator=None)
+    table.mine("load", OLD)
+    table.upload(NEW)
+    assert ids(table.flight.send(pk.VALIDATE, ActiveTableFlag=pk.INACTIVE_BUFFER, TableName=NAME)) == [23]
+    assert table.activate() == CFE_TBL_INFO_UPDATED
+
+
+@covers("cTBL6005", "cTBL6005.1")
+def test_cTBL6005_registry_to_a_file(table: ProbeTable) -> None:
+    for path, wish in (("/ram/cfe_tbl_reg.log", {}), ("/ram/mine.log", {"DumpFilename": "/ram/mine.log"})):
+        table.flight.send(pk.DUMP_REGISTRY, **wish)
+        table.flight.run(3)
+        data = table.flight.mission.files.read_file(path)
+        record = pk.REGISTRY_RECORD.unpack(data, 64)
+        assert (record["Name"], record["Size"], record["Crc"]) == (NAME, SIZE, crc16(OLD))
+        assert (record["ValidationFunc"], record["OwnerAppName"], record["LoadInProgress"]) == (True, "PROBE", -1)
+
+
+def test_cTBL6006_registry_entry_in_telemetry(table: ProbeTable) -> None:
+    values = registry(table.flight)
+    assert (values["Name"], values["OwnerAppName"], values["Size"]) == (NAME, "PROBE", SIZE)
+    assert (values["Crc"], values["TableLoadedOnce"], values["Critical"]) == (crc16(OLD), True, False)
+    table.flight.send(pk.SEND_HK)
+    assert table.flight.all(pk.REG_TLM) == []
+
+
+def test_cTBL6007_noop(fly: Fly) -> None:
+    (event,) = fly().send(pk.NOOP)
+    assert (event.app, event.event_id, event.event_type) == ("CFE_TBL", 10, INFORMATION)
+    assert event.text.startswith("No-op Cmd Rcvd: CFE_TBL v7.0.0")
+
+
+@covers("cTBL6008", "cTBL6009", "cTBL6010")
+def test_cTBL6008_counters(table: ProbeTable) -> None:
+    table.upload(NEW)
+    table.validate_inactive()
+    table.flight.send(pk.NOOP)
+    table.flight.send(pk.ACTIVATE, TableName="NO.SUCH")
+    counted = "CommandCounter", "CommandErrorCounter", "NumValRequests", "SuccessValCounter", "ValidationCounter"
+    values = housekeeping(table.flight)
+    assert [values[name] for name in counted] == [3, 1, 1, 1, 1]
+    packet = bytes(command(EVS_CMD_MID, ENABLE_APP_EVENT_TYPE_CC, b"CFE_TBL".ljust(20, b"\0") + b"\1\0"))
+    table.flight.transmit(packet)
+    (event,) = table.flight.send(pk.RESET_COUNTERS)
+    assert (event.event_id, event.event_type) == (11, DEBUG)
+    values = housekeeping(table.flight)
+    assert [values[name] for name in (*counted, "FailedValCounter")] == [0] * 6
+
+
+def test_cTBL6011_housekeeping(table: ProbeTable) -> None:
+    table.upload(NEW)
+    table.validate_inactive()
+    table.activate()
+    dump = {"ActiveTableFlag": pk.ACTIVE_BUFFER, "TableName": NAME, "DumpFilename": "/ram/d.tbl"}
+    table.flight.send(pk.DUMP, **dump)
+    table.flight.send(pk.SEND_HK)
+    values = housekeeping(table.flight)
+    assert (values["CommandCounter"], values["CommandErrorCounter"], values["NumTables"]) == (4, 0, 1)
+    assert (values["LastUpdatedTable"], values["LastFileLoaded"]) == (NAME, "/ram/t.tbl")
+    assert (values["LastFileDumped"], values["LastTableLoaded"]) == ("/ram/d.tbl", NAME)
+    assert (values["LastValTableName"], values["LastValCrc"], values["LastValStatus"]) == (NAME, crc16(NEW), 0)
+    assert (values["NumFreeSharedBufs"], values["NumLoadPending"]) == (4, 0)
+    updated = table.info().time_of_last_update
+    assert values["LastUpdateTime"] == {"Seconds": updated[0], "Subseconds": updated[1]}
+    stats = table.flight.call(lambda: table.flight.cfe.es.get_mem_pool_stats(values["MemPoolHandle"]))
+    assert stats["PoolSize"] == 524288
+
+
+@covers("cTBL6012", "cTBL6012.1", "cTBL6012.3")
+def test_cTBL6012_abort_a_load(table: ProbeTable) -> None:
+    table.upload(NEW)
+    values = housekeeping(table.flight)
+    assert (values["NumFreeSharedBufs"], values["NumLoadPending"]) == (3, 1)
+    (event,) = table.flight.send(pk.ABORT_LOAD, TableName=NAME)
+    assert (event.event_id, event.event_type) == (21, INFORMATION)
+    values = housekeeping(table.flight)
+    assert (values["NumFreeSharedBufs"], values["NumLoadPending"]) == (4, 0)
+    assert registry(table.flight)["LoadPending"] is False
+    assert ids(table.flight.send(pk.ABORT_LOAD, TableName=NAME)) == [69]
+
+
+def test_cTBL6012_2_abort_of_a_double_buffered_table(fly: Fly) -> None:
+    table = ProbeTable(fly(*LISTEN), OPT_DBL_BUFFER)
+    table.mine("load", OLD)
+    table.upload(NEW)
+    table.flight.send(pk.ABORT_LOAD, TableName=NAME)
+    assert ids(table.flight.send(pk.ACTIVATE, TableName=NAME)) == [70]
+    assert ids(table.upload(b"XY", offset=2)) == [12]
+    table.validate_inactive()
+    table.activate()
+    assert table.content() == OLD[:2] + b"XY" + OLD[4:]
+
+
+@covers("cTBL6013", "cTBL6013.1", "cTBL6013.2", "cTBL6013.3")
+def test_cTBL6013_delete_the_cds_of_a_table(fly: Fly) -> None:
+    flight = fly()
+    cfe, name = flight.cfe, "MUTE.T"
+    handle = flight.call(lambda: cfe.tbl.register("T", SIZE, OPT_CRITICAL), app="MUTE")
+    flight.call(lambda: cfe.tbl.register("Other", SIZE), app="MUTE")
+    assert cfe.es.get_cds_block_id_by_name(name)
+    assert ids(flight.send(pk.DELETE_CDS, TableName=name)) == [82]
+    flight.call(lambda: cfe.tbl.unregister(handle), app="MUTE")
+    assert ids(flight.send(pk.DELETE_CDS, TableName=name)) == [87]
+    flight.call(lambda: cfe.es.delete_app(cfe.es.get_app_id_by_name("MUTE")))
+    flight.run(8)
+    (event,) = flight.send(pk.DELETE_CDS, TableName=name)
+    assert (event.event_id, event.text) == (38, f"Successfully removed '{name}' from CDS")
+    assert name not in [block.name for block in cfe.es.cds_blocks()]
+    assert ids(flight.send(pk.DELETE_CDS, TableName=name)) == [85]
+    assert ids(flight.send(pk.DELETE_CDS, TableName="MUTE.Other")) == [84]

@@ -1,0 +1,60 @@
+"""No public name of cFE, OSAL and PSP is forgotten: each is here or explained, and docs/api_map.md says so."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from cfepy.mission.mission import Mission
+from tests import api_map
+from tests.api_names import snake
+
+
+@pytest.fixture(scope="module")
+def mission() -> Iterator[Mission]:
+    """A booted mission, on whose handle names are looked up."""
+    with api_map.booted() as made:
+        assert made.booted is not None
+        yield made
+
+
+@pytest.mark.parametrize("module", api_map.MODULES)
+def test_every_name_is_here_or_explained(mission: Mission, module: str) -> None:
+    assert [row.name for row in api_map.entries(module, mission.cfe) if row.is_missing] == []
+
+
+def test_the_page_is_fresh(mission: Mission) -> None:
+    assert api_map.PAGE.read_text() == api_map.page(mission.cfe), "run `python -m tests.api_map`"
+
+
+def test_the_lists_are_whole() -> None:
+    counts = {module: len(list(api_map.listed(module))) for module in api_map.MODULES}
+    assert (counts["ES"], counts["SB"], counts["TBL"], counts["psp"]) == (58, 37, 21, 77)
+    assert sorted(path.name for path in api_map.LISTS.glob("*.txt")) == sorted(f"api_{name}.txt" for name in counts)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("GetCDSBlockIDByName", "get_cds_block_id_by_name"),
+        ("PoolCreateEx_WithAlignment", "pool_create_ex_with_alignment"),
+        ("MET2SCTime", "met2sc_time"),
+        ("FS_GetPhysDriveName", "fs_get_phys_drive_name"),
+        ("MemRead16", "mem_read16"),
+    ],
+)
+def test_snake_case(name: str, expected: str) -> None:
+    assert snake(name) == expected
+
+
+def test_a_name_that_nobody_explains_is_missing() -> None:
+    row = api_map.Difference("OSAL", ("OS_Foo*",), "model")
+    assert row.mentions("OS_FooBar")
+    assert not row.mentions("OS_Bar")
+    missing = api_map.Entry("h", "OS_Bar", "cfe.os.bar", False, None)
+    assert missing.is_missing
+    assert missing._replace(difference=row._replace(reason=api_map.NO_REASON)).is_missing
+    explained = missing._replace(difference=row)
+    assert explained.status == "[absent](differences.md#osal): model"
+    assert explained._replace(exists=True).status == "[differs](differences.md#osal)"
