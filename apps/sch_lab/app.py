@@ -22,10 +22,12 @@ PIPE_DEPTH = 8
 OBJECT_NAME = "SCH_LAB"
 TIMEBASE = "cFS-Master"
 SECOND_US = 1_000_000
+PERF_ID = 36
 
 
 def SCH_LAB_AppMain(cfe: Cfe) -> None:
     """The entry point that the startup script names."""
+    cfe.es.perf_log_entry(PERF_ID)
     app = Scheduler(cfe)
     try:
         app.start()
@@ -33,6 +35,7 @@ def SCH_LAB_AppMain(cfe: Cfe) -> None:
         cfe.es.write_to_sys_log(f"SCH_LAB: Error Initializing RC = {_hex(error.status)}")
         cfe.es.exit_app(APP_ERROR)  # does not return
     while cfe.es.run_loop():
+        cfe.es.perf_log_exit(PERF_ID)
         app.wait()
     cfe.es.exit_app()
 
@@ -53,8 +56,7 @@ class Scheduler:
         cfe = self._cfe
         timer = self._make_timer()
         self._load_table()
-        self._pipe = cfe.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
-        cfe.sb.subscribe(TIME_ONEHZ_MID, self._pipe)
+        self._listen()
         cfe.os.timer_set(timer, SECOND_US, self._period_us)
         cfe.os.printf(f"SCH Lab Initialized.{VERSION}\n")
 
@@ -92,6 +94,17 @@ class Scheduler:
         cfe.tbl.release_address(handle)
         self._period_us = self._tick_period(tick_rate)
 
+    def _listen(self) -> None:
+        cfe, step = self._cfe, ""
+        try:
+            step = "creating pipe"
+            self._pipe = cfe.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
+            step = "subscribing to 1hz"
+            cfe.sb.subscribe(TIME_ONEHZ_MID, self._pipe)
+        except CfeError:
+            cfe.os.printf(f"SCH Error {step}!\n")
+            raise
+
     def _tick_period(self, tick_rate: int) -> int:
         """Microseconds of a tick, from ticks a second."""
         log = self._cfe.es.write_to_sys_log
@@ -109,6 +122,7 @@ class Scheduler:
         cfe.os.count_sem_take(self._ticks)
         if cfe.sb.receive_buffer(self._pipe, POLL) is not None:
             self._started = True
+        cfe.es.perf_log_entry(PERF_ID)
         if self._started:
             for entry in self._entries:
                 if entry.tick():

@@ -42,7 +42,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         dest="seconds",
         type=seconds_of,
         metavar="SECONDS",
-        help="virtual seconds to run (default: 10, or as long as the script takes)",
+        help="virtual seconds to run (default: 10, or as long as the script takes; until Ctrl-C with --realtime)",
     )
     run.add_argument("--seed", type=int, default=0, metavar="N", help="of everything random (default: 0)")
     run.add_argument("--board", metavar="NAME|FILE", help="run on this board instead of the mission's own")

@@ -10,6 +10,7 @@ import io
 import sys
 from typing import TYPE_CHECKING, Protocol, TextIO
 
+from cfepy.cli.arguments import LONGEST_S
 from cfepy.rtos.realtime import Stopwatch
 from cfepy.rtos.units import NS_PER_S
 
@@ -97,7 +98,7 @@ class LiveDisplay:
         self._live = Live(
             console=self._console, auto_refresh=False, transient=True, redirect_stdout=False, redirect_stderr=False
         )
-        self._seconds = seconds
+        self._of = "" if seconds >= LONGEST_S else f" of {seconds:g}"
         self._lines: list[str] = []
         self._watch = Stopwatch()
         self._drawn_ns = -REFRESH_NS
@@ -118,7 +119,7 @@ class LiveDisplay:
         now, messages = mission.kernel.now, _messages(mission)
         speed = (now - self._virtual_ns) / since_ns
         rate = (messages - self._messages) * NS_PER_S / since_ns
-        text = f" {now / NS_PER_S:.2f} of {self._seconds:g} s   {speed:.1f} x real time   {rate:,.0f} messages/s"
+        text = f" {now / NS_PER_S:.2f}{self._of} s   {speed:.1f} x real time   {rate:,.0f} messages/s"
         self._live.update(_status(text), refresh=True)
         self._drawn_ns, self._virtual_ns, self._messages = wall_ns, now, messages
 

@@ -32,6 +32,7 @@ def _add_tbl(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     how = show.add_mutually_exclusive_group()
     how.add_argument("--yaml", action="store_true", help="as YAML, from which build makes the same bytes again")
     how.add_argument("--json", action="store_true", help="as JSON")
+    show.add_argument("-o", "--output", metavar="FILE", help="write it there instead of showing it")
     diff = _add_action(actions, "diff", "show the fields in which two tables differ")
     diff.add_argument("file", metavar="A", help="a table file, or a YAML file")
     diff.add_argument("other", metavar="B", help="another")

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cfepy.cli import report
+from cfepy.cli.arguments import LONGEST_S
 from cfepy.cli.display import Display, make_display
 from cfepy.cli.flight import Flight, Interrupts
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
@@ -85,7 +86,9 @@ def _duration(arguments: argparse.Namespace, script: ScriptRun | None) -> float:
     """Virtual seconds that the run takes; with a script, at most."""
     if arguments.seconds is not None:
         return float(arguments.seconds)
-    return DEFAULT_S if script is None else script.script.longest_ns / NS_PER_S
+    if script is not None:
+        return script.script.longest_ns / NS_PER_S
+    return DEFAULT_S if arguments.realtime is None else LONGEST_S
 
 
 def _fly(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupts, script: ScriptRun | None) -> Flight:

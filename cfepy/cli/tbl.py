@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import sys
 from collections.abc import Callable
@@ -66,10 +67,7 @@ def _build(arguments: argparse.Namespace, find: Find) -> int:
     file = table_yaml.read(path, find)
     if arguments.mark:
         file = file.marked()
-    try:
-        target.write_bytes(file.pack())
-    except OSError as error:
-        raise UsageError(f"cannot be written: {error.strerror}", file=target, field="--output") from None
+    _write(target, file.pack())
     print(f"{target}: {file.table.table_name}, {_extent(file)}")
     return ENDED_WELL
 
@@ -82,20 +80,30 @@ def _show(arguments: argparse.Namespace, find: Find) -> int:
             said: dict[str, Any] = load(Path(arguments.layout)).plain()
             own: dict[str, Any] = {name: said[name] for name in ("layout", "count") if name in said}
             values = {"table": values.pop("table"), **own, **values}
-        sys.stdout.write(table_yaml.write(values))
+        text = table_yaml.write(values)
     elif arguments.json:
-        print(json.dumps({**document(file), "crc": file.crc}, indent=2))
+        text = json.dumps({**document(file), "crc": file.crc}, indent=2) + "\n"
     else:
-        _show_table(file)
+        text = _for_people(file)
+    if arguments.output is None:
+        sys.stdout.write(text)
+    else:
+        _write(Path(arguments.output), text.encode())
     return ENDED_WELL
 
 
-def _show_table(file: TableFile) -> None:
+def _write(path: Path, data: bytes) -> None:
+    try:
+        path.write_bytes(data)
+    except OSError as error:
+        raise UsageError(f"cannot be written: {error.strerror}", file=path, field="--output") from None
+
+
+def _for_people(file: TableFile) -> str:
     header = file.header
-    print(f"{file.table.table_name}: {header.description}")
     time = f"{header.time_seconds + header.time_subseconds / 2**32:.5f} s"
     ids = f"spacecraft {header.spacecraft_id}, processor {header.processor_id}, application {header.application_id}"
-    print(f"  {ids}, time {time}\n  {_extent(file)}")
+    head = f"{file.table.table_name}: {header.description}\n  {ids}, time {time}\n  {_extent(file)}\n"
     rows = file.rows()
     if rows is None or len(rows) == 1 or file.kind is None:
         table = Table("Fields", ("field", "value"))
@@ -108,7 +116,9 @@ def _show_table(file: TableFile) -> None:
             if not is_zero(row):
                 table.add(number, *(table_yaml.flow(value, name) for name, value in row.items()))
         table.note = "rows that are all 0 are left out"
-    show_tables([table], sys.stdout)
+    stream = io.StringIO()
+    show_tables([table], stream)
+    return head + stream.getvalue()
 
 
 def _extent(file: TableFile) -> str:

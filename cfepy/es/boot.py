@@ -98,12 +98,12 @@ class Boot:
             try:
                 call()
             except CfeError as error:
-                self._panic(f"Error returned when calling function: {name}: EC = {error.hex}")
+                self._panic(f"Error returned when calling function: {name}: EC = {error.hex}", error)
         for core in self.table.core_apps:
             try:
                 self._start_core_app(core)
             except CfeError as error:
-                self._panic(f"OS_TaskCreate error creating core App: {core.name}: EC = {error.hex}")
+                self._panic(f"OS_TaskCreate error creating core App: {core.name}: EC = {error.hex}", error)
         self.log("CFE_ES_CreateObjects: Finished ES CreateObject table entries.")
 
     def _start_core_app(self, core: CoreApp) -> None:
@@ -114,11 +114,11 @@ class Boot:
         if not self._wait_until_running(app):
             raise CfeError(CFE_ES_OPERATION_TIMED_OUT, f"{core.name} does not come up")
 
-    def _panic(self, text: str) -> None:
+    def _panic(self, text: str, cause: CfeError) -> None:
         """The executive cannot go on: say so, and let the board do what it does then."""
         self.log(f"CFE_ES_CreateObjects: {text}")
         self.es.osal.task_delay(PANIC_DELAY_MS)
-        self.es.psp.panic(PANIC_CORE_APP)
+        self.es.psp.panic(PANIC_CORE_APP, cause)
 
     def start_applications(self, reset_type: int) -> None:
         """Start what the startup script names (CFE_ES_StartApplications).

@@ -1,8 +1,8 @@
 """Finding the code of an application: OS_ModuleLoad for Python.
 
 cFE names a module by a virtual path, /cf/hk.so. What stands behind it is looked for in this order: the mission's folder
-(hk.py, or a package hk), the apps that cfepy brings along, and an installed Python module of that name. An app is
-executed anew for every start, so that a restart finds its variables as a fresh C module would.
+(hk.py, or a package hk), the apps that cfepy brings along, an installed Python module of that name, and a file that the
+mission itself wrote, which may be on /ram. An app is executed anew for every start, so that a restart finds its variables as a fresh C module would.
 """
 
 from __future__ import annotations
@@ -19,11 +19,13 @@ from cfepy.console import Console
 from cfepy.es import SymbolError
 from cfepy.mission.module_names import ModuleNames
 from cfepy.mission.tracebacks import app_traceback, described
+from cfepy.mission.virtual_code import VirtualCode, find_virtual_code
 from cfepy.osal import FileSystem
 from cfepy.resources import shipped
 from cfepy.rtos import TaskExit
 from cfepy.status import OS_ERROR, OsalError
 
+Code = Path | str | VirtualCode
 NODE_SYMBOL = "__main__"
 CODE_SUFFIXES = ("", ".so", ".py", ".obj", ".o")
 NODE_SUFFIX = ".so"  # what ES puts after a name that has no suffix
@@ -63,14 +65,14 @@ class ModuleLoader:
         except OsalError:
             return False
 
-    def find(self, file: str) -> Path | str | None:
-        """What stands behind a virtual path: a source file, the name of an installed module, or None.
+    def find(self, file: str) -> Code | None:
+        """What stands behind a virtual path: a source file, the name of an installed module, virtual code, or None.
 
         Raises:
             OsalError: the path itself is no good (OS_TranslatePath).
         """
         self._files.translate(file)
-        return find_code(file, self._folder)
+        return find_code(file, self._folder) or find_virtual_code(file, self._files)
 
     def load(self, file: str, symbol: str, app_name: str) -> Callable[[], object]:
         """The main function of an application, ready to be called without arguments.
@@ -170,7 +172,7 @@ def find_code(file: str, folder: Path) -> Path | str | None:
     return _installed(str(stem).replace("/", "."))
 
 
-def execute(found: Path | str, name: str) -> ModuleType | None:
+def execute(found: Code, name: str) -> ModuleType | None:
     """Execute what `find_code` found, as a module of this name; None when there is nothing to execute.
 
     Raises:
@@ -209,7 +211,9 @@ def _installed(name: str) -> str | None:
     return name if spec is not None and spec.has_location else None
 
 
-def _spec(found: Path | str, name: str) -> importlib.machinery.ModuleSpec | None:
+def _spec(found: Code, name: str) -> importlib.machinery.ModuleSpec | None:
+    if isinstance(found, VirtualCode):
+        return importlib.util.spec_from_loader(name, found, origin=found.path)
     if isinstance(found, str):
         installed = importlib.util.find_spec(found)
         if installed is None or installed.origin is None:

@@ -78,7 +78,8 @@ class TableFile:
         kind, offset = self.kind, self.table.offset
         if kind is None or offset + len(self.image) > kind.size:
             return None
-        rows = kind.unpack(bytes(offset) + self.image + bytes(kind.size - offset - len(self.image)))
+        image = bytes(offset) + self.image + bytes(kind.size - offset - len(self.image))
+        rows: list[dict[str, Any]] = one_nan(kind.unpack(image))
         return rows if cut(kind.pack(rows), offset, len(self.image)) == self.image else None
 
     def leaves(self) -> Iterator[Leaf]:
@@ -171,6 +172,15 @@ def _trimmed(value: Any) -> Any:
         return value
     last = max((number for number, item in enumerate(value) if not is_zero(item)), default=-1)
     return [{} if isinstance(item, dict) and is_zero(item) else _trimmed(item) for item in value[: last + 1]]
+
+
+def one_nan(value: Any) -> Any:
+    """A value with all kinds of NaN replaced by one of them: YAML has a single word for all."""
+    if isinstance(value, dict):
+        return {name: one_nan(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [one_nan(item) for item in value]
+    return math.nan if isinstance(value, float) and math.isnan(value) else value
 
 
 def is_zero(value: Any) -> bool:

@@ -17,7 +17,7 @@ from typing import Any
 
 from cfepy.fs import FileHeader, TableHeader
 from cfepy.fs.header import DESCRIPTION_SIZE, SUBTYPE_TBL_IMG
-from cfepy.mission.table_file import HEADER_FIELDS, ROW, Find, TableFile, cut
+from cfepy.mission.table_file import HEADER_FIELDS, ROW, Find, TableFile, cut, one_nan
 from cfepy.msg import Layout
 from cfepy.psp.marked_yaml import Marked, load
 from cfepy.status import UsageError
@@ -206,7 +206,7 @@ def _packed(rows: Marked | None, kind: TableType) -> bytes:
         number = fields[ROW].value if numbered else number + 1
         if number >= kind.rows:
             raise row.fail(f"is row {number}, counted from 0; {kind.name} has {kind.rows}")
-        given = {name: value.plain() for name, value in fields.items() if name != ROW or not numbered}
+        given = {name: one_nan(value.plain()) for name, value in fields.items() if name != ROW or not numbered}
         try:
             image[number * kind.row.size : (number + 1) * kind.row.size] = kind.row.pack(given)
         except UsageError as error:

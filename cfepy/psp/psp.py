@@ -202,15 +202,20 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware):
             self.osal.task_delay(RESTART_DELAY_MS)
             self.osal.task_exit()
 
-    def panic(self, error_code: int) -> None:
+    def panic(self, error_code: int, cause: object = None) -> None:
         """The cFE cannot go on (CFE_PSP_Panic).
+
+        Args:
+            error_code: for the console.
+            cause: what the error that is raised tells as its reason.
 
         Raises:
             CfeError: always; NASA's calls abort().
         """
         self.console.write(f"CFE_PSP_Panic called with error code = 0x{error_code & 0xFFFFFFFF:08X}. Exiting.")
         self.console.write("The cFE could not start.")
-        raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"the PSP panics, code {error_code}")
+        because = "" if cause is None else f": {cause}"
+        raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"the PSP panics, code {error_code}{because}")
 
     def get_restart_type(self) -> RestartType:
         """Type and subtype of the start of this run (CFE_PSP_GetRestartType)."""

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from apps.sch_lab import SCH_LAB_AppMain, schedule
+from apps.sch_lab import TABLES, SCH_LAB_AppMain, schedule
 from apps.sch_lab.tables import sch_lab_table
 from cfepy.es import APP_ERROR, APP_EXIT
 from cfepy.msg import Layout, get_fcn_code, get_msg_id, validate_checksum
-from cfepy.status import OS_ERR_NAME_NOT_FOUND, OsalError, UsageError
+from cfepy.status import CFE_SB_BAD_ARGUMENT, OS_ERR_NAME_NOT_FOUND, OsalError, UsageError
 from cfepy.tbl import build
 from tests.apps.conftest import APPS, AppBench, cmd
 from tests.layouts import DATA, assert_same
@@ -126,3 +126,20 @@ def test_too_much_for_the_table() -> None:
         schedule.image("SCH_LAB.ScheduleTable", 100, [(0x1882, 1, 0, b"")] * 33)
     with pytest.raises(UsageError):
         schedule.image("SCH_LAB.ScheduleTable", 100, [(0x1882, 1, 0, bytes(65))])
+
+
+@pytest.mark.parametrize(
+    ("function", "text"),
+    [("sb.create_pipe", "SCH Error creating pipe!\n"), ("sb.subscribe", "SCH Error subscribing to 1hz!\n")],
+)
+def test_without_the_second_it_ends(sch: SchBench, function: str, text: str) -> None:
+    sch.refuse[function] = CFE_SB_BAD_ARGUMENT
+    sch.run(SCH_LAB_AppMain)
+    assert (sch.printed, sch.exit_status) == ([text], APP_ERROR)
+    assert sch.log == ["SCH_LAB: Error Initializing RC = 0xFFFFFFFFCA000003"]
+
+
+def test_declarations() -> None:
+    (kind,) = TABLES
+    assert (kind.name, kind.size, kind.file) == ("SCH_LAB.ScheduleTable", 2436, "/cf/sch_lab_table.tbl")
+    assert kind.pack(kind.unpack(sch_lab_table.image().data)[0]) == sch_lab_table.image().data

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -213,3 +214,15 @@ def test_layout_file_without_layout(tmp_path: Path, capsys: pytest.CaptureFixtur
     source.write_text("table: A.B\nrows: []\n")
     assert main(["tbl", "show", str(SAMPLE), "--layout", str(source)]) == 2
     assert f"{source}:1: gives no layout" in capsys.readouterr().err
+
+
+def test_the_yaml_of_the_documentation_is_good(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (DATA.parents[1] / "docs/tables_and_logs.md").read_text()
+    blocks = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
+    assert len(blocks) == 2
+    for number, block in enumerate(blocks):
+        source = tmp_path / f"{number}.yaml"
+        source.write_text(block)
+        assert main(["tbl", "build", str(source)]) == 0, capsys.readouterr().err
+    hk = read((tmp_path / "0.tbl").read_bytes())
+    assert (hk.name, len(hk.data), hk.data[9 * 16 : 9 * 16 + 2]) == ("HK.CopyTable", 2048, b"\x83\x08")

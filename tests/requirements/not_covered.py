@@ -4,7 +4,6 @@ from __future__ import annotations
 
 NOT_COVERED: dict[str, str] = {
     # Executive Services
-    "cES1005.2": "code is found in the mission's folder, which shows as /cf, not on the RAM disk",
     "cES1315.2": "as in cFE v7.0.0 the block stays, and CFE_ES_RestoreFromCDS answers CFE_ES_CDS_BLOCK_CRC_ERR",
     # Event Services
     # Software Bus

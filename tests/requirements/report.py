@@ -33,8 +33,9 @@ HEAD = """\
 # Requirements
 
 The functional requirements of cFE and HK 7.0.0 by their public ids, and the tests that are evidence for each; NASA
-keeps the words of the requirements beside its sources. The tests are in `tests/requirements`; most of them fly a mission
-and use commands and telemetry as a ground system would. `python -m tests.requirements.report` writes this page anew; a test fails when it is stale.
+keeps the words of the requirements beside its sources. The tests are in `tests/requirements`; most of them fly a
+mission and use commands and telemetry as a ground system would. `python -m tests.requirements.report` writes this page
+anew; a test fails when it is stale.
 """
 
 

@@ -147,6 +147,16 @@ def test_cES1005_an_application_starts_by_command(ground: Ground) -> None:
     assert values["ExecutionCounter"] > 0
 
 
+@pytest.mark.parametrize("file", ["/ram/uploaded.so", "/cf/uploaded.so"])
+def test_cES1005_2_the_file_may_be_on_any_file_system(ground: Ground, file: str) -> None:
+    source = b"def up_main(cfe):\n    while cfe.es.run_loop():\n        cfe.os.task_delay(100)\n"
+    ground.mission.files.write_file(file, source)
+    ground.command(pk.START_APP, Application="UP", AppEntryPoint="up_main", AppFileName=file)
+    values = ground.answer(pk.QUERY_ONE, pk.APP_TLM, Application="UP")
+    assert values["FileName"] == file
+    assert values["ExecutionCounter"] > 0
+
+
 def test_cES1005_3_an_undefined_application_is_refused(ground: Ground) -> None:
     before = counters(ground)
     events = ground.command(pk.START_APP, Application="X", AppEntryPoint="x_main", AppFileName="nowhere")
