@@ -1,7 +1,7 @@
 """`cfepy new`: write the skeleton of an application or a mission, which runs as it is.
 
-The application is a copy of the one in apps/sample under another name, so that there is one example to keep good; the
-files around it are in `templates`.
+The application is a copy of apps/sample_app under another name, so that there is one example to keep good; the files
+around it are in `templates`.
 """
 
 from __future__ import annotations
@@ -94,8 +94,8 @@ def _rendered(template: str, name: str, folder: str) -> bytes:
 
 
 def _package(name: str) -> Files:
-    """apps/sample under another name, with message ids and a table of its own."""
-    sample = shipped("apps") / "sample"
+    """apps/sample_app under another name, with message ids and a table of its own."""
+    sample = shipped("apps") / "sample_app"
     files: Files = {}
     for source in sorted([*sample.glob("*.py"), *sample.glob("tables/*.py")]):
         if source.stem == LIBRARY:
@@ -116,7 +116,7 @@ def _renamed(text: str, name: str) -> str:
         ("the smallest real cFE app: ", "a cFE app: "),
         (" Start here, and copy it.", ""),
         (" (sample_app_eventids.h)", ""),
-        ("apps.sample.tables.sample_app_tbl", f"{name}.tables.{name}"),
+        ("apps.sample_app.tables.sample_app_tbl", f"{name}.tables.{name}"),
         ("sample_app_tbl", name),
         ("SAMPLE_APP_CMD_PIPE", f"{name.upper()}_PIPE"),
         ("SAMPLE_APP", name.upper()),

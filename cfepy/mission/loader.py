@@ -2,7 +2,8 @@
 
 cFE names a module by a virtual path, /cf/hk.so. What stands behind it is looked for in this order: the mission's folder
 (hk.py, or a package hk), the apps that cfepy brings along, an installed Python module of that name, and a file that the
-mission itself wrote, which may be on /ram. An app is executed anew for every start, so that a restart finds its variables as a fresh C module would.
+mission itself wrote, which may be on /ram. An app is executed anew for every start, so that a restart finds its
+variables as a fresh C module would.
 """
 
 from __future__ import annotations

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from apps.sample.app import VERSION_TEXT
+from apps.sample_app.app import VERSION_TEXT
 from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.msg import command
 from cfepy.tbl import packets, read
 
 STARTUP = """\
-CFE_APP, sample,  SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
+CFE_APP, sample_app,  SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
 CFE_APP, sch_lab, SCH_LAB_AppMain, SCH_LAB,    80, 16384, 0x0, 0;
 CFE_APP, hk,      HK_AppMain,      HK,         65, 16384, 0x0, 0;
 !

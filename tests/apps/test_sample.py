@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from apps.sample import COMMANDS, TABLES, TELEMETRY, SAMPLE_APP_Main, messages
-from apps.sample.tables import sample_app_tbl
+from apps.sample_app import COMMANDS, TABLES, TELEMETRY, SAMPLE_APP_Main, messages
+from apps.sample_app.tables import sample_app_tbl
 from cfepy.console import Console
 from cfepy.es import APP_ERROR, APP_EXIT
 from cfepy.mission import Mission
@@ -23,7 +23,7 @@ def sample() -> AppBench:
 
 
 def test_shipped_table_is_what_its_definition_says() -> None:
-    assert (APPS / "sample/tables/sample_app_tbl.tbl").read_bytes() == build(sample_app_tbl.image())
+    assert (APPS / "sample_app/tables/sample_app_tbl.tbl").read_bytes() == build(sample_app_tbl.image())
 
 
 def test_its_way_through_a_session(sample: AppBench) -> None:
@@ -111,7 +111,7 @@ def test_declarations() -> None:
 def test_the_library_in_a_mission(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text(
         "CFE_LIB, sample_lib, SAMPLE_LIB_Init, SAMPLE_LIB, 0, 0, 0x0, 0;\n"
-        "CFE_APP, sample, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
+        "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
     )
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
         mission.run(2)

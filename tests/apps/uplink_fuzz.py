@@ -28,7 +28,7 @@ from cfepy.sb.routing import Destination
 
 DATA = Path(__file__).parents[1] / "data"
 STARTUP = """\
-CFE_APP, sample, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
+CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
 CFE_APP, ci_lab, CI_LAB_AppMain,  CI_LAB,     60, 16384, 0x0, 0;
 CFE_APP, to_lab, TO_LAB_AppMain,  TO_LAB,     70, 16384, 0x0, 0;
 CFE_APP, hk,     HK_AppMain,      HK,         90, 16384, 0x0, 0;

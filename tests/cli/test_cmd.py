@@ -10,7 +10,7 @@ from cfepy.io.udp import Listener
 from cfepy.status import UsageError
 from tests.cli.conftest import Write
 
-MISSION = "CFE_APP, sample, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
+MISSION = "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
 
 
 @pytest.fixture

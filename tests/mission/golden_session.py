@@ -1,8 +1,10 @@
-"""A session with the real cFE, flown again: the same applications, and the same commands at the same instants over UDP."""
+"""A session with the real cFE, flown again: the same applications, and the same commands at the same instants."""
 
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -21,7 +23,7 @@ STARTUP = """
     CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
     CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;
     CFE_APP, to_lab, TO_LAB_AppMain, TO_LAB, 70, 16384, 0x0, 0;
-    CFE_APP, sch_lab, SCH_LAB_AppMain, SCH_LAB, 120, 16384, 0x0, 0;
+    CFE_APP, sch_lab, SCH_LAB_AppMain, SCH_LAB, 80, 16384, 0x0, 0;
     CFE_APP, hk, HK_AppMain, HK, 90, 16384, 0x0, 0;
     !
 """
@@ -31,16 +33,16 @@ CFE_ASSERT = """
         cfe.es.write_to_sys_log("[BEGIN] 01 CFE-STARTUP")
         return 0
 """
-CLOCK_STEP_S = 0.39999999999999997  # by which the recorded spacecraft clock stepped back at its first tone; ours never steps
-
-
-EXTRA = {} if (Path(__file__).parents[2] / "apps" / "sample_app").exists() else {"sample_app": "from cfepy.apps.sample import *\n"}
+CLOCK_STEP_S = 0.85  # by which the recorded spacecraft clock stepped back at its first tone; ours never steps
+STAMP = re.compile(r"^EVS Port1 \S+ 66/1/")
+UPLINK_LEAD_S = 0.45  # what was noted is when a command had its effect: before, it waited for CI_LAB's next pass
 
 
 class Session(NamedTuple):
-    """The packets that came down, and what is on the RAM disk at the end."""
+    """The packets that came down, the lines of the event port after each command, and the RAM disk at the end."""
 
     telemetry: list[bytes]
+    events: list[list[str]]
     files: dict[str, bytes]
 
 
@@ -58,24 +60,33 @@ def recorded_telemetry() -> list[dict[str, Any]]:
 
 def instant(command: dict[str, Any]) -> int:
     """Virtual ns at which a command was sent."""
-    return round((command["at"] + CLOCK_STEP_S) * NS_PER_S)
+    return round((command["at"] + CLOCK_STEP_S - UPLINK_LEAD_S) * NS_PER_S)
 
 
 @cache
 def fly(folder: Path) -> Session:
-    """Fly the session up to the processor reset with which it ended."""
-    path = write_mission(folder, STARTUP, cfe_assert=CFE_ASSERT, **EXTRA)
+    """Fly the session up to the processor reset with which it ended; the files are those of shortly before."""
+    path = write_mission(folder, STARTUP, cfe_assert=CFE_ASSERT)
+    (folder / "hk_cpy_tbl.tbl").write_bytes((DATA / "hk_cpy_tbl.tbl").read_bytes())  # NASA's, with its wrong offsets
     with Mission(path, console=Console(quiet=True)) as mission:
-        ground = GroundLink(mission)
-        for command in commands()[:-1]:
+        ground, marks = GroundLink(mission), []
+        for command in commands():
             mission.run_until(instant(command))
+            marks.append(len(mission.console.lines))
             ground.send(bytes.fromhex(command["hex"]))
-        mission.run_until(instant(commands()[-1]))
-        names = mission.files.list_dir("/ram")
-        return Session(
-            [packet for _, packet in ground.received()],
-            {name: mission.files.read_file(f"/ram/{name}") for name in names},
-        )
+        files = {name: mission.files.read_file(f"/ram/{name}") for name in mission.files.list_dir("/ram")}
+        while not mission.record.resets:
+            mission.run(0.1)
+        ends = [*marks[1:], len(mission.console.lines)]
+        lines = [mission.console.lines[begin:end] for begin, end in zip(marks, ends, strict=True)]
+        return Session([packet for _, packet in ground.received()], [list(events_in(each)) for each in lines], files)
+
+
+def events_in(lines: list[str]) -> Iterator[str]:
+    """The lines of the event port, without their stamps."""
+    for line in lines:
+        if STAMP.match(line):
+            yield STAMP.sub("", line)
 
 
 def by_msg_id(packets: list[bytes]) -> dict[int, list[bytes]]:

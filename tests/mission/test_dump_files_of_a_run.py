@@ -15,7 +15,7 @@ from cfepy.mission.perf_data import timings
 from cfepy.sb import packets as sb
 from cfepy.tbl import packets as tbl
 
-STARTUP = "CFE_APP, sample, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
+STARTUP = "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
 SAMPLE_NOOP, SAMPLE_PERF_ID = bytes.fromhex("1882c00000010000"), 91
 COMMANDS = {
     "events": evs.WRITE_LOG_DATA_FILE.packet(LogFilename="/ram/events"),

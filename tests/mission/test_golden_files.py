@@ -1,9 +1,8 @@
-"""The files that the real cFE wrote on command, written again by the same session: same size, same header, same rows."""
+"""The files that the real cFE wrote on command, written again by the same session: same size, same header."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 

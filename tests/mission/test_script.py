@@ -13,7 +13,7 @@ from cfepy.mission.script_verdicts import Outcome
 from tests.mission.flights import write_mission
 
 STARTUP = """
-    CFE_APP, sample,  SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
+    CFE_APP, sample_app,  SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
     CFE_APP, own,     Main,            OWN,        60, 16384, 0x0, 0;
     !
 """

@@ -15,7 +15,7 @@ from cfepy.mission.script_words import Words
 from cfepy.status import UsageError
 from tests.mission.flights import write_mission
 
-STARTUP = "CFE_APP, sample, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
+STARTUP = "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
 
 
 def script(folder: Path, text: str) -> Script:

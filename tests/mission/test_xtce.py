@@ -25,7 +25,7 @@ from cfepy.msg import Command, Layout, MsgType, Telemetry, get_type, telemetry
 from tests.mission.flights import write_mission
 
 STARTUP = """
-    CFE_APP, sample,    SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
+    CFE_APP, sample_app,    SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
     CFE_APP, hk,        HK_AppMain,      HK,         90, 16384, 0x0, 0;
     CFE_APP, talker.py, __main__,        TALKER,     60, 16384, 0x0, 0;
     !

@@ -65,7 +65,7 @@ def test_limits_are_numbers_or_switches(tmp_path: Path) -> None:
     text = "name: mine\nlimits: {time_cfg_fake_tone: false, time_def_met_subs: 0, time_cfg_client: true}\n"
     config = load_profile(write(tmp_path, text)).config()
     assert (config.time_cfg_fake_tone, config.time_def_met_subs, config.time_cfg_client) == (False, 0, True)
-    with pytest.raises(UsageError, match="limits.time_cfg_client: is 1, it must be true or false"):
+    with pytest.raises(UsageError, match=r"limits\.time_cfg_client: is 1, it must be true or false"):
         load_profile(write(tmp_path, "name: mine\nlimits: {time_cfg_client: 1}\n"))
 
 

@@ -12,7 +12,7 @@ from tests.layouts import DATA
 from tests.mission.flights import write_mission
 
 STARTUP = """\
-CFE_APP, sample,  SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
+CFE_APP, sample_app,  SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
 CFE_APP, to_lab,  TO_LAB_AppMain,  TO_LAB,     70, 16384, 0x0, 0;
 CFE_APP, sch_lab, SCH_LAB_AppMain, SCH_LAB,    80, 16384, 0x0, 0;
 CFE_APP, hk,      HK_AppMain,      HK,         90, 16384, 0x0, 0;
