@@ -17,6 +17,23 @@ SB_MEM_BLOCK_SIZES = (8, 16, 20, 36, 64, 96, 128, 160, 256, 512, 1024, 2048, 409
 SB_LARGEST_BLOCK_MORE = 128
 """The largest block of that pool is the largest message and so many bytes (CFE_PLATFORM_SB_MAX_BLOCK_SIZE)."""
 
+MAY_BE_ZERO = frozenset(
+    {
+        "es_default_pr_syslog_mode",
+        "es_max_processor_resets",
+        "es_ram_disk_percent_reserved",
+        "evs_default_type_flag",
+        "evs_default_log_mode",
+        "evs_default_msg_format_mode",
+        "evs_port_default",
+        "evs_max_app_event_burst",
+        "time_def_met_secs",
+        "time_def_stcf_secs",
+        "time_def_leaps",
+    }
+)
+"""Values whose default is another, but for which 0 says something too: a mode, no bit, never, off."""
+
 
 @dataclass(frozen=True, slots=True)
 class PlatformConfig:

@@ -87,7 +87,7 @@ class ConfigServices:
 
 def _build_info(config: PlatformConfig, mission: str) -> dict[str, Value]:
     """The keys of config_ids_base.cmake."""
-    major, minor, revision = (int(part) for part in versions.OFFICIAL.removeprefix("v").split("."))
+    major, minor, revision, mission_revision = versions.VERSION_NUMBER
     return {
         "MISSION_NAME": mission,
         "MISSION_SRCVER": f"git:{versions.OFFICIAL}",
@@ -96,8 +96,8 @@ def _build_info(config: PlatformConfig, mission: str) -> dict[str, Value]:
         "CORE_VERSION_MAJOR": major,
         "CORE_VERSION_MINOR": minor,
         "CORE_VERSION_REVISION": revision,
-        "CORE_VERSION_MISSION_REV": 0,
-        "CORE_VERSION_BUILDNUM": 0,
+        "CORE_VERSION_MISSION_REV": mission_revision,
+        "CORE_VERSION_BUILDNUM": versions.BUILD_NUMBER,
         "CORE_VERSION_BASELINE": versions.OFFICIAL,
         "CORE_VERSION_DESCRIPTION": versions.version_string("cFE"),
         "CORE_BUILDINFO_DATE": f"cfepy {versions.CFE_VERSION}",

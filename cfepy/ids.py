@@ -105,6 +105,11 @@ def to_index(resource_id: int, base: int, capacity: int) -> int:
     return get_serial(resource_id) % capacity
 
 
+def name_size(name: str) -> int:
+    """Bytes that a name takes in C, without the NUL at its end: what the limits of names count."""
+    return len(name.encode("utf-8", "replace"))
+
+
 def find_next(start_id: int, capacity: int, is_used: Callable[[int], bool]) -> int:
     """The first unused id after `start_id`, trying each slot once (CFE_ResourceId_FindNext).
 

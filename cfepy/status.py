@@ -295,6 +295,11 @@ class CfeError(Exception):
         """The status as NASA's texts print it: "0xCA000003"."""
         return f"0x{self.status & 0xFFFFFFFF:08X}"
 
+    @property
+    def long_hex(self) -> str:
+        """The status as a C unsigned long, in texts of lab and sample apps: "0xFFFFFFFFCA000003"."""
+        return f"0x{self.status & 0xFFFFFFFFFFFFFFFF:08X}"
+
     def __str__(self) -> str:
         small = _LOWEST_SMALL_STATUS < self.status <= 0
         number = str(self.status) if small else self.hex

@@ -1,4 +1,4 @@
-"""The version texts that cFE, OSAL and PSP show, in one place. Imports nothing of cfepy."""
+"""The versions that cFE, OSAL and PSP show, in one place. Imports nothing of cfepy."""
 
 from __future__ import annotations
 
@@ -7,6 +7,10 @@ OSAL_VERSION = "v7.0.0+dev0"
 PSP_VERSION = "v7.0.0+dev0"
 CODENAME = "Draco"
 OFFICIAL = "v7.0.0"
+VERSION_NUMBER = (7, 0, 0, 0)
+"""Major, minor, revision, mission revision: of cFE, OSAL and PSP alike."""
+
+BUILD_NUMBER = 0  # of a release
 MODULES = ("CORE_API", "ES", "EVS", "FS", "SB", "TBL", "TIME", "OSAL", "PSP", "MSG", "SBR", "RESOURCEID", "CONFIG")
 """The parts of the flight software, in the order in which ES tells their versions."""
 
@@ -23,3 +27,25 @@ def version_string(
         official: version of the last official release.
     """
     return f"{component} {version} ({codename}) {official} Official Release, EDS disabled"
+
+
+class VersionFunctions:
+    """The version functions that OSAL and the PSP both have."""
+
+    _version = OFFICIAL
+
+    def get_version_string(self) -> str:
+        """The version that this is like (OS_GetVersionString, CFE_PSP_GetVersionString)."""
+        return self._version
+
+    def get_version_code_name(self) -> str:
+        """The code name of that release (OS_GetVersionCodeName, CFE_PSP_GetVersionCodeName)."""
+        return CODENAME
+
+    def get_version_number(self) -> tuple[int, int, int, int]:
+        """Major, minor, revision, mission revision (OS_GetVersionNumber, CFE_PSP_GetVersionNumber)."""
+        return VERSION_NUMBER
+
+    def get_build_number(self) -> int:
+        """The build number, 0 for a release (OS_GetBuildNumber, CFE_PSP_GetBuildNumber)."""
+        return BUILD_NUMBER

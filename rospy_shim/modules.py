@@ -7,12 +7,11 @@ cfepy.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import partial
+from functools import cache, partial
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from rospy_shim import exceptions, genpy, link, logs, message, names, subscriber, timer, topic_handle
-from rospy_shim.msgs import message_class
 
 if TYPE_CHECKING:
     from rospy_shim.node import Node
@@ -68,7 +67,7 @@ class RosModules:
             "impl": dict,
             "msg": self._msg,
             "names": self._names,
-            "numpy_msg": lambda: {"numpy_msg": message.numpy_msg},
+            "numpy_msg": lambda: {"numpy_msg": cache(message.numpy_msg)},
             "rostime": self._rostime,
             "service": lambda: {"ServiceException": exceptions.ServiceException},
             "impl.tcpros_service": self._services,
@@ -115,7 +114,7 @@ class RosModules:
         ready |= self._topics() | self._timer() | self._services()
         ready |= {
             "AnyMsg": message.AnyMsg,
-            "Header": message_class("std_msgs/Header"),
+            "Header": node.library.message_class("std_msgs/Header"),
             "Message": genpy.Message,
             "ServiceException": exceptions.ServiceException,
         }

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cfepy.rtos import Task
@@ -17,6 +18,7 @@ from rospy_shim.exceptions import ROSInitException
 from rospy_shim.life import Life
 from rospy_shim.link import Link
 from rospy_shim.logs import Logs
+from rospy_shim.msgs import Library, OnDisk, Packages, shipped
 from rospy_shim.names import Names, is_legal_name
 from rospy_shim.params import Params
 from rospy_shim.publisher import make_publisher
@@ -71,6 +73,9 @@ class Node:
         self.services: list[Service] = []
         self._tasks = tasks
         self._timer: type | None = None
+        script = Path(universe.script) if universe.script else None
+        self.packages = Packages(script, universe.environ, universe.resolve)
+        self.library = Library([OnDisk(self.packages)], base=shipped())
         self.names = Names(universe.argv, universe.environ)
         self.life = Life(self)
         self.clock = RosClock(self)

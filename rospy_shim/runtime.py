@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from cfepy.nodes import Universe
 from cfepy.nodes.config import NodeConfig, RosConfig
 from cfepy.rtos.units import NS_PER_S
+from rospy_shim import library_path
 from rospy_shim.graph import Graph, Topic, TopicRow
 from rospy_shim.modules import RosModules
 from rospy_shim.msgs import make_module
@@ -97,6 +98,7 @@ class RosRuntime:
             argv=_command_line(config),
             env={"ROS_MASTER_URI": "http://cfepy:11311", **config.env},
             cwd=script.parent,
+            library_paths=[library_path.FOLDER],
             seed=self._seed,
             epoch_ns=self._epoch_ns,
             call_cost_ns=self._call_ns,
@@ -106,7 +108,8 @@ class RosRuntime:
             on_thread_start=tasks.thread,
         )
         node = Node(self._cfe, self.graph, universe, config, tasks, self._call_ns, self._publish_slot_ns)
-        find = _finder(RosModules(node))
+        universe.importer.path[1:1] = map(str, node.packages.code_folders())
+        find = _finder(node)
         return node
 
     def begin_shutdown(self, reason: str) -> None:
@@ -147,14 +150,19 @@ def _command_line(config: NodeConfig) -> list[str]:
     return found
 
 
-def _finder(rospy: RosModules) -> Callable[[str], Callable[[Any], ModuleType] | None]:
-    """Finds what makes a module of ROS: rospy's own, genpy, message packages."""
+def _finder(node: Node) -> Callable[[str], Callable[[Any], ModuleType] | None]:
+    """Finds what makes a module of ROS: rospy's own, genpy, message packages that have no code as well."""
+    rospy = RosModules(node)
 
     def find(name: str) -> Callable[[Any], ModuleType] | None:
         factory = rospy.find(name)
         if factory is not None:
             return factory
-        module = make_module(name)
-        return None if module is None else lambda universe: module
+        if name in library_path.names():
+            return None  # a package with code; its messages are made here all the same
+        module = make_module(name, node.library)
+        if module is None or ("." not in name and node.universe.importer.has_own(name)):
+            return None
+        return lambda universe: module
 
     return find

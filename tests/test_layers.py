@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,7 +12,19 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 LAYERS = [
-    {"status", "ids", "trace", "console", "versions", "config", "config_api", "ports", "resources", "__init__"},
+    {
+        "status",
+        "ids",
+        "trace",
+        "console",
+        "versions",
+        "config",
+        "config_api",
+        "ports",
+        "core_app",
+        "resources",
+        "__init__",
+    },
     {"rtos"},
     {"osal"},
     {"psp", "msg", "fs"},
@@ -32,8 +45,12 @@ MAY_TOUCH_THE_HOST = {
 }
 
 
+LIBRARIES = ROOT / "rospy_shim" / "libraries"
+
+
 def sources(package: str) -> list[Path]:
-    return sorted((ROOT / package).rglob("*.py"))
+    """Modules of a package; those of the libraries are code of nodes, and stand below a rule of their own."""
+    return sorted(path for path in (ROOT / package).rglob("*.py") if not path.is_relative_to(LIBRARIES))
 
 
 def imported(path: Path) -> Iterator[str]:
@@ -100,6 +117,16 @@ def test_only_the_kernel_knows_the_host(path: Path) -> None:
         return
     touched = {name.split(".")[0] for name in imported(path)} & HOST_MODULES
     assert not touched, f"{touched} belong to the host; only {', '.join(MAY_TOUCH_THE_HOST)} may use them"
+
+
+@pytest.mark.parametrize("path", sorted(LIBRARIES.rglob("*.py")), ids=lambda path: str(path.relative_to(LIBRARIES)))
+def test_libraries_are_code_of_nodes(path: Path) -> None:
+    """They run in a node's universe, with its rospy and its clock: they import what a node does, none of the house."""
+    others = {folder.name for folder in LIBRARIES.iterdir()}
+    for name in imported(path):
+        top, _, rest = name.removeprefix("rospy_shim.libraries.").partition(".")
+        known = top in sys.stdlib_module_names or top in others or top in ("rospy", "genpy", "numpy", "yaml")
+        assert known or rest.split(".")[0] in ("msg", "srv"), f"a library must not import {name}"
 
 
 def test_numpy_and_test_libraries_are_imported_lazily() -> None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from cfepy.app import Cfe
 from cfepy.es import APP_ERROR
-from cfepy.msg import CommandTable, telemetry
+from cfepy.msg import CommandTable
 from cfepy.msg.dispatch import BAD_LENGTH, BAD_MSG_ID
 from cfepy.status import CfeError
 from cfepy.versions import version_string
 
-from . import events as eid
+from . import events as ev
 from . import packets as pk
 from .uplink import Uplink
 
@@ -44,11 +44,9 @@ class CommandIngest:
         self._accepted = self._rejected = 0
         self._scheduled = False
         self._uplink = Uplink(cfe)
-        self._commands = CommandTable()
-        self._commands.handle(pk.NOOP, self._noop)
-        self._commands.handle(pk.RESET_COUNTERS, self._reset_counters)
-        self._commands.add_message(pk.SEND_HK_MID, 0, self._send_hk)
-        self._commands.add_message(pk.READ_UPLINK_MID, 0, self._read_uplink)
+        self._commands = CommandTable((pk.NOOP, self._noop), (pk.RESET_COUNTERS, self._reset_counters))
+        self._commands.handle(pk.SEND_HK, self._send_hk, any_length=True)
+        self._commands.handle(pk.READ_UPLINK, self._read_uplink, any_length=True)
 
     def start(self) -> None:
         """Everything before the first message; what fails is reported, and the app goes on without it.
@@ -64,19 +62,19 @@ class CommandIngest:
         self._subscribe()
         self._uplink.open(BASE_UDP_PORT + cfe.psp.get_processor_id() - 1)
         cfe.os.task_install_delete_handler(self._uplink.close)
-        cfe.evs.send_info(eid.CI_LAB_INIT_INF_EID, f"CI Lab Initialized.{VERSION}")
+        cfe.evs.send_info(ev.INIT_INF_EID, f"CI Lab Initialized.{VERSION}")
 
     def _subscribe(self) -> None:
         cfe = self._cfe
         try:
             self._pipe = cfe.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
         except CfeError as error:
-            cfe.evs.send_err(eid.CI_LAB_CR_PIPE_ERR_EID, f"Error creating SB Command Pipe, RC = {error.hex}")
+            cfe.evs.send_err(ev.CR_PIPE_ERR_EID, f"Error creating SB Command Pipe, RC = {error.hex}")
             raise
         for msg_id, event_id, what in (
-            (pk.CMD_MID, eid.CI_LAB_SB_SUBSCRIBE_CMD_ERR_EID, "Commands"),
-            (pk.SEND_HK_MID, eid.CI_LAB_SB_SUBSCRIBE_HK_ERR_EID, "HK Request"),
-            (pk.READ_UPLINK_MID, eid.CI_LAB_SB_SUBSCRIBE_UL_ERR_EID, "Read Uplink Request"),
+            (pk.CMD_MID, ev.SB_SUBSCRIBE_CMD_ERR_EID, "Commands"),
+            (pk.SEND_HK_MID, ev.SB_SUBSCRIBE_HK_ERR_EID, "HK Request"),
+            (pk.READ_UPLINK_MID, ev.SB_SUBSCRIBE_UL_ERR_EID, "Read Uplink Request"),
         ):
             try:
                 cfe.sb.subscribe(msg_id, self._pipe)
@@ -99,17 +97,17 @@ class CommandIngest:
             self._rejected += 1
             sizes = f"Len = {done.length}, Expected = {done.expected}"
             text = f"Invalid msg length: ID = 0x{done.msg_id:X},  CC = {done.fcn_code}, {sizes}"
-            self._cfe.evs.send_err(eid.CI_LAB_CMD_LEN_ERR_EID, text)
+            self._cfe.evs.send_err(ev.CMD_LEN_ERR_EID, text)
         elif done.outcome == BAD_MSG_ID:
             self._rejected += 1
-            self._cfe.evs.send_err(eid.CI_LAB_MID_ERR_EID, f"CI: invalid command packet,MID = 0x{done.msg_id:x}")
+            self._cfe.evs.send_err(ev.MID_ERR_EID, f"CI: invalid command packet,MID = 0x{done.msg_id:x}")
 
     def _noop(self, packet: bytes) -> None:
         self._accepted += 1
-        self._cfe.evs.send_info(eid.CI_LAB_NOOP_INF_EID, f"CI: NOOP command. Version {VERSION_NUMBERS}")
+        self._cfe.evs.send_info(ev.NOOP_INF_EID, f"CI: NOOP command. Version {VERSION_NUMBERS}")
 
     def _reset_counters(self, packet: bytes) -> None:
-        self._cfe.evs.send_info(eid.CI_LAB_RESET_INF_EID, "CI: RESET command")
+        self._cfe.evs.send_info(ev.RESET_INF_EID, "CI: RESET command")
         self._accepted = self._rejected = 0
         self._uplink.packets = self._uplink.errors = 0
 
@@ -118,11 +116,11 @@ class CommandIngest:
         self._uplink.read()
 
     def _send_hk(self, packet: bytes) -> None:
-        payload = pk.HOUSEKEEPING.pack(
+        packet = pk.HK_TLM.packet(
             CommandCounter=self._accepted & 0xFF,
             CommandErrorCounter=self._rejected & 0xFF,
             SocketConnected=self._uplink.is_open,
             IngestPackets=self._uplink.packets & 0xFFFFFFFF,
             IngestErrors=self._uplink.errors & 0xFFFFFFFF,
         )
-        self._cfe.sb.transmit_msg(telemetry(pk.HK_TLM_MID, payload))
+        self._cfe.sb.transmit_msg(packet)

@@ -10,7 +10,7 @@ READ_UPLINK_MID = local_cmd_topic_id_to_msg_id(0x86)
 HK_TLM_MID = local_tlm_topic_id_to_msg_id(0x84)
 
 HOUSEKEEPING = Layout(
-    "CI_LAB_HkTlm_Payload",
+    "CI_LAB_HkTlm_Payload_t",
     [
         ("CommandCounter", "u8"),
         ("CommandErrorCounter", "u8"),

@@ -6,12 +6,10 @@ from contextlib import suppress
 
 from cfepy.app import Cfe
 from cfepy.msg import CMD_HEADER_SIZE, get_size
-from cfepy.osal.limits import OS_CHECK
-from cfepy.osal.sockaddr import OS_SocketDomain_INET
-from cfepy.osal.streams import OS_SocketType_DATAGRAM
+from cfepy.osal import OS_CHECK, OS_SocketDomain_INET, OS_SocketType_DATAGRAM
 from cfepy.status import CFE_STATUS_WRONG_MSG_LENGTH, CfeError, OsalError
 
-from . import events as eid
+from . import events as ev
 
 MAX_INGEST = 768  # bytes of a datagram; the rest is cut off
 MAX_PACKETS = 11  # in one go
@@ -38,14 +36,14 @@ class Uplink:
         try:
             self._socket = cfe.os.socket_open(OS_SocketDomain_INET, OS_SocketType_DATAGRAM)
         except OsalError as error:
-            cfe.evs.send_err(eid.CI_LAB_SOCKETCREATE_ERR_EID, f"CI: create socket failed = {error.status}")
+            cfe.evs.send_err(ev.SOCKETCREATE_ERR_EID, f"CI: create socket failed = {error.status}")
             return
         address = cfe.os.socket_addr_init(OS_SocketDomain_INET)
         cfe.os.socket_addr_set_port(address, port)
         try:
             cfe.os.socket_bind(self._socket, address)
         except OsalError as error:
-            cfe.evs.send_err(eid.CI_LAB_SOCKETBIND_ERR_EID, f"CI: bind socket failed = {error.status}")
+            cfe.evs.send_err(ev.SOCKETBIND_ERR_EID, f"CI: bind socket failed = {error.status}")
             return
         self.is_open = True
         cfe.es.write_to_sys_log(f"CI_LAB listening on UDP port: {port}")
@@ -66,7 +64,7 @@ class Uplink:
             status = self._ingest(received[0])
             self._cfe.es.perf_log_exit(SOCKET_RCV_PERF_ID)
             if status is not None:
-                self._cfe.evs.send_err(eid.CI_LAB_INGEST_SEND_ERR_EID, f"CI_LAB: Ingest failed, status={status}\n")
+                self._cfe.evs.send_err(ev.INGEST_SEND_ERR_EID, f"CI_LAB: Ingest failed, status={status}\n")
 
     def _ingest(self, data: bytes) -> int | None:
         """Check a datagram and put it on the bus as it is; a status when that failed."""
@@ -91,5 +89,5 @@ class Uplink:
             size = None
         else:
             return size
-        self._cfe.evs.send_err(eid.CI_LAB_INGEST_LEN_ERR_EID, text)
+        self._cfe.evs.send_err(ev.INGEST_LEN_ERR_EID, text)
         return None

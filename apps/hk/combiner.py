@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from cfepy.app import Cfe
+from cfepy.es import PoolBlock
 from cfepy.msg import TLM_HEADER_SIZE, init
 from cfepy.status import CfeError
 
-from . import events as eid
+from . import events as ev
 from .copy_table import CopyEntry, read_entries
 from .packets import RUNTIME_TABLE_ENTRY
 
@@ -16,7 +15,7 @@ from .packets import RUNTIME_TABLE_ENTRY
 class CombinedPacket:
     """One output packet in a block of HK's memory pool, and which of its parts came in since it was sent last."""
 
-    def __init__(self, msg_id: int, block: Any, entries: list[int]) -> None:
+    def __init__(self, msg_id: int, block: PoolBlock, entries: list[int]) -> None:
         self.msg_id = msg_id
         self.block = block
         self.entries = entries
@@ -63,7 +62,7 @@ class Combiner:
             block = self._cfe.es.get_pool_buf(self._pool, size)
         except CfeError as error:
             text = f"ES_GetPoolBuf for size {size} returned {error.hex}"
-            self._cfe.evs.send_err(eid.MEM_POOL_MALLOC_FAILED_EID, f"HK Processing New Table: {text}")
+            self._cfe.evs.send_err(ev.MEM_POOL_MALLOC_FAILED_EID, f"HK Processing New Table: {text}")
             return
         self._packets[msg_id] = CombinedPacket(msg_id, block, indices)
 
@@ -72,7 +71,7 @@ class Combiner:
             self._cfe.sb.subscribe(msg_id, self._pipe)
         except CfeError as error:
             text = f"SB_Subscribe for Mid 0x{msg_id:08X} returned {error.hex}"
-            self._cfe.evs.send_err(eid.CANT_SUBSCRIBE_TO_SB_PKT_EID, f"HK Processing New Table:{text}")
+            self._cfe.evs.send_err(ev.CANT_SUBSCRIBE_TO_SB_PKT_EID, f"HK Processing New Table:{text}")
             return
         self._subscribed.add(msg_id)
 
@@ -83,7 +82,7 @@ class Combiner:
                 self._cfe.es.put_pool_buf(self._pool, packet.block)
             except CfeError as error:
                 text = f"pkt:0x{packet.block.offset:08X} ret {error.hex}, hdl 0x{self._pool:08x}"
-                self._cfe.evs.send_err(eid.MEM_POOL_FREE_FAILED_EID, f"HK TearDown: ES_putPoolBuf Err {text}")
+                self._cfe.evs.send_err(ev.MEM_POOL_FREE_FAILED_EID, f"HK TearDown: ES_putPoolBuf Err {text}")
         for msg_id in sorted(self._subscribed):
             self._cfe.sb.unsubscribe(msg_id, self._pipe)
         self._packets, self._inputs, self._subscribed = {}, {}, set()
@@ -105,7 +104,7 @@ class Combiner:
         if too_short:
             text = f"MID:0x{msg_id:08X}, Length:{len(packet)}, Count:{too_short}"
             self._cfe.evs.send_err(
-                eid.ACCESSING_PAST_PACKET_END_EID, f"HK table definition exceeds packet length. {text}"
+                ev.ACCESSING_PAST_PACKET_END_EID, f"HK table definition exceeds packet length. {text}"
             )
 
     def send(self, msg_id: int) -> tuple[int, int]:
@@ -117,17 +116,17 @@ class Combiner:
         packet = self._packets.get(msg_id)
         if packet is None:
             text = f"Combined HK Packet 0x{msg_id:08X} is not found in current HK Copy Table"
-            self._cfe.evs.send_info(eid.UNKNOWN_COMBINED_PACKET_EID, text)
+            self._cfe.evs.send_info(ev.UNKNOWN_COMBINED_PACKET_EID, text)
             return 0, 0
         lacking = bool(packet.missing)
         if lacking:
             input_mid = self._entries[min(packet.missing)].input_mid
             text = f"Combined Packet 0x{msg_id:08X} missing data from Input Pkt 0x{input_mid:08X}"
-            self._cfe.evs.send_dbg(eid.OUTPKT_MISSING_DATA_EID, text)
+            self._cfe.evs.send_dbg(ev.OUTPKT_MISSING_DATA_EID, text)
         packet.missing = set(packet.entries)
         if lacking and self._discard_incomplete:
             return 0, 1
-        self._cfe.sb.transmit_msg(packet.block.memory)
+        self._cfe.sb.transmit_msg(bytes(packet.block.memory))
         return 1, int(lacking)
 
     def fill_runtime_table(self, table: memoryview) -> None:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from cfepy.msg import is_valid_msg_id
-from cfepy.tbl import unpack_rows
 
-from .packets import COPY_TABLE_ENTRY, MAX_COMBINED_PACKET_SIZE
+from .packets import COPY_TABLE, MAX_COMBINED_PACKET_SIZE
 
 
 class CopyEntry(NamedTuple):
@@ -50,7 +49,7 @@ class CopyEntry(NamedTuple):
 
 def read_entries(table: bytes | memoryview) -> list[CopyEntry]:
     """All entries of a copy table, unused ones included."""
-    return [CopyEntry(*row.values()) for row in unpack_rows(COPY_TABLE_ENTRY, table)]
+    return [CopyEntry(*row.values()) for row in COPY_TABLE.unpack(table)]
 
 
 def find_fault(table: bytes | memoryview) -> str | None:

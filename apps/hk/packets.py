@@ -14,16 +14,13 @@ SEND_COMBINED_PKT_MID = local_cmd_topic_id_to_msg_id(0x9C)
 HK_TLM_MID = local_tlm_topic_id_to_msg_id(0x9B)
 COMBINED_PKT1_MID = local_tlm_topic_id_to_msg_id(0x9C)
 
-NOOP_CC = 0
-RESET_COUNTERS_CC = 1
-
 COPY_TABLE_ENTRIES = 128
 MAX_COMBINED_PACKET_SIZE = 1500
 
-SEND_COMBINED_PKT_PAYLOAD = Layout("HK_SendCombinedPkt_Payload", [("OutMsgToSend", "u32")])
+SEND_COMBINED_PKT_PAYLOAD = Layout("HK_SendCombinedPkt_Payload_t", [("OutMsgToSend", "u32")])
 
 HOUSEKEEPING = Layout(
-    "HK_HkTlm_Payload",
+    "HK_HkTlm_Payload_t",
     [
         ("CmdCounter", "u8"),
         ("ErrCounter", "u8"),
@@ -35,7 +32,7 @@ HOUSEKEEPING = Layout(
 )
 
 COPY_TABLE_ENTRY = Layout(
-    "HK_CopyTableEntry",
+    "HK_CopyTableEntry_t",
     [
         ("InputMid", "u32"),
         ("InputOffset", "u16"),
@@ -47,11 +44,11 @@ COPY_TABLE_ENTRY = Layout(
 """Offsets count from the first byte of the packet, header included."""
 
 RUNTIME_TABLE_ENTRY = Layout(
-    "HK_RuntimeTableEntry", [("OutputPktAddr", "u64"), ("InputMidSubscribed", "u8"), ("DataPresent", "u8")]
+    "HK_RuntimeTableEntry_t", [("OutputPktAddr", "u64"), ("InputMidSubscribed", "u8"), ("DataPresent", "u8")]
 )
 
-NOOP = Command("HK_NOOP", CMD_MID, NOOP_CC, text="Answer with an event.")
-RESET_COUNTERS = Command("HK_RESET_COUNTERS", CMD_MID, RESET_COUNTERS_CC, text="Set the counters to 0.")
+NOOP = Command("HK_NOOP", CMD_MID, 0, text="Answer with an event.")
+RESET_COUNTERS = Command("HK_RESET_COUNTERS", CMD_MID, 1, text="Set the counters to 0.")
 SEND_HK = Command("HK_SEND_HK", SEND_HK_MID, text="Send the housekeeping packet, and look after the tables.")
 SEND_COMBINED_PKT = Command(
     "HK_SEND_COMBINED_PKT",

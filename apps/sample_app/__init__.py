@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from .app import SAMPLE_APP_Main
-from .messages import COMMANDS, TABLES, TELEMETRY
+from .packets import COMMANDS, TABLES, TELEMETRY
 
 __all__ = ["COMMANDS", "TABLES", "TELEMETRY", "SAMPLE_APP_Main"]

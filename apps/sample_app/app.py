@@ -12,13 +12,14 @@ from contextlib import contextmanager
 
 from cfepy.app import Cfe
 from cfepy.es import APP_ERROR
-from cfepy.msg import CommandTable, telemetry
+from cfepy.msg import CommandTable
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID
 from cfepy.sb import PEND_FOREVER
 from cfepy.status import CfeError
 from cfepy.versions import version_string
 
-from . import events, messages
+from . import events as ev
+from . import packets as pk
 from .library import call_library
 
 VERSION = "equuleus-rc1+dev54"
@@ -52,12 +53,13 @@ class SampleApp:
         self.accepted = 0
         self.rejected = 0
         # Which function handles which command; each command says itself how long it must be.
-        self.commands = CommandTable()
-        self.commands.handle(messages.SEND_HK, self.send_hk)
-        self.commands.handle(messages.NOOP, self.noop)
-        self.commands.handle(messages.RESET_COUNTERS, self.reset_counters)
-        self.commands.handle(messages.PROCESS, self.process)
-        self.commands.handle(messages.DISPLAY_PARAM, self.display_param)
+        self.commands = CommandTable(
+            (pk.SEND_HK, self.send_hk),
+            (pk.NOOP, self.noop),
+            (pk.RESET_COUNTERS, self.reset_counters),
+            (pk.PROCESS, self.process),
+            (pk.DISPLAY_PARAM, self.display_param),
+        )
 
     def start(self) -> None:
         """Register with the services: events first, so that anything after can be reported.
@@ -69,20 +71,20 @@ class SampleApp:
         try:
             cfe.evs.register()
         except CfeError as error:
-            cfe.es.write_to_sys_log(f"Sample App: Error Registering Events, RC = {_hex(error)}")
+            cfe.es.write_to_sys_log(f"Sample App: Error Registering Events, RC = {error.long_hex}")
             raise
-        with self.reporting(events.CR_PIPE_ERR_EID, "Error creating SB Command Pipe"):
+        with self.reporting(ev.CR_PIPE_ERR_EID, "Error creating SB Command Pipe"):
             self.pipe = cfe.sb.create_pipe(depth=32, name="SAMPLE_APP_CMD_PIPE")
-        with self.reporting(events.SUB_HK_ERR_EID, "Error Subscribing to HK request"):
-            cfe.sb.subscribe(messages.SEND_HK_MID, self.pipe)
-        with self.reporting(events.SUB_CMD_ERR_EID, "Error Subscribing to Commands"):
-            cfe.sb.subscribe(messages.CMD_MID, self.pipe)
+        with self.reporting(ev.SUB_HK_ERR_EID, "Error Subscribing to HK request"):
+            cfe.sb.subscribe(pk.SEND_HK_MID, self.pipe)
+        with self.reporting(ev.SUB_CMD_ERR_EID, "Error Subscribing to Commands"):
+            cfe.sb.subscribe(pk.CMD_MID, self.pipe)
         try:
-            with self.reporting(events.TABLE_REG_ERR_EID, "Error Registering Example Table"):
-                self.table = cfe.tbl.register("ExampleTable", messages.EXAMPLE_TABLE.size, validate=check_table)
-            cfe.tbl.load(self.table, messages.TABLE.file)  # CFE_TBL itself reports when this fails
+            with self.reporting(ev.TABLE_REG_ERR_EID, "Error Registering Example Table"):
+                self.table = cfe.tbl.register(pk.TABLE.own_name, pk.TABLE.size, validate=check_table)
+            cfe.tbl.load(self.table, pk.TABLE.file)  # CFE_TBL itself reports when this fails
         finally:
-            cfe.evs.send_info(events.INIT_INF_EID, f"Sample App Initialized.{VERSION_TEXT}")
+            cfe.evs.send_info(ev.INIT_INF_EID, f"Sample App Initialized.{VERSION_TEXT}")
 
     @contextmanager
     def reporting(self, event_id: int, text: str) -> Iterator[None]:
@@ -90,7 +92,7 @@ class SampleApp:
         try:
             yield
         except CfeError as error:
-            self.cfe.evs.send_err(event_id, f"Sample App: {text}, RC = {_hex(error)}")
+            self.cfe.evs.send_err(event_id, f"Sample App: {text}, RC = {error.long_hex}")
             raise
 
     def receive(self) -> bytes | None:
@@ -98,7 +100,7 @@ class SampleApp:
         try:
             return self.cfe.sb.receive_buffer(self.pipe, PEND_FOREVER)
         except CfeError:
-            self.cfe.evs.send_err(events.PIPE_ERR_EID, "SAMPLE APP: SB Pipe Read Error, App Will Exit")
+            self.cfe.evs.send_err(ev.PIPE_ERR_EID, "SAMPLE APP: SB Pipe Read Error, App Will Exit")
             self.cfe.es.exit_app(APP_ERROR)  # does not return
             return None
 
@@ -107,57 +109,50 @@ class SampleApp:
         done = self.commands.dispatch(packet)
         if done.outcome == BAD_MSG_ID:
             text = f"SAMPLE: invalid command packet,MID = 0x{done.msg_id:x}"
-            self.cfe.evs.send_err(events.MID_ERR_EID, text)
+            self.cfe.evs.send_err(ev.MID_ERR_EID, text)
         elif done.outcome == BAD_CODE:
-            self.cfe.evs.send_err(events.CC_ERR_EID, f"Invalid ground command code: CC = {done.fcn_code}")
+            self.cfe.evs.send_err(ev.CC_ERR_EID, f"Invalid ground command code: CC = {done.fcn_code}")
         elif done.outcome == BAD_LENGTH:
             self.rejected += 1
             what = f"ID = 0x{done.msg_id:X},  CC = {done.fcn_code}, Len = {done.length}, Expected = {done.expected}"
-            self.cfe.evs.send_err(events.CMD_LEN_ERR_EID, f"Invalid Msg length: {what}")
+            self.cfe.evs.send_err(ev.CMD_LEN_ERR_EID, f"Invalid Msg length: {what}")
 
     def send_hk(self, packet: bytes) -> None:
         """The scheduler asks for housekeeping: send the counters, then do what the ground wants with the table."""
-        payload = messages.HOUSEKEEPING.pack(
-            CommandErrorCounter=self.rejected & 0xFF, CommandCounter=self.accepted & 0xFF
-        )
-        self.cfe.sb.transmit_msg(telemetry(messages.HK_TLM_MID, payload))
+        counters = pk.HK_TLM.packet(CommandErrorCounter=self.rejected & 0xFF, CommandCounter=self.accepted & 0xFF)
+        self.cfe.sb.transmit_msg(counters)
         self.cfe.tbl.manage(self.table)
 
     def noop(self, packet: bytes) -> None:
         """The ground asks whether the app is alive."""
         self.accepted += 1
-        self.cfe.evs.send_info(events.NOOP_INF_EID, f"SAMPLE: NOOP command {VERSION}")
+        self.cfe.evs.send_info(ev.NOOP_INF_EID, f"SAMPLE: NOOP command {VERSION}")
 
     def reset_counters(self, packet: bytes) -> None:
         """Start counting anew."""
         self.accepted = self.rejected = 0
-        self.cfe.evs.send_info(events.RESET_INF_EID, "SAMPLE: RESET command")
+        self.cfe.evs.send_info(ev.RESET_INF_EID, "SAMPLE: RESET command")
 
     def process(self, packet: bytes) -> None:
         """Use the table: get its address, read, release it soon, so that it can be updated."""
         self.accepted += 1
         cfe = self.cfe
         image, _ = cfe.tbl.get_address(self.table)
-        values = messages.EXAMPLE_TABLE.unpack(image)
+        values = pk.EXAMPLE_TABLE.unpack(image)
         cfe.es.write_to_sys_log(f"Sample App: Example Table Value 1: {values['Int1']}  Value 2: {values['Int2']}")
-        cfe.es.write_to_sys_log(f"Sample App: CRC: 0x{cfe.tbl.get_info(messages.TABLE.name).crc:08X}\n\n")
+        cfe.es.write_to_sys_log(f"Sample App: CRC: 0x{cfe.tbl.get_info(pk.TABLE.name).crc:08X}\n\n")
         cfe.tbl.release_address(self.table)
         call_library(cfe)
 
     def display_param(self, packet: bytes) -> None:
         """A command with a payload: read its fields."""
         self.accepted += 1
-        given = messages.DISPLAY_PARAM.read(packet)
+        given = pk.DISPLAY_PARAM.read(packet)
         text = f"SAMPLE_APP: ValU32={given['ValU32']}, ValI16={given['ValI16']}, ValStr={given['ValStr']}"
-        self.cfe.evs.send_info(events.VALUE_INF_EID, text)
-
-
-def _hex(error: CfeError) -> str:
-    """A status as C prints an int cast to unsigned long."""
-    return f"0x{error.status & 0xFFFFFFFFFFFFFFFF:08X}"
+        self.cfe.evs.send_info(ev.VALUE_INF_EID, text)
 
 
 def check_table(image: memoryview) -> int:
     """Whether a table image is good: 0, or a negative number. cFE asks before the image is ever used."""
-    values = messages.EXAMPLE_TABLE.unpack(image)
-    return 0 if values["Int1"] <= messages.INT1_MAX else messages.TABLE_OUT_OF_RANGE
+    values = pk.EXAMPLE_TABLE.unpack(image)
+    return 0 if values["Int1"] <= pk.INT1_MAX else pk.TABLE_OUT_OF_RANGE

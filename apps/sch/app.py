@@ -12,7 +12,7 @@ from cfepy.msg import get_size
 from cfepy.sb import POLL
 from cfepy.status import CFE_SUCCESS, CfeError, OsalError
 
-from . import events as eid
+from . import events as ev
 from . import packets as pk
 from .commands import Commands
 from .frames import LAST_SLOT, NOT_SYNCHRONIZED, WORST_ACCURACY_US, Frames
@@ -43,7 +43,7 @@ def SCH_AppMain(cfe: Cfe) -> None:
             run_status, status = APP_ERROR, error.status
     if status != CFE_SUCCESS:
         text = f"err = 0x{status & 0xFFFFFFFF:08X}"
-        cfe.evs.send_crit(eid.SCH_APP_EXIT_EID, f"SCH App: terminating, {text}")
+        cfe.evs.send_crit(ev.APP_EXIT_EID, f"SCH App: terminating, {text}")
         cfe.es.write_to_sys_log(f"SCH App terminating, {text}")
     app.clean_up()
     cfe.es.perf_log_exit(PERF_ID)
@@ -73,50 +73,50 @@ class Scheduler:
         """
         cfe = self._cfe
         try:
-            cfe.evs.register(eid.FILTERS)
+            cfe.evs.register(ev.FILTERS)
         except CfeError as error:
             cfe.es.write_to_sys_log(f"SCH App: Error Registering For Event Services, RC={error.hex}")
             raise
         self._start_pipe()
         self._start_tables()
         self._start_timer()
-        cfe.evs.send_info(eid.SCH_INITSTATS_INF_EID, f"SCH Initialized. Version {VERSION}")
-        with self._reporting(eid.SCH_MAJOR_FRAME_SUB_ERR_EID, "Error initializing Timers (RC={})"):
+        cfe.evs.send_info(ev.INITSTATS_INF_EID, f"SCH Initialized. Version {VERSION}")
+        with self._reporting(ev.MAJOR_FRAME_SUB_ERR_EID, "Error initializing Timers (RC={})"):
             cfe.es.wait_for_startup_sync(STARTUP_SYNC_MS)
             self._frames.start()
 
     def _start_pipe(self) -> None:
         sb = self._cfe.sb
-        with self._reporting(eid.SCH_CR_PIPE_ERR_EID, "Error Creating SB Pipe, RC={}"):
+        with self._reporting(ev.CR_PIPE_ERR_EID, "Error Creating SB Pipe, RC={}"):
             self._pipe = sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
         for event_id, what, msg_id in (
-            (eid.SCH_SUB_HK_REQ_ERR_EID, "HK Request", pk.SEND_HK_MID),
-            (eid.SCH_SUB_GND_CMD_ERR_EID, "GND CMD", pk.CMD_MID),
+            (ev.SUB_HK_REQ_ERR_EID, "HK Request", pk.SEND_HK_MID),
+            (ev.SUB_GND_CMD_ERR_EID, "GND CMD", pk.CMD_MID),
         ):
             with self._reporting(event_id, f"Error Subscribing to {what}(MID=0x{msg_id:04X}), RC={{}}"):
                 sb.subscribe(msg_id, self._pipe)
 
     def _start_tables(self) -> None:
         tables = self._tables
-        with self._reporting(eid.SCH_SDT_REG_ERR_EID, "Error Registering SDT, RC={}"):
+        with self._reporting(ev.SDT_REG_ERR_EID, "Error Registering SDT, RC={}"):
             tables.register_schedule()
-        with self._reporting(eid.SCH_MDT_REG_ERR_EID, "Error Registering MDT, RC={}"):
+        with self._reporting(ev.MDT_REG_ERR_EID, "Error Registering MDT, RC={}"):
             tables.register_messages()
         text = f"Error (RC={{}}) Loading SDT with {pk.SCHEDULE_TABLE.file}"
-        with self._reporting(eid.SCH_SDT_LOAD_ERR_EID, text):
+        with self._reporting(ev.SDT_LOAD_ERR_EID, text):
             tables.load_schedule()
-        with self._reporting(eid.SCH_MDT_LOAD_ERR_EID, f"Error (RC={{}}) Loading MDT with {pk.MESSAGE_TABLE.file}"):
+        with self._reporting(ev.MDT_LOAD_ERR_EID, f"Error (RC={{}}) Loading MDT with {pk.MESSAGE_TABLE.file}"):
             tables.load_messages()
-        with self._reporting(eid.SCH_ACQ_PTR_ERR_EID, "Error Acquiring Tbl Ptrs (RC={})"):
+        with self._reporting(ev.ACQ_PTR_ERR_EID, "Error Acquiring Tbl Ptrs (RC={})"):
             tables.acquire()
 
     def _start_timer(self) -> None:
-        with self._reporting(eid.SCH_MINOR_FRAME_TIMER_CREATE_ERR_EID, "Error creating Timer (RC={})"):
+        with self._reporting(ev.MINOR_FRAME_TIMER_CREATE_ERR_EID, "Error creating Timer (RC={})"):
             accuracy_us = self._frames.create_timer()
         if accuracy_us > WORST_ACCURACY_US:
             text = f"({accuracy_us} > reqd {WORST_ACCURACY_US} usec) requires Minor Frame MET sync"
-            self._cfe.evs.send_info(eid.SCH_MINOR_FRAME_TIMER_ACC_WARN_EID, f"OS Timer Accuracy {text}")
-        with self._reporting(eid.SCH_SEM_CREATE_ERR_EID, "Error creating Main Loop Timing Semaphore (RC={})"):
+            self._cfe.evs.send_info(ev.MINOR_FRAME_TIMER_ACC_WARN_EID, f"OS Timer Accuracy {text}")
+        with self._reporting(ev.SEM_CREATE_ERR_EID, "Error creating Main Loop Timing Semaphore (RC={})"):
             self._frames.create_semaphore()
         try:
             self._goes_on = self._cfe.os.symbol_lookup(LIBRARY_STATE)
@@ -152,7 +152,7 @@ class Scheduler:
         cfe.es.perf_log_entry(PERF_ID)
         if frames.ignored and not self._noise_reported:
             text = f"Major Frame Sync too noisy (Slot {frames.since_tone}). Disabling synchronization."
-            cfe.evs.send_err(eid.SCH_NOISY_MAJOR_FRAME_ERR_EID, text)
+            cfe.evs.send_err(ev.NOISY_MAJOR_FRAME_ERR_EID, text)
         self._noise_reported = frames.ignored
         if self._goes_on is None or self._goes_on(cfe):
             self._do_what_is_due(frames.current_slot())
@@ -163,14 +163,14 @@ class Scheduler:
         self._behind = now.behind
         if now.same:
             counters.same_slot += 1
-            evs.send_dbg(eid.SCH_SAME_SLOT_EID, f"Slot did not increment: slot = {current}")
+            evs.send_dbg(ev.SAME_SLOT_EID, f"Slot did not increment: slot = {current}")
         if now.skipped:
             self._skip(current, now.skipped)
         if now.todo > 1:
             counters.multiple_slots += 1
             if now.todo > frames.worst_slots or frames.sync_to_met == NOT_SYNCHRONIZED:
                 text = f"slot = {frames.following}, count = {now.todo}"
-                evs.send_info(eid.SCH_MULTI_SLOTS_EID, f"Multiple slots processed: {text}")
+                evs.send_info(ev.MULTI_SLOTS_EID, f"Multiple slots processed: {text}")
         for _ in range(now.todo):
             self._do_slot()
 
@@ -179,7 +179,7 @@ class Scheduler:
         counters, frames = self._counters, self._frames
         counters.skipped_slots += 1
         text = f"Slots skipped: slot = {frames.following}, count = {count}"
-        self._cfe.evs.send_err(eid.SCH_SKIPPED_SLOTS_EID, text)
+        self._cfe.evs.send_err(ev.SKIPPED_SLOTS_EID, text)
         if current < frames.following:
             counters.table_passes += 1
         if frames.following + count + 1 > LAST_SLOT:
@@ -211,10 +211,10 @@ class Scheduler:
         """The table was good when it was loaded: something wrote over it since."""
         evs = self._cfe.evs
         self._counters.bad_table_data += 1
-        evs.send_err(eid.SCH_CORRUPTION_EID, f"Corrupt data error (1): slot = {slot}, entry = {number}")
+        evs.send_err(ev.CORRUPTION_EID, f"Corrupt data error (1): slot = {slot}, entry = {number}")
         what = f"msg = {values['MessageIndex']}, freq = {values['Frequency']}"
         text = f"{what}, type = {values['Type']}, rem = {values['Remainder']}"
-        evs.send_err(eid.SCH_CORRUPTION_EID, f"Corrupt data error (2): {text}")
+        evs.send_err(ev.CORRUPTION_EID, f"Corrupt data error (2): {text}")
         self._tables.set_states([(slot, number)], pk.DISABLED)
 
     def _send(self, slot: int, number: int, index: int) -> None:
@@ -225,7 +225,7 @@ class Scheduler:
         except CfeError as error:
             self._counters.activities_failed += 1
             text = f"Activity error: slot = {slot}, entry = {number}, err = 0x{error.status & 0xFFFFFFFF:08X}"
-            self._cfe.evs.send_err(eid.SCH_PACKET_SEND_EID, text)
+            self._cfe.evs.send_err(ev.PACKET_SEND_EID, text)
 
     def _do_commands(self) -> None:
         """Commands are done at the end of the table alone, so that none changes a second that has begun."""

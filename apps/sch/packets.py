@@ -31,11 +31,11 @@ ACTIVITY_SEND_MSG = 1
 GROUP_NUMBER_MASK = 0xFF000000
 MULTI_GROUP_MASK = 0x00FFFFFF
 
-_ENTRY_COMMAND = Layout("SCH_EntryCmd", [("SlotNumber", "u16"), ("EntryNumber", "u16")])
-_GROUP_COMMAND = Layout("SCH_GroupCmd", [("GroupData", "u32")])
+_ENTRY_COMMAND = Layout("SCH_EntryCmd_t", [("SlotNumber", "u16"), ("EntryNumber", "u16")])
+_GROUP_COMMAND = Layout("SCH_GroupCmd_t", [("GroupData", "u32")])
 
 HOUSEKEEPING = Layout(
-    "SCH_HkPacket",
+    "SCH_HkPacket_t",
     [
         ("CmdCounter", "u8"),
         ("ErrCounter", "u8"),
@@ -63,7 +63,7 @@ HOUSEKEEPING = Layout(
 )
 STATE_WORDS = (SLOTS * ENTRIES_PER_SLOT + 7) // 8
 DIAGNOSTICS = Layout(
-    "SCH_DiagPacket", [("EntryStates", f"u16[{STATE_WORDS}]"), ("MsgIDs", f"u32[{SLOTS * ENTRIES_PER_SLOT}]")]
+    "SCH_DiagPacket_t", [("EntryStates", f"u16[{STATE_WORDS}]"), ("MsgIDs", f"u32[{SLOTS * ENTRIES_PER_SLOT}]")]
 )
 """Two bits of EntryStates for each entry, the first entry in the highest bits."""
 
@@ -87,7 +87,7 @@ DIAG_TLM = Telemetry("SCH_DIAG_TLM", DIAG_TLM_MID, DIAGNOSTICS, "State and MsgId
 TELEMETRY = (HK_TLM, DIAG_TLM)
 
 SCHEDULE_ENTRY = Layout(
-    "SCH_ScheduleEntry",
+    "SCH_ScheduleEntry_t",
     [
         ("EnableState", "u8"),
         ("Type", "u8"),
@@ -101,7 +101,7 @@ SCHEDULE_ENTRY = Layout(
 
 SCHEDULE_TABLE = TableType(
     "SCH.SCHED_DEF",
-    Layout("SCH_Slot", [("Entries", (SCHEDULE_ENTRY, ENTRIES_PER_SLOT))]),
+    Layout("SCH_Slot_t", [("Entries", (SCHEDULE_ENTRY, ENTRIES_PER_SLOT))]),
     rows=SLOTS,
     file="/cf/sch_def_schtbl.tbl",
     description="SCH schedule table",
@@ -110,7 +110,7 @@ SCHEDULE_TABLE = TableType(
 
 MESSAGE_TABLE = TableType(
     "SCH.MSG_DEFS",
-    Layout("SCH_MessageEntry", [("MessageBuffer", f"u8[{MAX_MESSAGE_SIZE}]")]),
+    Layout("SCH_MessageEntry_t", [("MessageBuffer", f"u8[{MAX_MESSAGE_SIZE}]")]),
     rows=MAX_MESSAGES,
     file="/cf/sch_def_msgtbl.tbl",
     description="SCH message definitions table",

@@ -9,7 +9,7 @@ from cfepy.app import Cfe
 from cfepy.msg import get_msg_id
 from cfepy.status import CFE_SUCCESS, CfeError
 
-from . import events as eid
+from . import events as ev
 from . import packets as pk
 from .validation import Verdict, judge_messages, judge_schedule
 
@@ -62,13 +62,13 @@ class Tables:
     def register_schedule(self) -> None:
         """Register the schedule definition table; raises CfeError."""
         self._schedule_handle = self._cfe.tbl.register(
-            "SCHED_DEF", pk.SCHEDULE_TABLE.size, validate=self._validate_schedule
+            pk.SCHEDULE_TABLE.own_name, pk.SCHEDULE_TABLE.size, validate=self._validate_schedule
         )
 
     def register_messages(self) -> None:
         """Register the message definition table; raises CfeError."""
         self._messages_handle = self._cfe.tbl.register(
-            "MSG_DEFS", pk.MESSAGE_TABLE.size, validate=self._validate_messages
+            pk.MESSAGE_TABLE.own_name, pk.MESSAGE_TABLE.size, validate=self._validate_messages
         )
 
     def load_schedule(self) -> None:
@@ -104,16 +104,16 @@ class Tables:
         verdict = judge_schedule(table)
         if verdict.status:
             text = f"Schedule tbl verify error - {verdict.fault}"
-            self._cfe.evs.send_err(eid.SCH_SCHEDULE_TBL_ERR_EID, text)
+            self._cfe.evs.send_err(ev.SCHEDULE_TBL_ERR_EID, text)
         results = f"Schedule table verify results -- {verdict.counts}"
-        self._cfe.evs.send_dbg(eid.SCH_SCHEDULE_TABLE_EID, results)
+        self._cfe.evs.send_dbg(ev.SCHEDULE_TABLE_EID, results)
         return self._count(verdict)
 
     def _validate_messages(self, table: memoryview) -> int:
         verdict = judge_messages(table)
         if verdict.status:
-            self._cfe.evs.send_err(eid.SCH_MESSAGE_TBL_ERR_EID, f"Message tbl verify err - {verdict.fault}")
-        self._cfe.evs.send_dbg(eid.SCH_MESSAGE_TABLE_EID, f"Message tbl verify results - {verdict.counts}")
+            self._cfe.evs.send_err(ev.MESSAGE_TBL_ERR_EID, f"Message tbl verify err - {verdict.fault}")
+        self._cfe.evs.send_dbg(ev.MESSAGE_TABLE_EID, f"Message tbl verify results - {verdict.counts}")
         return self._count(verdict)
 
     def _count(self, verdict: Verdict) -> int:

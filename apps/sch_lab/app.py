@@ -15,7 +15,6 @@ from cfepy.versions import version_string
 from . import schedule
 
 VERSION = version_string("SCH Lab", "equuleus-rc1+dev29", "Equuleus", "v2.3.0")
-TABLE_NAME = "ScheduleTable"
 TIME_ONEHZ_MID = local_cmd_topic_id_to_msg_id(0x11)
 PIPE_NAME = "SCH_LAB_CMD_PIPE"
 PIPE_DEPTH = 8
@@ -32,7 +31,7 @@ def SCH_LAB_AppMain(cfe: Cfe) -> None:
     try:
         app.start()
     except CfeError as error:
-        cfe.es.write_to_sys_log(f"SCH_LAB: Error Initializing RC = {_hex(error.status)}")
+        cfe.es.write_to_sys_log(f"SCH_LAB: Error Initializing RC = {error.long_hex}")
         cfe.es.exit_app(APP_ERROR)  # does not return
     while cfe.es.run_loop():
         cfe.es.perf_log_exit(PERF_ID)
@@ -80,7 +79,7 @@ class Scheduler:
         cfe, step = self._cfe, ""
         try:
             step = "Registering"
-            handle = cfe.tbl.register(TABLE_NAME, schedule.TABLE.size)
+            handle = cfe.tbl.register(schedule.SCHEDULE_TABLE.own_name, schedule.SCHEDULE_TABLE.size)
             step = "Loading Table"
             status = cfe.tbl.load(handle, schedule.SCHEDULE_TABLE.file)
             if status != CFE_SUCCESS:
@@ -88,7 +87,7 @@ class Scheduler:
             step = "Getting Table's Address"
             table, _ = cfe.tbl.get_address(handle)
         except CfeError as error:
-            cfe.es.write_to_sys_log(f"SCH_LAB: Error {step} {TABLE_NAME}, RC = {_hex(error.status)}")
+            cfe.es.write_to_sys_log(f"SCH_LAB: Error {step} {schedule.SCHEDULE_TABLE.own_name}, RC = {error.long_hex}")
             raise
         tick_rate, self._entries = schedule.read(table)
         cfe.tbl.release_address(handle)
@@ -127,8 +126,3 @@ class Scheduler:
             for entry in self._entries:
                 if entry.tick():
                     cfe.sb.transmit_msg(entry.packet)
-
-
-def _hex(status: int) -> str:
-    """A status as C prints an int cast to unsigned long."""
-    return f"0x{status & 0xFFFFFFFFFFFFFFFF:08X}"

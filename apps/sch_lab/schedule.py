@@ -9,7 +9,7 @@ MAX_ENTRIES = 32
 MAX_PAYLOAD = 64
 
 ENTRY = Layout(
-    "SCH_LAB_ScheduleTableEntry",
+    "SCH_LAB_ScheduleTableEntry_t",
     [
         ("MessageID", "u32"),
         ("PacketRate", "u32"),
@@ -21,7 +21,7 @@ ENTRY = Layout(
 """PacketRate is a period: the command goes out every so many ticks; 0 for never. The payload is bytes here, in C
 16-bit words; the memory is the same."""
 
-TABLE = Layout("SCH_LAB_ScheduleTable", [("TickRate", "u32"), ("Config", (ENTRY, MAX_ENTRIES))])
+TABLE = Layout("SCH_LAB_ScheduleTable_t", [("TickRate", "u32"), ("Config", (ENTRY, MAX_ENTRIES))])
 """TickRate is in ticks a second."""
 
 SCHEDULE_TABLE = TableType(
@@ -70,11 +70,10 @@ def read(table: bytes | memoryview) -> tuple[int, list[Entry]]:
     return values["TickRate"], entries
 
 
-def image(name: str, tick_rate: int, rows: list[tuple[int, int, int, bytes]]) -> TableImage:
+def image(tick_rate: int, rows: list[tuple[int, int, int, bytes]]) -> TableImage:
     """A schedule table's file.
 
     Args:
-        name: full name, "SCH_LAB.ScheduleTable" unless the app is called otherwise.
         tick_rate: ticks a second.
         rows: (message id, period in ticks, function code, payload) of each command.
 
@@ -85,4 +84,4 @@ def image(name: str, tick_rate: int, rows: list[tuple[int, int, int, bytes]]) ->
         {"MessageID": mid, "PacketRate": period, "FcnCode": code, "PayloadLength": len(data), "MessageBuffer": data}
         for mid, period, code, data in rows
     ]
-    return SCHEDULE_TABLE.image({"TickRate": tick_rate, "Config": config})._replace(name=name)
+    return SCHEDULE_TABLE.image({"TickRate": tick_rate, "Config": config})

@@ -11,7 +11,7 @@ from cfepy.sb import POLL
 from cfepy.status import CFE_SUCCESS, CfeError
 from cfepy.versions import version_string
 
-from . import events as eid
+from . import events as ev
 from . import packets as pk
 from .commands import Commands, qos_of
 from .downlink import Downlink
@@ -20,7 +20,6 @@ VERSION = version_string("TO Lab", "equuleus-rc1+dev62", "Equuleus", "v2.3.0")
 TASK_MS = 500
 COMMAND_PIPE, COMMAND_PIPE_DEPTH = "TO_LAB_CMD_PIPE", 8
 TELEMETRY_PIPE, TELEMETRY_PIPE_DEPTH = "TO_LAB_TLM_PIPE", 50
-TABLE_NAME = pk.SUBSCRIPTIONS.name.partition(".")[2]
 MAIN_TASK_PERF_ID = 34
 
 
@@ -53,7 +52,7 @@ class TelemetryOutput:
             self._start_pipes()
             refused = self._subscribe()
             text = f"TO Lab Initialized.{VERSION}, Awaiting enable command."
-            cfe.evs.send_info(eid.TO_LAB_INIT_INF_EID, text)
+            cfe.evs.send_info(ev.INIT_INF_EID, text)
         except CfeError:  # it was reported where it happened
             refused = True
         cfe.os.task_install_delete_handler(self._downlink.close)
@@ -74,22 +73,22 @@ class TelemetryOutput:
 
     def _start_table(self) -> None:
         tbl = self._cfe.tbl
-        with self._reporting(eid.TO_LAB_TBL_ERR_EID, eid.REGISTER_LINE, "register table"):
-            table = tbl.register(TABLE_NAME, pk.SUBSCRIPTIONS.size)
-        with self._reporting(eid.TO_LAB_TBL_ERR_EID, eid.LOAD_LINE, "load table"):
+        with self._reporting(ev.TBL_ERR_EID, ev.REGISTER_LINE, "register table"):
+            table = tbl.register(pk.SUBSCRIPTIONS.own_name, pk.SUBSCRIPTIONS.size)
+        with self._reporting(ev.TBL_ERR_EID, ev.LOAD_LINE, "load table"):
             status = tbl.load(table, pk.SUBSCRIPTIONS.file)
             if status != CFE_SUCCESS:
                 raise CfeError(status)
-        with self._reporting(eid.TO_LAB_TBL_ERR_EID, eid.ADDRESS_LINE, "get table addr"):
+        with self._reporting(ev.TBL_ERR_EID, ev.ADDRESS_LINE, "get table addr"):
             self._table, _ = tbl.get_address(table)  # kept as long as the app lives
 
     def _start_pipes(self) -> None:
         sb = self._cfe.sb
-        with self._reporting(eid.TO_LAB_CR_PIPE_ERR_EID, eid.COMMAND_PIPE_LINE, "create cmd pipe"):
+        with self._reporting(ev.CR_PIPE_ERR_EID, ev.COMMAND_PIPE_LINE, "create cmd pipe"):
             self._commands_pipe = sb.create_pipe(COMMAND_PIPE_DEPTH, COMMAND_PIPE)
         sb.subscribe(pk.CMD_MID, self._commands_pipe)
         sb.subscribe(pk.SEND_HK_MID, self._commands_pipe)
-        with self._reporting(eid.TO_LAB_TLMPIPE_ERR_EID, eid.TELEMETRY_PIPE_LINE, "create Tlm pipe"):
+        with self._reporting(ev.TLMPIPE_ERR_EID, ev.TELEMETRY_PIPE_LINE, "create Tlm pipe"):
             self._telemetry = sb.create_pipe(TELEMETRY_PIPE_DEPTH, TELEMETRY_PIPE)
         self._commands = Commands(self._cfe, self._downlink, self._telemetry, self._table, VERSION)
 
@@ -105,8 +104,8 @@ class TelemetryOutput:
                 self._cfe.sb.subscribe_ex(stream, self._telemetry, qos_of(row), row["BufLimit"])
             except CfeError as error:
                 refused = True
-                text = f"L{eid.SUBSCRIBE_LINE} TO Can't subscribe to stream 0x{stream:x} status {error.status}"
-                self._cfe.evs.send_err(eid.TO_LAB_SUBSCRIBE_ERR_EID, text)
+                text = f"L{ev.SUBSCRIBE_LINE} TO Can't subscribe to stream 0x{stream:x} status {error.status}"
+                self._cfe.evs.send_err(ev.SUBSCRIBE_ERR_EID, text)
         return refused
 
     @contextmanager

@@ -8,11 +8,11 @@ from __future__ import annotations
 from typing import Any
 
 from cfepy.app import Cfe
-from cfepy.msg import Command, CommandTable, telemetry
+from cfepy.msg import Command, CommandTable
 from cfepy.msg.dispatch import BAD_CODE, BAD_MSG_ID
 from cfepy.status import CfeError
 
-from . import events as eid
+from . import events as ev
 from . import packets as pk
 from .downlink import Downlink
 
@@ -63,42 +63,41 @@ class Commands:
             (pk.REMOVE_PKT, self._remove_packet),
             (pk.REMOVE_ALL_PKT, self._remove_all),
             (pk.OUTPUT_ENABLE, self._enable_output),
+            (pk.SEND_HK, self._send_hk),
         ):
-            assert command.code is not None
-            self._commands.add(command.msg_id, command.code, 0, handler)
-        self._commands.add_message(pk.SEND_HK_MID, 0, self._send_hk)
+            self._commands.handle(command, handler, any_length=True)
 
     def handle(self, packet: bytes) -> None:
         """Do a command, or tell the ground why not."""
         done = self._commands.dispatch(packet)
         if done.outcome == BAD_CODE:
             self._rejected += 1
-            where = f"L{eid.FUNCTION_CODE_LINE} TO"
+            where = f"L{ev.FUNCTION_CODE_LINE} TO"
             text = f"{where}: Invalid Function Code Rcvd In Ground Command 0x{done.fcn_code:x}"
-            self._cfe.evs.send_err(eid.TO_LAB_FNCODE_ERR_EID, text)
+            self._cfe.evs.send_err(ev.FNCODE_ERR_EID, text)
         elif done.outcome == BAD_MSG_ID:
-            text = f"L{eid.MSG_ID_LINE} TO: Invalid Msg ID Rcvd 0x{done.msg_id:x}"
-            self._cfe.evs.send_err(eid.TO_LAB_MID_ERR_EID, text)
+            text = f"L{ev.MSG_ID_LINE} TO: Invalid Msg ID Rcvd 0x{done.msg_id:x}"
+            self._cfe.evs.send_err(ev.MID_ERR_EID, text)
 
     def _noop(self, packet: bytes) -> None:
-        self._cfe.evs.send_info(eid.TO_LAB_NOOP_INF_EID, f"TO: NOOP command. {self._version}")
+        self._cfe.evs.send_info(ev.NOOP_INF_EID, f"TO: NOOP command. {self._version}")
         self._accepted += 1
 
     def _reset_status(self, packet: bytes) -> None:
         self._accepted = self._rejected = 0
-        self._cfe.evs.send_info(eid.TO_LAB_RESET_INF_EID, "Reset counters command")
+        self._cfe.evs.send_info(ev.RESET_INF_EID, "Reset counters command")
 
     def _send_hk(self, packet: bytes) -> None:
-        payload = pk.HOUSEKEEPING.pack(CommandCounter=self._accepted & 0xFF, CommandErrorCounter=self._rejected & 0xFF)
-        self._cfe.sb.transmit_msg(telemetry(pk.HK_TLM_MID, payload))
+        counters = {"CommandCounter": self._accepted & 0xFF, "CommandErrorCounter": self._rejected & 0xFF}
+        self._cfe.sb.transmit_msg(pk.HK_TLM.packet(counters))
 
     def _send_data_types(self, packet: bytes) -> None:
-        self._cfe.sb.transmit_msg(telemetry(pk.DATA_TYPES_MID, pk.DATA_TYPES.pack(SAMPLE)))
+        self._cfe.sb.transmit_msg(pk.DATA_TYPES_TLM.packet(SAMPLE))
         self._accepted += 1
 
     def _enable_output(self, packet: bytes) -> None:
         host = read(pk.OUTPUT_ENABLE, packet)["dest_IP"]
-        self._cfe.evs.send_info(eid.TO_LAB_TLMOUTENA_INF_EID, f"TO telemetry output enabled for IP {host}")
+        self._cfe.evs.send_info(ev.TLMOUTENA_INF_EID, f"TO telemetry output enabled for IP {host}")
         self._downlink.enable(host)
         self._accepted += 1
 
@@ -108,12 +107,12 @@ class Commands:
         try:
             self._cfe.sb.subscribe_ex(stream, self._pipe, qos_of(given), limit)
         except CfeError as error:
-            text = f"L{eid.ADD_ERROR_LINE} TO Can't subscribe 0x{stream:x} status {error.status}"
-            evs.send_err(eid.TO_LAB_ADDPKT_ERR_EID, text)
+            text = f"L{ev.ADD_ERROR_LINE} TO Can't subscribe 0x{stream:x} status {error.status}"
+            evs.send_err(ev.ADDPKT_ERR_EID, text)
         else:
             quality = f"QoS {flags['Priority']}.{flags['Reliability']}"
-            text = f"L{eid.ADD_LINE} TO AddPkt 0x{stream:x}, {quality}, limit {limit}"
-            evs.send_info(eid.TO_LAB_ADDPKT_INF_EID, text)
+            text = f"L{ev.ADD_LINE} TO AddPkt 0x{stream:x}, {quality}, limit {limit}"
+            evs.send_info(ev.ADDPKT_INF_EID, text)
         self._accepted += 1
 
     def _remove_packet(self, packet: bytes) -> None:
@@ -121,27 +120,27 @@ class Commands:
         try:
             self._cfe.sb.unsubscribe(stream, self._pipe)
         except CfeError as error:
-            text = f"L{eid.REMOVE_ERROR_LINE} TO Can't Unsubscribe to Stream 0x{stream:x}, status {error.status}"
-            evs.send_err(eid.TO_LAB_REMOVEPKT_ERR_EID, text)
+            text = f"L{ev.REMOVE_ERROR_LINE} TO Can't Unsubscribe to Stream 0x{stream:x}, status {error.status}"
+            evs.send_err(ev.REMOVEPKT_ERR_EID, text)
         else:
-            evs.send_info(eid.TO_LAB_REMOVEPKT_INF_EID, f"L{eid.REMOVE_LINE} TO RemovePkt 0x{stream:x}")
+            evs.send_info(ev.REMOVEPKT_INF_EID, f"L{ev.REMOVE_LINE} TO RemovePkt 0x{stream:x}")
         self._accepted += 1
 
     def _remove_all(self, packet: bytes) -> None:
         for row in pk.SUBSCRIPTIONS.unpack(self._table):
             if self._cfe.sb.is_valid_msg_id(row["Stream"]):
                 self._remove_row(row["Stream"])
-        text = f"L{eid.REMOVE_ALL_LINE} TO Unsubscribed to all Commands and Telemetry"
-        self._cfe.evs.send_info(eid.TO_LAB_REMOVEALLPKTS_INF_EID, text)
+        text = f"L{ev.REMOVE_ALL_LINE} TO Unsubscribed to all Commands and Telemetry"
+        self._cfe.evs.send_info(ev.REMOVEALLPKTS_INF_EID, text)
         self._accepted += 1
 
     def _remove_row(self, stream: int) -> None:
         try:
             self._cfe.sb.unsubscribe(stream, self._pipe)
         except CfeError as error:
-            where = f"L{eid.REMOVE_ALL_ERROR_LINE} TO"
+            where = f"L{ev.REMOVE_ALL_ERROR_LINE} TO"
             text = f"{where} Can't Unsubscribe to stream 0x{stream:x} status {error.status}"
-            self._cfe.evs.send_err(eid.TO_LAB_REMOVEALLPTKS_ERR_EID, text)
+            self._cfe.evs.send_err(ev.REMOVEALLPTKS_ERR_EID, text)
 
 
 def read(command: Command, packet: bytes) -> dict[str, Any]:

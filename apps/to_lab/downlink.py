@@ -5,12 +5,11 @@ from __future__ import annotations
 from contextlib import suppress
 
 from cfepy.app import Cfe
-from cfepy.osal.sockaddr import OS_SocketDomain_INET
-from cfepy.osal.streams import OS_SocketType_DATAGRAM
+from cfepy.osal import OS_SocketDomain_INET, OS_SocketType_DATAGRAM
 from cfepy.sb import POLL
 from cfepy.status import OsalError
 
-from . import events as eid
+from . import events as ev
 
 TLM_PORT = 1235
 MAX_PACKETS = 50  # in one round
@@ -65,12 +64,12 @@ class Downlink:
         self._cfe.es.perf_log_exit(SOCKET_SEND_PERF_ID)
         if status:
             self._suppressed = True
-            text = f"L{eid.SEND_LINE} TO sendto error {status}. Tlm output suppressed\n"
-            self._cfe.evs.send_err(eid.TO_LAB_TLMOUTSTOP_ERR_EID, text)
+            text = f"L{ev.SEND_LINE} TO sendto error {status}. Tlm output suppressed\n"
+            self._cfe.evs.send_err(ev.TLMOUTSTOP_ERR_EID, text)
 
     def _open(self) -> None:
         try:
             self._socket = self._cfe.os.socket_open(OS_SocketDomain_INET, OS_SocketType_DATAGRAM)
         except OsalError as error:
-            text = f"L{eid.SOCKET_LINE}, TO TLM socket error: {error.status}"
-            self._cfe.evs.send_err(eid.TO_LAB_TLMOUTSOCKET_ERR_EID, text)
+            text = f"L{ev.SOCKET_LINE}, TO TLM socket error: {error.status}"
+            self._cfe.evs.send_err(ev.TLMOUTSOCKET_ERR_EID, text)

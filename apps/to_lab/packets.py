@@ -10,16 +10,16 @@ SEND_HK_MID = local_cmd_topic_id_to_msg_id(0x81)
 HK_TLM_MID = local_tlm_topic_id_to_msg_id(0x80)
 DATA_TYPES_MID = local_tlm_topic_id_to_msg_id(0x81)
 
-QOS = Layout("CFE_SB_Qos", [("Priority", "u8"), ("Reliability", "u8")])
-ADD_PACKET = Layout("TO_LAB_AddPacket_Payload", [("Stream", "u32"), ("Flags", QOS), ("BufLimit", "u8")])
-REMOVE_PACKET = Layout("TO_LAB_RemovePacket_Payload", [("Stream", "u32")])
-ENABLE_OUTPUT = Layout("TO_LAB_EnableOutput_Payload", [("dest_IP", "char[16]")])
+QOS = Layout("CFE_SB_Qos_t", [("Priority", "u8"), ("Reliability", "u8")])
+ADD_PACKET = Layout("TO_LAB_AddPacket_Payload_t", [("Stream", "u32"), ("Flags", QOS), ("BufLimit", "u8")])
+REMOVE_PACKET = Layout("TO_LAB_RemovePacket_Payload_t", [("Stream", "u32")])
+ENABLE_OUTPUT = Layout("TO_LAB_EnableOutput_Payload_t", [("dest_IP", "char[16]")])
 
 HOUSEKEEPING = Layout(
-    "TO_LAB_HkTlm_Payload", [("CommandCounter", "u8"), ("CommandErrorCounter", "u8"), ("spareToAlign", "u8[2]")]
+    "TO_LAB_HkTlm_Payload_t", [("CommandCounter", "u8"), ("CommandErrorCounter", "u8"), ("spareToAlign", "u8[2]")]
 )
 DATA_TYPES = Layout(
-    "TO_LAB_DataTypes_Payload",
+    "TO_LAB_DataTypes_Payload_t",
     [
         ("synch", "u16"),
         *((name, "u8") for name in ("bl1", "bl2")),
@@ -47,7 +47,7 @@ DATA_TYPES_TLM = Telemetry("TO_LAB_DATA_TYPES", DATA_TYPES_MID, DATA_TYPES, "A f
 COMMANDS = (NOOP, RESET_STATUS, ADD_PKT, SEND_DATA_TYPES, REMOVE_PKT, REMOVE_ALL_PKT, OUTPUT_ENABLE, SEND_HK)
 TELEMETRY = (HK_TLM, DATA_TYPES_TLM)
 
-SUBSCRIPTION = Layout("TO_LAB_Sub", [("Stream", "u32"), ("Flags", QOS), ("BufLimit", "u16")])
+SUBSCRIPTION = Layout("TO_LAB_Sub_t", [("Stream", "u32"), ("Flags", QOS), ("BufLimit", "u16")])
 SUBSCRIPTIONS = TableType(
     "TO_LAB.TO_LAB_Subs", SUBSCRIPTION, rows=32, file="/cf/to_lab_sub.tbl", description="TO Lab Sub Tbl"
 )

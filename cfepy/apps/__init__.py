@@ -4,6 +4,8 @@ Missions use their layouts to write table files. A running mission does not impo
 anew for every start.
 """
 
+from __future__ import annotations
+
 from cfepy.resources import shipped
 
 __path__ = [str(shipped("apps"))]

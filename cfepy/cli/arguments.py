@@ -15,7 +15,7 @@ STATUS_HELP = """exit status:
   1    an application died or could not be started, a mission's own application sent an ERROR or CRITICAL event,
        or a failure reset the processor; with --script, a step of the script failed and nothing else counts
   2    bad usage, or a mission that cannot boot
-  130  ended by Ctrl-C (the report is still printed)"""
+  130  ended by Ctrl-C or SIGTERM (the report is still printed)"""
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -37,6 +37,14 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     run.add_argument("mission", metavar="MISSION", help=MISSION_HELP)
+    _add_machine(run)
+    _add_outside(run)
+    _add_outputs(run)
+    run.set_defaults(module="run")
+
+
+def _add_machine(run: argparse.ArgumentParser) -> None:
+    """How long the run is, and on what."""
     run.add_argument(
         "--for",
         dest="seconds",
@@ -55,6 +63,10 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         default="fifo",
         help="who is next among ready tasks of equal priority: the first that became ready, or any, by the seed",
     )
+
+
+def _add_outside(run: argparse.ArgumentParser) -> None:
+    """What the run has to do with the world outside: its clock, its ports, a script."""
     run.add_argument(
         "--realtime",
         nargs="?",
@@ -74,6 +86,9 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     )
     run.add_argument("--script", metavar="FILE", help="send commands and check what comes of them, as a script says")
     run.add_argument("--stop-on-failure", action="store_true", help="end the run with the script's first failed step")
+
+
+def _add_outputs(run: argparse.ArgumentParser) -> None:
     run.add_argument("--json", metavar="FILE", help="write the report's numbers to a file")
     run.add_argument(
         "--save-files",
@@ -82,7 +97,6 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     )
     run.add_argument("--trace", metavar="FILE", help="write everything that happened to a file, a line each")
     run.add_argument("--quiet", action="store_true", help="no console and no status line, only the report")
-    run.set_defaults(module="run")
 
 
 def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -125,6 +139,13 @@ def _add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
 def seconds_of(text: str) -> float:
     """A time in s, for argparse."""
     return _between(text, 0, LONGEST_S, "a number of seconds")
+
+
+def count_of(text: str) -> int:
+    """How many, at least one, for argparse."""
+    if not text.isdecimal() or int(text) == 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of packets; give 1 or more")
+    return int(text)
 
 
 def factor_of(text: str) -> float:

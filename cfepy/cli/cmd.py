@@ -6,19 +6,19 @@ import argparse
 import sys
 from fnmatch import fnmatchcase
 
-from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.failures import booting
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.table import Table, show_tables
-from cfepy.cli.target import dictionary_for, host_of
+from cfepy.cli.target import Host, check_is_mission, dictionary_for, host_of
 from cfepy.io import udp
 from cfepy.mission.command_trial import Trial, try_command
 from cfepy.mission.dictionary import Dictionary
+from cfepy.mission.ground import CI_PORT
 from cfepy.mission.spec import read_mission
 from cfepy.mission.values import line_of, packet_of
 from cfepy.msg import Command
 from cfepy.rtos.units import NS_PER_S
-from cfepy.status import CfeError, UsageError
-
-CI_PORT = 1234
+from cfepy.status import UsageError
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -32,6 +32,8 @@ def run(arguments: argparse.Namespace) -> int:
     """
     target: str | None = arguments.target
     host = host_of(target, CI_PORT) if target is not None else None
+    if target is not None and host is None:
+        check_is_mission(target)
     mission = arguments.mission if host is not None or target is None else target
     dictionary = dictionary_for(mission)
     if arguments.list is not None:
@@ -46,10 +48,16 @@ def run(arguments: argparse.Namespace) -> int:
         print(packet.hex())
         return ENDED_WELL
     if host is not None:
-        udp.send(host.name, host.port, packet)
-        print(f"{declared.name} sent to {host}, {len(packet)} bytes")
-        return ENDED_WELL
+        return _send(host, declared, packet)
     return _fly(target, dictionary, declared, packet, arguments.seconds)
+
+
+def _send(host: Host, declared: Command, packet: bytes) -> int:
+    if not udp.send(host.name, host.port, packet):
+        print(f"cfepy: {host}: nobody listens there; {declared.name} is lost", file=sys.stderr)
+        return FOUND_PROBLEMS
+    print(f"{declared.name} sent to {host}, {len(packet)} bytes")
+    return ENDED_WELL
 
 
 def _list(dictionary: Dictionary, pattern: str) -> int:
@@ -83,14 +91,14 @@ def _say_problems(dictionary: Dictionary) -> None:
 
 def _fly(target: str, dictionary: Dictionary, declared: Command, packet: bytes, seconds: float) -> int:
     spec = read_mission(target)
-    try:
+    with booting(spec.script):
         trial = try_command(spec, dictionary, packet, seconds)
-    except CfeError as error:
-        print(f"cfepy: {spec.script}: {error}", file=sys.stderr)
-        return BAD_USAGE
     print(f"{trial.sent_ns / NS_PER_S:.3f} {declared.name} sent to {', '.join(trial.receivers) or 'nobody'}")
     _say_what_followed(trial, dictionary)
-    return ENDED_WELL if trial.receivers and not trial.errors else FOUND_PROBLEMS
+    sys.stdout.flush()
+    for problem in trial.problems:
+        print(f"cfepy: {problem}", file=sys.stderr)
+    return ENDED_WELL if trial.receivers and not trial.errors and not trial.problems else FOUND_PROBLEMS
 
 
 def _say_what_followed(trial: Trial, dictionary: Dictionary) -> None:

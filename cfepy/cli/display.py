@@ -6,7 +6,6 @@ dozen milliseconds later, and shown in one go, so that drawing costs the run nex
 
 from __future__ import annotations
 
-import io
 import sys
 from typing import TYPE_CHECKING, Protocol, TextIO
 
@@ -143,8 +142,6 @@ def make_display(quiet: bool, seconds: float) -> Display:
     """
     if quiet:
         return SilentDisplay()
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")  # what the encoding lacks must not stop the task that says it
     return LiveDisplay(sys.stdout, seconds) if sys.stdout.isatty() else PlainDisplay(sys.stdout)
 
 

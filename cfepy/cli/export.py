@@ -6,12 +6,12 @@ import argparse
 import sys
 from pathlib import Path
 
-from cfepy.cli.main import BAD_USAGE, ENDED_WELL
+from cfepy.cli.failures import booting, writing
+from cfepy.cli.main import ENDED_WELL
 from cfepy.mission import read_mission
 from cfepy.mission.dictionary import dictionary_of
 from cfepy.mission.topics import surveyed_topics
 from cfepy.mission.xtce import xtce_of
-from cfepy.status import CfeError, UsageError
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -21,23 +21,18 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: there is no such mission, or the file cannot be written.
+        UsageError: there is no such mission, it cannot boot, or the file cannot be written.
     """
     spec = read_mission(arguments.mission)
     dictionary = dictionary_of(spec)
-    try:
+    with booting(spec.script):
         dictionary.learn(surveyed_topics(spec))
-    except CfeError as error:
-        print(f"cfepy: {spec.script}: the mission cannot boot: {error}", file=sys.stderr)
-        return BAD_USAGE
     for problem in dictionary.problems:
         print(f"cfepy: {problem}", file=sys.stderr)
     document = xtce_of(spec.name, dictionary)
     if arguments.output is None:
         sys.stdout.write(document)
         return ENDED_WELL
-    try:
+    with writing(arguments.output, "--output"):
         Path(arguments.output).write_text(document, encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"cannot be written: {error.strerror}", file=arguments.output, field="--output") from None
     return ENDED_WELL

@@ -128,7 +128,7 @@ class Flight:
 
 
 class Interrupts:
-    """What Ctrl-C does while a mission runs and ends; use as a context manager.
+    """What Ctrl-C and SIGTERM do while a mission runs and ends; use as a context manager.
 
     The first one sets `asked`, for the run to end at the next occasion. The second one raises KeyboardInterrupt, for a
     task that gives no occasion. Any more are ignored for a while: they would disturb the ending of tasks. After that
@@ -138,19 +138,20 @@ class Interrupts:
     def __init__(self) -> None:
         self.asked = False
         self._count = 0
-        self._before: Any = None
+        self._before: dict[signal.Signals, Any] = {}
         self._since_second = Stopwatch()
 
     def __enter__(self) -> Interrupts:
         try:
-            self._before = signal.signal(signal.SIGINT, self._on_signal)
+            for each in (signal.SIGINT, signal.SIGTERM):
+                self._before[each] = signal.signal(each, self._on_signal)
         except ValueError:
-            pass  # not the main thread: Ctrl-C does not come here
+            pass  # not the main thread: signals do not come here
         return self
 
     def __exit__(self, *error: object) -> None:
-        if self._before is not None:
-            signal.signal(signal.SIGINT, self._before)
+        for each, handler in self._before.items():
+            signal.signal(each, handler)
 
     def _on_signal(self, *_: object) -> None:
         self.asked = True

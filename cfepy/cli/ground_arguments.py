@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from cfepy.cli.arguments import MISSION_HELP, seconds_of
+from cfepy.cli.arguments import MISSION_HELP, count_of, seconds_of
 
 DICTIONARY_HELP = "take names from this mission (default: the services and the apps that cfepy brings along)"
 
@@ -21,7 +21,8 @@ def _add_cmd(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         "cmd",
         help="send a command by its name, or list the commands",
         description="Send a command to a flight computer, or to a mission that is flown for it in virtual time.",
-        epilog="exit status: 0 well, 1 an ERROR or CRITICAL event followed, or nobody takes it; 2 bad usage",
+        epilog="exit status: 0 well, 1 an ERROR or CRITICAL event followed, an application died, or nobody takes it; "
+        "2 bad usage",
     )
     cmd.add_argument(
         "target",
@@ -51,6 +52,7 @@ def _add_tlm(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         "tlm",
         help="show telemetry by name",
         description="Show telemetry that arrives over UDP, or that of a mission which is flown in virtual time.",
+        epilog="exit status: 0 well, 1 no packet came, 2 bad usage, 130 ended by Ctrl-C",
     )
     tlm.add_argument(
         "words",
@@ -60,7 +62,7 @@ def _add_tlm(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     )
     tlm.add_argument("--mission", metavar="MISSION", help=DICTIONARY_HELP)
     tlm.add_argument("--enable", metavar="HOST[:PORT]", help="ask TO_LAB there to begin to send (default port: 1234)")
-    tlm.add_argument("--count", type=int, metavar="N", help="end after so many packets")
+    tlm.add_argument("--count", type=count_of, metavar="N", help="end after so many packets")
     tlm.add_argument(
         "--for",
         dest="seconds",

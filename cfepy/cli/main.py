@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import importlib
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -32,7 +33,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns:
         The exit status.
     """
-    _open_closed_streams()
+    _prepare_streams()
     chosen = _parser().parse_args(argv)
     try:
         run = importlib.import_module(f"cfepy.cli.{chosen.module}").run
@@ -76,13 +77,21 @@ class _MixedParser(argparse.ArgumentParser):
             return super().parse_known_args(args, namespace)
         self._is_mixing = True
         try:
-            return self.parse_known_intermixed_args(args, namespace)
+            found, left = self.parse_known_intermixed_args(args, namespace)
         finally:
             self._is_mixing = False
+        if left:  # told here, so that the usage shown is that of the command
+            self.error(f"unrecognized arguments: {' '.join(left)}")
+        return found, left
 
 
-def _open_closed_streams() -> None:
-    """A process that was started without standard output or error gets ones that go nowhere."""
+def _prepare_streams() -> None:
+    """A process that was started without standard output or error gets ones that go nowhere.
+
+    A text may hold bytes of a packet or a file that the encoding lacks: that must not stop who says it.
+    """
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  # as long as the process
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")

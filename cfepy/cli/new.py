@@ -22,7 +22,8 @@ TEMPLATES = Path(__file__).with_name("templates")
 APP_SUFFIX = "_app"
 LONGEST_APP = 14  # its entry point, NAME_Main, must fit the 19 characters that cFE takes
 LONGEST = {"app": LONGEST_APP, "mission": LONGEST_APP - len(APP_SUFFIX)}
-TAKEN = ("cfepy", "rospy", "rospy_shim", "std_msgs", "sample", "sample_lib", "hk", "sch", "sch_lab", "sch_lib")
+SHIPPED = ("ci_lab", "hk", "sample_app", "sample_lib", "sch", "sch_lab", "sch_lib", "to_lab")
+TAKEN = ("cfepy", "rospy", "rospy_shim", "std_msgs", *SHIPPED)
 LIBRARY = "library"  # the sample's use of the sample library, which nothing of one's own needs
 FIRST_TOPIC, TOPIC_PAIRS = 0xA0, 0x30  # topic ids of new apps: behind those of NASA's apps, before those of ROS topics
 

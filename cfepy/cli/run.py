@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from cfepy.cli import report
 from cfepy.cli.arguments import LONGEST_S
 from cfepy.cli.display import Display, make_display
+from cfepy.cli.failures import booting, writing
 from cfepy.cli.flight import Flight, Interrupts
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.saved_files import save_files, saving_to
@@ -22,7 +23,7 @@ from cfepy.mission.results import Results
 from cfepy.rtos.policy import SeededRandom
 from cfepy.rtos.units import NS_PER_S
 from cfepy.sb import SoftwareBus
-from cfepy.status import CfeError, UsageError
+from cfepy.status import UsageError
 
 if TYPE_CHECKING:
     from cfepy.io.host_network import HostNetwork
@@ -52,11 +53,8 @@ def _run(arguments: argparse.Namespace, interrupts: Interrupts) -> int:
     numbers = _output(arguments.json)
     folder = saving_to(arguments.save_files)
     script = _script(arguments, spec)
-    try:
+    with booting(spec.script):
         flight = _fly(arguments, spec, interrupts, script)
-    except CfeError as error:
-        print(f"cfepy: {spec.script}: the mission cannot boot: {error}", file=sys.stderr)
-        return BAD_USAGE
     results = Results.of(flight.mission, flight.at, flight.trace)
     unwritten = None if numbers is None else _write(numbers, results, flight.outcome)
     report.show(results, sys.stdout)
@@ -152,10 +150,8 @@ def _output(file: str | None) -> Path | None:
     if file is None:
         return None
     path = Path(file)
-    try:
+    with writing(path, "--json"):
         path.open("a").close()
-    except OSError as error:
-        raise UsageError(f"cannot be written: {error.strerror}", file=file, field="--json") from None
     return path
 
 
@@ -176,9 +172,10 @@ def _explain(results: Results, arguments: argparse.Namespace, interrupted: bool)
     for problem in (*results.script_problems, *results.problems):
         print(f"cfepy: {problem}", file=sys.stderr)
     if results.script_problems:
-        print(f'cfepy: "cfepy check {arguments.mission}" says what is wrong with the mission', file=sys.stderr)
+        text = f'the console says why, and "cfepy check {arguments.mission}" what can be seen without running it'
+        print(f"cfepy: {text}", file=sys.stderr)
     if interrupted:
-        print(f"cfepy: ended by Ctrl-C after {results.virtual_s:g} virtual seconds", file=sys.stderr)
+        print(f"cfepy: ended by Ctrl-C or SIGTERM after {results.virtual_s:g} virtual seconds", file=sys.stderr)
     elif results.booted_s is None:
         text = f"not OPERATIONAL after {results.virtual_s:g} virtual seconds; run it for longer (--for)"
         print(f"cfepy: {text}", file=sys.stderr)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from cfepy.mission import read_mission
 from cfepy.mission.dictionary import Dictionary, dictionary_of
+from cfepy.mission.spec import find_script
 from cfepy.status import UsageError
 
 _HOST = re.compile(r"((?:\d{1,3}\.){3}\d{1,3}|localhost)(?::(\d+))?|([\w.-]+):(\d+)")
@@ -40,6 +41,21 @@ def host_of(text: str, port: int) -> Host | None:
     if given is not None and not 0 < int(given) <= LAST_PORT:
         raise UsageError(f"{given} is no port; give 1 to {LAST_PORT}", file=text)
     return Host(match[1] or match[3], port if given is None else int(given))
+
+
+def check_is_mission(text: str) -> None:
+    """What is no computer must be a mission.
+
+    Raises:
+        UsageError: it is neither.
+    """
+    try:
+        find_script(text)
+    except UsageError as error:
+        if text in dictionary_of(None).commands:
+            raise UsageError("is a command; say first where to: a mission, or a computer", file=text) from None
+        what = "an address such as 192.168.1.5, localhost, or NAME:PORT"
+        raise UsageError(f"{error.text}; a computer is {what}", file=text) from None
 
 
 def dictionary_for(mission: str | None) -> Dictionary:

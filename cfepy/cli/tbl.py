@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from cfepy.cli.failures import writing
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.table import Table, show_tables
 from cfepy.mission import table_yaml
@@ -67,7 +68,8 @@ def _build(arguments: argparse.Namespace, find: Find) -> int:
     file = table_yaml.read(path, find)
     if arguments.mark:
         file = file.marked()
-    _write(target, file.pack())
+    with writing(target, "--output"):
+        target.write_bytes(file.pack())
     print(f"{target}: {file.table.table_name}, {_extent(file)}")
     return ENDED_WELL
 
@@ -88,15 +90,9 @@ def _show(arguments: argparse.Namespace, find: Find) -> int:
     if arguments.output is None:
         sys.stdout.write(text)
     else:
-        _write(Path(arguments.output), text.encode())
+        with writing(arguments.output, "--output"):
+            Path(arguments.output).write_bytes(text.encode())
     return ENDED_WELL
-
-
-def _write(path: Path, data: bytes) -> None:
-    try:
-        path.write_bytes(data)
-    except OSError as error:
-        raise UsageError(f"cannot be written: {error.strerror}", file=path, field="--output") from None
 
 
 def _for_people(file: TableFile) -> str:

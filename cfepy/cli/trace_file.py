@@ -10,12 +10,13 @@ import struct
 from types import TracebackType
 
 from cfepy import trace as tr
+from cfepy.cli.failures import writing
 from cfepy.mission import Mission
 from cfepy.mission.msg_names import names_of
+from cfepy.mission.watch import HOST
 from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
 
-HOST = "host"
 _FIRST_MARK = 0x20  # smaller first bytes begin packets
 _number = struct.Struct("<xH").unpack
 
@@ -31,10 +32,8 @@ class TraceFile:
     """
 
     def __init__(self, path: str) -> None:
-        try:
+        with writing(path, "--trace"):
             self._file = open(path, "w", encoding="utf-8")  # noqa: SIM115  # closed in __exit__
-        except OSError as error:
-            raise UsageError(f"cannot be written: {error.strerror}", file=path, field="--trace") from None
         self._path = path
         self._mission: Mission | None = None
         self._names: dict[int, str] = {}

@@ -7,28 +7,17 @@ from typing import Any
 
 from cfepy.es import events as ev
 from cfepy.es import packets as pk
+from cfepy.es.command_group import CommandGroup, Handlers
 from cfepy.es.records import StartParams
-from cfepy.es.replies import Handlers, Replies
-from cfepy.es.service import ExecutiveServices
 from cfepy.es.startup_script import EXCEPTION_PROC_RESTART
 from cfepy.fs import FileCategory, parse_input_file_name
 from cfepy.status import CfeError
 
 
-class AppCommands:
-    """Their handlers.
-
-    Args:
-        es: the service.
-        replies: how they answer.
-    """
-
-    def __init__(self, es: ExecutiveServices, replies: Replies) -> None:
-        self._es = es
-        self._replies = replies
+class AppCommands(CommandGroup):
+    """Starting, ending and restarting applications."""
 
     def handlers(self) -> Handlers:
-        """Which handler belongs to which command."""
         return (
             (pk.START_APP, self._start),
             (pk.STOP_APP, self._stop),

@@ -23,6 +23,7 @@ from cfepy.es.records import (
     TaskRecord,
 )
 from cfepy.es.resets import ResetApi
+from cfepy.ids import name_size
 from cfepy.osal.limits import OS_MAX_API_NAME
 from cfepy.psp.psp import RST_TYPE_PROCESSOR
 from cfepy.status import (
@@ -85,7 +86,7 @@ class AppServices(ResetApi):
         return record.app_id
 
     def _check_new_app(self, name: str) -> None:
-        if not 0 < len(name) <= MAX_NAME:
+        if not 0 < name_size(name) <= MAX_NAME:
             raise CfeError(CFE_ES_BAD_ARGUMENT, f"application name {name!r}: 1 to {MAX_NAME} characters")
         if self.app_named(name) is not None:
             self.write_to_sys_log(f"CFE_ES_AppCreate: Duplicate app name '{name}'")
@@ -120,7 +121,7 @@ class AppServices(ResetApi):
         return record.lib_id
 
     def _check_new_library(self, name: str) -> None:
-        if not 0 < len(name) <= MAX_NAME:
+        if not 0 < name_size(name) <= MAX_NAME:
             raise CfeError(CFE_ES_BAD_ARGUMENT, f"library name {name!r}: 1 to {MAX_NAME} characters")
         if any(lib.name == name for lib in self.libs) or self.app_named(name) is not None:
             self.write_to_sys_log(f"CFE_ES_LoadLibrary: Duplicate Lib name '{name}'")

@@ -1,6 +1,6 @@
 """The Critical Data Store as applications, Table Services and ground commands use it (CFE_ES_*CDS*).
 
-Imports only cfepy.status and its neighbours here.
+Imports only cfepy.ids, cfepy.status and its neighbours here.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from cfepy.es import events as ev
 from cfepy.es.cds import CriticalDataStore
 from cfepy.es.cds_registry import CdsBlock
 from cfepy.es.tables import EsCore
+from cfepy.ids import name_size
 from cfepy.status import (
     CFE_ES_CDS_INVALID_NAME,
     CFE_ES_CDS_INVALID_SIZE,
@@ -80,7 +81,7 @@ class CdsApi(EsCore):
     def _register(self, block_size: int, name: str, app_name: str) -> CdsHandle:
         if self.cds is None or not self.cds.is_available:
             self.write_to_sys_log("CFE_ES_RegisterCDS: CDS not available")
-        elif not 0 < len(name) <= MAX_NAME_LENGTH:
+        elif not 0 < name_size(name) <= MAX_NAME_LENGTH:
             self.write_to_sys_log(f"CFE_ES_RegisterCDS: CDS Name ({name}) is either too long, or an empty string")
             raise CfeError(CFE_ES_CDS_INVALID_NAME, f"CDS name {name!r}: 1 to {MAX_NAME_LENGTH} characters")
         try:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from cfepy.es import events as ev
 from cfepy.es import packets as pk
 from cfepy.es.cds_registry import CdsBlock
+from cfepy.es.command_group import CommandGroup, Handlers
 from cfepy.es.dump_files import CDS_REGISTRY_FILE, write_dump
-from cfepy.es.replies import Handlers, Replies
-from cfepy.es.service import ExecutiveServices
 from cfepy.status import (
     CFE_ES_CDS_OWNER_ACTIVE_ERR,
     CFE_ES_CDS_WRONG_TYPE_ERR,
@@ -30,20 +29,10 @@ _REFUSALS = {
 _OTHER_REFUSAL = (ev.CDS_DELETE_ERR_EID, "Error while deleting '{name}' from CDS, See SysLog.(Err={status})")
 
 
-class CdsCommands:
-    """Their handlers.
-
-    Args:
-        es: the service.
-        replies: how they answer.
-    """
-
-    def __init__(self, es: ExecutiveServices, replies: Replies) -> None:
-        self._es = es
-        self._replies = replies
+class CdsCommands(CommandGroup):
+    """The critical data store."""
 
     def handlers(self) -> Handlers:
-        """Which handler belongs to which command."""
         return (pk.DELETE_CDS, self._delete), (pk.DUMP_CDS_REGISTRY, self._dump_registry)
 
     def _delete(self, packet: bytes) -> None:

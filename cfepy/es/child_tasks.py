@@ -34,13 +34,11 @@ class ChildTaskApi(InfoApi, AppEnd):
             The TaskId.
 
         Raises:
-            CfeError: CFE_ES_BAD_ARGUMENT (no name), CFE_ES_ERR_RESOURCEID_NOT_VALID (the caller belongs to no
-                application), CFE_ES_ERR_CHILD_TASK_CREATE (called by a child task), CFE_STATUS_EXTERNAL_RESOURCE_FAIL
-                (OSAL cannot create it).
+            CfeError: CFE_ES_BAD_ARGUMENT (no name, no function), CFE_ES_ERR_RESOURCEID_NOT_VALID (the caller belongs
+                to no application), CFE_ES_ERR_CHILD_TASK_CREATE (called by a child task),
+                CFE_STATUS_EXTERNAL_RESOURCE_FAIL (OSAL cannot create it).
         """
-        if not name:
-            self.write_to_sys_log("CFE_ES_CreateChildTask: TaskName Parameter is NULL")
-            raise CfeError(CFE_ES_BAD_ARGUMENT, "a child task needs a name")
+        self._check_child(name, entry)
         app = self.app_of_caller()
         if app is None:
             self.write_to_sys_log(f"CFE_ES_CreateChildTask: Invalid calling context when creating Task '{name}'")
@@ -49,6 +47,16 @@ class ChildTaskApi(InfoApi, AppEnd):
             self.write_to_sys_log(f"CFE_ES_CreateChildTask: Error: Cannot call from a Child Task (for Task '{name}').")
             raise CfeError(CFE_ES_ERR_CHILD_TASK_CREATE, "only the main task of an application creates child tasks")
         return self.start_task(app, name, entry, stack_size, priority)
+
+    def _check_child(self, name: str, entry: Callable[[], object]) -> None:
+        if not name:
+            text = "TaskName Parameter is NULL"
+        elif not callable(entry):
+            text = f"Function Pointer Parameter is NULL for Task '{name}'"
+        else:
+            return
+        self.write_to_sys_log(f"CFE_ES_CreateChildTask: {text}")
+        raise CfeError(CFE_ES_BAD_ARGUMENT, f"a child task needs a name and a function, not {name!r} and {entry!r}")
 
     def delete_child_task(self, task_id: int) -> None:
         """End a child task (CFE_ES_DeleteChildTask).

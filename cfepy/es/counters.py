@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from cfepy.es.records import GenCounter
 from cfepy.es.tables import EsCore
-from cfepy.ids import ES_COUNTID_BASE, to_index
+from cfepy.ids import ES_COUNTID_BASE, name_size, to_index
 from cfepy.osal.limits import OS_MAX_API_NAME
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -35,7 +35,7 @@ class CounterApi(EsCore):
         Raises:
             CfeError: CFE_ES_BAD_ARGUMENT, CFE_ES_ERR_DUPLICATE_NAME, CFE_ES_NO_RESOURCE_IDS_AVAILABLE.
         """
-        if len(name) >= OS_MAX_API_NAME:
+        if name_size(name) >= OS_MAX_API_NAME:
             raise CfeError(CFE_ES_BAD_ARGUMENT, f"counter name {name!r} has more than {OS_MAX_API_NAME - 1} characters")
         if any(counter.name == name for counter in self.counters):
             self.write_to_sys_log(f"CFE_ES_RegisterGenCounter: Duplicate Counter name '{name}'")

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from cfepy.core_app import Replies
 from cfepy.es import events as ev
-from cfepy.es.replies import Replies
 from cfepy.es.tables import EsCore
-from cfepy.fs import HEADER_SIZE, FileCategory, init_header, parse_input_file_name_ex
-from cfepy.fs import get_default_extension as extension_of
-from cfepy.fs import get_default_mount_point as mount_point_of
+from cfepy.fs import HEADER_SIZE, dump_file_name, init_header
 from cfepy.fs import header as subtypes
 from cfepy.osal.limits import OS_FILE_FLAG_CREATE, OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY
 from cfepy.status import CfeError
@@ -86,16 +84,6 @@ CDS_REGISTRY_FILE = DumpFile(
 )
 
 
-def dump_path(name: str, default_name: str) -> str:
-    """The path of a dump file out of what a command says.
-
-    Raises:
-        CfeError: as `parse_input_file_name_ex`.
-    """
-    category = FileCategory.BINARY_DATA_DUMP
-    return parse_input_file_name_ex(name, default_name, mount_point_of(category), extension_of(category))
-
-
 def write_dump(es: EsCore, replies: Replies, kind: DumpFile, name: str, records: Iterable[bytes]) -> None:
     """Write a file for a command, and answer the command.
 
@@ -131,7 +119,7 @@ class _Dump:
 
     def write(self, name: str, records: Iterable[bytes]) -> None:
         osal = self._es.osal
-        self.path = dump_path(name, self._kind.default_name)
+        self.path = dump_file_name(name, self._kind.default_name)
         self.trouble = self._kind.no_file
         filedes = osal.open_create(self.path, OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY)
         try:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from cfepy.es.packets import ER_LOG_FILE_ENTRY
 from cfepy.es.reset_data import ErLogEntry, ResetData
+from cfepy.msg import sys_time_fields
 from cfepy.ports import Ports
 
 CORE, APPLICATION = 1, 2
@@ -84,7 +85,7 @@ class ExceptionResetLog:
             "BootSource": entry.boot_source,
             "ProcessorResetCount": entry.processor_reset_count,
             "MaxProcessorResetCount": entry.max_processor_reset_count,
-            "TimeCode": {"Seconds": entry.time[0], "Subseconds": entry.time[1]},
+            "TimeCode": sys_time_fields(entry.time),
             "Description": entry.description.encode("utf-8", "replace")[:MAX_DESCRIPTION],
         }
         return ER_LOG_FILE_ENTRY.pack(BaseInfo=base, ContextSize=len(context), AppID=entry.app_id, Context=context)

@@ -30,9 +30,12 @@ class ExceptionScan:
         es.write_to_sys_log(
             f"CFE_ES_RunExceptionScan: ExceptionID 0x{fault.context_id:x} in TaskID {fault.task_id}: {fault.reason}"
         )
-        app = es.faulty_apps.pop(fault.task_id, None)
-        if app is not None and es.apps.find(app.app_id) is app:  # else it failed while it was being ended anyway
-            self._answer(app, fault)
+        faulty = next((each for each in es.faulty_apps if each[0] == fault.task_id), None)
+        if faulty is not None:
+            es.faulty_apps.remove(faulty)
+            app = faulty[1]
+            if es.apps.find(app.app_id) is app:  # else it failed while it was being ended anyway
+                self._answer(app, fault)
         return True
 
     def _answer(self, app: AppRecord, fault: ExceptionSummary) -> None:

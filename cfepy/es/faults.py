@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from pathlib import PurePath
 
+from cfepy.es.erlog import MAX_CONTEXT
 from cfepy.es.records import AppRecord
 from cfepy.es.tables import EsCore
 from cfepy.rtos import Task
-from cfepy.status import OsalError
-
-MAX_CONTEXT = 256
 
 
 class FaultApi(EsCore):
@@ -33,21 +31,14 @@ class FaultApi(EsCore):
         history = self.history_of(app.name)
         history.deaths += 1
         history.last_error = error
-        task_id = self._id_of(task)
-        self.faulty_apps[task_id] = app
-        self.psp.store_exception(task_id, reason, _places(error))
+        if self.psp.store_exception(task.number, reason, _places(error)):
+            self.faulty_apps.append((task.number, app))
         self.process_async_event()
         return True
 
     def process_async_event(self) -> None:
         """Something happened that the background task has to see at once (CFE_ES_ProcessAsyncEvent)."""
         self.background_wakeup()
-
-    def _id_of(self, task: Task) -> int:
-        try:
-            return self.osal.task_find_id_by_system_data(task)
-        except OsalError:
-            return 0  # it is being deleted
 
 
 def _places(error: BaseException) -> bytes:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from cfepy.core_app import Replies
 from cfepy.es.perf_dump import PerfDump
-from cfepy.es.replies import Replies
 from cfepy.es.service import ExecutiveServices
 from cfepy.status import CfeError
+from cfepy.versions import VERSION_NUMBER
 
-CFE_VERSION_NUMBER = (7, 0, 0, 0)
 _VERSION_PARTS = ("MajorVersion", "MinorVersion", "Revision", "MissionRevision")
 
 
@@ -24,7 +24,7 @@ def housekeeping(es: ExecutiveServices, replies: Replies, dump: PerfDump, checks
         "CommandCounter": replies.command_counter & 0xFF,
         "CommandErrorCounter": replies.error_counter & 0xFF,
         "CFECoreChecksum": checksum,
-        **_versions("CFE", CFE_VERSION_NUMBER),
+        **_versions("CFE", VERSION_NUMBER),
         **_versions("OSAL", es.osal.get_version_number()),
         **_versions("PSP", es.psp.get_version_number()),
         **_logs(es),

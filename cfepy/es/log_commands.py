@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from cfepy.core_app import Replies
 from cfepy.es import events as ev
 from cfepy.es import packets as pk
-from cfepy.es.dump_files import SYS_LOG_FILE, dump_path, write_dump
-from cfepy.es.replies import Handlers, Replies
+from cfepy.es.command_group import CommandGroup, Handlers
+from cfepy.es.dump_files import SYS_LOG_FILE, write_dump
 from cfepy.es.service import ExecutiveServices
+from cfepy.fs import dump_file_name
 from cfepy.fs.background import FileWriteEvent, FileWriteMetaData
 from cfepy.fs.header import SUBTYPE_ES_ERLOG
 from cfepy.status import CFE_STATUS_REQUEST_ALREADY_PENDING, CfeError
@@ -15,23 +17,16 @@ ER_LOG_FILE = "/ram/cfe_erlog.log"
 ER_LOG_DESCRIPTION = "ES ERlog data file"
 
 
-class LogCommands:
-    """Their handlers.
-
-    Args:
-        es: the service.
-        replies: how they answer.
-    """
+class LogCommands(CommandGroup):
+    """The two logs."""
 
     def __init__(self, es: ExecutiveServices, replies: Replies) -> None:
-        self._es = es
-        self._replies = replies
+        super().__init__(es, replies)
         self._er_log_file = FileWriteMetaData(
             "", SUBTYPE_ES_ERLOG, ER_LOG_DESCRIPTION, self._er_log_record, self._er_log_written
         )
 
     def handlers(self) -> Handlers:
-        """Which handler belongs to which command."""
         return (
             (pk.CLEAR_SYS_LOG, self._clear_sys_log),
             (pk.WRITE_SYS_LOG, self._write_sys_log),
@@ -74,7 +69,7 @@ class LogCommands:
         try:
             if file.is_pending:
                 raise CfeError(CFE_STATUS_REQUEST_ALREADY_PENDING, "the log is being written")
-            file.file_name = dump_path(pk.WRITE_ER_LOG.read(packet)["FileName"], ER_LOG_FILE)
+            file.file_name = dump_file_name(pk.WRITE_ER_LOG.read(packet)["FileName"], ER_LOG_FILE)
             self._es.ports.fs.background_file_dump_request(file)
         except CfeError as error:
             if error.status == CFE_STATUS_REQUEST_ALREADY_PENDING:

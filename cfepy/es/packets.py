@@ -5,7 +5,7 @@ Payload layouts come first, then the declarations of commands and telemetry. Imp
 
 from __future__ import annotations
 
-from cfepy.msg import Command, Layout, Telemetry
+from cfepy.msg import NO_PAYLOAD, SYS_TIME, Command, Layout, Telemetry
 
 CMD_MID = 0x1806
 SEND_HK_MID = 0x1808
@@ -118,7 +118,6 @@ _DEBUG_VARIABLES = Layout(
     "CFE_ES_DebugVariables_t",
     [("DebugFlag", "u32"), ("WatchdogWriteFlag", "u32"), ("PrintfEnabledFlag", "u32"), ("LastAppId", "u32")],
 )
-_SYS_TIME = Layout("CFE_TIME_SysTime_t", [("Seconds", "u32"), ("Subseconds", "u32")])
 ER_LOG_BASE_INFO = Layout(
     "CFE_ES_ERLog_BaseInfo_t",
     [
@@ -129,7 +128,7 @@ ER_LOG_BASE_INFO = Layout(
         ("ProcessorResetCount", "u32"),
         ("MaxProcessorResetCount", "u32"),
         ("DebugVars", _DEBUG_VARIABLES),
-        ("TimeCode", _SYS_TIME),
+        ("TimeCode", SYS_TIME),
         ("Description", "char[80]"),
     ],
 )
@@ -187,10 +186,9 @@ _MAX_PR_COUNT = Layout("CFE_ES_SetMaxPRCountCmd_Payload_t", [("MaxPRCount", "u16
 _CDS_NAME = Layout("CFE_ES_DeleteCDSCmd_Payload_t", [("CdsName", "char[40]")])
 _POOL = Layout("CFE_ES_SendMemPoolStatsCmd_Payload_t", [("Application", "char[20]"), ("PoolHandle", "u32")])
 _DUMP_FILE = Layout("CFE_ES_DumpCDSRegistryCmd_Payload_t", [("DumpFilename", "char[64]")])
-_NOTHING = Layout("no payload", [])
 
 
-def _command(name: str, code: int, text: str, payload: Layout = _NOTHING) -> Command:
+def _command(name: str, code: int, text: str, payload: Layout = NO_PAYLOAD) -> Command:
     return Command(f"CFE_ES_{name}", CMD_MID, code, payload, text)
 
 

@@ -21,8 +21,6 @@ MAX_IDS = 128
 EXIT_BIT = 31
 MARKER_VERSION = 1
 
-ES_MAIN_PERF_ID = 1
-
 
 class PerformanceLog:
     """A ring of entries.
@@ -50,7 +48,7 @@ class PerformanceLog:
         if not 0 <= marker < MAX_IDS:
             self._refuse(marker)
         elif _in_mask(data.filter_mask, marker):
-            self._store((marker | entry_exit << EXIT_BIT, *self._now()))
+            self._store((marker | (entry_exit & 1) << EXIT_BIT, *self._now()))  # in C the rest is shifted out
             if data.state == WAITING_FOR_TRIGGER and _in_mask(data.trigger_mask, marker):
                 data.state = TRIGGERED
             if data.state == TRIGGERED:

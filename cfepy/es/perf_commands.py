@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+from cfepy.core_app import Replies
 from cfepy.es import events as ev
 from cfepy.es import packets as pk
-from cfepy.es.dump_files import dump_path
+from cfepy.es.command_group import CommandGroup, Handlers
 from cfepy.es.perf import TRIGGER_END, TRIGGER_START, PerformanceLog
 from cfepy.es.perf_dump import DELAY_MS, ENTRIES_BETWEEN_DELAYS, PerfDump
-from cfepy.es.replies import Handlers, Replies
 from cfepy.es.reset_data import PERF_MASK_WORDS
 from cfepy.es.service import ExecutiveServices
+from cfepy.fs import dump_file_name
 from cfepy.status import CfeError
 
 DEFAULT_FILE = "/ram/cfe_es_perf.dat"
 
 
-class PerfCommands:
-    """Their handlers.
+class PerfCommands(CommandGroup):
+    """The performance log.
 
     Args:
         es: the service.
@@ -25,8 +26,7 @@ class PerfCommands:
     """
 
     def __init__(self, es: ExecutiveServices, replies: Replies, dump: PerfDump) -> None:
-        self._es = es
-        self._replies = replies
+        super().__init__(es, replies)
         self._dump = dump
 
     @property
@@ -34,7 +34,6 @@ class PerfCommands:
         return self._es.perf_log
 
     def handlers(self) -> Handlers:
-        """Which handler belongs to which command."""
         return (
             (pk.START_PERF_DATA, self._start),
             (pk.STOP_PERF_DATA, self._stop),
@@ -62,7 +61,7 @@ class PerfCommands:
             return
         self._log.stop()
         try:
-            path = dump_path(pk.STOP_PERF_DATA.read(packet)["DataFileName"], DEFAULT_FILE)
+            path = dump_file_name(pk.STOP_PERF_DATA.read(packet)["DataFileName"], DEFAULT_FILE)
         except CfeError as error:
             self._replies.reject(ev.PERF_LOG_ERR_EID, f"Error parsing filename, RC = {error.status}")
             return

@@ -4,28 +4,17 @@ from __future__ import annotations
 
 from cfepy.es import events as ev
 from cfepy.es import packets as pk
+from cfepy.es.command_group import CommandGroup, Handlers
 from cfepy.es.dump_files import APP_INFO_FILE, TASK_INFO_FILE, write_dump
 from cfepy.es.records import AppInfo, TaskInfo
-from cfepy.es.replies import Handlers, Replies
-from cfepy.es.service import ExecutiveServices
 from cfepy.msg import telemetry
 from cfepy.status import CFE_ES_ERR_NAME_NOT_FOUND, CfeError
 
 
-class QueryCommands:
-    """Their handlers.
-
-    Args:
-        es: the service.
-        replies: how they answer.
-    """
-
-    def __init__(self, es: ExecutiveServices, replies: Replies) -> None:
-        self._es = es
-        self._replies = replies
+class QueryCommands(CommandGroup):
+    """Telling about applications, libraries, tasks and memory pools."""
 
     def handlers(self) -> Handlers:
-        """Which handler belongs to which command."""
         return (
             (pk.QUERY_ONE, self._query_one),
             (pk.QUERY_ALL, self._query_all),
@@ -73,8 +62,7 @@ class QueryCommands:
             self._replies.reject(ev.INVALID_POOL_HANDLE_ERR_EID, text)
             return
         statistics = self._es.get_mem_pool_stats(handle)
-        payload = pk.POOL_STATS_TLM.pack(PoolHandle=handle, PoolStats=statistics)
-        self._es.ports.sb.transmit_msg(bytes(telemetry(pk.MEMSTATS_TLM_MID, payload)))
+        self._es.ports.sb.transmit_msg(pk.MEMSTATS_TLM.packet(PoolHandle=handle, PoolStats=statistics))
         text = f"Successfully telemetered memory pool stats for 0x{handle:08X}"
         self._replies.accept(ev.TLM_POOL_STATS_INFO_EID, text, ev.DEBUG)
 

@@ -4,25 +4,14 @@ from __future__ import annotations
 
 from cfepy.es import events as ev
 from cfepy.es import packets as pk
-from cfepy.es.replies import Handlers, Replies
-from cfepy.es.service import ExecutiveServices
+from cfepy.es.command_group import CommandGroup, Handlers
 from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 
 
-class ResetCommands:
-    """Their handlers.
-
-    Args:
-        es: the service.
-        replies: how they answer.
-    """
-
-    def __init__(self, es: ExecutiveServices, replies: Replies) -> None:
-        self._es = es
-        self._replies = replies
+class ResetCommands(CommandGroup):
+    """Resetting the processor."""
 
     def handlers(self) -> Handlers:
-        """Which handler belongs to which command."""
         return (
             (pk.RESTART, self._restart),
             (pk.RESET_PR_COUNT, self._reset_count),

@@ -20,11 +20,13 @@ from cfepy.es.records import (
 )
 from cfepy.fs import CRC_16, calculate_crc
 from cfepy.ports import SYSTEM_CORE_READY
-from cfepy.status import CFE_ES_OPERATION_TIMED_OUT, CfeError
+from cfepy.status import CFE_ES_OPERATION_TIMED_OUT, CfeError, status_to_string
 
 
 class ExecutiveServices(ChildTaskApi, FaultApi, CdsApi, CounterApi, PoolApi):
     """One processor's ES; the arguments are those of `EsCore`."""
+
+    status_to_string = staticmethod(status_to_string)
 
     # -- the run loop ----------------------------------------------------------------------------------------------
 
@@ -93,7 +95,7 @@ class ExecutiveServices(ChildTaskApi, FaultApi, CdsApi, CounterApi, PoolApi):
 
         Args:
             marker: number of the place, 0 to 127.
-            entry_exit: 0 where the code begins, 1 where it ends.
+            entry_exit: 0 where the code begins, 1 where it ends; of any other number the last bit counts.
         """
         self.perf_log.add(marker, entry_exit)
 

@@ -49,7 +49,7 @@ class EsCore:
         self.psp = psp
         self.console = console
         self.loader = loader
-        self.faulty_apps: dict[int, AppRecord] = {}  # by the TaskId that the exception storage of the board knows
+        self.faulty_apps: list[tuple[int, AppRecord]] = []  # with the TaskId that the board stored
         self.reset = ResetData(config, psp.get_timer_ticks_per_second(), psp.get_timer_low32_rollover())
         self.syslog = SystemLog(ports, console, config)
         self.er_log = ExceptionResetLog(ports, self.reset, self._context_of)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cfepy.core_app import Replies, serve
 from cfepy.es import events as ev
 from cfepy.es import packets as pk
 from cfepy.es.app_commands import AppCommands
@@ -11,21 +12,19 @@ from cfepy.es.cds_commands import CdsCommands
 from cfepy.es.exceptions import ExceptionScan
 from cfepy.es.housekeeping import housekeeping
 from cfepy.es.log_commands import LogCommands
-from cfepy.es.perf import ES_MAIN_PERF_ID
 from cfepy.es.perf_commands import PerfCommands
 from cfepy.es.perf_dump import DELAY_MS, PerfDump
 from cfepy.es.query_commands import QueryCommands
-from cfepy.es.replies import Replies
 from cfepy.es.reset_commands import ResetCommands
 from cfepy.es.service import ExecutiveServices
-from cfepy.msg import CommandTable, telemetry
+from cfepy.msg import CommandTable
 from cfepy.msg.dispatch import BAD_CODE, BAD_MSG_ID, DONE
-from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY
 from cfepy.psp.psp import RST_TYPE_POWERON
 from cfepy.versions import CFE_VERSION, MODULES, OFFICIAL, OSAL_VERSION, PSP_VERSION, version_string
 
 PIPE_NAME = "ES_CMD_PIPE"
 PIPE_DEPTH = 12
+MAIN_PERF_ID = 1
 
 
 class EsTask:
@@ -47,8 +46,7 @@ class EsTask:
         self.replies = Replies(es.ports)
         self.perf_dump = PerfDump(es.perf_log, es.osal, es.ports)
         self.background = BackgroundTask(es, self._jobs())
-        self.commands = CommandTable()
-        for command, handler in (
+        self.commands = CommandTable(
             (pk.NOOP, self._noop),
             (pk.RESET_COUNTERS, self._reset_counters),
             (pk.SEND_HK, self._send_housekeeping),
@@ -58,8 +56,7 @@ class EsTask:
             *LogCommands(es, self.replies).handlers(),
             *PerfCommands(es, self.replies, self.perf_dump).handlers(),
             *CdsCommands(es, self.replies).handlers(),
-        ):
-            self.commands.handle(command, handler)
+        )
 
     def _jobs(self) -> tuple[Job, ...]:
         es = self.es
@@ -73,18 +70,13 @@ class EsTask:
 
     def task_main(self) -> None:
         """The main task of CFE_ES (CFE_ES_TaskMain)."""
-        es, sb = self.es, self.ports.sb
-        es.perf_log_entry(ES_MAIN_PERF_ID)
+        self.es.perf_log_entry(MAIN_PERF_ID)
         pipe = self._init()
-        es.wait_for_system_state(SYSTEM_CORE_READY, es.config.es_core_max_startup_ms)
-        while True:
-            es.increment_task_counter()
-            es.perf_log_exit(ES_MAIN_PERF_ID)
-            packet = sb.receive_buffer(pipe, PEND_FOREVER)
-            es.perf_log_entry(ES_MAIN_PERF_ID)
-            if packet is not None:
-                self.process(packet)
-                es.background_wakeup()  # a command may have asked for something that a job does
+        serve(self.ports, self.es.config, pipe, MAIN_PERF_ID, self._process_and_wake)
+
+    def _process_and_wake(self, packet: bytes) -> None:
+        self.process(packet)
+        self.es.background_wakeup()  # a command may have asked for something that a job does
 
     def _init(self) -> int:
         """Everything before the loop (CFE_ES_TaskInit); the command pipe."""
@@ -131,9 +123,9 @@ class EsTask:
         self.replies.accept(ev.NOOP_INF_EID, f"No-op command:\n{versions}")
 
     def _reset_counters(self, packet: bytes) -> None:
-        self.replies.command_counter = self.replies.error_counter = 0
+        self.replies.reset()
         self.replies.send(ev.RESET_INF_EID, "Reset Counters command")
 
     def _send_housekeeping(self, packet: bytes) -> None:
-        payload = pk.HOUSEKEEPING.pack(housekeeping(self.es, self.replies, self.perf_dump, self.checksum))
-        self.ports.sb.transmit_msg(bytes(telemetry(pk.HK_TLM_MID, payload)))
+        fields = housekeeping(self.es, self.replies, self.perf_dump, self.checksum)
+        self.ports.sb.transmit_msg(pk.HK_TLM.packet(fields))

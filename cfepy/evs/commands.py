@@ -14,7 +14,7 @@ from cfepy.evs.files import EventFiles
 from cfepy.evs.log import DISCARD, OVERWRITE
 from cfepy.evs.replies import Replies
 from cfepy.evs.telemetry import housekeeping
-from cfepy.msg import CommandTable, Dispatch, telemetry
+from cfepy.msg import CommandTable, Dispatch
 from cfepy.msg.dispatch import BAD_CODE, BAD_MSG_ID, DONE
 from cfepy.versions import version_string
 
@@ -36,8 +36,7 @@ class EvsCommands:
         self.errors = 0
         self._core = core
         self._replies = Replies(core)
-        self._table = CommandTable()
-        for command, handler in (
+        self._table = CommandTable(
             (pk.SEND_HK, self._send_housekeeping),
             (pk.NOOP, self._noop),
             (pk.RESET_COUNTERS, self._reset_counters),
@@ -50,8 +49,7 @@ class EvsCommands:
             (pk.DISABLE_PORTS, self._disable_ports),
             (pk.WRITE_APP_DATA_FILE, files.write_app_data),
             (pk.WRITE_LOG_DATA_FILE, files.write_log),
-        ):
-            self._table.handle(command, handler)
+        )
         AppCommands(core, self._replies).add_to(self._table)
 
     def process(self, packet: bytes) -> None:
@@ -83,8 +81,8 @@ class EvsCommands:
         self._replies.done(ev.RSTCNT_EID, "Reset Counters Command Received")
 
     def _send_housekeeping(self, packet: bytes) -> None:
-        payload = pk.HOUSEKEEPING.pack(housekeeping(self._core, self.count, self.errors))
-        self._core.ports.sb.transmit_msg(bytes(telemetry(pk.HK_TLM_MID, payload)))
+        fields = housekeeping(self._core, self.count, self.errors)
+        self._core.ports.sb.transmit_msg(pk.HK_TLM.packet(fields))
 
     def _set_format(self, packet: bytes) -> bool:
         mode = pk.SET_EVENT_FORMAT_MODE.read(packet)["MsgFormat"]

@@ -19,7 +19,7 @@ from cfepy.status import CFE_EVS_APP_SQUELCHED, CFE_SUCCESS
 TRUNCATED = b"$"
 PORTS = (1, 2, 3, 4)
 
-_U16_MAX = 0xFFFF
+U16_MAX = 0xFFFF
 _SPARE = bytes(4)
 
 
@@ -150,8 +150,8 @@ class EventCore:
                 self._console.write(f"EVS Port{port} {line}")
 
     def _count(self, app: AppEvents, event_type: int, is_cut: bool) -> None:
-        self.sent = min(_U16_MAX, self.sent + 1)
-        app.sent = min(_U16_MAX, app.sent + 1)
+        self.sent = min(U16_MAX, self.sent + 1)
+        app.sent = min(U16_MAX, app.sent + 1)
         self.truncated += is_cut
         self.counts[event_type] = self.counts.get(event_type, 0) + 1
         if event_type >= ERROR:

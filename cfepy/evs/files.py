@@ -5,21 +5,15 @@ Stands for CFE_EVS_WriteLogDataFileCmd and CFE_EVS_WriteAppDataFileCmd. Imports 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from cfepy.evs import events as ev
 from cfepy.evs import packets as pk
 from cfepy.evs.apps import AppEvents
 from cfepy.evs.core import EventCore
 from cfepy.evs.replies import Replies
 from cfepy.evs.telemetry import apps_by_slot
-from cfepy.fs import (
-    HEADER_SIZE,
-    FileCategory,
-    get_default_extension,
-    get_default_mount_point,
-    init_header,
-    parse_input_file_name_ex,
-    stamp_header,
-)
+from cfepy.fs import HEADER_SIZE, dump_file_name, init_header
 from cfepy.fs.header import SUBTYPE_EVS_APPDATA, SUBTYPE_EVS_EVENTLOG
 from cfepy.osal import Osal
 from cfepy.osal.limits import OS_FILE_FLAG_CREATE, OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY
@@ -45,17 +39,10 @@ class EventFiles:
     def write_log(self, packet: bytes) -> bool:
         """Write the event log: the cFE header and the long event packets, oldest first."""
         name = pk.WRITE_LOG_DATA_FILE.read(packet)["LogFilename"]
-        opened = self._open(name, DEFAULT_LOG_FILE, "Write Log File", ev.ERR_CRLOGFILE_EID)
-        if opened is None:
-            return False
-        path, descriptor = opened
-        try:
-            return self._write_log(path, descriptor)
-        finally:
-            self._osal.close(descriptor)
+        return self._in_file(name, DEFAULT_LOG_FILE, "Write Log File", ev.ERR_CRLOGFILE_EID, self._write_log)
 
     def _write_log(self, path: str, descriptor: int) -> bool:
-        written = self._write(descriptor, self._header("cFE EVS Log File", SUBTYPE_EVS_EVENTLOG))
+        written = self._write_header(descriptor, "cFE EVS Log File", SUBTYPE_EVS_EVENTLOG)
         if written != HEADER_SIZE:
             what = f"WriteHdr RC: {written}, Expected: {HEADER_SIZE}, filename = {path}"
             return self._replies.refuse(ev.WRITE_HEADER_ERR_EID, f"Write File Header to Log File Error: {what}")
@@ -71,17 +58,11 @@ class EventFiles:
     def write_app_data(self, packet: bytes) -> bool:
         """Write what is known of applications: the cFE header and a record for each that is registered."""
         name = pk.WRITE_APP_DATA_FILE.read(packet)["AppDataFilename"]
-        opened = self._open(name, DEFAULT_APP_DATA_FILE, "Write App Data", ev.ERR_CRDATFILE_EID)
-        if opened is None:
-            return False
-        path, descriptor = opened
-        try:
-            return self._write_app_data(path, descriptor)
-        finally:
-            self._osal.close(descriptor)
+        return self._in_file(name, DEFAULT_APP_DATA_FILE, "Write App Data", ev.ERR_CRDATFILE_EID, self._write_app_data)
 
     def _write_app_data(self, path: str, descriptor: int) -> bool:
-        if self._write(descriptor, self._header("EVS Application Data File", SUBTYPE_EVS_APPDATA)) != HEADER_SIZE:
+        written = self._write_header(descriptor, "EVS Application Data File", SUBTYPE_EVS_APPDATA)
+        if written != HEADER_SIZE:
             return False  # NASA's sends no event here
         apps = apps_by_slot(self._core)
         for count, app in enumerate(apps):
@@ -92,13 +73,20 @@ class EventFiles:
         text = f"Write App Data Command: {len(apps)} application data entries written to {path}"
         return self._replies.done(ev.WRDAT_EID, text)
 
+    def _in_file(self, name: str, default: str, command: str, failed: int, write: Callable[[str, int], bool]) -> bool:
+        """Have a new file written: `write` gets its path and descriptor, and says how it went."""
+        opened = self._open(name, default, command, failed)
+        if opened is None:
+            return False
+        try:
+            return write(*opened)
+        finally:
+            self._osal.close(opened[1])
+
     def _open(self, name: str, default: str, command: str, failed: int) -> tuple[str, int] | None:
         """Path and descriptor of a new file; None after an event."""
-        category = FileCategory.BINARY_DATA_DUMP
         try:
-            path = parse_input_file_name_ex(
-                name, default, get_default_mount_point(category), get_default_extension(category)
-            )
+            path = dump_file_name(name, default)
         except CfeError as error:
             self._replies.refuse(failed, f"{command} Command Error: CFE_FS_ParseInputFileNameEx() = {error.hex}")
             return None
@@ -110,23 +98,19 @@ class EventFiles:
             self._replies.refuse(failed, text)
             return None
 
+    def _write_header(self, descriptor: int, description: str, subtype: int) -> int:
+        """How many bytes were written, or the status of a failure."""
+        try:
+            return self._core.ports.fs.write_header(descriptor, init_header(description, subtype))
+        except CfeError as error:
+            return error.status
+
     def _write(self, descriptor: int, data: bytes) -> int:
         """How many bytes were written, or the status of a failure."""
         try:
             return self._osal.write(descriptor, data)
         except OsalError as error:
             return error.status
-
-    def _header(self, description: str, subtype: int) -> bytes:
-        core = self._core
-        header = stamp_header(
-            init_header(description, subtype),
-            spacecraft_id=core.config.spacecraft_id,
-            processor_id=core.config.processor_id,
-            application_id=core.own_app_id,
-            time=core.ports.time.now(),
-        )
-        return header.pack()
 
 
 def _record(app: AppEvents) -> bytes:

@@ -10,16 +10,17 @@ from typing import Any
 
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
+from cfepy.core_app import serve
 from cfepy.evs import packets as pk
 from cfepy.evs.apps import AppEvents
 from cfepy.evs.commands import EvsCommands
-from cfepy.evs.core import EventCore
+from cfepy.evs.core import U16_MAX, EventCore
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION, STARTUP_EID
 from cfepy.evs.files import EventFiles
 from cfepy.evs.log import DISCARD, OVERWRITE, EventLog
 from cfepy.ids import ES_APPID_BASE, get_base
 from cfepy.osal import Osal
-from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY, Caller, Ports
+from cfepy.ports import Caller, Ports
 from cfepy.rtos import Kernel
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -41,7 +42,6 @@ EVENT_FILTER_BINARY = 0
 KEPT = "EVS"
 """Name of the event log among the objects that outlive a processor reset."""
 
-_U16_MAX = 0xFFFF
 _U32_MAX = 0xFFFFFFFF
 
 
@@ -99,14 +99,7 @@ class EventServices(EventCore):
         ports.sb.subscribe(pk.SEND_HK_MID, pipe)
         self.own_app_id = ports.es.get_app_id()
         self.send_own(STARTUP_EID, INFORMATION, f"cFE EVS Initialized: {version_string('CFE_EVS')}")
-        ports.es.wait_for_system_state(SYSTEM_CORE_READY, self.config.es_core_max_startup_ms)
-        while True:
-            ports.es.increment_task_counter()
-            ports.es.perf_log_exit(MAIN_PERF_ID)
-            packet = ports.sb.receive_buffer(pipe, PEND_FOREVER)
-            ports.es.perf_log_entry(MAIN_PERF_ID)
-            if packet is not None:
-                self.commands.process(packet)
+        serve(ports, self.config, pipe, MAIN_PERF_ID, self.commands.process)
 
     def cleanup_app(self, app_id: int) -> None:
         """Forget an application that ended (CFE_EVS_CleanUpApp)."""
@@ -288,8 +281,8 @@ def _checked(event_id: int, text: str, values: tuple[object, ...]) -> str:
     """The text of an event with its values put in."""
     if not isinstance(text, str):
         raise CfeError(CFE_EVS_INVALID_PARAMETER, f"the text of event {event_id!r} is {text!r}, not a text")
-    if not isinstance(event_id, int) or not 0 <= event_id <= _U16_MAX:
-        raise CfeError(CFE_EVS_INVALID_PARAMETER, f"event id is {event_id!r}, it must be 0 to {_U16_MAX}")
+    if not isinstance(event_id, int) or not 0 <= event_id <= U16_MAX:
+        raise CfeError(CFE_EVS_INVALID_PARAMETER, f"event id is {event_id!r}, it must be 0 to {U16_MAX}")
     try:
         return text % values if values else text
     except (TypeError, ValueError) as error:
@@ -298,5 +291,5 @@ def _checked(event_id: int, text: str, values: tuple[object, ...]) -> str:
 
 def _check_filter(pair: tuple[int, int]) -> None:
     is_pair = isinstance(pair, (tuple, list)) and len(pair) == 2
-    if not is_pair or not all(isinstance(value, int) and 0 <= value <= _U16_MAX for value in pair):
+    if not is_pair or not all(isinstance(value, int) and 0 <= value <= U16_MAX for value in pair):
         raise CfeError(CFE_ES_BAD_ARGUMENT, f"a filter is (event id, mask), two numbers of 16 bits, not {pair!r}")

@@ -15,6 +15,7 @@ from cfepy.fs.header import HEADER_SIZE, FileHeader, init_header
 from cfepy.osal import Osal
 from cfepy.osal.limits import OS_FILE_FLAG_CREATE, OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY
 from cfepy.status import (
+    CFE_FS_BAD_ARGUMENT,
     CFE_FS_INVALID_PATH,
     CFE_STATUS_REQUEST_ALREADY_PENDING,
     CFE_SUCCESS,
@@ -77,6 +78,8 @@ class BackgroundWriter:
 
     def request(self, meta: FileWriteMetaData) -> None:
         """Put a file into the queue; see `FileServices.background_file_dump_request`."""
+        if not callable(meta.get_data) or not callable(meta.on_event):
+            raise CfeError(CFE_FS_BAD_ARGUMENT, "a background write needs a function for its data and one for its end")
         if not meta.file_name:
             raise CfeError(CFE_FS_INVALID_PATH, "a background write needs a file name")
         if meta.is_pending or len(self._waiting) >= MAX_REQUESTS:

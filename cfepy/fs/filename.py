@@ -108,6 +108,22 @@ def parse_input_file_name(name: str, category: int, max_len: int = MAX_PATH_LEN)
     )
 
 
+def dump_file_name(name: str, default_name: str) -> str:
+    """The path of a file that a command has written: as the command says, completed as binary dumps are.
+
+    Args:
+        name: from the command; empty for the default.
+        default_name: of this kind of file.
+
+    Raises:
+        CfeError: as `parse_input_file_name_ex`.
+    """
+    category = FileCategory.BINARY_DATA_DUMP
+    return parse_input_file_name_ex(
+        name, default_name, get_default_mount_point(category), get_default_extension(category)
+    )
+
+
 def extract_filename_from_path(path: str) -> str:
     """What follows the last "/" (CFE_FS_ExtractFilenameFromPath).
 

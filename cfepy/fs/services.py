@@ -16,7 +16,7 @@ from cfepy.fs.header import HEADER_SIZE, TIMESTAMP_OFFSET, FileHeader
 from cfepy.osal import Osal
 from cfepy.osal.limits import OS_SEEK_SET
 from cfepy.ports import Ports
-from cfepy.status import CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError
+from cfepy.status import CFE_FS_BAD_ARGUMENT, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError, UsageError
 
 
 class FileServices:
@@ -70,7 +70,8 @@ class FileServices:
             The bytes written: 64.
 
         Raises:
-            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL: not open for writing, or the disk is full.
+            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL (not open for writing, or the disk is full),
+                CFE_FS_BAD_ARGUMENT (a subtype of more than 32 bits).
         """
         stamped = header.stamp_header(
             file_header,
@@ -80,10 +81,13 @@ class FileServices:
             time=self._ports.time.now(),
         )
         try:
+            data = stamped.pack()
             self._osal.lseek(filedes, 0, OS_SEEK_SET)
-            return self._osal.write(filedes, stamped.pack())
+            return self._osal.write(filedes, data)
         except OsalError as error:
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
+        except UsageError as error:
+            raise CfeError(CFE_FS_BAD_ARGUMENT, error.text) from error
 
     def set_timestamp(self, filedes: int, new_timestamp: tuple[int, int]) -> None:
         """Change the time in the header of an open file (CFE_FS_SetTimestamp).
@@ -93,11 +97,15 @@ class FileServices:
             new_timestamp: seconds, and subseconds of 2**-32 s.
 
         Raises:
-            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL: not open for writing.
+            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL (not open for writing), CFE_FS_BAD_ARGUMENT (more than 32 bits).
         """
         try:
+            data = struct.pack(">II", *new_timestamp)
+        except struct.error as error:
+            raise CfeError(CFE_FS_BAD_ARGUMENT, f"{new_timestamp} is no time: {error}") from error
+        try:
             self._osal.lseek(filedes, TIMESTAMP_OFFSET, OS_SEEK_SET)
-            self._osal.write(filedes, struct.pack(">II", *new_timestamp))
+            self._osal.write(filedes, data)
         except OsalError as error:
             self._ports.syslog.write_to_sys_log(
                 f"CFE_FS_SetTimestamp: Failed to write timestamp (Status={error.status})"
@@ -111,7 +119,8 @@ class FileServices:
             meta: what to write; it belongs to the writer until `is_pending` is False again.
 
         Raises:
-            CfeError: CFE_FS_INVALID_PATH (no file name), CFE_STATUS_REQUEST_ALREADY_PENDING (this one, or too many).
+            CfeError: CFE_FS_BAD_ARGUMENT (a function is missing), CFE_FS_INVALID_PATH (no file name),
+                CFE_STATUS_REQUEST_ALREADY_PENDING (this one, or too many).
         """
         self._background.request(meta)
 

@@ -8,9 +8,10 @@ from types import TracebackType
 from cfepy.status import UsageError
 
 LARGEST = 65535
+REFUSAL_S = 0.02  # in which a computer at hand says that nobody listens
 
 
-def send(host: str, port: int, data: bytes) -> None:
+def send(host: str, port: int, data: bytes) -> bool:
     """Send a datagram.
 
     Args:
@@ -18,12 +19,23 @@ def send(host: str, port: int, data: bytes) -> None:
         port: 1 to 65535.
         data: its bytes.
 
+    Returns:
+        False when the host answers that nobody listens at the port. True does not say that it arrived.
+
     Raises:
         UsageError: there is no such host, or no way to it.
     """
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as plug:
         try:
-            plug.sendto(data, (host, port))
+            plug.connect((host, port))
+            plug.send(data)
+            plug.settimeout(REFUSAL_S)
+            plug.recv(1)
+            return True
+        except TimeoutError:
+            return True
+        except ConnectionRefusedError:
+            return False
         except OSError as error:
             raise UsageError(f"nothing can be sent there: {error.strerror or error}", file=f"{host}:{port}") from None
 

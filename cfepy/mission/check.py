@@ -103,16 +103,16 @@ def _check_code(script: Path, folder: Path, entry: Entry) -> Iterator[Finding]:
         yield Finding(script, entry.line, f"the node {entry.name} is no script of the mission's folder; add the script")
         return
     source = sources.source_of(code)
-    if source is None:
-        return
-    broken = False
+    if source is not None:
+        broken = list(_check_syntax(source))
+        yield from broken or _check_symbol(script, entry, source)
+
+
+def _check_syntax(source: Path) -> Iterator[Finding]:
     for file in sources.files_of(source):
         error = sources.syntax_error(file)
         if error is not None:
-            broken = True
             yield Finding(file, error[0], f"is not Python: {error[1]}")
-    if not broken:
-        yield from _check_symbol(script, entry, source)
 
 
 def _check_symbol(script: Path, entry: Entry, source: Path) -> Iterator[Finding]:

@@ -8,9 +8,10 @@ from cfepy.console import Console
 from cfepy.evs.events import ERROR
 from cfepy.mission.dictionary import Dictionary
 from cfepy.mission.mission import Mission
+from cfepy.mission.results import deaths
 from cfepy.mission.script_packets import EVENT_IDS, Event
 from cfepy.mission.spec import MissionSpec
-from cfepy.mission.watch import Seen, watching
+from cfepy.mission.watch import Seen, receivers, watching
 from cfepy.msg import MsgType, get_msg_id, get_type
 from cfepy.rtos.units import NS_PER_MS, NS_PER_S
 from cfepy.status import CFE_ES_OPERATION_TIMED_OUT, CfeError
@@ -26,13 +27,14 @@ class Trial:
     """What a command led to.
 
     `receivers` are the applications that subscribe to it; `telemetry` has the last packet of each kind that they sent,
-    housekeeping included: they are asked for it.
+    housekeeping included: they are asked for it. `problems` has a line for each application that died.
     """
 
     sent_ns: int
     receivers: list[str]
     events: list[Event]
     telemetry: list[Seen]
+    problems: list[str]
 
     @property
     def errors(self) -> list[Event]:
@@ -58,14 +60,15 @@ def try_command(spec: MissionSpec, dictionary: Dictionary, packet: bytes, second
     with Mission(spec, console=Console(quiet=True), bus=bus) as mission:
         _boot(mission)
         seen.clear()
-        receivers, sent_ns = _subscribers(mission, get_msg_id(packet)), mission.kernel.now
+        takers, sent_ns = receivers(mission.cfe.sb, get_msg_id(packet)), mission.kernel.now
         mission.cfe.sb.transmit_msg(packet, is_origination=False)
         mission.run(seconds)
         for request in dictionary.commands.values():
-            if request.name.endswith(REQUEST) and set(_subscribers(mission, request.msg_id)) & set(receivers):
+            if request.name.endswith(REQUEST) and set(receivers(mission.cfe.sb, request.msg_id)) & set(takers):
                 mission.cfe.sb.transmit_msg(request.packet(), is_origination=False)
         mission.run_until(mission.kernel.now + ANSWER_NS)
-    return Trial(sent_ns, receivers, [Event.of(each) for each in seen if _is_event(each)], _last(seen, receivers))
+    events = [Event.of(each) for each in seen if _is_event(each)]
+    return Trial(sent_ns, takers, events, _last(seen, takers), deaths(mission))
 
 
 def _boot(mission: Mission) -> None:
@@ -74,12 +77,6 @@ def _boot(mission: Mission) -> None:
             text = f"the mission is not OPERATIONAL after {LONGEST_BOOT_NS // NS_PER_S} virtual seconds"
             raise CfeError(CFE_ES_OPERATION_TIMED_OUT, text)
         mission.run_until(mission.kernel.now + PIECE_NS)
-
-
-def _subscribers(mission: Mission, msg_id: int) -> list[str]:
-    """Applications that get a MsgId."""
-    route = mission.cfe.sb.routes.get(msg_id)
-    return [] if route is None else list(dict.fromkeys(each.pipe.app_name for each in route.active))
 
 
 def _is_event(seen: Seen) -> bool:

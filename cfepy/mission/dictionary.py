@@ -101,6 +101,9 @@ class Dictionary:
         decoded = Decoded(f"0x{msg_id:04X}", msg_id, msg.get_sequence_count(packet), None, {})
         if len(packet) < header:
             return decoded._replace(problem=f"{len(packet)} bytes are too few for a header of {header}")
+        version = msg.get_header_version(packet)
+        if version != 0:
+            return decoded._replace(problem=f"its header has the version {version}, not 0")
         if header == TLM_HEADER_SIZE:
             seconds, subseconds = msg.get_msg_time(packet)
             return _read(self._by_id.get(msg_id), packet, decoded._replace(time_s=seconds + subseconds / 2**32))

@@ -117,7 +117,7 @@ KINDS = {
         es.ER_LOG_FILE_ENTRY,
         Column("time", "BaseInfo.TimeCode", time_of),
         Column("by", "BaseInfo.LogEntryType", named("-", "core", "application")),
-        Column("reset", "BaseInfo.ResetType", named("-", "processor", "power-on")),
+        Column("reset", "BaseInfo.ResetType", named("-", "processor", "power-on", "app restart")),
         Column("subtype", "BaseInfo.ResetSubtype"),
         Column("resets", "BaseInfo.ProcessorResetCount"),
         Column("most", "BaseInfo.MaxProcessorResetCount"),
@@ -227,7 +227,7 @@ KINDS = {
 
 
 def read_dump(data: bytes, file: str) -> Dump:
-    """What is in a file that cFE wrote; all whole records of one that was cut off.
+    """What is in a file that cFE wrote; of one that is cut off or damaged, the records up to there.
 
     Args:
         data: its bytes.
@@ -255,14 +255,16 @@ def read_dump(data: bytes, file: str) -> Dump:
         raise UsageError(f"has the subtype {head.subtype}, and no file of cFE has that", file=file)
     kind = KINDS[head.subtype]
     count, rest = divmod(len(body), kind.size)
-    records = [kind.read(body[at : at + kind.size]) for at in range(0, count * kind.size, kind.size)]
-    return Dump(kind.name, head, records, kind.columns, problem=_cut_off(rest, count, kind.size))
-
-
-def _cut_off(rest: int, count: int, size: int) -> str:
-    if not rest:
-        return ""
-    return f"is cut off: record {count} has {rest} of {size} bytes"
+    dump = Dump(kind.name, head, columns=kind.columns)
+    try:
+        for at in range(0, count * kind.size, kind.size):
+            dump.records.append(kind.read(body[at : at + kind.size]))
+    except CfeError as error:
+        dump.problem = f"is damaged: record {len(dump.records)} cannot be read: {error.text}"
+        return dump
+    if rest:
+        dump.problem = f"is cut off: record {count} has {rest} of {kind.size} bytes"
+    return dump
 
 
 def value_at(record: Record, path: str) -> Any:

@@ -2,7 +2,8 @@
 
 cFE names a module by a virtual path, /cf/hk.so. What stands behind it is looked for in this order: the mission's folder
 (hk.py, or a package hk), the apps that cfepy brings along, an installed Python module of that name, and a file that the
-mission itself wrote, which may be on /ram. An app is executed anew for every start, so that a restart finds its
+mission itself wrote, which may be on /ram. What it wrote over a file of its folder counts, and what it removed there is
+gone. An app is executed anew for every start, so that a restart finds its
 variables as a fresh C module would.
 """
 
@@ -62,7 +63,7 @@ class ModuleLoader:
     def exists(self, file: str) -> bool:
         """Whether there is code behind a virtual path."""
         try:
-            return find_node(file, self._folder) is not None or self.find(file) is not None
+            return self._unchanged(find_node(file, self._folder)) is not None or self.find(file) is not None
         except OsalError:
             return False
 
@@ -73,7 +74,18 @@ class ModuleLoader:
             OsalError: the path itself is no good (OS_TranslatePath).
         """
         self._files.translate(file)
-        return find_code(file, self._folder) or find_virtual_code(file, self._files)
+        return self._unchanged(find_code(file, self._folder)) or find_virtual_code(file, self._files)
+
+    def _unchanged(self, found: Code | None) -> Code | None:
+        """Code on the host, unless the mission wrote over its file, or removed it."""
+        if not isinstance(found, Path) or found.name == "__init__.py" or not found.is_relative_to(self._folder):
+            return found
+        path = f"/cf/{found.relative_to(self._folder).as_posix()}"
+        try:
+            node = self._files.find(path)
+        except OsalError:
+            return found  # a ROS node; OSAL takes no name of this length, so nobody can have changed it
+        return found if node is not None and bytes(node.data) == found.read_bytes() else None
 
     def load(self, file: str, symbol: str, app_name: str) -> Callable[[], object]:
         """The main function of an application, ready to be called without arguments.

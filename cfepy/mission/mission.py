@@ -6,7 +6,7 @@ boot on it. Nothing in the parts knows of this module.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -24,6 +24,7 @@ from cfepy.osal.network import Network
 from cfepy.psp.cpu import CpuCosts
 from cfepy.psp.memory import MemoryBudget
 from cfepy.psp.profile import BoardProfile, load_profile
+from cfepy.psp.psp import PanicError
 from cfepy.psp.retained import EEPROM_BYTES, Retained
 from cfepy.rtos import Kernel, Task
 from cfepy.rtos.policy import Policy
@@ -109,14 +110,17 @@ class Mission:
 
     def _provide_tables(self) -> None:
         """Put the default tables of shipped apps into /cf, where the mission has none of its own."""
+        for package in self._packages():
+            for table in sorted(package.glob("tables/*.tbl")):
+                if self.files.find(f"/cf/{table.name}") is None:
+                    self.files.write_file(f"/cf/{table.name}", table.read_bytes())
+
+    def _packages(self) -> Iterator[Path]:
+        """The folders of apps and libraries that are packages, in the order of the startup script."""
         for entry in entries(self.spec.script.read_bytes()):
-            if entry.symbol == NODE_SYMBOL:
-                continue
-            code = find_code(entry.path, self.spec.folder)
+            code = None if entry.symbol == NODE_SYMBOL else find_code(entry.path, self.spec.folder)
             if isinstance(code, Path) and code.name == "__init__.py":
-                for table in sorted(code.parent.glob("tables/*.tbl")):
-                    if self.files.find(f"/cf/{table.name}") is None:
-                        self.files.write_file(f"/cf/{table.name}", table.read_bytes())
+                yield code.parent
 
     # -- what runs now ---------------------------------------------------------------------------------------------
 
@@ -187,7 +191,7 @@ class Mission:
 
     def _task_failed(self, task: Task, error: BaseException) -> bool:
         """An exception came out of a task: say so, and let ES act as the startup script asks."""
-        if task.owner is None:
+        if task.owner is None or isinstance(error, PanicError):
             return False
         self.console.write(f"{task.owner.name}: task {task.name} died of an exception")
         self.console.write(app_traceback(error))

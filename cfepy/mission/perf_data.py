@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cfepy.es.packets import PERF_ENTRY, PERF_METADATA
+from cfepy.rtos.units import US_PER_S
 
 EXIT_BIT = 0x80000000
 WHOLE_WORD = 1 << 32
-US_PER_S = 1_000_000
 
 
 @dataclass(slots=True)

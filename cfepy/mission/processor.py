@@ -94,33 +94,47 @@ class Processor:
 
     def _build(self, costs: CpuCosts) -> None:
         machine = self.machine
-        kernel, config, console = machine.kernel, machine.config, machine.console
-        self.ports = ports = Ports()
-        self.memory = ports.memory = MemoryBudget(machine.board)
-        sizes = object_sizes(machine.board)
-        self.osal = Osal(
-            kernel,
-            config,
-            console,
-            files=machine.files,
-            network=machine.network,
-            memory=self.memory,
-            sizes=sizes,
-            call_ns=costs.call_ns,
-            byte_ps=costs.byte_ps,
-            epoch_ns=machine.epoch_ns,
-        )
+        self.ports = Ports()
+        self.memory = self.ports.memory = MemoryBudget(machine.board)
+        self.osal = self._make_osal(costs)
         self.psp = Psp(
-            kernel,
+            machine.kernel,
             machine.board,
-            config,
-            console,
+            machine.config,
+            machine.console,
             self.osal,
             retained=machine.retained,
             on_restart=machine.on_restart,
         )
-        self.loader = ModuleLoader(machine.files, machine.spec.folder, console, lambda: self.cfe, self._run_node)
+        self.loader = ModuleLoader(
+            machine.files, machine.spec.folder, machine.console, lambda: self.cfe, self._run_node
+        )
         self.osal.modules = self.loader
+        self.cfe = self._make_services(costs)
+        self.sb_task = SbTask(self.cfe.sb)
+        checksum = zlib.crc32(versions.CFE_VERSION.encode()) & 0xFFFF
+        self.es_task = EsTask(self.cfe.es, machine.spec.name, self._build_text(), checksum)
+
+    def _make_osal(self, costs: CpuCosts) -> Osal:
+        machine = self.machine
+        return Osal(
+            machine.kernel,
+            machine.config,
+            machine.console,
+            files=machine.files,
+            network=machine.network,
+            memory=self.memory,
+            sizes=object_sizes(machine.board),
+            call_ns=costs.call_ns,
+            byte_ps=costs.byte_ps,
+            epoch_ns=machine.epoch_ns,
+        )
+
+    def _make_services(self, costs: CpuCosts) -> Cfe:
+        """The services, tied together by their ports and to what outlives the processor."""
+        machine, ports = self.machine, self.ports
+        kernel, config, console = machine.kernel, machine.config, machine.console
+        sizes = object_sizes(machine.board)
         es = ExecutiveServices(kernel, ports, config, self.osal, self.psp, console, self.loader)
         fs = ports.fs = FileServices(self.osal, ports, config, es.background_wakeup)
         sb = machine.bus(kernel, ports, config, BusCosts(costs.call_ns, costs.byte_ps, sizes.queue, sizes.queue_slot))
@@ -131,11 +145,7 @@ class Processor:
         time.clock.on_jump = sb.forget_time
         record = machine.record
         es.history, evs.counts, evs.errors_by_app = record.history, record.event_counts, record.errors_by_app
-        registry = ConfigServices(config, machine.spec.name)
-        self.cfe = Cfe(es, sb, evs, time, tbl, self.osal, self.psp, fs, registry)
-        self.sb_task = SbTask(sb)
-        checksum = zlib.crc32(versions.CFE_VERSION.encode()) & 0xFFFF
-        self.es_task = EsTask(es, machine.spec.name, self._build_text(), checksum)
+        return Cfe(es, sb, evs, time, tbl, self.osal, self.psp, fs, ConfigServices(config, machine.spec.name))
 
     def _build_text(self) -> str:
         machine = self.machine
@@ -147,9 +157,13 @@ class Processor:
         if self._start_ns:
             self.machine.kernel.delay(self._start_ns)
         self.psp.boot()
+        Boot(self.cfe.es, self._object_table(), self.machine.spec.script.read_bytes(), self._operational).main()
+
+    def _object_table(self) -> ObjectTable:
+        """What CFE_ES_Main calls and starts before the startup script (CFE_ES_ObjectTable)."""
         cfe, kept = self.cfe, self.machine.retained.kept
         nothing = bool  # what C does here, Python did when it made the objects
-        table = ObjectTable(
+        return ObjectTable(
             calls=(
                 ("CFE_Config_Init", nothing),
                 ("CFE_ES_CDSEarlyInit", cfe.es.cds_early_init),
@@ -167,7 +181,6 @@ class Processor:
                 CoreApp("CFE_TBL", cfe.tbl.task_main, TBL_PRIORITY),
             ),
         )
-        Boot(cfe.es, table, self.machine.spec.script.read_bytes(), self._operational).main()
 
     def _operational(self) -> None:
         self.booted = self.machine.kernel.now
@@ -198,6 +211,13 @@ class Processor:
         for app in self.cfe.es.apps:
             history = self.cfe.es.history_of(app.name)
             history.cpu_ns += sum(task.cpu_ns for task in kernel.tasks if task.owner is app)
+        self.osal.register_event_handler(_ignore)  # an application's own is at its end, like the application
         self.osal.delete_all_objects()  # first, since it calls the tasks' delete handlers
         kernel.unwind()
+        self.osal.delete_all_objects()  # what `finally` blocks have made meanwhile, such as a socket on the network
         self.loader.forget()
+
+
+def _ignore(event: int, object_id: int, data: Any) -> int:
+    """An event handler for OSAL that does nothing."""
+    return 0

@@ -85,9 +85,7 @@ def traffic_of(bus: SoftwareBus, topics: Iterable[Any] = ()) -> dict[int, Traffi
     """
     found: dict[int, Traffic] = {}
     for route in bus.routes.values():
-        delivered, by_limit, by_pipe = route.totals()
-        waiting = sum(each.puts - each.gets for each in (*route.destinations, *route.gone))
-        found[route.msg_id] = Traffic(route.sent, delivered, waiting, by_limit, by_pipe)
+        found[route.msg_id] = Traffic(route.sent, *route.totals())
     for msg_id, count in bus.unrouted.sent.items():
         found.setdefault(msg_id, Traffic()).add(Traffic(sent=count, no_subscriber=count))
     for row in topics:

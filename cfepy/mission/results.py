@@ -195,7 +195,7 @@ class Results:
             pipes=at.pipes,
             memory=at.memory,
             script_problems=_script_problems(mission, apps),
-            problems=_problems(mission, apps, own_errors),
+            problems=_problems(mission, own_errors),
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -285,18 +285,24 @@ def _script_problems(mission: Mission, apps: list[AppResult]) -> list[str]:
     ]
 
 
-def _problems(mission: Mission, apps: list[AppResult], own_errors: dict[str, int]) -> list[str]:
-    found = []
-    for app in apps:
-        if app.deaths:
-            times = "" if app.deaths == 1 else f" {app.deaths} times"
-            found.append(f"{app.name} died{times}: {app.error}")
+def _problems(mission: Mission, own_errors: dict[str, int]) -> list[str]:
+    found = deaths(mission)
     found += [f"{name} ended with CFE_ES_RunStatus_APP_ERROR" for name in _failed(mission)]
     for name, count in own_errors.items():
         found.append(f"{name} sent {count} ERROR or CRITICAL event{'s' if count > 1 else ''}")
     for reset in mission.record.resets:
         if reset.fault:
             found.append(f"the processor was reset at {reset.at_ns / NS_PER_S:g} s: {reset.reason}")
+    return found
+
+
+def deaths(mission: Mission) -> list[str]:
+    """A line for each application that died: how often, and of what at last."""
+    found = []
+    for app in mission.cfe.es.history.values():
+        if app.last_error is not None:
+            times = "" if app.deaths == 1 else f" {app.deaths} times"
+            found.append(f"{app.name} died{times}: {described(app.last_error)}")
     return found
 
 

@@ -14,12 +14,13 @@ from typing import Any
 
 from cfepy.mission.dictionary import dictionary_of
 from cfepy.mission.mission import Mission
-from cfepy.mission.script_conditions import Scene, Window
+from cfepy.mission.script_conditions import Condition, ResetCondition, Scene, Window
 from cfepy.mission.script_expectation import Expectation
 from cfepy.mission.script_text import Script, Step, read_script
 from cfepy.mission.script_verdicts import OVER, Outcome, Verdict
 from cfepy.mission.spec import MissionSpec, read_mission
-from cfepy.mission.watch import Seen, watching
+from cfepy.mission.watch import Seen, receivers, watching
+from cfepy.msg import get_msg_id
 from cfepy.rtos.kernel import ENDLESS
 from cfepy.sb import SoftwareBus
 from cfepy.status import CfeError
@@ -110,24 +111,35 @@ class ScriptRun:
         if step.condition is None or step.at_ns is not None or step.after_ns is not None:
             self._mark_ns, self._window = self._now, self._scene.here()
         if step.condition is None:
-            self._settle(self._next, self._act(step))
-        else:
-            window = self._scene.here() if step.must_not else self._window
-            found = Expectation(step, step.condition, window, step.deadline_ns(self._mark_ns, self._now))
-            if not step.must_not:
-                self._waiting = found
+            verdict = self._act(step)
+            if step.is_reset and verdict.ok:
+                self._wait_for(step, ResetCondition(len(self._scene.mission.record.resets)), self._window)
                 return None
-            self._guards[self._next] = found
+            self._settle(self._next, verdict)
+        elif not step.must_not:
+            self._wait_for(step, step.condition, self._window)
+            return None
+        else:
+            self._guards[self._next] = self._expectation(step, step.condition, self._scene.here())
             self._ask_guards()
         self._next += 1
         return None
+
+    def _wait_for(self, step: Step, condition: Condition, window: Window) -> None:
+        self._waiting = self._expectation(step, condition, window)
+
+    def _expectation(self, step: Step, condition: Condition, window: Window) -> Expectation:
+        return Expectation(step, condition, window, step.deadline_ns(self._mark_ns, self._now))
 
     def _act(self, step: Step) -> Verdict:
         """Send the step's packet, if it has one."""
         detail = ""
         if step.packet is not None:
+            sb = self._scene.mission.cfe.sb
+            if step.must_arrive and not receivers(sb, get_msg_id(step.packet)):
+                detail = f"nobody subscribes to MsgId 0x{get_msg_id(step.packet):04X} at this time"
             try:
-                self._scene.mission.cfe.sb.transmit_msg(step.packet, is_origination=False)
+                sb.transmit_msg(step.packet, is_origination=False)
             except CfeError as error:
                 detail = str(error)
         return Verdict.of(step, not detail, self._now, detail)

@@ -112,6 +112,21 @@ class AppCondition(StateCondition):
 
 
 @dataclass(frozen=True)
+class ResetCondition(StateCondition):
+    """The processor has been reset more than so many times in this run."""
+
+    times: int
+
+    def holds(self, scene: Scene, window: Window) -> bool:
+        """See `Condition.holds`."""
+        return len(scene.mission.record.resets) > self.times
+
+    def instead(self, scene: Scene, window: Window) -> str:
+        """See `Condition.instead`."""
+        return "the processor was not reset"
+
+
+@dataclass(frozen=True)
 class FileCondition(StateCondition):
     """A file of the mission, with a size in bytes if that matters."""
 

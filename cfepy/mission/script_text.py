@@ -38,9 +38,10 @@ class Step:
     """One line of a script. Times in ns.
 
     `at_ns` is when it is to happen, `after_ns` how long after the step before; without both it happens at once. A step
-    sends a packet, or expects something (`condition`), or neither: "end". `within_ns` counts from the last packet sent
-    or time waited for, `until_ns` from the start of the run; without both, an expectation of a state is judged at once,
-    and what must not come must not come until the script ends.
+    sends a packet, or expects something (`condition`), or neither: "end". A packet with `must_arrive` fails when nobody
+    subscribes to it; after one with `is_reset` the script waits for the reset. `within_ns` counts from the last packet
+    sent or time waited for, `until_ns` from the start of the run; without both, an expectation of a state is judged at
+    once, and what must not come must not come until the script ends.
     """
 
     line: int
@@ -48,6 +49,8 @@ class Step:
     at_ns: int | None = None
     after_ns: int | None = None
     packet: bytes | None = None
+    must_arrive: bool = False
+    is_reset: bool = False
     condition: Condition | None = None
     must_not: bool = False
     within_ns: int | None = None
@@ -60,6 +63,8 @@ class Step:
             mark_ns: when the script last did something.
             now_ns: when the expectation begins.
         """
+        if self.is_reset:
+            return now_ns + DEFAULT_WITHIN_NS
         if self.until_ns is not None:
             return self.until_ns
         if self.within_ns is not None:
@@ -92,8 +97,10 @@ def read_script(path: str | Path, spec: MissionSpec, dictionary: Dictionary) -> 
     """
     try:
         text = Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeError) as error:
-        raise UsageError(f"cannot be read: {error}", file=path) from None
+    except OSError as error:
+        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+    except UnicodeError:
+        raise UsageError("is no text in UTF-8", file=path) from None
     return parse_script(text, path, spec, dictionary)
 
 
@@ -134,11 +141,13 @@ class _Reader:
         at_ns, after_ns = self._when(words)
         packet: bytes | None = None
         condition: Condition | None = None
-        must_not = False
+        must_arrive = is_reset = must_not = False
         verb = choice(words.take("what to do"), ["send", "expect", "reset", "end"], "step")
         if verb == "send":
+            must_arrive = words.peek().text != "raw"
             packet = self._packet(words)
         elif verb == "reset":
+            must_arrive = is_reset = True
             kind = choice(words.take("the kind of reset"), RESET_TYPES, "kind of reset")
             packet = self._command("CFE_ES_RESTART", [f"RestartType={RESET_TYPES[kind]}"])
         elif verb == "expect":
@@ -150,7 +159,8 @@ class _Reader:
             within_ns, until_ns = _limits(words)
         if words:
             raise UsageError(f"{words.peek().text!r} is too much; the line should end before it")
-        step = Step(line, words.source, at_ns, after_ns, packet, condition, must_not, within_ns, until_ns)
+        doing = (packet, must_arrive, is_reset)
+        step = Step(line, words.source, at_ns, after_ns, *doing, condition, must_not, within_ns, until_ns)
         self._pass_time(step)
         return step
 
@@ -173,7 +183,7 @@ class _Reader:
         self._now_ns += step.after_ns or 0
         if step.condition is None or step.at_ns is not None or step.after_ns is not None:
             self._mark_ns = self._now_ns
-        deadline = self._now_ns if step.condition is None else step.deadline_ns(self._mark_ns, self._now_ns)
+        deadline = step.deadline_ns(self._mark_ns, self._now_ns)
         if deadline is not None:
             self.longest_ns = max(self.longest_ns, deadline, self._now_ns)
             if not step.must_not:

@@ -54,7 +54,7 @@ class Topic:
         if get_segmentation_flag(packet) != SegmentationFlag.UNSEGMENTED:
             raise UsageError("a segment of a longer message")
         try:
-            fields: dict[str, Any] = plain(message_class(self.type)._unpack(packet[TLM_HEADER_SIZE:]))
+            fields: dict[str, Any] = plain(message_class(self.type)().deserialize(packet[TLM_HEADER_SIZE:]))
         except Exception as error:  # whatever the generated code raises for bytes that are no such message
             raise UsageError(f"no {self.type}: {error}") from None
         return fields

@@ -5,6 +5,8 @@ from __future__ import annotations
 import traceback
 from pathlib import Path
 
+from cfepy.nodes.report import strip
+
 PACKAGE = str(Path(__file__).resolve().parents[1])
 SHARED = str(Path(PACKAGE) / "share")
 INNERMOST = 50  # frames that are shown: how deep a runaway recursion gets differs between task contexts
@@ -14,7 +16,7 @@ def app_traceback(error: BaseException) -> str:
     """The formatted traceback of an error and its causes, without frames of cfepy; all when nothing would be left."""
     text = traceback.TracebackException.from_exception(error, limit=-INNERMOST)
     whole = list(text.stack)
-    _strip(text, set())
+    strip(text, _is_ours)
     if not text.stack and not isinstance(error, SyntaxError):  # that one names its place by itself
         text.stack = traceback.StackSummary.from_list(whole)
     return "".join(text.format()).rstrip()
@@ -34,15 +36,6 @@ def described(error: BaseException) -> str:
         return f"{type(error).__name__}: {error}"
     except Exception:
         return f"{type(error).__name__}: its text cannot be had"
-
-
-def _strip(text: traceback.TracebackException | None, seen: set[int]) -> None:
-    if text is None or id(text) in seen:
-        return
-    seen.add(id(text))
-    text.stack[:] = [frame for frame in text.stack if not _is_ours(frame.filename)]
-    for inner in (text.__cause__, text.__context__, *(text.exceptions or ())):
-        _strip(inner, seen)
 
 
 def _is_ours(file: str) -> bool:

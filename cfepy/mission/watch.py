@@ -61,3 +61,9 @@ def watching(take: Callable[[Seen], object], wanted: Callable[[int], bool]) -> t
             return bytes(copy)
 
     return WatchedBus
+
+
+def receivers(bus: SoftwareBus, msg_id: int) -> list[str]:
+    """Names of the applications that get a MsgId now."""
+    route = bus.routes.get(msg_id)
+    return [] if route is None else list(dict.fromkeys(each.pipe.app_name for each in route.active))

@@ -5,8 +5,8 @@ Pure functions on bytes, usable without a mission. Imports only cfepy.status.
 
 from __future__ import annotations
 
-from cfepy.msg.dictionary import Command, Telemetry
-from cfepy.msg.dispatch import CommandTable, Dispatch
+from cfepy.msg.dictionary import NO_PAYLOAD, Command, Telemetry
+from cfepy.msg.dispatch import CommandTable, Dispatch, Handler
 from cfepy.msg.extended import (
     get_eds_version,
     get_endian,
@@ -68,6 +68,7 @@ from cfepy.msg.secondary import (
     verification_action,
 )
 from cfepy.msg.strings import message_string_get, message_string_set
+from cfepy.msg.sys_time import SYS_TIME, sys_time_fields
 from cfepy.msg.topics import (
     cmd_topic_id_to_msg_id,
     global_cmd_topic_id_to_msg_id,
@@ -84,11 +85,14 @@ __all__ = [
     "CMD_HEADER_SIZE",
     "HIGHEST_VALID_MSG_ID",
     "MAX_SEQUENCE_COUNT",
+    "NO_PAYLOAD",
     "PRIMARY_HEADER_SIZE",
+    "SYS_TIME",
     "TLM_HEADER_SIZE",
     "Command",
     "CommandTable",
     "Dispatch",
+    "Handler",
     "Layout",
     "MsgType",
     "Packet",
@@ -145,6 +149,7 @@ __all__ = [
     "set_system",
     "set_type",
     "set_user_data_length",
+    "sys_time_fields",
     "telemetry",
     "tlm_topic_id_to_msg_id",
     "validate_checksum",

@@ -12,9 +12,9 @@ from typing import Any
 
 from cfepy.msg.header import CMD_HEADER_SIZE, TLM_HEADER_SIZE
 from cfepy.msg.layout import Layout
-from cfepy.msg.secondary import command
+from cfepy.msg.secondary import command, telemetry
 
-_EMPTY = Layout("no payload", [])
+NO_PAYLOAD = Layout("no payload", [])
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Command:
     name: str
     msg_id: int
     code: int | None = None
-    payload: Layout = _EMPTY
+    payload: Layout = NO_PAYLOAD
     text: str = ""
 
     @property
@@ -70,13 +70,21 @@ class Telemetry:
 
     name: str
     msg_id: int
-    payload: Layout = _EMPTY
+    payload: Layout = NO_PAYLOAD
     text: str = ""
 
     @property
     def length(self) -> int:
         """Bytes of the whole packet."""
         return TLM_HEADER_SIZE + self.payload.size
+
+    def packet(self, values: Mapping[str, Any] | None = None, /, **more: Any) -> bytes:
+        """The packet as bytes, its time 0 until it is sent; a field not given is zero.
+
+        Raises:
+            UsageError: an unknown field, or a value that does not fit.
+        """
+        return bytes(telemetry(self.msg_id, self.payload.pack(values, **more)))
 
     def read(self, packet: bytes | bytearray | memoryview) -> dict[str, Any]:
         """The payload's fields.

@@ -44,30 +44,37 @@ class Dispatch(NamedTuple):
 class CommandTable:
     """Handlers by message id and function code.
 
-    A handler gets the whole packet as bytes. Fill the table once with `handle` (or `add` and `add_message`), then
-    `dispatch`.
+    A handler gets the whole packet as bytes. Give the handlers of declared commands at once, or fill the table with
+    `handle`, `add` and `add_message`; then `dispatch`.
+
+    Args:
+        handlers: declared commands, each with its handler.
     """
 
     __slots__ = ("_commands", "_messages")
 
-    def __init__(self) -> None:
+    def __init__(self, *handlers: tuple[Command, Handler]) -> None:
         self._commands: dict[int, dict[int, tuple[int, Handler]]] = {}
         self._messages: dict[int, tuple[int, Handler]] = {}
+        for command, handler in handlers:
+            self.handle(command, handler)
 
-    def handle(self, command: Command, handler: Handler) -> None:
+    def handle(self, command: Command, handler: Handler, *, any_length: bool = False) -> None:
         """Handle a declared command.
 
         Args:
             command: its MsgId, function code and length count.
             handler: called with the packet.
+            any_length: take packets of any length, for handlers that look for themselves.
 
         Raises:
             CfeError: CFE_MSG_BAD_ARGUMENT when it has a handler already.
         """
+        length = 0 if any_length else command.length
         if command.code is None:
-            self.add_message(command.msg_id, command.length, handler)
+            self.add_message(command.msg_id, length, handler)
         else:
-            self.add(command.msg_id, command.code, command.length, handler)
+            self.add(command.msg_id, command.code, length, handler)
 
     def add(self, msg_id: int, fcn_code: int, length: int, handler: Handler) -> None:
         """Handle one function code of a command message.

@@ -7,6 +7,8 @@ left of it, and knows nothing of ROS: rospy and the message packages come in as 
 The names below are loaded when they are first used: a mission without nodes pays nothing for them.
 """
 
+from __future__ import annotations
+
 import importlib
 import threading  # noqa: F401  # first imported by a task, the host's would take that task for its main thread
 from typing import TYPE_CHECKING, Any

@@ -1,8 +1,9 @@
 """The import system of a universe: its `__import__`, module table and search path.
 
 Names are looked up in this order: the node's table; modules that were given to the universe (rospy, message packages);
-modules made for it (`time`, `_thread`, `os`, ...); the node's own folders; the standard library and the installed
-packages, executed afresh or shared as `cfepy.nodes.sharing` says. The host's `sys.modules` is never changed.
+modules made for it (`time`, `_thread`, `os`, ...); the node's own folders; the libraries that its owner provides; the
+standard library and the installed packages, executed afresh or shared as `cfepy.nodes.sharing` says. The host's
+`sys.modules` is never changed.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ class Importer:
     Args:
         universe: whose modules they are.
         folders: the node's own folders, searched first.
+        libraries: folders of packages that are executed afresh for the node, searched next.
         ordered: set displays in the node's code make ordered sets.
         factories: modules that are made, by name.
         find_factory: asked for names that are not in `factories`; None is "not mine".
@@ -44,17 +46,19 @@ class Importer:
         universe: Universe,
         *,
         folders: Sequence[str],
+        libraries: Sequence[str],
         ordered: bool,
         factories: Mapping[str, Factory],
         find_factory: Callable[[str], Factory | None],
         fixes: Mapping[str, Callable[[Universe, ModuleType], None]],
     ) -> None:
         self.modules: dict[str, ModuleType] = {}
-        self.path: list[str] = [*folders, *sys.path]
+        self.path: list[str] = [*folders, *libraries, *sys.path]
         self._universe = universe
         self._ordered = ordered
         self._own = frozenset(folders)
-        self._hosts = frozenset(sys.path)
+        self._libraries = list(libraries)
+        self._hosts = frozenset((*libraries, *sys.path))
         self._factories = factories
         self._find_factory = find_factory
         self._fixes = fixes
@@ -108,7 +112,12 @@ class Importer:
         if parent:
             folders = getattr(self.load(parent), "__path__", None)
             return None if folders is None else PathFinder.find_spec(name, list(folders))
-        return PathFinder.find_spec(name, self._node_folders()) or importlib.util.find_spec(name)
+        return PathFinder.find_spec(name, self._node_folders() + self._libraries) or importlib.util.find_spec(name)
+
+    def has_own(self, name: str) -> bool:
+        """Whether the node's own folders have the code of a module or package called `name`."""
+        found = PathFinder.find_spec(name, self._node_folders())
+        return found is not None and found.loader is not None
 
     # -- loading -----------------------------------------------------------------------------------------------------
 
@@ -161,15 +170,23 @@ class Importer:
             raise ModuleNotFoundError(f"No module named {name!r}; {package.__name__!r} is not a package", name=name)
         if name in sharing.HOST_SUBMODULES:
             return self._share(name)
-        spec = PathFinder.find_spec(name, list(folders))
+        spec = PathFinder.find_spec(name, list(folders)) or self._library_part(name)
         if spec is None:
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
         return self._from_spec(spec, self._is_own(spec.origin))
+
+    def _library_part(self, name: str) -> ModuleSpec | None:
+        """A part that the node's own copy of a library lacks, as sources do whose compiled half was not built."""
+        *packages, _ = name.split(".")
+        return PathFinder.find_spec(name, [os.path.join(folder, *packages) for folder in self._libraries])
 
     def _load_top(self, name: str) -> ModuleType:
         found = PathFinder.find_spec(name, self._node_folders())
         if found is not None and found.loader is not None:
             return self._from_spec(found, own=True)
+        library = PathFinder.find_spec(name, self._libraries)
+        if library is not None and library.loader is not None:
+            return self._from_spec(library, own=False)
         if sharing.is_stdlib(name):
             if not sharing.is_fresh_stdlib(name):
                 return self._share(name)

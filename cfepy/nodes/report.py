@@ -23,19 +23,20 @@ def traceback_text(error: BaseException) -> str:
     from traceback import TracebackException
 
     report = TracebackException(type(error), error, error.__traceback__)
-    _strip(report, set())
+    strip(report, is_hidden)
     return "".join(report.format())
 
 
-def _strip(report: TracebackException | None, seen: set[int]) -> None:
-    if report is None or id(report) in seen:
-        return
-    seen.add(id(report))
-    report.stack[:] = [frame for frame in report.stack if not is_hidden(frame.filename)]
-    _strip(report.__cause__, seen)
-    _strip(report.__context__, seen)
-    for inner in getattr(report, "exceptions", None) or ():
-        _strip(inner, seen)
+def strip(report: TracebackException, hidden: Callable[[str], bool]) -> None:
+    """Take the frames of hidden source files out of a traceback, and out of those of its causes."""
+    waiting, seen = [report], {id(report)}
+    while waiting:
+        each = waiting.pop()
+        each.stack[:] = [frame for frame in each.stack if not hidden(frame.filename)]
+        for inner in (each.__cause__, each.__context__, *(each.exceptions or ())):
+            if inner is not None and id(inner) not in seen:
+                seen.add(id(inner))
+                waiting.append(inner)
 
 
 def hide_in(module: Any) -> None:

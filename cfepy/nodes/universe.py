@@ -55,6 +55,7 @@ class Universe:
         env: its environment; None gives it the host's HOME and PATH and nothing else.
         cwd: its working directory; None is the host's.
         search_paths: folders for its imports, after the script's own.
+        library_paths: folders of libraries, after all folders of the node's.
         seed: of the run.
         epoch_ns: the time of day in ns since 1970 (UTC) when the kernel's clock is 0.
         call_cost_ns: virtual CPU time of a call that polls (clock, lock, event); with 0 a polling loop never ends.
@@ -78,6 +79,7 @@ class Universe:
         env: Mapping[str, str] | None = None,
         cwd: str | os.PathLike[str] | None = None,
         search_paths: Sequence[str | os.PathLike[str]] = (),
+        library_paths: Sequence[str | os.PathLike[str]] = (),
         seed: int = 0,
         epoch_ns: int = 0,
         call_cost_ns: int = 1000,
@@ -126,6 +128,7 @@ class Universe:
         self.importer = Importer(
             self,
             folders=[*folders, *(os.fspath(folder) for folder in search_paths)],
+            libraries=[os.fspath(folder) for folder in library_paths],
             ordered=ordered_sets,
             factories={**_made_modules(), **(modules or {})},
             find_factory=find_module,

@@ -13,7 +13,7 @@ from typing import Any, Protocol, TypeVar
 
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
-from cfepy.ids import OS_TIMEBASE_BASE, IdTable, get_base
+from cfepy.ids import OS_TIMEBASE_BASE, IdTable, get_base, name_size
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.limits import (
     OS_EVENT_RESOURCE_ALLOCATED,
@@ -175,7 +175,7 @@ class ObjectTable(IdTable[Record]):
 
     def check_name(self, name: str) -> None:
         """Raise OS_ERR_NAME_TOO_LONG for a name that is, by default one of more than 19 bytes."""
-        if len(name.encode("utf-8", "replace")) >= self.name_limit:
+        if name_size(name) >= self.name_limit:
             raise OsalError(
                 OS_ERR_NAME_TOO_LONG, f"{self.kind} name {name!r} has more than {self.name_limit - 1} characters"
             )

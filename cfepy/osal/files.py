@@ -25,9 +25,9 @@ from cfepy.osal.limits import (
     OS_SEEK_END,
     OS_SEEK_SET,
     OS_WRITE_ONLY,
-    PS_PER_NS,
 )
 from cfepy.osal.volumes import Node
+from cfepy.rtos.units import PS_PER_NS
 from cfepy.status import (
     OS_ERR_NO_FREE_IDS,
     OS_ERR_OPERATION_NOT_SUPPORTED,

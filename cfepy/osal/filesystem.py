@@ -118,16 +118,6 @@ class FileSystem:
             OS_FS_ERR_PATH_INVALID, f"{path!r} is below no mount point; there are {', '.join(self.mount_points())}"
         )
 
-    def host_path(self, path: str) -> Path | None:
-        """The host's file that shows at a virtual path, for a loader of code; None when the file is in memory.
-
-        Raises:
-            OsalError: as `translate`.
-        """
-        volume, rest = self.translate(path)
-        real = volume.host / rest if volume.host is not None else None
-        return real if real is not None and volume.node(rest) is not None and real.is_file() else None
-
     def find(self, path: str) -> Node | None:
         """The file at a path, None when there is none.
 

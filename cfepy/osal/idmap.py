@@ -8,20 +8,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cfepy import versions
 from cfepy.ids import OS_USER_BASE, equal, from_integer, get_base, is_defined, to_integer
 from cfepy.osal.core import Core, OsObject, Setup
 from cfepy.osal.limits import (
     OS_BUFFER_SIZE,
-    OS_BUILD_NUMBER,
     OS_ERROR_NAME_LENGTH,
     OS_OBJECT_CREATOR_ANY,
-    OS_VERSION_NUMBER,
 )
 from cfepy.status import OS_ERR_INVALID_ID, OsalError, name_of, status_to_string, to_signed
+from cfepy.versions import OSAL_VERSION, VersionFunctions
 
 
-class IdMapApi(Core):
+class IdMapApi(VersionFunctions, Core):
     """The functions on object ids of any kind, and OS_printf."""
 
     object_id_to_integer = staticmethod(to_integer)
@@ -30,6 +28,7 @@ class IdMapApi(Core):
     object_id_defined = staticmethod(is_defined)
     status_to_integer = staticmethod(to_signed)
     status_to_string = staticmethod(status_to_string)
+    _version = OSAL_VERSION
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
@@ -113,22 +112,6 @@ class IdMapApi(Core):
     def printf_enable(self) -> None:
         """Let `printf` write again (OS_printf_enable)."""
         self._printf_enabled = True
-
-    def get_version_string(self) -> str:
-        """The version of OSAL that this one is like (OS_GetVersionString)."""
-        return versions.OSAL_VERSION
-
-    def get_version_code_name(self) -> str:
-        """The code name of that release (OS_GetVersionCodeName)."""
-        return versions.CODENAME
-
-    def get_version_number(self) -> tuple[int, int, int, int]:
-        """Major, minor, revision, mission revision (OS_GetVersionNumber)."""
-        return OS_VERSION_NUMBER
-
-    def get_build_number(self) -> int:
-        """The build number, 0 for a release (OS_GetBuildNumber)."""
-        return OS_BUILD_NUMBER
 
     def _object(self, object_id: int) -> OsObject:
         table = self._tables.get(get_base(object_id))

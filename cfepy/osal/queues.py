@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 from cfepy.ids import OS_QUEUE_BASE
 from cfepy.osal.core import DELETED, Core, ObjectTable, OsObject, Setup, check_size
-from cfepy.osal.limits import OS_PEND, PS_PER_NS
+from cfepy.osal.limits import OS_PEND
 from cfepy.rtos import Queue
-from cfepy.rtos.units import NS_PER_MS
+from cfepy.rtos.units import NS_PER_MS, PS_PER_NS
 from cfepy.status import OS_ERR_INVALID_SIZE, OS_QUEUE_FULL, OS_QUEUE_INVALID_SIZE, OsalError
 
 

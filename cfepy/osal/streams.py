@@ -146,6 +146,7 @@ class StreamApi(ClockApi, FileApi):
         if len(data) > LONGEST_DATAGRAM:
             raise record.error(f"cannot send {len(data)} bytes at once")
         self._charge_bytes(len(data))
+        self._check_alive(record)  # a more urgent task may have closed it; a port that it took now would stay taken
         source = record.mailbox.place or self._take_place(record, Place(ANY_HOST[record.domain], 0))
         self.network.send(Datagram(source.reached(), target, data))
         return len(data)

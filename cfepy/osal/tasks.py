@@ -15,7 +15,6 @@ from cfepy.rtos import Task
 from cfepy.rtos.units import NS_PER_MS
 from cfepy.status import (
     OS_ERR_INVALID_ARGUMENT,
-    OS_ERR_INVALID_ID,
     OS_ERR_INVALID_PRIORITY,
     OS_ERR_NAME_NOT_FOUND,
     OS_INVALID_POINTER,
@@ -105,8 +104,7 @@ class TaskApi(Core):
         if task is not None and task is not self.kernel.current:
             self.kernel.kill(task)
         self._forget(record)
-        if record.on_delete is not None:
-            record.on_delete()
+        self._call_delete_handler(record)
         if task is self.kernel.current:
             self.kernel.exit_task()
 
@@ -180,17 +178,6 @@ class TaskApi(Core):
                 return task_id
         raise OsalError(OS_ERR_NAME_NOT_FOUND, f"{system_data!r} is no OSAL task")
 
-    def kernel_task(self, task_id: int) -> Task:
-        """The kernel task behind an id.
-
-        Raises:
-            OsalError: OS_ERR_INVALID_ID.
-        """
-        task = self._task(task_id).task
-        if task is None:
-            raise OsalError(OS_ERR_INVALID_ID, f"task {task_id:#x} has not begun")
-        return task
-
     def _task(self, task_id: int) -> OsTask:
         record = self._tasks.lookup(task_id)
         if record is None:
@@ -200,12 +187,22 @@ class TaskApi(Core):
     def _live(self, record: OsTask) -> None:
         """What an OSAL task runs."""
         record.task = task = self.kernel.current
-        self._task_ids[task] = record.id
+        self._task_ids[task] = task.number = record.id
         self._notify(OS_EVENT_TASK_STARTUP, record.id)
         try:
             record.entry()
         finally:
             self._forget(record)
+
+    def _call_delete_handler(self, record: OsTask) -> None:
+        """An error in it is its application's, and does not keep anybody from deleting more."""
+        if record.on_delete is None:
+            return
+        try:
+            record.on_delete()
+        except Exception as error:
+            if record.task is None or not self.kernel.on_task_error(record.task, error):
+                raise
 
     def _forget(self, record: OsTask) -> None:
         if record.deleted:

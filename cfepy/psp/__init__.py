@@ -3,6 +3,8 @@
 It may import cfepy.osal and what is left of it.
 """
 
+from __future__ import annotations
+
 from cfepy.psp.cpu import CpuCosts
 from cfepy.psp.memory import MemoryBudget, OverBudget, object_sizes
 from cfepy.psp.profile import BoardProfile, available_boards, load_profile

@@ -1,6 +1,6 @@
 """What computing costs on a board, in virtual time; derived from its profile once, so that hot paths only add.
 
-May import cfepy.psp.profile only.
+May import cfepy.psp.profile and cfepy.rtos.units only.
 """
 
 from __future__ import annotations
@@ -8,9 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cfepy.psp.profile import BoardProfile
-
-_PS_PER_NS = 1000
-_PS_PER_S = 1_000_000_000_000
+from cfepy.rtos.units import NS_PER_S, PS_PER_NS
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,9 +29,5 @@ class CpuCosts:
     def of_board(cls, profile: BoardProfile) -> CpuCosts:
         """The costs on a board; the time of a byte is rounded up to a picosecond."""
         cycles = profile.copy_cycles_per_byte
-        byte_ps = -(-cycles * _PS_PER_S // profile.cpu_hz) if profile.cpu_hz else 0
+        byte_ps = -(-cycles * PS_PER_NS * NS_PER_S // profile.cpu_hz) if profile.cpu_hz else 0
         return cls(profile.cycles_ns(profile.syscall_cycles), byte_ps, profile.cycles_ns(profile.context_switch_cycles))
-
-    def copy_ns(self, size: int) -> int:
-        """Time to copy `size` bytes, rounded down to a ns."""
-        return size * self.byte_ps // _PS_PER_NS

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
-from cfepy.config import PlatformConfig
+from cfepy.config import MAY_BE_ZERO, PlatformConfig
 from cfepy.psp.marked_yaml import Marked, load
 from cfepy.resources import shipped
 from cfepy.rtos.units import NS_PER_S
@@ -218,7 +218,8 @@ def _limits(entry: Marked) -> dict[str, Limit]:
         elif isinstance(default, tuple):
             limits[name] = tuple(each.integer() for each in item.items())
         else:
-            limits[name] = item.integer(min(1, default), MOST_LIMIT)
+            lowest = 0 if name in MAY_BE_ZERO else min(1, default)
+            limits[name] = item.integer(lowest, MOST_LIMIT)
     return limits
 
 

@@ -10,12 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from cfepy import versions
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
 from cfepy.osal import Osal, OsTime
 from cfepy.osal.clock import time_from_total_nanoseconds
-from cfepy.osal.limits import OS_BUILD_NUMBER, OS_VERSION_NUMBER
 from cfepy.psp import endian
 from cfepy.psp.absent import AbsentHardware
 from cfepy.psp.addresses import MEM_ATTR_READWRITE, MEM_EEPROM, MEM_RAM
@@ -28,6 +26,7 @@ from cfepy.psp.watchdog import WATCHDOG_MAX, Watchdog
 from cfepy.rtos import Kernel
 from cfepy.rtos.units import NS_PER_S
 from cfepy.status import CFE_PSP_ERROR, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError, status_to_string
+from cfepy.versions import PSP_VERSION, VersionFunctions
 
 RST_TYPE_PROCESSOR = 1
 RST_TYPE_POWERON = 2
@@ -79,7 +78,11 @@ class Timebase(NamedTuple):
     lower: int
 
 
-class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware):
+class PanicError(CfeError):
+    """CFE_PSP_Panic was called: the run is over, whoever called."""
+
+
+class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions):
     """One board.
 
     Args:
@@ -98,6 +101,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware):
     hto_le16 = le16_to_h = staticmethod(endian.keep_16)
     hto_le32 = le32_to_h = staticmethod(endian.keep_32)
     hto_le64 = le64_to_h = staticmethod(endian.keep_64)
+    _version = PSP_VERSION
     is_big_endian = staticmethod(endian.is_big_endian)
     is_little_endian = staticmethod(endian.is_little_endian)
 
@@ -124,6 +128,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware):
             else Retained(cds_bytes=config.es_cds_size, eeprom_bytes=profile.data_flash or EEPROM_BYTES)
         )
         self.on_restart = on_restart
+        self._is_resetting = False
         self.exceptions = self.retained.exceptions
         has_watchdog = profile.watchdog_max_ms > 0
         self.watchdog = Watchdog(kernel, self._bite if has_watchdog else None, profile.watchdog_max_ms or WATCHDOG_MAX)
@@ -178,6 +183,13 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware):
             reason: for the report of the run.
             fault: something failed; otherwise somebody asked for it.
         """
+        if not self._is_resetting:  # else a `finally` block of a task that is being ended asks once more
+            self._is_resetting = True
+            self._say_goodbye(reset_type)
+        self._reset(reset_type, reason, fault)
+
+    def _say_goodbye(self, reset_type: int) -> None:
+        """What is said, and what the retained memory knows of the reset."""
         is_poweron = reset_type == RST_TYPE_POWERON
         self.console.write(f"CFE_PSP: Exiting cFE with {'POWERON' if is_poweron else 'PROCESSOR'} Reset status.")
         if is_poweron:
@@ -185,7 +197,6 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware):
         self.console.write("\nCFE_PSP: Shutdown initiated - Exiting cFE")
         self.retained.next_reset_type = 0 if is_poweron else reset_type  # the boot record is removed too
         self.retained.exited = not is_poweron
-        self._reset(reset_type, reason, fault)
 
     def _bite(self) -> None:
         """The watchdog resets the processor; software has no say in it."""
@@ -210,12 +221,12 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware):
             cause: what the error that is raised tells as its reason.
 
         Raises:
-            CfeError: always; NASA's calls abort().
+            PanicError: always; NASA's calls abort().
         """
         self.console.write(f"CFE_PSP_Panic called with error code = 0x{error_code & 0xFFFFFFFF:08X}. Exiting.")
         self.console.write("The cFE could not start.")
         because = "" if cause is None else f": {cause}"
-        raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"the PSP panics, code {error_code}{because}")
+        raise PanicError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"the PSP panics, code {error_code}{because}")
 
     def get_restart_type(self) -> RestartType:
         """Type and subtype of the start of this run (CFE_PSP_GetRestartType)."""
@@ -286,22 +297,6 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware):
     def watchdog_get(self) -> int:
         """The watchdog's time in ms (CFE_PSP_WatchdogGet)."""
         return self.watchdog.value_ms
-
-    def get_version_string(self) -> str:
-        """The version of the PSP that this one is like (CFE_PSP_GetVersionString)."""
-        return versions.PSP_VERSION
-
-    def get_version_code_name(self) -> str:
-        """The code name of that release (CFE_PSP_GetVersionCodeName)."""
-        return versions.CODENAME
-
-    def get_version_number(self) -> tuple[int, int, int, int]:
-        """Major, minor, revision, mission revision (CFE_PSP_GetVersionNumber)."""
-        return OS_VERSION_NUMBER
-
-    def get_build_number(self) -> int:
-        """The build number, 0 for a release (CFE_PSP_GetBuildNumber)."""
-        return OS_BUILD_NUMBER
 
     status_to_string = staticmethod(status_to_string)
 

@@ -3,6 +3,8 @@
 It may import only `cfepy.trace`. Everything above talks to it through the names below.
 """
 
+from __future__ import annotations
+
 from cfepy.rtos.errors import DeadlockError
 from cfepy.rtos.kernel import Kernel
 from cfepy.rtos.mutex import Mutex

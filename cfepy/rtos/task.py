@@ -67,6 +67,7 @@ class Task:
         "mark",
         "mutex",
         "name",
+        "number",
         "owner",
         "park",
         "priority",
@@ -84,6 +85,7 @@ class Task:
         self.ident = ident
         self.entry = entry
         self.priority = self.base_priority = priority
+        self.number = 0  # for whoever made the task: OSAL's id, known until the task has ended
         self.owner: Any = None  # whoever the task works for: an application of ES
         self.resume: Callable[[], Any] = _not_bound
         self.park: Callable[..., Any] | None = None

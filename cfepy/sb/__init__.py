@@ -3,6 +3,8 @@
 The five services do not import each other; what SB needs of them it finds in its `Ports`.
 """
 
+from __future__ import annotations
+
 from cfepy.ports import PEND_FOREVER
 from cfepy.sb.buffers import MessageBuffer
 from cfepy.sb.bus import POLL, SoftwareBus

@@ -34,7 +34,6 @@ POLL = 0
 SECONDARY_BIT = SECONDARY >> 8
 unpack_primary = struct.Struct(">HH").unpack_from
 pack_telemetry = struct.Struct(">HHH6s").pack
-pack_empty_telemetry = struct.Struct(">HH12x").pack
 
 
 class SoftwareBus(PipeServices, SubscriptionServices):
@@ -123,15 +122,6 @@ class SoftwareBus(PipeServices, SubscriptionServices):
                 pipe.peak = waiting + 1
         if failures is not None:
             self._report_failures(msg_id, failures)
-
-    def transmit_telemetry(self, msg_id: int, payload: bytes) -> None:
-        """Send a payload behind a telemetry header of 16 bytes: `transmit_msg` for whoever has no header yet.
-
-        Args:
-            msg_id: a telemetry MsgId (secondary header, not a command).
-            payload: everything behind the header.
-        """
-        self.transmit_msg(pack_empty_telemetry(msg_id, 0xC000) + payload)
 
     def _stamp(self, now: int) -> None:
         """Keep the spacecraft time of this instant, as the header wants it."""

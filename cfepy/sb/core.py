@@ -14,6 +14,7 @@ from cfepy.ids import SB_PIPEID_BASE, IdTable
 from cfepy.msg import Packet
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
+from cfepy.rtos.units import PS_PER_NS
 from cfepy.sb import events as ev
 from cfepy.sb.pipe import Pipe
 from cfepy.sb.routing import Route, RoutingTable
@@ -72,7 +73,7 @@ class BusCosts:
 
     def of(self, size: int) -> int:
         """ns for a call that copies `size` bytes."""
-        return self.call_ns + size * self.byte_ps // 1000
+        return self.call_ns + size * self.byte_ps // PS_PER_NS
 
 
 @dataclass(slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from cfepy.fs import FileCategory, get_default_extension, get_default_mount_point, parse_input_file_name_ex
+from cfepy.fs import dump_file_name
 from cfepy.fs.background import FileWriteEvent, FileWriteMetaData
 from cfepy.fs.header import SUBTYPE_SB_MAPDATA, SUBTYPE_SB_PIPEDATA, SUBTYPE_SB_ROUTEDATA
 from cfepy.sb import events as ev
@@ -66,18 +66,15 @@ class BusFiles:
             self._request(name, kind)
         except CfeError as error:
             counters.command_error += 1
-            pending = error.status == CFE_STATUS_REQUEST_ALREADY_PENDING and self._last is not None
-            self._report_failure(self._last.file_name if pending and self._last is not None else name, error.status)
+            last = self._last if error.status == CFE_STATUS_REQUEST_ALREADY_PENDING else None
+            self._report_failure(name if last is None else last.file_name, error.status)
         else:
             counters.command += 1
 
     def _request(self, name: str, kind: _Kind) -> None:
         if self._last is not None and self._last.is_pending:
             raise CfeError(CFE_STATUS_REQUEST_ALREADY_PENDING, f"{self._last.file_name} is being written")
-        category = FileCategory.BINARY_DATA_DUMP
-        path = parse_input_file_name_ex(
-            name, kind.default_name, get_default_mount_point(category), get_default_extension(category)
-        )
+        path = dump_file_name(name, kind.default_name)
         meta = FileWriteMetaData(
             path,
             kind.subtype,

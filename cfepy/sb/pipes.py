@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cfepy.ids import SB_PIPEID_BASE, to_index
+from cfepy.ids import SB_PIPEID_BASE, name_size, to_index
 from cfepy.osal.limits import OS_MAX_API_NAME
 from cfepy.sb import events as ev
 from cfepy.sb.buffers import BufferServices
@@ -37,7 +37,7 @@ class PipeServices(BufferServices):
         if len(self.pipes) >= self.config.sb_max_pipes:
             text = f"CreatePipeErr:Max Pipes({self.config.sb_max_pipes})In Use.app {app}"
             raise self._create_error(ev.MAX_PIPES_MET_EID, CFE_SB_MAX_PIPES_MET, text)
-        if len(name.encode("utf-8", "replace")) >= OS_MAX_API_NAME:
+        if name_size(name) >= OS_MAX_API_NAME:
             text = f"CreatePipeErr:OS_QueueCreate returned {OS_ERR_NAME_TOO_LONG},app {app}"
             raise self._create_error(ev.CR_PIPE_ERR_EID, CFE_SB_PIPE_CR_ERR, text)
         if any(pipe.name == name for pipe in self.pipes):
@@ -106,8 +106,8 @@ class PipeServices(BufferServices):
         if self.is_foreign(pipe):
             text = f"Pipe Opts Set Error: Caller({self.caller_name()}) is not the owner of pipe {pipe_id}"
             raise self._opts_error(ev.SETPIPEOPTS_OWNER_ERR_EID, text)
-        pipe.opts = opts
-        text = f"Pipe opts set:id {pipe_id},owner {pipe.app_name}, opts=0x{opts:02x}"
+        pipe.opts = opts & 0xFF  # C takes 8 bits
+        text = f"Pipe opts set:id {pipe_id},owner {pipe.app_name}, opts=0x{pipe.opts:02x}"
         self.report(ev.SETPIPEOPTS_EID, ev.DEBUG, text)
 
     def get_pipe_opts(self, pipe_id: int) -> int:

@@ -5,7 +5,6 @@ Imports only its neighbours in cfepy.sb.
 
 from __future__ import annotations
 
-from cfepy.msg import telemetry
 from cfepy.sb import events as ev
 from cfepy.sb import packets as pk
 from cfepy.sb.core import BusCore
@@ -24,9 +23,8 @@ def tell_one(bus: BusCore, msg_id: int, pipe_id: int, qos: int) -> None:
     """
     if not bus.reporting:
         return
-    quality = {"Priority": qos & 0xFF, "Reliability": qos >> 8}
-    payload = pk.ONE_SUBSCRIPTION.pack(SubType=pk.SUBSCRIPTION, MsgId=msg_id, Qos=quality, Pipe=pipe_id)
-    status = _send(bus, pk.ONESUB_TLM_MID, payload)
+    quality = {"Priority": qos & 0xFF, "Reliability": qos >> 8 & 0xFF}
+    status = _send(bus, pk.ONESUB_TLM.packet(SubType=pk.SUBSCRIPTION, MsgId=msg_id, Qos=quality, Pipe=pipe_id))
     text = f"Sending Subscription Report Msg=0x{msg_id:x},Pipe={pipe_id},Stat=0x{status:x}"
     bus.report(ev.SUBSCRIPTION_RPT_EID, ev.DEBUG, text)
 
@@ -40,17 +38,16 @@ def tell_all(bus: BusCore) -> None:
     most = pk.SUB_ENTRIES_PER_PKT
     for segment, start in enumerate(range(0, len(wanted), most), 1):
         entries = [{"MsgId": msg_id} for msg_id in wanted[start : start + most]]
-        payload = pk.ALL_SUBSCRIPTIONS.pack(PktSegment=segment, Entries=len(entries), Entry=entries)
-        status = _send(bus, pk.ALLSUBS_TLM_MID, payload)
+        status = _send(bus, pk.ALLSUBS_TLM.packet(PktSegment=segment, Entries=len(entries), Entry=entries))
         is_full = len(entries) == most
         text = f"{'Full' if is_full else 'Partial'} Sub Pkt {segment} Sent,Entries={len(entries)},Stat=0x{status:x}"
         bus.report(ev.FULL_SUB_PKT_EID if is_full else ev.PART_SUB_PKT_EID, ev.DEBUG, text)
 
 
-def _send(bus: BusCore, msg_id: int, payload: bytes) -> int:
+def _send(bus: BusCore, packet: bytes) -> int:
     """Transmit; the status as an unsigned number."""
     try:
-        bus.ports.sb.transmit_msg(bytes(telemetry(msg_id, payload)))
+        bus.ports.sb.transmit_msg(packet)
     except CfeError as error:
         return error.status & 0xFFFFFFFF
     return CFE_SUCCESS

@@ -7,7 +7,7 @@ only its neighbours in cfepy.sb and the header functions.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from cfepy.msg import MAX_SEQUENCE_COUNT
@@ -20,6 +20,9 @@ GLOBAL = 1  # scope of a subscription: other processors are told of it
 LOCAL = 0
 INVALID_ROUTE_ID = 0
 INVALID_MSG_ID = 0
+
+Totals = tuple[int, int, int, int]
+"""Messages delivered, waiting, dropped for a message limit, dropped for a full pipe."""
 
 
 class Destination:
@@ -43,7 +46,7 @@ class Route:
     `active` is replaced and never changed: a transmission that is under way goes on with the tuple it began with.
     """
 
-    __slots__ = ("active", "destinations", "gone", "is_telemetry", "msg_id", "relayed", "route_id", "sequence")
+    __slots__ = ("_past", "active", "destinations", "gone", "is_telemetry", "msg_id", "relayed", "route_id", "sequence")
 
     def __init__(self, msg_id: int, route_id: int) -> None:
         self.msg_id = msg_id
@@ -53,7 +56,8 @@ class Route:
         self.relayed = 0  # messages that came with their own
         self.destinations: list[Destination] = []
         self.active: tuple[Destination, ...] = ()
-        self.gone: list[Destination] = []  # of subscriptions that ended, for the totals
+        self.gone: list[Destination] = []  # of subscriptions that ended, until nothing can change their counts
+        self._past: Totals = (0, 0, 0, 0)  # of those that are not in the list any more
 
     @property
     def sent(self) -> int:
@@ -75,21 +79,29 @@ class Route:
     def remove(self, destination: Destination) -> None:
         """Take a destination off (CFE_SB_RemoveDestNode)."""
         self.destinations.remove(destination)
-        self.gone.append(destination)
+        settled = [each for each in self.gone if each.puts == each.gets or each.pipe.is_closed()]
+        self._past = _sum(self._past, settled)
+        self.gone = [each for each in self.gone if each not in settled]
+        self.gone.append(destination)  # a transmission that is under way may still count here
         self.refresh()
 
     def refresh(self) -> None:
         """Make `active` new after a change."""
         self.active = tuple(destination for destination in self.destinations if destination.active)
 
-    def totals(self) -> tuple[int, int, int]:
-        """(delivered, dropped for a message limit, dropped for a full pipe) over all destinations there ever were."""
-        everyone = [*self.destinations, *self.gone]
-        return (
-            sum(each.gets for each in everyone),
-            sum(each.limit_drops for each in everyone),
-            sum(each.overflow_drops for each in everyone),
-        )
+    def totals(self) -> Totals:
+        """What became of the messages, over all destinations that there ever were."""
+        return _sum(self._past, [*self.destinations, *self.gone])
+
+
+def _sum(past: Totals, destinations: Iterable[Destination]) -> Totals:
+    delivered, waiting, by_limit, by_pipe = past
+    for each in destinations:
+        delivered += each.gets
+        waiting += each.puts - each.gets
+        by_limit += each.limit_drops
+        by_pipe += each.overflow_drops
+    return delivered, waiting, by_limit, by_pipe
 
 
 @dataclass(slots=True)

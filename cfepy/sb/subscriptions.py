@@ -86,7 +86,7 @@ class SubscriptionServices(BufferServices):
             text = f"Duplicate Subscription,MsgId 0x{msg_id:x} on {pipe.name} pipe,app {app}"
             self.report(ev.DUP_SUBSCRIP_EID, ev.INFORMATION, text)
         else:
-            self._add(route, pipe, limit, scope)
+            self._add(route, pipe, limit & 0xFFFF, scope)  # C takes 16 bits
             text = f"Subscription Rcvd:MsgId 0x{msg_id:x} on PipeId {pipe_id},app {app}"
             self.report(ev.SUBSCRIPTION_RCVD_EID, ev.DEBUG, text)
         if scope == GLOBAL:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cfepy.msg import CommandTable, telemetry
-from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, DONE
-from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY
+from cfepy.core_app import serve
+from cfepy.msg import CommandTable
+from cfepy.msg.dispatch import BAD_CODE, BAD_MSG_ID, DONE
 from cfepy.sb import events as ev
 from cfepy.sb import packets as pk
 from cfepy.sb.bus import SoftwareBus
@@ -31,8 +31,7 @@ class SbTask:
         self.bus = bus
         self.ports = bus.ports
         self.files = BusFiles(bus)
-        self.commands = CommandTable()
-        for command, handler in (
+        self.commands = CommandTable(
             (pk.NOOP, self._noop),
             (pk.RESET_COUNTERS, self._reset_counters),
             (pk.SEND_SB_STATS, self._send_statistics),
@@ -45,8 +44,7 @@ class SbTask:
             (pk.ENABLE_SUB_REPORTING, self._enable_reports),
             (pk.DISABLE_SUB_REPORTING, self._disable_reports),
             (pk.SEND_PREV_SUBS, self._send_previous),
-        ):
-            self.commands.handle(command, handler)
+        )
 
     def task_main(self) -> None:
         """The main task of CFE_SB (CFE_SB_TaskMain)."""
@@ -60,14 +58,7 @@ class SbTask:
         ports.sb.subscribe(pk.SEND_HK_MID, pipe)
         ports.sb.subscribe(pk.SUB_RPT_CTRL_MID, pipe)
         ports.evs.send_event(ev.INIT_EID, ev.INFORMATION, f"cFE SB Initialized: {version_string('CFE_SB')}")
-        ports.es.wait_for_system_state(SYSTEM_CORE_READY, self.bus.config.es_core_max_startup_ms)
-        while True:
-            ports.es.increment_task_counter()
-            ports.es.perf_log_exit(MAIN_PERF_ID)
-            packet = ports.sb.receive_buffer(pipe, PEND_FOREVER)
-            ports.es.perf_log_entry(MAIN_PERF_ID)
-            if packet is not None:
-                self.process(packet)
+        serve(ports, self.bus.config, pipe, MAIN_PERF_ID, self.process)
 
     def process(self, packet: bytes) -> None:
         """Handle one packet of the command pipe (CFE_SB_ProcessCmdPipePkt)."""
@@ -79,7 +70,6 @@ class SbTask:
         elif done.outcome == BAD_CODE:
             event, text = ev.BAD_CMD_CODE_EID, f"Invalid Cmd, Unexpected Command Code {done.fcn_code}"
         else:
-            assert done.outcome == BAD_LENGTH
             event, text = ev.LEN_ERR_EID, done.length_text()
         self.bus.counters.command_error += 1
         self.ports.evs.send_event(event, ev.ERROR, text)
@@ -96,10 +86,10 @@ class SbTask:
         self.bus.counters.reset()
 
     def _send_housekeeping(self, packet: bytes) -> None:
-        self.ports.sb.transmit_msg(bytes(telemetry(pk.HK_TLM_MID, pk.HOUSEKEEPING.pack(self.housekeeping()))))
+        self.ports.sb.transmit_msg(pk.HK_TLM.packet(self.housekeeping()))
 
     def _send_statistics(self, packet: bytes) -> None:
-        self.ports.sb.transmit_msg(bytes(telemetry(pk.STATS_TLM_MID, pk.STATISTICS.pack(self.statistics()))))
+        self.ports.sb.transmit_msg(pk.STATS_TLM.packet(self.statistics()))
         self.ports.evs.send_event(ev.SND_STATS_EID, ev.DEBUG, "Software Bus Statistics packet sent")
         self.bus.counters.command += 1
 

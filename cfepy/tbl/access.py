@@ -107,9 +107,24 @@ class TableAccess:
         return found
 
     def release_addresses(self, handles: Iterable[int]) -> int:
-        """`release_address` of several tables; returns the first that is not CFE_SUCCESS (CFE_TBL_ReleaseAddresses)."""
-        statuses = [self.release_address(handle) for handle in handles]
-        return next((status for status in statuses if status != CFE_SUCCESS), CFE_SUCCESS)
+        """`release_address` of every one of several tables (CFE_TBL_ReleaseAddresses).
+
+        Returns:
+            The first status that is not CFE_SUCCESS.
+
+        Raises:
+            CfeError: instead, when that is an error; the tables behind are released all the same.
+        """
+        answers: list[int | CfeError] = []
+        for handle in handles:
+            try:
+                answers.append(self.release_address(handle))
+            except CfeError as error:
+                answers.append(error)
+        first = next((answer for answer in answers if answer != CFE_SUCCESS), CFE_SUCCESS)
+        if isinstance(first, CfeError):
+            raise first
+        return first
 
     def get_status(self, handle: int) -> int:
         """What is to be done with a table (CFE_TBL_GetStatus).
@@ -118,7 +133,7 @@ class TableAccess:
             CFE_SUCCESS, or CFE_TBL_INFO_VALIDATION_PENDING, _UPDATE_PENDING, _DUMP_PENDING; in that order.
         """
         table = self._access("GetStatus", handle).table
-        if table.validation is not None:
+        if table.validations:
             return CFE_TBL_INFO_VALIDATION_PENDING
         if table.is_update_pending:
             return CFE_TBL_INFO_UPDATE_PENDING

@@ -17,7 +17,7 @@ from cfepy.status import (
     CFE_TBL_ERR_INVALID_NAME,
     CfeError,
 )
-from cfepy.tbl import events as eid
+from cfepy.tbl import events as ev
 from cfepy.tbl import packets as pk
 from cfepy.tbl.critical import CriticalTables
 from cfepy.tbl.dumps import DumpRefused, Dumps, select_buffer
@@ -30,11 +30,11 @@ APP_NAME = "CFE_TBL"
 
 _NOT_DELETED = {
     CFE_ES_CDS_WRONG_TYPE_ERR: (
-        eid.CFE_TBL_NOT_CRITICAL_TBL_ERR_EID,
+        ev.NOT_CRITICAL_TBL_ERR_EID,
         "Table '{}' is in Critical Table Registry but CDS is not tagged as a table",
     ),
-    CFE_ES_CDS_OWNER_ACTIVE_ERR: (eid.CFE_TBL_CDS_OWNER_ACTIVE_ERR_EID, "CDS '{}' owning app is still active"),
-    CFE_ES_ERR_NAME_NOT_FOUND: (eid.CFE_TBL_CDS_NOT_FOUND_ERR_EID, "Unable to locate '{}' in CDS Registry"),
+    CFE_ES_CDS_OWNER_ACTIVE_ERR: (ev.CDS_OWNER_ACTIVE_ERR_EID, "CDS '{}' owning app is still active"),
+    CFE_ES_ERR_NAME_NOT_FOUND: (ev.CDS_NOT_FOUND_ERR_EID, "Unable to locate '{}' in CDS Registry"),
 }
 """Event id and text of DELETE_CDS by what the CDS says."""
 
@@ -69,7 +69,7 @@ class TableCommands:
             table = self._registry.find(file.table.table_name)
             if table is None:
                 text = "Unable to locate in Table Registry"
-                raise Refused(CFE_TBL_ERR_INVALID_NAME, eid.CFE_TBL_NO_SUCH_TABLE_ERR_EID, text, names_file=False)
+                raise Refused(CFE_TBL_ERR_INVALID_NAME, ev.NO_SUCH_TABLE_ERR_EID, text, names_file=False)
             self._loads.reserve(table, from_file=True)
             self._fill(table, file)
         except Refused as refused:
@@ -77,7 +77,7 @@ class TableCommands:
             return False
         self._housekeeping.last_file_loaded, self._housekeeping.last_table_loaded = file.path, table.name
         where = f"LoadFile,app={APP_NAME},file={file.path},tbl={table.name}"
-        self._info(eid.CFE_TBL_FILE_LOADED_INF_EID, f"{where}:Successful load into '{table.name}' working buffer")
+        self._info(ev.FILE_LOADED_INF_EID, f"{where}:Successful load into '{table.name}' working buffer")
         return True
 
     def _fill(self, table: Table, file: TableFile) -> None:
@@ -110,11 +110,11 @@ class TableCommands:
             return False
         buffer = select_buffer(table, values["ActiveTableFlag"])
         if buffer is None:
-            self._error(eid.CFE_TBL_NO_INACTIVE_BUFFER_ERR_EID, f"No Buffer for Table '{table.name}' present")
+            self._error(ev.NO_INACTIVE_BUFFER_ERR_EID, f"No Buffer for Table '{table.name}' present")
             return False
         if self._housekeeping.validations_under_way() >= self._config.tbl_max_num_validations:
             text = "Too many Table Validations have been requested"
-            self._error(eid.CFE_TBL_TOO_MANY_VALIDATIONS_ERR_EID, text)
+            self._error(ev.TOO_MANY_VALIDATIONS_ERR_EID, text)
             return False
         of_active = values["ActiveTableFlag"] == pk.ACTIVE_BUFFER
         self._begin_validation(table, Validation(table.name, calculate_crc(buffer.view()), of_active))
@@ -125,15 +125,15 @@ class TableCommands:
             request.performed = True
             self._housekeeping.add_validation(request)
             text = f"Tbl Services assumes '{table.name}' is valid. No Validation Function has been registered"
-            self._info(eid.CFE_TBL_ASSUMED_VALID_INF_EID, text)
+            self._info(ev.ASSUMED_VALID_INF_EID, text)
             return
-        if table.validation is not None:
+        if request.of_active in table.validations:
             return  # the owner has not got round to the request before; one answer serves both
-        table.validation = request
+        table.validations[request.of_active] = request
         self._housekeeping.add_validation(request, by_owner=True)
         if self._notify(table):
             text = f"Tbl Services issued validation request for '{table.name}'"
-            self._debug(eid.CFE_TBL_VAL_REQ_MADE_INF_EID, text)
+            self._debug(ev.VAL_REQ_MADE_INF_EID, text)
 
     def activate(self, packet: bytes) -> bool:
         """Let a table's owner switch to the inactive image (CFE_TBL_ActivateCmd)."""
@@ -143,20 +143,20 @@ class TableCommands:
         name, loading = table.name, table.loading
         if table.dump_only:
             text = f"Illegal attempt to activate dump-only table '{name}'"
-            self._error(eid.CFE_TBL_ACTIVATE_DUMP_ONLY_ERR_EID, text)
+            self._error(ev.ACTIVATE_DUMP_ONLY_ERR_EID, text)
             return False
         if loading is None:
             text = f"Cannot activate table '{name}'. No Inactive image available"
-            self._error(eid.CFE_TBL_ACTIVATE_ERR_EID, text)
+            self._error(ev.ACTIVATE_ERR_EID, text)
             return False
         if not loading.is_valid:
             text = f"Cannot activate table '{name}'. Inactive image not Validated"
-            self._error(eid.CFE_TBL_UNVALIDATED_ERR_EID, text)
+            self._error(ev.UNVALIDATED_ERR_EID, text)
             return False
         loading.activate_requested = True
         if self._notify(table):
             text = f"Tbl Services notifying App that '{name}' has a load pending"
-            self._debug(eid.CFE_TBL_LOAD_PEND_REQ_INF_EID, text)
+            self._debug(ev.LOAD_PEND_REQ_INF_EID, text)
         return True
 
     def send_registry(self, packet: bytes) -> bool:
@@ -166,7 +166,7 @@ class TableCommands:
             return False
         self._housekeeping.request_registry(table)
         text = f"Table Registry entry for '{table.name}' will be telemetered"
-        self._debug(eid.CFE_TBL_TLM_REG_CMD_INF_EID, text)
+        self._debug(ev.TLM_REG_CMD_INF_EID, text)
         return True
 
     def delete_cds(self, packet: bytes) -> bool:
@@ -174,21 +174,21 @@ class TableCommands:
         name = pk.DELETE_CDS.read(packet)["TableName"]
         if self._registry.find(name) is not None:
             text = f"'{name}' found in Table Registry. CDS cannot be deleted until table is unregistered"
-            self._error(eid.CFE_TBL_IN_REGISTRY_ERR_EID, text)
+            self._error(ev.IN_REGISTRY_ERR_EID, text)
             return False
         record = self._critical.find(name)
         if record is None:
             text = f"Table '{name}' is not found in Critical Table Registry"
-            self._error(eid.CFE_TBL_NOT_IN_CRIT_REG_ERR_EID, text)
+            self._error(ev.NOT_IN_CRIT_REG_ERR_EID, text)
             return False
         try:
             self._critical.delete(record)
         except CfeError as error:
-            other = eid.CFE_TBL_CDS_DELETE_ERR_EID, "Error while deleting '{}' from CDS, See SysLog.(Err={})"
+            other = ev.CDS_DELETE_ERR_EID, "Error while deleting '{}' from CDS, See SysLog.(Err={})"
             event_id, text = _NOT_DELETED.get(error.status, other)
             self._error(event_id, text.format(name, error.hex))
             return False
-        self._info(eid.CFE_TBL_CDS_DELETED_INFO_EID, f"Successfully removed '{name}' from CDS")
+        self._info(ev.CDS_DELETED_INFO_EID, f"Successfully removed '{name}' from CDS")
         return True
 
     def abort_load(self, packet: bytes) -> bool:
@@ -198,10 +198,10 @@ class TableCommands:
             return False
         if table.loading is None:
             text = f"Cannot abort load of '{table.name}'. No load started."
-            self._error(eid.CFE_TBL_LOAD_ABORT_ERR_EID, text)
+            self._error(ev.LOAD_ABORT_ERR_EID, text)
             return False
         self._registry.discard_load(table)
-        self._info(eid.CFE_TBL_LOAD_ABORT_INF_EID, f"Table Load Aborted for '{table.name}'")
+        self._info(ev.LOAD_ABORT_INF_EID, f"Table Load Aborted for '{table.name}'")
         return True
 
     def _named(self, packet: bytes) -> Table | None:
@@ -210,7 +210,7 @@ class TableCommands:
     def _table(self, name: str) -> Table | None:
         table = self._registry.find(name)
         if table is None:
-            self._error(eid.CFE_TBL_NO_SUCH_TABLE_ERR_EID, f"Unable to locate '{name}' in Table Registry")
+            self._error(ev.NO_SUCH_TABLE_ERR_EID, f"Unable to locate '{name}' in Table Registry")
         return table
 
     def _notify(self, table: Table) -> bool:
@@ -218,20 +218,20 @@ class TableCommands:
         if table.notify is None:
             return False
         msg_id, fcn_code, parameter = table.notify
-        packet = command(msg_id, fcn_code, pk.NOTIFY_COMMAND.pack(Parameter=parameter))
         try:
+            packet = command(msg_id, fcn_code, pk.NOTIFY_COMMAND.pack(Parameter=parameter))
             self._ports.sb.transmit_msg(bytes(packet))
         except CfeError as error:
             text = f"Manage Notification Pkt Error(Status={error.hex})"
-            self._error(eid.CFE_TBL_FAIL_NOTIFY_SEND_ERR_EID, text)
+            self._error(ev.FAIL_NOTIFY_SEND_ERR_EID, text)
             return False
         return True
 
     def _debug(self, event_id: int, text: str) -> None:
-        self._ports.evs.send_event(event_id, eid.DEBUG, text)
+        self._ports.evs.send_event(event_id, ev.DEBUG, text)
 
     def _info(self, event_id: int, text: str) -> None:
-        self._ports.evs.send_event(event_id, eid.INFORMATION, text)
+        self._ports.evs.send_event(event_id, ev.INFORMATION, text)
 
     def _error(self, event_id: int, text: str) -> None:
-        self._ports.evs.send_event(event_id, eid.ERROR, text)
+        self._ports.evs.send_event(event_id, ev.ERROR, text)

@@ -2,16 +2,17 @@
 
 Each has a CDS block of its own under the table's name. What else must be known of it, the file it came from and when,
 stands in the critical table registry, which is a CDS block too ("CFE_TBL.CritReg"). Stands for the critical part of
-cfe_tbl_internal.c. Imports only cfepy.ports, cfepy.status and its neighbours here.
+cfe_tbl_internal.c. Imports only cfepy.msg, cfepy.ports, cfepy.status and its neighbours here.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from cfepy.msg import sys_time_fields
 from cfepy.ports import Ports
 from cfepy.status import CFE_ES_CDS_ALREADY_EXISTS, CFE_SUCCESS, CFE_TBL_INFO_RECOVERED_TBL, CfeError
-from cfepy.tbl.packets import CRITICAL_RECORD, sys_time
+from cfepy.tbl.packets import CRITICAL_RECORD
 from cfepy.tbl.registry import Table
 
 REGISTRY_NAME = "CFE_TBL.CritReg"
@@ -38,8 +39,8 @@ class CriticalRecord:
         """Its bytes in the CDS."""
         return CRITICAL_RECORD.pack(
             CDSHandle=self.handle,
-            FileTime=sys_time(self.file_time),
-            TimeOfLastUpdate=sys_time(self.last_update),
+            FileTime=sys_time_fields(self.file_time),
+            TimeOfLastUpdate=sys_time_fields(self.last_update),
             LastFileLoaded=self.last_file,
             Name=self.name,
             TableLoadedOnce=self.loaded_once,

@@ -44,6 +44,11 @@ class TableType:
     description: str = ""
 
     @property
+    def own_name(self) -> str:
+        """The name without the application's, as CFE_TBL_Register takes it: "Table"."""
+        return self.name.partition(".")[2]
+
+    @property
     def size(self) -> int:
         """Bytes of the whole table."""
         return self.rows * self.row.size

@@ -7,9 +7,10 @@ table at once. Imports only cfepy.config, cfepy.fs, cfepy.ports, cfepy.status an
 from __future__ import annotations
 
 from cfepy.config import PlatformConfig
-from cfepy.fs import FileHeader, write_table_file
+from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE, FileHeader, write_table_file
 from cfepy.ports import Ports
 from cfepy.status import (
+    CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
     CFE_SUCCESS,
     CFE_TBL_BAD_ARGUMENT,
     CFE_TBL_ERR_NO_BUFFER_AVAIL,
@@ -18,7 +19,7 @@ from cfepy.status import (
     CfeError,
     OsalError,
 )
-from cfepy.tbl import events as eid
+from cfepy.tbl import events as ev
 from cfepy.tbl.buffers import Buffer, BufferMemory
 from cfepy.tbl.packets import ACTIVE_BUFFER, INACTIVE_BUFFER
 from cfepy.tbl.registry import Dump, Table
@@ -64,19 +65,19 @@ class Dumps:
             DumpRefused: one is pending, there is no such image, or no buffer for the snapshot.
         """
         if table.dump is not None:
-            raise DumpRefused(CFE_TBL_INFO_DUMP_PENDING, eid.CFE_TBL_DUMP_PENDING_ERR_EID, "A dump is already pending")
+            raise DumpRefused(CFE_TBL_INFO_DUMP_PENDING, ev.DUMP_PENDING_ERR_EID, "A dump is already pending")
         source = select_buffer(table, which)
         if source is None:
             text = f"Cmd had illegal buffer parameter (0x{which:08X})"
-            raise DumpRefused(CFE_TBL_BAD_ARGUMENT, eid.CFE_TBL_ILLEGAL_BUFF_PARAM_ERR_EID, text)
+            raise DumpRefused(CFE_TBL_BAD_ARGUMENT, ev.ILLEGAL_BUFF_PARAM_ERR_EID, text)
         if len(self._dumps) >= self._config.tbl_max_simultaneous_loads:
             text = "Too many table dumps have been requested"
-            raise DumpRefused(CFE_TBL_ERR_NO_BUFFER_AVAIL, eid.CFE_TBL_TOO_MANY_DUMPS_ERR_EID, text)
+            raise DumpRefused(CFE_TBL_ERR_NO_BUFFER_AVAIL, ev.TOO_MANY_DUMPS_ERR_EID, text)
         try:
             image = self._memory.acquire_shared()
         except CfeError as error:
             text = "No working buffers available"
-            raise DumpRefused(error.status, eid.CFE_TBL_NO_WORK_BUFFERS_ERR_EID, text) from None
+            raise DumpRefused(error.status, ev.NO_WORK_BUFFERS_ERR_EID, text) from None
         dump = Dump(table, source, image, file_name)
         self._dumps.append(dump)
         if table.dump_only:
@@ -124,15 +125,30 @@ class Dumps:
             time_seconds=dump.file_time[0],
             time_subseconds=dump.file_time[1],
         )
-        try:
-            self._files.write_file(dump.file_name, write_table_file(header, dump.table.name, bytes(dump.image.view())))
-        except OsalError as error:
-            text = f"Error creating dump file, Status={error.status}"
-            return eid.CFE_TBL_CREATING_DUMP_FILE_ERR_EID, eid.ERROR, text
+        failed = self._store(dump.file_name, write_table_file(header, dump.table.name, bytes(dump.image.view())))
+        if failed is not None:
+            event_id, text = failed
+            return event_id, ev.ERROR, text
         self.last_file = dump.file_name
         if existed:
-            return eid.CFE_TBL_OVERWRITE_DUMP_INF_EID, eid.INFORMATION, "Successfully overwrote table dump"
-        return eid.CFE_TBL_WRITE_DUMP_INF_EID, eid.INFORMATION, "Successfully dumped table"
+            return ev.OVERWRITE_DUMP_INF_EID, ev.INFORMATION, "Successfully overwrote table dump"
+        return ev.WRITE_DUMP_INF_EID, ev.INFORMATION, "Successfully dumped table"
+
+    def _store(self, name: str, data: bytes) -> tuple[int, str] | None:
+        """Write a file piece by piece, so that it is known which one found no room; event and text of that failure."""
+        headers = HEADER_SIZE + TABLE_HEADER_SIZE
+        no_header = f"Error writing cFE File Header, Status=0x{CFE_STATUS_EXTERNAL_RESOURCE_FAIL & 0xFFFFFFFF:08X}"
+        for end, event_id, text in (
+            (0, ev.CREATING_DUMP_FILE_ERR_EID, "Error creating dump file, Status={}"),
+            (HEADER_SIZE, ev.WRITE_CFE_HDR_ERR_EID, no_header),
+            (headers, ev.WRITE_TBL_HDR_ERR_EID, "Error writing cFE TBL Header, Status={}"),
+            (len(data), ev.WRITE_TBL_IMG_ERR_EID, "Error writing Tbl image, Status={}"),
+        ):
+            try:
+                self._files.write_file(name, data[:end])
+            except OsalError as error:
+                return event_id, text.format(error.status)
+        return None
 
     def forget_owner(self, app_id: int) -> None:
         """Drop the dumps of an app's tables, because the app ends."""

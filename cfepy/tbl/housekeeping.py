@@ -1,16 +1,16 @@
 """What Table Services tell the ground of themselves: counters, the last validation, load, update and dump.
 
 Stands for CFE_TBL_GetHkData and CFE_TBL_GetTblRegData. Builds values for the layouts in `cfepy.tbl.packets` and sends
-nothing. Imports only its neighbours here.
+nothing. Imports only cfepy.msg and its neighbours here.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+from cfepy.msg import sys_time_fields
 from cfepy.tbl.buffers import BufferMemory
 from cfepy.tbl.dumps import Dumps
-from cfepy.tbl.packets import sys_time
 from cfepy.tbl.registry import Registry, Table, Validation
 
 NO_LOAD = -1
@@ -102,7 +102,7 @@ class Housekeeping:
             "LastTableLoaded": self.last_table_loaded,
         }
         if table is not None:
-            values |= {"LastUpdateTime": sys_time(table.last_update), "LastUpdatedTable": table.name}
+            values |= {"LastUpdateTime": sys_time_fields(table.last_update), "LastUpdatedTable": table.name}
         return values
 
     def registry_packet(self, table: Table, owner_name: str) -> dict[str, Any]:
@@ -129,8 +129,8 @@ def _common(table: Table, owner_name: str) -> dict[str, Any]:
     return {
         "Size": table.size,
         "Crc": table.active.crc if table.active else 0,
-        "TimeOfLastUpdate": sys_time(table.last_update),
-        "FileTime": sys_time(table.active.file_time if table.active else (0, 0)),
+        "TimeOfLastUpdate": sys_time_fields(table.last_update),
+        "FileTime": sys_time_fields(table.active.file_time if table.active else (0, 0)),
         "TableLoadedOnce": table.active is not None,
         "LoadPending": table.is_update_pending,
         "DumpOnly": table.dump_only,

@@ -18,7 +18,7 @@ from cfepy.status import (
     CFE_TBL_INFO_TABLE_LOCKED,
     CfeError,
 )
-from cfepy.tbl import events as eid
+from cfepy.tbl import events as ev
 from cfepy.tbl.buffers import Buffer, BufferMemory, Bytes
 from cfepy.tbl.critical import CriticalTables
 from cfepy.tbl.registry import FIRST_PLACE, Registry, Table
@@ -47,13 +47,13 @@ class Loads:
         """
         if table.loading is not None:
             text = "Load already in progress"
-            raise Refused(CFE_TBL_ERR_LOAD_IN_PROGRESS, eid.CFE_TBL_LOAD_IN_PROGRESS_ERR_EID, text, names_file=False)
+            raise Refused(CFE_TBL_ERR_LOAD_IN_PROGRESS, ev.LOAD_IN_PROGRESS_ERR_EID, text, names_file=False)
         if table.dump_only and (not table.user_defined or table.active is not None):
             text = "Attempted to load DUMP-ONLY table"
-            raise Refused(CFE_TBL_ERR_DUMP_ONLY, eid.CFE_TBL_LOADING_A_DUMP_ONLY_ERR_EID, text, names_file=False)
+            raise Refused(CFE_TBL_ERR_DUMP_ONLY, ev.LOADING_A_DUMP_ONLY_ERR_EID, text, names_file=False)
         if table.dump_only and from_file:
             text = "Attempted to load from illegal source type=0"
-            raise Refused(CFE_TBL_ERR_ILLEGAL_SRC_TYPE, eid.CFE_TBL_LOAD_TYPE_ERR_EID, text, names_file=False)
+            raise Refused(CFE_TBL_ERR_ILLEGAL_SRC_TYPE, ev.LOAD_TYPE_ERR_EID, text, names_file=False)
         if not table.user_defined:
             table.loading = self._working_buffer(table)
 
@@ -66,7 +66,7 @@ class Loads:
             if table.double_buffered:
                 self._ports.syslog.write_to_sys_log(f"CFE_TBL_GetInactiveBufferExclusive: {error.text}")
             text = f"No working buffers available, stat=0x{CFE_TBL_ERR_NO_BUFFER_AVAIL & _SIGN_EXTENDED:x}"
-            event_id = eid.CFE_TBL_NO_WORK_BUFFERS_ERR_EID
+            event_id = ev.NO_WORK_BUFFERS_ERR_EID
             raise Refused(CFE_TBL_ERR_NO_BUFFER_AVAIL, event_id, text, names_file=False) from None
         if table.active is not None:
             buffer.copy(table.active.view())
@@ -91,11 +91,14 @@ class Loads:
         """Copy an image into the working buffer, or, with a user-defined address, make it the working buffer.
 
         Raises:
-            Refused: the source is shorter than the table (C would read past its end).
+            Refused: the source has no bytes, or is shorter than the table (C would read past its end).
         """
+        if not isinstance(source, Bytes):
+            text = f"Attempted to load from illegal source type={type(source).__name__}"
+            raise Refused(CFE_TBL_ERR_ILLEGAL_SRC_TYPE, ev.LOAD_TYPE_ERR_EID, text, names_file=False)
         if len(source) < table.size:
             text = f"Cannot load {len(source)} at off 0"
-            raise Refused(CFE_TBL_ERR_LOAD_INCOMPLETE, eid.CFE_TBL_LOAD_EXCEEDS_SIZE_ERR_EID, text, names_file=False)
+            raise Refused(CFE_TBL_ERR_LOAD_INCOMPLETE, ev.LOAD_EXCEEDS_SIZE_ERR_EID, text, names_file=False)
         image = memoryview(source)[: table.size]
         if table.user_defined:
             table.loading = self._memory.external(image, FIRST_PLACE)
@@ -113,7 +116,7 @@ class Loads:
         besides.
         """
         buffer = _loading(table)
-        result = 0 if table.validator is None else table.validator(buffer.view())
+        result = table.judge(buffer.view())
         buffer.is_valid = buffer.activate_requested = result == 0
         if result == 0:
             return []
@@ -121,10 +124,10 @@ class Loads:
         if result > 0:
             text = f"Validation func return code invalid (Stat={result & _SIGN_EXTENDED:x})"
             result = CFE_STATUS_VALIDATION_FAILURE
-            faults.append(Refused(result, eid.CFE_TBL_LOAD_VAL_ERR_EID, text, names_file=False))
+            faults.append(Refused(result, ev.LOAD_VAL_ERR_EID, text, names_file=False))
         buffer.clear()
         text = f"Validation func reports table invalid (Stat={result & _SIGN_EXTENDED:x})"
-        return [*faults, Refused(result, eid.CFE_TBL_VALIDATION_ERR_EID, text, names_file=False)]
+        return [*faults, Refused(result, ev.VALIDATION_ERR_EID, text, names_file=False)]
 
     def update(self, table: Table) -> int:
         """Make the loaded image the active one (CFE_TBL_UpdateInternal).
@@ -163,7 +166,7 @@ class Loads:
         name = file.table_name if file else table.name if table else "[unknown]"
         where = f"file={file.path},tbl={name}" if file and refused.names_file else f"tbl={name}"
         text = f"{'LoadFile' if file else 'Load'},app={caller},{where}:{refused.text}"
-        self._ports.evs.send_event_with_app_id(refused.event_id, eid.ERROR, app_id, text)
+        self._ports.evs.send_event_with_app_id(refused.event_id, ev.ERROR, app_id, text)
 
     def open(self, file: TableFile) -> None:
         """Read and check a file that was named; see `TableFile.open`."""

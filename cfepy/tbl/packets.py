@@ -5,7 +5,15 @@ Also the records of a registry dump file and of the critical table registry. Imp
 
 from __future__ import annotations
 
-from cfepy.msg import Command, Layout, Telemetry, local_cmd_topic_id_to_msg_id, local_tlm_topic_id_to_msg_id
+from cfepy.msg import (
+    NO_PAYLOAD,
+    SYS_TIME,
+    Command,
+    Layout,
+    Telemetry,
+    local_cmd_topic_id_to_msg_id,
+    local_tlm_topic_id_to_msg_id,
+)
 
 CMD_MID = local_cmd_topic_id_to_msg_id(0x04)
 SEND_HK_MID = local_cmd_topic_id_to_msg_id(0x0C)
@@ -24,20 +32,18 @@ _FULL_NAME = f"char[{FULL_NAME_SIZE}]"
 _PATH = f"char[{PATH_SIZE}]"
 _OWNER = f"char[{OWNER_NAME_SIZE}]"
 
-SYS_TIME = Layout("CFE_TIME_SysTime", [("Seconds", "u32"), ("Subseconds", "u32")])
-
-_LOAD = Layout("CFE_TBL_LoadCmd_Payload", [("LoadFilename", _PATH)])
+_LOAD = Layout("CFE_TBL_LoadCmd_Payload_t", [("LoadFilename", _PATH)])
 _DUMP = Layout(
-    "CFE_TBL_DumpCmd_Payload", [("ActiveTableFlag", "u16"), ("TableName", _FULL_NAME), ("DumpFilename", _PATH)]
+    "CFE_TBL_DumpCmd_Payload_t", [("ActiveTableFlag", "u16"), ("TableName", _FULL_NAME), ("DumpFilename", _PATH)]
 )
-_VALIDATE = Layout("CFE_TBL_ValidateCmd_Payload", [("ActiveTableFlag", "u16"), ("TableName", _FULL_NAME)])
-_TABLE_NAME = Layout("CFE_TBL_ActivateCmd_Payload", [("TableName", _FULL_NAME)])
-_DUMP_REGISTRY = Layout("CFE_TBL_DumpRegistryCmd_Payload", [("DumpFilename", _PATH)])
-NOTIFY_COMMAND = Layout("CFE_TBL_NotifyCmd_Payload", [("Parameter", "u32")])
+_VALIDATE = Layout("CFE_TBL_ValidateCmd_Payload_t", [("ActiveTableFlag", "u16"), ("TableName", _FULL_NAME)])
+_TABLE_NAME = Layout("CFE_TBL_ActivateCmd_Payload_t", [("TableName", _FULL_NAME)])
+_DUMP_REGISTRY = Layout("CFE_TBL_DumpRegistryCmd_Payload_t", [("DumpFilename", _PATH)])
+NOTIFY_COMMAND = Layout("CFE_TBL_NotifyCmd_Payload_t", [("Parameter", "u32")])
 """What `CFE_TBL_NotifyByMessage` sends to an owner."""
 
 HOUSEKEEPING = Layout(
-    "CFE_TBL_HousekeepingTlm_Payload",
+    "CFE_TBL_HousekeepingTlm_Payload_t",
     [
         ("CommandCounter", "u8"),
         ("CommandErrorCounter", "u8"),
@@ -63,7 +69,7 @@ HOUSEKEEPING = Layout(
 )
 
 REGISTRY_PACKET = Layout(
-    "CFE_TBL_TblRegPacket_Payload",
+    "CFE_TBL_TblRegPacket_Payload_t",
     [
         ("Size", "u64"),
         ("Crc", "u32"),
@@ -85,7 +91,7 @@ REGISTRY_PACKET = Layout(
 )
 
 REGISTRY_RECORD = Layout(
-    "CFE_TBL_RegDumpRec",
+    "CFE_TBL_RegDumpRec_t",
     [
         ("Size", "u64"),
         ("TimeOfLastUpdate", SYS_TIME),
@@ -123,9 +129,8 @@ def _command(name: str, code: int, payload: Layout, text: str) -> Command:
     return Command(f"CFE_TBL_{name}", CMD_MID, code, payload, text)
 
 
-_NOTHING = Layout("no payload", [])
-NOOP = _command("NOOP", 0, _NOTHING, "Say in an event that Table Services run, and their version.")
-RESET_COUNTERS = _command("RESET_COUNTERS", 1, _NOTHING, "Set the command and validation counters to zero.")
+NOOP = _command("NOOP", 0, NO_PAYLOAD, "Say in an event that Table Services run, and their version.")
+RESET_COUNTERS = _command("RESET_COUNTERS", 1, NO_PAYLOAD, "Set the command and validation counters to zero.")
 LOAD = _command("LOAD", 2, _LOAD, "Read a table file into the inactive image of its table.")
 DUMP = _command("DUMP", 3, _DUMP, "Write the active (1) or inactive (0) image of a table to a file.")
 VALIDATE = _command("VALIDATE", 4, _VALIDATE, "Have the active (1) or inactive (0) image of a table validated.")
@@ -153,8 +158,3 @@ COMMANDS: tuple[Command, ...] = (
 HK_TLM = Telemetry("CFE_TBL_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Counters, and what was last validated and loaded.")
 REG_TLM = Telemetry("CFE_TBL_REG_TLM", REG_TLM_MID, REGISTRY_PACKET, "The registry entry of one table.")
 TELEMETRY: tuple[Telemetry, ...] = (HK_TLM, REG_TLM)
-
-
-def sys_time(time: tuple[int, int]) -> dict[str, int]:
-    """A time (seconds, subseconds of 2**-32 s) as the fields of SYS_TIME."""
-    return {"Seconds": time[0], "Subseconds": time[1]}

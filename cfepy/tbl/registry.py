@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cfepy.config import PlatformConfig
-from cfepy.ids import TBL_HANDLE_BASE, TBL_REGID_BASE, UNDEFINED, IdTable
+from cfepy.ids import TBL_HANDLE_BASE, TBL_REGID_BASE, UNDEFINED, IdTable, name_size
 from cfepy.status import (
     CFE_SUCCESS,
     CFE_TBL_ERR_DUPLICATE_DIFF_SIZE,
@@ -23,6 +23,7 @@ from cfepy.status import (
     CFE_TBL_ERR_REGISTRY_FULL,
     CFE_TBL_ERR_UNREGISTERED,
     CfeError,
+    to_signed,
 )
 from cfepy.tbl.buffers import Buffer, BufferMemory
 
@@ -97,6 +98,7 @@ class Table:
         loading: the image of a load in progress.
         cds_handle: the block of the CDS that keeps a critical table's image; 0 for all others.
         accesses: the handles on it.
+        validations: what the owner shall validate: True stands for the active image, False for the inactive one.
         notify: (message id, function code, parameter) of the owner's wish to be told of requests.
     """
 
@@ -117,7 +119,7 @@ class Table:
         self.last_file = ""
         self.last_update = (0, 0)
         self.modified = False
-        self.validation: Validation | None = None
+        self.validations: dict[bool, Validation] = {}
         self.dump: Dump | None = None
         self.notify: tuple[int, int, int] | None = None
 
@@ -130,6 +132,21 @@ class Table:
     def is_update_pending(self) -> bool:
         """Whether the load in progress waits for the owner to switch to it."""
         return self.loading is not None and self.loading.is_valid and self.loading.activate_requested
+
+    def judge(self, image: memoryview) -> int:
+        """What the validator says of an image, a number of 32 bits; 0 without one.
+
+        Raises:
+            TypeError: it did not say a number; a mistake of the application.
+        """
+        result = 0 if self.validator is None else self.validator(image)
+        if not isinstance(result, int):
+            raise TypeError(f"the validator of {self.name!r} returned {result!r}, it must return 0 for a good image")
+        return to_signed(result)
+
+    def take_validation(self) -> Validation | None:
+        """The validation that is next, inactive image first; it does not wait any more."""
+        return self.validations.pop(False, None) or self.validations.pop(True, None)
 
     def inactive(self) -> Buffer | None:
         """The image that is not in use: the load in progress, else the previous one of a double-buffered table."""
@@ -210,8 +227,8 @@ class Registry:
         Raises:
             CfeError: CFE_TBL_ERR_INVALID_NAME, _OPTIONS or _SIZE.
         """
-        if not 0 < len(name) < MAX_NAME_LENGTH:
-            text = f"table name {name!r} has {len(name)} characters, it must have 1 to {MAX_NAME_LENGTH - 1}"
+        if not 0 < name_size(name) < MAX_NAME_LENGTH:
+            text = f"table name {name!r} has {name_size(name)} bytes, it must have 1 to {MAX_NAME_LENGTH - 1}"
             raise CfeError(CFE_TBL_ERR_INVALID_NAME, text)
         if options & OPT_DUMP_ONLY and options & (OPT_DBL_BUFFER | OPT_CRITICAL):
             raise CfeError(CFE_TBL_ERR_INVALID_OPTIONS, "a dump-only table is neither double-buffered nor critical")

@@ -5,12 +5,12 @@ Imports only cfepy.fs, cfepy.ports, cfepy.status and its neighbours here.
 
 from __future__ import annotations
 
-from cfepy.fs import FileCategory, get_default_extension, get_default_mount_point, parse_input_file_name_ex
+from cfepy.fs import dump_file_name
 from cfepy.fs.background import FileWriteEvent, FileWriteMetaData
 from cfepy.fs.header import SUBTYPE_TBL_REG
 from cfepy.ports import Ports
 from cfepy.status import CfeError, OsalError
-from cfepy.tbl import events as eid
+from cfepy.tbl import events as ev
 from cfepy.tbl.housekeeping import Housekeeping
 from cfepy.tbl.packets import REGISTRY_RECORD
 from cfepy.tbl.registry import Registry
@@ -20,9 +20,9 @@ DEFAULT_FILE = "/ram/cfe_tbl_reg.log"
 DESCRIPTION = "Table Registry"
 
 _FAILURES = {
-    FileWriteEvent.CREATE_ERROR: (eid.CFE_TBL_CREATING_DUMP_FILE_ERR_EID, "Error creating dump file '{}'"),
-    FileWriteEvent.HEADER_WRITE_ERROR: (eid.CFE_TBL_WRITE_CFE_HDR_ERR_EID, "Error writing cFE File Header to '{}'"),
-    FileWriteEvent.RECORD_WRITE_ERROR: (eid.CFE_TBL_WRITE_TBL_REG_ERR_EID, "Error writing Registry to '{}'"),
+    FileWriteEvent.CREATE_ERROR: (ev.CREATING_DUMP_FILE_ERR_EID, "Error creating dump file '{}'"),
+    FileWriteEvent.HEADER_WRITE_ERROR: (ev.WRITE_CFE_HDR_ERR_EID, "Error writing cFE File Header to '{}'"),
+    FileWriteEvent.RECORD_WRITE_ERROR: (ev.WRITE_TBL_REG_ERR_EID, "Error writing Registry to '{}'"),
 }
 
 
@@ -48,10 +48,8 @@ class RegistryDump:
         """
         if self._job.is_pending:
             return False
-        kind = FileCategory.BINARY_DATA_DUMP
-        place, ending = get_default_mount_point(kind), get_default_extension(kind)
         try:
-            self._job.file_name = parse_input_file_name_ex(wish, DEFAULT_FILE, place, ending)
+            self._job.file_name = dump_file_name(wish, DEFAULT_FILE)
             self._existed = self._exists(self._job.file_name)
             self._ports.fs.background_file_dump_request(self._job)
         except CfeError:
@@ -77,13 +75,13 @@ class RegistryDump:
         path = self._job.file_name
         if event in _FAILURES:
             event_id, text = _FAILURES[event]
-            self._send(event_id, eid.ERROR, f"{text.format(path)}, Status=0x{status & 0xFFFFFFFF:08X}")
+            self._send(event_id, ev.ERROR, f"{text.format(path)}, Status=0x{status & 0xFFFFFFFF:08X}")
         elif self._existed:
             text = f"Successfully overwrote '{path}' with Table Registry:Size={position},Entries={record}"
-            self._send(eid.CFE_TBL_OVERWRITE_REG_DUMP_INF_EID, eid.DEBUG, text)
+            self._send(ev.OVERWRITE_REG_DUMP_INF_EID, ev.DEBUG, text)
         else:
             text = f"Successfully dumped Table Registry to '{path}':Size={position},Entries={record}"
-            self._send(eid.CFE_TBL_WRITE_REG_DUMP_INF_EID, eid.DEBUG, text)
+            self._send(ev.WRITE_REG_DUMP_INF_EID, ev.DEBUG, text)
 
     def _send(self, event_id: int, event_type: int, text: str) -> None:
         self._ports.evs.send_event_with_app_id(event_id, event_type, self._registry.services_app_id, text)

@@ -23,7 +23,7 @@ from cfepy.status import (
     CFE_TBL_WARN_NOT_CRITICAL,
     CfeError,
 )
-from cfepy.tbl import events as eid
+from cfepy.tbl import events as ev
 from cfepy.tbl.access import TableAccess
 from cfepy.tbl.buffers import BufferMemory, Bytes
 from cfepy.tbl.critical import CriticalTables
@@ -92,7 +92,7 @@ class TableServices(TableAccess):
             access = self.registry.add(Table(full_name, size, options, validate, app_id))
         except CfeError as error:
             text = f"{app_name} Failed to Register table '{name}', Status={error.hex}"
-            self._event(eid.CFE_TBL_REGISTER_ERR_EID, eid.ERROR, text)
+            self._event(ev.REGISTER_ERR_EID, ev.ERROR, text)
             raise
         return access.handle.with_status(self._make_critical(access.table)) if options & OPT_CRITICAL else access.handle
 
@@ -116,7 +116,7 @@ class TableServices(TableAccess):
             if error.status == CFE_TBL_ERR_INVALID_NAME:
                 self._log("Share", f"Table '{full_name}' not found in Registry")
             text = f"{app_name} Failed to Share '{full_name}', Status={error.hex}"
-            self._event(eid.CFE_TBL_SHARE_ERR_EID, eid.ERROR, text)
+            self._event(ev.SHARE_ERR_EID, ev.ERROR, text)
             raise
 
     def unregister(self, handle: int) -> None:
@@ -125,7 +125,7 @@ class TableServices(TableAccess):
             self.registry.release(self._access("Unregister", handle))
         except CfeError as error:
             text = f"{self._caller()[1]} Failed to Unregister '?', Status={error.hex}"
-            self._event(eid.CFE_TBL_UNREGISTER_ERR_EID, eid.ERROR, text)
+            self._event(ev.UNREGISTER_ERR_EID, ev.ERROR, text)
             raise
 
     # --- loading ---
@@ -184,10 +184,10 @@ class TableServices(TableAccess):
         result = self._loads.update(table)
         if result != CFE_SUCCESS:
             text = f"{caller}: Failed to update '{table.name}' (Stat={result})"
-            self._event(eid.CFE_TBL_UPDATE_ERR_EID, eid.ERROR, text)
+            self._event(ev.UPDATE_ERR_EID, ev.ERROR, text)
             return result
         text = f"Successfully loaded '{table.name}' from '{table.last_file}'"
-        self._event(eid.CFE_TBL_LOAD_SUCCESS_INF_EID, eid.DEBUG if is_first else eid.INFORMATION, text)
+        self._event(ev.LOAD_SUCCESS_INF_EID, ev.DEBUG if is_first else ev.INFORMATION, text)
         self.task.note_update(table)
         return status
 
@@ -201,13 +201,13 @@ class TableServices(TableAccess):
             access = self._access("Update", handle, owner_only=True)
         except CfeError as error:
             text = f"{self._caller()[1]} Failed to update table, Status={error.hex}"
-            self._event(eid.CFE_TBL_UPDATE_ERR_EID, eid.ERROR, text)
+            self._event(ev.UPDATE_ERR_EID, ev.ERROR, text)
             raise
         table = access.table
         status = self._loads.update(table)
         if status == CFE_SUCCESS:
             text = f"{self._caller()[1]} Successfully Updated '{table.name}'"
-            self._event(eid.CFE_TBL_UPDATE_SUCCESS_INF_EID, eid.INFORMATION, text)
+            self._event(ev.UPDATE_SUCCESS_INF_EID, ev.INFORMATION, text)
             self.task.note_update(table)
             return status
         if status == CFE_TBL_INFO_TABLE_LOCKED:
@@ -225,24 +225,26 @@ class TableServices(TableAccess):
             CFE_SUCCESS whatever the validator found, or CFE_TBL_INFO_NO_VALIDATION_PENDING.
         """
         table = self._access("Validate", handle, owner_only=True).table
-        request, table.validation = table.validation, None
+        request = table.take_validation()
         if request is None:
             return CFE_TBL_INFO_NO_VALIDATION_PENDING
         which = "active" if request.of_active else "inactive"
         buffer = table.active if request.of_active else table.loading
         result = -1
-        if buffer is not None:
-            result = 0 if table.validator is None else table.validator(buffer.view())
-            buffer.is_valid = result == 0
-        request.result, request.performed = result, True
+        try:
+            if buffer is not None:
+                result = table.judge(buffer.view())
+                buffer.is_valid = result == 0
+        finally:  # the ground gets an answer even when the validator raises
+            request.result, request.performed = result, True
         caller = self._caller()[1]
         if result == 0:
             text = f"{caller} validation successful for {which} '{table.name}'"
-            self._event(eid.CFE_TBL_VALIDATION_INF_EID, eid.INFORMATION, text)
+            self._event(ev.VALIDATION_INF_EID, ev.INFORMATION, text)
             return CFE_SUCCESS
         status = f"0x{result & 0xFFFFFFFF:08X}"
         text = f"{caller} validation failed for {which} '{table.name}', Status={status}"
-        self._event(eid.CFE_TBL_VALIDATION_ERR_EID, eid.ERROR, text)
+        self._event(ev.VALIDATION_ERR_EID, ev.ERROR, text)
         if result > 0:
             text = f"App({table.owner}) Validation func return code invalid (Stat={status}) for '{table.name}'"
             self._log("Validate", text)
@@ -296,7 +298,7 @@ class TableServices(TableAccess):
             parameter: 32 bits of payload.
         """
         access = self._access("NotifyByMessage", handle, owner_only=True)
-        access.table.notify = (msg_id, fcn_code, parameter)
+        access.table.notify = (msg_id, fcn_code, parameter & 0xFFFFFFFF)
 
     def cleanup_app(self, app_id: int) -> None:
         """Give back all tables, handles and dumps of an app that ended (CFE_TBL_CleanUpApp)."""

@@ -33,7 +33,7 @@ from cfepy.status import (
     CfeError,
     OsalError,
 )
-from cfepy.tbl import events as eid
+from cfepy.tbl import events as ev
 from cfepy.tbl.image import is_intact, mark_for, mark_in
 from cfepy.tbl.registry import Table
 
@@ -94,32 +94,32 @@ class TableFile:
             data = files.read_file(self.path)
         except OsalError as error:
             if error.status in (OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_NAME_TOO_LONG):
-                status, event_id = CFE_TBL_ERR_FILENAME_TOO_LONG, eid.CFE_TBL_LOAD_FILENAME_LONG_ERR_EID
+                status, event_id = CFE_TBL_ERR_FILENAME_TOO_LONG, ev.LOAD_FILENAME_LONG_ERR_EID
                 raise Refused(status, event_id, "Filename invalid") from None
             text = f"Unable to open, Status = {error.status}"
-            raise Refused(CFE_TBL_ERR_ACCESS, eid.CFE_TBL_FILE_ACCESS_ERR_EID, text) from None
+            raise Refused(CFE_TBL_ERR_ACCESS, ev.FILE_ACCESS_ERR_EID, text) from None
         self._read_headers(data)
 
     def _read_headers(self, data: bytes) -> None:
         if len(data) < HEADER_SIZE:
             text = f"Unable to read std header, Status = 0x{len(data):08x}"
-            raise Refused(CFE_TBL_ERR_NO_STD_HEADER, eid.CFE_TBL_FILE_STD_HDR_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_NO_STD_HEADER, ev.FILE_STD_HDR_ERR_EID, text)
         self.header = header = read_header(data)
         if header.content_type != CONTENT_ID:
             text = f"not a cFE file type, ContentType = 0x{header.content_type:08x}"
-            raise Refused(CFE_TBL_ERR_BAD_CONTENT_ID, eid.CFE_TBL_FILE_TYPE_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_BAD_CONTENT_ID, ev.FILE_TYPE_ERR_EID, text)
         if header.subtype != SUBTYPE_TBL_IMG:
             text = f"File subtype is wrong. Subtype = 0x{header.subtype:08x}"
-            raise Refused(CFE_TBL_ERR_BAD_SUBTYPE_ID, eid.CFE_TBL_FILE_SUBTYPE_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_BAD_SUBTYPE_ID, ev.FILE_SUBTYPE_ERR_EID, text)
         self._check_ids(header)
         if len(data) < HEADER_SIZE + TABLE_HEADER_SIZE:
             text = f"Unable to read tbl header, Status = 0x{len(data) - HEADER_SIZE:08x}"
-            raise Refused(CFE_TBL_ERR_NO_TBL_HEADER, eid.CFE_TBL_FILE_TBL_HDR_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_NO_TBL_HEADER, ev.FILE_TBL_HDR_ERR_EID, text)
         self.table = read_table_header(data)
         self.table_name = self.table.table_name or self.table_name
         if not is_intact(data):
             text = f"File is damaged, mark = 0x{mark_in(data):08x}, expected 0x{mark_for(data):08x}"
-            raise Refused(CFE_STATUS_VALIDATION_FAILURE, eid.CFE_TBL_CODEC_ERROR_ERR_EID, text)
+            raise Refused(CFE_STATUS_VALIDATION_FAILURE, ev.CODEC_ERROR_ERR_EID, text)
         self.image = data[HEADER_SIZE + TABLE_HEADER_SIZE :]
 
     def _check_ids(self, header: FileHeader) -> None:
@@ -127,10 +127,10 @@ class TableFile:
         spacecraft, processors = self._config.tbl_valid_scid, self._config.tbl_valid_prid
         if spacecraft and header.spacecraft_id not in spacecraft:
             text = f"Invalid Spacecraft ID (0x{header.spacecraft_id:08X})"
-            raise Refused(CFE_TBL_ERR_BAD_SPACECRAFT_ID, eid.CFE_TBL_SPACECRAFT_ID_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_BAD_SPACECRAFT_ID, ev.SPACECRAFT_ID_ERR_EID, text)
         if processors and header.processor_id not in processors:
             text = f"Invalid Processor ID (0x{header.processor_id:08X})"
-            raise Refused(CFE_TBL_ERR_BAD_PROCESSOR_ID, eid.CFE_TBL_PROCESSOR_ID_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_BAD_PROCESSOR_ID, ev.PROCESSOR_ID_ERR_EID, text)
 
     def check_fits(self, table: Table) -> None:
         """Check that the content belongs into a table (CFE_TBL_ValidateFileIsLoadable and the checks of the content).
@@ -142,22 +142,22 @@ class TableFile:
         name, offset, size = self.table.table_name, self.table.offset, self.table.num_bytes
         if name != table.name:
             text = f"File for wrong table '{name}'"
-            raise Refused(CFE_TBL_ERR_FILE_FOR_WRONG_TABLE, eid.CFE_TBL_LOAD_TBLNAME_MISMATCH_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_FILE_FOR_WRONG_TABLE, ev.LOAD_TBLNAME_MISMATCH_ERR_EID, text)
         if size == 0:
             text = "Table header indicates no data in file"
-            raise Refused(CFE_TBL_ERR_NO_TBL_HEADER, eid.CFE_TBL_ZERO_LENGTH_LOAD_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_NO_TBL_HEADER, ev.ZERO_LENGTH_LOAD_ERR_EID, text)
         if offset > 0 and table.active is None:
             text = "partial load for uninitialized table"
-            raise Refused(CFE_TBL_ERR_PARTIAL_LOAD, eid.CFE_TBL_PARTIAL_LOAD_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_PARTIAL_LOAD, ev.PARTIAL_LOAD_ERR_EID, text)
         if offset + size > table.size:
             text = f"Cannot load {size} at off {offset}"
-            raise Refused(CFE_TBL_ERR_FILE_TOO_LARGE, eid.CFE_TBL_LOAD_EXCEEDS_SIZE_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_FILE_TOO_LARGE, ev.LOAD_EXCEEDS_SIZE_ERR_EID, text)
         if len(self.image) < size:
             text = "Incomplete load into working buffer"
-            raise Refused(CFE_TBL_ERR_LOAD_INCOMPLETE, eid.CFE_TBL_FILE_INCOMPLETE_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_LOAD_INCOMPLETE, ev.FILE_INCOMPLETE_ERR_EID, text)
         if len(self.image) > size:
             text = f"File has more data than Tbl Hdr indicates ({size})"
-            raise Refused(CFE_TBL_ERR_FILE_TOO_LARGE, eid.CFE_TBL_FILE_TOO_BIG_ERR_EID, text)
+            raise Refused(CFE_TBL_ERR_FILE_TOO_LARGE, ev.FILE_TOO_BIG_ERR_EID, text)
 
     def completeness(self, table: Table) -> int:
         """CFE_SUCCESS, or the warning that the file held only part of the table."""

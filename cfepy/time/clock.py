@@ -94,7 +94,7 @@ class SpacecraftTime:
 
     def update(self, **changes: int | bool) -> None:
         """Change fields of the reference, all at once (CFE_TIME_FinishReferenceUpdate)."""
-        now = self.reference = replace(self.reference, **changes)  # type: ignore[arg-type]
+        now = self.reference = replace(self.reference, **changes)  # type: ignore[arg-type]  # of the fields' types
         self.version += 1
         delay = now.delay if now.delay_direction == ADD else -now.delay
         self._met_offset = now.met + delay - now.latch

@@ -9,14 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from cfepy.msg import CommandTable, Dispatch, telemetry
+from cfepy.core_app import Replies
+from cfepy.msg import CommandTable, Dispatch
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID
 from cfepy.ports import Ports
+from cfepy.rtos.units import US_PER_S
 from cfepy.time import events as ev
 from cfepy.time import packets as pk
 from cfepy.time.clock import ADD, CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID, SUBTRACT, SpacecraftTime
 from cfepy.time.reset_vars import RESET_AREA_NEW
-from cfepy.time.settings import MICROS_PER_SECOND, TimeSettings
+from cfepy.time.settings import TimeSettings
 from cfepy.time.systime import MASK_32, micro2sub_secs, to_ticks
 from cfepy.time.telemetry import diagnostic, housekeeping
 from cfepy.time.tone import (
@@ -46,8 +48,7 @@ class TimeCommands:
 
     Attributes:
         table: message ids and function codes with their handlers; the tone's own are added by the task.
-        count: commands that were done.
-        errors: commands that were refused.
+        replies: the command counters.
         data_store: where the start values came from, for the diagnostic packet.
     """
 
@@ -59,20 +60,7 @@ class TimeCommands:
         settings: TimeSettings,
         on_housekeeping: Callable[[], object],
     ) -> None:
-        self.table = CommandTable()
-        self.count = 0
-        self.errors = 0
-        self.data_store = RESET_AREA_NEW
-        self._ports = ports
-        self._clock = clock
-        self._tone = tone
-        self._settings = settings
-        self._on_housekeeping = on_housekeeping
-        self._version_at_reset = 0
-        self._fill_table()
-
-    def _fill_table(self) -> None:
-        for command, handler in (
+        self.table = CommandTable(
             (pk.SEND_HK, self._send_housekeeping),
             (pk.NOOP, self._noop),
             (pk.RESET_COUNTERS, self._reset_counters),
@@ -90,8 +78,15 @@ class TimeCommands:
             (pk.SUB_ADJUST, partial(self._adjust, SUBTRACT)),
             (pk.ADD_ONE_HZ_ADJUSTMENT, partial(self._one_hz, ADD)),
             (pk.SUB_ONE_HZ_ADJUSTMENT, partial(self._one_hz, SUBTRACT)),
-        ):
-            self.table.handle(command, handler)
+        )
+        self.replies = Replies(ports)
+        self.data_store = RESET_AREA_NEW
+        self._ports = ports
+        self._clock = clock
+        self._tone = tone
+        self._settings = settings
+        self._on_housekeeping = on_housekeeping
+        self._version_at_reset = 0
 
     def process(self, packet: bytes) -> None:
         """Handle one packet of the pipe (CFE_TIME_TaskPipe)."""
@@ -107,21 +102,13 @@ class TimeCommands:
             text = f"Invalid command code -- ID = 0x{done.msg_id:X}, CC = {done.fcn_code}"
         else:
             event_id, text = ev.LEN_ERR_EID, done.length_text()
-        self.errors += done.outcome != BAD_MSG_ID
-        self._ports.evs.send_event(event_id, ev.ERROR, text)
-
-    def _done(self, event_id: int, text: str) -> None:
-        self.count += 1
-        self._ports.evs.send_event(event_id, ev.INFORMATION, text)
-
-    def _refuse(self, event_id: int, text: str) -> None:
-        self.errors += 1
-        self._ports.evs.send_event(event_id, ev.ERROR, text)
+        self.replies.error_counter += done.outcome != BAD_MSG_ID
+        self.replies.send(event_id, text, ev.ERROR)
 
     def _is_allowed(self, allowed: bool, event_id: int, what: str, option: str) -> bool:
         """Whether the configuration allows a command; an event when not."""
         if not allowed:
-            self._refuse(event_id, f"{what} commands invalid without CFE_PLATFORM_TIME_CFG_{option} set to TRUE")
+            self.replies.reject(event_id, f"{what} commands invalid without CFE_PLATFORM_TIME_CFG_{option} set to TRUE")
         return allowed
 
     def _for_server(self, event_id: int, what: str) -> bool:
@@ -130,57 +117,54 @@ class TimeCommands:
     # -- counters and telemetry ------------------------------------------------------------------------------------
 
     def _noop(self, packet: bytes) -> None:
-        self._done(ev.NOOP_EID, f"No-op Cmd Rcvd: {version_string('CFE_TIME')}")
+        self.replies.accept(ev.NOOP_EID, f"No-op Cmd Rcvd: {version_string('CFE_TIME')}")
 
     def _reset_counters(self, packet: bytes) -> None:
-        self.count = self.errors = 0
+        self.replies.reset()
         self._tone.counters = Counters()
         self._version_at_reset = self._clock.version
-        self._ports.evs.send_event(ev.RESET_EID, ev.DEBUG, "Reset Counters command")
+        self.replies.send(ev.RESET_EID, "Reset Counters command", ev.DEBUG)
 
     def _send_housekeeping(self, packet: bytes) -> None:
         self._on_housekeeping()
-        fields = housekeeping(self._clock, self._tone, self.count, self.errors)
-        self._transmit(pk.HK_TLM_MID, pk.HOUSEKEEPING.pack(fields))
+        fields = housekeeping(self._clock, self._tone, self.replies)
+        self._ports.sb.transmit_msg(pk.HK_TLM.packet(fields))
 
     def _send_diagnostic(self, packet: bytes) -> None:
-        self.count += 1
+        self.replies.command_counter += 1
         fields = diagnostic(self._clock, self._tone, self._version_at_reset, self.data_store)
-        self._transmit(pk.DIAG_TLM_MID, pk.DIAGNOSTIC.pack(fields))
-        self._ports.evs.send_event(ev.DIAG_EID, ev.DEBUG, "Request diagnostics command")
-
-    def _transmit(self, msg_id: int, payload: bytes) -> None:
-        self._ports.sb.transmit_msg(bytes(telemetry(msg_id, payload)))
+        self._ports.sb.transmit_msg(pk.DIAG_TLM.packet(fields))
+        self.replies.send(ev.DIAG_EID, "Request diagnostics command", ev.DEBUG)
 
     # -- selections ------------------------------------------------------------------------------------------------
 
     def _set_state(self, packet: bytes) -> None:
         state = pk.SET_STATE.read(packet)["ClockState"]
         if state not in _STATES:
-            self._refuse(ev.STATE_ERR_EID, f"Invalid Clock State = 0x{state & MASK_32:X}")
+            self.replies.reject(ev.STATE_ERR_EID, f"Invalid Clock State = 0x{state & MASK_32:X}")
             return
         self._tone.forced_to_fly = state == CLOCK_FLYWHEEL
         if state == CLOCK_FLYWHEEL:
             self._tone.fly()
         else:
             self._clock.update(was_set=state == CLOCK_VALID)
-        self._done(ev.STATE_EID, f"Set Clock State = {_STATES[state]}")
+        self.replies.accept(ev.STATE_EID, f"Set Clock State = {_STATES[state]}")
 
     def _set_source(self, packet: bytes) -> None:
         source = pk.SET_SOURCE.read(packet)["TimeSource"]
         if source not in _SOURCES:
-            self._refuse(ev.SOURCE_ERR_EID, f"Invalid Time Source = 0x{source & MASK_32:X}")
+            self.replies.reject(ev.SOURCE_ERR_EID, f"Invalid Time Source = 0x{source & MASK_32:X}")
         elif self._is_allowed(self._settings.can_select_source, ev.SOURCE_CFG_EID, "Set Source", "SOURCE"):
             self._tone.source = source
-            self._done(ev.SOURCE_EID, f"Set Time Source = {_SOURCES[source]}")
+            self.replies.accept(ev.SOURCE_EID, f"Set Time Source = {_SOURCES[source]}")
 
     def _set_signal(self, packet: bytes) -> None:
         signal = pk.SET_SIGNAL.read(packet)["ToneSource"]
         if signal not in _SIGNALS:
-            self._refuse(ev.SIGNAL_ERR_EID, f"Invalid Tone Source = 0x{signal & MASK_32:X}")
+            self.replies.reject(ev.SIGNAL_ERR_EID, f"Invalid Tone Source = 0x{signal & MASK_32:X}")
         elif self._is_allowed(self._settings.can_select_signal, ev.SIGNAL_CFG_EID, "Set Signal", "SIGNAL"):
             self._tone.signal = signal
-            self._done(ev.SIGNAL_EID, f"Set Tone Source = {_SIGNALS[signal]}")
+            self.replies.accept(ev.SIGNAL_EID, f"Set Tone Source = {_SIGNALS[signal]}")
 
     # -- setting the clock -----------------------------------------------------------------------------------------
 
@@ -188,33 +172,33 @@ class TimeCommands:
         ticks = self._time(packet, "Tone Delay", ev.DELAY_ERR_EID)
         if ticks is not None and self._is_allowed(self._settings.client, ev.DELAY_CFG_EID, "Set Delay", "CLIENT"):
             self._clock.update(delay=ticks, delay_direction=direction)
-            self._done(ev.DELAY_EID, f"Set Tone Delay -- {_amount(packet)}, dir = {direction}")
+            self.replies.accept(ev.DELAY_EID, f"Set Tone Delay -- {_amount(packet)}, dir = {direction}")
 
     def _set_time(self, packet: bytes) -> None:
         ticks = self._time(packet, "Time", ev.TIME_ERR_EID)
         if ticks is not None and self._for_server(ev.TIME_CFG_EID, "Set Time"):
             leaps = self._clock.reference.leap_seconds << 32 if self._settings.utc else 0
             self._clock.update(stcf=ticks - self._clock.current_met() + leaps)
-            self._done(ev.TIME_EID, f"Set Time -- {_amount(packet)}")
+            self.replies.accept(ev.TIME_EID, f"Set Time -- {_amount(packet)}")
 
     def _set_met(self, packet: bytes) -> None:
         ticks = self._time(packet, "MET", ev.MET_ERR_EID)
         if ticks is not None and self._for_server(ev.MET_CFG_EID, "Set MET"):
             self._tone.virtual_met = ticks >> 32
             self._clock.update(met=ticks, latch=self._clock.local())
-            self._done(ev.MET_EID, f"Set MET -- {_amount(packet)}")
+            self.replies.accept(ev.MET_EID, f"Set MET -- {_amount(packet)}")
 
     def _set_stcf(self, packet: bytes) -> None:
         ticks = self._time(packet, "STCF", ev.STCF_ERR_EID)
         if ticks is not None and self._for_server(ev.STCF_CFG_EID, "Set STCF"):
             self._clock.update(stcf=ticks)
-            self._done(ev.STCF_EID, f"Set STCF -- {_amount(packet)}")
+            self.replies.accept(ev.STCF_EID, f"Set STCF -- {_amount(packet)}")
 
     def _set_leap_seconds(self, packet: bytes) -> None:
         if self._for_server(ev.LEAPS_CFG_EID, "Set Leaps"):
             leaps = pk.SET_LEAP_SECONDS.read(packet)["LeapSeconds"]
             self._clock.update(leap_seconds=leaps)
-            self._done(ev.LEAPS_EID, f"Set Leap Seconds = {leaps}")
+            self.replies.accept(ev.LEAPS_EID, f"Set Leap Seconds = {leaps}")
 
     def _adjust(self, direction: int, packet: bytes) -> None:
         ending = f", dir[1=Pos, 2=Neg] = {direction}"
@@ -223,7 +207,7 @@ class TimeCommands:
             adjustments = self._tone.adjustments
             adjustments.one_time, adjustments.one_time_direction = ticks, direction
             self._tone.adjust(ticks, direction)
-            self._done(ev.DELTA_EID, f"STCF Adjust -- {_amount(packet)}{ending}")
+            self.replies.accept(ev.DELTA_EID, f"STCF Adjust -- {_amount(packet)}{ending}")
 
     def _one_hz(self, direction: int, packet: bytes) -> None:
         if not self._for_server(ev.ONEHZ_CFG_EID, "1Hz Adjust"):
@@ -234,13 +218,13 @@ class TimeCommands:
         adjustments.one_hz, adjustments.one_hz_direction = to_ticks((seconds, subseconds)), direction
         shown = seconds - (seconds >> 31 << 32)  # the event shows seconds with a sign
         text = f"STCF 1Hz Adjust -- secs = {shown}, ssecs = 0x{subseconds:X}, dir[1=Pos, 2=Neg] = {direction}"
-        self._done(ev.ONEHZ_EID, text)
+        self.replies.accept(ev.ONEHZ_EID, text)
 
     def _time(self, packet: bytes, what: str, invalid: int, ending: str = "") -> int | None:
         """The time in a command, in ticks; None after an event when its microseconds make a second or more."""
         seconds, micros = _seconds_and_micros(packet)
-        if micros >= MICROS_PER_SECOND:
-            self._refuse(invalid, f"Invalid {what} -- secs = {seconds}, usecs = {micros}{ending}")
+        if micros >= US_PER_S:
+            self.replies.reject(invalid, f"Invalid {what} -- secs = {seconds}, usecs = {micros}{ending}")
             return None
         return to_ticks((seconds, micro2sub_secs(micros)))
 

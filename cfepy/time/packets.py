@@ -5,7 +5,7 @@ Imports cfepy.msg.
 
 from __future__ import annotations
 
-from cfepy.msg import Command, Layout, Telemetry
+from cfepy.msg import SYS_TIME, Command, Layout, Telemetry
 
 CMD_MID = 0x1805
 SEND_HK_MID = 0x180D
@@ -32,8 +32,6 @@ SUB_ADJUST_CC = 12
 ADD_ONE_HZ_ADJUSTMENT_CC = 13
 SUB_ONE_HZ_ADJUSTMENT_CC = 14
 SET_SIGNAL_CC = 15
-
-SYS_TIME = Layout("CFE_TIME_SysTime_t", [("Seconds", "u32"), ("Subseconds", "u32")])
 
 HOUSEKEEPING = Layout(
     "CFE_TIME_HousekeepingTlm_Payload_t",

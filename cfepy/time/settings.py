@@ -1,6 +1,7 @@
 """How Time Services is configured: server or client, where tone and time come from, and the limits, as TIME needs them.
 
-Stands for cfe_time_verify.h and the constants that CFE_TIME_InitData works out. Imports cfepy.config and cfepy.status.
+Stands for cfe_time_verify.h and the constants that CFE_TIME_InitData works out. Imports cfepy.config,
+cfepy.rtos.units and cfepy.status.
 """
 
 from __future__ import annotations
@@ -8,10 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cfepy.config import PlatformConfig
+from cfepy.rtos.units import US_PER_S
 from cfepy.status import UsageError
 from cfepy.time.systime import SysTime, micro2sub_secs, to_ticks
 
-MICROS_PER_SECOND = 1_000_000
 SOURCES = ("met", "gps", "time")
 
 
@@ -69,7 +70,7 @@ class TimeSettings:
             max_delta=SysTime(config.time_max_delta_secs, micro2sub_secs(config.time_max_delta_subs)),
             max_local=SysTime(config.time_max_local_secs, config.time_max_local_subs),
             tone_over_limit=micro2sub_secs(config.time_cfg_tone_limit),
-            tone_under_limit=micro2sub_secs(MICROS_PER_SECOND - config.time_cfg_tone_limit),
+            tone_under_limit=micro2sub_secs(US_PER_S - config.time_cfg_tone_limit),
             start_fly_secs=config.time_cfg_start_fly,
             latch_fly_secs=config.time_cfg_latch_fly,
         )

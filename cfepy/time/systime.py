@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import NamedTuple
 
-from cfepy.rtos.units import NS_PER_S
+from cfepy.rtos.units import NS_PER_S, US_PER_S
 from cfepy.status import CFE_TIME_BAD_ARGUMENT, CfeError
 
 MASK_32 = 0xFFFFFFFF
@@ -23,7 +23,6 @@ A_GT_B = 1
 """What `compare` gives (CFE_TIME_Compare_t)."""
 
 _HALF_RANGE = 0x80000000
-_MICROS_PER_SECOND = 1_000_000
 _SECONDS_PER_DAY = 86400
 
 
@@ -86,7 +85,7 @@ def sub2micro_secs(subseconds: int) -> int:
     """
     if not 0 <= subseconds <= MASK_32:
         raise CfeError(CFE_TIME_BAD_ARGUMENT, f"subseconds are {subseconds}, they must be 0 to {MASK_32}")
-    return subseconds * _MICROS_PER_SECOND >> 32
+    return subseconds * US_PER_S >> 32
 
 
 def micro2sub_secs(microseconds: int) -> int:
@@ -97,9 +96,9 @@ def micro2sub_secs(microseconds: int) -> int:
     """
     if microseconds < 0:
         raise CfeError(CFE_TIME_BAD_ARGUMENT, f"microseconds are {microseconds}, they must not be negative")
-    if microseconds >= _MICROS_PER_SECOND:
+    if microseconds >= US_PER_S:
         return MASK_32
-    return -(-(microseconds << 32) // _MICROS_PER_SECOND)
+    return -(-(microseconds << 32) // US_PER_S)
 
 
 def print_(time: tuple[int, int]) -> str:

@@ -7,7 +7,8 @@ CFE_TIME_Local1HzTask and the timer "cFS-1Hz". Imports no other service.
 from __future__ import annotations
 
 from cfepy.config import PlatformConfig
-from cfepy.ports import PEND_FOREVER, SYSTEM_CORE_READY, Ports
+from cfepy.core_app import serve
+from cfepy.ports import Ports
 from cfepy.rtos import Kernel, Semaphore
 from cfepy.rtos.units import NS_PER_S
 from cfepy.time import events as ev
@@ -83,17 +84,9 @@ class TimeTask:
 
     def main(self) -> None:
         """The task CFE_TIME (CFE_TIME_TaskMain)."""
-        es = self._ports.es
-        es.perf_log_entry(MAIN_PERF_ID)
+        self._ports.es.perf_log_entry(MAIN_PERF_ID)
         pipe = self._init()
-        es.wait_for_system_state(SYSTEM_CORE_READY, self._config.es_core_max_startup_ms)
-        while True:
-            es.increment_task_counter()
-            es.perf_log_exit(MAIN_PERF_ID)
-            packet = self._ports.sb.receive_buffer(pipe, PEND_FOREVER)
-            es.perf_log_entry(MAIN_PERF_ID)
-            if packet is not None:
-                self._commands.process(packet)
+        serve(self._ports, self._config, pipe, MAIN_PERF_ID, self._commands.process)
 
     def _init(self) -> int:
         ports = self._ports

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from cfepy.core_app import Replies
+from cfepy.msg import sys_time_fields
 from cfepy.time.clock import ADD, SpacecraftTime
 from cfepy.time.systime import MASK_32, from_ticks, to_ticks
 from cfepy.time.tone import SIGNAL_PRIMARY, SOURCE_INTERNAL, Tone
@@ -47,8 +49,7 @@ def clock_info(clock: SpacecraftTime, tone: Tone) -> int:
 
 def fields_of(ticks: int) -> dict[str, int]:
     """A time as the fields of CFE_TIME_SysTime_t."""
-    time = from_ticks(ticks)
-    return {"Seconds": time.seconds, "Subseconds": time.subseconds}
+    return sys_time_fields(from_ticks(ticks))
 
 
 def ticks_of(fields: Mapping[str, int]) -> int:
@@ -56,19 +57,18 @@ def ticks_of(fields: Mapping[str, int]) -> int:
     return to_ticks((fields["Seconds"], fields["Subseconds"]))
 
 
-def housekeeping(clock: SpacecraftTime, tone: Tone, commands: int, errors: int) -> Mapping[str, object]:
+def housekeeping(clock: SpacecraftTime, tone: Tone, replies: Replies) -> Mapping[str, object]:
     """Fields of the housekeeping packet; 8-bit counters wrap.
 
     Args:
         clock: the clock.
         tone: the tone.
-        commands: command counter.
-        errors: command error counter.
+        replies: the command counters.
     """
     reference = clock.reference
     return {
-        "CommandCounter": commands & 0xFF,
-        "CommandErrorCounter": errors & 0xFF,
+        "CommandCounter": replies.command_counter & 0xFF,
+        "CommandErrorCounter": replies.error_counter & 0xFF,
         "ClockStateFlags": clock_info(clock, tone),
         "ClockStateAPI": clock.state(),
         "LeapSeconds": reference.leap_seconds,
@@ -96,7 +96,7 @@ def diagnostic(clock: SpacecraftTime, tone: Tone, version_at_reset: int, data_st
         "VirtualMET": tone.virtual_met,
         "MinElapsed": settings.min_elapsed,
         "MaxElapsed": settings.max_elapsed,
-        "MaxLocalClock": {"Seconds": settings.max_local.seconds, "Subseconds": settings.max_local.subseconds},
+        "MaxLocalClock": sys_time_fields(settings.max_local),
         "ToneOverLimit": settings.tone_over_limit,
         "ToneUnderLimit": settings.tone_under_limit,
         "DataStoreStatus": data_store,

@@ -5,8 +5,8 @@ After a change, `python hk_cpy_tbl.py` writes hk_cpy_tbl.tbl anew.
 
 from __future__ import annotations
 
-from cfepy.apps.hk.packets import COMBINED_PKT1_MID, COPY_TABLE_ENTRIES, COPY_TABLE_ENTRY
-from cfepy.tbl import TableImage, pack_rows, write_beside
+from cfepy.apps.hk.packets import COMBINED_PKT1_MID, COPY_TABLE
+from cfepy.tbl import TableImage, write_beside
 
 ES_HK, EVS_HK, SB_HK, TIME_HK = 0x0800, 0x0801, 0x0803, 0x0805
 SAMPLES, PEAK_CURRENT, PEAK_SPEED, HOTTEST_MOTOR = 0x0901, 0x0902, 0x0903, 0x0904  # topics, see mission.yaml
@@ -37,7 +37,7 @@ def image() -> TableImage:
         }
         for msg_id, source, size, target in COPIES
     ]
-    return TableImage("HK.CopyTable", pack_rows(COPY_TABLE_ENTRY, rows, COPY_TABLE_ENTRIES), "HK Copy Tbl")
+    return COPY_TABLE.image(rows)
 
 
 if __name__ == "__main__":

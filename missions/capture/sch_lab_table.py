@@ -20,7 +20,7 @@ def image() -> TableImage:
     """The table."""
     rows = [(msg_id, EVERY_SECOND, 0, b"") for msg_id in SEND_HK.values()]
     rows.append((SEND_COMBINED_PKT_MID, EVERY_SECOND, 0, struct.pack("<I", COMBINED_PKT1_MID)))
-    return schedule.image("SCH_LAB.ScheduleTable", TICKS_PER_SECOND, rows)
+    return schedule.image(TICKS_PER_SECOND, rows)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ After a change, `python sch_def_msgtbl.py` writes sch_def_msgtbl.tbl anew.
 from __future__ import annotations
 
 from cfepy.apps.hk import packets as hk
-from cfepy.apps.sample_app import messages as sample
+from cfepy.apps.sample_app import packets as sample
 from cfepy.apps.sch import packets as sch
 from cfepy.apps.sch.definition import message_image
 from cfepy.es import packets as es

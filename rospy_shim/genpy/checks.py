@@ -6,6 +6,7 @@ on the hot path. Imports nothing of cfepy.
 
 from __future__ import annotations
 
+import numbers
 from typing import Any
 
 from rospy_shim.genpy.errors import SerializationError
@@ -36,7 +37,7 @@ def check_type(field_name: str, field_type: str, field_val: Any) -> None:
     elif field_type == "bool":
         _require(field_val in (True, False), f"field {field_name} is not a bool")
     elif field_type in ("float32", "float64"):
-        _require(type(field_val) in (int, float), f"field {field_name} must be float type")
+        _require(_is_float(field_val), f"field {field_name} must be float type")
     elif field_type == "string":
         _check_string(field_name, field_val)
     elif field_type == "time":
@@ -45,6 +46,11 @@ def check_type(field_name: str, field_type: str, field_val: Any) -> None:
         _require(isinstance(field_val, Duration), f"field {field_name} must be of type Duration")
     else:
         _check_message(field_name, field_type, field_val)
+
+
+def _is_float(value: Any) -> bool:
+    # numpy's scalars are numbers to struct too; `numbers` knows them, without numpy being loaded for it.
+    return type(value) in (int, float) or (type(value).__module__ == "numpy" and isinstance(value, numbers.Real))
 
 
 def _require(fits: bool, text: str) -> None:

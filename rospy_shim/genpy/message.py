@@ -96,8 +96,12 @@ class Message:
             return False
         for name in self.__slots__:
             try:
-                if getattr(self, name) != getattr(other, name):
-                    return False
+                mine, theirs = getattr(self, name), getattr(other, name)
             except AttributeError:
+                return False
+            if isinstance(mine, list | tuple) and isinstance(theirs, list | tuple):
+                # Decoding makes tuples where a constructor makes lists.
+                mine, theirs = tuple(mine), tuple(theirs)
+            if not mine == theirs:
                 return False
         return True

@@ -94,7 +94,7 @@ class TVal:
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, TVal):
-            return NotImplemented
+            return False
         return self.secs == other.secs and self.nsecs == other.nsecs
 
     def __lt__(self, other: Any) -> bool:

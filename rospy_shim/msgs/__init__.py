@@ -14,13 +14,15 @@ from types import ModuleType
 from rospy_shim.msgs.classes import MessageClass
 from rospy_shim.msgs.library import Library, from_full_text, shipped
 from rospy_shim.msgs.modules import generate_dynamic, make_module
+from rospy_shim.msgs.packages import Packages
 from rospy_shim.msgs.services import ServiceClass
-from rospy_shim.msgs.sources import Folders, Shipped, Source
+from rospy_shim.msgs.sources import OnDisk, Shipped, Source
 
 __all__ = [
-    "Folders",
     "Library",
     "MessageClass",
+    "OnDisk",
+    "Packages",
     "ServiceClass",
     "Shipped",
     "Source",

@@ -1,7 +1,7 @@
 """A `Library` turns definitions into specs, fingerprints and classes, each made once, when it is first asked for.
 
-It looks through its sources in order. The library of the shipped packages is `shipped()`; a node that brings packages
-of its own gets one with a `Folders` source in front. Imports cfepy.status only.
+It looks through its sources in order. The library of the shipped packages is `shipped()`; that of a node stands on it
+and adds the packages that the node brings along. Imports cfepy.status only.
 """
 
 from __future__ import annotations
@@ -13,18 +13,25 @@ from typing import Any
 from cfepy.status import UsageError
 from rospy_shim.msgs import fingerprint
 from rospy_shim.msgs.classes import MessageClass, build_class
+from rospy_shim.msgs.parts import Definition, split_service
 from rospy_shim.msgs.services import ServiceClass, build_service
-from rospy_shim.msgs.sources import Definition, Definitions, Kind, Shipped, Source, Texts, split_service
-from rospy_shim.msgs.spec import Spec, parse
+from rospy_shim.msgs.sources import Definitions, Kind, Shipped, Source, Texts
+from rospy_shim.msgs.spec import BUILTINS, Spec, parse
 
 _PARTS = ("Request", "Response")
+_KINDS: tuple[Kind, ...] = ("msg", "srv")
 
 
 class Library:
     """Message types by full name, e.g. "std_msgs/String"; everything is made once, when first asked for."""
 
     def __init__(
-        self, sources: Sequence[Source], restore: Callable[[str], Any] | None = None, *, module: str | None = None
+        self,
+        sources: Sequence[Source],
+        restore: Callable[[str], Any] | None = None,
+        *,
+        module: str | None = None,
+        base: Library | None = None,
     ) -> None:
         """Make a library.
 
@@ -32,18 +39,23 @@ class Library:
             sources: where definitions are looked for, in order.
             restore: see `classes.build_class`.
             module: value of the classes' `__module__`; None for ROS's "package.msg._Name".
+            base: library of all packages that the sources lack. Its classes are used as they are, except for types
+                in which one from the sources is nested.
         """
         self._sources, self._restore, self._module = tuple(sources), restore, module
+        self._base = base
         self._packages: dict[tuple[str, Kind], Definitions | None] = {}
         self._specs: dict[str, Spec] = {}
         self._md5sums: dict[str, str] = {}
         self._classes: dict[str, MessageClass] = {}
         self._services: dict[str, ServiceClass] = {}
         self._opening: list[str] = []
+        self._own: dict[str, bool] = {}
 
     def packages(self) -> list[str]:
         """Names of all packages, sorted."""
-        return sorted({name for source in self._sources for name in source.packages()})
+        below = self._base.packages() if self._base is not None else []
+        return sorted({*below, *(name for source in self._sources for name in source.packages())})
 
     def names(self, package: str, kind: Kind = "msg") -> list[str] | None:
         """Names of the messages or services of a package, sorted; None when there are none."""
@@ -61,6 +73,8 @@ class Library:
         Raises:
             UsageError: no such type, or its text has a mistake, or it contains itself.
         """
+        if self._base is not None and not self._is_own(full_name):
+            return self._base.spec(full_name)
         found = self._specs.get(full_name)
         if found is None:
             definition = self._definition(full_name)
@@ -86,10 +100,12 @@ class Library:
         Raises:
             UsageError: as `spec`.
         """
+        if self._base is not None and not self._is_own(full_name):
+            return self._base.message_class(full_name)
         found = self._classes.get(full_name)
         if found is None:
-            module = self._module_of(full_name, "msg")
-            found = self._classes[full_name] = build_class(self.spec(full_name), self, self._restore, module)
+            spec = self.spec(full_name)
+            found = self._classes[full_name] = build_class(spec, self, self._restore, self._module_of(full_name))
         return found
 
     def service_class(self, full_name: str) -> ServiceClass:
@@ -98,22 +114,42 @@ class Library:
         Raises:
             UsageError: no such service, or its text has a mistake.
         """
+        if self._base is not None and not any(self._is_own(full_name + part) for part in _PARTS):
+            return self._base.service_class(full_name)
         found = self._services.get(full_name)
         if found is None:
             if not self.has(full_name, "srv"):
                 raise UsageError(f"there is no service type {full_name!r}; is its package on ROS_PACKAGE_PATH?")
-            module = self._module_of(full_name, "srv")
-            parts = [build_class(self.spec(full_name + part), self, self._restore, module) for part in _PARTS]
-            self._classes.update(zip((full_name + part for part in _PARTS), parts, strict=True))
+            parts = [self.message_class(full_name + part) for part in _PARTS]
             texts = [fingerprint.md5_text(self.spec(full_name + part), self.md5sum) for part in _PARTS]
-            found = self._services[full_name] = build_service(full_name, module, texts, *parts)
+            found = self._services[full_name] = build_service(full_name, parts[0].__module__, texts, *parts)
         return found
 
-    def _module_of(self, full_name: str, kind: Kind) -> str:
+    def _module_of(self, full_name: str) -> str:
+        if self._module is not None:
+            return self._module
         package, _, name = full_name.partition("/")
-        return self._module or f"{package}.{kind}._{name}"
+        if self.has(full_name):
+            return f"{package}.msg._{name}"
+        return f"{package}.srv._{name.removesuffix('Request').removesuffix('Response')}"
+
+    def _is_own(self, full_name: str) -> bool:
+        """Whether a type is made here: it, or one nested in it, is of a package that the base does not know so."""
+        if self._base is None:
+            return True
+        known = self._own.get(full_name)
+        if known is None:
+            package = full_name.partition("/")[0]
+            known = any(self._from_sources(package, kind) is not None for kind in _KINDS)
+            known = known or any(self._is_own(nested) for nested in self._base.spec(full_name).message_types)
+            self._own[full_name] = known
+        return known
 
     def _package(self, name: str, kind: Kind) -> Definitions | None:
+        found = self._from_sources(name, kind)
+        return self._base._package(name, kind) if found is None and self._base is not None else found
+
+    def _from_sources(self, name: str, kind: Kind) -> Definitions | None:
         key = (name, kind)
         if key not in self._packages:
             found = (source.package(name, kind) for source in self._sources)
@@ -135,11 +171,15 @@ class Library:
         """Parse the nested types as well, so that a type with a gap in it is never half usable."""
         self._opening.append(found.full_name)
         try:
-            for name in found.message_types:
+            for field in found.fields:
+                name = field.base
+                if name in BUILTINS:
+                    continue
                 if name in self._opening:
-                    raise UsageError(f"message type {name} contains itself", file=found.file)
+                    raise UsageError(f"message type {name} contains itself", file=found.file, line=field.line)
                 if not self.has(name):
-                    raise UsageError(f"message type {name} is unknown; add its package", file=found.file)
+                    problem = f"message type {name} is unknown; add its package"
+                    raise UsageError(problem, file=found.file, line=field.line)
                 self.spec(name)
         finally:
             self._opening.pop()

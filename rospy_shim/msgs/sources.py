@@ -1,26 +1,21 @@
 """Where message and service definitions come from: packages shipped with cfepy, folders on disk, or texts at hand.
 
-Shipped packages are text files beside this one, `<package>.msgs` and `<package>.srvs`, with one `# package/Name`
-section per type. Imports nothing of cfepy.
+Shipped packages are text files beside this one, `<package>.msgs`, `<package>.srvs` and `<package>.actions`, with one
+`# package/Name` section per type. An action counts as the messages that it stands for. Imports nothing of cfepy.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Literal, NamedTuple, Protocol
+from typing import Literal, Protocol
+
+from rospy_shim.msgs.packages import Packages, has_definitions
+from rospy_shim.msgs.parts import Definition, messages_of
 
 Kind = Literal["msg", "srv"]
 _SHIPPED = Path(__file__).parent / "definitions"
-
-
-class Definition(NamedTuple):
-    """Text of one type and the place it was read from."""
-
-    text: str
-    file: str
-    first_line: int = 1
-
+_SUFFIXES = (".msgs", ".srvs", ".actions")
 
 Definitions = Mapping[str, Definition]
 """Definitions of one package by the type's bare name."""
@@ -44,34 +39,35 @@ class Shipped:
 
     def packages(self) -> list[str]:
         """Names of the packages, sorted."""
-        return sorted({path.stem for path in self._folder.iterdir() if path.suffix in (".msgs", ".srvs")})
+        return sorted({path.stem for path in self._folder.iterdir() if path.suffix in _SUFFIXES})
 
     def package(self, name: str, kind: Kind) -> Definitions | None:
         """Messages or services of a package."""
+        found = self._read(name, kind)
+        if kind == "msg":
+            found |= messages_of(self._read(name, "action"))
+        return found or None
+
+    def _read(self, name: str, kind: str) -> dict[str, Definition]:
         path = self._folder / f"{name}.{kind}s"
-        if not path.is_file():
-            return None
-        return dict(_sections(path.read_text(encoding="utf-8"), str(path)))
+        return dict(_sections(path.read_text(encoding="utf-8"), str(path))) if path.is_file() else {}
 
 
-class Folders:
-    """ROS packages on disk, `<root>/<package>/msg/*.msg` and `srv/*.srv`, for roots as on ROS_PACKAGE_PATH."""
+class OnDisk:
+    """Packages on disk: `msg/*.msg`, `srv/*.srv` and `action/*.action` in their folders."""
 
-    def __init__(self, roots: Sequence[Path]) -> None:
-        self._roots = tuple(roots)
+    def __init__(self, packages: Packages) -> None:
+        self._packages = packages
 
     def packages(self) -> list[str]:
-        """Names of the packages, sorted."""
-        patterns = ("*/msg/*.msg", "*/srv/*.srv")
-        return sorted({path.parts[-3] for root in self._roots for pattern in patterns for path in root.glob(pattern)})
+        """Names of the packages that have definitions, sorted."""
+        names = self._packages.names()
+        return [name for name in names if any(map(has_definitions, self._packages.folders(name)))]
 
     def package(self, name: str, kind: Kind) -> Definitions | None:
-        """Messages or services of a package, from the first root that has some."""
-        for root in self._roots:
-            files = sorted((root / name / kind).glob(f"*.{kind}"))
-            if files:
-                return {path.stem: Definition(path.read_text(encoding="utf-8"), str(path)) for path in files}
-        return None
+        """Messages or services of a package, from its first folder that has some."""
+        found = (_in_folder(folder, kind) for folder in self._packages.folders(name))
+        return next(filter(None, found), None)
 
 
 class Texts:
@@ -90,12 +86,18 @@ class Texts:
         return {key.partition("/")[2]: self._definitions[key] for key in of_package} or None
 
 
-def split_service(definition: Definition) -> tuple[Definition, Definition]:
-    """Request and response of a service, which a line of three dashes parts."""
-    lines = definition.text.split("\n")
-    cut = next((at for at, line in enumerate(lines) if line.strip() == "---"), len(lines))
-    answer = Definition("\n".join(lines[cut + 1 :]), definition.file, definition.first_line + cut + 1)
-    return Definition("\n".join(lines[:cut]), definition.file, definition.first_line), answer
+def _in_folder(folder: Path, kind: Kind) -> dict[str, Definition]:
+    messages = messages_of(_files(folder, "action")) if kind == "msg" else {}
+    return messages | _files(folder, kind)
+
+
+def _files(folder: Path, kind: str) -> dict[str, Definition]:
+    return {path.stem: _read(path) for path in sorted((folder / kind).glob(f"*.{kind}"))}
+
+
+def _read(path: Path) -> Definition:
+    # Only comments can hold anything but ASCII, and an old file's are in some other encoding.
+    return Definition(path.read_text(encoding="utf-8", errors="replace"), str(path))
 
 
 def _sections(text: str, file: str) -> Iterator[tuple[str, Definition]]:

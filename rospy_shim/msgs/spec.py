@@ -43,6 +43,8 @@ class Field(NamedTuple):
     is_array: bool
     length: int | None
     """Of a fixed array."""
+    line: int = 0
+    """Where it stands in its file."""
 
     @property
     def type(self) -> str:
@@ -105,7 +107,7 @@ def parse(text: str, full_name: str, file: str, first_line: int = 1) -> Spec:
             if "=" in line:
                 constants.append(_constant(line, raw))
             elif line:
-                fields.append(_field(line, package, {field.name for field in fields}))
+                fields.append(_field(line, package, {field.name for field in fields})._replace(line=number))
         except ValueError as error:
             raise UsageError(f"{error}; write `type name` or `type NAME=value`", file=file, line=number) from None
     return Spec(full_name, text, tuple(fields), tuple(constants), file)

@@ -146,13 +146,13 @@ def test_commands(hk: AppBench) -> None:
     unknown = packets.SEND_COMBINED_PKT.packet(OutMsgToSend=0x089D)
     hk.run(
         HK_AppMain,
-        cmd(packets.CMD_MID, packets.NOOP_CC),
+        cmd(packets.CMD_MID, 0),
         unknown,
         cmd(packets.CMD_MID, 77),
-        cmd(packets.CMD_MID, packets.NOOP_CC, b"x"),
+        cmd(packets.CMD_MID, 0, b"x"),
         cmd(packets.SEND_HK_MID, 0, b"x"),
         SEND_HK,
-        cmd(packets.CMD_MID, packets.RESET_COUNTERS_CC),
+        cmd(packets.CMD_MID, 1),
         SEND_HK,
     )
     assert own(hk)[1:] == [

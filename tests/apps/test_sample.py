@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from apps.sample_app import COMMANDS, TABLES, TELEMETRY, SAMPLE_APP_Main, messages
+from apps.sample_app import COMMANDS, TABLES, TELEMETRY, SAMPLE_APP_Main, packets
 from apps.sample_app.tables import sample_app_tbl
 from cfepy.console import Console
 from cfepy.es import APP_ERROR, APP_EXIT
@@ -30,15 +30,15 @@ def test_its_way_through_a_session(sample: AppBench) -> None:
     sample.symbols["SAMPLE_LIB_Function"] = lambda cfe: sample.printed.append("called")
     sample.run(
         SAMPLE_APP_Main,
-        messages.NOOP.packet(),
-        messages.PROCESS.packet(),
-        messages.DISPLAY_PARAM.packet(ValU32=7, ValI16=-2, ValStr="hello"),
-        cmd(messages.CMD_MID, 99),
-        cmd(messages.CMD_MID, 0, b"x"),
+        packets.NOOP.packet(),
+        packets.PROCESS.packet(),
+        packets.DISPLAY_PARAM.packet(ValU32=7, ValI16=-2, ValStr="hello"),
+        cmd(packets.CMD_MID, 99),
+        cmd(packets.CMD_MID, 0, b"x"),
         cmd(0x1999),
-        messages.SEND_HK.packet(),
-        messages.RESET_COUNTERS.packet(),
-        messages.SEND_HK.packet(),
+        packets.SEND_HK.packet(),
+        packets.RESET_COUNTERS.packet(),
+        packets.SEND_HK.packet(),
     )
     version = "equuleus-rc1+dev54"
     text = f"Sample App Initialized.Sample App {version} (Equuleus) v1.1.0 Official Release, EDS disabled"
@@ -60,13 +60,13 @@ def test_its_way_through_a_session(sample: AppBench) -> None:
 
 
 def test_without_its_library_it_says_so(sample: AppBench) -> None:
-    sample.run(SAMPLE_APP_Main, messages.PROCESS.packet(), messages.NOOP.packet())
+    sample.run(SAMPLE_APP_Main, packets.PROCESS.packet(), packets.NOOP.packet())
     assert sample.log[-1] == "Sample App: no library has SAMPLE_LIB_Function"
     assert sample.events[-1][0] == 3
 
 
 def test_table_out_of_range_is_refused_at_start(sample: AppBench) -> None:
-    image = TableImage("SAMPLE_APP.ExampleTable", messages.EXAMPLE_TABLE.pack(Int1=11))
+    image = TableImage("SAMPLE_APP.ExampleTable", packets.EXAMPLE_TABLE.pack(Int1=11))
     sample.files["/cf/sample_app_tbl.tbl"] = build(image)
     sample.run(SAMPLE_APP_Main)
     assert sample.exit_status == APP_ERROR
@@ -115,7 +115,7 @@ def test_the_library_in_a_mission(tmp_path: Path) -> None:
     )
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
         mission.run(2)
-        mission.cfe.sb.transmit_msg(messages.PROCESS.packet())
+        mission.cfe.sb.transmit_msg(packets.PROCESS.packet())
         mission.run(1)
         lines = mission.console.lines
     start = "SAMPLE Lib Initialized.Sample Lib v7.0.0+dev0 (Draco) v7.0.0 Official Release, EDS disabled"

@@ -41,7 +41,7 @@ class SchBench(AppBench):
 
     def use(self, tick_rate: int, *rows: tuple[int, int, int, bytes]) -> None:
         """Put another table in place."""
-        self.files["/cf/sch_lab_table.tbl"] = build(schedule.image("SCH_LAB.ScheduleTable", tick_rate, list(rows)))
+        self.files["/cf/sch_lab_table.tbl"] = build(schedule.image(tick_rate, list(rows)))
 
 
 @pytest.fixture
@@ -123,9 +123,9 @@ def test_no_timebase_no_schedule(sch: SchBench) -> None:
 
 def test_too_much_for_the_table() -> None:
     with pytest.raises(UsageError):
-        schedule.image("SCH_LAB.ScheduleTable", 100, [(0x1882, 1, 0, b"")] * 33)
+        schedule.image(100, [(0x1882, 1, 0, b"")] * 33)
     with pytest.raises(UsageError):
-        schedule.image("SCH_LAB.ScheduleTable", 100, [(0x1882, 1, 0, bytes(65))])
+        schedule.image(100, [(0x1882, 1, 0, bytes(65))])
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 from apps.ci_lab import packets as ci_lab
 from apps.to_lab import packets as pk
 from apps.to_lab.tables import to_lab_sub
-from cfepy.msg import Command, Layout, Telemetry
+from cfepy.msg import Command, Layout, Telemetry, telemetry
 from cfepy.status import CFE_SB_BAD_ARGUMENT
 from cfepy.tbl import build
 from tests.apps.lab import Lab, lab
@@ -33,7 +33,7 @@ def session(tmp_path: Path) -> Iterator[Lab]:
 def spy(session: Lab, count: int) -> int:
     """Send packets of a MsgId from within; how many came down."""
     for number in range(count):
-        session.mission.cfe.sb.transmit_telemetry(SPY.msg_id, bytes([number]))
+        session.mission.cfe.sb.transmit_msg(bytes(telemetry(SPY.msg_id, bytes([number]))))
     session.mission.run(0.6)
     return len(session.packets(SPY))
 
@@ -52,8 +52,8 @@ def test_packets_are_as_long_as_the_recorded_ones() -> None:
     lengths = {(row["mid"], row.get("fc")): len(row["hex"]) // 2 for kind in recorded.values() for row in kind}
     for packet in (pk.NOOP, pk.ADD_PKT, pk.SEND_DATA_TYPES, pk.OUTPUT_ENABLE):
         assert packet.length == lengths[packet.msg_id, packet.code]
-    for telemetry in (pk.HK_TLM, pk.DATA_TYPES_TLM):
-        assert telemetry.length == lengths[telemetry.msg_id, None]
+    for sent in (pk.HK_TLM, pk.DATA_TYPES_TLM):
+        assert sent.length == lengths[sent.msg_id, None]
 
 
 def test_the_default_table_is_nasas() -> None:
@@ -140,7 +140,7 @@ def test_fifty_packets_in_a_round(session: Lab) -> None:
     session.ground.received()
     for number in range(3):
         for _ in range(20):
-            session.mission.cfe.sb.transmit_telemetry(0x0900 + number, b"")
+            session.mission.cfe.sb.transmit_msg(bytes(telemetry(0x0900 + number)))
     session.mission.run(0.6)
     assert len(session.ground.received()) == 50  # as many as the pipe holds
 

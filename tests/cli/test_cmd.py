@@ -106,6 +106,20 @@ def test_a_command_that_nobody_takes_is_a_failure(make_mission: Write, capsys: p
     assert "QUIET_NOOP sent to nobody" in capsys.readouterr().out
 
 
+def test_an_app_that_dies_of_a_command_is_a_failure(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = make_mission("Dies")
+    assert main(["cmd", str(folder), "CFE_ES_NOOP"]) == 1
+    assert "cfepy: DIES died: ValueError: boom" in capsys.readouterr().err
+
+
+def test_a_computer_on_which_nobody_listens(capsys: pytest.CaptureFixture[str]) -> None:
+    with Listener("127.0.0.1", 0) as closed:
+        place = f"127.0.0.1:{closed.port}"
+    assert main(["cmd", place, "CFE_ES_NOOP"]) == 1
+    said = capsys.readouterr()
+    assert (said.out, said.err) == ("", f"cfepy: {place}: nobody listens there; CFE_ES_NOOP is lost\n")
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -114,6 +128,8 @@ def test_a_command_that_nobody_takes_is_a_failure(make_mission: Write, capsys: p
         (["127.0.0.1", "CFE_ES_NOP"], "no command is called CFE_ES_NOP; is CFE_ES_NOOP"),
         (["127.0.0.1", "CFE_ES_NOOP", "X=1"], "X: CFE_ES_NOOP has no fields"),
         (["no_such_mission", "CFE_ES_NOOP"], "no_such_mission: no startup script"),
+        (["nohost", "CFE_ES_NOOP"], "; a computer is an address such as 192.168.1.5, localhost, or NAME:PORT"),
+        (["CFE_ES_NOOP"], "CFE_ES_NOOP: is a command; say first where to"),
         (["--show", "CFE_ES_NOP"], "no command is called CFE_ES_NOP"),
     ],
 )

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from cfepy.cli.main import main
+from cfepy.evs.packets import LONG_EVENT
+from cfepy.fs import HEADER_SIZE
+from cfepy.msg import TLM_HEADER_SIZE
 from tests.mission.test_dump_files import EXIT_BIT, perf_file
 
 DATA = Path(__file__).parents[1] / "data"
@@ -62,3 +68,27 @@ def test_a_bad_file_does_not_hide_the_good_ones(tmp_path: Path, capsys: pytest.C
     assert "nowhere: cannot be read" in cannot_be_read
     assert "is cut off: record 40 has 5 of 8 bytes" in cut_off
     assert "cfepy tbl show" in table
+
+
+def test_a_record_that_cannot_be_read_ends_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    data = bytearray((DATA / "cfe_evs.log").read_bytes())
+    size = TLM_HEADER_SIZE + LONG_EVENT.size
+    data[HEADER_SIZE + 2 * size] |= 0xE0  # another version of the packet's header
+    path = tmp_path / "evs.log"
+    path.write_bytes(data)
+    assert main(["log", str(path)]) == 2
+    out, err = capsys.readouterr()
+    assert "2 records" in out
+    assert "is damaged: record 2 cannot be read" in err
+
+
+def test_bytes_that_are_no_text_are_shown_as_escapes(tmp_path: Path) -> None:
+    data = bytearray((DATA / "cfe_cds_reg.log").read_bytes())
+    at = data.index(b"CFE_TBL.CritReg")
+    data[at] = 0xFF
+    path = tmp_path / "cds.log"
+    path.write_bytes(data)
+    command = [sys.executable, "-m", "cfepy", "log", str(path)]
+    done = subprocess.run(command, env=os.environ | {"PYTHONIOENCODING": "utf-8:strict"}, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    assert b"\\udcffFE_TBL.CritReg" in done.stdout

@@ -32,6 +32,19 @@ def test_bad_usage(words: list[str]) -> None:
     assert ended.value.code == 2
 
 
+@pytest.mark.parametrize(
+    ("words", "command"), [(["boards", "x"], "cfepy boards"), (["tbl", "show", "a.tbl", "b.tbl"], "cfepy tbl show")]
+)
+def test_words_too_many_show_the_usage_of_the_command(
+    words: list[str], command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main(words)
+    said = capsys.readouterr().err
+    assert said.startswith(f"usage: {command} ")
+    assert f"{command}: error: unrecognized arguments: {words[-1]}" in said
+
+
 def test_help_imports_nothing_heavy() -> None:
     program = "import sys\nfrom cfepy.cli.main import main\ntry: main(['--help'])\nfinally: print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

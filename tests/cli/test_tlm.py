@@ -127,6 +127,47 @@ def test_it_ends_after_so_many_packets(make_mission: Write, capsys: pytest.Captu
     assert len(capsys.readouterr().out.splitlines()) == 3
 
 
+def test_nothing_came(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = str(make_mission("Quiet"))
+    assert main(["tlm", folder, "CFE_ES_HK_TLM", "--for", "1"]) == 1
+    assert capsys.readouterr().err == "cfepy: no such packet was sent in 1 virtual seconds\n"
+
+
+def test_nothing_arrived(capsys: pytest.CaptureFixture[str]) -> None:
+    with Listener("127.0.0.1", 0) as free:
+        place = f"127.0.0.1:{free.port}"
+    assert main(["tlm", place, "--for", "0.01"]) == 1
+    assert "no such packet came to port" in (said := capsys.readouterr().err)
+    assert "see --enable" in said
+
+
+def test_an_app_that_died_is_told(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["tlm", str(make_mission("Dies")), "--for", "2"]) == 0
+    assert "cfepy: DIES died: ValueError: boom" in capsys.readouterr().err
+
+
+def test_nobody_is_there_to_be_asked(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    with Listener("127.0.0.1", 0) as closed:
+        place = f"127.0.0.1:{closed.port}"
+    arrives(monkeypatch, EVENT)
+    assert main(["tlm", "--enable", place]) == 2
+    assert f"{place}: nobody listens there" in capsys.readouterr().err
+
+
+def test_a_mission_in_virtual_time_is_not_asked_to_send(
+    make_mission: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["tlm", str(make_mission("Quiet")), "--enable", "127.0.0.1"]) == 2
+    assert "--enable: a mission in virtual time sends to no computer" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("count", ["0", "-1", "x"])
+def test_a_count_that_is_none(count: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["tlm", "--count", count])
+    assert "is not a number of packets" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

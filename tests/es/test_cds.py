@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from random import Random
 from types import SimpleNamespace
 from typing import Any, cast
@@ -29,6 +28,7 @@ from cfepy.status import (
     CFE_SUCCESS,
     CfeError,
 )
+from tests.statuses import status_of
 
 SIZE = 4096
 ENTRIES = 8
@@ -58,13 +58,6 @@ class Board:
 
     def _write(self, data: bytes, offset: int) -> None:
         self.memory[offset : offset + len(data)] = data
-
-
-def status_of(call: Callable[[], object]) -> int:
-    """The status of a call that must fail."""
-    with pytest.raises(CfeError) as caught:
-        call()
-    return caught.value.status
 
 
 def test_data_outlive_a_reset() -> None:

@@ -19,16 +19,9 @@ from cfepy.status import (
     CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
     CFE_ES_POOL_BLOCK_INVALID,
     OS_ERR_NAME_NOT_FOUND,
-    CfeError,
 )
 from tests.es.harness import Lab
-
-
-def status_of(call: Callable[[], object]) -> int:
-    """The status of a call that must fail."""
-    with pytest.raises(CfeError) as caught:
-        call()
-    return caught.value.status
+from tests.statuses import status_of
 
 
 @pytest.fixture

@@ -2,25 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-import pytest
-
 from cfepy.es.pools import BUCKETS, DESCRIPTOR, MemPool
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_ES_BUFFER_NOT_IN_POOL,
     CFE_ES_ERR_MEM_BLOCK_SIZE,
     CFE_ES_POOL_BLOCK_INVALID,
-    CfeError,
 )
-
-
-def status_of(call: Callable[[], object]) -> int:
-    """The status of a call that must fail."""
-    with pytest.raises(CfeError) as caught:
-        call()
-    return caught.value.status
+from tests.statuses import status_of
 
 
 def test_blocks_come_out_until_the_pool_is_full() -> None:

@@ -11,6 +11,7 @@ from cfepy.config import PlatformConfig
 from cfepy.console import Console
 from cfepy.evs import EventServices
 from cfepy.evs import packets as pk
+from cfepy.fs.services import FileServices
 from cfepy.msg import TLM_HEADER_SIZE, command, get_msg_id
 from cfepy.osal import FileSystem, Osal
 from cfepy.ports import Ports
@@ -51,7 +52,9 @@ class World:
         self.kept: dict[str, Any] = {}
         self.files = FileSystem()
         osal = Osal(self.kernel, console=self.console, files=self.files)
-        self.evs = EventServices(self.kernel, ports, config or PlatformConfig(), self.console, osal)
+        config = config or PlatformConfig()
+        ports.fs = FileServices(osal, ports, config, lambda: None)
+        self.evs = EventServices(self.kernel, ports, config, self.console, osal)
 
     # -- peers -----------------------------------------------------------------------------------------------------
 

@@ -306,7 +306,7 @@ def test_a_file_that_cannot_be_opened_is_an_event(world: World) -> None:
 @pytest.mark.parametrize(
     ("room", "events"),
     [
-        (60, [(14, "Write File Header to Log File Error: WriteHdr RC: -1, Expected: 64, filename = /ram/x")]),
+        (60, [(14, "Write File Header to Log File Error: WriteHdr RC: -939524091, Expected: 64, filename = /ram/x")]),
         (
             64 + 2 * 172 - 1,
             [

@@ -18,6 +18,12 @@ def test_a_datagram_goes_there_and_arrives() -> None:
             Listener("127.0.0.1", listener.port)
 
 
+def test_a_host_at_hand_tells_that_nobody_listens() -> None:
+    with Listener("127.0.0.1", 0) as listener:
+        assert send("127.0.0.1", listener.port, b"one")
+    assert not send("127.0.0.1", listener.port, b"two")
+
+
 def test_hosts_that_are_not_there() -> None:
     assert own_address("127.0.0.1") == "127.0.0.1"
     for call in (own_address, lambda host: send(host, 1, b"")):

@@ -75,3 +75,26 @@ def test_hash_seeds_do_not_matter(folder: str) -> None:
 def test_hash_seeds_do_not_matter_to_nodes() -> None:
     digests = {digest_in_process("capture", tasks, 1.2, seed) for tasks, seed in (("thread", "7"), ("greenlet", "99"))}
     assert len(digests) == 1
+
+
+def eventful(hash_seed: int, *arguments: object) -> subprocess.Popen[str]:
+    """`tests.mission.eventful` in a process of its own."""
+    environment = os.environ | {"PYTHONHASHSEED": str(hash_seed)}
+    command = [sys.executable, "-m", "tests.mission.eventful", *map(str, arguments)]
+    root = Path(__file__).parents[2]
+    return subprocess.Popen(command, cwd=root, env=environment, stdout=subprocess.PIPE, text=True)
+
+
+@pytest.mark.parametrize(("mission", "schedule"), [("lab", []), ("sched", [7]), ("capture", [7])])
+def test_resets_and_a_ground_link_change_nothing(mission: str, schedule: list[int]) -> None:
+    flights = [
+        eventful(0, mission, "thread", 1, *schedule),
+        eventful(1, mission, "greenlet", 1, *schedule),
+        eventful(2, mission, "thread", 7, *schedule),
+        eventful(3, mission, "greenlet", 13, *schedule),
+    ]
+    found = {flight.communicate()[0] for flight in flights}
+    assert len(found) == 1
+    digest, _, resets, down = found.pop().split()
+    assert (len(digest), resets) == (32, "2")
+    assert (int(down) > 0) == (mission == "lab")

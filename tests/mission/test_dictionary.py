@@ -181,3 +181,11 @@ def test_every_command_can_be_written_as_text(declared: Command) -> None:
     values = declared.payload.unpack(payload)
     words = [f"{path}={value}" for path, value in flat(values).items()]
     assert packet_of(declared, words) == declared.packet(values)
+
+
+def test_a_packet_of_another_version_is_not_read() -> None:
+    dictionary = dictionary_of(None)
+    for head, size in ((0xE8, 16), (0x78, 8)):
+        decoded = dictionary.decode(bytes([head, 0]) + bytes(size))
+        assert decoded.values == {}
+        assert "its header has the version" in decoded.problem

@@ -143,10 +143,61 @@ def Main(cfe):
     def tick(timer_id):
         {statement}
 {READY}
-    timer, _ = cfe.os.timer_create("TICK", tick)
+    timer = cfe.os.timer_create("TICK", tick)
     cfe.os.timer_set(timer, 1000, 1000)
     while cfe.es.run_loop():
         cfe.os.task_delay(100)
 """
     mission = fly(tmp_path, source, seconds=2)
     assert mission.cfe.es.history["APP"].deaths == 1
+
+
+@pytest.mark.parametrize("in_timer", [False, True])
+def test_all_who_die_at_one_instant_are_restarted(tmp_path: Path, in_timer: bool) -> None:
+    fail = "    1 / 0\n"
+    if in_timer:
+        fail = (
+            "    timer = cfe.os.timer_create(f'T{cfe.es.get_app_id()}', lambda timer: 1 / 0)\n"
+            "    cfe.os.timer_set(timer, 100_000, 0)\n    cfe.os.task_delay(100_000)\n"
+        )
+    names = ("APP", "APP2", "APP3")
+    startup = "".join(APP.replace("APP, 50", f"{name}, 50") for name in names)
+    source = "def Main(cfe):\n" + READY.replace("700", "20_000") + fail
+    mission = fly(tmp_path, source, startup, seconds=35)
+    history = mission.cfe.es.history
+    assert [(history[name].deaths, history[name].restarts) for name in names] == [(1, 1)] * 3
+    assert ("in TaskID 0:" in text_of(mission)) == in_timer  # a time base is no task of OSAL's
+
+
+FAILING_HANDLERS = {
+    "delete": "    def fail():\n        1 / 0\n    cfe.os.task_install_delete_handler(fail)\n",
+    "event": "    cfe.os.register_event_handler(lambda event, object_id, data: 1 / (event != 3))\n",
+}
+
+
+@pytest.mark.parametrize("kind", FAILING_HANDLERS)
+def test_handlers_that_fail_keep_nobody_from_the_end(tmp_path: Path, kind: str) -> None:
+    source = (
+        "def Main(cfe):\n" + READY.replace("700", "1") + FAILING_HANDLERS[kind] + "    cfe.os.task_delay(100_000)\n"
+    )
+    write_mission(tmp_path, APP + "!", app=source)
+    with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
+        mission.run(2)
+        mission.processor.psp.restart(1, "the test wants it")
+        mission.run(2)
+        assert mission.processor.booted is not None
+        assert len(mission.record.resets) == 1
+
+
+def test_a_delete_handler_that_fails_is_its_applications(tmp_path: Path) -> None:
+    source = (
+        "def Main(cfe):\n" + READY.replace("700", "1") + FAILING_HANDLERS["delete"] + "    cfe.os.task_delay(100_000)\n"
+    )
+    write_mission(tmp_path, APP + "!", app=source)
+    with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
+        mission.run(2)
+        mission.cfe.es.delete_app(mission.cfe.es.get_app_id_by_name("APP"))
+        mission.run(9)
+        assert "APP: task APP died of an exception" in text_of(mission)
+        assert mission.cfe.es.app_named("APP") is None
+        assert not mission.record.resets

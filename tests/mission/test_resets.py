@@ -5,14 +5,17 @@ from __future__ import annotations
 import gc
 import sys
 import threading
+from collections import Counter
 from pathlib import Path
 
 import pytest
 
 from cfepy import msg
 from cfepy.console import Console
+from cfepy.ids import get_base
 from cfepy.mission import Mission
-from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
+from cfepy.osal.limits import OS_OBJECT_CREATOR_ANY
+from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR, PanicError
 from cfepy.rtos.threads import drain
 from tests.mission.flights import write_mission
 
@@ -139,18 +142,36 @@ def test_one_trace_on_both_contexts_and_in_any_number_of_pieces(tmp_path: Path, 
     assert digests[0] == digests[1]
 
 
+def osal_objects(mission: Mission) -> Counter[int]:
+    """How many OSAL objects of each kind there are."""
+    found: Counter[int] = Counter()
+    mission.cfe.os.for_each_object(OS_OBJECT_CREATOR_ANY, lambda object_id, _: found.update([get_base(object_id)]))
+    return found
+
+
+def objects(mission: Mission) -> int:
+    """How many objects there are that can have others in them; lines of the console are no news."""
+    mission.console.lines.clear()
+    gc.collect()
+    return len(gc.get_objects())
+
+
 def test_two_hundred_resets_leave_nothing_behind(tmp_path: Path) -> None:
     with make(tmp_path) as mission:
         mission.run(1)
         drain()
         threads, modules = threading.active_count(), len(sys.modules)
-        osal_ids = {kind: len(table) for kind, table in mission.processor.osal._tables.items()}
+        osal_ids = osal_objects(mission)
         files = len(mission.files.list_dir("/ram"))
+        sizes: list[int] = []
         for number in range(200):
             mission.processor.psp.restart(RST_TYPE_PROCESSOR if number % 3 else RST_TYPE_POWERON, "again")
             mission.run(1)
+            if number % 50 == 49:
+                sizes.append(objects(mission))
+        assert max(sizes) - min(sizes) < 300, sizes  # the record of each reset, and noise
         assert len(mission.record.resets) == 200
-        assert {kind: len(table) for kind, table in mission.processor.osal._tables.items()} == osal_ids
+        assert osal_objects(mission) == osal_ids
         assert len(mission.cfe.sb.pipes) == 6
         assert len(mission.kernel.tasks) == len(set(mission.kernel.tasks)) < 20
         assert len(sys.modules) == modules
@@ -166,16 +187,79 @@ def test_a_thousand_restarts_of_an_app_leave_nothing_behind(tmp_path: Path) -> N
         mission.run(2)
         drain()
         threads, modules = threading.active_count(), len(sys.modules)
-        tables = {kind: len(table) for kind, table in mission.processor.osal._tables.items()}
+        tables = osal_objects(mission)
         routes, pipes, tasks = len(mission.cfe.sb.routes), len(mission.cfe.sb.pipes), len(mission.kernel.tasks)
-        for _ in range(1000):
+        sizes: list[int] = []
+        begun = 0
+        for number in range(1000):
             es.restart_app(es.get_app_id_by_name("KEEPER"))
             mission.run(7)
+            if number % 250 == 249:
+                begun += len(starts(mission))
+                sizes.append(objects(mission))
         assert es.history["KEEPER"].restarts == 1000
-        assert len(starts(mission)) == 1001
-        assert {kind: len(table) for kind, table in mission.processor.osal._tables.items()} == tables
+        assert begun == 1001
+        assert max(sizes) - min(sizes) < 300, sizes
+        assert osal_objects(mission) == tables
         assert (len(mission.cfe.sb.routes), len(mission.cfe.sb.pipes)) == (routes, pipes)
         assert mission.cfe.sb.subscriptions == sum(len(r.destinations) for r in mission.cfe.sb.routes.values())
         assert len(mission.kernel.tasks) == tasks
         assert len(sys.modules) == modules
         assert threading.active_count() <= threads
+
+
+LEFTOVERS = """
+    def keeper_main(cfe):
+        os = cfe.os
+
+        def hold(timer):
+            try:
+                os.task_delay(100_000)
+            finally:
+                sock = os.socket_open(1, 1)
+                address = os.socket_addr_init(1)
+                os.socket_addr_from_string(address, "127.0.0.1")
+                os.socket_addr_set_port(address, 1234)
+                os.socket_bind(sock, address)
+
+        os.timer_set(os.timer_create("T", hold), 100_000, 0)
+        while cfe.es.run_loop():
+            os.task_delay(500)
+    """
+
+
+def test_what_is_made_while_all_ends_does_not_outlive_the_reset(tmp_path: Path) -> None:
+    with make(tmp_path, keeper=LEFTOVERS) as mission:
+        mission.run(2)
+        mission.processor.psp.restart(RST_TYPE_PROCESSOR, "the test wants it")
+        mission.run(0)
+        assert not mission.network.datagrams.bound
+
+
+def test_a_reset_that_is_under_way_is_not_changed_by_another(tmp_path: Path) -> None:
+    source = """
+    def keeper_main(cfe):
+        try:
+            cfe.os.printf(f"start as {cfe.psp.get_restart_type().reset_type}")
+            while cfe.es.run_loop():
+                cfe.os.task_delay(500)
+        finally:
+            cfe.psp.restart(2, "too late")
+    """
+    with make(tmp_path, keeper=source) as mission:
+        mission.run(2)
+        mission.processor.psp.restart(RST_TYPE_PROCESSOR, "the test wants it")
+        mission.run(2)
+        assert starts(mission) == ["start as 2", "start as 1"]
+
+
+def test_a_panic_ends_the_run(tmp_path: Path) -> None:
+    source = """
+    def keeper_main(cfe):
+        cfe.os.task_delay(3000)
+        cfe.psp.panic(-5)
+    """
+    with make(tmp_path, keeper=source) as mission:
+        with pytest.raises(PanicError, match="code -5"):
+            mission.run(10)
+        assert not mission.record.resets

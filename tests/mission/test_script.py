@@ -179,6 +179,25 @@ def test_a_script_goes_on_over_a_reset(folder: Path, kind: str) -> None:
     assert 2.0 < outcome.verdicts[1].at_s < 5
 
 
+def test_what_follows_a_reset_is_about_the_time_after_it(folder: Path) -> None:
+    outcome = fly(folder, "at 2 reset processor\nexpect app OWN RUNNING within 3\nsend OWN_ASK Value=3\n")
+    assert outcome.ok, outcome.text()
+    reset_s, running_s, sent_s = (each.at_s for each in outcome.verdicts)
+    assert 2 < reset_s < 2.1 < 2.4 < running_s == sent_s
+
+
+def test_a_reset_before_anybody_takes_commands_fails(folder: Path) -> None:
+    outcome = fly(folder, "at 0.1 reset processor\n")
+    assert verdicts(outcome) == [(False, 0.1)]
+    assert "nobody subscribes to MsgId 0x1806" in outcome.text()
+
+
+def test_a_command_that_nobody_takes_fails_its_step(folder: Path) -> None:
+    outcome = fly(folder, "send CFE_ES_NOOP\nsend raw 1806c00000010020\nat 2 send CFE_ES_NOOP\n")
+    assert verdicts(outcome) == [(False, 0), (True, 0), (True, 2)]
+    assert outcome.verdicts[0].detail == "nobody subscribes to MsgId 0x1806 at this time"
+
+
 def test_an_app_that_dies_is_seen_to_come_back(folder: Path) -> None:
     outcome = fly(
         folder,

@@ -57,7 +57,7 @@ def test_every_kind_of_step_is_understood(tmp_path: Path) -> None:
         after 1.5 send raw 1806c00000010020
         after 1 reset processor
         reset power-on
-        at 40 end
+        at 45 end
         """,
     )
     assert len(found.steps) == 20
@@ -65,9 +65,9 @@ def test_every_kind_of_step_is_understood(tmp_path: Path) -> None:
     assert found.steps[4].packet is not None
     assert found.steps[4].packet[8:12] == bytes([10, 0, 0, 0])
     assert found.steps[16].packet == bytes.fromhex("1806c00000010020")
-    assert [step.at_ns for step in found.steps if step.at_ns is not None] == [2 * 10**9, 5 * 10**9, 40 * 10**9]
+    assert [step.at_ns for step in found.steps if step.at_ns is not None] == [2 * 10**9, 5 * 10**9, 45 * 10**9]
     assert found.steps[0].line == 4
-    assert found.longest_ns == 40 * 10**9
+    assert found.longest_ns == 45 * 10**9
 
 
 @pytest.mark.parametrize(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from cfepy.console import Console
-from cfepy.es.packets import START_APP
+from cfepy.es.packets import RESTART_APP, START_APP
 from cfepy.mission import Mission
 from cfepy.mission.virtual_code import find_virtual_code
 from cfepy.osal import FileSystem
@@ -41,3 +42,46 @@ def test_a_traceback_shows_its_lines(tmp_path: Path, source: bytes, said: str) -
         mission.run(2)
         assert any(line.startswith(said) for line in mission.console.lines), mission.console.lines
         assert any('"/ram/late.py"' in line for line in mission.console.lines) or source == b"\xff\x00"
+
+
+OLD = """
+    def main(cfe):
+        cfe.os.printf("the old code")
+        while cfe.es.run_loop():
+            cfe.os.task_delay(100)
+"""
+NEW = (
+    b"def main(cfe):\n    cfe.os.printf('the new code')\n    while cfe.es.run_loop():\n        cfe.os.task_delay(100)\n"
+)
+
+
+@pytest.fixture
+def patched(tmp_path: Path) -> Iterator[Mission]:
+    """A mission whose application LATE was started from its folder."""
+    startup = "CFE_APP, late, main, LATE, 50, 8192, 0, 0;!"
+    with Mission(write_mission(tmp_path, startup, late=OLD), console=Console(quiet=True)) as mission:
+        mission.run(2)
+        yield mission
+
+
+def restart(mission: Mission) -> None:
+    mission.cfe.sb.transmit_msg(RESTART_APP.packet(Application="LATE"), is_origination=False)
+    mission.run(8)
+
+
+def test_what_was_written_over_a_file_of_the_mission_is_what_starts_next(patched: Mission) -> None:
+    patched.files.write_file("/cf/late.py", NEW)
+    restart(patched)
+    assert [line for line in patched.console.lines if line.startswith("the ")] == ["the old code", "the new code"]
+
+
+def test_a_file_that_was_removed_starts_no_more(patched: Mission) -> None:
+    patched.files.remove("/cf/late.py")
+    restart(patched)
+    assert any("Cannot Restart Application LATE, File /cf/late.so does not exist" in x for x in patched.console.lines)
+
+
+def test_a_file_that_nobody_changed_is_the_hosts(patched: Mission) -> None:
+    patched.files.read_file("/cf/late.py")
+    restart(patched)
+    assert [line for line in patched.console.lines if line.startswith("the ")] == ["the old code"] * 2

@@ -34,7 +34,7 @@ def fly(mission: str, seconds: float, **options: object) -> tuple[Mission, list[
 def topic(flight: Mission, name: str) -> tuple[int, int, int]:
     """(sent, delivered, dropped) of a topic."""
     route = flight.cfe.sb.routes[next(row.msg_id for row in flight.ros.topics() if row.name == name)]
-    delivered, limited, overflown = route.totals()
+    delivered, _, limited, overflown = route.totals()
     return route.sent, delivered, limited + overflown
 
 

@@ -19,7 +19,8 @@ def test_packet_and_read_are_inverse() -> None:
     assert packet == bytes(msg.command(0x1882, 3, b"\x01\x02"))
     assert SET.read(packet) == {"Value": 513}
     assert (NOOP.length, SET.length, HK.length) == (8, 10, 20)
-    assert HK.read(bytes(msg.telemetry(0x0883, HK.payload.pack(Count=7)))) == {"Count": 7}
+    assert HK.packet(Count=7) == bytes(msg.telemetry(0x0883, b"\x07\0\0\0"))
+    assert HK.read(HK.packet({"Count": 7})) == {"Count": 7}
 
 
 def test_unknown_field_is_refused() -> None:
@@ -35,3 +36,14 @@ def test_declared_commands_are_dispatched_by_code_and_length() -> None:
     assert commands.dispatch(SEND_HK.packet()).outcome == dispatch.DONE
     assert commands.dispatch(NOOP.packet() + b"x").outcome == dispatch.BAD_LENGTH
     assert len(seen) == 2
+
+
+def test_a_handler_may_take_packets_of_any_length() -> None:
+    table = CommandTable((NOOP, len))
+    for declared in (SET, SEND_HK):
+        table.handle(declared, len, any_length=True)
+    assert [table.dispatch(each.packet() + b"x").outcome for each in (NOOP, SET, SEND_HK)] == [
+        dispatch.BAD_LENGTH,
+        dispatch.DONE,
+        dispatch.DONE,
+    ]

@@ -88,14 +88,6 @@ def test_a_host_file_that_changes_during_a_run_does_not_change_the_run(files: Fi
     assert files.read_file("/cf/a.tbl") == b"table"
 
 
-def test_host_path_is_for_files_of_the_host_only(files: FileSystem, folder: Path) -> None:
-    files.write_file("/cf/new", b"new")
-    assert files.host_path("/cf/a.tbl") == folder / "a.tbl"
-    assert files.host_path("/cf/new") is None
-    assert files.host_path("/cf/missing") is None
-    assert files.host_path("/ram/x") is None
-
-
 def test_missing_files_and_folders(files: FileSystem) -> None:
     for call in (files.read_file, files.remove, files.list_dir, files.remove_folder):
         assert status_of(call, "/ram/none") == OS_ERROR

@@ -14,15 +14,9 @@ from cfepy.status import (
     OS_ERR_NO_FREE_IDS,
     OS_QUEUE_FULL,
     OS_QUEUE_INVALID_SIZE,
-    OsalError,
 )
 from tests.osal.helpers import MS, Bench
-
-
-def status_of(call: object, *arguments: object) -> int:
-    with pytest.raises(OsalError) as caught:
-        call(*arguments)  # type: ignore[operator]  # any function of Osal
-    return caught.value.status
+from tests.statuses import status_of
 
 
 def test_messages_come_out_in_order(bench: Bench) -> None:

@@ -495,3 +495,23 @@ def crowd(context: str) -> tuple[str, list[object]]:
         kernel.run(1_000 * MS)
         assert kernel.trace is not None
         return kernel.trace.digest(), bench.log
+
+
+def test_a_socket_that_is_closed_while_it_sends_takes_no_port() -> None:
+    bench = Bench(byte_ps=1_000_000)
+    sock = bench.os.socket_open(INET, DATAGRAM)
+    statuses: list[int] = []
+
+    def sender() -> None:
+        statuses.append(status_of(lambda: bench.os.socket_send_to(sock, bytes(1000), address(9990))))
+
+    def closer() -> None:
+        bench.kernel.delay(MS // 2)
+        bench.os.close(sock)
+
+    bench.task(sender, 100)
+    bench.task(closer, 50)
+    bench.kernel.run(until_ns=10 * MS)
+    assert statuses == [OS_ERR_INVALID_ID]
+    assert not bench.os.network.datagrams.bound
+    bench.kernel.shutdown()

@@ -167,7 +167,7 @@ def test_a_delete_leaves_what_the_task_made(bench: Bench) -> None:
 
 def test_find_id_by_system_data(bench: Bench) -> None:
     task_id = bench.task(_nothing)
-    assert bench.os.task_find_id_by_system_data(bench.os.kernel_task(task_id)) == task_id
+    assert bench.os.task_find_id_by_system_data(bench.kernel.tasks[-1]) == task_id
     with pytest.raises(OsalError) as caught:
         bench.os.task_find_id_by_system_data(bench.kernel.host)
     assert caught.value.status == OS_ERR_NAME_NOT_FOUND

@@ -118,5 +118,4 @@ def test_a_full_board_creates_nothing() -> None:
 def test_costs_of_a_board() -> None:
     costs = CpuCosts.of_board(load_profile("rx64m"))
     assert costs == CpuCosts(call_ns=1500, byte_ps=8334, switch_ns=2500)
-    assert costs.copy_ns(1000) == 8334
     assert CpuCosts.of_board(load_profile("linux")) == CpuCosts()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.config import PlatformConfig
+from cfepy.config import MAY_BE_ZERO, PlatformConfig
 from cfepy.psp.profile import DEFAULT_NODE_CALL_NS, MemoryRegion, available_boards, load_profile
 from cfepy.status import UsageError
 
@@ -67,6 +67,12 @@ def test_limits_are_numbers_or_switches(tmp_path: Path) -> None:
     assert (config.time_cfg_fake_tone, config.time_def_met_subs, config.time_cfg_client) == (False, 0, True)
     with pytest.raises(UsageError, match=r"limits\.time_cfg_client: is 1, it must be true or false"):
         load_profile(write(tmp_path, "name: mine\nlimits: {time_cfg_client: 1}\n"))
+
+
+@pytest.mark.parametrize("name", sorted(MAY_BE_ZERO))
+def test_a_limit_for_which_zero_says_something_may_be_zero(tmp_path: Path, name: str) -> None:
+    config = load_profile(write(tmp_path, f"name: mine\nlimits: {{{name}: 0}}\n")).config()
+    assert getattr(config, name) == 0
 
 
 @pytest.mark.parametrize(

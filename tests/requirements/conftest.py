@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.es.harness import Lab
 from tests.requirements.flight import Flight
 
 
@@ -25,3 +26,17 @@ def fly(tmp_path: Path) -> Iterator[Callable[..., Flight]]:
     yield start
     for flight in flights:
         flight.mission.close()
+
+
+@pytest.fixture
+def make_lab(tmp_path: Path) -> Iterator[Callable[..., Lab]]:
+    """Start missions whose applications are functions; arguments as for `Lab`, without the folder."""
+    labs: list[Lab] = []
+
+    def make(**mains: Any) -> Lab:
+        labs.append(Lab(tmp_path, **mains))
+        return labs[-1]
+
+    yield make
+    for lab in labs:
+        lab.mission.close()

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
 
+from tests.functional.segments import missing, segments
 from tests.requirements.not_covered import NOT_COVERED
 
 ROOT = Path(__file__).parents[2]
@@ -79,10 +80,19 @@ def page() -> str:
     for name, members in [*parts, ("all", ids())]:
         covered = sum(each in tests for each in members)
         lines.append(f"| {TITLES.get(name, name)} | {len(members)} | {covered} | {covered / len(members):.1%} |")
+    lines += ["", "## Functional tests", "", _functional_tests()]
     for name, members in parts:
         lines += ["", f"## {TITLES[name]}", "", "| id | tests | status |", "|---|---|---|"]
         lines += [f"| {each} | {_names(tests.get(each, []))} | {_status(each, tests)} |" for each in members]
     return "\n".join(lines) + "\n"
+
+
+def _functional_tests() -> str:
+    """How much of NASA's functional tests there is here."""
+    every, absent = segments(), missing()
+    text = f"NASA's functional tests, cfe_testcase 7.0.0, have {len(every)} segments; {len(every) - len(absent)} have a"
+    listed = f" These have none: {', '.join(absent)}." if absent else ""
+    return f"{text} counterpart in `tests/functional`.{listed}"
 
 
 def _names(tests: list[str]) -> str:

@@ -13,6 +13,8 @@ from tests.requirements.flight import Event, Flight
 NAME = "PROBE.T"
 SIZE = 8
 OLD, NEW = b"old data", b"new data"
+FILE_TIME = 1_000_500, 0x40000000
+"""When the table files were made."""
 BAD = 0xFF
 """A first byte that `validate` does not like."""
 
@@ -76,7 +78,12 @@ class ProbeTable:
 
 def put(flight: Flight, data: bytes, offset: int = 0, path: str = "/ram/t.tbl", name: str = NAME) -> None:
     """A table file on the RAM disk."""
-    flight.mission.files.write_file(path, build(TableImage(name, data, "a test", offset)))
+    flight.mission.files.write_file(path, build(TableImage(name, data, "a test", offset, time=FILE_TIME)))
+
+
+def fields_of(time: tuple[int, int]) -> dict[str, int]:
+    """A time as packets have it."""
+    return {"Seconds": time[0], "Subseconds": time[1]}
 
 
 def housekeeping(flight: Flight) -> dict[str, Any]:
@@ -84,7 +91,15 @@ def housekeeping(flight: Flight) -> dict[str, Any]:
     return flight.ask(pk.SEND_HK, pk.HK_TLM)
 
 
-def registry(flight: Flight) -> dict[str, Any]:
-    """PROBE.T's registry entry in telemetry."""
-    flight.send(pk.SEND_REGISTRY, TableName=NAME)
+def free_bytes(flight: Flight) -> int:
+    """What is left of the tables' memory pool."""
+    pool = housekeeping(flight)["MemPoolHandle"]
+    left: Any = flight.call(lambda: flight.cfe.es.get_mem_pool_stats(pool))["NumFreeBytes"]
+    assert isinstance(left, int)
+    return left
+
+
+def registry(flight: Flight, name: str = NAME) -> dict[str, Any]:
+    """A table's registry entry in telemetry."""
+    flight.send(pk.SEND_REGISTRY, TableName=name)
     return flight.ask(pk.SEND_HK, pk.REG_TLM)

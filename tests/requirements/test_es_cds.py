@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import pytest
-
 from cfepy.es import packets as pk
 from cfepy.es.cds_registry import RECORD
 from cfepy.fs import crc16, read_header
@@ -21,11 +19,12 @@ from cfepy.status import (
     CFE_ES_ERR_RESOURCEID_NOT_VALID,
     CFE_ES_NOT_IMPLEMENTED,
     CFE_SUCCESS,
-    CfeError,
 )
+from cfepy.tbl import OPT_CRITICAL
 from tests.layouts import DATA
 from tests.requirements.covers import covers
 from tests.requirements.flight import POWERON_RESET, PROCESSOR_RESET, Flight
+from tests.statuses import status_of
 
 Fly = Callable[..., Flight]
 NAME = "PROBE.Data"
@@ -37,13 +36,6 @@ def register(flight: Flight, size: int = len(DATA_BYTES), name: str = "Data") ->
     """Handle and status of a block of PROBE's."""
     handle = flight.call(lambda: flight.cfe.es.register_cds(size, name))
     return handle, handle.status
-
-
-def status_of(call: Callable[[], object]) -> int:
-    """The status of a call that must fail."""
-    with pytest.raises(CfeError) as caught:
-        call()
-    return caught.value.status
 
 
 def saved(flight: Flight) -> int:
@@ -60,12 +52,17 @@ def test_cES1026_registry_to_a_file(fly: Fly) -> None:
     flight.send(pk.DUMP_CDS_REGISTRY)
     golden = (DATA / "cfe_cds_reg.log").read_bytes()
     assert files.read_file("/ram/cfe_cds_reg.log")[64:] == golden[64:]
-    register(flight)
+    handle, _ = register(flight)
+    flight.call(lambda: flight.cfe.tbl.register("T", 24, OPT_CRITICAL))
     flight.send(pk.DUMP_CDS_REGISTRY, DumpFilename="/ram/mine.log")
     data = files.read_file("/ram/mine.log")
     assert (read_header(data).description, read_header(data).subtype) == ("CDS_Registry", 6)
-    record = pk.CDS_REG_DUMP_RECORD.unpack(data, 64 + pk.CDS_REG_DUMP_RECORD.size)
-    assert (record["Handle"], record["Size"], record["Table"], record["Name"]) == (0x150002, 10, False, NAME)
+    size = pk.CDS_REG_DUMP_RECORD.size
+    records = [pk.CDS_REG_DUMP_RECORD.unpack(data, at) for at in range(64, len(data), size)]
+    found = {record["Name"]: (record["Handle"], record["Size"], record["Table"]) for record in records}
+    assert list(found) == ["CFE_TBL.CritReg", NAME, "PROBE.T"]
+    assert found[NAME] == (handle, 10, False)
+    assert found["PROBE.T"] == (flight.cfe.es.get_cds_block_id_by_name("PROBE.T"), 24, True)
 
 
 def test_cES1027_delete(fly: Fly) -> None:
@@ -108,6 +105,10 @@ def test_cES1315_1_another_size(fly: Fly) -> None:
     handle = saved(flight)
     assert register(flight, size=20) == (handle, CFE_SUCCESS)
     assert flight.cfe.es.restore_from_cds(handle) == bytes(20)
+    assert [block.name for block in flight.cfe.es.cds_blocks()].count(NAME) == 1
+    assert register(flight, name="Other")[0] != handle
+    flight.reset(PROCESSOR_RESET)
+    assert register(flight, size=20) == (handle, CFE_ES_CDS_ALREADY_EXISTS)
 
 
 @covers("cES1316", "cES1316.2", "cES1328", "cES1328.2")
@@ -115,8 +116,11 @@ def test_cES1316_copy_there_and_back(fly: Fly) -> None:
     es = (flight := fly()).cfe.es
     handle = saved(flight)
     assert es.restore_from_cds(handle) == DATA_BYTES
-    assert status_of(lambda: es.restore_from_cds(0)) == CFE_ES_ERR_RESOURCEID_NOT_VALID
-    assert status_of(lambda: es.copy_to_cds(0, DATA_BYTES)) == CFE_ES_ERR_RESOURCEID_NOT_VALID
+    before = bytes(flight.cfe.psp.retained.cds)
+    for nobodys in (0, handle + 1):
+        assert status_of(lambda: es.restore_from_cds(nobodys)) == CFE_ES_ERR_RESOURCEID_NOT_VALID  # noqa: B023
+        assert status_of(lambda: es.copy_to_cds(nobodys, bytes(10))) == CFE_ES_ERR_RESOURCEID_NOT_VALID  # noqa: B023
+    assert bytes(flight.cfe.psp.retained.cds) == before
     assert status_of(lambda: es.copy_to_cds(handle, b"short")) == CFE_ES_BAD_ARGUMENT
     assert es.restore_from_cds(handle) == DATA_BYTES
 

@@ -4,26 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import pytest
-
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_ES_ERR_DUPLICATE_NAME,
     CFE_ES_ERR_NAME_NOT_FOUND,
     CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
-    CfeError,
 )
 from tests.requirements.covers import covers
 from tests.requirements.flight import PROCESSOR_RESET, Flight
+from tests.statuses import status_of
 
 Fly = Callable[..., Flight]
-
-
-def status_of(call: Callable[[], object]) -> int:
-    """The status of a call that must fail."""
-    with pytest.raises(CfeError) as caught:
-        call()
-    return caught.value.status
 
 
 @covers("cES1338", "cES1339")

@@ -55,6 +55,7 @@ def housekeeping(ground: Ground) -> dict[str, int]:
 def test_cES1014_significant_events_are_logged_with_their_time(ground: Ground) -> None:
     ground.command(pk.STOP_APP, Application="FAILS")
     lines = log_of(ground).splitlines(keepends=True)
+    assert log_of(ground).isascii()
     assert all(LINE.fullmatch(line) for line in lines)
     assert lines[-1].endswith(b" CFE_ES_DeleteApp: Delete Application FAILS Initiated\n")
     assert lines[-1].startswith(ground.mission.cfe.time.print_((1001001, 0)).encode()[:17])
@@ -81,7 +82,6 @@ def test_cES1014_2_1_a_full_log_goes_on_at_its_top(ground: Ground) -> None:
     assert es.syslog.data.memory.index(b"line 99") < es.syslog.data.memory.index(b"line 60")
 
 
-@covers("cES1014.2.2", "cES1028")
 def test_cES1014_2_2_a_full_log_that_discards_stays_as_it_is(ground: Ground) -> None:
     es = ground.mission.cfe.es
     assert ground.command(pk.OVER_WRITE_SYS_LOG, Mode=1) == [
@@ -96,9 +96,21 @@ def test_cES1014_2_2_a_full_log_that_discards_stays_as_it_is(ground: Ground) -> 
     assert full.startswith(b"1980-001-00:00:00.00000 CFE_ES_SetupResetVariables")
     es.write_to_sys_log("one more")
     assert log_of(ground) == full
+
+
+def test_cES1028_the_mode_of_the_log_is_set_by_command(ground: Ground) -> None:
+    es = ground.mission.cfe.es
+    for mode in (1, 0):
+        (event,) = ground.command(pk.OVER_WRITE_SYS_LOG, Mode=mode)
+        assert event == f"CFE_ES 70: Set OverWriteSysLog Command Received with Mode setting = {mode}"
+        assert housekeeping(ground)["SysLogMode"] == mode
+        for number in range(100):
+            es.write_to_sys_log(f"mode {mode} line {number:02} {'x' * 40}")
+        assert (b"line 99" in log_of(ground)) == (mode == 0)
     assert ground.command(pk.OVER_WRITE_SYS_LOG, Mode=7) == [
         "CFE_ES 71: Set OverWriteSysLog Command: Invalid Mode setting = 7"
     ]
+    assert housekeeping(ground)["SysLogMode"] == 0
 
 
 def test_cES1015_the_log_is_cleared_by_command(ground: Ground) -> None:
@@ -177,4 +189,7 @@ def test_cES1019_one_write_at_a_time(ground: Ground) -> None:
 
 def test_cES1019_1_its_file_has_a_default_name(ground: Ground) -> None:
     ground.command(pk.WRITE_ER_LOG, 3)
-    assert len(ground.file("/ram/cfe_erlog.log")) == 7904
+    ground.command(pk.WRITE_ER_LOG, 3, FileName="/ram/mine.log")
+    data = ground.file("/ram/cfe_erlog.log")
+    assert data[64:] == ground.file("/ram/mine.log")[64:]
+    assert b"POWER ON RESET due to Power Cycle" in data

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import pytest
-
 from cfepy.es import packets as pk
 from cfepy.ports import ERROR
 from cfepy.status import (
@@ -14,19 +12,12 @@ from cfepy.status import (
     CFE_ES_ERR_RESOURCEID_NOT_VALID,
     CFE_ES_POOL_BLOCK_INVALID,
     OS_ERR_NAME_NOT_FOUND,
-    CfeError,
 )
 from tests.requirements.covers import covers
 from tests.requirements.flight import Flight
+from tests.statuses import status_of
 
 Fly = Callable[..., Flight]
-
-
-def status_of(call: Callable[[], object]) -> int:
-    """The status of a call that must fail."""
-    with pytest.raises(CfeError) as caught:
-        call()
-    return caught.value.status
 
 
 def logged(flight: Flight, text: str) -> bool:
@@ -39,13 +30,16 @@ def test_cES1033_statistics_in_telemetry(fly: Fly) -> None:
     flight = fly(pk.MEMSTATS_TLM_MID)
     es = flight.cfe.es
     pool = flight.call(lambda: es.pool_create(1024))
-    es.put_pool_buf(pool, es.get_pool_buf(pool, 100))
+    block = es.get_pool_buf(pool, 100)
+    es.put_pool_buf(pool, block)
+    assert status_of(lambda: es.put_pool_buf(pool, block)) == CFE_ES_POOL_BLOCK_INVALID
     es.get_pool_buf(pool, 20)
     flight.send(pk.SEND_MEM_POOL_STATS, Application="PROBE", PoolHandle=pool)
     (values,) = flight.all(pk.MEMSTATS_TLM)
     stats = values["PoolStats"]
     assert (values["PoolHandle"], stats) == (pool, es.get_mem_pool_stats(pool))
-    assert (stats["PoolSize"], stats["NumBlocksRequested"], stats["CheckErrCtr"]) == (1024, 2, 0)
+    assert (stats["PoolSize"], stats["NumBlocksRequested"], stats["CheckErrCtr"]) == (1024, 2, 1)
+    assert 1024 - 128 - 32 - 100 < stats["NumFreeBytes"] < 1024 - 128 - 32
     assert stats["BlockStats"][2] == {"BlockSize": 32, "NumCreated": 1, "NumFree": 0}
     assert stats["BlockStats"][6] == {"BlockSize": 128, "NumCreated": 1, "NumFree": 1}
     (event,) = flight.send(pk.SEND_MEM_POOL_STATS, PoolHandle=0)
@@ -70,6 +64,7 @@ def test_cES1321_allocate_under_a_mutex(fly: Fly) -> None:
     pool = flight.call(lambda: es.pool_create(1024))
     mutex = os.mut_sem_get_id_by_name(f"Pool{pool:08X}")
     waited: list[int] = []
+    sizes: list[int] = []
 
     def hold() -> None:
         os.mut_sem_take(mutex)
@@ -78,14 +73,15 @@ def test_cES1321_allocate_under_a_mutex(fly: Fly) -> None:
 
     def allocate() -> None:
         begin = flight.mission.kernel.now
-        block = es.get_pool_buf(pool, 512)
+        block = es.get_pool_buf(pool, 500)
         waited.append(flight.mission.kernel.now - begin)
-        assert es.get_pool_buf_info(pool, block) == 512
+        sizes.extend((len(block.memory), es.get_pool_buf_info(pool, block)))
 
     for name, function in (("holder", hold), ("user", allocate)):
         flight.mission.kernel.spawn(name, function, 100)
     flight.run(1)
     assert waited == [100_000_000]
+    assert sizes == [500, 500]
     assert status_of(lambda: es.get_pool_buf(0, 8)) == CFE_ES_ERR_RESOURCEID_NOT_VALID
     assert logged(flight, "CFE_ES_GetPoolBuf: Err:Bad handle(0x00000000) AppId=")
     assert status_of(lambda: es.get_pool_buf(pool, 80_001)) == CFE_ES_ERR_MEM_BLOCK_SIZE

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,70 +13,21 @@ from cfepy.mission import Mission
 from cfepy.psp.psp import (
     RST_SUBTYPE_HW_SPECIAL_COMMAND,
     RST_SUBTYPE_HW_WATCHDOG,
+    RST_SUBTYPE_POWER_CYCLE,
     RST_SUBTYPE_UNDEFINED_RESET,
-    RST_TYPE_POWERON,
-    RST_TYPE_PROCESSOR,
 )
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CfeError
 from tests.mission.flights import write_mission
 from tests.requirements.covers import covers
+from tests.requirements.flight import POWERON_RESET, PROCESSOR_RESET, Flight
 from tests.requirements.ground import Ground
-
-PROCESSOR, POWERON = RST_TYPE_PROCESSOR, RST_TYPE_POWERON
-STARTUP = """
-    CFE_LIB, tools, tools_init, TOOLS, 0, 0, 0x0, 0;
-    CFE_APP, looper, looper_main, LOOPER, 50, 16384, 0x0, 0;
-    !
-"""
-SOURCES = {
-    "tools": """
-        def tools_init(cfe):
-            cfe.os.printf("TOOLS ready")
-            return 0
-    """,
-    "looper": """
-        def looper_main(cfe):
-            cfe.os.printf("LOOPER starts")
-            while cfe.es.run_loop():
-                cfe.os.task_delay(100)
-    """,
-    "resets": """
-        def resets_main(cfe):
-            cfe.es.reset_cfe(1)
-            cfe.os.printf("came back from a reset")
-    """,
-    "powers": """
-        def powers_main(cfe):
-            cfe.es.reset_cfe(2)
-            cfe.os.printf("came back from a reset")
-    """,
-    "broken": """
-        def broken_main(cfe):
-            cfe.es.run_loop()
-            raise ValueError("always")
-    """,
-}
+from tests.requirements.resets import POWERON, PROCESSOR, booted, causes, housekeeping, reset
 
 
 @pytest.fixture
 def ground(tmp_path: Path) -> Iterator[Ground]:
-    with Mission(write_mission(tmp_path, STARTUP, **SOURCES), console=Console(quiet=True)) as mission:
-        mission.run(2)
+    with booted(tmp_path) as mission:
         yield Ground(mission)
-
-
-def housekeeping(ground: Ground) -> dict[str, int]:
-    return ground.answer(pk.SEND_HK, pk.HK_TLM)
-
-
-def reset(ground: Ground, kind: int) -> None:
-    ground.command(pk.RESTART, 3, RestartType=kind)
-
-
-def causes(ground: Ground) -> list[tuple[int, int, str]]:
-    """What the exception and reset log says: type, subtype, description."""
-    slots = ground.mission.cfe.es.reset.er_log.slots
-    return [(entry.reset_type, entry.reset_subtype, entry.description) for entry in slots if entry is not None]
 
 
 # -- asking for a reset ------------------------------------------------------------------------------------------------
@@ -98,7 +48,7 @@ def test_cES1009_a_power_on_reset_by_command(ground: Ground) -> None:
     assert len(ground.lines("LOOPER starts")) == 3
 
 
-@covers("cES1010", "cES1510", "cES1512", "cES1520", "cES1521")
+@covers("cES1010", "cES1510", "cES1512", "cES1520", "cES1521", "cES1000")
 def test_cES1010_a_processor_reset_by_command(ground: Ground) -> None:
     ground.command(pk.SET_MAX_PR_COUNT, MaxPRCount=5)
     reset(ground, PROCESSOR)
@@ -125,6 +75,20 @@ def test_cES1317_an_application_asks_for_a_reset(ground: Ground, app: str, kind:
         ground.mission.cfe.es.reset_cfe(3)
     assert caught.value.status == CFE_ES_BAD_ARGUMENT
     assert ground.lines("CFE_ES_ResetCFE")[-1] == "CFE_ES_ResetCFE: Invalid Reset Type: 3."
+
+
+@covers("cES1301", "cES1301.1")
+def test_cES1301_an_application_is_told_the_type_of_the_last_reset(fly: Callable[..., Flight]) -> None:
+    flight = fly()
+
+    def told() -> tuple[int, int]:
+        return flight.call(lambda: flight.cfe.es.get_reset_type())
+
+    assert told() == (POWERON, RST_SUBTYPE_POWER_CYCLE)
+    flight.reset(PROCESSOR_RESET)
+    assert told() == (PROCESSOR, RST_SUBTYPE_POWER_CYCLE)  # the board names no other cause
+    flight.reset(POWERON_RESET)
+    assert told() == (POWERON, RST_SUBTYPE_POWER_CYCLE)
 
 
 # -- counting them -----------------------------------------------------------------------------------------------------
@@ -167,6 +131,28 @@ def test_cES1709_exceptions_count_too(ground: Ground) -> None:
     ]
 
 
+def test_cES1510_a_reset_by_the_watchdog_is_told_apart(tmp_path: Path) -> None:
+    board = tmp_path / "dog.yaml"
+    board.write_text("name: dog\nwatchdog_max_ms: 5000\n")
+    sleeper = """
+        def main(cfe):
+            cfe.es.run_loop()
+            cfe.psp.watchdog_set(2000)
+            cfe.psp.watchdog_enable()
+            cfe.os.task_delay(60_000)
+    """
+    folder = write_mission(tmp_path, "CFE_APP, sleeper, main, SLEEPER, 50, 16384, 0, 0;!", sleeper=sleeper)
+    with Mission(folder, board=str(board), console=Console(quiet=True)) as mission:
+        mission.run(3)
+        ground = Ground(mission)
+        values = housekeeping(ground)
+        assert (values["ResetType"], values["ResetSubtype"]) == (PROCESSOR, RST_SUBTYPE_HW_WATCHDOG)
+        assert values["ProcessorResets"] == 1
+        assert causes(ground)[1:] == [
+            (PROCESSOR, RST_SUBTYPE_HW_WATCHDOG, "PROCESSOR RESET due to Watchdog (Watchdog).")
+        ]
+
+
 @pytest.mark.parametrize(
     ("kind", "subtype", "kept", "text"),
     [
@@ -206,127 +192,3 @@ def test_cES1709_resets_by_the_hardware_count_too(ground: Ground, subtype: int, 
         f"CFE_ES_SetupResetVariables: POWER ON RESET due to max proc resets ({cause})."
     )
     assert ground.mission.record.resets[0].reset_type == POWERON
-
-
-# -- what is kept and what is not --------------------------------------------------------------------------------------
-
-
-@covers("cES1511", "cES1522")
-def test_cES1511_the_system_log_outlives_a_processor_reset(ground: Ground) -> None:
-    ground.mission.cfe.es.write_to_sys_log("before the reset")
-    reset(ground, PROCESSOR)
-    values, log = housekeeping(ground), ground.mission.cfe.es.syslog.read()
-    assert values["SysLogMode"] == 1
-    assert b"before the reset\n" in log
-    assert log.index(b"before the reset") < log.index(b"CFE_ES_ResetCFE: PROCESSOR RESET called") < len(log)
-    assert log.count(b"CFE_ES_Main in EARLY_INIT state") == 2
-
-
-@covers("cES1501", "cES1523")
-def test_cES1501_the_system_log_does_not_outlive_a_power_on_reset(ground: Ground) -> None:
-    ground.command(pk.OVER_WRITE_SYS_LOG, Mode=1)
-    ground.mission.cfe.es.write_to_sys_log("before the reset")
-    reset(ground, POWERON)
-    assert housekeeping(ground)["SysLogMode"] == 0
-    assert ground.mission.cfe.es.syslog.read().count(b"CFE_ES_Main in EARLY_INIT state") == 1
-    assert b"before the reset" not in ground.mission.cfe.es.syslog.read()
-
-
-@covers("cES1503", "cES1507")
-def test_cES1503_the_ram_disk_is_new_after_a_power_on_reset(ground: Ground) -> None:
-    ground.mission.files.write_file("/ram/file", b"data")
-    reset(ground, POWERON)
-    assert not ground.mission.files.exists("/ram/file")
-    ground.mission.files.write_file("/ram/file", b"data")
-    assert ground.mission.cfe.os.file_sys_stat_volume("/ram").total_blocks == 4096
-
-
-@covers("cES1513", "cES1517")
-def test_cES1513_the_ram_disk_outlives_a_processor_reset(ground: Ground) -> None:
-    ground.mission.files.write_file("/ram/file", bytes(512 * 2048))
-    reset(ground, PROCESSOR)
-    assert ground.file("/ram/file") == bytes(512 * 2048)
-    assert ground.lines("CFE_ES_InitializeFileSystems") == [
-        "CFE_ES_InitializeFileSystems: Volatile Disk has 50 Percent free space."
-    ]
-
-
-def test_cES1517_1_a_ram_disk_without_room_is_formatted(ground: Ground) -> None:
-    ground.mission.files.write_file("/ram/file", bytes(512 * 3000))
-    reset(ground, PROCESSOR)
-    assert not ground.mission.files.exists("/ram/file")
-    assert ground.lines("CFE_ES_InitializeFileSystems") == [
-        "CFE_ES_InitializeFileSystems: Volatile Disk has 26 Percent free space.",
-        "CFE_ES_InitializeFileSystems: Insufficient Free Space on Volatile Disk, Reformatting.",
-    ]
-
-
-@pytest.mark.parametrize("kind", [PROCESSOR, POWERON])
-@covers("cES1505", "cES1506", "cES1515", "cES1516")
-def test_cES1505_the_executive_has_its_objects_after_any_reset(ground: Ground, kind: int) -> None:
-    names = [task.task_name for task in ground.mission.cfe.es.tasks()]
-    reset(ground, kind)
-    es = ground.mission.cfe.es
-    assert [task.task_name for task in es.tasks()] == names
-    assert ground.mission.cfe.sb.get_pipe_id_by_name("ES_CMD_PIPE")
-    assert ground.mission.files.read_file("/cf/looper.py")
-
-
-@pytest.mark.parametrize("what", ["function", "application"])
-def test_cES1515_1_an_executive_without_its_objects_panics(tmp_path: Path, what: str) -> None:
-    def fail(*_: object, **__: object) -> Any:
-        raise CfeError(CFE_ES_BAD_ARGUMENT, "no memory")
-
-    mission = Mission(write_mission(tmp_path, "!"), console=Console(quiet=True))
-    if what == "function":
-        mission.cfe.sb.early_init = fail  # type: ignore[method-assign]
-        said = "Error returned when calling function: CFE_SB_EarlyInit: EC = 0xC400000A"
-    else:
-        mission.processor.osal.task_create = fail  # type: ignore[method-assign]
-        said = "OS_TaskCreate error creating core App: CFE_EVS: EC = 0xC8000005"
-    with pytest.raises(CfeError):
-        mission.run(2)
-    assert Ground(mission).lines("CFE_ES_CreateObjects")[-1] == f"CFE_ES_CreateObjects: {said}"
-    assert "CFE_PSP_Panic called with error code = 0x00000006. Exiting." in mission.console.lines
-    mission.close()
-
-
-# -- the startup script ------------------------------------------------------------------------------------------------
-
-
-@covers("cES1508", "cES1508.1", "cES1508.2")
-def test_cES1508_the_startup_script_is_worked_off_after_power_on(ground: Ground) -> None:
-    ground.mission.files.write_file("/ram/cfe_es_startup.scr", b"!")
-    reset(ground, POWERON)
-    assert (
-        ground.lines("CFE_ES_StartApplications")
-        == ["CFE_ES_StartApplications: Opened ES App Startup file: /cf/cfe_es_startup.scr"] * 2
-    )
-    assert (len(ground.lines("TOOLS ready")), len(ground.lines("LOOPER starts"))) == (2, 2)
-    values = housekeeping(ground)
-    assert (values["RegisteredExternalApps"], values["RegisteredLibs"]) == (1, 1)
-
-
-@covers("cES1518", "cES1518.1", "cES1518.2")
-def test_cES1518_a_script_on_the_ram_disk_comes_first_after_a_processor_reset(ground: Ground) -> None:
-    script = b"CFE_LIB,tools,tools_init,PATCHED,0,0,0,0;CFE_APP,looper,looper_main,OTHER,50,16384,0,0;!"
-    ground.mission.files.write_file("/ram/cfe_es_startup.scr", script)
-    reset(ground, PROCESSOR)
-    assert ground.lines("CFE_ES_StartApplications")[-1] == (
-        "CFE_ES_StartApplications: Opened ES App Startup file: /ram/cfe_es_startup.scr"
-    )
-    es = ground.mission.cfe.es
-    assert [app.name for app in es.apps if not app.is_core] == ["OTHER"]
-    assert [lib.name for lib in es.libs] == ["PATCHED"]
-
-
-@covers("cES1519", "cES1519.1", "cES1519.2")
-def test_cES1519_else_it_is_the_one_that_is_always_there(ground: Ground) -> None:
-    reset(ground, PROCESSOR)
-    assert ground.lines("CFE_ES_StartApplications")[-2:] == [
-        "CFE_ES_StartApplications: Cannot Open Volatile Startup file: /ram/cfe_es_startup.scr, Trying Nonvolatile.",
-        "CFE_ES_StartApplications: Opened ES App Startup file: /cf/cfe_es_startup.scr",
-    ]
-    es = ground.mission.cfe.es
-    assert [app.name for app in es.apps if not app.is_core] == ["LOOPER"]
-    assert [lib.name for lib in es.libs] == ["TOOLS"]

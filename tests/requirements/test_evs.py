@@ -11,6 +11,7 @@ from cfepy.evs import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.evs import packets as pk
 from cfepy.fs import read_header
 from cfepy.msg import Command
+from cfepy.status import CfeError
 from tests.requirements.covers import covers
 from tests.requirements.flight import Event, Flight
 
@@ -123,10 +124,70 @@ def test_cEVS3004_application_data_file(flight: Flight) -> None:
         assert slots == [(5, 1, 3), (6, 0xFFFF, 0)] + [(0xFFFF, 0, 0)] * 6
 
 
-@covers("cEVS3005", "cEVS3006")
-def test_cEVS3005_command_counters(flight: Flight) -> None:
-    flight.send(pk.NOOP)
-    flight.send(pk.CLEAR_LOG)
+VALID: list[tuple[Command, dict[str, Any]]] = [
+    (pk.NOOP, {}),
+    (pk.ENABLE_EVENT_TYPE, {"BitMask": 2}),
+    (pk.DISABLE_EVENT_TYPE, {"BitMask": 1}),
+    (pk.SET_EVENT_FORMAT_MODE, {"MsgFormat": pk.FORMAT_LONG}),
+    (pk.ENABLE_APP_EVENT_TYPE, {"BitMask": 2, **NAME}),
+    (pk.DISABLE_APP_EVENT_TYPE, {"BitMask": 1, **NAME}),
+    (pk.ENABLE_APP_EVENTS, NAME),
+    (pk.DISABLE_APP_EVENTS, NAME),
+    (pk.RESET_APP_COUNTER, NAME),
+    (pk.ADD_EVENT_FILTER, {"EventID": 5, **NAME}),
+    (pk.SET_FILTER, {"EventID": 5, **NAME}),
+    (pk.RESET_FILTER, {"EventID": 5, **NAME}),
+    (pk.DELETE_EVENT_FILTER, {"EventID": 5, **NAME}),
+    (pk.RESET_ALL_FILTERS, NAME),
+    (pk.ENABLE_PORTS, {"BitMask": 2}),
+    (pk.DISABLE_PORTS, {"BitMask": 2}),
+    (pk.WRITE_APP_DATA_FILE, {}),
+    (pk.WRITE_LOG_DATA_FILE, {}),
+    (pk.SET_LOG_MODE, {"LogMode": 0}),
+    (pk.CLEAR_LOG, {}),
+]
+
+
+def test_cEVS3005_every_valid_command_is_counted(flight: Flight) -> None:
+    for count, (command, fields) in enumerate(VALID, 1):
+        flight.send(command, **fields)
+        values = housekeeping(flight)
+        assert (values["CommandCounter"], values["CommandErrorCounter"]) == (count, 0), command.name
+    uncounted = {pk.RESET_COUNTERS.name, pk.SEND_HK.name}
+    assert {command.name for command, _ in VALID} | uncounted == {command.name for command in pk.COMMANDS}
+
+
+INVALID: list[tuple[Command, dict[str, Any], int]] = [
+    (pk.ENABLE_EVENT_TYPE, {"BitMask": 0x10}, 40),
+    (pk.DISABLE_EVENT_TYPE, {"BitMask": 0}, 40),
+    (pk.SET_EVENT_FORMAT_MODE, {"MsgFormat": 3}, 10),
+    (pk.ENABLE_APP_EVENT_TYPE, {"BitMask": 0, **NAME}, 40),
+    (pk.DISABLE_APP_EVENT_TYPE, {"BitMask": 0x10, **NAME}, 40),
+    (pk.ENABLE_APP_EVENTS, {"AppName": "NOBODY"}, 9),
+    (pk.DISABLE_APP_EVENTS, {"AppName": "MUTE"}, 7),
+    (pk.RESET_APP_COUNTER, {"AppName": "NOBODY"}, 9),
+    (pk.SET_FILTER, {"EventID": 5, **NAME}, 6),
+    (pk.RESET_FILTER, {"EventID": 5, **NAME}, 6),
+    (pk.RESET_ALL_FILTERS, {"AppName": "MUTE"}, 7),
+    (pk.ADD_EVENT_FILTER, {"EventID": 5, "AppName": "NOBODY"}, 9),
+    (pk.DELETE_EVENT_FILTER, {"EventID": 5, **NAME}, 6),
+    (pk.ENABLE_PORTS, {"BitMask": 0}, 40),
+    (pk.DISABLE_PORTS, {"BitMask": 0x10}, 40),
+    (pk.WRITE_APP_DATA_FILE, {"AppDataFilename": "/nowhere/x"}, 13),
+    (pk.WRITE_LOG_DATA_FILE, {"LogFilename": "/nowhere/x"}, 3),
+    (pk.SET_LOG_MODE, {"LogMode": 2}, 39),
+]
+
+
+def test_cEVS3006_every_invalid_command_is_counted_and_told(flight: Flight) -> None:
+    for count, (command, fields, event) in enumerate(INVALID, 1):
+        told = [(each.app, each.event_id, each.event_type) for each in flight.send(command, **fields)]
+        assert told == [("CFE_EVS", event, ERROR)], command.name
+        values = housekeeping(flight)
+        assert (values["CommandCounter"], values["CommandErrorCounter"]) == (0, count), command.name
+
+
+def test_cEVS3006_what_is_no_command_is_counted_and_told(flight: Flight) -> None:
     assert flight.send(Command("unknown", pk.CMD_MID, 99)) == [
         ("CFE_EVS", 15, ERROR, "Invalid command code -- ID = 0x00001801, CC = 99")
     ]
@@ -137,7 +198,7 @@ def test_cEVS3005_command_counters(flight: Flight) -> None:
         ("CFE_EVS", 40, ERROR, "Bit Mask = 0x00000010 out of range: CC = 11")
     ]
     values = housekeeping(flight)
-    assert (values["CommandCounter"], values["CommandErrorCounter"]) == (2, 3)
+    assert (values["CommandCounter"], values["CommandErrorCounter"]) == (0, 3)
 
 
 def test_cEVS3007_types_of_one_application(flight: Flight) -> None:
@@ -200,22 +261,29 @@ def test_cEVS3017_ports(flight: Flight) -> None:
 def test_cEVS3018_housekeeping(flight: Flight) -> None:
     flight.send(pk.CLEAR_LOG)
     flight.send(pk.RESET_COUNTERS)
-    say(flight)
-    flight.send(pk.SET_LOG_MODE, LogMode=0)
     flight.send(pk.ENABLE_PORTS, BitMask=0x04)
+    flight.send(pk.SET_LOG_MODE, LogMode=0)
+    flight.send(pk.NOOP)
+    flight.send(pk.SET_LOG_MODE, LogMode=9)
+    with pytest.raises(CfeError):
+        flight.call(lambda: flight.cfe.evs.send_info(1, "x"), app="MUTE")
+    for _ in range(22):
+        say(flight, text="x" * 122)
+    flight.send(pk.DISABLE_APP_EVENTS, AppName="CFE_SB")
+    flight.send(pk.SET_EVENT_FORMAT_MODE, MsgFormat=pk.FORMAT_SHORT)
     values = housekeeping(flight)
     apps = values.pop("AppData")
     assert values == {
-        "CommandCounter": 2,
-        "CommandErrorCounter": 0,
-        "MessageFormatMode": 1,
-        "MessageTruncCounter": 0,
-        "UnregisteredAppCounter": 0,
+        "CommandCounter": 5,
+        "CommandErrorCounter": 1,
+        "MessageFormatMode": pk.FORMAT_SHORT,
+        "MessageTruncCounter": 22,
+        "UnregisteredAppCounter": 1,
         "OutputPort": 5,
-        "LogFullFlag": 0,
+        "LogFullFlag": 1,
         "LogMode": 0,
-        "MessageSendCounter": 1,
-        "LogOverflowCounter": 0,
+        "MessageSendCounter": 25,  # beside the 22 a NOOP, a refusal and the unregistered application
+        "LogOverflowCounter": 5,
         "LogEnabled": 1,
         "Spare1": 0,
         "Spare2": 0,
@@ -223,7 +291,8 @@ def test_cEVS3018_housekeeping(flight: Flight) -> None:
     }
     names = [flight.cfe.es.get_app_name(app["AppID"]) for app in apps if app["AppID"]]
     assert names == ["CFE_EVS", "CFE_SB", "CFE_ES", "CFE_TIME", "CFE_TBL", "PROBE"]
-    assert (apps[5]["AppMessageSentCounter"], apps[5]["AppEnableStatus"]) == (1, 1)
+    assert (apps[5]["AppMessageSentCounter"], apps[5]["AppEnableStatus"]) == (22, 1)
+    assert [app["AppEnableStatus"] for app in apps[:5]] == [1, 0, 1, 1, 1]
     assert len(apps) == 16
 
 

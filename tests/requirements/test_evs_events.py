@@ -91,12 +91,16 @@ def test_cEVS3103_3_filter_counter(flight: Flight) -> None:
 
 
 def test_cEVS3103_4_long_format(flight: Flight) -> None:
+    flight.send(pk.CLEAR_LOG)
     assert say(flight, CRITICAL, 77, "what happened") == [("PROBE", 77, CRITICAL, "what happened")]
     (fields,) = flight.all(pk.LONG_EVENT_MSG)
     assert (fields["PacketID"]["SpacecraftID"], fields["PacketID"]["ProcessorID"]) == (66, 1)
     packet = flight.packets[0]
     assert len(packet) == 172
     assert int.from_bytes(packet[6:10], "big") == flight.cfe.time.get_time().seconds
+    flight.send(pk.WRITE_LOG_DATA_FILE)
+    logged = flight.mission.files.read_file("/ram/cfe_evs.log")[64:]
+    assert (len(logged), logged[6:10], logged[12:]) == (172, packet[6:10], packet[12:])
 
 
 def test_cEVS3103_4_1_truncation(flight: Flight) -> None:

@@ -49,7 +49,7 @@ def test_cEVS3013_the_log_is_cleared(flight: Flight) -> None:
     assert state(flight) == (0, 0, DISCARD)
 
 
-@covers("cEVS3014", "cEVS3108.3")
+@covers("cEVS3014", "cEVS3016", "cEVS3108.3")
 def test_cEVS3014_a_full_log_overwrites_or_discards(flight: Flight) -> None:
     flight.send(pk.CLEAR_LOG)
     number(flight, 25)
@@ -116,18 +116,35 @@ def test_cEVS3201_after_a_power_on_reset(fly: Fly) -> None:
     assert housekeeping(flight)["MessageFormatMode"] == pk.FORMAT_LONG
 
 
+@covers("cEVS3201", "cEVS3203")
+def test_cEVS3201_a_power_on_reset_sets_the_modes_of_the_platform(fly: Fly) -> None:
+    flight = fly(pk.HK_TLM_MID, evs_default_msg_format_mode=pk.FORMAT_SHORT, evs_default_log_mode=OVERWRITE)
+
+    def modes() -> tuple[int, int]:
+        values = housekeeping(flight)
+        return values["MessageFormatMode"], values["LogMode"]
+
+    assert modes() == (pk.FORMAT_SHORT, OVERWRITE)
+    flight.send(pk.SET_EVENT_FORMAT_MODE, MsgFormat=pk.FORMAT_LONG)
+    flight.send(pk.SET_LOG_MODE, LogMode=DISCARD)
+    assert modes() == (pk.FORMAT_LONG, DISCARD)
+    flight.reset(POWERON_RESET)
+    assert modes() == (pk.FORMAT_SHORT, OVERWRITE)
+
+
 @covers("cEVS3207", "cEVS3208", "cEVS3210")
 def test_cEVS3207_after_a_processor_reset(flight: Flight) -> None:
     flight.send(pk.CLEAR_LOG)
     number(flight, 25)
     before = logged(flight)
+    assert state(flight) == (1, 5, DISCARD)
     flight.reset(PROCESSOR_RESET)
+    (restored,) = [line for line in flight.mission.console.lines if "Event Log restored" in line]
+    assert restored.endswith(" CFE_EVS_EarlyInit: Event Log restored, n=0, c=20, f=1, m=1, o=5")
     full, overflow, mode = state(flight)
     assert (full, mode) == (1, DISCARD)
-    assert overflow > 5
+    assert overflow == 5 + housekeeping(flight)["MessageSendCounter"]  # those of the new start find no room
     assert logged(flight) == before == [str(text) for text in range(20)]
-    restored = [line for line in flight.mission.console.lines if "Event Log restored" in line]
-    assert restored[0].partition(" ")[2].startswith("CFE_EVS_EarlyInit: Event Log restored, n=0, c=20, f=1, m=1, o=")
 
 
 def test_cEVS3207_a_log_that_overwrites_does_so_after_a_processor_reset(flight: Flight) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from cfepy.app import Cfe
-from cfepy.fs import FileCategory
+from cfepy.fs import FileCategory, read_header
 from cfepy.fs.background import FileWriteEvent, FileWriteMetaData
 from cfepy.fs.header import CONTENT_ID
 from cfepy.osal.limits import OS_FILE_FLAG_CREATE, OS_READ_ONLY, OS_READ_WRITE
@@ -17,9 +17,9 @@ from cfepy.status import (
     CFE_FS_INVALID_PATH,
     CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
     CFE_STATUS_REQUEST_ALREADY_PENDING,
-    CfeError,
 )
 from tests.es.harness import Lab
+from tests.statuses import status_of
 
 Question = Callable[[Cfe], Any]
 PATH = "/ram/file.dat"
@@ -42,12 +42,6 @@ def ask(tmp_path: Path) -> Iterator[Callable[..., Any]]:
     yield ask
     for lab in labs:
         lab.mission.close()
-
-
-def status_of(call: Callable[..., object], *arguments: object) -> int:
-    with pytest.raises(CfeError) as caught:
-        call(*arguments)
-    return caught.value.status
 
 
 def open_new(cfe: Cfe, mode: int = OS_READ_WRITE) -> int:
@@ -80,16 +74,20 @@ def test_cES1601_a_header_is_prepared(ask: Callable[..., Any]) -> None:
 def test_cES1602_a_header_is_written_at_the_start_of_a_file(ask: Callable[..., Any]) -> None:
     def question(cfe: Cfe) -> bytes:
         filedes = open_new(cfe)
-        cfe.os.write(filedes, bytes(100))
-        assert cfe.fs.write_header(filedes, cfe.fs.init_header("h", 1)) == 64
+        cfe.os.write(filedes, b"x" * 100)
+        assert cfe.fs.write_header(filedes, cfe.fs.init_header("my description", 0x01020304)) == 64
         cfe.os.close(filedes)
         filedes = cfe.os.open_create(PATH, 0, OS_READ_ONLY)
         assert status_of(cfe.fs.write_header, filedes, cfe.fs.init_header("h", 1)) == CFE_STATUS_EXTERNAL_RESOURCE_FAIL
         return cfe.os.files.read_file(PATH)
 
     data = ask(question)
-    assert data[:8] == b"cFE1\0\0\0\1"
-    assert len(data) == 100
+    header = read_header(data)
+    assert data[:4] == b"cFE1"
+    assert (header.description, header.subtype, header.length) == ("my description", 0x01020304, 64)
+    assert (header.spacecraft_id, header.processor_id, header.application_id >> 16) == (66, 1, 0x11)
+    assert header.time_seconds == 1001001
+    assert data[64:] == b"x" * 36
 
 
 def test_cES1603_the_time_of_a_file_is_set(ask: Callable[..., Any]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tests.functional.segments import missing, segments
 from tests.requirements.not_covered import NOT_COVERED
 from tests.requirements.report import PAGE, evidence, ids, page
 
@@ -22,3 +23,8 @@ def test_nine_tenths_of_the_ids_have_tests() -> None:
     for part in ("cES", "cEVS", "cSB", "cTBL", "cTIME", "HK"):
         members = [each for each in ids() if each.startswith(part)]
         assert sum(each in covered for each in members) >= 0.9 * len(members), part
+
+
+def test_every_functional_segment_of_nasa_has_a_test() -> None:
+    assert len(segments()) == 102
+    assert missing() == []

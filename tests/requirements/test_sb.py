@@ -26,7 +26,10 @@ COUNTERS = (
     "SubscribeErrorCounter",
     "PipeOverflowErrorCounter",
     "MsgLimitErrorCounter",
+    "DuplicateSubscriptionsCounter",
 )
+KEPT = ("PipeOptsErrorCounter", "GetPipeIdByNameErrorCounter")
+"""Counters that the reset command leaves, as it does in cFE."""
 
 
 @pytest.fixture
@@ -60,7 +63,8 @@ def one_of_each_error(flight: Flight) -> None:
     sb = flight.cfe.sb
     full, narrow = pipe(flight, 1, "FULL"), pipe(flight, 5, "NARROW")
     subscribe(flight, MID, full)
-    subscribe(flight, OTHER_MID, narrow, 1)
+    for _ in range(2):
+        subscribe(flight, OTHER_MID, narrow, 1)
     for msg_id in (MID, OTHER_MID):
         transmit(flight, msg_id)
         transmit(flight, msg_id)
@@ -68,6 +72,8 @@ def one_of_each_error(flight: Flight) -> None:
         lambda: sb.create_pipe(0, "NONE"),
         lambda: sb.subscribe(0, full),
         lambda: sb.receive_buffer(0, 0),
+        lambda: sb.get_pipe_opts(0),
+        lambda: sb.get_pipe_id_by_name("NONE"),
     ]
     for call in bad:
         with pytest.raises(CfeError):
@@ -89,6 +95,7 @@ def test_cSB4001_counters_are_told_and_set_to_zero(flight: Flight) -> None:
     one_of_each_error(flight)
     values = flight.ask(pk.SEND_HK, pk.HK_TLM)
     assert {name: values[name] for name in COUNTERS} == dict.fromkeys(COUNTERS, 1) | {"MsgSendErrorCounter": 2}
+    assert [values[name] for name in KEPT] == [1, 1]
     assert values["MemPoolHandle"] == flight.cfe.sb.pool_handle == 0x140001
     assert values["MemInUse"] == flight.cfe.sb.pool_use()[0] > 0
     assert values["UnmarkedMem"] == 524288 - flight.cfe.sb.peaks.memory
@@ -96,27 +103,38 @@ def test_cSB4001_counters_are_told_and_set_to_zero(flight: Flight) -> None:
     assert (event.event_id, event.event_type, event.text) == (29, DEBUG, "Reset Counters Cmd Rcvd")
     values = flight.ask(pk.SEND_HK, pk.HK_TLM)
     assert {name: values[name] for name in COUNTERS} == dict.fromkeys(COUNTERS, 0)
+    assert [values[name] for name in KEPT] == [1, 1]
 
 
 def test_cSB4002_statistics(flight: Flight) -> None:
-    one = pipe(flight, 7)
-    subscribe(flight, MID, one)
+    one, gone = pipe(flight, 7), pipe(flight, name="GONE")
+    for each in (one, gone):
+        subscribe(flight, MID, each)
+    flight.call(lambda: flight.cfe.sb.delete_pipe(gone))
     for _ in range(3):
         transmit(flight, MID)
     drain(flight, one)
     transmit(flight, MID)
+    flight.send(pk.SEND_SB_STATS)  # the largest packet of this test, so the peak of the memory stays from here on
+    housekeeping = flight.ask(pk.SEND_HK, pk.HK_TLM)
     events = flight.send(pk.SEND_SB_STATS)
     assert [event.text for event in events] == ["Software Bus Statistics packet sent"]
     (values,) = flight.all(pk.STATS_TLM)
     sb = flight.cfe.sb
-    assert values["PipesInUse"] == len(sb.pipes) == values["PeakPipesInUse"]
+    assert values["PipesInUse"] == len(sb.pipes) == values["PeakPipesInUse"] - 1
     assert (values["MaxPipesAllowed"], values["MaxMsgIdsAllowed"], values["MaxSubscriptionsAllowed"]) == (64, 256, 4096)
     assert (values["MaxMemAllowed"], values["MaxPipeDepthAllowed"]) == (524288, 50)
-    assert values["MsgIdsInUse"] == len(sb.routes)
-    assert values["SubscriptionsInUse"] == sum(len(route.destinations) for route in sb.routes.values())
+    assert values["MsgIdsInUse"] == len(sb.routes) == values["PeakMsgIdsInUse"]
+    subscriptions = sum(len(route.destinations) for route in sb.routes.values())
+    assert values["SubscriptionsInUse"] == subscriptions == values["PeakSubscriptionsInUse"] - 1
+    assert values["MemInUse"] == housekeeping["MemInUse"]
+    assert values["PeakMemInUse"] == values["MaxMemAllowed"] - housekeeping["UnmarkedMem"] > values["MemInUse"]
     assert values["SBBuffersInUse"] == 1 < values["PeakSBBuffersInUse"]
     (mine,) = (each for each in values["PipeDepthStats"] if each["PipeId"] == one)
     assert (mine["MaxQueueDepth"], mine["CurrentQueueDepth"], mine["PeakQueueDepth"]) == (7, 1, 3)
+
+
+SUBTYPES = {pk.WRITE_PIPE_INFO: 20, pk.WRITE_ROUTING_INFO: 21, pk.WRITE_MAP_INFO: 22}
 
 
 def dumped(flight: Flight, kind: Command, path: str, row: Layout, name: str = "") -> list[dict[str, object]]:
@@ -126,6 +144,7 @@ def dumped(flight: Flight, kind: Command, path: str, row: Layout, name: str = ""
     data = flight.mission.files.read_file(path)
     header = read_header(data)
     assert (header.content_type, header.length, header.spacecraft_id) == (0x63464531, 64, 66)
+    assert header.subtype == SUBTYPES[kind]
     rows = [row.unpack(data, at) for at in range(HEADER_SIZE, len(data), row.size)]
     assert any(
         (event.event_id, event.event_type) == (39, DEBUG) and event.text.startswith(f"{path} written:Size={len(data)},")
@@ -158,7 +177,7 @@ def test_cSB4007_pipe_information_to_a_file(flight: Flight) -> None:
         (mine,) = (row for row in rows if row["PipeId"] == one)
         assert (mine["PipeName"], mine["AppName"], mine["Opts"]) == ("PROBE_PIPE", "PROBE", 1)
         assert (mine["MaxQueueDepth"], mine["CurrentQueueDepth"], mine["PeakQueueDepth"]) == (2, 1, 1)
-        assert mine["SendErrors"] == 1
+        assert (mine["AppId"], mine["SendErrors"]) == (flight.cfe.es.get_app_id_by_name("PROBE"), 1)
         assert len(rows) == len(flight.cfe.sb.pipes)
 
 
@@ -193,9 +212,12 @@ def test_cSB4009_valid_commands_are_counted(flight: Flight) -> None:
         (pk.DISABLE_ROUTE, {"MsgId": MID, "Pipe": one}),
         (pk.ENABLE_ROUTE, {"MsgId": MID, "Pipe": one}),
         (pk.WRITE_MAP_INFO, {}),
+        (pk.WRITE_PIPE_INFO, {}),
+        (pk.WRITE_ROUTING_INFO, {}),
     ):
         before = flight.ask(pk.SEND_HK, pk.HK_TLM)
         flight.send(kind, **fields)
+        flight.run(3)  # one file at a time
         after = flight.ask(pk.SEND_HK, pk.HK_TLM)
         assert after["CommandCounter"] == before["CommandCounter"] + 1, kind
         assert after["CommandErrorCounter"] == before["CommandErrorCounter"], kind
@@ -236,8 +258,8 @@ def test_cSB4010_invalid_commands_are_counted(flight: Flight, packet: bytes, eve
 def test_cSB4011_subscriptions_are_reported_while_that_is_enabled(flight: Flight) -> None:
     one = pipe(flight)
     flight.send(pk.ENABLE_SUB_REPORTING)
-    subscribe(flight, MID, one)
-    quality = {"Priority": 0, "Reliability": 0}
+    flight.call(lambda: flight.cfe.sb.subscribe_ex(MID, one, 0x0201, 4))
+    quality = {"Priority": 1, "Reliability": 2}
     assert flight.all(pk.ONESUB_TLM) == [{"SubType": 0, "MsgId": MID, "Qos": quality, "Pipe": one}]
     assert flight.events()[-1].text == f"Sending Subscription Report Msg=0x{MID:x},Pipe={one},Stat=0x0"
     flight.send(pk.DISABLE_SUB_REPORTING)
@@ -272,6 +294,6 @@ def test_cSB4500_a_reset_begins_with_no_routes_and_no_counts(flight: Flight, kin
     flight.reset(kind)
     assert set(flight.cfe.sb.routes) == before
     values = flight.ask(pk.SEND_HK, pk.HK_TLM)
-    assert {values[name] for name in COUNTERS if name != "NoSubscribersCounter"} == {0}
+    assert {values[name] for name in (*COUNTERS, *KEPT) if name != "NoSubscribersCounter"} == {0}
     transmit(flight, MID)
     assert flight.ask(pk.SEND_HK, pk.HK_TLM)["NoSubscribersCounter"] == values["NoSubscribersCounter"] + 1

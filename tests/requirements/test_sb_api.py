@@ -30,7 +30,7 @@ Fly = Callable[..., Flight]
 
 @pytest.fixture
 def flight(fly: Fly) -> Flight:
-    return fly(pk.HK_TLM_MID)
+    return fly(pk.HK_TLM_MID, pk.ONESUB_TLM_MID)
 
 
 def refusal(flight: Flight, call: Callable[[], object], app: str = "PROBE") -> int:
@@ -113,8 +113,11 @@ def test_cSB4338_names_and_ids_of_pipes(flight: Flight) -> None:
 @covers("cSB4303", "cSB4332")
 def test_cSB4303_a_route_by_msg_id_pipe_limit_and_quality(flight: Flight) -> None:
     one, usual = pipe(flight, 20), pipe(flight, 20, "USUAL")
-    flight.call(lambda: flight.cfe.sb.subscribe_ex(TLM, one, 0x0101, 2))
+    flight.send(pk.ENABLE_SUB_REPORTING)
+    flight.call(lambda: flight.cfe.sb.subscribe_ex(TLM, one, 0x0201, 2))
     flight.call(lambda: flight.cfe.sb.subscribe(TLM, usual))
+    qualities = [(each["Qos"]["Priority"], each["Qos"]["Reliability"]) for each in flight.all(pk.ONESUB_TLM)]
+    assert qualities == [(1, 2), (0, 0)]
     for _ in range(6):
         transmit(flight, TLM)
     assert (len(drain(flight, one)), len(drain(flight, usual))) == (2, 4)
@@ -134,16 +137,20 @@ def test_cSB4303_1_a_duplicate_is_an_event_and_no_error(flight: Flight) -> None:
     text = f"Duplicate Subscription,MsgId 0x{TLM:x} on PROBE_PIPE pipe,app PROBE.caller"
     assert events(flight) == [(7, INFORMATION, text)]
     assert count(flight, "DuplicateSubscriptionsCounter") == 1
+    for _ in range(2):
+        transmit(flight, TLM)
+    assert len(drain(flight, one)) == 1, "one route, with the limit of the first subscription"
 
 
 @covers("cSB4304", "cSB4333")
 def test_cSB4304_unsubscribing(flight: Flight) -> None:
-    sb, one = flight.cfe.sb, pipe(flight)
+    sb, one, other = flight.cfe.sb, pipe(flight), pipe(flight, name="OTHER")
+    subscribe(flight, TLM, other)
     for unsubscribe in (sb.unsubscribe, sb.unsubscribe_local):
         subscribe(flight, TLM, one)
         flight.call(lambda: unsubscribe(TLM, one))  # noqa: B023  # called at once
         transmit(flight, TLM)
-        assert drain(flight, one) == []
+        assert (len(drain(flight, one)), len(drain(flight, other))) == (0, 1)
         flight.packets.clear()
         flight.call(lambda: unsubscribe(TLM, one))  # noqa: B023  # called at once
         text = f"Unsubscribe Err:No subs for Msg 0x{TLM:x} on PROBE_PIPE,app PROBE.caller"
@@ -154,9 +161,8 @@ def test_cSB4331_a_local_subscription(flight: Flight) -> None:
     one = pipe(flight)
     flight.send(pk.ENABLE_SUB_REPORTING)
     flight.call(lambda: flight.cfe.sb.subscribe_local(TLM, one, 1))
-    assert pk.ONESUB_TLM_MID not in flight.cfe.sb.unrouted.sent
     subscribe(flight, CMD, one)
-    assert flight.cfe.sb.unrouted.sent[pk.ONESUB_TLM_MID] == 1
+    assert [each["MsgId"] for each in flight.all(pk.ONESUB_TLM)] == [CMD], "nobody else is told of the local one"
     for _ in range(2):
         transmit(flight, TLM)
     assert len(drain(flight, one)) == 1
@@ -179,8 +185,9 @@ def test_cSB4305_a_message_goes_to_all_subscribers(flight: Flight) -> None:
 
 @covers("cSB4305.1", "cSB4305.3", "cSB4305.4")
 def test_cSB4305_1_limits_hold_back_from_one_pipe_alone(flight: Flight) -> None:
-    limited, small, large = pipe(flight, 9, "LIMITED"), pipe(flight, 2, "SMALL"), pipe(flight, 9, "LARGE")
-    for each, limit in ((limited, 1), (small, 9), (large, 9)):
+    limited, small = pipe(flight, 9, "LIMITED"), pipe(flight, 2, "SMALL")
+    first, middle, last = (pipe(flight, 9, name) for name in ("FIRST", "MIDDLE", "LAST"))
+    for each, limit in ((first, 9), (limited, 1), (middle, 9), (small, 9), (last, 9)):
         subscribe(flight, TLM, each, limit)
     for _ in range(2):
         transmit(flight, TLM)
@@ -190,7 +197,7 @@ def test_cSB4305_1_limits_hold_back_from_one_pipe_alone(flight: Flight) -> None:
         (17, ERROR, f"Msg Limit Err,MsgId 0x{TLM:x},pipe LIMITED,sender PROBE.caller"),
         (25, ERROR, f"Pipe Overflow,MsgId 0x{TLM:x},pipe SMALL,sender PROBE.caller"),
     }
-    assert [len(drain(flight, each)) for each in (limited, small, large)] == [1, 2, 3]
+    assert [len(drain(flight, each)) for each in (first, limited, middle, small, last)] == [3, 1, 3, 2, 3]
     assert (count(flight, "MsgLimitErrorCounter"), count(flight, "PipeOverflowErrorCounter")) == (2, 1)
 
 
@@ -206,21 +213,26 @@ def test_cSB4305_5_no_subscribers(flight: Flight) -> None:
 
 @covers("cSB4305.6")
 def test_cSB4305_6_too_large(flight: Flight) -> None:
-    large = telemetry(TLM, bytes(32753))
+    large, one = telemetry(TLM, bytes(32753)), pipe(flight)
+    subscribe(flight, TLM, one)
+    transmit(flight, TLM, bytes(32752))
+    assert [len(packet) for packet in drain(flight, one)] == [32768]
     assert refusal(flight, lambda: flight.cfe.sb.transmit_msg(large)) == CFE_SB_MSG_TOO_BIG
     text = f"Send Err:Msg Too Big MsgId=0x{TLM:x},app=PROBE.caller,size=32769,MaxSz=32768"
     assert events(flight) == [(15, ERROR, text)]
     assert count(flight, "MsgSendErrorCounter") == 1
+    assert drain(flight, one) == []
 
 
 def test_cSB4334_passing_a_message_on_as_it_is(flight: Flight) -> None:
-    one = pipe(flight)
-    subscribe(flight, CMD, one)
+    one, two = pipe(flight), pipe(flight, name="TWO")
+    for each in (one, two):
+        subscribe(flight, CMD, each)
     foreign = command(CMD, 3, b"from elsewhere")
     msg.set_sequence_count(foreign, 77)
     foreign[7] ^= 0xFF
     flight.call(lambda: flight.cfe.sb.transmit_msg(foreign, is_origination=False))
-    assert drain(flight, one) == [foreign]
+    assert drain(flight, one) == drain(flight, two) == [foreign]
 
 
 # -- receiving ---------------------------------------------------------------------------------------------------------
@@ -258,14 +270,16 @@ def test_cSB4306_receiving_with_and_without_waiting(flight: Flight) -> None:
 
 @covers("cSB4340", "cSB4342", "cSB4343")
 def test_cSB4340_messages_filled_in_place(flight: Flight) -> None:
-    sb, one = flight.cfe.sb, pipe(flight)
-    subscribe(flight, CMD, one)
+    sb, one, two = flight.cfe.sb, pipe(flight), pipe(flight, name="TWO")
+    for each in (one, two):
+        subscribe(flight, CMD, each)
     for origination, expected in ((True, 1), (True, 2), (False, 1234)):
         buffer = flight.call(lambda: sb.allocate_message_buffer(12))
         buffer[:] = msg.command(CMD, 5, b"data")
         msg.set_sequence_count(buffer, 1234)
         flight.call(lambda: sb.transmit_buffer(buffer, origination))  # noqa: B023  # called at once
-        (packet,) = drain(flight, one)
+        (packet,) = got = drain(flight, one)
+        assert drain(flight, two) == got
         assert (msg.get_sequence_count(packet), packet[8:]) == (expected, b"data")
         assert refusal(flight, lambda: sb.transmit_buffer(buffer)) == CFE_SB_BUFFER_INVALID  # noqa: B023
 

@@ -3,18 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
 from cfepy.fs import crc16
-from cfepy.msg import command
+from cfepy.msg import Command, command
 from cfepy.ports import DEBUG, ERROR, INFORMATION
-from cfepy.status import CFE_TBL_INFO_UPDATED, CFE_TBL_INFO_VALIDATION_PENDING
+from cfepy.status import CFE_SUCCESS, CFE_TBL_INFO_UPDATED, CFE_TBL_INFO_VALIDATION_PENDING
 from cfepy.tbl import OPT_CRITICAL, OPT_DBL_BUFFER, OPT_DUMP_ONLY, read
 from cfepy.tbl import packets as pk
 from tests.requirements.covers import covers
 from tests.requirements.flight import Event, Flight
-from tests.requirements.tables import BAD, NAME, NEW, OLD, SIZE, ProbeTable, housekeeping, put, registry
+from tests.requirements.tables import (
+    BAD,
+    FILE_TIME,
+    NAME,
+    NEW,
+    OLD,
+    SIZE,
+    ProbeTable,
+    fields_of,
+    housekeeping,
+    put,
+    registry,
+)
 
 Fly = Callable[..., Flight]
 EVS_CMD_MID, ENABLE_APP_EVENT_TYPE_CC = 0x1801, 5
@@ -43,10 +56,9 @@ def test_cTBL6000_load_inactive_table_from_file(table: ProbeTable) -> None:
     assert read(table.flight.mission.files.read_file("/ram/d.tbl")).data == NEW
 
 
-@covers("cTBL6000.1", "cTBL6000.4")
 def test_cTBL6000_1_partial_load_keeps_the_rest_of_the_active_table(table: ProbeTable) -> None:
     assert ids(table.upload(b"XY", offset=2)) == [12]
-    assert ids(table.upload(b"ZZ", offset=6)) == [100]  # begun once, the inactive image is not begun again
+    assert ids(table.upload(b"ZZ", offset=6)) == [100], "a load is in progress"
     table.validate_inactive()
     table.activate()
     assert table.content() == OLD[:2] + b"XY" + OLD[4:]
@@ -95,6 +107,22 @@ def test_cTBL6002_validate_both_images(table: ProbeTable) -> None:
     assert values["NumValRequests"] == 2
 
 
+@covers("cTBL6002", "cTBL6002.1")
+def test_cTBL6002_both_images_may_wait_for_their_validation(table: ProbeTable) -> None:
+    """The owner gets to both; a second request for the same image shares the answer of the first."""
+    table.upload(NEW)
+    for which in (pk.ACTIVE_BUFFER, pk.INACTIVE_BUFFER, pk.INACTIVE_BUFFER):
+        table.flight.send(pk.VALIDATE, ActiveTableFlag=which, TableName=NAME)
+    table.flight.packets.clear()
+    assert table.mine("manage") == CFE_SUCCESS
+    assert [event.text for event in table.flight.events()] == [
+        f"PROBE validation successful for {which} '{NAME}'" for which in ("inactive", "active")
+    ]
+    told = [housekeeping(table.flight) for _ in range(3)]
+    assert {values["LastValCrc"] for values in told} == {crc16(OLD), crc16(NEW)}
+    assert [values["ValidationCounter"] for values in told] == [1, 2, 2]
+
+
 @covers("cTBL6003", "cTBL6003.1")
 def test_cTBL6003_activate_what_was_validated(table: ProbeTable) -> None:
     table.upload(NEW)
@@ -122,21 +150,78 @@ def test_cTBL6003_1_2_without_validation_function_a_table_is_valid(fly: Fly) -> 
     assert table.activate() == CFE_TBL_INFO_UPDATED
 
 
+def three_tables(table: ProbeTable) -> None:
+    """PROBE.T, loaded, shared, and with a load that waits for its owner; PROBE.Other, never loaded; PROBE.Dump."""
+    put(table.flight, OLD, path="/ram/old.tbl")
+    table.mine("load", "/ram/old.tbl")
+    table.flight.call(lambda: table.flight.cfe.tbl.share(NAME), app="MUTE")
+    table.upload(NEW)
+    table.validate_inactive()
+    table.flight.send(pk.ACTIVATE, TableName=NAME)
+    table.call("register", "Other", 16, OPT_DBL_BUFFER | OPT_CRITICAL)
+    table.call("register", "Dump", 4, OPT_DUMP_ONLY)
+
+
+def loaded(table: ProbeTable) -> dict[str, object]:
+    """What both packet and file tell of PROBE.T."""
+    return {
+        "Size": SIZE,
+        "Crc": crc16(OLD),
+        "TimeOfLastUpdate": fields_of(table.info().time_of_last_update),
+        "FileTime": fields_of(FILE_TIME),
+        "TableLoadedOnce": True,
+        "DumpOnly": False,
+        "DoubleBuffered": False,
+        "Name": NAME,
+        "LastFileLoaded": "/ram/old.tbl",
+        "OwnerAppName": "PROBE",
+    }
+
+
+def empty() -> dict[str, object]:
+    """What both tell of PROBE.Other."""
+    return {
+        "Size": 16,
+        "Crc": 0,
+        "TimeOfLastUpdate": fields_of((0, 0)),
+        "FileTime": fields_of((0, 0)),
+        "TableLoadedOnce": False,
+        "LoadPending": False,
+        "DumpOnly": False,
+        "DoubleBuffered": True,
+        "Name": "PROBE.Other",
+        "LastFileLoaded": "",
+        "OwnerAppName": "PROBE",
+    }
+
+
 @covers("cTBL6005", "cTBL6005.1")
 def test_cTBL6005_registry_to_a_file(table: ProbeTable) -> None:
+    three_tables(table)
     for path, wish in (("/ram/cfe_tbl_reg.log", {}), ("/ram/mine.log", {"DumpFilename": "/ram/mine.log"})):
         table.flight.send(pk.DUMP_REGISTRY, **wish)
         table.flight.run(3)
         data = table.flight.mission.files.read_file(path)
-        record = pk.REGISTRY_RECORD.unpack(data, 64)
-        assert (record["Name"], record["Size"], record["Crc"]) == (NAME, SIZE, crc16(OLD))
-        assert (record["ValidationFunc"], record["OwnerAppName"], record["LoadInProgress"]) == (True, "PROBE", -1)
+        size = pk.REGISTRY_RECORD.size
+        records = [pk.REGISTRY_RECORD.unpack(data, 64 + number * size) for number in range(3)]
+        assert len(data) == 64 + 3 * size
+        shared = {"NumUsers": 2, "ValidationFunc": True, "CriticalTable": False}
+        assert records[0] == loaded(table) | shared | {"LoadInProgress": 0, "LoadPending": True}
+        alone = {"NumUsers": 1, "ValidationFunc": False, "CriticalTable": True}
+        assert records[1] == empty() | alone | {"LoadInProgress": -1}
+        assert (records[2]["Name"], records[2]["DumpOnly"]) == ("PROBE.Dump", True)
 
 
 def test_cTBL6006_registry_entry_in_telemetry(table: ProbeTable) -> None:
+    three_tables(table)
+    addresses = "ActiveBufferAddr", "InactiveBufferAddr", "ValidationFuncPtr"
     values = registry(table.flight)
-    assert (values["Name"], values["OwnerAppName"], values["Size"]) == (NAME, "PROBE", SIZE)
-    assert (values["Crc"], values["TableLoadedOnce"], values["Critical"]) == (crc16(OLD), True, False)
+    assert all(values.pop(name) for name in addresses)
+    assert values == loaded(table) | {"LoadPending": True, "Critical": False, "ByteAlign4": 0}
+    values = registry(table.flight, "PROBE.Other")
+    assert [bool(values.pop(name)) for name in addresses] == [False, False, False]
+    assert values == empty() | {"Critical": True, "ByteAlign4": 0}
+    assert registry(table.flight, "PROBE.Dump")["DumpOnly"] is True
     table.flight.send(pk.SEND_HK)
     assert table.flight.all(pk.REG_TLM) == []
 
@@ -149,43 +234,117 @@ def test_cTBL6007_noop(fly: Fly) -> None:
 
 @covers("cTBL6008", "cTBL6009", "cTBL6010")
 def test_cTBL6008_counters(table: ProbeTable) -> None:
-    table.upload(NEW)
+    table.upload(bytes([BAD]) + NEW[1:])
     table.validate_inactive()
-    table.flight.send(pk.NOOP)
+    housekeeping(table.flight)
+    table.flight.send(pk.VALIDATE, ActiveTableFlag=pk.ACTIVE_BUFFER, TableName=NAME)
+    table.mine("manage")
     table.flight.send(pk.ACTIVATE, TableName="NO.SUCH")
-    counted = "CommandCounter", "CommandErrorCounter", "NumValRequests", "SuccessValCounter", "ValidationCounter"
+    counted = (
+        "CommandCounter",
+        "CommandErrorCounter",
+        "NumValRequests",
+        "SuccessValCounter",
+        "FailedValCounter",
+        "ValidationCounter",
+    )
     values = housekeeping(table.flight)
-    assert [values[name] for name in counted] == [3, 1, 1, 1, 1]
+    assert [values[name] for name in counted] == [3, 1, 2, 1, 1, 2]
     packet = bytes(command(EVS_CMD_MID, ENABLE_APP_EVENT_TYPE_CC, b"CFE_TBL".ljust(20, b"\0") + b"\1\0"))
     table.flight.transmit(packet)
     (event,) = table.flight.send(pk.RESET_COUNTERS)
     assert (event.event_id, event.event_type) == (11, DEBUG)
     values = housekeeping(table.flight)
-    assert [values[name] for name in (*counted, "FailedValCounter")] == [0] * 6
+    assert [values[name] for name in counted] == [0] * 6
+
+
+@covers("cTBL6009")
+def test_cTBL6009_valid_commands_are_counted(table: ProbeTable) -> None:
+    put(table.flight, NEW)
+    inactive = {"ActiveTableFlag": pk.INACTIVE_BUFFER, "TableName": NAME}
+    commands: list[tuple[Command, dict[str, Any]]] = [
+        (pk.NOOP, {}),
+        (pk.LOAD, {"LoadFilename": "/ram/t.tbl"}),
+        (pk.DUMP, inactive | {"DumpFilename": "/ram/d.tbl"}),
+        (pk.VALIDATE, inactive),
+        (pk.ACTIVATE, {"TableName": NAME}),
+        (pk.ABORT_LOAD, {"TableName": NAME}),
+        (pk.SEND_REGISTRY, {"TableName": NAME}),
+        (pk.DUMP_REGISTRY, {}),
+    ]
+    for count, (kind, fields) in enumerate(commands, 1):
+        table.flight.send(kind, **fields)
+        if kind is pk.VALIDATE:
+            table.mine("validate")
+        values = housekeeping(table.flight)
+        assert (values["CommandCounter"], values["CommandErrorCounter"]) == (count, 0), kind.name
+
+
+@covers("cTBL6010")
+def test_cTBL6010_invalid_commands_are_counted(table: ProbeTable) -> None:
+    unknown = "NO.SUCH"
+    for count, (packet, event_id) in enumerate(
+        (
+            (command(pk.CMD_MID, 99), 51),
+            (pk.LOAD.packet(LoadFilename="/ram/none"), 53),
+            (pk.DUMP.packet(TableName=unknown), 57),
+            (pk.VALIDATE.packet(TableName=unknown), 57),
+            (pk.ACTIVATE.packet(TableName=unknown), 57),
+            (pk.ABORT_LOAD.packet(TableName=unknown), 57),
+            (pk.SEND_REGISTRY.packet(TableName=unknown), 57),
+            (pk.DELETE_CDS.packet(TableName=unknown), 84),
+        ),
+        1,
+    ):
+        table.flight.packets.clear()
+        table.flight.transmit(bytes(packet))
+        assert [(event.event_id, event.event_type) for event in table.flight.events()] == [(event_id, ERROR)]
+        values = housekeeping(table.flight)
+        assert (values["CommandCounter"], values["CommandErrorCounter"]) == (0, count)
+    (event,) = table.flight.send(Command("too long", pk.CMD_MID, pk.NOOP.code, pk.NOTIFY_COMMAND))
+    assert (event.event_id, event.event_type) == (52, ERROR)
+    assert housekeeping(table.flight)["CommandErrorCounter"] == count, "cFE does not count commands of a wrong length"
 
 
 def test_cTBL6011_housekeeping(table: ProbeTable) -> None:
+    other = table.call("register", "Other", SIZE, OPT_DBL_BUFFER, lambda image: -7 if image == NEW else 0)
+    table.call("load", other, OLD)
     table.upload(NEW)
     table.validate_inactive()
     table.activate()
     dump = {"ActiveTableFlag": pk.ACTIVE_BUFFER, "TableName": NAME, "DumpFilename": "/ram/d.tbl"}
     table.flight.send(pk.DUMP, **dump)
     table.flight.send(pk.SEND_HK)
+    put(table.flight, NEW, path="/ram/o.tbl", name="PROBE.Other")
+    table.flight.send(pk.LOAD, LoadFilename="/ram/o.tbl")
+    table.flight.send(pk.VALIDATE, ActiveTableFlag=pk.INACTIVE_BUFFER, TableName="PROBE.Other")
+    table.call("validate", other)
+    table.flight.send(pk.ACTIVATE, TableName="PROBE.Other")
     values = housekeeping(table.flight)
-    assert (values["CommandCounter"], values["CommandErrorCounter"], values["NumTables"]) == (4, 0, 1)
-    assert (values["LastUpdatedTable"], values["LastFileLoaded"]) == (NAME, "/ram/t.tbl")
-    assert (values["LastFileDumped"], values["LastTableLoaded"]) == ("/ram/d.tbl", NAME)
-    assert (values["LastValTableName"], values["LastValCrc"], values["LastValStatus"]) == (NAME, crc16(NEW), 0)
-    assert (values["NumFreeSharedBufs"], values["NumLoadPending"]) == (4, 0)
+    assert (values["CommandCounter"], values["CommandErrorCounter"], values["NumTables"]) == (6, 1, 2)
+    assert (values["LastUpdatedTable"], values["LastFileLoaded"]) == (NAME, "/ram/o.tbl")
+    assert (values["LastFileDumped"], values["LastTableLoaded"]) == ("/ram/d.tbl", "PROBE.Other")
+    assert (values["LastValTableName"], values["LastValCrc"]) == ("PROBE.Other", crc16(NEW))
+    assert (values["LastValStatus"], values["ActiveBuffer"]) == (-7, False)
+    assert (values["NumValRequests"], values["ValidationCounter"]) == (2, 2)
+    assert (values["SuccessValCounter"], values["FailedValCounter"]) == (1, 1)
+    assert (values["NumFreeSharedBufs"], values["NumLoadPending"]) == (4, 1)
     updated = table.info().time_of_last_update
     assert values["LastUpdateTime"] == {"Seconds": updated[0], "Subseconds": updated[1]}
     stats = table.flight.call(lambda: table.flight.cfe.es.get_mem_pool_stats(values["MemPoolHandle"]))
     assert stats["PoolSize"] == 524288
+    table.flight.send(pk.VALIDATE, ActiveTableFlag=pk.ACTIVE_BUFFER, TableName=NAME)
+    table.mine("validate")
+    values = housekeeping(table.flight)
+    assert (values["LastValStatus"], values["ActiveBuffer"]) == (0, True)
 
 
 @covers("cTBL6012", "cTBL6012.1", "cTBL6012.3")
 def test_cTBL6012_abort_a_load(table: ProbeTable) -> None:
     table.upload(NEW)
+    table.validate_inactive()
+    table.flight.send(pk.ACTIVATE, TableName=NAME)
+    assert registry(table.flight)["LoadPending"] is True
     values = housekeeping(table.flight)
     assert (values["NumFreeSharedBufs"], values["NumLoadPending"]) == (3, 1)
     (event,) = table.flight.send(pk.ABORT_LOAD, TableName=NAME)
@@ -193,6 +352,8 @@ def test_cTBL6012_abort_a_load(table: ProbeTable) -> None:
     values = housekeeping(table.flight)
     assert (values["NumFreeSharedBufs"], values["NumLoadPending"]) == (4, 0)
     assert registry(table.flight)["LoadPending"] is False
+    assert table.mine("manage") == CFE_SUCCESS
+    assert table.content() == OLD
     assert ids(table.flight.send(pk.ABORT_LOAD, TableName=NAME)) == [69]
 
 
@@ -208,9 +369,9 @@ def test_cTBL6012_2_abort_of_a_double_buffered_table(fly: Fly) -> None:
     assert table.content() == OLD[:2] + b"XY" + OLD[4:]
 
 
-@covers("cTBL6013", "cTBL6013.1", "cTBL6013.2", "cTBL6013.3")
+@covers("cTBL6013", "cTBL6013.1", "cTBL6013.2", "cTBL6013.3", "cTBL6009")
 def test_cTBL6013_delete_the_cds_of_a_table(fly: Fly) -> None:
-    flight = fly()
+    flight = fly(*LISTEN)
     cfe, name = flight.cfe, "MUTE.T"
     handle = flight.call(lambda: cfe.tbl.register("T", SIZE, OPT_CRITICAL), app="MUTE")
     flight.call(lambda: cfe.tbl.register("Other", SIZE), app="MUTE")
@@ -225,3 +386,5 @@ def test_cTBL6013_delete_the_cds_of_a_table(fly: Fly) -> None:
     assert name not in [block.name for block in cfe.es.cds_blocks()]
     assert ids(flight.send(pk.DELETE_CDS, TableName=name)) == [85]
     assert ids(flight.send(pk.DELETE_CDS, TableName="MUTE.Other")) == [84]
+    values = housekeeping(flight)
+    assert (values["CommandCounter"], values["CommandErrorCounter"]) == (1, 4)

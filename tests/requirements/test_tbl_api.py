@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 import pytest
 
+from cfepy.evs import packets as evs_packets
 from cfepy.fs import crc16
-from cfepy.ports import ERROR
+from cfepy.ports import DEBUG, ERROR, INFORMATION
 from cfepy.status import (
     CFE_SUCCESS,
     CFE_TBL_ERR_FILE_TOO_LARGE,
@@ -29,7 +30,18 @@ from cfepy.tbl import OPT_CRITICAL, OPT_DBL_BUFFER, OPT_DUMP_ONLY, OPT_USR_DEF_A
 from cfepy.tbl import packets as pk
 from tests.requirements.covers import covers
 from tests.requirements.flight import POWERON_RESET, PROCESSOR_RESET, Flight
-from tests.requirements.tables import NAME, NEW, OLD, SIZE, ProbeTable, housekeeping, put, registry
+from tests.requirements.tables import (
+    FILE_TIME,
+    NAME,
+    NEW,
+    OLD,
+    SIZE,
+    ProbeTable,
+    free_bytes,
+    housekeeping,
+    put,
+    registry,
+)
 
 Fly = Callable[..., Flight]
 
@@ -51,12 +63,24 @@ def test_cTBL6300_create(fly: Fly) -> None:
     assert (info.size, info.double_buffered, info.dump_only, info.critical) == (16, True, False, True)
     values = registry(table.flight)
     assert (values["Size"], values["DumpOnly"], values["DoubleBuffered"]) == (SIZE, True, False)
+    asked: list[bytes] = []
+
+    def look(image: memoryview) -> int:
+        asked.append(bytes(image))
+        return 0
+
+    third = table.call("register", "Third", 4, 0, look)
+    table.call("load", third, b"data")
+    assert asked == [b"data"]
 
 
 def test_cTBL6300_1_address_of_the_application(fly: Fly) -> None:
-    table = ProbeTable(fly(pk.HK_TLM_MID), OPT_USR_DEF_ADDR, validator=None)
+    flight = fly(pk.HK_TLM_MID)
+    free = free_bytes(flight)
+    table = ProbeTable(flight, OPT_USR_DEF_ADDR, validator=None)
     mine = bytearray(OLD)
     table.mine("load", mine)
+    assert free_bytes(flight) == free
     mine[:] = NEW
     assert table.content() == NEW
     assert table.info().user_def_addr is True
@@ -79,12 +103,16 @@ def test_cTBL6302_1_too_much_data(fly: Fly) -> None:
     assert table.status("get_address") == CFE_TBL_ERR_NEVER_LOADED
 
 
-def test_cTBL6302_2_less_data(table: ProbeTable) -> None:
-    put(table.flight, b"XY")
-    table.flight.packets.clear()
-    assert table.mine("load", "/ram/t.tbl") == CFE_TBL_WARN_SHORT_FILE
-    assert [event.event_id for event in table.flight.events()] == [35]
-    assert table.content() == b"XY" + OLD[2:]
+def test_cTBL6302_2_less_data(fly: Fly) -> None:
+    """The event of a first load is one for debugging, as in cFE."""
+    table = ProbeTable(fly())
+    table.flight.send(evs_packets.ENABLE_APP_EVENT_TYPE, AppName="CFE_TBL", BitMask=0x0F)
+    for data, content, event_type in ((b"XY", b"XY" + bytes(6), DEBUG), (b"Z", b"ZY" + bytes(6), INFORMATION)):
+        put(table.flight, data)
+        table.flight.packets.clear()
+        assert table.mine("load", "/ram/t.tbl") == CFE_TBL_WARN_SHORT_FILE
+        assert [(event.event_id, event.event_type) for event in table.flight.events()] == [(35, event_type)]
+        assert table.content() == content
 
 
 def test_cTBL6303_a_handle_on_an_existing_table(table: ProbeTable) -> None:
@@ -94,7 +122,13 @@ def test_cTBL6303_a_handle_on_an_existing_table(table: ProbeTable) -> None:
     assert bytes(flight.call(lambda: cfe.tbl.get_address(shared), app="MUTE")[0]) == OLD
 
 
-def test_cTBL6304_resources_are_freed(table: ProbeTable) -> None:
+def test_cTBL6304_resources_are_freed(fly: Fly) -> None:
+    flight = fly(pk.HK_TLM_MID)
+    whole = free_bytes(flight)
+    ProbeTable(flight).mine("unregister")
+    used_once = free_bytes(flight)
+    table = ProbeTable(flight)
+    assert free_bytes(flight) == used_once < whole, "the pool's block is used again"
     table.mine("unregister")
     assert housekeeping(table.flight)["NumTables"] == 0
     assert table.status("get_address") == CFE_TBL_ERR_INVALID_HANDLE
@@ -113,6 +147,7 @@ def test_cTBL6305_address_lock_and_update(table: ProbeTable) -> None:
     table.mine("release_address")
     assert table.mine("update") == CFE_SUCCESS
     assert table.mine("get_address") == (memoryview(NEW), True)
+    assert table.mine("get_address") == (memoryview(NEW), False)
 
 
 def test_cTBL6309_table_info(table: ProbeTable) -> None:
@@ -120,9 +155,19 @@ def test_cTBL6309_table_info(table: ProbeTable) -> None:
     put(table.flight, NEW)
     table.mine("load", "/ram/t.tbl")
     info = table.info()
-    assert (info.size, info.num_users, info.last_file_loaded, info.file_time) == (SIZE, 2, "/ram/t.tbl", (0, 0))
-    assert info.time_of_last_update > (1001000, 0)
+    assert (info.size, info.num_users, info.last_file_loaded, info.file_time) == (SIZE, 2, "/ram/t.tbl", FILE_TIME)
+    assert (1001000, 0) < info.time_of_last_update < table.flight.cfe.time.get_time()
     assert (info.table_loaded_once, info.dump_only, info.double_buffered, info.critical) == (True, False, False, False)
+    assert (info.crc, info.user_def_addr) == (crc16(NEW), False)
+    for name, options, expected in (
+        ("Dump", OPT_DUMP_ONLY, (True, True, False, False, False)),
+        ("Mine", OPT_USR_DEF_ADDR, (False, True, False, False, True)),
+        ("Two", OPT_DBL_BUFFER | OPT_CRITICAL, (False, False, True, True, False)),
+    ):
+        table.call("register", name, 16, options)
+        info = table.call("get_info", f"PROBE.{name}")
+        flags = info.table_loaded_once, info.dump_only, info.double_buffered, info.critical, info.user_def_addr
+        assert (info.size, info.num_users, flags) == (16, 1, expected)
 
 
 def test_cTBL6310_pending_actions(table: ProbeTable) -> None:
@@ -187,7 +232,9 @@ def test_cTBL6316_manage(table: ProbeTable) -> None:
     table.flight.packets.clear()
     assert table.mine("manage") == CFE_SUCCESS
     assert [event.event_id for event in table.flight.events()] == [36]
+    assert table.content() == OLD
     assert table.activate() == CFE_TBL_INFO_UPDATED
+    assert table.content() == NEW
     live = table.call("register", "Live", SIZE, OPT_DUMP_ONLY)
     wish = {"ActiveTableFlag": pk.ACTIVE_BUFFER, "TableName": "PROBE.Live", "DumpFilename": "/ram/l.tbl"}
     table.flight.send(pk.DUMP, **wish)
@@ -216,6 +263,7 @@ def test_cTBL6501_1_critical_tables_outlive_a_processor_reset(fly: Fly) -> None:
     after = ProbeTable(table.flight, OPT_CRITICAL)
     assert after.handle.status == CFE_TBL_INFO_RECOVERED_TBL
     assert (after.content(), after.info()) == (NEW, before)
+    assert (before.last_file_loaded, before.file_time) == ("/ram/t.tbl", FILE_TIME)
     table.flight.reset(POWERON_RESET)
     gone = ProbeTable(table.flight, OPT_CRITICAL)
     assert gone.handle.status == CFE_SUCCESS

@@ -1,24 +1,17 @@
-"""Time Services, requirement by requirement: commands, telemetry, tones, resets (cTIME2000 to 2021, 2500 to 2700)."""
+"""Time Services, requirement by requirement: commands and telemetry (cTIME2000 to 2014, 2019)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import pytest
 
-from cfepy.evs import DEBUG, ERROR, INFORMATION
+from cfepy.evs import DEBUG, ERROR
 from cfepy.evs import packets as evs_packets
-from cfepy.msg import Command, get_msg_id
-from cfepy.time import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID, SysTime, add, subtract
+from cfepy.msg import Command
+from cfepy.time import CLOCK_VALID, SysTime, add, subtract
 from cfepy.time import packets as pk
+from tests.requirements.clock import HALF, Fly, diagnostic, housekeeping, to_next_second, told
 from tests.requirements.covers import covers
-from tests.requirements.flight import POWERON_RESET, PROCESSOR_RESET, Event, Flight
-
-Fly = Callable[..., Flight]
-HALF = 0x80000000
-ON_ITS_OWN = {"time_cfg_fake_tone": False}
-"""A server whose tones come from outside: from the test."""
+from tests.requirements.flight import Flight
 
 
 @pytest.fixture
@@ -26,41 +19,20 @@ def flight(fly: Fly) -> Flight:
     return fly(pk.HK_TLM_MID, pk.DIAG_TLM_MID, pk.DATA_CMD_MID)
 
 
-def housekeeping(flight: Flight) -> dict[str, Any]:
-    return flight.ask(pk.SEND_HK, pk.HK_TLM)
-
-
-def diagnostic(flight: Flight) -> dict[str, Any]:
-    return flight.ask(pk.SEND_DIAGNOSTIC, pk.DIAG_TLM)
-
-
-def told(event_id: int, text: str, event_type: int = INFORMATION) -> list[Event]:
-    return [Event("CFE_TIME", event_id, event_type, text)]
-
-
-def tone(flight: Flight) -> None:
-    """A tone from outside, and the request for the time at it, as a scheduler sends it."""
-    flight.call(flight.cfe.time.external_tone)
-    flight.transmit(pk.SEND_CMD.packet())
-
-
-def to_next_second(flight: Flight) -> None:
-    """Go on to the tenth of a second after the next tone."""
-    subseconds = flight.cfe.time.get_met_subsecs()
-    flight.run(1.1 - subseconds / 2**32)
-
-
 def test_cTIME2000_housekeeping(flight: Flight) -> None:
     flight.send(pk.ADD_ONE_HZ_ADJUSTMENT, Seconds=0, Subseconds=0x100)
     flight.send(pk.SET_STATE, ClockState=CLOCK_VALID)
-    values = housekeeping(flight)
+    to_next_second(flight)
     time = flight.cfe.time
+    before = time.get_met()
+    values = housekeeping(flight)
+    assert before <= tuple(values["MET"].values()) < time.get_met()
     assert values["ClockStateFlags"] == time.get_clock_info() == 0xB3E0
     assert values["ClockStateAPI"] == CLOCK_VALID
     assert values["LeapSeconds"] == 37
-    assert values["MET"]["Seconds"] == time.get_met().seconds == 1003
-    assert values["STCF"] == {"Seconds": 1_000_000, "Subseconds": 0}
+    assert values["STCF"] == {"Seconds": 1_000_000, "Subseconds": 0x100}
     assert values["AdjustmentFactor"] == {"Seconds": 0, "Subseconds": 0x100}
+    assert (values["CommandCounter"], values["CommandErrorCounter"]) == (2, 0)
 
 
 def test_cTIME2001_noop(flight: Flight) -> None:
@@ -70,7 +42,10 @@ def test_cTIME2001_noop(flight: Flight) -> None:
 
 def test_cTIME2002_counters_are_set_to_zero(flight: Flight) -> None:
     flight.send(evs_packets.ENABLE_APP_EVENT_TYPE, AppName="CFE_TIME", BitMask=1)
+    flight.send(pk.NOOP)
     flight.send(Command("unknown", pk.CMD_MID, 99))
+    values = housekeeping(flight)
+    assert (values["CommandCounter"], values["CommandErrorCounter"]) == (1, 1)
     assert flight.send(pk.RESET_COUNTERS) == told(5, "Reset Counters command", DEBUG)
     values = housekeeping(flight)
     assert (values["CommandCounter"], values["CommandErrorCounter"]) == (0, 0)
@@ -81,15 +56,23 @@ def test_cTIME2002_counters_are_set_to_zero(flight: Flight) -> None:
 
 @covers("cTIME2003", "cTIME2004")
 def test_cTIME2003_command_counters(flight: Flight) -> None:
-    flight.send(pk.NOOP)
-    flight.send(pk.SET_LEAP_SECONDS, LeapSeconds=1)
+    valid = (pk.NOOP, pk.SEND_DIAGNOSTIC, pk.SET_STATE, pk.SET_TIME, pk.SET_MET, pk.SET_STCF, pk.SET_LEAP_SECONDS)
+    adjusting = (pk.ADD_ADJUST, pk.SUB_ADJUST, pk.ADD_ONE_HZ_ADJUSTMENT, pk.SUB_ONE_HZ_ADJUSTMENT)
+    for count, command in enumerate((*valid, *adjusting), 1):
+        flight.send(command)
+        assert housekeeping(flight)["CommandCounter"] == count, command.name
     invalid = "Invalid command code -- ID = 0x1805, CC = 99"
     assert flight.send(Command("unknown", pk.CMD_MID, 99)) == told(27, invalid, ERROR)
     length = "Invalid msg length: ID = 0x1805,  CC = 0, Len = 10, Expected = 8"
     assert flight.send(Command("too long", pk.CMD_MID, 0, pk.STATE_COMMAND)) == told(49, length, ERROR)
     assert flight.send(pk.SET_STATE, ClockState=2) == told(30, "Invalid Clock State = 0x2", ERROR)
     values = housekeeping(flight)
-    assert (values["CommandCounter"], values["CommandErrorCounter"]) == (2, 3)
+    assert (values["CommandCounter"], values["CommandErrorCounter"]) == (11, 3)
+    for number, command in enumerate((pk.SET_SOURCE, pk.SET_SIGNAL, pk.ADD_DELAY, pk.SUB_DELAY), 4):
+        (event,) = flight.send(command)  # not for a server without other sources
+        assert event.event_type == ERROR
+        values = housekeeping(flight)
+        assert (values["CommandCounter"], values["CommandErrorCounter"]) == (11, number)
 
 
 def test_cTIME2005_leap_seconds(flight: Flight) -> None:
@@ -103,17 +86,20 @@ def test_cTIME2006_stcf(flight: Flight) -> None:
     assert flight.cfe.time.get_stcf() == (2_000_000, HALF)
 
 
-def test_cTIME2007_current_time(flight: Flight) -> None:
+@pytest.mark.parametrize("utc", [False, True])
+def test_cTIME2007_current_time(fly: Fly, utc: bool) -> None:
+    """The time in the command is TAI, or UTC where that is the spacecraft's time."""
+    flight = fly(time_cfg_default_utc=utc)
+    flight.run(0.4)
     met = flight.cfe.time.get_met()
     text = "Set Time -- secs = 3000000, usecs = 0, ssecs = 0x0"
     assert flight.send(pk.SET_TIME, Seconds=3_000_000) == told(12, text)
     assert flight.cfe.time.get_time().seconds == 3_000_000
     assert subtract(flight.cfe.time.get_met(), met) < SysTime(0, HALF)
-    assert add(flight.cfe.time.get_stcf(), met) == (3_000_000, 0)
+    assert add(flight.cfe.time.get_stcf(), met) == (3_000_037 if utc else 3_000_000, 0)
 
 
 @pytest.mark.parametrize(("command", "after"), [("ADD", (1_000_001, 0)), ("SUB", (999_999, 0))])
-@covers("cTIME2009", "cTIME2020", "cTIME2021")
 def test_cTIME2009_stcf_is_adjusted_every_second(flight: Flight, command: str, after: tuple[int, int]) -> None:
     """What each second adds stays until another command takes it away, and no tone undoes it."""
     adjust: Command = getattr(pk, f"{command}_ONE_HZ_ADJUSTMENT")
@@ -140,57 +126,42 @@ def test_cTIME2010_tone_signal(fly: Fly) -> None:
 
 def test_cTIME2011_diagnostics(flight: Flight) -> None:
     flight.send(pk.ADD_ADJUST, Seconds=5, MicroSeconds=0)
+    flight.send(pk.SUB_ONE_HZ_ADJUSTMENT, Seconds=1, Subseconds=0)
     to_next_second(flight)
     values = diagnostic(flight)
     assert len(flight.packets[0]) == 216
-    assert values["TimeSinceTone"]["Seconds"] == 0
-    assert values["CurrentMET"]["Seconds"] == values["VirtualMET"] == values["AtToneMET"]["Seconds"]
-    assert values["AtToneSTCF"] == {"Seconds": 1_000_005, "Subseconds": 0}
-    assert values["OneTimeAdjust"] == {"Seconds": 5, "Subseconds": 0}
-    assert values["AtToneLatch"] == values["ToneSignalLatch"] == values["ToneDataLatch"]
-    assert values["ToneMatchCounter"] == values["ToneIntCounter"] == values["LocalIntCounter"] == 4
-    assert (values["ClockSource"], values["ClockSignal"], values["DataStoreStatus"]) == (1, 1, 3)
-
-
-@covers("cTIME2012", "cTIME2012.1", "cTIME2012.2")
-def test_cTIME2012_tones_are_used_or_ignored(flight: Flight) -> None:
-    time = flight.cfe.time
-    flight.send(pk.SET_STATE, ClockState=CLOCK_VALID)
-    assert time.get_clock_state() == CLOCK_VALID
-    assert flight.send(pk.SET_STATE, ClockState=CLOCK_FLYWHEEL) == told(7, "Set Clock State = FLYWHEEL")
-    before, matches = time.get_met(), diagnostic(flight)["ToneMatchCounter"]
-    flight.run(5)
-    values = diagnostic(flight)
-    assert (time.get_clock_state(), values["Forced2Fly"]) == (CLOCK_FLYWHEEL, 1)
-    assert values["ToneMatchCounter"] > matches
-    assert values["TimeSinceTone"]["Seconds"] >= 4
-    assert 5 <= subtract(time.get_met(), before).seconds <= 6
-    flight.send(pk.SET_STATE, ClockState=CLOCK_VALID)
-    to_next_second(flight)
-    assert flight.events()[-1:] == told(21, "Stop FLYWHEEL")
-    assert time.get_clock_state() == CLOCK_VALID
-    assert diagnostic(flight)["TimeSinceTone"]["Seconds"] == 0
-
-
-def test_cTIME2012_2_a_client_follows_a_server(fly: Fly) -> None:
-    """Two processors: the tone is a wire between them, the time at the tone is a message that a link brings over."""
-    server = fly(pk.TONE_CMD_MID, pk.DATA_CMD_MID)
-    client = fly(pk.DATA_CMD_MID, time_cfg_client=True, time_cfg_fake_tone=False)
-    server.send(pk.SET_TIME, Seconds=9_000_000)
-    server.send(pk.SET_STATE, ClockState=CLOCK_VALID)
-    for _ in range(300):
-        server.packets.clear()
-        server.run(0.01)
-        client.run(0.01)
-        if server.all(pk.TONE_CMD):
-            client.call(client.cfe.time.external_tone)
-            (packet,) = (packet for packet in server.packets if get_msg_id(packet) == pk.DATA_CMD_MID)
-            client.transmit(packet)
-    apart = subtract(client.cfe.time.get_time(), server.cfe.time.get_time())
-    assert min(apart, subtract((0, 0), apart)) < SysTime(0, 0x4000000)  # 16 ms: steps of this test are 10 ms
-    assert client.cfe.time.get_leap_seconds() == 37
-    assert client.cfe.time.get_clock_state() == CLOCK_VALID
-    assert client.send(pk.SET_MET, Seconds=1)[0].event_id == 44
+    since = values["TimeSinceTone"]["Subseconds"]
+    assert since == pytest.approx(0.1 * 2**32, rel=0.1)
+    times = {
+        "AtToneMET": (1004, 0),
+        "AtToneSTCF": (1_000_004, 0),
+        "AtToneDelay": (0, 0),
+        "AtToneLatch": (4, 0),
+        "TimeSinceTone": (0, since),
+        "CurrentLatch": (4, since),
+        "CurrentMET": (1004, since),
+        "CurrentTAI": (1_001_008, since),
+        "CurrentUTC": (1_000_971, since),
+        "OneTimeAdjust": (5, 0),
+        "OneHzAdjust": (1, 0),
+        "ToneSignalLatch": (4, 0),
+        "ToneDataLatch": (4, 0),
+        "MaxLocalClock": (27, 0),
+    }
+    assert {name: (values[name]["Seconds"], values[name]["Subseconds"]) for name in times} == times
+    states = {"ClockStateAPI": -1, "ClockSetState": 0, "ClockFlyState": 0, "ServerFlyState": 0, "Forced2Fly": 0}
+    choices = {"ClockSource": 1, "ClockSignal": 1, "OneTimeDirection": 1, "OneHzDirection": 2, "DelayDirection": 1}
+    limits = {"MinElapsed": 0, "MaxElapsed": 858993460, "ToneOverLimit": 85899346, "ToneUnderLimit": 4209067951}
+    others = {"AtToneLeapSeconds": 37, "ClockStateFlags": 0x32E0, "VirtualMET": 1004, "DataStoreStatus": 3}
+    expected = states | choices | limits | others
+    assert {name: values[name] for name in expected} == expected
+    counters = {name: values[name] for name in values if name.endswith("Counter")}
+    del counters["VersionCounter"]
+    assert counters == {name: 0 if "Error" in name else 4 for name in counters}
+    assert len(times) + len(expected) + len(counters) + 1 == len(values)
+    flight.send(pk.RESET_COUNTERS)
+    flight.send(pk.SET_STCF, Seconds=1)
+    assert diagnostic(flight)["VersionCounter"] == 1, "changes of the reference since counters were reset"
 
 
 @pytest.mark.parametrize(("command", "after"), [(pk.ADD_ADJUST, (1_000_002, HALF)), (pk.SUB_ADJUST, (999_997, HALF))])
@@ -202,55 +173,6 @@ def test_cTIME2013_stcf_is_adjusted_once(flight: Flight, command: Command, after
     assert flight.cfe.time.get_stcf() == after
 
 
-def test_cTIME2015_tone_data_is_sent_on_request(fly: Fly) -> None:
-    flight = fly(pk.DATA_CMD_MID, **ON_ITS_OWN)
-    flight.packets.clear()
-    flight.transmit(pk.SEND_CMD.packet())
-    (data,) = flight.all(pk.DATA_CMD)
-    assert data == {
-        "AtToneMET": {"Seconds": 1003, "Subseconds": 0},
-        "AtToneSTCF": {"Seconds": 1_000_000, "Subseconds": 0},
-        "AtToneLeapSeconds": 37,
-        "AtToneState": CLOCK_INVALID,
-    }
-
-
-def test_cTIME2016_data_after_a_tone_updates_the_time(fly: Fly) -> None:
-    flight = fly(pk.DIAG_TLM_MID, **ON_ITS_OWN)
-    assert diagnostic(flight)["ToneMatchCounter"] == 0
-    flight.call(flight.cfe.time.external_tone)
-    assert flight.cfe.time.get_clock_info() & 0x4000
-    flight.packets.clear()
-    flight.transmit(pk.SEND_CMD.packet())
-    assert flight.events() == told(21, "Stop FLYWHEEL")
-    assert flight.cfe.time.get_clock_info() & 0x4000 == 0
-    flight.transmit(pk.SEND_CMD.packet())  # data without a new tone
-    values = diagnostic(flight)
-    assert (values["ToneMatchCounter"], values["ToneMatchErrorCounter"]) == (1, 1)
-
-
-def test_cTIME2017_a_tone_after_data_updates_the_time(fly: Fly) -> None:
-    flight = fly(pk.DIAG_TLM_MID, time_at_tone_will_be=True, **ON_ITS_OWN)
-    flight.call(flight.cfe.time.external_tone)
-    flight.run(0.9)
-    flight.transmit(pk.SEND_CMD.packet())
-    assert diagnostic(flight)["ToneMatchCounter"] == 0
-    flight.run(0.09)
-    flight.packets.clear()
-    flight.call(flight.cfe.time.external_tone)
-    assert flight.events() == told(21, "Stop FLYWHEEL")
-    assert diagnostic(flight)["ToneMatchCounter"] == 1
-
-
-def test_cTIME2018_a_message_triggers_the_one_hz_cycle(fly: Fly) -> None:
-    flight = fly(**ON_ITS_OWN)
-    flight.send(pk.ADD_ONE_HZ_ADJUSTMENT, Seconds=1)
-    before = flight.cfe.time.get_stcf().seconds
-    flight.transmit(pk.ONEHZ_CMD.packet())
-    flight.transmit(pk.ONEHZ_CMD.packet())
-    assert flight.cfe.time.get_stcf().seconds == before + 2
-
-
 def test_cTIME2019_met(flight: Flight) -> None:
     to_next_second(flight)
     assert flight.send(pk.SET_MET, Seconds=7000) == told(13, "Set MET -- secs = 7000, usecs = 0, ssecs = 0x0")
@@ -258,68 +180,3 @@ def test_cTIME2019_met(flight: Flight) -> None:
     flight.run(3)
     assert flight.cfe.time.get_met().seconds == 7003
     assert flight.cfe.time.get_stcf() == (1_000_000, 0)
-
-
-def test_cTIME2012_a_lost_tone_starts_flywheel_mode_once(fly: Fly) -> None:
-    """Tones stop: after two seconds the clock says so and goes on; a tone that comes back ends it."""
-    flight = fly(pk.DIAG_TLM_MID, **ON_ITS_OWN)
-    flight.send(pk.SET_STATE, ClockState=CLOCK_VALID)
-    for _ in range(3):
-        tone(flight)
-        flight.run(1 - 0.002)
-    assert flight.cfe.time.get_clock_state() == CLOCK_VALID
-    assert flight.cfe.time.get_clock_info() & 0x20
-    flight.packets.clear()
-    met = flight.cfe.time.get_met()
-    flight.run(20)
-    assert flight.events() == told(20, "Start FLYWHEEL")
-    assert flight.cfe.time.get_clock_state() == CLOCK_FLYWHEEL
-    assert flight.cfe.time.get_clock_info() & 0x4C00 == 0x4800
-    assert diagnostic(flight)["ServerFlyState"] == 1
-    assert subtract(flight.cfe.time.get_met(), met).seconds == 20
-    flight.packets.clear()
-    tone(flight)
-    assert flight.events() == told(21, "Stop FLYWHEEL")
-    assert flight.cfe.time.get_clock_state() == CLOCK_VALID
-
-
-# -- resets --------------------------------------------------------------------------------------------------------
-
-
-def change_everything(flight: Flight) -> None:
-    """Set what a reset may keep, and let housekeeping save it."""
-    flight.send(pk.SET_STATE, ClockState=CLOCK_VALID)
-    flight.send(pk.SET_MET, Seconds=50_000)
-    flight.send(pk.SET_STCF, Seconds=5)
-    flight.send(pk.SET_LEAP_SECONDS, LeapSeconds=3)
-    housekeeping(flight)
-
-
-def test_cTIME2500_power_on_reset(flight: Flight) -> None:
-    change_everything(flight)
-    flight.reset(POWERON_RESET)
-    time = flight.cfe.time
-    assert (time.get_met().seconds, time.get_stcf(), time.get_leap_seconds()) == (1003, (1_000_000, 0), 37)
-    assert time.get_clock_state() == CLOCK_INVALID
-    assert diagnostic(flight)["DataStoreStatus"] == 3
-
-
-@covers("cTIME2501", "cTIME2502", "cTIME2700")
-def test_cTIME2501_processor_reset(flight: Flight) -> None:
-    change_everything(flight)
-    flight.run(10)  # nobody saves the time of these
-    flight.reset(PROCESSOR_RESET)
-    time = flight.cfe.time
-    assert (time.get_met().seconds, time.get_stcf(), time.get_leap_seconds()) == (50_003, (5, 0), 3)
-    assert diagnostic(flight)["DataStoreStatus"] == 4
-
-
-@covers("cTIME2502", "cTIME2502.1")
-def test_cTIME2502_1_a_damaged_data_store_is_not_used(flight: Flight) -> None:
-    change_everything(flight)
-    kept = flight.cfe.psp.retained.kept
-    kept["TIME"] = b"\xff" + kept["TIME"][1:]
-    flight.reset(PROCESSOR_RESET)
-    time = flight.cfe.time
-    assert (time.get_met().seconds, time.get_stcf(), time.get_leap_seconds()) == (1003, (1_000_000, 0), 37)
-    assert diagnostic(flight)["DataStoreStatus"] == 3

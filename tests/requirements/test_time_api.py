@@ -7,9 +7,9 @@ import pytest
 from cfepy.status import CFE_TIME_CALLBACK_NOT_REGISTERED, CFE_TIME_TOO_MANY_SYNCH_CALLBACKS, CfeError
 from cfepy.time import A_GT_B, A_LT_B, CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID, EQUAL
 from cfepy.time import packets as pk
+from tests.requirements.clock import HALF, Fly, to_next_second
 from tests.requirements.covers import covers
 from tests.requirements.flight import Flight
-from tests.requirements.test_time import HALF, Fly, to_next_second
 
 EXTERNAL = {"time_cfg_fake_tone": False, "time_cfg_source": True}
 
@@ -52,6 +52,16 @@ def test_cTIME2308_clock_state_and_flags(flight: Flight) -> None:
     assert (time.get_clock_state(), time.get_clock_info()) == (CLOCK_FLYWHEEL, 0xFCE0)
 
 
+def test_cTIME2320_flags_of_other_boards(fly: Fly) -> None:
+    """An external source, the redundant signal and no tone yet; and a client with a tone that comes too early."""
+    external = fly(**EXTERNAL, time_cfg_src_met=True, time_cfg_signal=True)
+    external.send(pk.SET_SIGNAL, ToneSource=2)
+    assert external.cfe.time.get_clock_info() == 0x4BC0
+    client = fly(time_cfg_client=True, time_cfg_fake_tone=False)
+    client.send(pk.SUB_DELAY, MicroSeconds=1000)
+    assert client.cfe.time.get_clock_info() == 0x7B00
+
+
 @covers("cTIME2309", "cTIME2310", "cTIME2311")
 def test_cTIME2309_arithmetic(flight: Flight) -> None:
     time = flight.cfe.time
@@ -70,7 +80,11 @@ def test_cTIME2312_conversions(flight: Flight) -> None:
 
 @pytest.mark.parametrize(
     ("time", "text"),
-    [((0, 0), "1980-001-00:00:00.00000"), ((31_622_400, HALF), "1981-001-00:00:00.50000")],
+    [
+        ((0, 0), "1980-001-00:00:00.00000"),
+        ((31_622_400, HALF), "1981-001-00:00:00.50000"),
+        ((31_622_399 - 8 * 3600 - 7 * 60 - 6, 0x00100000), "1980-366-15:52:53.00024"),
+    ],
 )
 def test_cTIME2314_readable_format(flight: Flight, time: tuple[int, int], text: str) -> None:
     assert flight.cfe.time.print_(time) == text
@@ -88,6 +102,7 @@ def test_cTIME2315_tone_data_for_an_external_met(fly: Fly) -> None:
     flight.call(lambda: flight.cfe.time.external_met((9000, 0)))
     (data,) = flight.all(pk.DATA_CMD)
     assert data["AtToneMET"] == {"Seconds": 9000, "Subseconds": 0}
+    assert (data["AtToneSTCF"]["Seconds"], data["AtToneLeapSeconds"], data["AtToneState"]) == (1_000_000, 37, -1)
     assert flight.cfe.time.get_met_seconds() == 9000
 
 
@@ -95,6 +110,7 @@ def test_cTIME2316_tone_data_for_an_external_time_and_leap_seconds(fly: Fly) -> 
     flight = external(fly, "gps")
     flight.call(lambda: flight.cfe.time.external_gps((3_001_003, 0), 20))
     (data,) = flight.all(pk.DATA_CMD)
+    assert data["AtToneMET"] == {"Seconds": 1003, "Subseconds": 0}
     assert (data["AtToneSTCF"]["Seconds"], data["AtToneLeapSeconds"]) == (3_000_000, 20)
     assert (flight.cfe.time.get_stcf(), flight.cfe.time.get_leap_seconds()) == ((3_000_000, 0), 20)
 
@@ -103,6 +119,7 @@ def test_cTIME2317_tone_data_for_an_external_time(fly: Fly) -> None:
     flight = external(fly, "time")
     flight.call(lambda: flight.cfe.time.external_time((3_001_003, 0)))
     (data,) = flight.all(pk.DATA_CMD)
+    assert data["AtToneMET"] == {"Seconds": 1003, "Subseconds": 0}
     assert (data["AtToneSTCF"]["Seconds"], data["AtToneLeapSeconds"]) == (3_000_000, 37)
     assert flight.cfe.time.get_stcf() == (3_000_000, 0)
 
@@ -129,8 +146,9 @@ def test_cTIME2318_synchronization_callbacks(flight: Flight) -> None:
     assert calls == [1005, 1006]
 
 
-def test_cTIME2321_spacecraft_time_of_a_met(flight: Flight) -> None:
-    assert flight.cfe.time.met2sc_time((1000, 7)) == (1_001_000, 7)
+@pytest.mark.parametrize(("utc", "seconds"), [(False, 1_001_000), (True, 1_000_963)])
+def test_cTIME2321_spacecraft_time_of_a_met(fly: Fly, utc: bool, seconds: int) -> None:
+    assert fly(time_cfg_default_utc=utc).cfe.time.met2sc_time((1000, 7)) == (seconds, 7)
 
 
 def test_cTIME2322_the_api_triggers_the_one_hz_cycle(fly: Fly) -> None:

@@ -8,25 +8,26 @@ from pathlib import Path
 from typing import Any
 
 from rospy_shim import genpy
-from rospy_shim.msgs import Library, from_full_text, shipped
+from rospy_shim.msgs import Library
 
-_FILE = Path(__file__).parent.parent / "data" / "golden_msgs.json"
+_DATA = Path(__file__).parent.parent / "data"
+_FILE = _DATA / "golden_msgs.json"
+_MD5SUMS = _DATA / "msgs_md5sums.txt"
 _TIMES = {"time": genpy.Time, "duration": genpy.Duration}
 
 
 @cache
-def recorded() -> list[dict[str, Any]]:
-    """All recorded types with their cases."""
-    messages: list[dict[str, Any]] = json.loads(_FILE.read_text(encoding="utf-8"))["messages"]
-    return messages
+def recorded() -> dict[str, list[dict[str, Any]]]:
+    """All recorded types with their cases: "messages", with the requests and responses, and "services"."""
+    found: dict[str, list[dict[str, Any]]] = json.loads(_FILE.read_text(encoding="utf-8"))
+    parts = [service[part] for service in found["services"] for part in ("request", "response")]
+    return {"messages": found["messages"] + parts, "services": found["services"]}
 
 
-@cache
-def library_of(full_name: str) -> Library:
-    """The library that has a recorded type: the shipped one, or one made of its recorded full text."""
-    if shipped().has(full_name):
-        return shipped()
-    return from_full_text(full_name, next(each["full_text"] for each in recorded() if each["type"] == full_name))
+def md5sums(kind: str) -> dict[str, str]:
+    """What genmsg computes for each shipped "msg" or "srv"."""
+    lines = (line.split() for line in _MD5SUMS.read_text(encoding="utf-8").splitlines())
+    return {words[1]: words[2] for words in lines if words[0] == kind}
 
 
 def build(library: Library, field_type: str, value: Any) -> Any:

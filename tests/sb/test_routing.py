@@ -6,7 +6,7 @@ import pytest
 
 from cfepy.rtos import Kernel
 from cfepy.sb.pipe import Pipe
-from cfepy.sb.routing import INVALID_MSG_ID, INVALID_ROUTE_ID, Destination, RoutingTable, Throttle
+from cfepy.sb.routing import INVALID_MSG_ID, INVALID_ROUTE_ID, Destination, Route, RoutingTable, Throttle
 
 
 @pytest.fixture
@@ -73,3 +73,33 @@ def test_init_forgets_everything(table: RoutingTable) -> None:
     assert table.get_route_id(0x1803) == INVALID_ROUTE_ID
     assert table.add_route(0x1806) == 1
     assert table.is_valid_route_id(1)
+
+
+def test_the_totals_of_subscriptions_that_ended_take_no_room() -> None:
+    kernel = Kernel("thread")
+    route = Route(0x0801, 1)
+    for number in range(100):
+        destination = Destination(Pipe(kernel, 1, f"P{number}", None), 4, 1)
+        route.add(destination)
+        destination.puts, destination.gets, destination.limit_drops, destination.overflow_drops = 3, 2, 1, 5
+        if number % 2:
+            destination.gets = 3
+        else:
+            destination.pipe.depth = 0  # deleted, with a message in it
+        route.remove(destination)
+    assert len(route.gone) == 1
+    assert route.totals() == (250, 50, 100, 500)
+    kernel.shutdown()
+
+
+def test_what_is_read_after_the_end_of_a_subscription_counts() -> None:
+    kernel = Kernel("thread")
+    route = Route(0x0801, 1)
+    late, other = (Destination(Pipe(kernel, 1, name, None), 4, 1) for name in ("A", "B"))
+    for destination in (late, other):
+        destination.puts = 1
+        route.add(destination)
+        route.remove(destination)
+    late.gets = 1
+    assert route.totals() == (1, 1, 0, 0)
+    kernel.shutdown()

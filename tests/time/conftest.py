@@ -129,6 +129,10 @@ class World:
         packet = bytes(command(msg_id, code, payload))
         self.call(lambda: self.time.commands.process(packet), TIME_ID)
 
+    def command_counters(self) -> tuple[int, int]:
+        replies = self.time.commands.replies
+        return replies.command_counter, replies.error_counter
+
     def housekeeping(self) -> dict[str, Any]:
         """The fields of a fresh housekeeping packet."""
         self.command(0, msg_id=pk.SEND_HK_MID)

@@ -131,7 +131,7 @@ def test_a_clients_time_is_not_set_by_command(
     client.command(code, payload)
     text = f"{what} commands invalid without CFE_PLATFORM_TIME_CFG_SERVER set to TRUE"
     assert client.events == [(event_id, text)]
-    assert (client.time.commands.count, client.time.commands.errors) == (0, 1)
+    assert client.command_counters() == (0, 1)
 
 
 def test_a_client_with_a_simulated_tone_keeps_its_own_seconds(make: Make) -> None:

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from cfepy.tbl import TableImage, write_beside
 
-from ..messages import EXAMPLE_TABLE
+from ..packets import TABLE
 
 
 def image() -> TableImage:
     """The table."""
-    return TableImage("SAMPLE_APP.ExampleTable", EXAMPLE_TABLE.pack(Int1=1, Int2=2), "Table Utility Test Table")
+    return TABLE.image({"Int1": 1, "Int2": 2})
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ ROWS: list[tuple[int, int, int, bytes]] = [
 
 def image() -> TableImage:
     """The table."""
-    return schedule.image("SCH_LAB.ScheduleTable", TICKS_PER_SECOND, ROWS)
+    return schedule.image(TICKS_PER_SECOND, ROWS)
 
 
 if __name__ == "__main__":

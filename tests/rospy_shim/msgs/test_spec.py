@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.status import UsageError
-from rospy_shim.msgs import Folders, Library, Shipped, from_full_text
+from rospy_shim.msgs import Library, Shipped, from_full_text
 from rospy_shim.msgs.spec import parse
 
 
@@ -87,32 +87,12 @@ def test_only_a_leading_header_counts() -> None:
     assert not parse("Header h", "pkg/X", "").has_header
 
 
-def test_user_package(tmp_path: Path) -> None:
-    folder = tmp_path / "rover" / "msg"
-    folder.mkdir(parents=True)
-    (folder / "Wheel.msg").write_text("float64 speed\n")
-    (folder / "Drive.msg").write_text("Header header\nWheel[] wheels\ngeometry_msgs/Point goal\n")
-    (tmp_path / "rover" / "srv").mkdir()
-    (tmp_path / "rover" / "srv" / "Stop.srv").write_text("bool now\n---\nWheel last\n")
-    library = Library([Folders([tmp_path]), Shipped()])
-    wheel = library.message_class("rover/Wheel")
-    drive = library.message_class("rover/Drive")(wheels=[wheel(1.5), wheel(2.5)])
-    assert [each.speed for each in drive._unpack(drive._pack()).wheels] == [1.5, 2.5]
-    assert library.service_class("rover/Stop")._response_class().last.speed == 0.0
-    assert "rover" in library.packages()
-    assert library.names("rover") == ["Drive", "Wheel"]
-
-
 def test_unknown_and_endless_types(tmp_path: Path) -> None:
-    folder = tmp_path / "bad" / "msg"
-    folder.mkdir(parents=True)
-    (folder / "A.msg").write_text("B b\n")
-    (folder / "B.msg").write_text("A a\n")
-    (folder / "C.msg").write_text("Nowhere x\n")
-    library = Library([Folders([tmp_path])])
+    library = Library([Shipped(tmp_path)])
+    (tmp_path / "bad.msgs").write_text("# bad/A\nB b\n\n# bad/B\nA a\n\n# bad/C\nint8 i\nNowhere x\n")
     with pytest.raises(UsageError, match="bad/A contains itself"):
         library.message_class("bad/A")
-    with pytest.raises(UsageError, match=r"C\.msg: message type bad/Nowhere is unknown"):
+    with pytest.raises(UsageError, match=r"bad\.msgs:9: message type bad/Nowhere is unknown"):
         library.message_class("bad/C")
     with pytest.raises(UsageError, match="no message type 'bad/D'"):
         library.message_class("bad/D")

@@ -1,4 +1,4 @@
-"""SAMPLE_APP's messages and its table: ids, function codes, and layouts as the C structs have them in memory.
+"""SAMPLE_APP's commands, telemetry and table: ids, function codes, and layouts as the C structs have them in memory.
 
 A message id is made of a topic id, which a mission gives out once per topic. `COMMANDS`, `TELEMETRY` and `TABLES` are
 what tools on the ground find.
@@ -14,10 +14,10 @@ SEND_HK_MID = local_cmd_topic_id_to_msg_id(0x83)
 HK_TLM_MID = local_tlm_topic_id_to_msg_id(0x83)
 
 DISPLAY_PARAM_PAYLOAD = Layout(
-    "SAMPLE_APP_DisplayParam_Payload", [("ValU32", "u32"), ("ValI16", "i16"), ("ValStr", "char[10]")]
+    "SAMPLE_APP_DisplayParam_Payload_t", [("ValU32", "u32"), ("ValI16", "i16"), ("ValStr", "char[10]")]
 )
 HOUSEKEEPING = Layout(
-    "SAMPLE_APP_HkTlm_Payload", [("CommandErrorCounter", "u8"), ("CommandCounter", "u8"), ("spare", "u8[2]")]
+    "SAMPLE_APP_HkTlm_Payload_t", [("CommandErrorCounter", "u8"), ("CommandCounter", "u8"), ("spare", "u8[2]")]
 )
 
 NOOP = Command("SAMPLE_APP_NOOP", CMD_MID, 0, text="Sends an event, to show that the app is alive.")
@@ -32,7 +32,7 @@ HK_TLM = Telemetry("SAMPLE_APP_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "The app's com
 COMMANDS = (NOOP, RESET_COUNTERS, PROCESS, DISPLAY_PARAM, SEND_HK)
 TELEMETRY = (HK_TLM,)
 
-EXAMPLE_TABLE = Layout("SAMPLE_APP_ExampleTable", [("Int1", "u16"), ("Int2", "u16")])
+EXAMPLE_TABLE = Layout("SAMPLE_APP_ExampleTable_t", [("Int1", "u16"), ("Int2", "u16")])
 INT1_MAX = 10
 TABLE_OUT_OF_RANGE = -1
 

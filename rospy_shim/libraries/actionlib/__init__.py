@@ -1,0 +1,44 @@
+"""actionlib for nodes: long-running jobs that a client can follow and cancel, over five topics.
+
+Names, states, texts and timing are those of ROS's actionlib 1.14; the code is cfepy's own, and stands on what `rospy`
+offers to every node. It is executed anew in each node that imports it, so nothing here is shared between nodes.
+"""
+
+from __future__ import annotations
+
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
+
+from .action_client import ActionClient, GoalManager
+from .action_server import ActionServer, nop_cb
+from .client_goal_handle import ClientGoalHandle, CommStateMachine
+from .exceptions import ActionException
+from .goal_id_generator import GoalIDGenerator
+from .handle_tracker_deleter import HandleTrackerDeleter
+from .server_goal_handle import ServerGoalHandle
+from .simple_action_client import SimpleActionClient, SimpleGoalState
+from .simple_action_server import SimpleActionServer
+from .states import CommState, TerminalState, get_name_of_constant
+from .status_tracker import StatusTracker
+
+__all__ = [
+    "ActionClient",
+    "ActionException",
+    "ActionServer",
+    "ClientGoalHandle",
+    "CommState",
+    "CommStateMachine",
+    "GoalID",
+    "GoalIDGenerator",
+    "GoalManager",
+    "GoalStatus",
+    "GoalStatusArray",
+    "HandleTrackerDeleter",
+    "ServerGoalHandle",
+    "SimpleActionClient",
+    "SimpleActionServer",
+    "SimpleGoalState",
+    "StatusTracker",
+    "TerminalState",
+    "get_name_of_constant",
+    "nop_cb",
+]

@@ -1,0 +1,31 @@
+"""Ids for goals that came without one."""
+
+from __future__ import annotations
+
+from itertools import count
+from typing import Any
+
+import rospy
+from actionlib_msgs.msg import GoalID
+
+_goal_numbers = count(1)
+
+
+class GoalIDGenerator:
+    """Makes goal ids, unique in the node.
+
+    Args:
+        name: what they begin with; None takes the node's name.
+    """
+
+    def __init__(self, name: str | None = None) -> None:
+        self.set_name(rospy.get_name() if name is None else name)
+
+    def set_name(self, name: str) -> None:
+        """Set what the ids begin with."""
+        self.name = name
+
+    def generate_ID(self) -> Any:  # actionlib's name
+        """A new GoalID, stamped now."""
+        now = rospy.Time.now()
+        return GoalID(id=f"{self.name}-{next(_goal_numbers)}-{now.secs}.{now.nsecs}", stamp=now)

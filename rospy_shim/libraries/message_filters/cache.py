@@ -1,0 +1,77 @@
+"""`Cache`: the last messages of a filter, looked up by time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from .filters import SimpleFilter, stamp_of
+
+
+class Cache(SimpleFilter):
+    """Keeps the last messages that came, and passes them on.
+
+    Args:
+        f: the filter they come from.
+        cache_size: how many are kept.
+        allow_headerless: give messages without a header the time at which they come.
+    """
+
+    def __init__(self, f: SimpleFilter, cache_size: int = 1, allow_headerless: bool = False) -> None:
+        super().__init__()
+        self.cache_size = cache_size
+        self.cache_msgs: list[Any] = []
+        self.cache_times: list[Any] = []
+        self.allow_headerless = allow_headerless
+        self.connectInput(f)
+
+    def connectInput(self, f: SimpleFilter) -> None:
+        """Take the messages of a filter."""
+        self.incoming_connection = f.registerCallback(self.add)
+
+    def add(self, msg: Any) -> None:
+        """A message came."""
+        stamp = stamp_of(msg, self.allow_headerless)
+        if stamp is None:
+            return
+        self.cache_times.append(stamp)
+        self.cache_msgs.append(msg)
+        if len(self.cache_msgs) > self.cache_size:
+            del self.cache_msgs[0], self.cache_times[0]
+        self.signalMessage(msg)
+
+    def _pairs(self) -> Iterator[tuple[Any, Any]]:
+        return zip(self.cache_times, self.cache_msgs, strict=True)
+
+    def getInterval(self, from_stamp: Any, to_stamp: Any) -> list[Any]:
+        """The messages between two times, both included, in the order in which they came.
+
+        Raises:
+            AssertionError: the first time is after the second.
+        """
+        assert from_stamp <= to_stamp
+        return [msg for stamp, msg in self._pairs() if from_stamp <= stamp <= to_stamp]
+
+    def getElemAfterTime(self, stamp: Any) -> Any:
+        """The first message that came with this stamp or a later one, or None."""
+        return next((msg for time, msg in self._pairs() if time >= stamp), None)
+
+    def getElemBeforeTime(self, stamp: Any) -> Any:
+        """The last message that came with this stamp or an earlier one, or None."""
+        older = [msg for time, msg in self._pairs() if time <= stamp]
+        return older[-1] if older else None
+
+    def getLatestTime(self) -> Any:
+        """Stamp of the message that came last, or None."""
+        return self.cache_times[-1] if self.cache_times else None
+
+    getLastestTime = getLatestTime  # the misspelt name is part of ROS's interface
+
+    def getOldestTime(self) -> Any:
+        """Stamp of the message that came first of those kept, or None."""
+        return self.cache_times[0] if self.cache_times else None
+
+    def getLast(self) -> Any:
+        """The first message that came with the last stamp, or None."""
+        latest = self.getLatestTime()
+        return None if latest is None else self.getElemAfterTime(latest)

@@ -1,0 +1,142 @@
+"""Synchronizers: one message of each of several filters at a time, of equal or nearly equal stamps."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from collections.abc import Sequence
+from typing import Any
+
+import rospy
+
+from .filters import SimpleFilter, stamp_of
+
+Queue = dict[Any, Any]
+"""Messages of one filter by stamp, in the order in which they came."""
+
+
+class TimeSynchronizer(SimpleFilter):
+    """Passes on messages with the same stamp, one of each filter, as soon as all are there.
+
+    Args:
+        fs: the filters.
+        queue_size: how many messages of each wait; the oldest stamp goes first.
+        reset: forget a filter's messages when simulated time jumps back.
+    """
+
+    def __init__(self, fs: Sequence[SimpleFilter], queue_size: int, reset: bool = False) -> None:
+        super().__init__()
+        self.queue_size = queue_size
+        self.lock = threading.Lock()
+        self.enable_reset = reset
+        self.connectInput(fs)
+
+    def connectInput(self, fs: Sequence[SimpleFilter]) -> None:
+        """Take the messages of some filters."""
+        self.queues: list[Queue] = [{} for _ in fs]
+        self.latest_stamps = [rospy.Time(0) for _ in fs]
+        self.input_connections = [
+            each.registerCallback(self.add, queue, index)
+            for index, (each, queue) in enumerate(zip(fs, self.queues, strict=True))
+        ]
+
+    def add(self, msg: Any, my_queue: Queue, my_queue_index: int | None = None) -> None:
+        """A message came.
+
+        Args:
+            msg: the message.
+            my_queue: of the filter that it came from.
+            my_queue_index: that queue's place.
+        """
+        with self.lock:
+            behind = self._follow_clock(my_queue, my_queue_index)
+            self._keep(msg, msg.header.stamp, my_queue)
+            if behind:
+                return
+            for stamp in sorted(set(self.queues[0]).intersection(*self.queues[1:])):
+                self._emit([stamp] * len(self.queues))
+
+    def _follow_clock(self, queue: Queue, index: int | None) -> bool:
+        """Notice that simulated time jumped back: whether other filters have yet to notice it."""
+        if not self.enable_reset or rospy.rostime.is_wallclock():
+            return False
+        now = rospy.Time.now()
+        if index is not None:
+            if now < self.latest_stamps[index]:
+                rospy.logdebug("Detected jump back in time. Clearing message filter queue")
+                queue.clear()
+            self.latest_stamps[index] = now
+        return bool(max(self.latest_stamps) != now)
+
+    def _keep(self, msg: Any, stamp: Any, queue: Queue) -> None:
+        queue[stamp] = msg
+        while len(queue) > self.queue_size:
+            del queue[min(queue)]
+
+    def _emit(self, stamps: Sequence[Any]) -> None:
+        """Pass on the messages with these stamps, one for each queue, and forget them."""
+        pairs = list(zip(self.queues, stamps, strict=True))
+        self.signalMessage(*(queue[stamp] for queue, stamp in pairs))
+        for queue, stamp in pairs:
+            del queue[stamp]
+
+
+class ApproximateTimeSynchronizer(TimeSynchronizer):
+    """Passes on messages whose stamps differ by less than a slop, one of each filter.
+
+    Args:
+        fs: the filters.
+        queue_size: how many messages of each wait.
+        slop: in s.
+        allow_headerless: give messages without a header the time at which they come.
+        reset: forget a filter's messages when simulated time jumps back.
+    """
+
+    def __init__(
+        self,
+        fs: Sequence[SimpleFilter],
+        queue_size: int,
+        slop: float,
+        allow_headerless: bool = False,
+        reset: bool = False,
+    ) -> None:
+        super().__init__(fs, queue_size, reset)
+        self.slop = rospy.Duration.from_sec(slop)
+        self.allow_headerless = allow_headerless
+        self.last_added = rospy.Time()
+
+    def add(self, msg: Any, my_queue: Queue, my_queue_index: int | None = None) -> None:
+        """A message came; see `TimeSynchronizer.add`."""
+        stamp = stamp_of(msg, self.allow_headerless)
+        if stamp is None:
+            return
+        with self.lock:
+            behind = self._follow_clock(my_queue, my_queue_index)
+            self._keep(msg, stamp, my_queue)
+            self._forget_the_future()
+            if not behind:
+                self._match(stamp, my_queue_index)
+
+    def _forget_the_future(self) -> None:
+        now = rospy.Time.now()
+        if now < self.last_added:
+            rospy.loginfo("ApproximateTimeSynchronizer: Detected jump back in time. Clearing buffer.")
+            for queue in self.queues:
+                queue.clear()
+        self.last_added = now
+
+    def _match(self, stamp: Any, index: int | None) -> None:
+        """Pass on the messages that lie nearest to a new one, if there is one in each of the other queues."""
+        candidates = [self._near(stamp, queue) for queue in self.queues]
+        if index is not None:
+            candidates[index] = [stamp]
+        for stamps in itertools.product(*candidates):
+            complete = all(each in queue for queue, each in zip(self.queues, stamps, strict=True))
+            if complete and max(stamps) - min(stamps) < self.slop:
+                self._emit(stamps)
+                return
+
+    def _near(self, stamp: Any, queue: Queue) -> list[Any]:
+        """The stamps in a queue that are no further away than the slop, nearest first."""
+        near = [each for each in queue if abs(each - stamp) <= self.slop]
+        return sorted(near, key=lambda each: abs(each - stamp))

@@ -1,0 +1,23 @@
+"""tf2_py: the buffer of transforms and its exceptions (the Python module that tf2's C++ core has in ROS)."""
+
+from __future__ import annotations
+
+from tf2_py._tf2 import BufferCore
+from tf2_py.exceptions import (
+    ConnectivityException,
+    ExtrapolationException,
+    InvalidArgumentException,
+    LookupException,
+    TimeoutException,
+    TransformException,
+)
+
+__all__ = [
+    "BufferCore",
+    "ConnectivityException",
+    "ExtrapolationException",
+    "InvalidArgumentException",
+    "LookupException",
+    "TimeoutException",
+    "TransformException",
+]

@@ -1,0 +1,252 @@
+"""`BufferCore`: what tf2's C++ core offers to Python, with its argument names, results and error texts.
+
+Nothing here waits, so no lock is needed. Imports tf2_py only.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from tf2_py import reports
+from tf2_py.cache import StaticCache, TimeCache, seconds
+from tf2_py.checks import does_not_exist, name_problem, problems_of
+from tf2_py.exceptions import (
+    ConnectivityException,
+    ExtrapolationException,
+    InvalidArgumentException,
+    LookupException,
+    TimeoutException,
+    TransformException,
+)
+from tf2_py.messages import message_of, rigid_of, time_of, to_ns
+from tf2_py.rotation import IDENTITY, Rigid, compose, inverse, product
+from tf2_py.tree import Tree
+
+__all__ = [
+    "BufferCore",
+    "ConnectivityException",
+    "ExtrapolationException",
+    "InvalidArgumentException",
+    "LookupException",
+    "TimeoutException",
+    "TransformException",
+]
+
+_CACHE_TIME_NS = 10_000_000_000
+
+
+class BufferCore:
+    """A buffer of transforms, 10 s long by default.
+
+    Args:
+        cache_time: how long samples are kept, a rospy.Duration.
+    """
+
+    def __init__(self, cache_time: Any = None) -> None:
+        self._keep_ns = _CACHE_TIME_NS if cache_time is None else to_ns(cache_time)
+        self._tree = Tree()
+        self._authorities: dict[str, str] = {}
+
+    # -- filling -----------------------------------------------------------------------------------------------------
+
+    def set_transform(self, transform: Any, authority: str) -> None:
+        """Take in a transform at its stamp; one that makes no sense is reported and left out.
+
+        Args:
+            transform: a geometry_msgs/TransformStamped.
+            authority: who says so.
+
+        Raises:
+            TypeError: `transform` lacks a part.
+        """
+        self._set(transform, authority, TimeCache(self._keep_ns))
+
+    def set_transform_static(self, transform: Any, authority: str) -> None:
+        """Take in a transform that holds at all times; arguments as `set_transform`."""
+        self._set(transform, authority, StaticCache())
+
+    def _set(self, message: Any, authority: str, cache: TimeCache | StaticCache) -> None:
+        child, parent = message.child_frame_id.removeprefix("/"), message.header.frame_id.removeprefix("/")
+        stamp, rigid = to_ns(message.header.stamp), rigid_of(message.transform)
+        problems = problems_of(child, parent, rigid, authority)
+        for text in problems:
+            _report("Error:  ", text)
+        if problems:
+            return
+        caches = self._tree.caches
+        known = caches.get(child)
+        if known is None:
+            known = caches[child] = cache
+        caches.setdefault(parent, None)
+        refused = known.insert(stamp, (parent, *rigid))
+        if refused:
+            at = f"for frame {child} (parent {parent}) at time {seconds(stamp):f} according to authority {authority}"
+            _report("Warning:", f"{refused} {at}")
+        else:
+            self._authorities[child] = authority
+
+    def clear(self) -> None:
+        """Forget all samples that are not static; the frames stay known."""
+        for cache in self._tree.caches.values():
+            if cache is not None:
+                cache.clear()
+
+    # -- looking up --------------------------------------------------------------------------------------------------
+
+    def lookup_transform_core(self, target_frame: str, source_frame: str, time: Any) -> Any:
+        """The transform that takes coordinates in the source frame to the target frame.
+
+        Args:
+            target_frame: name of a frame.
+            source_frame: name of a frame.
+            time: a rospy.Time; 0 for the latest common one.
+
+        Returns:
+            a geometry_msgs/TransformStamped.
+
+        Raises:
+            LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: it is not to be
+                had.
+        """
+        return message_of(target_frame, source_frame, *self._lookup(target_frame, source_frame, to_ns(time)))
+
+    def lookup_transform_full_core(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> Any:
+        """The transform from the source frame at one time to the target frame at another.
+
+        Args:
+            target_frame: name of a frame.
+            target_time: a rospy.Time; 0 for the latest.
+            source_frame: name of a frame.
+            source_time: a rospy.Time; 0 for the latest.
+            fixed_frame: the frame that does not move in between.
+
+        Returns:
+            a geometry_msgs/TransformStamped, with the target's time.
+
+        Raises:
+            LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: as
+                `lookup_transform_core`.
+        """
+        at_target, at_source = to_ns(target_time), to_ns(source_time)
+        for role, name in (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame)):
+            self._validate(f"lookupTransform argument {role}_frame", name)
+        _, first = self._lookup(fixed_frame, source_frame, at_source)
+        when, second = self._lookup(target_frame, fixed_frame, at_target)
+        return message_of(target_frame, source_frame, when, product(second, first))
+
+    def _lookup(self, target: str, source: str, time: int) -> tuple[int, Rigid]:
+        """Time and transform of a way through the tree."""
+        tree = self._tree
+        if target == source:
+            cache = None if time else tree.caches.get(target)
+            return (time if cache is None else cache.latest()[0]), IDENTITY
+        if target not in tree.caches or source not in tree.caches:
+            self._validate("lookupTransform argument target_frame", target)
+            self._validate("lookupTransform argument source_frame", source)
+        path = tree.path(target, source, time)
+        if not path.down:
+            return path.time, compose(path.up)
+        back = inverse(compose(path.down))
+        if not path.up:
+            return path.time, back
+        return path.time, compose((("", *compose(path.up)), ("", *back)))
+
+    def _validate(self, role: str, name: str) -> None:
+        if not isinstance(name, str):
+            raise TypeError(f"{role} must be str, not {type(name).__name__}")
+        problem = name_problem(role, name)
+        if problem:
+            raise InvalidArgumentException(problem)
+        if name not in self._tree.caches:
+            raise LookupException(f'"{name}" passed to {role} does not exist. ')
+
+    # -- asking ------------------------------------------------------------------------------------------------------
+
+    def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[int, str]:
+        """Whether `lookup_transform_core` would succeed: 1 or 0, and why not."""
+        at = to_ns(time)
+        if target_frame == source_frame:
+            return 1, ""
+        frames = {"target_frame": target_frame, "source_frame": source_frame}
+        problem = self._unknown(frames)
+        return (0, problem) if problem is not None else self._try(target_frame, source_frame, at)
+
+    def can_transform_full_core(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> tuple[int, str]:
+        """Whether `lookup_transform_full_core` would succeed: 1 or 0, and why not."""
+        at_target, at_source = to_ns(target_time), to_ns(source_time)
+        frames = {"target_frame": target_frame, "source_frame": source_frame, "fixed_frame": fixed_frame}
+        problem = self._unknown(frames)
+        if problem is not None:
+            return 0, problem
+        possible, problem = self._try(target_frame, fixed_frame, at_target)
+        return self._try(fixed_frame, source_frame, at_source) if possible else (0, problem)
+
+    def _unknown(self, frames: dict[str, str]) -> str | None:
+        """What is wrong with the names of frames; an ill-formed one is reported on the console and has no text."""
+        for role, name in frames.items():
+            problem = name_problem(f"canTransform argument {role}", name)
+            if problem:
+                _report("Warning:", problem)
+                return ""
+        unknown = [(role, name) for role, name in frames.items() if name not in self._tree.caches]
+        return " ".join(does_not_exist(role, name) for role, name in unknown) or None
+
+    def _try(self, target: str, source: str, time: int) -> tuple[int, str]:
+        try:
+            self._tree.path(target, source, time)
+        except TransformException as problem:
+            return 0, str(problem)
+        return 1, ""
+
+    def get_latest_common_time(self, target_frame: str, source_frame: str) -> Any:
+        """The latest time that all frames on the way between two have in common, a rospy.Time.
+
+        Raises:
+            InvalidArgumentException, LookupException: a frame is unknown.
+            TransformException: there is no way between them.
+        """
+        self._validate("get_latest_common_time", target_frame)
+        self._validate("get_latest_common_time", source_frame)
+        try:
+            latest = self._tree.latest_common_time(target_frame, source_frame)
+        except TransformException as problem:
+            raise TransformException(str(problem)) from None
+        return time_of(latest)
+
+    # -- reports -----------------------------------------------------------------------------------------------------
+
+    def all_frames_as_string(self) -> str:
+        """A line for each frame that has a parent."""
+        return self._tree.as_string()
+
+    def all_frames_as_yaml(self) -> str:
+        """The frames with parent, authority, rate and times, as YAML."""
+        return reports.as_yaml(self._tree, self._authorities)
+
+    def _allFramesAsDot(self, time: Any = None) -> str:
+        return reports.as_dot(self._tree, self._authorities, 0 if time is None else to_ns(time))
+
+    def _chain(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> list[str]:
+        at_target, at_source = to_ns(target_time), to_ns(source_time)
+        for name in (source_frame, fixed_frame, target_frame):
+            self._validate("chain", name)
+        first = self._tree.chain(fixed_frame, source_frame, at_source)
+        return first[:-1] + self._tree.chain(target_frame, fixed_frame, at_target)
+
+    def _frameExists(self, frame_id: str) -> bool:
+        return frame_id in self._tree.caches
+
+    def _getFrameStrings(self) -> list[str]:
+        return list(self._tree.caches)
+
+
+def _report(level: str, text: str) -> None:
+    """A line of tf2's own log."""
+    print(level, text, file=sys.stderr)

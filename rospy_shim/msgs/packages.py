@@ -1,0 +1,135 @@
+"""ROS packages on disk: which there are and where they lie, by the rules of rospkg and catkin.
+
+A package is a folder with a package.xml (or rosbuild's manifest.xml), which also names it. Near a node and in
+`share` folders a folder with definitions in `msg`, `srv` or `action` will do; its own name is the package's then. The
+one place that knows this; what reads definitions or looks packages up by name asks here. Imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property
+from pathlib import Path
+
+_MANIFESTS = ("package.xml", "manifest.xml")
+_FENCES = ("CATKIN_IGNORE", "AMENT_IGNORE", "rospack_nosubdirs")
+_DEFINITIONS = ("msg", "srv", "action")
+_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
+
+
+class Packages:
+    """The packages that a program can see, each by its first place.
+
+    They are looked for when the first is asked for: near the program, then along ROS_PACKAGE_PATH, then in the share
+    folders of CMAKE_PREFIX_PATH.
+
+    Args:
+        script: the program's file; None leaves out what is near it.
+        environ: its environment, read when the first package is asked for.
+        resolve: makes an absolute path of one in the environment.
+    """
+
+    def __init__(
+        self,
+        script: Path | None,
+        environ: Mapping[str, str],
+        resolve: Callable[[str], str | os.PathLike[str]] = os.path.abspath,
+    ) -> None:
+        self._script = script
+        self._environ = environ
+        self._resolve = resolve
+
+    def names(self) -> list[str]:
+        """Names of all packages, sorted."""
+        return sorted(self._found)
+
+    def path(self, name: str) -> Path | None:
+        """Folder of a package (rospkg.RosPack.get_path), or None when there is none such."""
+        folders = self.folders(name)
+        return folders[0] if folders else None
+
+    def folders(self, name: str) -> list[Path]:
+        """All folders of a package, the one that counts first; a built one may have a `share` folder as well."""
+        return self._found.get(name, [])
+
+    def package_of(self, file: Path) -> str | None:
+        """Name of the package that a file belongs to (rospkg.get_package_name)."""
+        return next((name_of(folder) for folder in file.absolute().parents if has_manifest(folder)), None)
+
+    def code_folders(self) -> list[Path]:
+        """Folders with Python code that packages offer under their own names, as catkin_python_setup has it."""
+        found = [folders[0] / "src" for folders in self._found.values()]
+        return [folder for folder in found if any(folder.glob("*/__init__.py"))]
+
+    @cached_property
+    def _found(self) -> dict[str, list[Path]]:
+        found: dict[str, list[Path]] = {}
+        for folder in dict.fromkeys(self._search()):
+            found.setdefault(name_of(folder), []).append(folder)
+        return found
+
+    def _search(self) -> Iterator[Path]:
+        if self._script is not None:
+            yield from near(self._script)
+        for root in self._listed("ROS_PACKAGE_PATH"):
+            yield from crawl(root)
+        for prefix in self._listed("CMAKE_PREFIX_PATH"):
+            yield from filter(is_package, _subfolders(prefix / "share"))
+
+    def _listed(self, variable: str) -> list[Path]:
+        return [Path(self._resolve(each)) for each in self._environ.get(variable, "").split(os.pathsep) if each]
+
+
+def near(script: Path) -> Iterator[Path]:
+    """Packages near a program: those it lies in and those beside them, then the folders beside the program itself."""
+    for folder in script.absolute().parents:
+        if has_manifest(folder):
+            yield folder
+            yield from filter(is_package, _subfolders(folder.parent))
+    here = script.absolute().parent
+    if has_definitions(here):
+        yield here
+    yield from filter(is_package, _subfolders(here))
+
+
+def crawl(root: Path) -> Iterator[Path]:
+    """Packages in a folder of ROS_PACKAGE_PATH, at any depth; none inside another."""
+    if has_manifest(root):
+        yield root
+    elif not any((root / fence).exists() for fence in _FENCES):
+        for folder in _subfolders(root):
+            yield from crawl(folder)
+
+
+def name_of(folder: Path) -> str:
+    """What a package's manifest calls it; without one, or with rosbuild's, the folder's name."""
+    try:
+        match = _NAME.search((folder / _MANIFESTS[0]).read_text(encoding="utf-8", errors="replace"))
+    except OSError:
+        match = None
+    return match[1] if match else folder.name
+
+
+def has_manifest(folder: Path) -> bool:
+    """Whether a folder says that it is a package."""
+    return any((folder / manifest).is_file() for manifest in _MANIFESTS)
+
+
+def has_definitions(folder: Path) -> bool:
+    """Whether a folder has .msg files in `msg`, or .srv or .action files where they belong."""
+    return any(True for kind in _DEFINITIONS for _ in (folder / kind).glob(f"*.{kind}"))
+
+
+def is_package(folder: Path) -> bool:
+    """Whether a folder is a package where none needs a manifest."""
+    return has_manifest(folder) or has_definitions(folder)
+
+
+def _subfolders(folder: Path) -> list[Path]:
+    """Folders in a folder that are not hidden, sorted; none when it cannot be read."""
+    try:
+        return sorted(each for each in folder.iterdir() if each.is_dir() and not each.name.startswith("."))
+    except OSError:
+        return []

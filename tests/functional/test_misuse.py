@@ -1,0 +1,118 @@
+"""Beyond NASA's segments: what only Python lets an application say, and what must not harm the core.
+
+Numbers of more bits than C's, names whose characters are more than a byte, functions that return no number.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from cfepy.app import Cfe
+from cfepy.fs import read_header
+from cfepy.mission import Mission
+from cfepy.osal.limits import OS_FILE_FLAG_CREATE, OS_READ_WRITE
+from cfepy.sb import POLL
+from cfepy.sb import packets as sb_pk
+from cfepy.status import (
+    CFE_ES_BAD_ARGUMENT,
+    CFE_ES_CDS_INVALID_NAME,
+    CFE_FS_BAD_ARGUMENT,
+    CFE_SB_PIPE_CR_ERR,
+    CFE_SUCCESS,
+    CFE_TBL_ERR_INVALID_NAME,
+)
+from cfepy.tbl import packets as tbl_pk
+from tests.functional.harness import CMD_MID, TLM_MID, status_of
+from tests.functional.tables import FULL_NAME, NAME, SIZE
+
+
+def test_names_are_counted_in_bytes(cfe: Cfe) -> None:
+    assert status_of(cfe.es.register_gen_counter, "é" * 10) == CFE_ES_BAD_ARGUMENT
+    assert status_of(cfe.es.register_gen_counter, "é" * 9) == CFE_SUCCESS
+    assert status_of(cfe.es.register_cds, 10, "é" * 9) == CFE_ES_CDS_INVALID_NAME
+    assert status_of(cfe.es.register_cds, 10, "é" * 8) == CFE_SUCCESS
+    assert status_of(cfe.tbl.register, "é" * 8, SIZE) == CFE_TBL_ERR_INVALID_NAME
+    assert status_of(cfe.tbl.register, "é" * 7, SIZE) == CFE_SUCCESS
+    assert status_of(cfe.sb.create_pipe, 5, "é" * 10) == CFE_SB_PIPE_CR_ERR
+
+
+def test_pipe_options_have_8_bits(cfe: Cfe, mission: Mission) -> None:
+    pipe = cfe.sb.create_pipe(5, "Pipe")
+    cfe.sb.set_pipe_opts(pipe, 0x102)
+    assert cfe.sb.get_pipe_opts(pipe) == 2
+    cfe.sb.transmit_msg(sb_pk.WRITE_PIPE_INFO.packet(Filename="/ram/pipes.dat"))
+    cfe.os.task_delay(2000)
+    assert read_header(mission.files.read_file("/ram/pipes.dat")).length == 64
+
+
+def test_quality_of_a_subscription_has_16_bits(cfe: Cfe) -> None:
+    cfe.sb.transmit_msg(sb_pk.ENABLE_SUB_REPORTING.packet())
+    reports = cfe.sb.create_pipe(3, "Reports")
+    cfe.sb.subscribe_local(sb_pk.ONESUB_TLM.msg_id, reports, 2)
+    assert status_of(cfe.sb.subscribe_ex, CMD_MID, reports, 0x12345678, 0x10002) == CFE_SUCCESS
+    report = cfe.sb.receive_buffer(reports, POLL)
+    assert report is not None
+    assert sb_pk.ONESUB_TLM.read(report)["Qos"] == {"Priority": 0x78, "Reliability": 0x56}
+
+
+def test_numbers_in_file_headers_have_32_bits(cfe: Cfe) -> None:
+    file = cfe.os.open_create("/ram/file", OS_FILE_FLAG_CREATE, OS_READ_WRITE)
+    assert status_of(cfe.fs.write_header, file, cfe.fs.init_header("", 1 << 32)) == CFE_FS_BAD_ARGUMENT
+    assert status_of(cfe.fs.set_timestamp, file, (1 << 32, 0)) == CFE_FS_BAD_ARGUMENT
+
+
+@pytest.mark.parametrize(("said", "told"), [(0, 0), (-5, -5), (7, 7), (1 << 40, 0), (-(1 << 40) - 5, -5)])
+def test_table_validation_is_told_to_the_ground(cfe: Cfe, said: int, told: int) -> None:
+    assert validation_told(cfe, said) == told
+
+
+@pytest.mark.parametrize("said", [None, 2.5, "good"])
+def test_table_validation_without_a_number_has_failed(cfe: Cfe, said: object) -> None:
+    assert validation_told(cfe, said) == -1
+
+
+def validation_told(cfe: Cfe, said: Any) -> int:
+    """LastValStatus in housekeeping, when a validation function says something."""
+    answers: list[Any] = [0, said]
+    handle = cfe.tbl.register(NAME, SIZE, 0, lambda image: answers.pop(0))
+    cfe.tbl.load(handle, bytes(SIZE))
+    pipe = cfe.sb.create_pipe(5, "Housekeeping")
+    cfe.sb.subscribe(tbl_pk.HK_TLM.msg_id, pipe)
+    cfe.sb.transmit_msg(tbl_pk.VALIDATE.packet(ActiveTableFlag=tbl_pk.ACTIVE_BUFFER, TableName=FULL_NAME))
+    try:
+        cfe.tbl.manage(handle)
+    except TypeError:
+        assert not isinstance(said, int)
+    cfe.sb.transmit_msg(tbl_pk.SEND_HK.packet())
+    packet = cfe.sb.receive_buffer(pipe, 100)
+    assert packet is not None
+    status: int = tbl_pk.HK_TLM.read(packet)["LastValStatus"]
+    return status
+
+
+def test_table_notification_is_sent_or_reported(cfe: Cfe) -> None:
+    handle = cfe.tbl.register(NAME, SIZE, 0, lambda image: 0)
+    cfe.tbl.load(handle, bytes(SIZE))
+    pipe = cfe.sb.create_pipe(5, "Requests")
+    cfe.sb.subscribe(CMD_MID, pipe)
+    validate = tbl_pk.VALIDATE.packet(ActiveTableFlag=tbl_pk.ACTIVE_BUFFER, TableName=FULL_NAME)
+
+    def notification(*wish: int) -> bytes | None:
+        cfe.tbl.notify_by_message(handle, *wish)
+        cfe.sb.transmit_msg(validate)
+        packet = cfe.sb.receive_buffer(pipe, 100)
+        cfe.tbl.manage(handle)
+        return packet
+
+    packet = notification(CMD_MID, 5, 0xFFFFFFFE)
+    assert packet is not None
+    assert cfe.msg.get_fcn_code(packet) == 5
+    assert tbl_pk.NOTIFY_COMMAND.unpack(packet, 8)["Parameter"] == 0xFFFFFFFE
+    packet = notification(CMD_MID, 5, -2)
+    assert packet is not None
+    assert tbl_pk.NOTIFY_COMMAND.unpack(packet, 8)["Parameter"] == 0xFFFFFFFE, "32 bits"
+    for wish in ((CMD_MID, 200, 0), (TLM_MID, 5, 0), (0, 5, 0)):
+        assert notification(*wish) is None
+    assert notification(CMD_MID, 5, 0) is not None, "Table Services are still there"

@@ -1,0 +1,84 @@
+"""The Critical Data Store against a dictionary: registering, writing, deleting and resets in any order."""
+
+from __future__ import annotations
+
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
+
+from cfepy.psp.psp import RST_TYPE_POWERON
+from cfepy.status import (
+    CFE_ES_CDS_ALREADY_EXISTS,
+    CFE_ES_ERR_MEM_BLOCK_SIZE,
+    CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
+    CFE_SUCCESS,
+    CfeError,
+)
+from tests.es.test_cds import ENTRIES, Board
+
+NAMES = [f"APP.{number}" for number in range(ENTRIES + 2)]
+SIZES = st.sampled_from((1, 4, 12, 13, 100, 900))
+
+
+class CdsAgainstModel(RuleBasedStateMachine):
+    """`blocks` is what has to be in the store: name to content; content is what a block was last written with."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.board = Board()
+        self.blocks: dict[str, bytes] = {}
+
+    def _register(self, name: str, size: int) -> int:
+        try:
+            return self.board.cds.register(size, name, is_table=False)[1]
+        except CfeError as refusal:
+            return refusal.status
+
+    @rule(name=st.sampled_from(NAMES), size=SIZES)
+    def register(self, name: str, size: int) -> None:
+        old = self.blocks.get(name)
+        is_same = old is not None and len(old) == size
+        is_full = old is None and len(self.blocks) == ENTRIES
+        status = self._register(name, size)
+        if is_same or is_full:
+            assert status == (CFE_ES_CDS_ALREADY_EXISTS if is_same else CFE_ES_NO_RESOURCE_IDS_AVAILABLE)
+            return
+        assert status in (CFE_SUCCESS, CFE_ES_ERR_MEM_BLOCK_SIZE)
+        self.blocks.pop(name, None)
+        if status == CFE_SUCCESS:
+            self.blocks[name] = bytes(size)
+
+    @precondition(lambda self: self.blocks)
+    @rule(data=st.data())
+    def write(self, data: st.DataObject) -> None:
+        name = data.draw(st.sampled_from(sorted(self.blocks)))
+        size = len(self.blocks[name])
+        self.blocks[name] = data.draw(st.binary(min_size=size, max_size=size))
+        self.board.cds.write(self.board.cds.named(name).handle, self.blocks[name])
+
+    @precondition(lambda self: self.blocks)
+    @rule(data=st.data())
+    def delete(self, data: st.DataObject) -> None:
+        name = data.draw(st.sampled_from(sorted(self.blocks)))
+        self.board.cds.delete(name)
+        del self.blocks[name]
+
+    @rule()
+    def reset_processor(self) -> None:
+        self.board.boot()
+        assert not self.board.log
+
+    @rule()
+    def power_on(self) -> None:
+        self.board.memory[:] = bytes(len(self.board.memory))  # what the PSP does
+        self.board.boot(RST_TYPE_POWERON)
+        self.blocks.clear()
+
+    @invariant()
+    def the_store_is_the_model(self) -> None:
+        cds = self.board.cds
+        assert {block.name: cds.read(block.handle) for block in cds} == self.blocks
+
+
+TestCds = CdsAgainstModel.TestCase
+TestCds.settings = settings(max_examples=60, stateful_step_count=40, deadline=None)

@@ -1,0 +1,67 @@
+"""Libraries are found behind a node's own code, executed for each node, and read only when they are imported."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cfepy.nodes import Universe
+from cfepy.rtos import Kernel
+from rospy_shim import library_path
+from tests.rospy_shim.libraries.world import universe
+from tests.rospy_shim.missions import run_nodes
+
+
+def test_the_names_are_those_of_the_folders() -> None:
+    assert {"tf", "tf2_ros", "tf2_py", "tf2_geometry_msgs"} <= library_path.names()
+
+
+def test_each_node_executes_a_library_for_itself() -> None:
+    first, second = (universe().importer.load("tf2_ros") for _ in range(2))
+    assert first.TransformRegistration is not second.TransformRegistration
+
+
+def test_nothing_is_read_before_it_is_needed() -> None:
+    node = universe()
+    node.importer.load("tf")
+    assert not {"numpy", "tf.transformations", "tf.linear_math"} & set(node.importer.modules)
+
+
+def test_a_library_has_code_and_messages(tmp_path: Path) -> None:
+    script = """
+        import tf.msg, tf.srv
+        from tf.msg import tfMessage
+        from tf2_msgs.msg import TFMessage
+        print(tfMessage._md5sum == TFMessage._md5sum, tf.srv.FrameGraph._type, tf.Transformer.__module__)
+    """
+    assert run_nodes(tmp_path, {"NODE": script}).printed["NODE"] == ["True tf/FrameGraph tf.transformer"]
+
+
+def test_a_copy_in_the_nodes_folder_comes_first(tmp_path: Path) -> None:
+    (tmp_path / "tf2_ros").mkdir()
+    (tmp_path / "tf2_ros/__init__.py").write_text("from tf2_py import BufferCore\nORIGIN = 'my own'\n")
+    script = "import tf2_ros, tf2_py; print(tf2_ros.ORIGIN, tf2_ros.BufferCore is tf2_py.BufferCore)"
+    assert run_nodes(tmp_path, {"NODE": script}).printed["NODE"] == ["my own True"]
+
+
+def test_a_folder_that_the_node_adds_to_its_path_comes_first(tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere/tf.py").write_text("ORIGIN = 'my own'\n")
+    script = f"import sys; sys.path.append({str(tmp_path / 'elsewhere')!r}); import tf; print(tf.ORIGIN)"
+    assert run_nodes(tmp_path, {"NODE": script}).printed["NODE"] == ["my own"]
+
+
+def test_the_compiled_half_of_a_copy_comes_from_the_library(tmp_path: Path) -> None:
+    (tmp_path / "tf2_py").mkdir()
+    (tmp_path / "tf2_py/__init__.py").write_text("from ._tf2 import *\nORIGIN = 'my own'\n")
+    script = "import tf2_py; print(tf2_py.ORIGIN, tf2_py.BufferCore().all_frames_as_yaml())"
+    assert run_nodes(tmp_path, {"NODE": script}).printed["NODE"] == ["my own {}"]
+
+
+def test_importlib_finds_a_library() -> None:
+    spec = universe().importer.find_spec("tf2_geometry_msgs")
+    assert spec is not None
+    assert spec.origin == str(library_path.FOLDER / "tf2_geometry_msgs" / "__init__.py")
+
+
+def test_without_library_paths_there_are_none() -> None:
+    assert Universe(Kernel(), name="bare").importer.find_spec("tf2_geometry_msgs") is None

@@ -1,0 +1,30 @@
+"""A universe for libraries alone: their code as a node imports it, with rospy's values but without a mission."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any
+
+from cfepy.nodes import Universe
+from cfepy.rtos import Kernel
+from rospy_shim import library_path, rostime
+from rospy_shim.msgs import make_module
+
+
+def universe() -> Universe:
+    """A fresh universe; `universe().importer.load(name)` is an import in it."""
+    return Universe(Kernel(), name="node", library_paths=[library_path.FOLDER], find_module=_find)
+
+
+def _find(name: str) -> Callable[[Any], ModuleType] | None:
+    if name in library_path.names():
+        return None
+    module = _values_of_rospy() if name == "rospy" else make_module(name)
+    return None if module is None else lambda universe: module
+
+
+def _values_of_rospy() -> ModuleType:
+    module = ModuleType("rospy")
+    vars(module).update(Time=rostime.Time, Duration=rostime.Duration)
+    return module
