@@ -42,8 +42,8 @@ def _messages_per_second(context: str) -> float:
 
 
 def _delivered(flight: Mission) -> int:
-    msg_id = next(row.msg_id for row in flight.ros.topics() if row.name == "/joints")
-    delivered, limited, overflown = flight.cfe.sb.routes[msg_id].totals()
+    msg_id: int = next(row.msg_id for row in flight.ros.topics() if row.name == "/joints")
+    delivered, _, limited, overflown = flight.cfe.sb.routes[msg_id].totals()
     if limited or overflown:
         raise RuntimeError(f"{limited + overflown} messages were lost")
     return delivered

@@ -35,7 +35,8 @@ class TopicRow(NamedTuple):
     """A topic in the mission's tables.
 
     `dropped` counts long messages that lost a segment in a full pipe; the bus itself counts the other losses.
-    `held_back` counts messages that had to wait because the board publishes no faster.
+    `held_back` counts messages that had to wait because the board publishes no faster. `definition` is the type's full
+    text.
     """
 
     name: str
@@ -45,6 +46,7 @@ class TopicRow(NamedTuple):
     subscribers: tuple[str, ...]
     dropped: int
     held_back: int = 0
+    definition: str = ""
 
 
 class Topic:
@@ -56,6 +58,7 @@ class Topic:
         self.raw = raw
         self.type = ""  # of whoever came first, as long as anybody of them is there
         self.md5sum = ""
+        self.definition = ""
         self._members = 0
         self.links: list[Link] = []
         self.subscriptions: list[Subscription] = []
@@ -73,6 +76,7 @@ class Topic:
         if self._members == 0 or not self.type:
             concrete = data_class._type != "*"
             self.type, self.md5sum = (data_class._type, data_class._md5sum) if concrete else (self.type, "")
+            self.definition = data_class._full_text if concrete else self.definition
         elif data_class._type != "*" and self.md5sum not in ("", data_class._md5sum):
             return False
         self._members += 1

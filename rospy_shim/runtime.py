@@ -138,6 +138,7 @@ class RosRuntime:
             tuple(topic.subscriber_names),
             topic.lost,
             topic.held_back,
+            topic.definition,
         )
 
 

@@ -26,7 +26,6 @@ def _add_tbl(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     build = _add_action(actions, "build", "make a table file from a YAML file")
     build.add_argument("file", metavar="FILE.yaml", help="the table's headers and rows")
     build.add_argument("-o", "--output", metavar="FILE.tbl", help="the table file (default: FILE.tbl)")
-    build.add_argument("--mark", action="store_true", help="protect the file with an integrity mark")
     show = _add_action(actions, "show", "show a table file")
     show.add_argument("file", metavar="FILE.tbl", help="a table file")
     how = show.add_mutually_exclusive_group()

@@ -16,7 +16,6 @@ from cfepy.cli.failures import booting, writing
 from cfepy.cli.flight import Flight, Interrupts
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.saved_files import save_files, saving_to
-from cfepy.cli.trace_file import TraceFile
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec, read_mission
 from cfepy.mission.results import Results
@@ -26,6 +25,7 @@ from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
+    from cfepy.cli.trace_file import TraceFile
     from cfepy.io.host_network import HostNetwork
     from cfepy.mission.script import ScriptRun
     from cfepy.mission.script_verdicts import Outcome
@@ -80,6 +80,12 @@ def _script(arguments: argparse.Namespace, spec: MissionSpec) -> ScriptRun | Non
     return ScriptRun(read_script(arguments.script, spec, dictionary_of(spec)), arguments.stop_on_failure)
 
 
+def _trace_file(file: str) -> TraceFile:
+    from cfepy.cli.trace_file import TraceFile
+
+    return TraceFile(file)
+
+
 def _duration(arguments: argparse.Namespace, script: ScriptRun | None) -> float:
     """Virtual seconds that the run takes; with a script, at most."""
     if arguments.seconds is not None:
@@ -94,7 +100,7 @@ def _fly(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupt
     flight: Flight | None = None
     try:
         with contextlib.ExitStack() as stack:
-            trace = stack.enter_context(TraceFile(arguments.trace)) if arguments.trace else None
+            trace = stack.enter_context(_trace_file(arguments.trace)) if arguments.trace else None
             display = make_display(arguments.quiet, seconds)
             stack.callback(display.close)
             mission = stack.enter_context(_mission(arguments, spec, display, trace, script))

@@ -66,8 +66,6 @@ def _build(arguments: argparse.Namespace, find: Find) -> int:
     path = Path(arguments.file)
     target = Path(arguments.output) if arguments.output else path.with_suffix(".tbl")
     file = table_yaml.read(path, find)
-    if arguments.mark:
-        file = file.marked()
     with writing(target, "--output"):
         target.write_bytes(file.pack())
     print(f"{target}: {file.table.table_name}, {_extent(file)}")

@@ -132,10 +132,10 @@ def document(file: TableFile) -> dict[str, Any]:
     """Everything in a table file as plain values in the order in which people read them."""
     values: dict[str, Any] = {"table": file.table.table_name}
     values.update((name, getattr(file.header, name)) for name in HEADER_FIELDS)
-    if file.is_marked:
-        values["mark"] = True
-    elif file.table.reserved:
+    if file.table.reserved and not file.is_marked:
         values["reserved"] = file.table.reserved
+    else:
+        values["mark"] = file.is_marked
     if not file.is_whole:
         values["offset"] = file.table.offset
         values["bytes"] = len(file.image)

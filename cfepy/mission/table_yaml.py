@@ -105,7 +105,7 @@ def read(path: Path, find: Find) -> TableFile:
     image = _image(said, kind, offset)
     table = TableHeader(name, len(image), offset, _number(said, "reserved"))
     file = TableFile(_header(said), table, image, _hex(said.get("after")), kind)
-    return file.marked() if _is_true(said, "mark") else file
+    return file.marked() if _wants_mark(said) else file
 
 
 def own_type(said: dict[str, Marked]) -> TableType | None:
@@ -159,12 +159,13 @@ def _number(said: dict[str, Marked], name: str, default: int = 0) -> int:
     return said[name].integer(0, U32) if name in said else default
 
 
-def _is_true(said: dict[str, Marked], name: str) -> bool:
-    if name not in said:
-        return False
-    if not isinstance(said[name].value, bool):
-        raise said[name].fail(f"is {said[name].plain()!r}, it must be true or false")
-    return bool(said[name].value)
+def _wants_mark(said: dict[str, Marked]) -> bool:
+    """Every file is marked, but for one that says otherwise or has something else in that place."""
+    if "mark" not in said:
+        return "reserved" not in said
+    if not isinstance(said["mark"].value, bool):
+        raise said["mark"].fail(f"is {said['mark'].plain()!r}, it must be true or false")
+    return bool(said["mark"].value)
 
 
 def _hex(marked: Marked | None) -> bytes:

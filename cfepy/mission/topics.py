@@ -29,12 +29,14 @@ class Topic:
         msg_id: its MsgId.
         type: of its messages, such as "std_msgs/String"; empty when it is not known.
         raw: the message's data are the whole packet's bytes, so they have no layout of their own.
+        definition: the full text of its type, as those have it who use it.
     """
 
     name: str
     msg_id: int
     type: str = ""
     raw: bool = False
+    definition: str = ""
 
     @property
     def text(self) -> str:
@@ -54,19 +56,16 @@ class Topic:
         if get_segmentation_flag(packet) != SegmentationFlag.UNSEGMENTED:
             raise UsageError("a segment of a longer message")
         try:
-            fields: dict[str, Any] = plain(message_class(self.type)().deserialize(packet[TLM_HEADER_SIZE:]))
+            message = library_of(self).message_class(self.type)()
+            fields: dict[str, Any] = plain(message.deserialize(packet[TLM_HEADER_SIZE:]))
         except Exception as error:  # whatever the generated code raises for bytes that are no such message
             raise UsageError(f"no {self.type}: {error}") from None
         return fields
 
 
-def message_class(kind: str) -> Any:
-    """The class of a message type, such as "std_msgs/String".
-
-    Raises:
-        UsageError: there is no such type among those that cfepy brings along.
-    """
-    return importlib.import_module("rospy_shim.msgs").message_class(kind)
+def library_of(topic: Topic) -> Any:
+    """The message library that knows the type of a topic."""
+    return importlib.import_module("rospy_shim.msgs").library_of(topic.type, topic.definition)
 
 
 def plain(message: Any) -> Any:
@@ -81,7 +80,7 @@ def topics_of(mission: Mission) -> list[Topic]:
     """The topics that there are in a running mission, by name."""
     rows = [] if mission.ros is None else mission.ros.topics()
     raw = {topic.name for topic in mission.spec.ros.topics.values() if topic.raw}
-    return [Topic(row.name, row.msg_id, row.type or "", row.name in raw) for row in rows]
+    return [Topic(row.name, row.msg_id, row.type or "", row.name in raw, row.definition) for row in rows]
 
 
 def surveyed_topics(spec: MissionSpec) -> list[Topic]:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import importlib.util
-from importlib.abc import InspectLoader
+from importlib.machinery import SourceFileLoader
 from pathlib import PurePosixPath
-from types import CodeType
 
 from cfepy.osal import FileSystem
 
 SUFFIXES = (".py", ".so", ".obj", ".o", "")
 
 
-class VirtualCode(InspectLoader):
+class VirtualCode(SourceFileLoader):
     """A Python source file of the virtual file system, as an import loader; tracebacks show its lines.
 
     Args:
@@ -21,20 +19,20 @@ class VirtualCode(InspectLoader):
     """
 
     def __init__(self, path: str, source: bytes) -> None:
-        self.path = path
+        super().__init__("", path)
         self.source = source
 
-    def get_source(self, fullname: str) -> str:
-        """The text."""
-        return importlib.util.decode_source(self.source)
+    def get_filename(self, name: str | None = None) -> str:
+        """The virtual path, whatever the module is called."""
+        return str(self.path)
 
-    def get_code(self, fullname: str) -> CodeType:
-        """The code; raises SyntaxError when it is none."""
-        return self.source_to_code(self.source, self.path)
+    def get_data(self, path: object) -> bytes:
+        """The source."""
+        return self.source
 
-    def is_package(self, fullname: str) -> bool:
-        """It is a module."""
-        return False
+    def path_stats(self, path: object) -> dict[str, float]:
+        """There are none, so nothing is looked for or put beside the file."""
+        raise OSError
 
 
 def find_virtual_code(file: str, files: FileSystem) -> VirtualCode | None:

@@ -6,11 +6,10 @@ in the packet is fixed, and is left out when it is not.
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
-from cfepy.mission.topics import Topic
+from cfepy.mission.topics import Topic, library_of
 from cfepy.mission.xtce_types import TypeSet
 from cfepy.msg import TLM_HEADER_SIZE
 
@@ -43,8 +42,7 @@ def topic_parts(topic: Topic, types: TypeSet, name: Callable[[str], str]) -> Ite
         types: where their types go.
         name: makes a parameter's name of a field's path.
     """
-    library = importlib.import_module("rospy_shim.msgs").shipped()
-    message = _Message(library, types, name)
+    message = _Message(library_of(topic), types, name)
     try:
         yield from message.fields(topic.type, "")
     except _End:

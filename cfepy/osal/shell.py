@@ -6,7 +6,6 @@ neighbours in cfepy.osal.
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable, Sequence
 
 from cfepy.osal.directories import DirectoryApi
@@ -40,6 +39,8 @@ class ShellApi(PathApi, DirectoryApi):
 
     def _run(self, cmd: str) -> tuple[bytes, bool]:
         """What a command line says, and whether it failed."""
+        import shlex  # few missions have a shell, and every boot would pay for it
+
         try:
             words = shlex.split(cmd[: OS_MAX_CMD_LEN - 1])
         except ValueError as error:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from types import ModuleType
 
 from rospy_shim.msgs.classes import MessageClass
-from rospy_shim.msgs.library import Library, from_full_text, shipped
+from rospy_shim.msgs.library import Library, from_full_text, library_of, shipped
 from rospy_shim.msgs.modules import generate_dynamic, make_module
 from rospy_shim.msgs.packages import Packages
 from rospy_shim.msgs.services import ServiceClass
@@ -28,6 +28,7 @@ __all__ = [
     "Source",
     "from_full_text",
     "generate_dynamic",
+    "library_of",
     "load_package",
     "make_module",
     "message_class",

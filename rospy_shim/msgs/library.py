@@ -208,3 +208,15 @@ def restore_message(full_name: str) -> Any:
 def shipped() -> Library:
     """The library of the packages that come with cfepy; one per process, because its classes hold no state."""
     return Library([Shipped()], restore_message)
+
+
+@cache
+def library_of(full_name: str, definition: str) -> Library:
+    """The library that knows a type as those do who use it.
+
+    Args:
+        full_name: the type, e.g. "rover_msgs/Drive".
+        definition: its full text; empty for a shipped type.
+    """
+    known = not definition or (shipped().has(full_name) and shipped().full_text(full_name) == definition)
+    return shipped() if known else from_full_text(full_name, definition)

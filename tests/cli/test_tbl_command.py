@@ -180,11 +180,18 @@ def test_verify_reports_every_fault(tmp_path: Path, capsys: pytest.CaptureFixtur
 def test_mark(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     source, target = tmp_path / "gains.yaml", tmp_path / "gains.tbl"
     source.write_text(OWN)
-    assert main(["tbl", "build", "--mark", str(source)]) == 0
+    assert main(["tbl", "build", str(source)]) == 0
     data = target.read_bytes()
     assert data == with_mark(data)
     assert main(["tbl", "verify", str(target)]) == 0
     assert "marked, good" in capsys.readouterr().out
+
+
+def test_no_mark_when_the_yaml_says_so(tmp_path: Path) -> None:
+    source, target = tmp_path / "gains.yaml", tmp_path / "gains.tbl"
+    source.write_text(OWN + "mark: false\n")
+    assert main(["tbl", "build", str(source)]) == 0
+    assert target.read_bytes()[64:68] == bytes(4)
 
 
 @pytest.mark.parametrize(

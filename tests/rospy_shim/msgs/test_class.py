@@ -5,12 +5,15 @@ from __future__ import annotations
 import copy
 import io
 import pickle
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from rospy_shim import genpy
+from rospy_shim.genpy.checks import check_type
 from rospy_shim.msgs import from_full_text, message_class
+from tests.rospy_shim.missions import run_nodes
 
 String = message_class("std_msgs/String")
 UInt32 = message_class("std_msgs/UInt32")
@@ -241,3 +244,34 @@ def test_bytes_like_input() -> None:
     encoded = String("abc")._pack()
     assert String().deserialize(memoryview(encoded)).data == "abc"
     assert String().deserialize(bytearray(encoded)).data == "abc"
+
+
+def test_lists_and_tuples_are_equal() -> None:
+    names = JointState(name=["a"], position=[1.0, 2.0])
+    decoded = JointState._unpack(names._pack())
+    assert isinstance(decoded.position, tuple)
+    assert decoded == names
+    assert JointState(position=[1.0]) != JointState(position=(2.0,))
+
+
+def test_times_are_not_equal_to_other_things() -> None:
+    assert genpy.TVal(1).__eq__(object()) is False
+
+
+def test_numpy_scalars_are_floats_when_a_failure_is_explained() -> None:
+    import numpy
+
+    for value in (numpy.float32(1), numpy.float64(1), numpy.int32(1), numpy.uint8(1)):
+        check_type("x", "float64", value)
+    for value in ("1", numpy.str_("1"), None):
+        with pytest.raises(genpy.SerializationError, match="field x must be float type"):
+            check_type("x", "float64", value)
+
+
+def test_numpy_msg_makes_one_class_of_a_class(tmp_path: Path) -> None:
+    source = """
+    from rospy.numpy_msg import numpy_msg
+    from rospy_tutorials.msg import Floats
+    print(numpy_msg(Floats) is numpy_msg(Floats), isinstance(numpy_msg(Floats)(), Floats))
+    """
+    assert run_nodes(tmp_path, {"N": source}).printed["N"] == ["True True"]

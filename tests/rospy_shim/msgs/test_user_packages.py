@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 
 import pytest
 
+from cfepy.mission.topics import Topic
 from cfepy.nodes.config import NodeConfig
 from cfepy.status import UsageError
 from rospy_shim.msgs import Library, OnDisk, Packages, message_class, service_class, shipped
@@ -156,3 +158,17 @@ def test_a_mistake_ends_the_node_with_its_place(tmp_path: Path) -> None:
     write(tmp_path / "arm", msg__Joint="float64 angle\nfloat64\n")
     run = run_nodes(tmp_path, {"ARM": "from arm.msg import Joint\n"})
     assert any("arm/msg/Joint.msg:2: 'float64' is not a field" in line for line in run.printed["ARM"])
+
+
+def test_tools_read_the_topics_of_user_types(tmp_path: Path) -> None:
+    write(tmp_path / "rover_msgs", msg__Drive="float64 speed\n")
+    node = """
+    import rospy
+    from rover_msgs.msg import Drive
+    rospy.init_node("rover")
+    rospy.Publisher("drive", Drive, queue_size=1)
+    """
+    row = run_nodes(tmp_path, {"ROVER": node}).topics["/drive"]
+    topic = Topic(row.name, row.msg_id, row.type, definition=row.definition)
+    header = bytes.fromhex("0901c000000f") + bytes(10)
+    assert topic.read(header + struct.pack("<d", 2.5)) == {"speed": 2.5}
