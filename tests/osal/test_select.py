@@ -7,8 +7,8 @@ from cfepy.osal.limits import OS_CHECK
 from cfepy.osal.select import OS_STREAM_STATE_READABLE, OS_STREAM_STATE_WRITABLE, FdSet
 from cfepy.status import OS_ERR_INVALID_ID, OS_INVALID_POINTER
 from tests.osal.helpers import MS, Bench
+from tests.osal.sockets import DATAGRAM, INET, NO_SOCKET, STREAM, a_file, address, bound, connection
 from tests.osal.test_queues import status_of
-from tests.osal.test_sockets import DATAGRAM, INET, NO_SOCKET, STREAM, a_file, address, bound, connection
 
 READ, WRITE = OS_STREAM_STATE_READABLE, OS_STREAM_STATE_WRITABLE
 
