@@ -1,0 +1,135 @@
+"""Bags on the host's side: a run's ROS topics recorded as `rosbag record -a` would, and bags read.
+
+Recording looks on (`cfepy.mission.topic_watch`), so it changes nothing in the run. rospy_shim is loaded by name.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from cfepy.mission.mission import Mission
+from cfepy.mission.topic_watch import Message, TopicWatch, matches
+from cfepy.sb import SoftwareBus
+from cfepy.status import UsageError
+
+CHUNK_BYTES = 768 * 1024
+
+
+class BagRecorder:
+    """Records topics into a bag; use as a context manager around the run.
+
+    Args:
+        file: the bag; an older one is written over.
+        patterns: see `TopicWatch`.
+        base: the class of Software Bus to start from.
+
+    Raises:
+        UsageError: the file cannot be written.
+
+    Attributes:
+        bus: the class of Software Bus that the mission needs.
+        count: messages so far.
+    """
+
+    def __init__(self, file: str, patterns: Sequence[str] = (), base: type[SoftwareBus] = SoftwareBus) -> None:
+        self.count = 0
+        self._watch = TopicWatch(self._write, patterns, base)
+        self.bus = self._watch.bus
+        self._connections: dict[tuple[str, str], Any] = {}
+        try:
+            self._file = Path(file).open("w+b")  # noqa: SIM115  # closed by `__exit__`
+        except OSError as error:
+            raise UsageError(f"could not be written: {error.strerror}", file=file, field="--bag") from None
+        self._bag = storage().BagFile(self._file)
+        self._bag.create()
+
+    def begin(self, mission: Mission) -> None:
+        """Take the mission that was made with `bus`, before it runs."""
+        self._watch.begin(mission)
+
+    def __enter__(self) -> BagRecorder:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        """The run is over: write the index."""
+        with self._file:
+            self._bag.finish()
+
+    def _write(self, message: Message) -> None:
+        if message.stamp_ns is None:
+            return  # rosbag, too, begins when there is a time
+        key = (message.topic, message.header.get("callerid", ""))
+        connection = self._connections.get(key)
+        if connection is None or connection.md5sum != message.header["md5sum"]:
+            connection = self._connections[key] = self._bag.connect(message.topic, message.header)
+        self.count += 1
+        if self._bag.write(connection, message.stamp_ns, message.data) > CHUNK_BYTES:
+            self._bag.flush()
+
+
+class BagReader:
+    """A bag to look into; use as a context manager.
+
+    Args:
+        file: the bag.
+
+    Raises:
+        UsageError: there is none, or it is broken.
+    """
+
+    def __init__(self, file: str) -> None:
+        try:
+            self._file = Path(file).open("rb")  # noqa: SIM115  # closed by `__exit__`
+        except OSError as error:
+            raise UsageError(f"could not be read: {error.strerror}", file=file) from None
+        self._bag = storage().BagFile(self._file)
+        try:
+            self._bag.read_version()
+            self._bag.open()
+        except storage().ROSBagException as error:
+            self._file.close()
+            hint = "; rosbag reindex makes an index" if isinstance(error, storage().ROSBagUnindexedException) else ""
+            raise UsageError(f"{error}{hint}", file=file) from None
+
+    @property
+    def connections(self) -> list[Any]:
+        """The connections (`rosbag_storage.Connection`), as they came."""
+        return list(self._bag.contents.connections.values())
+
+    def messages(self, patterns: Sequence[str] = ()) -> Iterator[Message]:
+        """The messages by time, `at_ns` since the first one of the bag; see `TopicWatch` for the patterns."""
+        contents = self._bag.contents
+        start_ns = min((chunk.start for chunk in contents.chunks), default=0)
+        chosen = [each for each in self.connections if matches(each.topic, patterns)]
+        for entry in contents.entries(chosen):
+            connection, time, data = self._bag.read(entry)
+            header = {name: value.decode(errors="replace") for name, value in connection.header.items()}
+            yield Message(connection.topic, header, data, time - start_ns, time)
+
+    def __enter__(self) -> BagReader:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self._file.close()
+
+
+def is_bag(file: str) -> bool:
+    """Whether a file is a bag, by its first bytes."""
+    try:
+        with Path(file).open("rb") as found:
+            return found.read(7) == b"#ROSBAG"
+    except OSError:
+        return False
+
+
+def storage() -> Any:
+    """The library `rosbag_storage`, which knows the format; nodes have it as well."""
+    return importlib.import_module("rospy_shim.libraries.rosbag_storage")

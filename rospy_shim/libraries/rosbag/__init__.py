@@ -1,0 +1,19 @@
+"""rosbag for nodes: messages in files, in ROS's bag format 2.0.
+
+Names, arguments, results and bytes are those of ROS's rosbag 1.15; the code is cfepy's own, on top of `rosbag_storage`,
+which knows the format, and `rospy`. It is executed anew in each node that imports it.
+"""
+
+from __future__ import annotations
+
+from .bag import Bag, Compression, ROSBagException, ROSBagFormatException, ROSBagUnindexedException
+from .rosbag_main import rosbagmain
+
+__all__ = [
+    "Bag",
+    "Compression",
+    "ROSBagException",
+    "ROSBagFormatException",
+    "ROSBagUnindexedException",
+    "rosbagmain",
+]

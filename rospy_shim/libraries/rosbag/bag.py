@@ -1,0 +1,352 @@
+"""`rosbag.Bag`: messages read from and written to a bag (rosbag's Python API).
+
+Imports rospy, genpy, rosbag_storage and the modules beside it. The names that begin with an underscore are those that
+tools around rosbag use.
+"""
+
+from __future__ import annotations
+
+import io
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import genpy
+from rosbag_storage import (
+    BagFile,
+    Connection,
+    Entry,
+    ROSBagEncryptException,
+    ROSBagEncryptNotSupportedException,
+    ROSBagException,
+    ROSBagFormatException,
+    ROSBagUnindexedException,
+    records,
+)
+
+from . import info, search, views
+from .indexed import Indexed
+from .info import Compression
+from .search import Filter
+from .types import message_type
+from .views import BagMessage, BagMessageWithConnectionHeader
+
+__all__ = [
+    "Bag",
+    "BagMessage",
+    "BagMessageWithConnectionHeader",
+    "Compression",
+    "ROSBagEncryptException",
+    "ROSBagEncryptNotSupportedException",
+    "ROSBagException",
+    "ROSBagFormatException",
+    "ROSBagUnindexedException",
+]
+
+AES_CBC = "rosbag/AesCbcEncryptor"
+
+_FILE_HEADER_LENGTH = records.FILE_HEADER_LENGTH
+_OP_CODES = records.OP_CODES
+_OP_FILE_HEADER = records.OP_FILE_HEADER
+_pack_uint8, _pack_uint32, _pack_uint64 = records.pack_uint8, records.pack_uint32, records.pack_uint64
+_read_header, _read_record_data, _read_sized = records.read_header, records.read_record_data, records.read_sized
+_read_uint8_field = records.uint8_field
+_write_record = records.write_record
+
+
+class Bag(Indexed):
+    """A bag.
+
+    Args:
+        f: name of the file, or a binary stream that can be sought.
+        mode: "r" to read, "w" to write a new one, "a" to go on with one.
+        compression: of what is written; see `Compression`.
+        chunk_threshold: bytes, without compression, with which a chunk is ended.
+        allow_unindexed: open a bag that was not closed, too; `reindex` makes it readable.
+        options: "compression" and "chunk_threshold" in a dictionary, before the arguments.
+        skip_index: read where messages are only when it is first needed.
+
+    Raises:
+        ValueError: an argument that cannot be.
+        ROSBagException: it is no bag; ROSBagUnindexedException when it was not closed.
+        OSError: the file cannot be opened.
+    """
+
+    def __init__(
+        self,
+        f: Any,
+        mode: str = "r",
+        compression: str = Compression.NONE,
+        chunk_threshold: int = 768 * 1024,
+        allow_unindexed: bool = False,
+        options: dict[str, Any] | None = None,
+        skip_index: bool = False,
+    ) -> None:
+        if options is not None:
+            if type(options) is not dict:
+                raise ValueError("options must be of type dict")
+            compression = options.get("compression", compression)
+            chunk_threshold = options.get("chunk_threshold", chunk_threshold)
+        info.check_options(compression, chunk_threshold)
+        if not f:
+            raise ValueError("filename (or stream) is invalid")
+        if mode not in ("r", "w", "a"):
+            raise ValueError(f'mode "{mode}" is invalid')
+        self._compression = compression
+        self._chunk_threshold = chunk_threshold
+        self._skip_index = skip_index
+        self._mode = mode
+        self._filename = None if isinstance(f, io.IOBase) else f
+        self._file: Any = self._open_file(f) if self._filename is not None else f
+        self._storage = BagFile(self._file)
+        self._topic_connections: dict[str, Connection] = {}
+        self._connection_indexes_read = True
+        self._begin(allow_unindexed)
+
+    def _open_file(self, name: Any) -> Any:
+        if self._mode != "a":
+            return open(name, "rb" if self._mode == "r" else "w+b")  # closed by `close`
+        try:
+            return open(name, "r+b")
+        except OSError:
+            return open(name, "w+b")
+
+    def _begin(self, allow_unindexed: bool) -> None:
+        try:
+            if self._mode == "w":
+                self._storage.create()
+            else:
+                self._storage.read_version()
+                self._read_index(allow_unindexed)
+        except BaseException:
+            self._close_file()
+            raise
+
+    def _read_index(self, allow_unindexed: bool) -> None:
+        try:
+            self._storage.open(with_entries=not self._skip_index)
+            self._connection_indexes_read = not self._skip_index
+            if self._mode == "a":
+                self._storage.append()
+        except ROSBagUnindexedException:
+            if not allow_unindexed:
+                raise
+
+    # -- what it is --------------------------------------------------------------------------------------------------
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Compression and chunk threshold."""
+        return {"compression": self._compression, "chunk_threshold": self._chunk_threshold}
+
+    @property
+    def filename(self) -> Any:
+        """Name of the file, None for a stream."""
+        return self._filename
+
+    @property
+    def version(self) -> int:
+        """Version of the format, 200 for 2.0."""
+        return self._storage.version
+
+    @property
+    def mode(self) -> str:
+        """ "r", "w" or "a"."""
+        return self._mode
+
+    @property
+    def size(self) -> int:
+        """Bytes of the file, with what is about to be written."""
+        file = self._opened()
+        at = file.tell()
+        size = int(file.seek(0, 2))
+        file.seek(at)
+        return size + self._storage.pending
+
+    @property
+    def compression(self) -> str:
+        """Compression of what is written from now on; see `Compression`."""
+        return self._compression
+
+    @compression.setter
+    def compression(self, compression: str) -> None:
+        info.check_options(compression, self._chunk_threshold)
+        self.flush()
+        self._compression = compression
+
+    @property
+    def chunk_threshold(self) -> int:
+        """Bytes with which a chunk is ended."""
+        return self._chunk_threshold
+
+    @chunk_threshold.setter
+    def chunk_threshold(self, chunk_threshold: int) -> None:
+        info.check_options(self._compression, chunk_threshold)
+        self.flush()
+        self._chunk_threshold = chunk_threshold
+
+    def __iter__(self) -> Iterator[Any]:
+        return self.read_messages()
+
+    def __enter__(self) -> Bag:
+        return self
+
+    def __exit__(self, exc_type: Any, exc_value: Any, traceback: Any) -> None:
+        self.close()
+
+    def __str__(self) -> str:
+        """What `rosbag info` shows."""
+        return info.text_of(self)
+
+    def get_message_count(self, topic_filters: str | list[str] | None = None) -> int:
+        """How many messages there are, on some topics or on all."""
+        if topic_filters is not None:
+            topics = self.get_type_and_topic_info(topic_filters).topics
+            return sum(topic.message_count for topic in topics.values())
+        return info.count(self._all_chunks(), self._connections.values())
+
+    def get_start_time(self) -> float:
+        """Time of the first message in s; ROSBagException when there is none."""
+        return info.times_of(self._all_chunks())[0]
+
+    def get_end_time(self) -> float:
+        """Time of the last message in s; ROSBagException when there is none."""
+        return info.times_of(self._all_chunks())[1]
+
+    def get_type_and_topic_info(self, topic_filters: str | list[str] | None = None) -> views.TypesAndTopicsTuple:
+        """The types of messages, and what there is on each topic (or on some)."""
+        return info.types_and_topics(self, topic_filters)
+
+    def get_compression_info(self) -> views.CompressionTuple:
+        """How most chunks are compressed, and the bytes of all without and with compression."""
+        return info.compression_of(self._storage.contents.chunks, self._compression)
+
+    # -- reading -----------------------------------------------------------------------------------------------------
+
+    def read_messages(
+        self,
+        topics: str | Iterable[str] | None = None,
+        start_time: Any = None,
+        end_time: Any = None,
+        connection_filter: Filter | None = None,
+        raw: bool = False,
+        return_connection_header: bool = False,
+    ) -> Iterator[Any]:
+        """The messages, by time.
+
+        Args:
+            topics: one topic or several; all when there are none.
+            start_time: `rospy.Time` of the earliest.
+            end_time: `rospy.Time` of the latest.
+            connection_filter: takes (topic, type, md5sum, definition, connection header) and says whether messages of
+                that connection are wanted.
+            raw: give (type, bytes, md5sum, position, class) in place of the message.
+            return_connection_header: give the connection header as well.
+
+        Returns:
+            An iterator of `BagMessage`, or of `BagMessageWithConnectionHeader`.
+        """
+        self.flush()
+        entries = search.entries(self, self._get_connections(topics, connection_filter), start_time, end_time)
+        return (self._message_at(entry, raw, return_connection_header) for entry in entries)
+
+    def _message_at(self, entry: Entry | tuple[int, int], raw: bool, with_header: bool) -> Any:
+        connection, ns, data = self._storage.read(entry)
+        kind = message_type(connection)
+        message: Any = (connection.datatype, data, connection.md5sum, tuple(entry[-2:]), kind)
+        if not raw:
+            message = kind()
+            message.deserialize(data)
+        stamp = views.ros_time(ns)
+        if with_header:
+            return BagMessageWithConnectionHeader(connection.topic, message, stamp, connection.header)
+        return BagMessage(connection.topic, message, stamp)
+
+    def _read_message(
+        self, position: tuple[int, int], raw: bool = False, return_connection_header: bool = False
+    ) -> Any:
+        """The message at the position of an index entry."""
+        self.flush()
+        return self._message_at(position, raw, return_connection_header)
+
+    def _get_yaml_info(self, key: str | None = None) -> Any:
+        """What `rosbag info --yaml` shows, or one value of it."""
+        return info.yaml_of(self, key)
+
+    # -- writing -----------------------------------------------------------------------------------------------------
+
+    def write(
+        self, topic: str, msg: Any, t: Any = None, raw: bool = False, connection_header: Mapping[str, Any] | None = None
+    ) -> None:
+        """Write a message.
+
+        Args:
+            topic: name of the topic.
+            msg: the message; with `raw`, (type, bytes, md5sum, class), or the same with a position before the class.
+            t: `rospy.Time` of it; None is now.
+            raw: see `msg`.
+            connection_header: written as it is with the topic's first message, and not looked at later; None makes one.
+
+        Raises:
+            ValueError: no topic, no message, or the bag is closed.
+            ROSBagException: the class of a raw message is not known.
+        """
+        self._opened()
+        if not topic:
+            raise ValueError("topic is invalid")
+        if not msg:
+            raise ValueError("msg is invalid")
+        if t is None:
+            t = genpy.Time.from_sec(time.time())
+        data, header = search.raw_parts(topic, msg) if raw else search.message_parts(topic, msg)
+        connection = self._topic_connections.get(topic)
+        if connection is None:
+            made = connection_header if connection_header is not None else header()
+            connection = self._storage.connect(topic, made, self._compression)
+            self._topic_connections[topic] = connection
+        size = self._storage.write(connection, t.to_nsec(), data, self._compression)
+        if size > self._chunk_threshold:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what was kept back to the file; ValueError when the bag is closed."""
+        self._opened()
+        self._storage.flush()
+
+    def reindex(self) -> Iterator[int]:
+        """Make the index of a bag anew; an iterator over the positions of the chunks does it."""
+        self._opened()
+        self._topic_connections.clear()
+        self._connection_indexes_read = True
+        return self._storage.reindex()
+
+    def close(self) -> None:
+        """Close the bag; a second time does nothing."""
+        if self._file is None:
+            return
+        try:
+            if self._mode in "wa":
+                self._storage.finish()
+        finally:
+            self._close_file()
+
+    def set_encryptor(self, encryptor: str | None = None, param: str | None = None) -> None:
+        """Encrypt what is written: there is no encryption here.
+
+        Raises:
+            ROSBagException: there are chunks already.
+            ROSBagEncryptNotSupportedException: an encryptor is asked for.
+        """
+        if self._storage.contents.chunks:
+            raise ROSBagException("Cannot set encryptor after chunks are written")
+        if encryptor == AES_CBC:
+            raise ROSBagEncryptNotSupportedException("AES CBC encryptor is not supported on the simulated computer")
+
+    def _opened(self) -> Any:
+        if self._file is None:
+            raise ValueError("I/O operation on closed bag")
+        return self._file
+
+    def _close_file(self) -> None:
+        self._file.close()
+        self._file = None

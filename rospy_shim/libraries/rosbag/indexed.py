@@ -1,0 +1,83 @@
+"""The index of a bag as tools around rosbag see it, with the names that rosbag gives it. Imports rosbag_storage."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from rosbag_storage import BagFile, Chunk, Connection, Contents
+
+from . import search, views
+from .search import Filter
+
+
+class Indexed:
+    """What `Bag` knows of its file; `_connection_indexes_read` says whether that includes where each message is."""
+
+    _storage: BagFile
+    _connection_indexes_read: bool
+
+    def flush(self) -> None:
+        """See `Bag.flush`."""
+        raise NotImplementedError
+
+    def _index(self) -> Contents:
+        """The contents, with the entries."""
+        self.flush()
+        if not self._connection_indexes_read:
+            self._connection_indexes_read = True
+            self._storage.read_entries()
+        return self._storage.contents
+
+    def _all_chunks(self) -> list[Chunk]:
+        """The chunks, with the one that is being written."""
+        return self._storage.all_chunks()
+
+    @property
+    def _connections(self) -> dict[int, Connection]:
+        return self._storage.contents.connections
+
+    @property
+    def _chunks(self) -> list[views.ChunkInfo]:
+        return [views.chunk_view(chunk) for chunk in self._storage.contents.chunks]
+
+    @property
+    def _connection_indexes(self) -> dict[int, list[views.IndexEntry]]:
+        return {key: [views.entry_view(each) for each in index] for key, index in self._index().indexes.items()}
+
+    @property
+    def _file_header_pos(self) -> int:
+        return self._storage.header_pos
+
+    @property
+    def _uncompressed_size(self) -> int:
+        return sum(chunk.size for chunk in self._storage.contents.chunks) or self._storage.file.seek(0, 2)
+
+    @property
+    def _has_compressed_chunks(self) -> bool:
+        return any(chunk.compression != "none" for chunk in self._storage.contents.chunks)
+
+    @property
+    def _version(self) -> int:
+        return self._storage.version
+
+    def _get_connections(
+        self, topics: str | Iterable[str] | None = None, connection_filter: Filter | None = None
+    ) -> Iterator[Connection]:
+        return search.connections(self._connections.values(), topics, connection_filter)
+
+    def _get_entries(
+        self, connections: Iterable[Connection] | None = None, start_time: Any = None, end_time: Any = None
+    ) -> Iterator[views.IndexEntry]:
+        return map(views.entry_view, search.entries(self, connections, start_time, end_time))
+
+    def _get_entries_reverse(
+        self, connections: Iterable[Connection] | None = None, start_time: Any = None, end_time: Any = None
+    ) -> Iterator[views.IndexEntry]:
+        return iter(list(self._get_entries(connections, start_time, end_time))[::-1])
+
+    def _get_entry(self, t: Any, connections: Iterable[Connection] | None = None) -> views.IndexEntry | None:
+        return next(self._get_entries_reverse(connections, end_time=t), None)
+
+    def _get_entry_after(self, t: Any, connections: Iterable[Connection] | None = None) -> views.IndexEntry | None:
+        return next((entry for entry in self._get_entries(connections, start_time=t) if entry.time > t), None)

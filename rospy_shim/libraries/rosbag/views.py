@@ -1,0 +1,89 @@
+"""What is in a bag as rosbag shows it: tuples with ROS times in place of nanoseconds. Imports rospy and
+rosbag_storage."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import rospy
+
+if TYPE_CHECKING:
+    from rosbag_storage import Chunk, Entry
+
+
+class BagMessage(NamedTuple):
+    """A message, the topic it was on, and when it was recorded (`rospy.Time`)."""
+
+    topic: str
+    message: Any
+    timestamp: Any
+
+
+class BagMessageWithConnectionHeader(NamedTuple):
+    """A message with the header of the connection that it came over."""
+
+    topic: str
+    message: Any
+    timestamp: Any
+    connection_header: Any
+
+
+class CompressionTuple(NamedTuple):
+    """How most chunks are compressed; bytes of all chunks without and with compression."""
+
+    compression: str
+    uncompressed: int
+    compressed: int
+
+
+class TopicTuple(NamedTuple):
+    """What there is on a topic; `frequency` in Hz is from the median of the periods, None when there is none."""
+
+    msg_type: str
+    message_count: int
+    connections: int
+    frequency: float | None
+
+
+class TypesAndTopicsTuple(NamedTuple):
+    """The md5sum of each message type, and what there is on each topic."""
+
+    msg_types: dict[str, str]
+    topics: dict[str, TopicTuple]
+
+
+class IndexEntry(NamedTuple):
+    """Where a message is."""
+
+    time: Any
+    chunk_pos: int
+    offset: int
+
+    @property
+    def position(self) -> tuple[int, int]:
+        """The position as `Bag._read_message` takes it."""
+        return (self.chunk_pos, self.offset)
+
+
+class ChunkInfo(NamedTuple):
+    """A chunk: its position in the file, first and last time, messages by connection."""
+
+    pos: int
+    start_time: Any
+    end_time: Any
+    connection_counts: dict[int, int]
+
+
+def ros_time(ns: int) -> Any:
+    """A `rospy.Time` of so many ns."""
+    return rospy.Time(ns // 1_000_000_000, ns % 1_000_000_000)
+
+
+def entry_view(entry: Entry) -> IndexEntry:
+    """An entry with a ROS time."""
+    return IndexEntry(ros_time(entry.time), entry.chunk_pos, entry.offset)
+
+
+def chunk_view(chunk: Chunk) -> ChunkInfo:
+    """A chunk with ROS times."""
+    return ChunkInfo(chunk.pos, ros_time(chunk.start), ros_time(chunk.end), chunk.connection_counts)

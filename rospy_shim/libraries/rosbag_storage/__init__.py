@@ -1,0 +1,31 @@
+"""rosbag_storage: ROS's bag format 2.0 (wiki.ros.org/Bags/Format/2.0) as a library without ROS.
+
+A bag is a header, chunks of messages each followed by its index, and at the end what there is to know of connections
+and chunks. `BagFile` reads and writes one; times are integers of ns. It stands for the C++ package of that name, and
+may import the standard library and lz4 only, so that tools outside of nodes can use it too.
+"""
+
+from __future__ import annotations
+
+from .bagfile import BagFile
+from .contents import Chunk, Connection, Contents, Entry
+from .errors import (
+    ROSBagEncryptException,
+    ROSBagEncryptNotSupportedException,
+    ROSBagException,
+    ROSBagFormatException,
+    ROSBagUnindexedException,
+)
+
+__all__ = [
+    "BagFile",
+    "Chunk",
+    "Connection",
+    "Contents",
+    "Entry",
+    "ROSBagEncryptException",
+    "ROSBagEncryptNotSupportedException",
+    "ROSBagException",
+    "ROSBagFormatException",
+    "ROSBagUnindexedException",
+]

@@ -1,0 +1,284 @@
+"""`BagFile`: one bag that is read or written, or both in turn. Imports what the package has."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from io import BytesIO
+from typing import BinaryIO, NamedTuple
+
+from . import compression, index, records, scan
+from .contents import Chunk, Connection, Contents, Entry
+from .errors import ROSBagEncryptNotSupportedException, ROSBagException, ROSBagFormatException, ROSBagUnindexedException
+
+
+class Message(NamedTuple):
+    """A message as it lies in a bag; its time is in ns."""
+
+    connection: Connection
+    time: int
+    data: bytes
+
+
+class BagFile:
+    """A bag.
+
+    Args:
+        file: opened for reading, or for both when the bag is written; `create` or `open` comes next.
+
+    Attributes:
+        contents: the index.
+        version: such as 200 for 2.0.
+        header_pos: where the header's record is.
+    """
+
+    def __init__(self, file: BinaryIO) -> None:
+        self.file = file
+        self.contents = Contents()
+        self.version = 200
+        self.header_pos = 0
+        self._cached: tuple[int, bytes] = (-1, b"")
+        self._open: OpenChunk | None = None
+
+    # -- reading -----------------------------------------------------------------------------------------------------
+
+    def read_version(self) -> None:
+        """Read the first line.
+
+        Raises:
+            ROSBagException: it is no bag, or one of a version that is not supported.
+        """
+        line = self.file.readline().rstrip()
+        if not line:
+            raise ROSBagException("empty file")
+        match = re.match(rb"#ROS.* V(\d).(\d)", line)
+        if match is None:
+            raise ROSBagException("This does not appear to be a bag file")
+        self.version = int(match[1]) * 100 + int(match[2])
+        self.header_pos = self.file.tell()
+        if self.version // 100 == 1:
+            raise ROSBagException(f"unsupported bag version {self.version}. Please convert bag to newer format.")
+        if self.version // 100 != 2:
+            raise ROSBagException(f"unknown bag version {self.version}")
+
+    def open(self, with_entries: bool = True) -> None:
+        """Read the index.
+
+        Args:
+            with_entries: also where each message is; else that is read when it is first asked for.
+
+        Raises:
+            ROSBagUnindexedException: there is no index, or it cannot be read.
+            ROSBagEncryptNotSupportedException: the bag is encrypted.
+        """
+        try:
+            header = self._file_header()
+            self.contents = index.read_index(self.file, header)
+            if with_entries:
+                self.read_entries()
+        except (ROSBagEncryptNotSupportedException, ROSBagUnindexedException):
+            raise
+        except (ROSBagException, UnicodeDecodeError, OSError):
+            raise ROSBagUnindexedException from None
+
+    def read_entries(self) -> None:
+        """Read where each message is, when `open` left it out."""
+        index.read_entries(self.file, self.contents)
+
+    def _file_header(self) -> dict[str, bytes]:
+        self.file.seek(self.header_pos)
+        header = records.read_header(self.file, records.OP_FILE_HEADER)
+        records.skip_sized(self.file)
+        if header.get("encryptor"):
+            name = records.text(header["encryptor"])
+            raise ROSBagEncryptNotSupportedException(f"the bag is encrypted by {name}, which is not supported")
+        return header
+
+    def reindex(self) -> Iterator[int]:
+        """Make the index anew out of the chunks; yields the position of each, and drops what follows the last
+        sound one.
+
+        Raises:
+            ROSBagException: the file has no sound header.
+        """
+        self._file_header()
+        self.contents = Contents()
+        start = self.file.tell()
+        end = yield from scan.scan(self.file, self.contents, start)
+        if start < end < self.file.seek(0, 2) and self.file.writable():
+            self.file.truncate(end)
+
+    def read(self, entry: Entry | tuple[int, int]) -> Message:
+        """The message at an entry, or at a (chunk position, offset).
+
+        Raises:
+            ROSBagException: there is none.
+        """
+        chunk_pos, offset = entry[-2:]
+        data = BytesIO(self._chunk_data(chunk_pos))
+        data.seek(offset)
+        fields = records.read_header(data)
+        while (op := records.uint8_field(fields, "op")) == records.OP_CONNECTION:
+            records.skip_sized(data)
+            fields = records.read_header(data)
+        if op != records.OP_MSG_DATA:
+            raise ROSBagFormatException(f"Expecting OP_MSG_DATA, got {op}")
+        connection = self.contents.connections[records.uint32_field(fields, "conn")]
+        return Message(connection, records.time_field(fields, "time"), records.read_record_data(data))
+
+    def _chunk_data(self, pos: int) -> bytes:
+        if self._cached[0] != pos:
+            chunk = next((each for each in self.contents.chunks if each.pos == pos), None)
+            if chunk is None:
+                raise ROSBagException(f"no chunk at position {pos}")
+            self.file.seek(chunk.data_pos)
+            stored = records.read(self.file, chunk.stored_size)
+            self._cached = (pos, compression.decompress(chunk.compression, stored))
+        return self._cached[1]
+
+    # -- writing -----------------------------------------------------------------------------------------------------
+
+    def create(self) -> None:
+        """Begin a new bag."""
+        self.file.write(records.VERSION)
+        self.header_pos = self.file.tell()
+        self._write_file_header(0)
+
+    def append(self) -> None:
+        """Go on with a bag that was opened: its index goes, until `finish` writes the new one."""
+        end = index.position(self._file_header())
+        self.file.truncate(end)
+        self._write_file_header(0, counts=False)
+        self.file.seek(0, 2)
+
+    def _write_file_header(self, index_pos: int, counts: bool = True) -> None:
+        self.file.seek(self.header_pos)
+        fields = {
+            "op": records.pack_uint8(records.OP_FILE_HEADER),
+            "index_pos": records.pack_uint64(index_pos),
+            "conn_count": records.pack_uint32(len(self.contents.connections) if counts else 0),
+            "chunk_count": records.pack_uint32(len(self.contents.chunks) if counts else 0),
+        }
+        records.write_record(self.file, fields, padded_size=records.FILE_HEADER_LENGTH)
+
+    def connect(self, topic: str, header: Mapping[str, bytes | str], kind: str = compression.NONE) -> Connection:
+        """A new connection, whose messages can be written from now on; `kind` compresses the chunk it begins in.
+
+        Raises:
+            ROSBagFormatException: the header lacks what a reader needs.
+        """
+        number = max(self.contents.connections, default=-1) + 1
+        connection = Connection(number, topic, header)
+        self._chunk(kind).write_connection(connection)
+        self.contents.connections[number] = connection
+        return connection
+
+    def write(self, connection: Connection, time: int, data: bytes, kind: str = compression.NONE) -> int:
+        """Write a message.
+
+        Args:
+            connection: where it came from; see `connect`.
+            time: in ns.
+            data: the serialised message.
+            kind: compresses the chunk, if the message begins one.
+
+        Returns:
+            The bytes of the chunk so far; `flush` ends it when there are enough.
+        """
+        return self._chunk(kind).write_message(connection, time, data)
+
+    def _chunk(self, kind: str) -> OpenChunk:
+        if self._open is None:
+            self._open = OpenChunk(kind)
+        return self._open
+
+    @property
+    def pending(self) -> int:
+        """Bytes of the chunk that is not in the file yet."""
+        return 0 if self._open is None else self._open.data.tell()
+
+    def all_chunks(self) -> list[Chunk]:
+        """The chunks in the file, and the one that is about to be."""
+        made = None if self._open is None else self._open.chunk
+        return self.contents.chunks if made is None else [*self.contents.chunks, made]
+
+    def flush(self) -> None:
+        """End the chunk, if there is one, and write it to the file."""
+        made, self._open = self._open, None
+        if made is None or made.chunk is None:
+            return
+        chunk = made.chunk
+        chunk.pos = self.file.seek(0, 2)
+        made.write_to(self.file)
+        self.contents.chunks.append(chunk)
+        for number, found in made.entries.items():
+            index.write_entries(self.file, number, found)
+            known = self.contents.indexes.setdefault(number, [])
+            in_order = not known or known[-1].time <= found[0][0]
+            known.extend(Entry(time, chunk.pos, offset) for time, offset in found)
+            if not in_order:
+                known.sort(key=lambda entry: entry.time)
+        self.file.flush()
+
+    def finish(self) -> None:
+        """Write the index, and where it is; the bag is whole then."""
+        self.flush()
+        end = self.file.seek(0, 2)
+        index.write_index(self.file, self.contents)
+        self._write_file_header(end)
+        self.file.flush()
+
+
+class OpenChunk:
+    """A chunk that is being written; it comes into the file as a whole.
+
+    Args:
+        kind: of its compression.
+    """
+
+    def __init__(self, kind: str) -> None:
+        self.kind = kind
+        self.data = BytesIO()
+        self.chunk: Chunk | None = None  # None as long as there is no message
+        self.entries: dict[int, list[tuple[int, int]]] = {}
+
+    def write_connection(self, connection: Connection) -> None:
+        """Tell of a connection."""
+        index.write_connection(self.data, connection)
+
+    def write_message(self, connection: Connection, time: int, data: bytes) -> int:
+        """Write a message; returns the size of the chunk."""
+        if self.chunk is None:
+            self.chunk = Chunk(-1, time, time)
+        self.chunk.add(connection.id, time)
+        found = self.entries.setdefault(connection.id, [])
+        found.append((time, self.data.tell()))
+        if len(found) > 1 and found[-2][0] > time:
+            found.sort(key=lambda each: each[0])
+        fields = {
+            "op": records.pack_uint8(records.OP_MSG_DATA),
+            "conn": records.pack_uint32(connection.id),
+            "time": records.pack_time(time),
+        }
+        records.write_record(self.data, fields, data)
+        return self.data.tell()
+
+    def write_to(self, file: BinaryIO) -> None:
+        """Write the chunk's record."""
+        assert self.chunk is not None
+        chunk, data = self.chunk, self.data.getvalue()
+        stored = compression.compress(self.kind, data)
+        fields: records.Fields = {
+            "op": records.pack_uint8(records.OP_CHUNK),
+            "compression": self.kind,
+            "size": records.pack_uint32(len(data)),
+        }
+        records.write_header(file, fields)
+        file.write(records.pack_uint32(len(stored)))
+        chunk.compression, chunk.size, chunk.stored_size, chunk.data_pos = (
+            self.kind,
+            len(data),
+            len(stored),
+            file.tell(),
+        )
+        file.write(stored)

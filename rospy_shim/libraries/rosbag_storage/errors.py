@@ -1,0 +1,45 @@
+"""The exceptions of rosbag; they are pickled and named as those of `rosbag.bag`. Imports nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class ROSBagException(Exception):
+    """Base class of what can be wrong with a bag."""
+
+    __module__ = "rosbag.bag"
+
+    def __init__(self, value: Any = None) -> None:
+        super().__init__(value)
+        self.value = value
+
+    def __str__(self) -> str:
+        return str(self.value)
+
+
+class ROSBagFormatException(ROSBagException):
+    """The file is not what the format says."""
+
+    __module__ = "rosbag.bag"
+
+
+class ROSBagUnindexedException(ROSBagException):
+    """The bag was not closed, so its index is missing: `reindex` makes one."""
+
+    __module__ = "rosbag.bag"
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__("Unindexed bag")
+
+
+class ROSBagEncryptNotSupportedException(ROSBagException):
+    """The bag is encrypted in a way that is not supported."""
+
+    __module__ = "rosbag.bag"
+
+
+class ROSBagEncryptException(ROSBagException):
+    """A bag could not be encrypted or decrypted."""
+
+    __module__ = "rosbag.bag"

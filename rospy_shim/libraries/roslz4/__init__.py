@@ -1,0 +1,7 @@
+"""roslz4 for nodes: LZ4 frames as ROS writes them. ROS's is an extension module; see `rosbag_storage.lz4_frames`."""
+
+from __future__ import annotations
+
+from rosbag_storage.lz4_frames import LZ4Compressor, LZ4Decompressor, compress, decompress
+
+__all__ = ["LZ4Compressor", "LZ4Decompressor", "compress", "decompress"]

@@ -1,0 +1,62 @@
+"""`cfepy service`: the services of a mission that is flown for it, and a call."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from tests.cli.ros_missions import robot
+
+Capture = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def mission(tmp_path: Path) -> str:
+    """The robot."""
+    return str(robot(tmp_path))
+
+
+def said(capsys: Capture, *words: str) -> str:
+    """What the command writes, when all is well."""
+    assert main(["service", *words]) == 0
+    return capsys.readouterr().out
+
+
+def test_what_is_offered(mission: str, capsys: Capture) -> None:
+    assert "/switch\n" in said(capsys, "list", mission, "--for", "1")
+    assert said(capsys, "type", mission, "switch", "--for", "1") == "std_srvs/SetBool\n"
+    assert said(capsys, "args", mission, "/switch", "--for", "1") == "data\n"
+    lines = said(capsys, "info", mission, "/switch", "--for", "1").split("\n")
+    assert lines[0] == "Node: /robot"
+    assert lines[1].startswith("URI: rosrpc://")
+    assert lines[2:] == ["Type: std_srvs/SetBool", "Args: data", ""]
+    found = json.loads(said(capsys, "info", mission, "/switch", "--for", "1", "--json"))
+    assert (found["node"], found["args"]) == ("/robot", ["data"])
+
+
+def test_nothing_of_the_kind(mission: str, tmp_path: Path, capsys: Capture) -> None:
+    assert main(["service", "list", mission, "/arm", "--for", "1"]) == 1
+    assert main(["service", "info", mission, "/none", "--for", "1"]) == 2
+    assert "Unknown service [/none]" in capsys.readouterr().err
+    (tmp_path / "x.bag").write_bytes(b"#ROSBAG V2.0\n")
+    assert main(["service", "list", str(tmp_path / "x.bag")]) == 2
+    assert "a bag, which has no services" in capsys.readouterr().err
+
+
+def test_calls(mission: str, capsys: Capture) -> None:
+    assert said(capsys, "call", mission, "/switch", "{data: true}") == 'success: True\nmessage: "is True"\n'
+    found = json.loads(said(capsys, "call", mission, "switch", "false", "--at", "2.0", "--json"))
+    assert found["response"] == {"success": False, "message": "is False"}
+    assert 2.0 <= found["at"] < 2.01
+
+
+def test_calls_that_fail(mission: str, capsys: Capture) -> None:
+    assert main(["service", "call", mission, "/switch", "{dta: true}"]) == 1
+    assert "No field name [dta]" in capsys.readouterr().err
+    assert main(["service", "call", mission, "/none", "--for", "2"]) == 1
+    assert "no answer from /none until the run was over" in capsys.readouterr().err
+    assert main(["service", "call", mission, "/none", "--for", "2", "--json"]) == 1
+    assert "no answer" in json.loads(capsys.readouterr().out)["error"]
