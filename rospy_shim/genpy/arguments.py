@@ -22,7 +22,7 @@ class ArgumentFiller:
         """Make a filler.
 
         Args:
-            class_of: message class by full name, for arrays of messages.
+            class_of: message class by full name, or None when there is none such; for arrays of messages.
         """
         self._class_of = class_of
 
@@ -32,50 +32,49 @@ class ArgumentFiller:
         Args:
             msg: the message.
             msg_args: a list with one value per field, or a list that holds one dict of values by field name.
-            keys: words that stand for a whole value, e.g. "now" or "auto".
+            keys: words that stand for a whole message or time, e.g. "now" or "auto".
 
         Raises:
-            MessageException: a field that does not exist, or too few, too many or unfit values.
+            MessageException: a field or word that does not exist, or too few, too many or unfit values.
             ValueError: something that is neither a list nor a dict where a message's fields are expected.
         """
-        alone = len(msg_args) == 1 and type(msg_args[0]) is dict
-        self._fill(msg, msg_args[0] if alone else msg_args, keys, "")
+        given = [] if msg_args is None else msg_args
+        alone = len(given) == 1 and type(given[0]) is dict
+        self._fill(msg, given[0] if alone else given, keys, "")
 
     def _fill(self, msg: Any, values: Any, keys: Mapping[str, Any], prefix: str) -> None:
-        if isinstance(values, dict):
+        if not isinstance(msg, (Message, TVal)):
+            raise ValueError(f"msg must be a Message instance: {msg}")
+        if type(values) is dict:
             for name, value in values.items():
-                if name not in msg.__slots__:
-                    raise MessageException(f"No field name [{prefix}{name}]")
-                self._set(msg, name, value, keys, prefix)
-        elif isinstance(values, list):
-            _check_count(msg, values, prefix)
+                self._set(msg, name, "" if value is None else value, keys, prefix)
+        elif type(values) is list:
+            _check_count(msg, values)
             for name, value in zip(msg.__slots__, values, strict=True):
                 self._set(msg, name, value, keys, prefix)
-        elif values is None:
-            raise MessageException(f"No value for field [{prefix.rstrip('.')}]")
         else:
             raise ValueError(f"invalid msg_args type: {values}")
 
     def _set(self, msg: Any, name: str, value: Any, keys: Mapping[str, Any], prefix: str) -> None:
+        if name not in msg.__slots__:
+            raise MessageException(f"No field name [{prefix}{name}]")
         old = getattr(msg, name)
         if isinstance(old, (Message, TVal)):
-            if isinstance(value, str) and value in keys:
+            if type(value) is str:
+                if value not in keys:
+                    raise MessageException(f"No key named [{value}]")
                 setattr(msg, name, keys[value])
+            elif isinstance(old, TVal) and type(value) is int:
+                setattr(msg, name, _time_of(old, value))
             else:
-                self._fill_one(old, value, keys, f"{prefix}{name}.")
-        elif isinstance(old, list):
-            setattr(msg, name, self._items(msg, name, value, keys, prefix))
+                self._fill(old, value, keys, f"{prefix}{name}.")
+        elif type(old) is list:
+            self._set_array(msg, name, value, keys, prefix)
         else:
-            setattr(msg, name, "" if value is None else value)
+            setattr(msg, name, value)
 
-    def _fill_one(self, old: Any, value: Any, keys: Mapping[str, Any], prefix: str) -> None:
-        if isinstance(old, TVal) and isinstance(value, int):
-            old.set(value // 1_000_000_000, value % 1_000_000_000)
-        else:
-            self._fill(old, value, keys, prefix)
-
-    def _items(self, msg: Any, name: str, values: Any, keys: Mapping[str, Any], prefix: str) -> list[Any]:
-        if not isinstance(values, (list, tuple)):
+    def _set_array(self, msg: Any, name: str, values: Any, keys: Mapping[str, Any], prefix: str) -> None:
+        if type(values) not in (list, tuple):
             kind = type(values).__name__
             raise MessageException(f"Field [{prefix}{name}] must be a list or tuple instead of: {kind}")
         base, _, length = msg._slot_types[msg.__slots__.index(name)].rstrip("]").partition("[")
@@ -83,19 +82,31 @@ class ArgumentFiller:
             counts = f"{len(values)} != {length}"
             raise MessageException(f"Field [{prefix}{name}] has incorrect number of elements: {counts}")
         if "/" not in base and base not in _TIMES:
-            return list(values)
-        made = [(_TIMES.get(base) or self._class_of(base))() for _ in values]
-        for item, value in zip(made, values, strict=True):
-            self._fill_one(item, value, keys, f"{prefix}{name}[].")
-        return made
+            setattr(msg, name, values)
+            return
+        cls = _TIMES.get(base) or self._class_of(base)
+        if cls is None:
+            problem = f"Cannot instantiate messages for field [{prefix}{name}] : cannot load class {base}"
+            raise MessageException(problem)
+        getattr(msg, name)[:] = [self._item(cls(), value, keys, prefix) for value in values]
+
+    def _item(self, item: Any, value: Any, keys: Mapping[str, Any], prefix: str) -> Any:
+        if isinstance(item, TVal) and type(value) is int:
+            return _time_of(item, value)
+        self._fill(item, value, keys, prefix)
+        return item
 
 
-def _check_count(msg: Any, values: list[Any], prefix: str) -> None:
-    if len(values) == len(msg.__slots__):
-        return
-    problem = "Too many" if len(values) > len(msg.__slots__) else "Not enough"
-    expected = [prefix + name for name in msg.__slots__]
-    raise MessageException(f"{problem} arguments:\n * Given: {values}\n * Expected: {expected}")
+def _time_of(old: TVal, nanoseconds: int) -> TVal:
+    """A time given as one number; genpy goes through a float and loses the last digits, and so do we."""
+    found: TVal = type(old).from_sec(nanoseconds / 1e9)
+    return found
+
+
+def _check_count(msg: Any, values: list[Any]) -> None:
+    if len(values) != len(msg.__slots__):
+        problem = "Too many" if len(values) > len(msg.__slots__) else "Not enough"
+        raise MessageException(f"{problem} arguments:\n * Given: {values}\n * Expected: {msg.__slots__}")
 
 
 def get_printable_message_args(msg: Any, buff: Any = None, prefix: str = "") -> str:

@@ -16,6 +16,7 @@ _BITS = {
     "byte": 8, "int8": 8, "int16": 16, "int32": 32, "int64": 64,
     "char": 8, "uint8": 8, "uint16": 16, "uint32": 32, "uint64": 64,
 }  # fmt: skip
+_HEADERS = ("Header", "std_msgs/Header", "roslib/Header")  # roslib's is an older name
 _SIGNED = frozenset(("byte", "int8", "int16", "int32", "int64"))
 
 
@@ -86,7 +87,12 @@ def _check_array(name: str, field_type: str, value: Any) -> None:
 
 
 def _check_message(name: str, field_type: str, value: Any) -> None:
-    if getattr(value, "_type", None) != field_type and field_type != "Header":
+    found = getattr(value, "_type", None)
+    if found is None:
         raise SerializationError(f"field {name} must be of type [{field_type}]")
+    if found in _HEADERS and field_type not in _HEADERS:
+        raise SerializationError(f"field {name} must be a Header instead of a {found}")
+    if found not in _HEADERS and found != field_type:
+        raise SerializationError(f"field {name} must be of type {field_type} instead of {found}")
     for slot, slot_type in zip(value.__slots__, value._get_types(), strict=False):
         check_type(f"{name}.{slot}", slot_type, getattr(value, slot))

@@ -1,6 +1,8 @@
-"""The three message errors of genpy.message; nodes catch them by these names. Imports nothing of cfepy."""
+"""The three message errors of genpy.message, and what becomes of text that is not UTF-8. Imports nothing of cfepy."""
 
 from __future__ import annotations
+
+import codecs
 
 
 class MessageException(Exception):  # genpy's name
@@ -19,3 +21,18 @@ class DeserializationError(MessageException):
     """Bytes end before the message does."""
 
     __module__ = "genpy.message"
+
+
+class RosMsgUnicodeErrors:  # genpy's name
+    """The codec error handler "rosmsg": it puts U+FFFD where text is not UTF-8. Generated sources decode with it."""
+
+    __module__ = "genpy.message"
+
+    def __init__(self) -> None:
+        self.msg_type: str | None = None
+
+    def __call__(self, err: UnicodeError) -> tuple[str | bytes, int]:
+        return codecs.replace_errors(err)
+
+
+codecs.register_error("rosmsg", RosMsgUnicodeErrors())

@@ -6,6 +6,7 @@ text, copying and the check that follows a failed serialization. Imports nothing
 
 from __future__ import annotations
 
+from io import BytesIO
 from typing import Any, BinaryIO, ClassVar
 
 from rospy_shim.genpy.checks import check_type
@@ -69,6 +70,17 @@ class Message:
 
     def deserialize(self, str_: bytes) -> Any:
         """Read the message from bytes; overridden by generated classes."""
+
+    # Sources that genpy generated have no more than these two; classes of cfepy's have better ones of their own.
+
+    def _pack(self) -> bytes:
+        buff = BytesIO()
+        self.serialize(buff)
+        return buff.getvalue()
+
+    @classmethod
+    def _unpack(cls, data: bytes, at: int = 0) -> Any:
+        return cls().deserialize(data[at:])
 
     def __getstate__(self) -> Any:
         return [getattr(self, name) for name in self.__slots__]

@@ -31,8 +31,8 @@ def strify_message(
         indent: put before each line of a message.
         time_offset: Times are printed relative to this one.
         current_time: not used, as in genpy.
-        field_filter: gives the names of the fields of a message to print.
-        fixed_numeric_width: numbers are printed in so many columns.
+        field_filter: gives the names of the fields of a message to print; they come in the message's order.
+        fixed_numeric_width: integers are printed in so many columns, floats with so many digits, cut to them.
     """
     return _Writer(time_offset, field_filter, fixed_numeric_width).text(val, indent)
 
@@ -60,13 +60,16 @@ class _Writer:
         return str(val)
 
     def number(self, val: float) -> str:
-        if isinstance(val, float):
-            return f"{val:{self.width}f}"
-        return f"{val:{self.width}d}"
+        if not isinstance(val, float):
+            return f"{val:{self.width}d}"
+        text = f"{val:.{self.width}f}"
+        return text[: max(text.find("."), self.width or 0)]
 
     def time(self, val: TVal, indent: str) -> str:
         if self.offset is not None and isinstance(val, Time):
             val = val - self.offset
+        if self.width is not None:
+            return f"\n{indent}secs: {self.number(val.secs)}\n{indent}nsecs: {self.number(val.nsecs)}"
         return f"\n{indent}secs: {val.secs}\n{indent}nsecs: {val.nsecs:9d}"
 
     def items(self, val: Any, indent: str) -> str:
@@ -82,9 +85,9 @@ class _Writer:
         return "\n" + "\n".join(f"{indent}- {self.text(item, indent + '  ')}" for item in val)
 
     def message(self, val: Any, indent: str) -> str:
-        names = self.fields_of(val) if self.fields_of is not None else val.__slots__
-        types = dict(zip(val.__slots__, val._slot_types, strict=False))
-        lines = [f"{indent}{name}: {self.field(getattr(val, name), types.get(name, ''), indent)}" for name in names]
+        chosen = list(self.fields_of(val)) if self.fields_of is not None else val.__slots__
+        fields = [pair for pair in zip(val.__slots__, val._slot_types, strict=False) if pair[0] in chosen]
+        lines = [f"{indent}{name}: {self.field(getattr(val, name), kind, indent)}" for name, kind in fields]
         text = "\n".join(lines)
         return "\n" + text if indent else text
 

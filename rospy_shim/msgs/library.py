@@ -39,14 +39,15 @@ class Library:
             sources: where definitions are looked for, in order.
             restore: see `classes.build_class`.
             module: value of the classes' `__module__`; None for ROS's "package.msg._Name".
-            base: library of all packages that the sources lack. Its classes are used as they are, except for types
-                in which one from the sources is nested.
+            base: library of all packages that the sources lack. Its definitions are used as they are, except for
+                types in which one from the sources is nested; classes are made anew, for a program may change them.
         """
         self._sources, self._restore, self._module = tuple(sources), restore, module
         self._base = base
         self._packages: dict[tuple[str, Kind], Definitions | None] = {}
         self._specs: dict[str, Spec] = {}
         self._md5sums: dict[str, str] = {}
+        self._full_texts: dict[str, str] = {}
         self._classes: dict[str, MessageClass] = {}
         self._services: dict[str, ServiceClass] = {}
         self._opening: list[str] = []
@@ -67,6 +68,18 @@ class Library:
         package, _, name = full_name.partition("/")
         return name in (self._package(package, kind) or {})
 
+    def text(self, full_name: str, kind: Kind = "msg") -> str:
+        """The definition of a message or service as it was written.
+
+        Raises:
+            UsageError: no such type.
+        """
+        package, _, name = full_name.partition("/")
+        found = (self._package(package, kind) or {}).get(name)
+        if found is None:
+            raise UsageError(f"there is no {kind} type {full_name!r}; is its package on ROS_PACKAGE_PATH?")
+        return found.text
+
     def spec(self, full_name: str) -> Spec:
         """The parsed definition of a type.
 
@@ -85,6 +98,8 @@ class Library:
 
     def md5sum(self, full_name: str) -> str:
         """md5sum of a type."""
+        if self._base is not None and not self._is_own(full_name):
+            return self._base.md5sum(full_name)
         found = self._md5sums.get(full_name)
         if found is None:
             found = self._md5sums[full_name] = fingerprint.md5sum(self.spec(full_name), self.md5sum)
@@ -92,7 +107,12 @@ class Library:
 
     def full_text(self, full_name: str) -> str:
         """Definition of a type and of all types in it."""
-        return fingerprint.full_text(self.spec(full_name), self.spec)
+        if self._base is not None and not self._is_own(full_name):
+            return self._base.full_text(full_name)
+        found = self._full_texts.get(full_name)
+        if found is None:
+            found = self._full_texts[full_name] = fingerprint.full_text(self.spec(full_name), self.spec)
+        return found
 
     def message_class(self, full_name: str) -> MessageClass:
         """Class of a type.
@@ -100,8 +120,6 @@ class Library:
         Raises:
             UsageError: as `spec`.
         """
-        if self._base is not None and not self._is_own(full_name):
-            return self._base.message_class(full_name)
         found = self._classes.get(full_name)
         if found is None:
             spec = self.spec(full_name)
@@ -114,8 +132,6 @@ class Library:
         Raises:
             UsageError: no such service, or its text has a mistake.
         """
-        if self._base is not None and not any(self._is_own(full_name + part) for part in _PARTS):
-            return self._base.service_class(full_name)
         found = self._services.get(full_name)
         if found is None:
             if not self.has(full_name, "srv"):

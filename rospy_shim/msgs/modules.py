@@ -7,7 +7,7 @@ Message classes inside are generated when their name is first looked up. Imports
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from types import ModuleType
 from typing import Any, cast
@@ -17,22 +17,48 @@ from rospy_shim.genpy import arguments, checks, errors, message, rostime, strify
 from rospy_shim.msgs.library import Library, from_full_text, shipped
 from rospy_shim.msgs.sources import Kind
 
+_IMPORTED = ("codecs", "genpy", "struct", "sys")
+_TIMES: Mapping[str, Any] = {"time": rostime.Time, "duration": rostime.Duration}
+_NO_PARTS: Mapping[str, Callable[[], Any]] = {}
+
 
 class MessageModule(ModuleType):
     """A module whose classes are made at first use."""
 
     __all__: list[str]
 
-    def __init__(self, name: str, makers: dict[str, Callable[[], Any]]) -> None:
+    def __init__(
+        self, name: str, makers: Mapping[str, Callable[[], Any]], parts: Mapping[str, Callable[[], Any]] = _NO_PARTS
+    ) -> None:
         """Make a module.
 
         Args:
             name: its dotted name.
             makers: what makes each of its classes.
+            parts: what makes each of its submodules.
         """
         super().__init__(name)
         self.__all__ = list(makers)
-        self._cfepy_makers = makers
+        self._cfepy_names = tuple(makers)
+        self._cfepy_makers = {**makers, **parts}
+
+    def hand_on(self, load: Callable[[str], ModuleType]) -> None:
+        """Have a star import bring what it brings in ROS: also the modules that generated sources import.
+
+        Args:
+            load: gives the node's module of a name.
+        """
+        makers = self._cfepy_makers
+        makers.update({name: partial(load, name) for name in _IMPORTED})
+        makers["python3"] = lambda: True
+        del self.__all__  # what it is can be said once the classes are there, which a star import makes
+        makers["__all__"] = lambda: self._star_names(load)
+
+    def _star_names(self, load: Callable[[str], ModuleType]) -> list[str]:
+        types = [each for name in self._cfepy_names for each in getattr(getattr(self, name), "_slot_types", ())]
+        packages = dict.fromkeys(each.partition("/")[0] for each in types if "/" in each)
+        self._cfepy_makers.update({package: partial(_with_messages, load, package) for package in packages})
+        return [*self._cfepy_names, *_IMPORTED, "python3", *packages]
 
     def __getattr__(self, name: str) -> Any:
         make = self.__dict__["_cfepy_makers"].get(name)
@@ -43,11 +69,11 @@ class MessageModule(ModuleType):
         return made
 
     def __dir__(self) -> list[str]:
-        return sorted({*self.__dict__, *self.__all__})
+        return sorted({*self.__dict__, *self._cfepy_names})
 
 
 def make_module(name: str, library: Library | None = None) -> ModuleType | None:
-    """A fresh module of a ROS package, genpy or roslib; or one of the modules that hold the codec, which all share.
+    """A fresh module of a ROS package or of genpy; or one of the modules that hold the codec, which all share.
 
     The latter (`rospy_shim.msgs`, `rospy_shim.genpy` and below) must be the same inside a node and outside: a pickled
     message names a function there.
@@ -68,8 +94,6 @@ def make_module(name: str, library: Library | None = None) -> ModuleType | None:
         return importlib.import_module(name) if rest and rest[0] in ("msgs", "genpy") else None
     if package == "genpy":
         return _genpy_module(name, library)
-    if package == "roslib":
-        return _roslib_module(name, library)
     if not rest:
         known = library.names(package) is not None or library.names(package, "srv") is not None
         return _as_package(ModuleType(name)) if known else None
@@ -85,21 +109,30 @@ def make_module(name: str, library: Library | None = None) -> ModuleType | None:
     return _classes_module(name, library, package, names, kind) if names else None
 
 
+def _with_messages(load: Callable[[str], ModuleType], package: str) -> ModuleType:
+    load(f"{package}.msg")
+    return load(package)
+
+
 def _as_package(module: ModuleType) -> ModuleType:
     module.__path__ = []
     return module
 
 
 def _classes_module(name: str, library: Library, package: str, names: list[str], kind: Kind) -> ModuleType:
+    whole = name == f"{package}.{kind}"
+    # Generated sources name a class by its module: std_msgs.msg._Header.Header.
+    parts = {f"_{each}": partial(make_module, f"{name}._{each}", library) for each in names} if whole else {}
     if kind == "msg":
-        return MessageModule(name, {each: partial(library.message_class, f"{package}/{each}") for each in names})
+        messages = {each: partial(library.message_class, f"{package}/{each}") for each in names}
+        return MessageModule(name, messages, parts)
     makers: dict[str, Callable[[], Any]] = {}
     for each in names:
         service = partial(library.service_class, f"{package}/{each}")
         makers[each] = service
         makers[each + "Request"] = partial(_part_of, service, "_request_class")
         makers[each + "Response"] = partial(_part_of, service, "_response_class")
-    return MessageModule(name, makers)
+    return MessageModule(name, makers, parts)
 
 
 def _part_of(service: Callable[[], Any], attribute: str) -> Any:
@@ -119,33 +152,17 @@ def _genpy_module(name: str, library: Library) -> ModuleType | None:
     return _as_package(module)
 
 
-def _roslib_module(name: str, library: Library) -> ModuleType | None:
-    """`roslib`, what many a node begins with, and `roslib.message`, an older name of `genpy.message`."""
-    module = ModuleType(name)
-    if name == "roslib.message":
-        module.__dict__.update(_genpy_contents("genpy.message", library) or {})
-        return module
-    if name != "roslib":
-        return None
-    module.__dict__["load_manifest"] = load_manifest
-    return _as_package(module)
-
-
-def load_manifest(package_name: str) -> None:
-    """roslib.load_manifest: puts the packages that a package depends on into sys.path; here all are found anyhow."""
-
-
 def _genpy_contents(name: str, library: Library) -> dict[str, Any] | None:
     times = {"TVal": rostime.TVal, "Time": rostime.Time, "Duration": rostime.Duration}
     if name == "genpy.rostime":
         return times
     if name == "genpy":
         return {each: getattr(genpy, each) for each in genpy.__all__} | {"__all__": list(genpy.__all__)}
-    if name == "genpy.dynamic":
-        return {"generate_dynamic": generate_dynamic}
+    if name == "genpy.classes":  # what genpy.dynamic stands on
+        return {"classes_of_text": generate_dynamic}
     if name != "genpy.message":
         return None
-    filler = arguments.ArgumentFiller(library.message_class)
+    filler = arguments.ArgumentFiller(_finder(library, "msg"))
     return times | {
         "Message": message.Message,
         "MessageException": errors.MessageException,
@@ -157,8 +174,15 @@ def _genpy_contents(name: str, library: Library) -> dict[str, Any] | None:
         "get_printable_message_args": arguments.get_printable_message_args,
         "get_message_class": _finder(library, "msg"),
         "get_service_class": _finder(library, "srv"),
+        "RosMsgUnicodeErrors": errors.RosMsgUnicodeErrors,
+        "isstring": isstring,
         "struct_I": genpy.struct_I,
     }
+
+
+def isstring(s: object) -> bool:
+    """Whether something is a str."""
+    return isinstance(s, str)
 
 
 def _finder(library: Library, kind: Kind) -> Callable[..., Any]:
@@ -168,6 +192,8 @@ def _finder(library: Library, kind: Kind) -> Callable[..., Any]:
         Raises:
             ValueError: a name without a package.
         """
+        if type_name in _TIMES:
+            return _TIMES[type_name]
         if type_name == "Header":
             type_name = "std_msgs/Header"
         if type_name.count("/") != 1:

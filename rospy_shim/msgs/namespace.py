@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
+from functools import cache
+from types import CodeType
 from typing import Any
 
 from rospy_shim.genpy.rostime import Duration, Time
@@ -66,9 +68,15 @@ class Namespace:
     def compile(self, lines: list[str], function: str, full_name: str) -> Callable[..., Any]:
         """Run the source of one function and return it."""
         scope = self.globals
-        exec(compile("\n".join(lines), f"<codec of {full_name}>", "exec"), scope)
+        exec(_code("\n".join(lines), f"<codec of {full_name}>"), scope)
         made: Callable[..., Any] = scope[function]
         return made
+
+
+@cache
+def _code(source: str, file: str) -> CodeType:
+    """Code of a function; every node of a mission has message classes of its own, made of the same code."""
+    return compile(source, file, "exec")
 
 
 class Lines:

@@ -16,6 +16,7 @@ from pathlib import Path
 _MANIFESTS = ("package.xml", "manifest.xml")
 _FENCES = ("CATKIN_IGNORE", "AMENT_IGNORE", "rospack_nosubdirs")
 _DEFINITIONS = ("msg", "srv", "action")
+_PACKAGE_DIR = re.compile(r"""package_dir['"]?\s*[=:]\s*\{\s*['"]{2}\s*:\s*['"]([^'"]+)['"]""")
 _NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
 
 
@@ -60,7 +61,7 @@ class Packages:
 
     def code_folders(self) -> list[Path]:
         """Folders with Python code that packages offer under their own names, as catkin_python_setup has it."""
-        found = [folders[0] / "src" for folders in self._found.values()]
+        found = [folders[0] / inner for folders in self._found.values() for inner in _code_roots(folders[0])]
         return [folder for folder in found if any(folder.glob("*/__init__.py"))]
 
     @cached_property
@@ -80,6 +81,15 @@ class Packages:
 
     def _listed(self, variable: str) -> list[Path]:
         return [Path(self._resolve(each)) for each in self._environ.get(variable, "").split(os.pathsep) if each]
+
+
+def _code_roots(package: Path) -> list[str]:
+    """Where a package has the code that it installs: `src`, or what its setup.py says of all its Python packages."""
+    try:
+        match = _PACKAGE_DIR.search((package / "setup.py").read_text(encoding="utf-8", errors="replace"))
+    except OSError:
+        match = None
+    return list(dict.fromkeys(["src", *([match[1]] if match else [])]))
 
 
 def near(script: Path) -> Iterator[Path]:
@@ -130,6 +140,14 @@ def is_package(folder: Path) -> bool:
 def _subfolders(folder: Path) -> list[Path]:
     """Folders in a folder that are not hidden, sorted; none when it cannot be read."""
     try:
-        return sorted(each for each in folder.iterdir() if each.is_dir() and not each.name.startswith("."))
+        with os.scandir(folder) as found:  # tells folders from files without a look at each
+            return [folder / name for name in sorted(each.name for each in found if _is_subfolder(each))]
     except OSError:
         return []
+
+
+def _is_subfolder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return not entry.name.startswith(".") and entry.is_dir()
+    except OSError:
+        return False  # a link that leads round in a circle

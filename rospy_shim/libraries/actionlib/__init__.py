@@ -2,11 +2,19 @@
 
 Names, states, texts and timing are those of ROS's actionlib 1.14; the code is cfepy's own, and stands on what `rospy`
 offers to every node. It is executed anew in each node that imports it, so nothing here is shared between nodes.
+As with ROS's, `from actionlib import *` brings along the modules that it stands on.
 """
 
 from __future__ import annotations
 
+import threading
+import time
+import traceback
+import weakref
+
+import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
+from std_msgs.msg import Header
 
 from .action_client import ActionClient, GoalManager
 from .action_server import ActionServer, nop_cb
@@ -33,6 +41,7 @@ __all__ = [
     "GoalStatus",
     "GoalStatusArray",
     "HandleTrackerDeleter",
+    "Header",
     "ServerGoalHandle",
     "SimpleActionClient",
     "SimpleActionServer",
@@ -41,4 +50,9 @@ __all__ = [
     "TerminalState",
     "get_name_of_constant",
     "nop_cb",
+    "rospy",
+    "threading",
+    "time",
+    "traceback",
+    "weakref",
 ]

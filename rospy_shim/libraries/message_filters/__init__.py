@@ -6,8 +6,21 @@ executed anew in each node that imports it.
 
 from __future__ import annotations
 
+import threading
+
+import rospy
+
 from .cache import Cache
 from .filters import SimpleFilter, Subscriber
 from .synchronizers import ApproximateTimeSynchronizer, TimeSynchronizer
 
-__all__ = ["ApproximateTimeSynchronizer", "Cache", "SimpleFilter", "Subscriber", "TimeSynchronizer"]
+# As in ROS, what a star import brings has rospy and threading in it.
+__all__ = [
+    "ApproximateTimeSynchronizer",
+    "Cache",
+    "SimpleFilter",
+    "Subscriber",
+    "TimeSynchronizer",
+    "rospy",
+    "threading",
+]

@@ -27,6 +27,15 @@ def from_msg_msg(msg: Any) -> Any:
     return msg
 
 
+def transform_to_kdl(t: Any) -> Any:
+    """PyKDL.Frame of a geometry_msgs/TransformStamped."""
+    import PyKDL
+
+    rotation, place = t.transform.rotation, t.transform.translation
+    turned = PyKDL.Rotation.Quaternion(rotation.x, rotation.y, rotation.z, rotation.w)
+    return PyKDL.Frame(turned, PyKDL.Vector(place.x, place.y, place.z))
+
+
 def do_transform_point(point: Any, transform: Any) -> Any:
     """A geometry_msgs/PointStamped, turned and moved."""
     found = PointStamped(header=transform.header)

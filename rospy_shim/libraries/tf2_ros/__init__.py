@@ -1,13 +1,19 @@
 """tf2_ros: transforms between frames over time, heard on /tf and /tf_static and told there.
 
 `BufferClient` and `BufferServer` are loaded when they are first asked for, because they bring actionlib with them.
+As in ROS, the messages that the package uses are names of it too.
 """
 
 from __future__ import annotations
 
 import importlib
+import threading
 from typing import TYPE_CHECKING, Any
 
+import rospy
+from geometry_msgs.msg import TransformStamped
+from std_msgs.msg import Header
+from tf2_msgs.msg import TFMessage
 from tf2_py import (
     BufferCore,
     ConnectivityException,
@@ -45,24 +51,37 @@ __all__ = [
     "ConnectivityException",
     "ConvertRegistration",
     "ExtrapolationException",
+    "Header",
     "InvalidArgumentException",
     "LookupException",
     "NotImplementedException",
     "Stamped",
     "StaticTransformBroadcaster",
+    "TFMessage",
     "TimeoutException",
     "TransformBroadcaster",
     "TransformException",
     "TransformListener",
     "TransformRegistration",
+    "TransformStamped",
     "TypeException",
     "convert",
+    "rospy",
+    "threading",
 ]
 
-_WITH_ACTIONLIB = {"BufferClient": "tf2_ros.buffer_client", "BufferServer": "tf2_ros.buffer_server"}
+_LATER = {
+    "BufferClient": "tf2_ros.buffer_client",
+    "BufferServer": "tf2_ros.buffer_server",
+    "FrameGraph": "tf2_msgs.srv",
+    "FrameGraphResponse": "tf2_msgs.srv",
+    "GoalStatus": "actionlib_msgs.msg",
+    "LookupTransformAction": "tf2_msgs.msg",
+    "LookupTransformGoal": "tf2_msgs.msg",
+}
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _WITH_ACTIONLIB:
+    if name not in _LATER:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(_WITH_ACTIONLIB[name]), name)
+    return getattr(importlib.import_module(_LATER[name]), name)

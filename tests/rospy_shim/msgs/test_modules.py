@@ -59,7 +59,7 @@ def test_private_modules_and_packages() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["numpy", "nope.msg", "std_msgs.srv", "std_msgs.msg._Nope", "std_msgs.x", "genpy.nope"]
+    "name", ["numpy", "nope.msg", "std_msgs.srv", "std_msgs.msg._Nope", "std_msgs.x", "genpy.nope", "roslib"]
 )
 def test_other_names_are_not_ours(name: str) -> None:
     assert make_module(name) is None
@@ -104,7 +104,7 @@ def test_fill_message_args() -> None:
 
 def test_generate_dynamic() -> None:
     text = message_class("geometry_msgs/PoseStamped")._full_text
-    made = _module("genpy.dynamic").generate_dynamic("geometry_msgs/PoseStamped", text)
+    made = _module("genpy.classes").classes_of_text("geometry_msgs/PoseStamped", text)
     assert made["geometry_msgs/PoseStamped"]._md5sum == message_class("geometry_msgs/PoseStamped")._md5sum
     assert made["geometry_msgs/PoseStamped"]._full_text == text
 
@@ -158,14 +158,3 @@ def test_load_package() -> None:
         load_package("nope")
     with pytest.raises(UsageError, match="no message type 'std_msgs/Nope'"):
         message_class("std_msgs/Nope")
-
-
-def test_roslib() -> None:
-    roslib, message = _module("roslib"), _module("roslib.message")
-    assert roslib.__path__ == []
-    assert roslib.load_manifest("some_package") is None
-    assert message.get_message_class("std_msgs/String") is message_class("std_msgs/String")
-    assert message.get_message_class("std_msgs/Nope") is None
-    assert message.get_service_class("std_srvs/SetBool") is service_class("std_srvs/SetBool")
-    assert message.Message is genpy.Message
-    assert make_module("roslib.scriptutil") is None

@@ -52,12 +52,15 @@ def test_an_action_makes_the_messages_of_actionlib(tmp_path: Path) -> None:
     assert len(names) == 7
 
 
-def test_shipped_classes_are_shared(tmp_path: Path) -> None:
+def test_the_classes_of_a_node_are_its_own(tmp_path: Path) -> None:
     write(tmp_path / "rover", msg__Drive="geometry_msgs/Point goal\n")
     library = library_of(tmp_path)
-    assert library.message_class("nav_msgs/Odometry") is message_class("nav_msgs/Odometry")
-    assert library.service_class("std_srvs/SetBool") is service_class("std_srvs/SetBool")
-    assert type(library.message_class("rover/Drive")().goal) is message_class("geometry_msgs/Point")
+    own, shared = library.message_class("nav_msgs/Odometry"), message_class("nav_msgs/Odometry")
+    assert own is not shared
+    assert (own._md5sum, own._full_text) == (shared._md5sum, shared._full_text)
+    assert library.service_class("std_srvs/SetBool") is not service_class("std_srvs/SetBool")
+    assert type(library.message_class("rover/Drive")().goal) is library.message_class("geometry_msgs/Point")
+    assert type(own._unpack(shared()._pack()).pose.pose.position) is library.message_class("geometry_msgs/Point")
 
 
 def test_a_package_of_the_same_name_wins_everywhere(tmp_path: Path) -> None:
@@ -67,7 +70,7 @@ def test_a_package_of_the_same_name_wins_everywhere(tmp_path: Path) -> None:
     assert way_point().id.__slots__ == ["text"]
     assert way_point._md5sum != message_class("geographic_msgs/WayPoint")._md5sum
     assert library.service_class("geographic_msgs/GetRoutePlan") is not service_class("geographic_msgs/GetRoutePlan")
-    assert library.message_class("geographic_msgs/GeoPoint") is message_class("geographic_msgs/GeoPoint")
+    assert library.md5sum("geographic_msgs/GeoPoint") == shipped().md5sum("geographic_msgs/GeoPoint")
 
 
 @pytest.mark.parametrize(

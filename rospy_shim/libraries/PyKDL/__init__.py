@@ -1,0 +1,57 @@
+"""PyKDL for nodes: vectors, rotations, frames, twists and wrenches of orocos KDL, in Python.
+
+Names, arguments and results are those of PyKDL 1.5; results agree but for the last digits of a double. Kinematic chains
+and trees are here with the common solvers; dynamics are not.
+"""
+
+from __future__ import annotations
+
+from .chain import Chain, Joint, Segment
+from .frame import Frame
+from .functions import Add, Divide, Equal, Multiply, MultiplyJacobian, SetToZero, Subtract, addDelta, diff, dot
+from .inertia import RigidBodyInertia, RotationalInertia
+from .joint_arrays import Jacobian, JntArray
+from .rotation import Rotation
+from .solvers import (
+    ChainFkSolverPos_recursive,
+    ChainIkSolverPos_NR,
+    ChainIkSolverPos_NR_JL,
+    ChainIkSolverVel_pinv,
+    ChainJntToJacSolver,
+    SolverI,
+)
+from .tree import Tree
+from .twist import Twist, Wrench
+from .vector import Vector
+
+__all__ = [
+    "Add",
+    "Chain",
+    "ChainFkSolverPos_recursive",
+    "ChainIkSolverPos_NR",
+    "ChainIkSolverPos_NR_JL",
+    "ChainIkSolverVel_pinv",
+    "ChainJntToJacSolver",
+    "Divide",
+    "Equal",
+    "Frame",
+    "Jacobian",
+    "JntArray",
+    "Joint",
+    "Multiply",
+    "MultiplyJacobian",
+    "RigidBodyInertia",
+    "Rotation",
+    "RotationalInertia",
+    "Segment",
+    "SetToZero",
+    "SolverI",
+    "Subtract",
+    "Tree",
+    "Twist",
+    "Vector",
+    "Wrench",
+    "addDelta",
+    "diff",
+    "dot",
+]

@@ -1,0 +1,13 @@
+"""cv_bridge for nodes: sensor_msgs/Image and CompressedImage as NumPy arrays, which is what OpenCV's Python works on.
+
+Names, arguments and texts of errors are those of ROS's cv_bridge 1.16; the code is cfepy's own. Images keep their
+encoding, or change between the common ones, with NumPy alone; the rest needs OpenCV (`pip install opencv-python`).
+"""
+
+from __future__ import annotations
+
+from .color import cvtColor2, cvtColorForDisplay
+from .core import CvBridge, CvBridgeError
+from .encodings import getCvType
+
+__all__ = ["CvBridge", "CvBridgeError", "cvtColor2", "cvtColorForDisplay", "getCvType"]

@@ -1,0 +1,25 @@
+"""roslaunch for nodes: starting other nodes and launch files while the mission runs.
+
+Source: wiki.ros.org/roslaunch/API%20Usage. What is started becomes an application of the same mission; the tool itself
+is `cfepy launch`. Remote machines, servers and process monitors are not there: everything is on one computer.
+"""
+
+from __future__ import annotations
+
+from roslaunch import core, parent, rlutil, scriptapi, substitution_args
+from roslaunch.core import Node, Param, RLException
+from roslaunch.rlutil import configure_logging
+from roslaunch.scriptapi import ROSLaunch
+
+__all__ = [
+    "Node",
+    "Param",
+    "RLException",
+    "ROSLaunch",
+    "configure_logging",
+    "core",
+    "parent",
+    "rlutil",
+    "scriptapi",
+    "substitution_args",
+]

@@ -1,0 +1,49 @@
+"""roslib.launcher: makes the code of rosbuild packages importable; that of catkin packages is so anyhow."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+
+import rosmsg
+import rospkg
+
+_bootstrapped: list[str] = []
+
+
+def load_manifest(package_name: str, bootstrap_version: str = "0.7") -> None:
+    """Put the code folders of a package, and of those that it depends on, into sys.path.
+
+    Args:
+        package_name: the package.
+        bootstrap_version: accepted.
+
+    Raises:
+        rospkg.ResourceNotFound: there is no such package: on disk, as a library, or with messages.
+    """
+    if package_name in _bootstrapped:
+        return
+    packages = rospkg.RosPack()
+    if package_name in packages.list():
+        _add_code(packages, package_name)
+    elif package_name not in rosmsg.packages() and importlib.util.find_spec(package_name) is None:
+        raise rospkg.ResourceNotFound(package_name, ros_paths=packages.get_ros_paths())
+    _bootstrapped.append(package_name)
+
+
+def _add_code(packages: rospkg.RosPack, package_name: str) -> None:
+    if packages.get_manifest(package_name).is_catkin:
+        return
+    for name in [*packages._known_depends(package_name, True), package_name]:
+        folders = _code_folders(packages, name) if name in packages.list() else []
+        sys.path[:0] = [folder for folder in folders if folder not in sys.path]
+
+
+def _code_folders(packages: rospkg.RosPack, name: str) -> list[str]:
+    manifest, place = packages.get_manifest(name), packages.get_path(name)
+    if manifest.is_catkin:
+        return []
+    exported = [path for paths in manifest.get_export("python", "path") for path in paths.split(":")]
+    usual = [os.path.join(place, folder) for folder in ("src", "lib")]
+    return exported or [folder for folder in usual if os.path.isdir(folder)]

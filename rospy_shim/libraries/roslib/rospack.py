@@ -1,0 +1,37 @@
+"""roslib.rospack: what the command `rospack` knows of dependencies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import rospkg
+
+
+def rospack_depends_1(pkg: str) -> Sequence[str]:
+    """Names of the packages that a package depends on itself."""
+    return rospkg.RosPack().get_depends(pkg, implicit=False)
+
+
+def rospack_depends(pkg: str) -> Sequence[str]:
+    """Names of the packages that a package depends on, also by way of others."""
+    return rospkg.RosPack().get_depends(pkg)
+
+
+def rospack_depends_on_1(pkg: str) -> Sequence[str]:
+    """Names of the packages that depend on a package themselves."""
+    return rospkg.RosPack().get_depends_on(pkg, implicit=False)
+
+
+def rospack_depends_on(pkg: str) -> Sequence[str]:
+    """Names of the packages that depend on a package, also by way of others."""
+    return rospkg.RosPack().get_depends_on(pkg)
+
+
+def rospack_plugins(pkg: str) -> list[tuple[str, str]]:
+    """Package and file of each plugin for a package."""
+    packages = rospkg.RosPack()
+    return [
+        (name, file)
+        for name in packages.get_depends_on(pkg, implicit=False)
+        for file in packages.get_manifest(name).get_export(pkg, "plugin")
+    ]

@@ -1,0 +1,77 @@
+"""roslib.srvs: service definitions taken apart (`SrvSpec`), from a text or a file. It stands on genmsg."""
+
+from __future__ import annotations
+
+import os
+
+import rosmsg
+from genmsg import InvalidMsgSpec
+from genmsg.srvs import SrvSpec
+
+from roslib.msgs import SEP
+from roslib.msgs import load_from_string as _load_message
+from roslib.names import resource_name
+from roslib.packages import resource_file
+
+EXT = ".srv"
+COMMENTCHAR = "#"
+IODELIM = "---"
+
+
+SrvSpecException = InvalidMsgSpec
+VERBOSE = False
+
+
+def set_verbose(v: bool) -> None:
+    """Say whether to print what is read; only `is_verbose` goes by it."""
+    global VERBOSE
+    VERBOSE = v
+
+
+def is_verbose() -> bool:
+    """What `set_verbose` has said last."""
+    return VERBOSE
+
+
+def list_srv_types(package: str, include_depends: bool) -> list[str]:
+    """Names of the services of a package; with `include_depends` also those of the packages that it depends on."""
+    import rospkg
+
+    found = [name.partition(SEP)[2] for name in rosmsg.list_srvs(package)]
+    depends = rospkg.RosPack().get_depends(package, implicit=False) if include_depends else []
+    return found + [name for each in depends for name in rosmsg.list_srvs(each)]
+
+
+def srv_file(package: str, type_: str) -> str:
+    """The path of a definition, whether it is there or not.
+
+    Raises:
+        InvalidROSPkgException: there is no such package.
+    """
+    return resource_file(package, "srv", type_ + EXT)
+
+
+def load_from_file(file_name: str, package_context: str = "") -> tuple[str, SrvSpec]:
+    """Name and definition in a file; see roslib.msgs.load_from_file."""
+    short = os.path.basename(file_name).removesuffix(EXT)
+    name = resource_name(package_context, short)
+    with open(file_name, encoding="utf-8") as file:
+        return name, load_from_string(file.read(), package_context, name, short)
+
+
+def load_from_string(text: str, package_context: str = "", full_name: str = "", short_name: str = "") -> SrvSpec:
+    """The definition in a text.
+
+    Raises:
+        SrvSpecException: no line `---`.
+        MsgSpecException: a mistake in a half of it.
+    """
+    lines = text.splitlines(keepends=True)
+    fence = next((number for number, line in enumerate(lines) if line.startswith(IODELIM)), None)
+    if fence is None:
+        raise SrvSpecException(f"there is no line {IODELIM} between request and response")
+    halves = zip(("Request", "Response"), ("".join(lines[:fence]), "".join(lines[fence + 1 :])), strict=True)
+    request, response = (
+        _load_message(half, package_context, full_name + part, short_name + part) for part, half in halves
+    )
+    return SrvSpec(request, response, text, full_name, short_name, package_context)

@@ -1,0 +1,23 @@
+"""tf_conversions for nodes: poses of ROS, tf and NumPy as PyKDL frames and back.
+
+Names and results are those of ROS's tf_conversions 1.13. As there, `tf_conversions.transformations` is tf's, and the
+names of PyKDL can be had from here too.
+"""
+
+from __future__ import annotations
+
+from PyKDL import *  # noqa: F403
+from tf import transformations
+
+from .posemath import fromCameraParams, fromMatrix, fromMsg, fromTf, toMatrix, toMsg, toTf
+
+__all__ = [
+    "fromCameraParams",
+    "fromMatrix",
+    "fromMsg",
+    "fromTf",
+    "toMatrix",
+    "toMsg",
+    "toTf",
+    "transformations",
+]
