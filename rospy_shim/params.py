@@ -1,4 +1,4 @@
-"""The parameter server: one tree for the mission, and the functions through which a node reads and writes it.
+"""Parameters: the functions through which a node reads and writes the mission's tree (`rospy_shim.parameter_tree`).
 
 Values are what XML-RPC can carry, since that is how ROS transports them: tuples become lists, bytes become Binary, None
 and big integers are refused with the same errors. Imports nothing of cfepy.
@@ -10,14 +10,15 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from rospy_shim.exceptions import ROSException
-from rospy_shim.names import SEP, is_legal_name, join, namespace_of
+from rospy_shim.names import SEP, is_legal_name
+from rospy_shim.parameter_tree import ParameterTree
 
 if TYPE_CHECKING:
     from rospy_shim.node import Node
 
 _INT_MAX = 2**31 - 1
 _INT_MIN = -(2**31)
-_MISSING = object()
+_MISSING = ParameterTree.MISSING
 
 
 def marshalled(value: Any) -> Any:
@@ -47,79 +48,6 @@ def marshalled(value: Any) -> Any:
     if not hasattr(value, "__dict__") or isinstance(value, (int, float, str, bytes, list, tuple, dict)):
         raise TypeError(f"cannot marshal {kind} objects")
     return marshalled(dict(vars(value)))
-
-
-class ParameterTree:
-    """Parameters of all nodes, by resolved name; a namespace is a dictionary.
-
-    Args:
-        initial: the tree to begin with.
-    """
-
-    def __init__(self, initial: Mapping[str, Any] | None = None) -> None:
-        self._root: dict[str, Any] = {}
-        for name, value in (initial or {}).items():
-            self.set(join(SEP, name), _plain(value))
-
-    def find(self, key: str) -> Any:
-        """The value or namespace of a resolved name, or `ParameterTree.MISSING`."""
-        value: Any = self._root
-        for part in _parts(key):
-            if type(value) is not dict or part not in value:
-                return _MISSING
-            value = value[part]
-        return value
-
-    MISSING = _MISSING
-
-    def set(self, key: str, value: Any) -> None:
-        """Give a name a value; a dictionary replaces the whole namespace.
-
-        Raises:
-            TypeError: the root can only be a dictionary.
-        """
-        parts = _parts(key)
-        if not parts:
-            if type(value) is not dict:
-                raise TypeError("cannot set root of parameter tree to non-dictionary")
-            self._root = dict(value)
-            return
-        place = self._root
-        for part in parts[:-1]:
-            inner = place.get(part)
-            if type(inner) is not dict:
-                inner = place[part] = {}
-            place = inner
-        place[parts[-1]] = value
-
-    def delete(self, key: str) -> None:
-        """Remove a name.
-
-        Raises:
-            KeyError: there is no such name.
-        """
-        *path, last = _parts(key) or [""]
-        place = self.find(SEP.join(path))
-        if type(place) is not dict or last not in place:
-            raise KeyError(key)
-        del place[last]
-
-    def search(self, namespace: str, key: str) -> str | None:
-        """The name that has the first part of `key` in the namespace or one above it, or None."""
-        first, slash, rest = key.partition(SEP)
-        while True:
-            candidate = join(namespace, first)
-            if self.find(candidate) is not _MISSING:
-                return candidate + slash + rest
-            if namespace == SEP:
-                return None
-            namespace = namespace_of(namespace)
-
-    def names(self) -> list[str]:
-        """All names that have a value."""
-        found: list[str] = []
-        _collect("", self._root, found)
-        return found
 
 
 class Params:
@@ -167,10 +95,15 @@ class Params:
 
         Raises:
             TypeError, OverflowError: XML-RPC cannot carry the value.
+            ParametersFull: ROS's tables have no room for it; a ROSException.
         """
         self._node.universe.charge()
         self._node.warn_of_illegal(param_name)
         self._tree.set(self._node.names.resolve_name(param_name), marshalled(param_value))
+
+    def give(self, values: Mapping[str, Any]) -> None:
+        """Set the private parameters that the mission file has for the node; see `ParameterTree.give`."""
+        self._tree.give(self._node.names.get_name(), {name: marshalled(value) for name, value in values.items()})
 
     def delete_param(self, param_name: str) -> None:
         """Remove a parameter or namespace.
@@ -206,24 +139,3 @@ class Params:
         if type(value) is bytes:
             return self._node.universe.importer.load("xmlrpc.client").Binary(value)
         return value
-
-
-def _parts(key: str) -> list[str]:
-    return [part for part in key.split(SEP) if part]
-
-
-def _plain(value: Any) -> Any:
-    """Mappings and sequences of a mission file as dictionaries and lists."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    return value
-
-
-def _collect(prefix: str, place: dict[str, Any], found: list[str]) -> None:
-    for name, value in place.items():
-        if type(value) is dict and value:
-            _collect(f"{prefix}/{name}", value, found)
-        else:
-            found.append(f"{prefix}/{name}")

@@ -1,0 +1,128 @@
+"""How many of everything a mission may have: cFE's defaults, what the board can hold, and the mission file's `limits:`.
+
+The board is hardware, so its numbers are the most that there is: a mission file lowers them and never raises them. What
+no board has spoken of, a mission raises as it likes. Where RAM has no limit, a mission with ROS nodes gets room for
+their parameters besides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from cfepy.config import PlatformConfig
+from cfepy.ids import SERIAL_MAX
+from cfepy.msg import HIGHEST_VALID_MSG_ID
+from cfepy.psp.marked_yaml import Marked
+from cfepy.psp.profile import LIMIT_NAMES, BoardProfile, Limit, read_limit
+from cfepy.status import UsageError
+
+NODES = "nodes"
+"""The key under `limits:` that stands for all limits at once: room for so many ROS nodes."""
+
+MOST_NODES = 4000
+
+PARAMETER_ROOM: Mapping[str, int] = {"es_cds_size": 409_600}
+"""What cFE is built with when ROS's parameters, which are critical tables, are to fit as well."""
+
+_PER_NODE: Mapping[str, int] = {
+    "es_max_applications": 1,
+    "os_max_tasks": 16,
+    "os_max_queues": 16,
+    "os_max_semaphores": 4,
+    "os_max_timers": 1,
+    "sb_max_pipes": 16,
+    "sb_max_msg_ids": 8,
+    "sb_max_dest_per_pkt": 1,
+    "sb_buf_memory_bytes": 65_536,
+}
+"""What a ROS node takes when it is no small one: threads, topics on both sides, services, messages under way."""
+
+_MOST: Mapping[str, int] = {"sb_max_msg_ids": HIGHEST_VALID_MSG_ID, "sb_buf_memory_bytes": (1 << 31) - 1}
+
+
+@dataclass(frozen=True, slots=True)
+class MissionLimits:
+    """The section `limits:` of a mission file.
+
+    Attributes:
+        values: fields of `PlatformConfig`, under their names.
+        nodes: room for so many ROS nodes; 0 for no more than cFE has by itself.
+        places: where each of them was said, for errors.
+    """
+
+    values: Mapping[str, Limit] = field(default_factory=dict)
+    nodes: int = 0
+    places: Mapping[str, Marked] = field(default_factory=dict)
+
+    def config(self, board: BoardProfile, has_nodes: bool) -> PlatformConfig:
+        """The platform configuration of a mission.
+
+        Args:
+            board: what it runs on.
+            has_nodes: whether there are ROS nodes in it.
+
+        Raises:
+            UsageError: the mission wants more than the board has.
+        """
+        base = PlatformConfig().with_limits(PARAMETER_ROOM if has_nodes and not board.sram_size else {})
+        own = {**_at_least(limits_for(self.nodes), board), **self.values}
+        for name, value in own.items():
+            self._check(name, value, board)
+        return board.config(base).with_limits(own)
+
+    def _check(self, name: str, value: Limit, board: BoardProfile) -> None:
+        most = board.limits.get(name)
+        if not isinstance(most, int) or not isinstance(value, int) or value <= most:
+            return
+        if name in self.values:
+            text = f"is {value}, the board {board.name} has {most}; lower it, or take another board"
+            raise self._error(name, text)
+        text = f"is {self.nodes}, which takes {name}: {value}; the board {board.name} has {most}"
+        raise self._error(NODES, text)
+
+    def _error(self, name: str, text: str) -> UsageError:
+        place = self.places.get(name)
+        return UsageError(text, field=f"limits.{name}") if place is None else place.fail(text)
+
+
+def read_limits(section: Marked | None) -> MissionLimits:
+    """The section `limits:`.
+
+    Raises:
+        UsageError: an unknown name, or a value that cannot be.
+    """
+    places = section.mapping([NODES, *LIMIT_NAMES]) if section is not None else {}
+    values = {name: read_limit(name, entry) for name, entry in places.items() if name != NODES}
+    return MissionLimits(values, places[NODES].integer(1, MOST_NODES) if NODES in places else 0, places)
+
+
+def limits_for(nodes: int) -> dict[str, Limit]:
+    """Limits under which so many ROS nodes have room, besides all that fits into cFE's defaults.
+
+    Args:
+        nodes: how many, at most 4000.
+
+    Returns:
+        Values for `MissionLimits`; none for 0 nodes.
+
+    >>> limits_for(500)["es_max_applications"]
+    533
+    """
+    if nodes == 0:
+        return {}
+    defaults = PlatformConfig()
+    more = {"es_max_applications": 1, "os_max_tasks": 1}  # ROS's own application
+    return {
+        name: min(getattr(defaults, name) + nodes * each + more.get(name, 0), _MOST.get(name, SERIAL_MAX - 1))
+        for name, each in _PER_NODE.items()
+    }
+
+
+def _at_least(wanted: Mapping[str, Limit], board: BoardProfile) -> dict[str, Limit]:
+    """What is wanted without that of which the board has more by itself."""
+    return {
+        name: value
+        for name, value in wanted.items()
+        if not isinstance(most := board.limits.get(name), int) or not isinstance(value, int) or most < value
+    }

@@ -1,0 +1,115 @@
+"""ROS parameters in YAML: what stands in a mission file, and the files that it names, as `rosparam load` takes them.
+
+Later ones win over earlier ones, name by name, and what the mission file says itself comes last. A value that ROS could
+not carry (nothing, a date, an integer of more than 32 bits) is an error with file and line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from cfepy.psp.marked_yaml import Marked, load
+from cfepy.status import UsageError
+
+_INT_MIN, _INT_MAX = -(1 << 31), (1 << 31) - 1
+
+
+def read_parameters(own: Marked | None, files: Marked | None) -> dict[str, Any]:
+    """A tree of parameters; a namespace is a dictionary.
+
+    Args:
+        own: the section `params`, or None.
+        files: the section `params_from`: a file, or a list of files, each as a path seen from the mission file or as
+            `{file: PATH, namespace: NAME}`; None for none.
+
+    Raises:
+        UsageError: a file cannot be read, is no mapping, or has a value that ROS cannot carry.
+    """
+    tree: dict[str, Any] = {}
+    for path, namespace in _files(files):
+        merge(_below(namespace, read_tree(load(path))), tree)
+    if own is not None:
+        merge(read_tree(own), tree)
+    return tree
+
+
+def read_tree(section: Marked) -> dict[str, Any]:
+    """A mapping of names to values, checked.
+
+    Raises:
+        UsageError: it is no mapping, or has a value that ROS cannot carry.
+    """
+    return {name: _value(entry) for name, entry in section.mapping().items()}
+
+
+def merge(more: dict[str, Any], tree: dict[str, Any]) -> None:
+    """Put a tree over another one: namespaces are joined, values replaced."""
+    for name, value in more.items():
+        if isinstance(value, dict) and isinstance(tree.get(name), dict):
+            merge(value, tree[name])
+        else:
+            tree[name] = value
+
+
+def _files(section: Marked | None) -> Iterator[tuple[Path, str]]:
+    """(path, namespace) of each file."""
+    if section is None:
+        return
+    entries = [section] if isinstance(section.value, str) else section.items()
+    for entry in entries:
+        said = {"file": entry} if isinstance(entry.value, str) else entry.mapping(["file", "namespace"])
+        if "file" not in said:
+            raise entry.fail("names no file; write `params_from: [robot.yaml]` or {file: robot.yaml, namespace: arm}")
+        path = entry.file.parent / said["file"].text()
+        if not path.is_file():
+            raise said["file"].fail(f"there is no file {path}; a path is seen from the folder of {entry.file.name}")
+        yield path, said["namespace"].text() if "namespace" in said else ""
+
+
+def _below(namespace: str, tree: dict[str, Any]) -> dict[str, Any]:
+    for part in reversed([part for part in namespace.split("/") if part]):
+        tree = {part: tree}
+    return tree
+
+
+def _value(entry: Marked) -> Any:
+    value = entry.value
+    if isinstance(value, dict):
+        return {name: _value(inner) for name, inner in value.items()}
+    if isinstance(value, list):
+        return [_value(inner) for inner in value]
+    fault = _fault(value)
+    if fault is not None:
+        raise entry.fail(fault)
+    return value
+
+
+def checked(value: Any) -> Any:
+    """A plain value that ROS can carry.
+
+    Raises:
+        UsageError: it is another, or there is one in it.
+    """
+    inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else None
+    for each in inner if inner is not None else ():
+        checked(each)
+    fault = _fault(value) if inner is None else None
+    if fault is None and isinstance(value, dict) and not all(isinstance(name, str) for name in value):
+        fault = f"has names that are no text: {value}"
+    if fault is not None:
+        raise UsageError(fault, field="value")
+    return value
+
+
+def _fault(value: Any) -> str | None:
+    """Why ROS cannot carry a value that has none inside; None when it can."""
+    if isinstance(value, bool | float | str | bytes):
+        return None
+    if not isinstance(value, int):
+        what = "nothing" if value is None else f"a {type(value).__name__}"
+        return f"is {what}, which is no value of a ROS parameter; put text in quotes"
+    if _INT_MIN <= value <= _INT_MAX:
+        return None
+    return f"is {value}; a ROS parameter is an integer of 32 bits, or a number with a point"
