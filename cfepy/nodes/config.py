@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 
@@ -15,7 +16,11 @@ class NodeConfig:
     """One ROS node: an application of the startup script whose entry symbol is `__main__`.
 
     `app` is its cFE name; `name` the node name it gets when the script does not insist (`__name:=`); `remap` maps
-    names as on rosrun's command line; `params` are private parameters; `args` go to `sys.argv`; `env` to `os.environ`.
+    names as on rosrun's command line; `params` are private parameters; `args` go to `sys.argv`; `env` to `os.environ`;
+    `ordered_sets`: sets in its code iterate in insertion order; None is as the mission says for all nodes;
+    `keys` are typed at its terminal: texts, and numbers of seconds to wait; None leaves it without a terminal;
+    `script` is its program, `cwd` its working directory; None takes those of the mission's folder. `respawn`: it is
+    started again `respawn_delay_ns` after its end; `required`: its end is the end of the run.
     """
 
     app: str
@@ -25,6 +30,13 @@ class NodeConfig:
     params: Mapping[str, Any] = field(default_factory=dict)
     args: tuple[str, ...] = ()
     env: Mapping[str, str] = field(default_factory=dict)
+    ordered_sets: bool | None = None
+    script: Path | None = None
+    cwd: Path | None = None
+    respawn: bool = False
+    respawn_delay_ns: int = 0
+    required: bool = False
+    keys: tuple[str | float, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +54,19 @@ class TopicConfig:
 
 @dataclass(frozen=True, slots=True)
 class RosConfig:
-    """Everything about ROS in a mission file; `nodes` by cFE application name, `topics` by resolved topic name."""
+    """Everything about ROS in a mission file; `nodes` by cFE application name, `topics` by resolved topic name.
+
+    `ordered_sets` is for the nodes that do not say it themselves. `locked_topics` and `locked_services` are MsgIds by
+    name, from the mission's `topics.lock`, for what `topics` does not pin. With `spread` a topic whose MsgId is taken
+    gets the next free one, in order of registration; otherwise that is an error, since the id may be another in the
+    next run. `ends_with_nodes`: the run is over when all its nodes have ended.
+    """
 
     nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
     topics: Mapping[str, TopicConfig] = field(default_factory=dict)
     params: Mapping[str, Any] = field(default_factory=dict)
+    ordered_sets: bool = False
+    ends_with_nodes: bool = False
+    locked_topics: Mapping[str, int] = field(default_factory=dict)
+    locked_services: Mapping[str, int] = field(default_factory=dict)
+    spread: bool = False

@@ -14,13 +14,17 @@ import importlib.util
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
+from functools import cache
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes import sharing
 from cfepy.nodes.import_locks import ImportLocks
+from cfepy.nodes.late import postpone
 from cfepy.nodes.sources import code_of_file, code_of_library
+from cfepy.nodes.synth import proxy
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
@@ -35,6 +39,7 @@ class Importer:
         universe: whose modules they are.
         folders: the node's own folders, searched first.
         libraries: folders of packages that are executed afresh for the node, searched next.
+        fallbacks: folders of what is found there when it is nowhere else.
         ordered: set displays in the node's code make ordered sets.
         factories: modules that are made, by name.
         find_factory: asked for names that are not in `factories`; None is "not mine".
@@ -47,6 +52,7 @@ class Importer:
         *,
         folders: Sequence[str],
         libraries: Sequence[str],
+        fallbacks: Sequence[str],
         ordered: bool,
         factories: Mapping[str, Factory],
         find_factory: Callable[[str], Factory | None],
@@ -58,6 +64,7 @@ class Importer:
         self._ordered = ordered
         self._own = frozenset(folders)
         self._libraries = list(libraries)
+        self._fallbacks = list(fallbacks)
         self._hosts = frozenset((*libraries, *sys.path))
         self._factories = factories
         self._find_factory = find_factory
@@ -136,11 +143,16 @@ class Importer:
         if name in self.modules:
             return self.modules[name]
         if self._is_shared(parent) and name not in self._factories:
-            return self._share(name)
+            return self._share(name, package)
         module = self._load_own(name, package)
         if package is not None:
             setattr(package, child, module)
         return module
+
+    def load_standard(self, name: str) -> ModuleType:
+        """A module of the standard library; what factories of such a module stand on."""
+        module = self.modules.get(name)
+        return self._from_spec(_library_spec(name), own=False) if module is None else module
 
     def load_file(self, name: str, file: str, folder: str | None = None) -> ModuleType:
         """Execute a source file as the module `name` of this universe; what factories of whole packages use.
@@ -169,7 +181,7 @@ class Importer:
         if folders is None:
             raise ModuleNotFoundError(f"No module named {name!r}; {package.__name__!r} is not a package", name=name)
         if name in sharing.HOST_SUBMODULES:
-            return self._share(name)
+            return self._share(name, package)
         spec = PathFinder.find_spec(name, list(folders)) or self._library_part(name)
         if spec is None:
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
@@ -190,10 +202,12 @@ class Importer:
         if sharing.is_stdlib(name):
             if not sharing.is_fresh_stdlib(name):
                 return self._share(name)
-            return self._from_spec(_library_spec(name), own=False)
+            standard = _library_spec(name)
+            return self._late(standard) if name in sharing.LATE else self._from_spec(standard, own=False)
         if name in sharing.HOST_PACKAGES:
             return self._share(name)
         spec = importlib.util.find_spec(name) or found  # a mere folder of the node comes last, as in Python
+        spec = spec or PathFinder.find_spec(name, self._fallbacks)
         if spec is None:
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
         return self._from_spec(spec, own=False) if sharing.is_pure_python(spec) else self._share(name)
@@ -218,6 +232,18 @@ class Importer:
             fix(self._universe, module)
         return self.modules.get(name, module)
 
+    def _late(self, spec: ModuleSpec) -> ModuleType:
+        """A module of the standard library whose code runs when it is first used."""
+
+        def run() -> None:
+            self._execute(module, spec, own=False)
+            fix = self._fixes.get(spec.name)
+            if fix is not None:
+                fix(self._universe, module)
+
+        module = self.modules[spec.name] = postpone(_empty_module(spec), run)
+        return module
+
     def _execute(self, module: ModuleType, spec: ModuleSpec, own: bool) -> None:
         if spec.origin is None:
             return  # a namespace package has no code
@@ -235,12 +261,17 @@ class Importer:
         """Whether the modules in a package are the host's."""
         return package in self._shared or package.partition(".")[0] in sharing.HOST_BELOW
 
-    def _share(self, name: str) -> ModuleType:
-        """The host's own module, and its packages."""
+    def _share(self, name: str, package: ModuleType | None = None) -> ModuleType:
+        """The host's own module; a copy of its names where a node that replaces one must not be seen by others."""
         builtins.__import__(name)
-        self.modules[name] = sys.modules[name]
+        module = sys.modules[name]
+        if sharing.is_copied(name):
+            module = proxy(module)
+            if package is not None:
+                setattr(package, name.rpartition(".")[2], module)
+        self.modules[name] = module
         self._shared.add(name)
-        return sys.modules[name]
+        return module
 
     # -- finding -----------------------------------------------------------------------------------------------------
 
@@ -276,6 +307,15 @@ class Importer:
 
 def _library_spec(name: str) -> ModuleSpec:
     """Where the source of a module of the standard library is; some of them are frozen into the interpreter."""
+    spec = copy(_found_in_library(name))
+    if spec.submodule_search_locations is not None:
+        spec.submodule_search_locations = list(spec.submodule_search_locations)
+    return spec
+
+
+@cache
+def _found_in_library(name: str) -> ModuleSpec:
+    """Looked for once; the standard library does not change while Python runs."""
     spec = PathFinder.find_spec(name, [os.path.dirname(os.__file__)])
     if spec is None:
         raise ModuleNotFoundError(f"No module named {name!r}", name=name)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cfepy.rtos import FOREVER, TIMEOUT, TaskExit, WaitList
+from cfepy.rtos import FOREVER, TIMEOUT, WaitList
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
@@ -64,7 +64,7 @@ def _wait_for(universe: Universe, waits: WaitList, wait: int, give_back: Any) ->
     task.wake = None
     try:
         return kernel.wait_on(waits, wait) is not TIMEOUT
-    except TaskExit:
+    except BaseException:  # its end, or a signal's exception
         if task.wake is waits:
             give_back()
         raise

@@ -12,6 +12,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes.refused import PROCESS, RefusedError, refusal
+from cfepy.nodes.streams import COLUMNS, ROWS, STDIN
 from cfepy.nodes.synth import rebind
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ class Entries:
 
 def os_module(universe: Universe) -> ModuleType:
     """The module `os` of a universe."""
-    names: dict[str, Any] = {name: refusal(f"os.{name}", PROCESS) for name in _PROCESSES if hasattr(os, name)}
+    names: dict[str, Any] = {name: refusal(universe, f"os.{name}", PROCESS) for name in _PROCESSES if hasattr(os, name)}
     names.update({name: lambda *args, **options: 0 for name in _NO_EFFECT if hasattr(os, name)})
     names.update(_paths(universe))
     names.update(_process(universe))
@@ -129,7 +130,7 @@ def _process(universe: Universe) -> dict[str, Any]:
 
     def kill(pid: int, number: int) -> None:
         if pid not in (universe.pid, 0):
-            raise RefusedError("os.kill() of another process", PROCESS)
+            raise RefusedError("os.kill() of another process", PROCESS, universe.name)
         universe.deliver_signal(number)
 
     def write(fd: int, data: Any) -> int:
@@ -137,6 +138,19 @@ def _process(universe: Universe) -> dict[str, Any]:
             return os.write(fd, data)
         stream = universe.stdout if fd == 1 else universe.stderr
         return stream.buffer.write(data)
+
+    def read(fd: int, size: int) -> bytes:
+        if fd != STDIN:
+            return os.read(fd, size)
+        return b"" if universe.terminal is None else universe.terminal.read(size)
+
+    def isatty(fd: int) -> bool:
+        return universe.terminal is not None and fd in (0, 1, 2)
+
+    def get_terminal_size(fd: int = 1) -> os.terminal_size:
+        if not isatty(fd):
+            raise OSError(25, "Inappropriate ioctl for device")
+        return os.terminal_size((COLUMNS, ROWS))
 
     def times() -> os.times_result:
         return os.times_result((universe.cpu_ns / 1e9, 0.0, 0.0, 0.0, universe.kernel.now / 1e9))
@@ -150,12 +164,16 @@ def _process(universe: Universe) -> dict[str, Any]:
         "abort": lambda: universe.exit_now(134),
         "cpu_count": lambda: 1,
         "environ": environ,
+        "get_terminal_size": get_terminal_size,
+        "getloadavg": lambda: (0.0, 0.0, 0.0),
         "getlogin": lambda: environ.get("USER", "node"),
         "getpid": lambda: universe.pid,
         "getppid": lambda: 1,
         "getrandom": lambda size, flags=0: universe.rng.randbytes(size),
+        "isatty": isatty,
         "kill": kill,
         "putenv": environ.__setitem__,
+        "read": read,
         "sched_getaffinity": lambda pid=0: {0},
         "sched_yield": lambda: universe.clock.wait(0),
         "times": times,

@@ -32,10 +32,23 @@ def numpy_module(universe: Universe) -> ModuleType:
     """The host's NumPy with a `random` of the node's own."""
     import numpy
 
-    module = proxy(numpy)
+    load = universe.importer.load
+
+    def lookup(name: str) -> Any:
+        """NumPy imports most of its parts when they are first asked for."""
+        value = getattr(numpy, name)
+        return load(value.__name__) if _is_part(name, value) else value
+
+    module = proxy(numpy, __getattr__=lookup)
     universe.importer.modules["numpy"] = module
-    vars(module)["random"] = universe.importer.load("numpy.random")
+    for name in [name for name, value in vars(numpy).items() if _is_part(name, value)]:
+        del vars(module)[name]
     return module
+
+
+def _is_part(name: str, value: object) -> bool:
+    """Whether a name in NumPy is one of its public modules, of which a node has copies."""
+    return isinstance(value, ModuleType) and value.__name__ == f"numpy.{name}" and not name.startswith("_")
 
 
 def numpy_random_module(universe: Universe) -> ModuleType:

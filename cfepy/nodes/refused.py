@@ -1,4 +1,4 @@
-"""What a node on the simulated computer cannot have: real sockets and processes, refused by name.
+"""What a node on the simulated computer cannot have: processes, and sockets in virtual time; refused by name.
 
 The modules can be imported, because many programs import them without need; the first use says what to do instead.
 A flight computer under an RTOS has no processes either.
@@ -6,39 +6,68 @@ A flight computer under an RTOS has no processes either.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from types import ModuleType
-from typing import TYPE_CHECKING, Any, NoReturn
+import os
+import sys
+from collections.abc import Callable
+from types import FrameType, ModuleType
+from typing import TYPE_CHECKING, NoReturn
 
+from cfepy.nodes.report import is_hidden
 from cfepy.nodes.synth import made, proxy
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
 
-NETWORK = "let nodes talk through topics and services; a cFE application can pass on bytes from outside"
+_LIBRARIES = os.path.dirname(os.__file__)
+
+NETWORK = (
+    "run the mission with --realtime, which joins it to this computer's network, or let nodes talk through topics and "
+    "services"
+)
 PROCESS = "start a thread (threading.Thread), or list the program as a node of its own in the mission"
 SIGNALS = "use threading.Timer"
 
 
 class RefusedError(OSError):
-    """A node asked for something that the simulated computer does not have; the text says what to do instead."""
+    """A node asked for something that the simulated computer does not have; the text says what to do instead.
 
-    def __init__(self, what: str, advice: str) -> None:
-        super().__init__(f"{what} is not available on the simulated computer; {advice}")
+    Args:
+        what: the function or class.
+        advice: what to do instead.
+        node: who asked.
+    """
+
+    def __init__(self, what: str, advice: str, node: str = "") -> None:
+        asked = f" (node {node}, {_caller()})" if node else ""
+        super().__init__(f"{what} is not available on the simulated computer; {advice}{asked}")
 
 
-def refusal(what: str, advice: str) -> Callable[..., NoReturn]:
+def _caller() -> str:
+    """File and line of the node's code that is being executed, libraries aside."""
+    frame: FrameType | None = sys._getframe(1)
+    innermost = ""
+    while frame is not None:
+        file = frame.f_code.co_filename
+        if not is_hidden(file):
+            innermost = innermost or f"{file}:{frame.f_lineno}"
+            if not file.startswith(_LIBRARIES):
+                return f"{file}:{frame.f_lineno}"
+        frame = frame.f_back
+    return innermost
+
+
+def refusal(universe: Universe, what: str, advice: str) -> Callable[..., NoReturn]:
     """A callable that refuses whatever it is called with."""
 
     def refuse(*args: object, **options: object) -> NoReturn:
-        raise RefusedError(what, advice)
+        raise RefusedError(what, advice, universe.name)
 
     return refuse
 
 
-def refused_class(module: str, name: str, advice: str) -> type:
+def refused_class(universe: Universe, module: str, name: str, advice: str) -> type:
     """A class that can be named, derived from and tested against, but has no instances."""
-    return type(name, (), {"__init__": refusal(f"{module}.{name}", advice), "__module__": module})
+    return type(name, (), {"__init__": refusal(universe, f"{module}.{name}", advice), "__module__": module})
 
 
 def refused_import(name: str, advice: str) -> Callable[[Universe], ModuleType]:
@@ -50,39 +79,6 @@ def refused_import(name: str, advice: str) -> Callable[[Universe], ModuleType]:
     return factory
 
 
-def socket_module(universe: Universe) -> ModuleType:
-    """`socket`: its constants and errors, the host's own name; no connections."""
-    import socket
-
-    functions = ("create_connection", "create_server", "socketpair", "fromfd", "getaddrinfo", "gethostbyaddr")
-    module = proxy(
-        socket,
-        socket=refused_class("socket", "socket", NETWORK),
-        SocketType=refused_class("socket", "socket", NETWORK),
-        gethostname=lambda: universe.host_name,
-        getfqdn=lambda name="": name or universe.host_name,
-        gethostbyname=lambda name: "127.0.0.1",
-    )
-    vars(module).update({name: refusal(f"socket.{name}", NETWORK) for name in functions})
-    return module
-
-
-def select_module(universe: Universe) -> ModuleType:
-    """`select`: waiting for nothing, or for a key press that never comes, is sleeping; anything else is a socket."""
-    import select
-
-    def wait(
-        readers: Sequence[Any], writers: Sequence[Any], others: Sequence[Any], timeout: float | None = None
-    ) -> tuple[list[Any], list[Any], list[Any]]:
-        if writers or any(reader is not universe.stdin and reader != 0 for reader in readers):
-            raise RefusedError("select.select() on files or sockets", NETWORK)
-        universe.clock.wait(timeout)
-        return [], [], []
-
-    names = ("poll", "epoll", "kqueue", "devpoll")
-    return proxy(select, select=wait, **{name: refusal(f"select.{name}", NETWORK) for name in names})
-
-
 def subprocess_module(universe: Universe) -> ModuleType:
     """`subprocess`: its constants and errors; nothing can be started."""
     import subprocess
@@ -90,8 +86,8 @@ def subprocess_module(universe: Universe) -> ModuleType:
     functions = ("run", "call", "check_call", "check_output", "getoutput", "getstatusoutput")
     return proxy(
         subprocess,
-        Popen=refused_class("subprocess", "Popen", PROCESS),
-        **{name: refusal(f"subprocess.{name}", PROCESS) for name in functions},
+        Popen=refused_class(universe, "subprocess", "Popen", PROCESS),
+        **{name: refusal(universe, f"subprocess.{name}", PROCESS) for name in functions},
     )
 
 
@@ -101,7 +97,7 @@ def multiprocessing_module(universe: Universe) -> ModuleType:
     def lookup(name: str) -> object:
         if name.startswith("__"):
             raise AttributeError(name)
-        return refusal(f"multiprocessing.{name}", PROCESS)
+        return refusal(universe, f"multiprocessing.{name}", PROCESS)
 
     return made("multiprocessing", __path__=[], __getattr__=lookup, cpu_count=lambda: 1)
 

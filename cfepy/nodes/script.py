@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.machinery import SourceFileLoader
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes.report import traceback_text
 from cfepy.nodes.signal_module import NodeInterrupt
@@ -29,6 +29,8 @@ def run_script(universe: Universe) -> int:
     """
     universe.main_task = universe.kernel.current
     universe.adopt_current()
+    if universe.terminal is not None:
+        universe.terminal.start_typing()
     try:
         status = _execute(universe)
         status = _shut_down(universe) or status
@@ -38,20 +40,11 @@ def run_script(universe: Universe) -> int:
             raise
     finally:
         universe.end_threads()
+        universe.sockets.close_all()
         universe.release_current()
         universe.stdout.finish()
         universe.stderr.finish()
     return universe.exit_status
-
-
-def exit_from_handler(universe: Universe, error: SystemExit) -> NoReturn:
-    """End the program from a task beside its main one, for a signal handler that called `sys.exit`.
-
-    Exit hooks run here, then all tasks of the program end.
-    """
-    status = _exit_code(universe, error.code)
-    universe.run_exit_hooks()
-    universe.exit_now(status)
 
 
 def _execute(universe: Universe) -> int:

@@ -1,7 +1,8 @@
 """Which module comes from where: made for the node, executed afresh for it, or shared with the host.
 
 Modules that see a clock, threads, entropy, the environment or a module-wide state are the node's own; the rest of the
-standard library (json, re, math, collections, ...) has nothing to tell nodes apart and is the host's. An installed
+standard library (re, math, collections, ...) has nothing to tell nodes apart: its functions and classes are the host's,
+in a module of the node's own, so that a node may replace one for itself. An installed
 package is executed afresh if it is pure Python, because it may well import `time` or `threading`; one with extension
 modules (NumPy, PyYAML) can only exist once per process and is shared.
 """
@@ -23,15 +24,18 @@ if TYPE_CHECKING:
 # fmt: off
 FRESH = frozenset({
     "_pydatetime", "_pyio", "_threading_local", "argparse", "asynchat", "asyncio", "asyncore", "bdb", "bz2", "cmd",
-    "code", "codeop", "concurrent", "configparser", "contextlib", "email", "fileinput", "ftplib", "genericpath",
-    "getopt", "getpass", "glob", "gzip", "http", "imaplib", "logging", "lzma", "nntplib", "optparse", "pathlib",
-    "pdb", "pickle", "platform", "poplib", "posixpath", "pprint", "queue", "random", "runpy", "sched", "secrets",
-    "selectors", "shelve", "shutil", "smtpd", "smtplib", "socketserver", "statistics", "tarfile", "telnetlib",
-    "tempfile", "threading", "timeit", "traceback", "tracemalloc", "unittest", "urllib", "uuid", "warnings", "wave",
-    "weakref", "wsgiref", "xmlrpc", "zipfile",
+    "code", "codeop", "concurrent", "configparser", "contextlib", "curses", "email", "fileinput", "ftplib",
+    "genericpath", "getopt", "getpass", "glob", "gzip", "http", "imaplib", "json", "logging", "lzma", "nntplib",
+    "optparse", "pathlib", "pdb", "pickle", "platform", "poplib", "posixpath", "pprint", "queue", "random", "runpy",
+    "sched", "secrets", "selectors", "shelve", "shutil", "smtpd", "smtplib", "socketserver", "statistics", "tarfile",
+    "telnetlib", "tempfile", "threading", "timeit", "traceback", "tracemalloc", "tty", "unittest", "urllib", "uuid",
+    "warnings", "wave", "weakref", "wsgiref", "xmlrpc", "zipfile",
 })
 # fmt: on
 """Modules of the standard library, by their first name, that each node executes for itself."""
+
+LATE = frozenset({"traceback", "warnings"})
+"""Those of them that much of the rest imports and hardly ever uses: their code runs when it is needed."""
 
 HOST_SUBMODULES = frozenset({"urllib.parse", "urllib.error"})
 
@@ -41,7 +45,7 @@ HOST_BELOW = frozenset({"importlib", "numpy"})
 WITHOUT_ACCELERATOR = frozenset({"_pickle", "_queue", "_uuid", "_warnings", "_posixsubprocess", "_asyncio"})
 """C halves of the above that would keep state per process or block a real thread; the Python half works alone."""
 
-HOST_PACKAGES = frozenset({"cfepy", "greenlet", "hypothesis", "_pytest", "pytest"})
+HOST_PACKAGES = frozenset({"cfepy", "greenlet", "hypothesis", "_pytest", "pkg_resources", "pytest", "setuptools"})
 
 # fmt: off
 _MULTIPROCESSING = (
@@ -56,22 +60,27 @@ _pure: dict[str, bool] = {}
 def refused_modules() -> Mapping[str, Callable[[Universe], ModuleType]]:
     """The factories of the modules that refuse their use, by name."""
     named = {
-        "_socket": refused.socket_module,
         "multiprocessing": refused.multiprocessing_module,
-        "select": refused.select_module,
-        "socket": refused.socket_module,
         "subprocess": refused.subprocess_module,
         "ssl": refused.refused_import("ssl", refused.NETWORK),
         "_ssl": refused.refused_import("_ssl", refused.NETWORK),
     }
     named.update({f"multiprocessing.{part}": refused.multiprocessing_submodule for part in _MULTIPROCESSING})
     named.update({name: refused.refused_import(name, "it is not needed") for name in WITHOUT_ACCELERATOR})
+    # Nodes import it for speed. To pickle itself, which asks while it is being loaded, it lacks all that matters.
+    named["_pickle"] = lambda universe: universe.importer.load("pickle")
     return named
 
 
 def is_fresh_stdlib(name: str) -> bool:
     """Whether a module of the standard library, given by its full name, is executed afresh for each node."""
     return name.partition(".")[0] in FRESH and name not in HOST_SUBMODULES
+
+
+def is_copied(name: str) -> bool:
+    """Whether a module of the host's gets a node-owned module to hold its names."""
+    top = name.partition(".")[0]
+    return top == "numpy" or is_stdlib(top)
 
 
 def is_stdlib(top: str) -> bool:

@@ -20,7 +20,13 @@ _HARMLESS = frozenset({"SIGCHLD", "SIGCONT", "SIGURG", "SIGWINCH"})
 
 
 class NodeInterrupt(KeyboardInterrupt):
-    """The KeyboardInterrupt of a node that was sent SIGINT, told apart from a Ctrl-C of the host's user."""
+    """The KeyboardInterrupt of a node that was sent SIGINT, told apart from a Ctrl-C of the host's user.
+
+    A traceback in the node calls it by its Python name.
+    """
+
+    __module__ = "builtins"
+    __qualname__ = "KeyboardInterrupt"
 
 
 class SignalTable:
@@ -60,7 +66,7 @@ class SignalTable:
 def signal_module(universe: Universe) -> ModuleType:
     """The module `signal` of a universe."""
     table = universe.signals
-    refused = {name: refusal(f"signal.{name}", SIGNALS) for name in _REFUSED if hasattr(signal, name)}
+    refused = {name: refusal(universe, f"signal.{name}", SIGNALS) for name in _REFUSED if hasattr(signal, name)}
     ignored: dict[str, Any] = {name: lambda *args: None for name in _NO_EFFECT if hasattr(signal, name)}
     return proxy(
         signal,

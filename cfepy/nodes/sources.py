@@ -34,6 +34,11 @@ def code_of_file(path: str, ordered: bool) -> CodeType:
     return code
 
 
+def own_files() -> list[str]:
+    """The source files of nodes that were read so far, in that order."""
+    return list(dict.fromkeys(str(key[0]) for key in _compiled if len(key) > 1))
+
+
 def _compile(source: bytes, path: str, ordered: bool) -> CodeType:
     if not ordered:
         return compile(source, path, "exec", dont_inherit=True)

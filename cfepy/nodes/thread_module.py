@@ -6,6 +6,7 @@ A thread is a task at the priority of the thread that starts it.
 from __future__ import annotations
 
 import _thread
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextvars import Context
 from types import ModuleType
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from cfepy.nodes.local import make_local
 from cfepy.nodes.locks import MAX_WAIT_S
 from cfepy.nodes.report import traceback_text
+from cfepy.nodes.serials import hash_by_serial
 from cfepy.nodes.signal_module import NodeInterrupt
 from cfepy.nodes.synth import made
 from cfepy.rtos import TaskExit
@@ -104,25 +106,24 @@ def show_thread_error(universe: Universe, args: Any) -> None:
     universe.print_error(f"Exception in thread {name}:\n{traceback_text(error)}")
 
 
-def fix_threading(universe: Universe, module: ModuleType) -> None:
+def fix_threading(universe: Universe, module: Any) -> None:
     """After `threading` was loaded: threads hash by serial number, and asking an event takes CPU time.
 
     `concurrent.futures` iterates a set of threads; a loop on `event.is_set()` would otherwise never let others run.
     """
-    is_set = module.Event.is_set
+    is_set, make_invoke = module.Event.is_set, module._make_invoke_excepthook
 
-    def serial_hash(thread: Any) -> int:
-        number = thread.__dict__.get("_serial_hash")
-        if number is None:
-            universe.serial = number = universe.serial + 1
-            thread.__dict__["_serial_hash"] = number
-        return int(number)
+    def make_quiet_invoke() -> Callable[[Any], None]:
+        """The end of a task, which is how a daemon thread ends with its program, is no error of the node."""
+        invoke: Callable[[Any], None] = make_invoke()
+        return lambda thread: None if isinstance(sys.exc_info()[1], TaskExit) else invoke(thread)
 
     def charged_is_set(event: Any) -> bool:
         universe.charge()
         return bool(is_set(event))
 
-    module.Thread.__hash__ = serial_hash
+    module._make_invoke_excepthook = make_quiet_invoke
+    hash_by_serial(universe, module.Thread)
     module.Event.is_set = charged_is_set
     module.Event.isSet = charged_is_set
 

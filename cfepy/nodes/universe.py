@@ -6,6 +6,9 @@ back into it; two universes share nothing that can change. It stands for the pro
 
 from __future__ import annotations
 
+import errno
+import importlib
+import io
 import os
 import random
 import zlib
@@ -20,8 +23,10 @@ from cfepy.nodes import (
     importlib_module,
     lookup,
     os_module,
+    psutil_module,
     random_module,
     report,
+    serials,
     signal_module,
     sys_module,
     thread_module,
@@ -31,16 +36,24 @@ from cfepy.nodes.importer import Factory, Importer
 from cfepy.nodes.locks import make_lock_types
 from cfepy.nodes.script import run_script
 from cfepy.nodes.sharing import refused_modules
-from cfepy.nodes.streams import ConsoleStream, NoInput
+from cfepy.nodes.signal_module import NodeInterrupt
+from cfepy.nodes.socket_table import SocketTable
+from cfepy.nodes.streams import ConsoleStream, NoInput, TypedInput
 from cfepy.rtos import Task, TaskExit
 
 if TYPE_CHECKING:
+    from cfepy.nodes.terminal import Key, Terminal
+    from cfepy.osal.network import Network
     from cfepy.rtos import Kernel
 
 __all__ = ["Factory", "StartThread", "Universe"]
 
 StartThread = Callable[[str, Callable[[], object], int], Task]
 
+# A signal waits for the main task to wait, at most a virtual millisecond: better there than in the middle of a call.
+_LOOKS = 100
+_LOOK_NS = 10_000
+_TERMINAL = "/dev/tty"
 _KEPT_ENVIRONMENT = ("HOME", "PATH")
 
 
@@ -56,6 +69,7 @@ class Universe:
         cwd: its working directory; None is the host's.
         search_paths: folders for its imports, after the script's own.
         library_paths: folders of libraries, after all folders of the node's.
+        fallback_paths: folders of stand-ins for what may not be installed, after everything else.
         seed: of the run.
         epoch_ns: the time of day in ns since 1970 (UTC) when the kernel's clock is 0.
         call_cost_ns: virtual CPU time of a call that polls (clock, lock, event); with 0 a polling loop never ends.
@@ -65,6 +79,8 @@ class Universe:
         find_module: asked for a factory of any name that `modules` does not have; None is "not mine".
         priority: of its tasks, 0 to 255.
         ordered_sets: sets in the node's code iterate in insertion order.
+        keys: what is typed at its terminal (`cfepy.nodes.terminal`); None leaves it without one, its input at the end.
+        network: what its sockets are plugged into; None refuses them.
         on_thread_start: `(task name, entry, priority) -> Task`, starts the task of a thread, so that the owner of the
             node also owns its threads; None uses `Kernel.spawn`.
     """
@@ -80,6 +96,7 @@ class Universe:
         cwd: str | os.PathLike[str] | None = None,
         search_paths: Sequence[str | os.PathLike[str]] = (),
         library_paths: Sequence[str | os.PathLike[str]] = (),
+        fallback_paths: Sequence[str | os.PathLike[str]] = (),
         seed: int = 0,
         epoch_ns: int = 0,
         call_cost_ns: int = 1000,
@@ -88,6 +105,8 @@ class Universe:
         find_module: Callable[[str], Factory | None] = lambda name: None,
         priority: int = 100,
         ordered_sets: bool = False,
+        keys: Sequence[Key] | None = None,
+        network: Network | None = None,
         on_thread_start: StartThread | None = None,
     ) -> None:
         self.kernel = kernel
@@ -120,7 +139,9 @@ class Universe:
         self.environ = os_module.Environ(kept if env is None else env)
         self.stdout = ConsoleStream("<stdout>", 1, self._write_line)
         self.stderr = ConsoleStream("<stderr>", 2, self._write_line)
-        self.stdin = NoInput()
+        self.terminal = self._make_terminal(keys) if keys is not None else None
+        self.stdin: io.TextIOBase = TypedInput(self.terminal) if self.terminal is not None else NoInput()
+        self.sockets = SocketTable(self, network)
         self.signals = signal_module.SignalTable(self)
         self.clock = time_module.VirtualClock(self, epoch_ns)
         self.locks = make_lock_types(self)
@@ -129,6 +150,7 @@ class Universe:
             self,
             folders=[*folders, *(os.fspath(folder) for folder in search_paths)],
             libraries=[os.fspath(folder) for folder in library_paths],
+            fallbacks=[os.fspath(folder) for folder in fallback_paths],
             ordered=ordered_sets,
             factories={**_made_modules(), **(modules or {})},
             find_factory=find_module,
@@ -145,6 +167,11 @@ class Universe:
     def spawn(self) -> Task:
         """Start a task that executes the script."""
         return self.kernel.spawn(self.name, self.run_script, self.priority)
+
+    def _make_terminal(self, keys: Sequence[Key]) -> Terminal:
+        from cfepy.nodes.terminal import Terminal  # not on every system, and rarely needed
+
+        return Terminal(self, keys, self.deliver_signal)
 
     # -- threads -----------------------------------------------------------------------------------------------------
 
@@ -230,14 +257,33 @@ class Universe:
                 self.print_error(f"Exception ignored in atexit callback {function!r}:\n{report.traceback_text(error)}")
 
     def deliver_signal(self, number: int) -> None:
-        """Let the node's handler of a signal run in the current task, which must be one of the node's."""
-        self.signals.deliver(number)
+        """Let the node's handler of a signal run in the current task, which must be one of the node's.
+
+        What it raises, the KeyboardInterrupt of SIGINT among it, comes out of the call that the main task waits in.
+        """
+        try:
+            self.signals.deliver(number)
+        except (Exception, NodeInterrupt, SystemExit) as error:
+            main = self.main_task
+            if main is None or main is self.kernel.current:
+                raise
+            for _ in range(_LOOKS):
+                if self.kernel.is_waiting(main):
+                    break
+                self.kernel.delay(_LOOK_NS)
+            self.kernel.interrupt(main, error)
 
     def resolve(self, path: Any) -> Any:
-        """A path as the host sees it: relative ones start at the node's working directory."""
+        """A path as the host sees it: relative ones start at the node's working directory.
+
+        Raises:
+            OSError: ENXIO, it is the host's terminal.
+        """
         if isinstance(path, int):
             return path
         plain = os.fspath(path)
+        if plain == _TERMINAL:
+            raise OSError(errno.ENXIO, os.strerror(errno.ENXIO), _TERMINAL)
         if os.path.isabs(plain):
             return path
         return os.path.join(os.fsencode(self.cwd) if isinstance(plain, bytes) else self.cwd, plain)
@@ -266,30 +312,51 @@ def _free() -> None:
 
 _FIXES: dict[str, Callable[[Universe, ModuleType], None]] = {
     "asyncio": asyncio_module.fix_asyncio,
+    "concurrent.futures._base": serials.fix_futures,
     "random": random_module.fix_random,
     "threading": thread_module.fix_threading,
     "traceback": lambda universe, module: report.hide_in(module),
 }
 
 
+def _late_module(file: str, function: str) -> Factory:
+    """The factory of a module that few nodes import, and not every system has."""
+
+    def factory(universe: Universe) -> ModuleType:
+        module: ModuleType = getattr(importlib.import_module(f"cfepy.nodes.{file}"), function)(universe)
+        return module
+
+    return factory
+
+
 def _made_modules() -> dict[str, Factory]:
     return {
         **refused_modules(),
+        "_curses": _late_module("curses_module", "curses_module"),
         "_signal": signal_module.signal_module,
+        "_socket": _late_module("socket_module", "socket_module"),
         "_thread": thread_module.thread_module,
         "atexit": signal_module.atexit_module,
         "dataclasses": lookup.dataclasses_module,
         "datetime": datetime_module.datetime_module,
+        "fcntl": _late_module("termios_module", "fcntl_module"),
         "functools": lookup.functools_module,
+        "gc": _late_module("process_modules", "gc_module"),
         "importlib": importlib_module.importlib_module,
         "importlib.util": importlib_module.importlib_util_module,
         "inspect": lookup.inspect_module,
         "io": sys_module.io_module,
+        "locale": _late_module("process_modules", "locale_module"),
         "numpy": random_module.numpy_module,
         "numpy.random": random_module.numpy_random_module,
         "os": os_module.os_module,
+        "resource": _late_module("process_modules", "resource_module"),
+        "select": _late_module("select_module", "select_module"),
+        "psutil": psutil_module.psutil_module,
         "signal": signal_module.signal_module,
+        "socket": _late_module("socket_module", "socket_module"),
         "sys": sys_module.sys_module,
+        "termios": _late_module("termios_module", "termios_module"),
         "time": time_module.time_module,
         "typing": lookup.typing_module,
     }

@@ -268,3 +268,21 @@ def test_a_universe_can_be_used_from_the_host_without_a_script():
             queue.get(timeout=1)
         with pytest.raises(RuntimeError, match="only a task can sleep"):
             universe.importer.load("time").sleep(1)
+
+
+def test_pkg_resources_reads_versions(run):
+    pytest.importorskip("pkg_resources", reason="setuptools is not installed, or is one without it")
+    source = "import pkg_resources\nprint(pkg_resources.parse_version('1.10') > pkg_resources.parse_version('1.9'))"
+    assert run(source).lines[-1] == "True"
+
+
+@pytest.mark.parametrize("first", ["_pickle", "pickle"])
+def test_the_fast_half_of_pickle_is_pickle(run, first):
+    source = f"""
+        import {first}
+        import _pickle, pickle
+        class Own:
+            value = 3
+        print(_pickle.loads(_pickle.dumps(Own())).value, _pickle.Pickler is pickle.Pickler)
+        """
+    assert run(source).lines == ["3 True"]

@@ -230,3 +230,27 @@ def test_two_nodes_share_nothing(start, tmp_path):
     assert one.lines == ["info", "3 True 1 1 True"]
     assert two.lines == ["3 True 2 1 True"]
     assert not set(one.global_("numbers")) & set(two.global_("numbers"))
+
+
+def test_settings_of_a_process_stay_in_the_node(run):
+    import gc
+    import locale
+
+    before = (gc.isenabled(), gc.get_threshold(), len(gc.callbacks), locale.setlocale(locale.LC_ALL))
+    program = run("""
+        import gc, locale, os, resource, time
+        print(gc.isenabled(), gc.get_threshold(), gc.callbacks, gc.collect() >= 0)
+        gc.disable(); gc.set_threshold(1); gc.callbacks.append(print); gc.freeze(); gc.unfreeze(); gc.set_debug(0)
+        print(gc.isenabled(), gc.get_threshold(), gc.get_debug(), locale.setlocale(locale.LC_NUMERIC))
+        print(locale.setlocale(locale.LC_ALL, "de_DE.UTF-8"), locale.setlocale(locale.LC_NUMERIC), f"{1.5:n}")
+        for _ in range(1000): time.time()
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        print(used.ru_utime >= 0.001, used.ru_maxrss, resource.getrlimit(resource.RLIMIT_NOFILE)[0], os.getloadavg())
+    """)
+    assert program.lines == [
+        "True (700, 10, 10) [] True",
+        "False (1, 10, 10) 0 C",
+        "de_DE.UTF-8 de_DE.UTF-8 1.5",
+        "True 0 -1 (0.0, 0.0, 0.0)",
+    ]
+    assert (gc.isenabled(), gc.get_threshold(), len(gc.callbacks), locale.setlocale(locale.LC_ALL)) == before

@@ -348,3 +348,21 @@ def test_imports_wait_for_another_thread_that_imports(run, tmp_path):
     )
     assert program.text == ""
     assert program.global_("seen") == [(3, 1.0), (3, 1.0)]
+
+
+def test_hashes_of_futures_and_tasks_show_no_addresses(run):
+    program = run("""
+        import asyncio, concurrent.futures
+        def counts_up(things):
+            return [hash(thing) - hash(things[0]) for thing in things] == list(range(len(things)))
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            futures = [pool.submit(int) for _ in range(40)]
+            concurrent.futures.wait(futures)
+            print(counts_up(futures))
+        async def main():
+            tasks = [asyncio.create_task(asyncio.sleep(0)) for _ in range(40)]
+            await asyncio.wait(tasks)
+            print(counts_up(tasks))
+        asyncio.run(main())
+    """)
+    assert program.lines == ["True", "True"]

@@ -1,0 +1,130 @@
+"""A run in a process of its own whose trace another process reads: what `--check-determinism` starts.
+
+`python -m cfepy.cli.recorded_run PLAN`, where PLAN is a `Plan` as JSON. Everything that it has to say goes to the pipe
+of the plan: all records, or, with `look_at`, what there was to see at one of them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import os
+import sys
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from cfepy.cli.failures import booting
+from cfepy.cli.flight import Interrupts
+from cfepy.cli.main import BAD_USAGE, ENDED_WELL
+from cfepy.cli.run import fly, script_of
+from cfepy.cli.trace_text import TraceText
+from cfepy.mission import Mission, MissionSpec, read_mission
+from cfepy.mission.determinism import RecordWriter
+from cfepy.mission.determinism_look import Look, LookingTrace
+from cfepy.status import UsageError
+from cfepy.trace import Trace
+
+LINES = 6  # records that are shown before the one that is looked at
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What to run and where to write.
+
+    Attributes:
+        arguments: those of `cfepy run`, by name.
+        pipe: descriptor to write to.
+        look_at: number of the record to look at; None writes all records.
+        ordered_sets: all nodes get ordered sets, whatever the mission file says.
+    """
+
+    arguments: dict[str, Any]
+    pipe: int
+    look_at: int | None = None
+    ordered_sets: bool = False
+
+    def to_json(self) -> str:
+        """Itself as text."""
+        return json.dumps(dataclasses.asdict(self))
+
+
+class RecordPipe:
+    """The recorder of a run that writes all records."""
+
+    def __init__(self, writer: RecordWriter) -> None:
+        self.trace = Trace(writer.write)
+        self._writer = writer
+
+    def __enter__(self) -> RecordPipe:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
+        if kind is None:
+            self._writer.end({"digest": self.trace.digest()})
+
+    def watch(self, mission: Mission) -> None:
+        """Nothing to learn."""
+
+
+class Lookout:
+    """The recorder of a run that looks at one record, and ends the process then and there."""
+
+    def __init__(self, writer: RecordWriter, index: int) -> None:
+        self.trace = LookingTrace(index, self._lines, self._seen)
+        self._writer = writer
+        self._text = TraceText()
+
+    def __enter__(self) -> Lookout:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
+        if kind is None:
+            self._seen(self.trace.look(b""))
+
+    def watch(self, mission: Mission) -> None:
+        """Learn the names in this mission."""
+        self._text.watch(mission)
+
+    def _lines(self, records: list[bytes]) -> list[str]:
+        return list(self._text.lines(records))[-LINES - 1 :]
+
+    def _seen(self, look: Look) -> NoReturn:
+        """It is called from deep inside the simulation, where a run cannot be given up in an orderly way."""
+        self._writer.end(look.to_dict())
+        os._exit(ENDED_WELL)
+
+
+def run(plan: Plan) -> None:
+    """Do what a plan says.
+
+    Raises:
+        UsageError: the mission cannot run like this.
+    """
+    arguments = argparse.Namespace(**plan.arguments)
+    spec = read_mission(arguments.mission)
+    if plan.ordered_sets:
+        spec = _with_ordered_sets(spec)
+    writer = RecordWriter(open(plan.pipe, "wb"))  # noqa: SIM115  # as long as the process
+    recorder = RecordPipe(writer) if plan.look_at is None else Lookout(writer, plan.look_at)
+    with Interrupts() as interrupts, booting(spec.script):
+        fly(arguments, spec, interrupts, script_of(arguments, spec), recorder)
+
+
+def _with_ordered_sets(spec: MissionSpec) -> MissionSpec:
+    nodes = {app: dataclasses.replace(node, ordered_sets=True) for app, node in spec.ros.nodes.items()}
+    return dataclasses.replace(spec, ros=dataclasses.replace(spec.ros, nodes=nodes, ordered_sets=True))
+
+
+def main() -> int:
+    """Run the plan on the command line; the exit status."""
+    try:
+        run(Plan(**json.loads(sys.argv[1])))
+    except (UsageError, OSError) as error:
+        print(error, file=sys.stderr)
+        return BAD_USAGE
+    return ENDED_WELL
+
+
+if __name__ == "__main__":
+    sys.exit(main())

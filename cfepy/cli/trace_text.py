@@ -1,0 +1,97 @@
+"""Records of a trace as text, a line each: virtual time, task, what happened.
+
+The time is that of the last move of the clock; on a board where computing costs time, a task may be a little further.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator, Sequence
+
+from cfepy import trace as tr
+from cfepy.mission import Mission
+from cfepy.mission.msg_names import names_of
+from cfepy.mission.watch import HOST
+from cfepy.rtos.units import NS_PER_S
+
+_FIRST_MARK = 0x20  # smaller first bytes begin packets
+_number = struct.Struct("<xH").unpack
+
+
+class TraceText:
+    """Turns the records of one run, given in order, into lines.
+
+    Attributes:
+        now_ns: virtual time of the last move of the clock.
+        task: name of the task that runs.
+    """
+
+    def __init__(self) -> None:
+        self.now_ns = 0
+        self.task = HOST
+        self._mission: Mission | None = None
+        self._names: dict[int, str] = {}
+        self._tasks: dict[int, str] = {0: HOST}
+        self._pipes: dict[int, str] = {}
+
+    def watch(self, mission: Mission) -> None:
+        """Learn names of tasks, pipes and messages from this mission."""
+        self._mission = mission
+        self._names = names_of(mission.spec)
+
+    def lines(self, records: Sequence[bytes]) -> Iterator[str]:
+        """A line for each record but those that move the clock, without its end."""
+        self._learn()
+        for record in records:
+            if not record:
+                continue  # what the host does leaves no mark
+            what = self._packet(record) if record[0] < _FIRST_MARK else self._mark(record)
+            if what is not None:
+                yield f"{self.now_ns // NS_PER_S}.{self.now_ns % NS_PER_S:09d} {self.task} {what}"
+
+    def _learn(self) -> None:
+        """Tasks and pipes have names only as long as they live; a number stands for those that came and went."""
+        mission = self._mission
+        if mission is None:
+            return
+        for task in mission.kernel.tasks:
+            self._tasks.setdefault(task.ident & 0xFFFF, task.name)
+        for pipe in mission.cfe.sb.pipes:
+            self._pipes[pipe.pipe_id & 0xFFFF] = pipe.name
+        if mission.ros is not None:
+            self._names.update((row.msg_id, row.name) for row in mission.ros.topics())
+
+    def _mark(self, record: bytes) -> str | None:
+        kind = record[:1]
+        if kind == tr.TIME:
+            (self.now_ns,) = tr.unpack_time(record)
+            return None
+        if kind == tr.NOTE:
+            return f"console {record[1:].decode('utf-8', 'replace')}"
+        (number,) = _number(record)
+        return self._event(kind, number)
+
+    def _event(self, kind: bytes, number: int) -> str:
+        if kind in (tr.DISPATCH, tr.EXIT):
+            before, self.task = self.task, self._task_name(number)
+            return "dispatch" if kind == tr.DISPATCH else f"dispatch, {before} ended"
+        if kind == tr.WAKE:
+            return f"wake {self._task_name(number)}"
+        if kind == tr.RECEIVE:
+            return f"receive from {self._pipe_name(number)}"
+        if kind == tr.DROP:
+            return f"drop at {self._pipe_name(number)}"
+        verb = {tr.PUT: "put into queue", tr.GET: "get from queue"}.get(kind, f"record {kind!r}")
+        return f"{verb} {number}"
+
+    def _packet(self, packet: bytes) -> str:
+        msg_id = packet[0] << 8 | packet[1]
+        sequence = (packet[2] << 8 | packet[3]) & 0x3FFF
+        name = self._names.get(msg_id, "")
+        return f"send 0x{msg_id:04X} {name + ' ' if name else ''}sequence {sequence} length {len(packet)}"
+
+    def _task_name(self, ident: int) -> str:
+        return self._tasks.get(ident, f"task-{ident}")
+
+    def _pipe_name(self, number: int) -> str:
+        return self._pipes.get(number, f"pipe-{number}")

@@ -1,0 +1,65 @@
+"""The open sockets of a node, and whether there is a network to open one on. May import cfepy.osal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.nodes.refused import NETWORK, refusal
+
+if TYPE_CHECKING:
+    from cfepy.nodes.socket_base import SocketBase
+    from cfepy.nodes.universe import Universe
+    from cfepy.osal.network import Network
+
+FIRST_DESCRIPTOR = 1000  # above those that the host gives to the files of a node
+
+
+class SocketTable:
+    """The open sockets of a node, by descriptor.
+
+    Args:
+        universe: the node's.
+        network: the mission's; None where there is none.
+
+    Attributes:
+        default_timeout: `socket.getdefaulttimeout`, in s.
+    """
+
+    def __init__(self, universe: Universe, network: Network | None) -> None:
+        self.default_timeout: float | None = None
+        self._universe = universe
+        self._network = network
+        self._open: dict[int, SocketBase] = {}
+        self._next = FIRST_DESCRIPTOR
+
+    def network(self, what: str) -> Network:
+        """The network to plug a socket into.
+
+        Args:
+            what: the function that was called.
+
+        Raises:
+            RefusedError: there is nobody to talk to.
+        """
+        if self._network is None or self._network.dial is None:
+            refusal(self._universe, what, NETWORK)()
+        return self._network
+
+    def find(self, fd: int) -> SocketBase | None:
+        """The socket with a descriptor."""
+        return self._open.get(fd)
+
+    def add(self, opened: SocketBase) -> int:
+        """Give a socket its descriptor."""
+        fd, self._next = self._next, self._next + 1
+        self._open[fd] = opened
+        return fd
+
+    def remove(self, fd: int) -> None:
+        """Forget a socket that is closed."""
+        self._open.pop(fd, None)
+
+    def close_all(self) -> None:
+        """The program has ended."""
+        for opened in list(self._open.values()):
+            opened._real_close()

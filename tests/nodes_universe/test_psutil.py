@@ -1,0 +1,34 @@
+"""`psutil` in a node: the load of the simulated processor, the same on every host."""
+
+from __future__ import annotations
+
+
+def test_the_load_is_that_of_the_node(run):
+    program = run(
+        """
+        import psutil, time
+        psutil.cpu_percent()
+        while time.monotonic() < 1.0:  # each look at the clock is processor time
+            pass
+        time.sleep(1.0)
+        print(psutil.cpu_percent(), psutil.cpu_percent(interval=0.5), psutil.cpu_count())
+        print(psutil.Process().cpu_percent(0.1), psutil.Process().num_threads(), len(psutil.cpu_percent(percpu=True)))
+        """
+    )
+    assert program.lines == ["50.0 0.0 1", "0.0 1 1"]
+
+
+def test_memory_is_an_idle_computers(run):
+    program = run(
+        """
+        import os, psutil
+        mine = os.getpid()
+        print(psutil.virtual_memory().percent, psutil.Process(mine).pid == mine, psutil.pids() == [mine])
+        print(psutil.sensors_temperatures(), psutil.disk_usage("/").percent, psutil.net_io_counters().bytes_sent)
+        try:
+            psutil.Process(1)
+        except psutil.NoSuchProcess as error:
+            print(error)
+        """
+    )
+    assert program.lines == ["0.0 True True", "{} 0.0 0", "process PID not found (pid=1)"]
