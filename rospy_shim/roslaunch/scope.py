@@ -1,0 +1,122 @@
+"""What is in force at a place of a launch file: namespace, remappings, private parameters, environment, arguments.
+
+Every tag with contents opens a scope inside the one around it; an included file gets one whose arguments are its own.
+Stands for roslaunch.loader.LoaderContext. Imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from rospy_shim.names import canonicalize_name, is_legal_name
+from rospy_shim.roslaunch.names import as_namespace, joined
+from rospy_shim.roslaunch.substitution import Substitutions, World
+
+
+class Scope:
+    """One scope.
+
+    Args:
+        world: what substitutions look at.
+        file: the launch file.
+        namespace: with a slash at both ends.
+        args: values of arguments.
+        parent: the scope around it.
+    """
+
+    def __init__(
+        self, world: World, file: Path, namespace: str, args: dict[str, str], parent: Scope | None = None
+    ) -> None:
+        self.namespace = namespace
+        anonymous: dict[str, str] = dict(parent.substitutions.anonymous) if parent else {}
+        self.substitutions: Substitutions = Substitutions(world, file, args, anonymous)
+        self.declared: list[str] = list(parent.declared) if parent else []
+        self.takes_all_args = False
+        self.params: dict[str, Any] = dict(parent.params) if parent else {}
+        self.env: dict[str, str] = dict(parent.env) if parent else {}
+        self._remaps: dict[str, str] = {}
+        self._parent = parent
+
+    @property
+    def file(self) -> Path:
+        """The launch file."""
+        return self.substitutions.file
+
+    @property
+    def args(self) -> dict[str, str]:
+        """Values of arguments."""
+        return self.substitutions.args
+
+    def inside(self, namespace: str | None = None) -> Scope:
+        """A scope inside this one.
+
+        Args:
+            namespace: below this scope's, or global.
+
+        Raises:
+            ValueError: the namespace is private.
+        """
+        world = self.substitutions.world
+        return Scope(world, self.file, self._below(namespace), dict(self.args), self)
+
+    def of_included(self, file: Path, namespace: str | None, args: dict[str, str]) -> Scope:
+        """The scope of an included file, which sees no arguments but those it is passed.
+
+        Raises:
+            ValueError: the namespace is private.
+        """
+        scope = Scope(self.substitutions.world, file, self._below(namespace), args, self)
+        scope.declared, scope.substitutions.anonymous = [], {}
+        return scope
+
+    def _below(self, namespace: str | None) -> str:
+        return as_namespace(joined(self.namespace, namespace)) if namespace else self.namespace
+
+    # -- what tags add -----------------------------------------------------------------------------------------------
+
+    def set_param(self, name: str, value: Any) -> None:
+        """A private parameter for the nodes that follow."""
+        self.params.pop(name, None)
+        self.params[name] = value
+
+    def add_remap(self, source: str, target: str) -> None:
+        """A remapping for the nodes that follow.
+
+        Raises:
+            ValueError: a name that is empty, or none.
+        """
+        names = canonicalize_name(source), canonicalize_name(target)
+        for which, name in zip(("from", "to"), names, strict=True):
+            if not name or not is_legal_name(name):
+                raise ValueError(f"{which!r} is {name!r}; write a ROS name")
+        self._remaps.pop(names[0], None)
+        self._remaps[names[0]] = names[1]
+
+    def remaps(self) -> dict[str, str]:
+        """All remappings in force, outer ones first."""
+        found = self._parent.remaps() if self._parent else {}
+        for source, target in self._remaps.items():
+            found.pop(source, None)
+            found[source] = target
+        return found
+
+    def declare_arg(self, name: str, value: str | None, default: str | None) -> None:
+        """An <arg> tag.
+
+        Raises:
+            ValueError: it is there already, or has a value that was given from outside.
+        """
+        if name not in self.declared:
+            self.declared.append(name)
+        elif not self.takes_all_args:
+            raise ValueError(f"the argument {name!r} is declared already; remove one of the two tags")
+        if value is not None:
+            if name in self.args and not self.takes_all_args:
+                raise ValueError(
+                    f"the argument {name!r} was given from outside, but has a fixed value; write default= instead of"
+                    " value=, or do not give it"
+                )
+            self.args[name] = value
+        elif default is not None:
+            self.args.setdefault(name, default)

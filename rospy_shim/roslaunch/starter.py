@@ -1,0 +1,149 @@
+"""Nodes that a node starts: what the library roslaunch, which is code of nodes, asks the mission for.
+
+The library finds these functions in its module `roslaunch._processes`. May import cfepy.es.records, cfepy.nodes.config
+and cfepy.rtos.units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import count
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from cfepy.nodes.config import NodeConfig
+from cfepy.rtos.units import NS_PER_MS, NS_PER_S
+from rospy_shim.msgs import Packages
+from rospy_shim.roslaunch.expression import SubstitutionError
+from rospy_shim.roslaunch.model import LaunchNode
+from rospy_shim.roslaunch.plan import Planner, plan_of
+from rospy_shim.roslaunch.scripts import ScriptError
+from rospy_shim.roslaunch.substitution import Substitutions, UnsetArgument, World
+
+if TYPE_CHECKING:
+    from rospy_shim.node import Node
+    from rospy_shim.runtime import RosRuntime
+
+LOOK_NS = 50 * NS_PER_MS  # how often is looked whether a node has ended
+
+
+class Starter:
+    """Starts nodes for one node.
+
+    Args:
+        runtime: ROS on the mission.
+        node: who asks.
+    """
+
+    def __init__(self, runtime: RosRuntime, node: Node) -> None:
+        self._runtime = runtime
+        self._node = node
+
+    def start_node(self, fields: Mapping[str, Any]) -> str:
+        """Start one node.
+
+        Args:
+            fields: those of a `LaunchNode`, but for `file` and `line`.
+
+        Returns:
+            The cFE name of its application.
+
+        Raises:
+            ValueError: there is no such node, or it cannot run here.
+        """
+        node = LaunchNode(**fields, file=self._here, line=0)
+        planner = Planner(
+            Packages(self._here, self._environ), self._environ, self._runtime.app_names(), self._here.parent
+        )
+        try:
+            return self._start(planner.config(node))
+        except ScriptError as error:
+            raise ValueError(f"cannot launch node of type [{node.package}/{node.type}]: {error}") from None
+
+    def start_file(self, file: str, args: Sequence[str]) -> list[str]:
+        """Set the parameters of a launch file and start its nodes.
+
+        Args:
+            file: its path.
+            args: `name:=value` each.
+
+        Returns:
+            The cFE names of the applications.
+
+        Raises:
+            ValueError: the file is wrong.
+        """
+        path = Path(self._node.universe.resolve(file))
+        values = dict(arg.split(":=", 1) for arg in args if ":=" in arg)
+        plan = plan_of(path, values, self._environ, taken=self._runtime.app_names(), cwd=self._here.parent)
+        for name, value in _leaves("", plan.params):
+            self._node.params.set_param(name, value)
+        for note in plan.notes:
+            self._node.universe.print_error(f"{note}\n")
+        return [self._start(config) for config in plan.nodes.values()]
+
+    def is_alive(self, app: str) -> bool:
+        """Whether the application of a node that was started still runs."""
+        return self._node.cfe.es.app_named(app) is not None
+
+    def stop(self, app: str, seconds: float) -> None:
+        """Ask a node to end, and wait until it has; after some seconds its application is deleted."""
+        kernel, es = self._node.kernel, self._node.cfe.es
+        self._runtime.forget_start(app)
+        self._runtime.begin_shutdown("roslaunch", app)
+        end = kernel.now + round(seconds * NS_PER_S)
+        while self.is_alive(app) and kernel.now < end:
+            kernel.delay(LOOK_NS)
+        if self.is_alive(app):
+            es.delete_app(es.get_app_id_by_name(app))
+
+    def resolve(self, text: str, args: dict[str, str], anonymous: dict[str, str], file: str | None) -> str:
+        """A text with roslaunch's substitutions made.
+
+        Raises:
+            KeyError: an argument has no value.
+            ValueError: a substitution cannot be made.
+        """
+        packages = Packages(self._here, self._environ)
+        made = count(1)
+        world = World(self._environ, packages.path, lambda name: f"{name}_cfepy_{next(made)}")
+        path = Path(self._node.universe.resolve(file or str(self._here)))
+        try:
+            return Substitutions(world, path, args, anonymous).resolve(text)
+        except UnsetArgument as error:
+            raise KeyError(error.name) from None
+        except SubstitutionError as error:
+            raise ValueError(str(error)) from None
+
+    def module(self) -> Callable[[Any], ModuleType]:
+        """The factory of `roslaunch._processes`."""
+        names = {name: getattr(self, name) for name in ("start_node", "start_file", "is_alive", "stop", "resolve")}
+
+        def make(universe: Any) -> ModuleType:
+            module = ModuleType("roslaunch._processes")
+            vars(module).update(names)
+            return module
+
+        return make
+
+    @property
+    def _environ(self) -> dict[str, str]:
+        return dict(self._node.universe.environ)
+
+    @property
+    def _here(self) -> Path:
+        return Path(self._node.universe.script)
+
+    def _start(self, config: NodeConfig) -> str:
+        self._runtime.start_node(config)
+        return config.app
+
+
+def _leaves(prefix: str, tree: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """The parameters of a tree by their full names, so that what else lies beside them stays."""
+    for name, value in tree.items():
+        if isinstance(value, dict) and value:
+            yield from _leaves(f"{prefix}/{name}", value)
+        else:
+            yield f"{prefix}/{name}", value

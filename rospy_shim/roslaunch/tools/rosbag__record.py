@@ -1,0 +1,7 @@
+"""rosbag/record: `rosbag record` under the name that launch files know (wiki.ros.org/rosbag/Commandline)."""
+
+from __future__ import annotations
+
+from rosbag import record
+
+record.main()

@@ -1,0 +1,163 @@
+"""`cfepy launch`: nodes of launch files as applications, with all that roslaunch gives them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from tests.cli.ros_packages import Launch, demo, write_launch
+
+__all__ = ["demo", "write_launch"]  # fixtures
+
+TALKER = '<node pkg="demo" type="talker.py" name="talker" {}>{}</node>'
+COUNT = '<param name="count" value="{}"/>'
+
+
+def printed(out: str, node: str) -> list[str]:
+    begin = f"[{node}] "
+    return [line.removeprefix(begin) for line in out.splitlines() if line.startswith(begin)]
+
+
+def test_nodes_get_what_roslaunch_gives_them(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
+    talker = TALKER.format('args="-v \'a b\'" required="true"', COUNT.format("$(arg n)"))
+    listener = '<node pkg="demo" type="listener.py" name="listener"/>'
+    file = write_launch(
+        f'<arg name="n" default="9"/><group ns="arm"><remap from="chatter" to="/talk"/>{talker}{listener}</group>'
+    )
+    assert main(["launch", file, "n:=3"]) == 0
+    shown = capsys.readouterr().out
+    argv = ["-v", "a b", "chatter:=/talk", "__name:=talker"]
+    assert printed(shown, "arm/talker") == [f"argv {argv} cwd scripts namespace /arm"]
+    heard = [line.rpartition(": ")[2] for line in printed(shown, "arm/listener")]
+    assert heard == ["heard hello 1", "heard hello 2"]
+    assert "launch: arm/talker has ended with exit status 0; it is required, so the run is over" in shown
+    assert "/talk " in shown
+
+
+def test_a_run_ends_with_its_last_node(
+    write_launch: Launch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    numbers = tmp_path / "numbers.json"
+    assert main(["launch", write_launch(TALKER.format("", COUNT.format(5))), "--json", str(numbers)]) == 0
+    assert 1 < json.loads(numbers.read_text())["virtual_s"] < 1.2
+
+
+def test_a_node_that_respawns(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
+    file = write_launch(TALKER.format('respawn="true" respawn_delay="1"', COUNT.format(1)))
+    assert main(["launch", file, "--for", "4"]) == 0
+    shown = capsys.readouterr().out
+    assert len(printed(shown, "talker")) == 4  # at 0.5 s, then every 1.1 s
+    assert shown.count("launch: talker has ended with exit status 0 and is started again") == 4
+
+
+def test_what_cannot_run_is_left_out_with_a_note(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
+    missing = '<node pkg="demo" type="driver" name="driver"/>\n<node pkg="absent" type="x" name="other"/>'
+    file = write_launch(f"{TALKER.format('', COUNT.format(1))}{missing}")
+    assert main(["launch", file, "--quiet"]) == 0
+    said = capsys.readouterr().err
+    assert f"{file}:1: node /driver is left out: package 'demo' has no file 'driver': a C++ node, or one" in said
+    assert f"{file}:2: node /other is left out: there is no package 'absent'" in said
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ('<node pkg="demo" type="driver" name="driver" required="true"/>', "/driver is required, but package 'demo'"),
+        ('<node pkg="demo" type="driver" name="driver"/>', "has no node that can run here: "),
+        ("", "has no node that can run here: it has no <node>"),
+        ('<node pkg="demo" type="talker.py" name="t" args="\'"/>', '<node>: args="\'": No closing quotation'),
+    ],
+)
+def test_a_launch_file_that_cannot_run(
+    write_launch: Launch, capsys: pytest.CaptureFixture[str], body: str, said: str
+) -> None:
+    assert main(["launch", write_launch(body)]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_launch_file_by_its_package(
+    write_launch: Launch, demo: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_launch(f"{TALKER.format('', COUNT.format(2))}<rosparam>a: {{b: 1}}</rosparam>")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(demo.parent))
+    assert main(["launch", "demo", "demo.launch", "--nodes", "--dump-params"]) == 0
+    shown = capsys.readouterr().out
+    assert shown.startswith("/talker\na:\n  b: 1\n")
+    assert "talker:\n  count: 2\n" in shown
+    assert main(["launch", "demo", "other.launch"]) == 2
+    assert "demo other.launch: no package 'demo' with a file 'other.launch'" in capsys.readouterr().err
+
+
+def test_the_same_launch_makes_the_same_trace(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
+    file = write_launch(TALKER.format("", COUNT.format(3)))
+    digests = set()
+    for tasks in ("thread", "greenlet"):
+        main(["launch", file, "--quiet", "--tasks", tasks])
+        digests.add(capsys.readouterr().out.splitlines()[-1])
+    assert len(digests) == 1
+
+
+def test_common_tools_are_stood_in_for(write_launch: Launch, demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (demo / "scripts/look.py").write_text(
+        "import rospy, tf2_ros\n"
+        "rospy.init_node('look')\n"
+        "buffer = tf2_ros.Buffer()\n"
+        "listener = tf2_ros.TransformListener(buffer)\n"
+        "at = buffer.lookup_transform('map', 'tip', rospy.Time(), rospy.Duration(5)).transform.translation\n"
+        "print(at.x, at.y, at.z)\n"
+        "heard = []\n"
+        "rospy.Subscriber('slow_relay', rospy.AnyMsg, heard.append)\n"
+        "rospy.sleep(5)\n"
+        "print(len(heard))\n"
+    )
+    file = write_launch(
+        '<node pkg="tf" type="static_transform_publisher" name="one" args="1 2 -3 0 0 0 map arm 100"/>'
+        '<node pkg="tf2_ros" type="static_transform_publisher" name="two" args="0 0 1 0 0 0 1 arm tip"/>'
+        '<node pkg="topic_tools" type="throttle" name="throttle" args="messages chatter 2 slow"/>'
+        '<node pkg="topic_tools" type="relay" name="relay" args="slow"/>'
+        f'{TALKER.format("", "")}<node pkg="demo" type="look.py" name="look" required="true"/>'
+    )
+    assert main(["launch", file, "--for", "20"]) == 0
+    assert printed(capsys.readouterr().out, "look") == ["1.0 2.0 -2.0", "8"]
+
+
+URDF = """
+<robot name="r">
+  <joint name="lift" type="prismatic"><parent link="base"/><child link="post"/><axis xyz="0 0 2"/></joint>
+  <joint name="turn" type="revolute"><parent link="post"/><child link="arm"/><axis xyz="0 0 1"/>
+    <origin xyz="1 0 0" rpy="0 0 0"/></joint>
+  <joint name="follow" type="continuous"><parent link="arm"/><child link="hand"/><axis xyz="0 0 1"/>
+    <mimic joint="turn" multiplier="-1"/></joint>
+  <joint name="end" type="fixed"><parent link="hand"/><child link="tip"/><origin xyz="0 1 0"/></joint>
+</robot>
+"""
+
+
+def test_a_robots_state_becomes_transforms(
+    write_launch: Launch, demo: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (demo / "r.urdf").write_text(URDF)
+    (demo / "scripts/move.py").write_text(
+        "import rospy, tf2_ros\n"
+        "from sensor_msgs.msg import JointState\n"
+        "rospy.init_node('move')\n"
+        "publisher = rospy.Publisher('joint_states', JointState, queue_size=1)\n"
+        "buffer = tf2_ros.Buffer()\n"
+        "listener = tf2_ros.TransformListener(buffer)\n"
+        "rospy.sleep(1)\n"
+        "state = JointState(name=['lift', 'turn'], position=[0.5, 1.5707963267948966])\n"
+        "state.header.stamp = rospy.Time.now()\n"
+        "publisher.publish(state)\n"
+        "at = buffer.lookup_transform('base', 'tip', rospy.Time(), rospy.Duration(2)).transform\n"
+        "print(*(round(each, 6) for each in (at.translation.x, at.translation.y, at.translation.z, at.rotation.w)))\n"
+    )
+    file = write_launch(
+        '<param name="robot_description" textfile="$(dirname)/r.urdf"/>'
+        '<node pkg="robot_state_publisher" type="robot_state_publisher" name="rsp"/>'
+        '<node pkg="demo" type="move.py" name="move" required="true"/>'
+    )
+    assert main(["launch", file]) == 0
+    assert printed(capsys.readouterr().out, "move") == ["1.0 1.0 0.5 1.0"]

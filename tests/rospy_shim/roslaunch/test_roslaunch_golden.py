@@ -1,0 +1,81 @@
+"""Launch files mean what they mean to roslaunch: parameters, nodes, tests, and which files are refused.
+
+What roslaunch 1.15 makes of each file was recorded with its own XmlLoader (tests/data/roslaunch_golden.json).
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cfepy.status import UsageError
+from rospy_shim.msgs import Packages
+from rospy_shim.roslaunch.model import Launch, LaunchNode
+from rospy_shim.roslaunch.reader import read
+
+GOLDEN = json.loads((Path(__file__).parents[2] / "data/roslaunch_golden.json").read_text())
+CASES = {case["name"]: case for case in GOLDEN["cases"]}
+ENVIRON = {"LAUNCH_TEST": "out there"}
+
+
+def read_case(case: dict[str, Any], folder: Path) -> Launch:
+    for name, text in GOLDEN["files"].items():
+        (folder / name).write_bytes(text.encode())
+    file = folder / "main.launch"
+    file.write_text(case["text"])
+    args = dict(arg.split(":=") for arg in case["args"])
+    return read(file, args, Packages(file, ENVIRON), ENVIRON)
+
+
+def as_recorded(launch: Launch, folder: Path) -> dict[str, Any]:
+    """What was read, in the form of the recording."""
+    tests = [
+        {**node_of(test.node), "tn": test.test_name, "tl": test.time_limit, "retry": test.retry}
+        for test in launch.tests
+    ]
+    found = {
+        "params": [[name, value_of(value)] for name, value in sorted(launch.params.items())],
+        "nodes": [without_defaults(node_of(node)) for node in launch.nodes],
+        "tests": [without_defaults(test) for test in tests],
+    }
+    return dict(json.loads(json.dumps(found).replace(str(folder), "DIR")))
+
+
+def value_of(value: Any) -> Any:
+    return {"bytes": value.hex()} if isinstance(value, bytes) else value
+
+
+def node_of(node: LaunchNode) -> dict[str, Any]:
+    return {
+        "name": node.name,
+        "ns": node.namespace,
+        "args": node.args,
+        "remaps": [list(remap) for remap in node.remaps],
+        "env": dict(node.env),
+        "output": node.output,
+        "cwd": node.cwd,
+        "respawn": node.respawn,
+        "delay": node.respawn_delay,
+        "required": node.required,
+    }
+
+
+def without_defaults(fields: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in fields.items() if value}
+
+
+@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case["expected"] is not None])
+def test_a_file_means_the_same(name: str, tmp_path: Path) -> None:
+    assert as_recorded(read_case(CASES[name], tmp_path), tmp_path) == CASES[name]["expected"]
+
+
+@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case["expected"] is None])
+def test_a_file_is_refused_with_its_place(name: str, tmp_path: Path) -> None:
+    with pytest.raises(UsageError) as raised:
+        read_case(CASES[name], tmp_path)
+    assert raised.value.file is not None
+    assert raised.value.line == 1
+    assert raised.value.text
