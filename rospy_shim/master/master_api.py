@@ -1,0 +1,218 @@
+"""The master and the parameter server of a mission, with rosmaster's codes and texts.
+
+Source: wiki.ros.org/ROS/Master_API and wiki.ros.org/ROS/Parameter%20Server%20API. Imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rospy_shim.master import calls
+from rospy_shim.master.calls import Answer, answers
+from rospy_shim.master.registry import Entries, Registry
+from rospy_shim.names import PRIV_NAME, SEP
+from rospy_shim.parameter_tree import ParameterTree
+from rospy_shim.params import marshalled
+
+if TYPE_CHECKING:
+    from rospy_shim.graph import Graph
+
+MASTER_PID = 100  # of a process that there is not
+
+
+class MasterApi:
+    """What programs ask the master; each method takes the caller's name first and gives code, text and value.
+
+    Args:
+        graph: the mission's ROS graph.
+        uri: where the master answers.
+    """
+
+    def __init__(self, graph: Graph, uri: str) -> None:
+        self._params: ParameterTree = graph.params
+        self._registry = Registry(graph)
+        self._uri = uri
+
+    @answers("")
+    def getUri(self, caller: str) -> Answer:
+        """Where the master answers."""
+        return 1, "", self._uri
+
+    @answers(-1)
+    def getPid(self, caller: str) -> Answer:
+        """A process number."""
+        return 1, "", MASTER_PID
+
+    @answers(0, None)
+    def shutdown(self, caller: str, reason: str) -> Answer:
+        """Refused: the graph is there as long as the mission is."""
+        return 0, "the master ends with the mission", 0
+
+    # -- parameters --------------------------------------------------------------------------------------------------
+
+    @answers(0, calls.text("key"))
+    def deleteParam(self, caller: str, key: str) -> Answer:
+        """Remove a parameter or a namespace."""
+        key = calls.resolve(key, caller)
+        try:
+            self._params.delete(key)
+        except KeyError:
+            return -1, f"parameter [{key}] is not set", 0
+        return 1, f"parameter {key} deleted", 0
+
+    @answers(0, calls.text("key"), None)
+    def setParam(self, caller: str, key: str, value: Any) -> Answer:
+        """Set a parameter; a dictionary replaces a namespace."""
+        key = calls.resolve(key, caller)
+        self._params.set(key, marshalled(value))
+        return 1, f"parameter {key} set", 0
+
+    @answers(0, calls.text("key"))
+    def getParam(self, caller: str, key: str) -> Answer:
+        """The value of a parameter, or a namespace."""
+        key = calls.resolve(key, caller)
+        value = self._params.find(key)
+        if value is ParameterTree.MISSING:
+            return -1, f"Parameter [{key}] is not set", 0
+        return 1, f"Parameter [{key}]", value
+
+    @answers(0, calls.text("key"))
+    def searchParam(self, caller: str, key: str) -> Answer:
+        """The name of the nearest parameter, from the caller's namespace upwards."""
+        if key.startswith(PRIV_NAME):
+            raise ValueError("invalid key")
+        if not caller.startswith(SEP):
+            raise ValueError("namespace must be global")
+        found: str | None
+        if key.startswith(SEP):
+            found = key if self._params.find(key) is not ParameterTree.MISSING else None
+        else:
+            found = self._params.search(caller, key)
+        return (
+            (1, f"Found [{found}]", found) if found else (-1, f"Cannot find parameter [{key}] in an upwards search", "")
+        )
+
+    @answers(0, calls.text("key"))
+    def hasParam(self, caller: str, key: str) -> Answer:
+        """Whether there is a parameter or a namespace."""
+        key = calls.resolve(key, caller)
+        return 1, key, self._params.find(key) is not ParameterTree.MISSING
+
+    @answers([])
+    def getParamNames(self, caller: str) -> Answer:
+        """The names of all parameters."""
+        return 1, "Parameter names", self._params.names()
+
+    @answers(0, calls.address("caller_api"), calls.text("key"))
+    def subscribeParam(self, caller: str, uri: str, key: str) -> Answer:
+        """The value of a parameter. A node sees its changes in any case, since the tree is where it looks."""
+        key = calls.resolve(key, caller)
+        self._registry.register_param_subscriber(key, caller, uri)
+        value = self._params.find(key)
+        return 1, f"Subscribed to parameter [{key}]", {} if value is ParameterTree.MISSING else value
+
+    @answers(0, calls.address("caller_api"), calls.text("key"))
+    def unsubscribeParam(self, caller: str, uri: str, key: str) -> Answer:
+        """Want no changes of a parameter any more."""
+        key = calls.resolve(key, caller)
+        self._registry.unregister_param_subscriber(key, caller, uri)
+        return 1, f"Unsubscribe to parameter [{key}]", 1
+
+    def subscribes_to_param(self, uri: str, key: str) -> bool:
+        """Whether somebody at a URI has subscribed to a parameter."""
+        return uri in self._registry.param_subscribers.get(key, {}).values()
+
+    # -- the graph ---------------------------------------------------------------------------------------------------
+
+    @answers("", calls.name("node"))
+    def lookupNode(self, caller: str, name: str) -> Answer:
+        """Where a node answers."""
+        uri = self._registry.node_uri(name)
+        return (-1, f"unknown node [{name}]", "") if uri is None else (1, "node api", uri)
+
+    @answers("", calls.name_of_thing("service"))
+    def lookupService(self, caller: str, service: str) -> Answer:
+        """Where a service is called."""
+        uri = self._registry.service_uri(service)
+        return (-1, "no provider", "") if uri is None else (1, f"rosrpc URI: [{uri}]", uri)
+
+    @answers(0, calls.name_or_nothing("subgraph"))
+    def getPublishedTopics(self, caller: str, subgraph: str) -> Answer:
+        """[topic, type] of all topics below a namespace that somebody publishes."""
+        prefix = subgraph.rstrip(SEP) + SEP if subgraph else ""
+        types = self._registry.topic_types()
+        return (
+            1,
+            "current topics",
+            [[each, types[each]] for each in self._registry.publishers() if each.startswith(prefix)],
+        )
+
+    @answers([])
+    def getTopicTypes(self, caller: str) -> Answer:
+        """[topic, type] of all topics that there ever were."""
+        return 1, "current system state", [list(each) for each in self._registry.topic_types().items()]
+
+    @answers([[], [], []])
+    def getSystemState(self, caller: str) -> Answer:
+        """Publishers, subscribers and providers of services: three lists of [name, [node, ...]]."""
+        known = self._registry
+        entries = (known.publishers(), known.subscribers(), known.providers())
+        return 1, "current system state", [[[name, list(who)] for name, who in each.items()] for each in entries]
+
+    # -- registrations by hand; the mission's nodes need none --------------------------------------------------------
+
+    @answers([], calls.name_of_thing("topic"), calls.type_name("topic_type"), calls.address("caller_api"))
+    def registerPublisher(self, caller: str, topic: str, kind: str, uri: str) -> Answer:
+        """Note a publisher; the value is where the subscribers answer."""
+        self._registry.register_publisher(topic, kind, caller, uri)
+        return 1, f"Registered [{caller}] as publisher of [{topic}]", _uris(self._registry.subscribers(), topic)
+
+    @answers([], calls.name_of_thing("topic"), calls.type_name("topic_type"), calls.address("caller_api"))
+    def registerSubscriber(self, caller: str, topic: str, kind: str, uri: str) -> Answer:
+        """Note a subscriber; the value is where the publishers answer."""
+        self._registry.register_subscriber(topic, kind, caller, uri)
+        return 1, f"Subscribed to [{topic}]", _uris(self._registry.publishers(), topic)
+
+    @answers(0, calls.name_of_thing("service"), calls.address("service_api"), calls.address("caller_api"))
+    def registerService(self, caller: str, service: str, service_uri: str, uri: str) -> Answer:
+        """Note the provider of a service."""
+        self._registry.register_service(service, service_uri, caller, uri)
+        return 1, f"Registered [{caller}] as provider of [{service}]", 1
+
+    @answers(0, calls.name_of_thing("topic"), calls.address("caller_api"))
+    def unregisterPublisher(self, caller: str, topic: str, uri: str) -> Answer:
+        """Forget a publisher; the node's own messages are not heard any more."""
+        known = self._is_known(caller)
+        return _unregistered(known, self._registry.unregister_publisher(topic, caller, uri), caller, topic)
+
+    @answers(0, calls.name_of_thing("topic"), calls.address("caller_api"))
+    def unregisterSubscriber(self, caller: str, topic: str, uri: str) -> Answer:
+        """Forget a subscriber; the node gets no more messages of the topic."""
+        known = self._is_known(caller)
+        return _unregistered(known, self._registry.unregister_subscriber(topic, caller, uri), caller, topic)
+
+    @answers(0, calls.name_of_thing("service"), calls.address("service_api"))
+    def unregisterService(self, caller: str, service: str, service_uri: str) -> Answer:
+        """Forget the provider of a service; nobody can call it any more."""
+        if not self._is_known(caller):
+            return 1, f"[{caller}] is not a registered node", 0
+        providers = self._registry.providers().get(service, {})
+        if caller not in providers or self._registry.service_uri(service) != service_uri:
+            return 1, f"[{service_uri}] is no longer the current service api handle for [{service}]", 0
+        self._registry.unregister_service(service, caller)
+        return 1, f"Unregistered [{caller}] as provider of [{service}]", 1
+
+    def _is_known(self, caller: str) -> bool:
+        return self._registry.node_uri(caller) is not None
+
+
+def _uris(entries: Entries, name: str) -> list[str]:
+    return list(entries.get(name, {}).values())
+
+
+def _unregistered(known: bool, done: bool, caller: str, topic: str) -> Answer:
+    if not known:
+        return 1, f"[{caller}] is not a registered node", 0
+    if not done:
+        return 1, f"[{caller}] is not a known provider of [{topic}]", 0
+    return 1, f"Unregistered [{caller}] as provider of [{topic}]", 1

@@ -1,0 +1,143 @@
+"""`rospy.msproxy.MasterProxy` and `rospy.get_master`: the master with the node's name and remappings filled in.
+
+Imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from rospy_shim.exceptions import ROSException
+
+if TYPE_CHECKING:
+    from rospy_shim.node import Node
+
+# Methods whose first argument is a name that the node's remappings apply to.
+# fmt: off
+_NAMED = frozenset({
+    "deleteParam", "getParam", "getPublishedTopics", "hasParam", "lookupNode", "lookupService", "registerPublisher",
+    "registerService", "registerSubscriber", "requestTopic", "searchParam", "setParam", "subscribeParam",
+    "unregisterPublisher", "unregisterService", "unregisterSubscriber", "unsubscribeParam",
+})
+# fmt: on
+
+
+class MasterProxy:
+    """The master as a node sees it: every method of the Master API without the caller's name.
+
+    It is a dictionary of parameters as well. Each node has a subclass that knows the node.
+    """
+
+    __module__ = "rospy.msproxy"
+    _node: ClassVar[Node]
+
+    def __init__(self, uri: str) -> None:
+        """Make one.
+
+        Args:
+            uri: where the master answers.
+        """
+        self.target: Any = self._node.universe.importer.load("xmlrpc.client").ServerProxy(uri)
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        def ask(*args: Any, **kwds: Any) -> Any:
+            given = list(args)
+            if name in _NAMED:
+                given[0] = self._node.names.resolve_name(given[0])
+            return getattr(self.target, name)(self._node.names.get_caller_id(), *given, **kwds)
+
+        return ask
+
+    def __getitem__(self, key: str) -> Any:
+        """The value of a parameter.
+
+        Raises:
+            KeyError: it is not set.
+        """
+        code, _, value = self.getParam(key)
+        if code != 1:
+            raise KeyError(key)
+        return value
+
+    def get_param_cached(self, key: str) -> Any:
+        """As an item; the master is as near as a cache would be.
+
+        Raises:
+            KeyError: it is not set.
+        """
+        return self[key]
+
+    def __setitem__(self, key: str, value: Any) -> None:
+        """Set a parameter."""
+        self.setParam(key, value)
+
+    def __delitem__(self, key: str) -> None:
+        """Remove a parameter.
+
+        Raises:
+            KeyError: it is not set.
+            ROSException: the master failed.
+        """
+        code, text, _ = self.deleteParam(key)
+        if code == -1:
+            raise KeyError(key)
+        if code != 1:
+            raise ROSException(f"cannot delete parameter: {text}")
+
+    def __contains__(self, key: str) -> bool:
+        """Whether a parameter is set.
+
+        Raises:
+            ROSException: the master failed.
+        """
+        code, text, found = self.hasParam(key)
+        if code != 1:
+            raise ROSException(f"cannot check parameter on server: {text}")
+        return bool(found)
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of all parameters.
+
+        Raises:
+            ROSException: the master failed.
+        """
+        code, text, names = self.getParamNames()
+        if code != 1:
+            raise ROSException(f"cannot retrieve parameter names: {text}")
+        return iter(names)
+
+    def search_param(self, key: str) -> str | None:
+        """The full name of the nearest parameter of that name, or None.
+
+        Raises:
+            ROSException: the master failed.
+        """
+        key = self._node.names.get_mappings().get(key, key)
+        code, text, found = self.target.searchParam(self._node.names.get_caller_id(), key)
+        if code == 0:
+            raise ROSException(f"cannot search for parameter: {text}")
+        return found if code == 1 else None
+
+
+def make_master_proxy(node: Node) -> type[MasterProxy]:
+    """The class `rospy.msproxy.MasterProxy` of a node."""
+    return type("MasterProxy", (MasterProxy,), {"__module__": MasterProxy.__module__, "_node": node})
+
+
+def make_get_master(node: Node, proxy: type[MasterProxy]) -> Callable[..., MasterProxy]:
+    """The function `rospy.get_master` of a node; all calls give the same proxy, of the node's class `proxy`."""
+    made: list[MasterProxy] = []
+
+    def get_master(env: Mapping[str, str] | None = None) -> MasterProxy:
+        """The master that the environment names.
+
+        Args:
+            env: where ROS_MASTER_URI is looked up; the node's environment by default.
+        """
+        if not made:
+            uri = (node.universe.environ if env is None else env).get("ROS_MASTER_URI", "http://localhost:11311")
+            made.append(proxy(uri))
+        return made[0]
+
+    return get_master

@@ -1,0 +1,170 @@
+"""What a node answers when it is asked at its URI (wiki.ros.org/ROS/Slave_API), with rospy's codes and texts.
+
+Imports nothing of cfepy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+from rospy_shim.master import calls
+from rospy_shim.master.calls import Answer, InvalidArgument, answers
+from rospy_shim.master.registry import uri_of
+
+if TYPE_CHECKING:
+    from rospy_shim.master.master_api import MasterApi
+    from rospy_shim.node import Node
+
+TRANSPORT = "cFE SB"  # in place of TCPROS
+NOT_COUNTED = -1  # bytes of a connection
+
+
+def _global_name(value: Any, caller: str) -> Any:
+    if not value or not isinstance(value, str):
+        raise InvalidArgument("ERROR: parameter [parameter_key] must be a non-empty string")
+    if not value.startswith("/"):
+        raise InvalidArgument("ERROR: parameter [parameter_key] must be a globally referenced name")
+    return value
+
+
+def _uris(value: Any, caller: str) -> Any:
+    if type(value) is not list:
+        raise InvalidArgument("ERROR: param [publishers] must be a list")
+    for each in value:
+        if not isinstance(each, str):
+            raise InvalidArgument("ERROR: param [publishers] must be a list of strings")
+        if not all(urlsplit(each)[:2]):
+            raise InvalidArgument(f"ERROR: param [publishers] does not contain valid URLs [{each}]")
+    return value
+
+
+class SlaveApi:
+    """What others ask a node; each method takes the caller's name first and gives code, text and value.
+
+    Args:
+        node: the node.
+        master: knows which parameters the node has subscribed to.
+    """
+
+    def __init__(self, node: Node, master: MasterApi) -> None:
+        self._node = node
+        self._master = master
+
+    @answers("")
+    def getUri(self, caller: str) -> Answer:
+        """Where the node answers."""
+        return 1, "", uri_of(self._node)
+
+    @answers("")
+    def getName(self, caller: str) -> Answer:
+        """The node's name."""
+        return 1, "", self._node.names.name
+
+    @answers(-1)
+    def getPid(self, caller: str) -> Answer:
+        """The node's process number, as its os.getpid() gives it."""
+        return 1, "", self._node.universe.pid
+
+    @answers("")
+    def getMasterUri(self, caller: str) -> Answer:
+        """The master's URI as the node knows it."""
+        uri = self._node.universe.environ.get("ROS_MASTER_URI", "")
+        return (1, uri, uri) if uri else (0, "master URI not set", "")
+
+    @answers(0, None)
+    def shutdown(self, caller: str, reason: str) -> Answer:
+        """Ask the node to shut down."""
+        node = self._node
+        node.universe.stdout.write(f"shutdown request: {reason}\n" if reason else "shutdown request\n")
+        node.start_task(
+            "shutdown", lambda: node.life.signal_shutdown(f"external shutdown request from [{caller}]: [{reason}]")
+        )
+        return 1, "shutdown", 0
+
+    # -- topics ------------------------------------------------------------------------------------------------------
+
+    @answers([])
+    def getSubscriptions(self, caller: str) -> Answer:
+        """[topic, type] of what the node subscribes to."""
+        return 1, "subscriptions", _types(self._node.subscriptions.items())
+
+    @answers([])
+    def getPublications(self, caller: str) -> Answer:
+        """[topic, type] of what the node publishes."""
+        return 1, "publications", _types(self._node.links.items())
+
+    @answers([])
+    def getBusInfo(self, caller: str) -> Answer:
+        """[number, other side, direction, transport, topic, connected, text] for each connection."""
+        return 1, "bus info", [[number, *each] for number, each in enumerate(self._connections(), 1)]
+
+    def _connections(self) -> Iterable[tuple[Any, ...]]:
+        for name, link in self._node.links.items():
+            for each in link.topic.subscriptions if link.topic is not None else ():
+                text = f"{TRANSPORT} connection on MsgId 0x{link.msg_id:04X} to [{each.node.names.name}]"
+                yield each.node.names.name, "o", TRANSPORT, name, True, text
+        for name, subscription in self._node.subscriptions.items():
+            topic = subscription.topic
+            for publisher in topic.links if topic is not None and subscription in topic.subscriptions else ():
+                text = f"{TRANSPORT} connection on MsgId 0x{publisher.msg_id:04X} to [{uri_of(publisher.node)}]"
+                yield uri_of(publisher.node), "i", TRANSPORT, name, True, text
+
+    @answers([])
+    def getBusStats(self, caller: str) -> Answer:
+        """Statistics of publishers, subscribers and services; bytes are not counted, which shows as -1."""
+        numbered = [[number, *each] for number, each in enumerate(self._connections(), 1)]
+        sent = [
+            [name, NOT_COUNTED, [[each[0], NOT_COUNTED, link.seq, True] for each in _of(numbered, name, "o")]]
+            for name, link in self._node.links.items()
+        ]
+        received = [
+            [name, [[each[0], NOT_COUNTED, NOT_COUNTED, NOT_COUNTED, True] for each in _of(numbered, name, "i")]]
+            for name in self._node.subscriptions
+        ]
+        return 1, "", [sent, received, []]
+
+    @answers([], calls.name_of_thing("topic"), calls.something("protocols"))
+    def requestTopic(self, caller: str, topic: str, protocols: Any) -> Answer:
+        """Refused: messages pass over the Software Bus, and there is no other protocol to choose."""
+        if topic not in self._node.links:
+            return -1, f"Not a publisher of [{topic}]", []
+        return 0, "no supported protocol implementations", []
+
+    @answers(-1, calls.name_of_thing("topic"), _uris)
+    def publisherUpdate(self, caller: str, topic: str, publishers: list[str]) -> Answer:
+        """Taken note of: the Software Bus knows who publishes."""
+        return 1, "", 0
+
+    @answers(-1, _global_name, None)
+    def paramUpdate(self, caller: str, key: str, value: Any) -> Answer:
+        """Taken note of by a node that has subscribed to the parameter: it reads the tree itself."""
+        if not self._master.subscribes_to_param(uri_of(self._node), key):
+            return -1, "not subscribed", 0
+        return 1, "", 0
+
+    # -- services ----------------------------------------------------------------------------------------------------
+
+    @answers({}, calls.name_of_thing("service"))
+    def getServiceHeader(self, caller: str, service: str) -> Answer:
+        """The header that a probe of the service gets: type and md5sum. ROS asks at the service's own TCP port."""
+        for each in self._node.services:
+            if each.resolved_name == service:
+                kind = each.service_class
+                header = {
+                    "callerid": self._node.names.name,
+                    "md5sum": kind._md5sum,
+                    "service": service,
+                    "type": kind._type,
+                }
+                return 1, "service header", header
+        return -1, f"Not a provider of [{service}]", {}
+
+
+def _types(sides: Iterable[tuple[str, Any]]) -> list[list[str]]:
+    return [[name, side.data_class._type] for name, side in sides]
+
+
+def _of(numbered: list[list[Any]], name: str, direction: str) -> list[list[Any]]:
+    return [each for each in numbered if each[2] == direction and each[4] == name]

@@ -1,0 +1,92 @@
+"""`xmlrpc.client` of a node: Python's own module, whose requests to the master and to nodes go to the switchboard.
+
+Requests and answers are marshalled by the module itself, so that what can be sent, what comes out at the other side and
+which errors there are is XML-RPC's. Requests to others go over HTTP, if the mission has a network. May import
+cfepy.nodes.
+"""
+
+from __future__ import annotations
+
+import errno
+import importlib.util
+import os
+from collections.abc import Callable
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from cfepy.nodes.refused import RefusedError
+from rospy_shim.master.calls import UnknownMethod, call
+
+if TYPE_CHECKING:
+    from cfepy.nodes import Universe
+    from rospy_shim.master.switchboard import Switchboard
+    from rospy_shim.node import Node
+
+NAME = "xmlrpc.client"
+
+
+def xmlrpc_client(node: Node, switchboard: Switchboard) -> Callable[[Universe], ModuleType]:
+    """The factory of a node's `xmlrpc.client`.
+
+    Args:
+        node: who asks.
+        switchboard: who is asked.
+    """
+
+    def make(universe: Universe) -> ModuleType:
+        spec = importlib.util.find_spec(NAME)
+        if spec is None or spec.origin is None:
+            raise ModuleNotFoundError(f"No module named {NAME!r}", name=NAME)
+        module = universe.importer.load_file(NAME, spec.origin)
+        vars(module)["Transport"].request = _request(node, switchboard, module)
+        return module
+
+    return make
+
+
+def _request(node: Node, switchboard: Switchboard, module: Any) -> Callable[..., Any]:
+    """`Transport.request` on the switchboard."""
+    over_http = vars(module)["Transport"].request
+
+    def request(self: Any, host: Any, handler: str, request_body: bytes, verbose: bool = False) -> Any:
+        node.universe.charge()
+        address, _, _ = self.get_host_info(host)
+        api = switchboard.find(node, address)
+        if api is None:
+            try:
+                return over_http(self, host, handler, request_body, verbose)
+            except RefusedError:  # without a network nobody listens anywhere
+                raise ConnectionRefusedError(errno.ECONNREFUSED, os.strerror(errno.ECONNREFUSED)) from None
+        answer = _answer(module, api, request_body)
+        parser, unmarshaller = self.getparser()
+        parser.feed(answer.encode("utf-8", "xmlcharrefreplace"))
+        parser.close()
+        return unmarshaller.close()
+
+    return request
+
+
+def _answer(module: Any, api: object, body: bytes) -> str:
+    """What an XML-RPC server sends back."""
+    arguments, method = module.loads(body, use_builtin_types=True)
+    try:
+        if method == "system.multicall":
+            result: Any = [_one_of_many(module, api, each) for each in arguments[0]]
+        else:
+            result = call(api, method, arguments)
+        return str(module.dumps((result,), methodresponse=True))
+    except Exception as error:
+        return str(module.dumps(_fault(module, error), methodresponse=True))
+
+
+def _one_of_many(module: Any, api: object, request: dict[str, Any]) -> Any:
+    try:
+        return [call(api, request["methodName"], request["params"])]
+    except Exception as error:
+        fault = _fault(module, error)
+        return {"faultCode": fault.faultCode, "faultString": fault.faultString}
+
+
+def _fault(module: Any, error: Exception) -> Any:
+    kind = Exception if isinstance(error, UnknownMethod) else type(error)
+    return module.Fault(1, f"{kind}:{error}")

@@ -1,0 +1,1 @@
+"""The master, the slave API and XML-RPC between nodes."""
