@@ -1,0 +1,34 @@
+"""Tests over public nodes run where their sources are; where they are not, the end of the test run says so."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from tests.corpus.scenarios import read_corpus
+from tests.corpus.sources import ENVIRONMENT, FETCH
+
+HOW = f"{len(read_corpus().scenarios)} scenarios with public ROS nodes were NOT run: `{FETCH}`, then set {ENVIRONMENT}"
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """One test for each scenario, or one that says that there are no sources."""
+    if "scenario_id" in metafunc.fixturenames:
+        ids = list(read_corpus().scenarios)
+        absent = [pytest.param("", marks=pytest.mark.skip(reason=HOW), id="no-sources")]
+        metafunc.parametrize("scenario_id", ids if ENVIRONMENT in os.environ else absent)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say what was not tried."""
+    skipped = terminalreporter.stats.get("skipped", [])
+    if any(HOW in str(report.longrepr) for report in skipped):
+        terminalreporter.write_line(HOW, yellow=True)
+
+
+@pytest.fixture
+def sources_folder() -> Path:
+    """Where the sources are."""
+    return Path(os.environ[ENVIRONMENT])

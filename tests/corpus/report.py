@@ -1,0 +1,53 @@
+"""docs/compatibility.md, the page about which public nodes run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from tests.corpus.scenarios import Corpus
+from tests.corpus.sources import ENVIRONMENT
+from tests.corpus.verdict import Verdict
+
+PAGE = Path(__file__).parents[2] / "docs" / "compatibility.md"
+_HEAD = """# Compatibility
+
+{total} scenarios with public ROS 1 nodes in Python, run unmodified from their repositories: the node gets a stimulus
+from a second node, and what it publishes, answers and prints is checked. All checks hold for the same nodes on rospy
+1.15 with a ROS master. In virtual time on cfepy, {passed} of {total} meet all of theirs. The wall time is that of the
+whole process, start of the interpreter included, on an x86-64 machine with two cores.
+
+This page is made by `python -m tests.corpus report`. To try it yourself:
+
+```
+python -m tests.corpus fetch ~/corpus
+python -m tests.corpus run --sources ~/corpus --jobs 2
+```
+
+`fetch` gets each repository at the commit below; nothing of it is part of cfepy. With the folder in
+{environment}, `pytest tests/corpus` runs them all as tests. The scenarios are in `tests/corpus/scenarios.json`.
+
+| scenario | node | commit | verdict | wall time | reason |
+|---|---|---|---|---|---|
+"""
+
+
+def page(corpus: Corpus, verdicts: Sequence[Verdict]) -> str:
+    """The page's text."""
+    passed = sum(verdict.passed for verdict in verdicts)
+    head = _HEAD.format(total=len(verdicts), passed=passed, environment=ENVIRONMENT)
+    return head + "".join(_row(corpus, verdict) for verdict in verdicts)
+
+
+def write_page(corpus: Corpus, verdicts: Sequence[Verdict]) -> None:
+    """Write the page."""
+    PAGE.write_text(page(corpus, verdicts), encoding="utf-8")
+
+
+def _row(corpus: Corpus, verdict: Verdict) -> str:
+    node = corpus.scenarios[verdict.id].node
+    commit = corpus.commits[node.repo]
+    link = f"[{node.repo}: {node.path}](https://github.com/{node.repo}/blob/{commit}/{node.path})"
+    reason = verdict.reason.replace("|", "\\|")
+    said = "runs" if verdict.passed else "does not"
+    return f"| {verdict.id} | {link} | {commit[:8]} | {said} | {verdict.wall_s:.1f} s | {reason} |\n"

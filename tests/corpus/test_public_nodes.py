@@ -1,0 +1,21 @@
+"""Every scenario with a public node does what it must."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.corpus.flight import Flight
+from tests.corpus.scenarios import read_corpus
+from tests.corpus.sources import Sources
+from tests.corpus.verdict import judge
+
+
+@pytest.mark.corpus
+def test_public_node(scenario_id: str, sources_folder: Path, tmp_path: Path) -> None:
+    scenario = read_corpus().scenarios[scenario_id]
+    sources = Sources(sources_folder)
+    assert sources.missing(scenario) == ""
+    verdict = judge(scenario, Flight(scenario, sources, tmp_path).run())
+    assert verdict.passed, verdict.reason

@@ -1,0 +1,78 @@
+"""The test files: where each comes from, how it is run, and what came of it on ROS (peers.json)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from cfepy.status import UsageError
+
+FILE = Path(__file__).with_name("peers.json")
+UNIT, ROSTEST = "unit", "rostest"
+SHARE = 0.95  # of what passes on ROS that must pass here
+_NOTHING: Mapping[str, str] = {}
+
+
+@dataclass(frozen=True, slots=True)
+class Peer:
+    """One test file.
+
+    Attributes:
+        name: its name here.
+        repo: its repository, "owner/name" on GitHub.
+        path: the file in it.
+        kind: UNIT, a Python file with tests, or ROSTEST, a launch file with tests.
+        tests, passed: how many it has on ROS, and how many of them pass there; None when that is not known.
+        packages: folders "owner/name:path" whose packages it sees; a library in one of them takes the place of
+            cfepy's. Empty for the tests of a library that cfepy brings along itself.
+        aside: tests that are not counted, and why, by their names; they look into what cfepy does otherwise.
+        note: what the reader of the results should know.
+    """
+
+    name: str
+    repo: str
+    path: str
+    kind: str
+    tests: int | None
+    passed: int | None
+    packages: tuple[str, ...] = ()
+    aside: Mapping[str, str] = field(default_factory=lambda: _NOTHING)
+    note: str = ""
+
+    @property
+    def repos(self) -> tuple[str, ...]:
+        """All repositories that it takes."""
+        return tuple(dict.fromkeys([self.repo, *(each.partition(":")[0] for each in self.packages)]))
+
+    def enough(self, passed: int) -> bool:
+        """Whether that many are as many as pass on ROS, but for a twentieth and for those that are not counted."""
+        return self.passed is None or passed >= (self.passed - len(self.aside)) * SHARE
+
+
+class Peers(NamedTuple):
+    """All test files by name, the commit of each repository, and the files whose repository is not known."""
+
+    files: Mapping[str, Peer]
+    commits: Mapping[str, str]
+
+    def chosen(self, names: list[str]) -> list[Peer]:
+        """The files of these names, or whose names begin so; all when there are none.
+
+        Raises:
+            UsageError: there is no such file.
+        """
+        found = [peer for peer in self.files.values() if not names or peer.name.startswith(tuple(names))]
+        for name in names:
+            if not any(peer.name.startswith(name) for peer in found):
+                raise UsageError(f"there is no test file {name}; the names are in {FILE.name}", file=str(FILE))
+        return found
+
+
+def read_peers(file: Path = FILE) -> Peers:
+    """Read a list of test files."""
+    root = json.loads(file.read_text(encoding="utf-8"))
+    found = [Peer(**{**entry, "packages": tuple(entry.get("packages", ()))}) for entry in root["files"]]
+    return Peers({peer.name: peer for peer in found}, root["repositories"])
