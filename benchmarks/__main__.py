@@ -10,8 +10,10 @@ from pathlib import Path
 
 from benchmarks.bus import bus
 from benchmarks.codec import codec
+from benchmarks.crowd import crowd
 from benchmarks.measure import machine
 from benchmarks.missions import missions
+from benchmarks.services import services
 from benchmarks.universe import universe
 
 
@@ -21,6 +23,8 @@ def main(arguments: list[str] | None = None) -> int:
     suites: dict[str, Callable[[], Mapping[str, float]]] = {
         "bus": lambda: bus(contexts),
         "missions": lambda: missions(contexts),
+        "crowd": lambda: crowd(contexts),
+        "services": lambda: services(contexts),
         "codec": codec,
         "universe": lambda: {f"{name}.{each}": value for each in contexts for name, value in universe(each).items()},
     }

@@ -1,6 +1,6 @@
 """Platform configuration: the CFE_PLATFORM_* and CFE_MISSION_* values that services read, with cFE v7.0.0's defaults.
 
-A board profile may lower them (`PlatformConfig.with_limits`); nothing else changes them. Imports nothing of cfepy.
+A board profile and a mission file may change them (`PlatformConfig.with_limits`). Imports nothing of cfepy.
 """
 
 from __future__ import annotations
@@ -33,6 +33,25 @@ MAY_BE_ZERO = frozenset(
     }
 )
 """Values whose default is another, but for which 0 says something too: a mode, no bit, never, off."""
+
+COUNTED_BY_ID = frozenset(
+    {
+        "os_max_tasks",
+        "os_max_queues",
+        "os_max_semaphores",
+        "os_max_timers",
+        "os_max_timebases",
+        "es_max_applications",
+        "es_max_libraries",
+        "es_max_memory_pools",
+        "es_max_gen_counters",
+        "es_cds_max_num_entries",
+        "sb_max_pipes",
+        "tbl_max_num_tables",
+        "tbl_max_num_handles",
+    }
+)
+"""Numbers of things that have resource ids, which tell no more than 65534 of a kind apart."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.rtos import FOREVER, WaitList
 from rospy_shim.exceptions import ROSException, ROSInitException, ROSInterruptException
-from rospy_shim.logs import INFO
+from rospy_shim.logger_services import LoggerServices
 from rospy_shim.names import SEP, command_line_params, program_arguments
-from rospy_shim.params import marshalled
 from rospy_shim.rostime import nanoseconds
 
 if TYPE_CHECKING:
@@ -50,7 +49,7 @@ class Client:
             argv: command line to take remappings from instead of sys.argv.
             anonymous: make the name unique.
             log_level: rospy.DEBUG to rospy.FATAL.
-            disable_rostime: accepted.
+            disable_rostime: do not follow /clock, whatever the parameter /use_sim_time says.
             disable_rosout: do not publish on /rosout.
             disable_signals: leave SIGINT and SIGTERM alone.
             xmlrpc_port: accepted.
@@ -69,8 +68,7 @@ class Client:
             raise ValueError("name must not be empty")
         if SEP in name:
             raise ValueError("namespaces are not allowed in node names")
-        level = INFO if log_level is None else log_level
-        arguments = (name, argv, anonymous, level, disable_rostime, disable_signals)
+        arguments = (name, argv, anonymous, log_level, disable_rostime, disable_signals)
         if self._arguments is not None:
             if self._arguments != arguments:
                 raise ROSException(
@@ -84,8 +82,11 @@ class Client:
             node.life.register_signals()
         node.clock.set_rostime_initialized(True)
         self._load_params(argv)
-        node.logs.configure(level, not disable_rosout)
+        node.logs.configure(log_level, not disable_rosout)
         node.go_on_graph()
+        LoggerServices(node).offer()
+        if not disable_rostime:
+            node.clock.init_simtime()
 
     def _base_name(self, name: str, anonymous: bool) -> str:
         insisted = self._node.names.insisted_name
@@ -98,8 +99,7 @@ class Client:
 
     def _load_params(self, argv: Sequence[str]) -> None:
         """Private parameters of the mission file, then those of the command line."""
-        for name, value in self._node.config.params.items():
-            self._node.params.set_param(f"~{name}", marshalled(value))
+        self._node.params.give(self._node.config.params)
         for name, value in self.load_command_line_node_params(argv).items():
             self._node.params.set_param(f"~{name}", value)
 
@@ -134,6 +134,10 @@ class Client:
     def is_initialized(self) -> bool:
         """Whether `init_node` has run."""
         return self._node.initialized
+
+    def set_initialized(self, initialized: bool) -> None:
+        """Say whether `init_node` has run."""
+        self._node.initialized = initialized
 
     def get_published_topics(self, namespace: str = SEP) -> list[list[str]]:
         """[topic, type] of all topics below a namespace that have a publisher."""

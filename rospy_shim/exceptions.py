@@ -31,7 +31,7 @@ class ROSInterruptException(ROSException, KeyboardInterrupt):
 
 
 class ROSTimeMovedBackwardsException(ROSInterruptException):
-    """ROS time jumped back during a sleep; never raised here, since the mission's clock only goes forward.
+    """Simulated time was set back during a sleep.
 
     Args:
         time: how far it jumped, in s.

@@ -1,17 +1,16 @@
 """The ROS graph of a mission: nodes, topics with their MsgIds, who publishes and who subscribes (ROS's master).
 
-A topic has one MsgId, in every run the same: the mission file's choice, or a hash of the topic's name. May import
-cfepy.status, cfepy.nodes.config and rospy_shim.
+A topic has one MsgId (`rospy_shim.msg_ids`). May import cfepy.nodes.config and rospy_shim.
 """
 
 from __future__ import annotations
 
-import hashlib
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cfepy.status import UsageError
 from rospy_shim.exceptions import ServiceException
-from rospy_shim.params import ParameterTree
+from rospy_shim.msg_ids import COMMAND_BIT, MsgIds
+from rospy_shim.parameter_tree import ParameterTree
 from rospy_shim.transport import sequence_of
 
 if TYPE_CHECKING:
@@ -19,13 +18,7 @@ if TYPE_CHECKING:
     from rospy_shim.link import Link
     from rospy_shim.node import Node
     from rospy_shim.service import Service
-    from rospy_shim.subscriber import Subscription
-
-ROSOUT = "/rosout"
-ROSOUT_MSG_ID = 0x0900
-FIRST_MSG_ID = 0x0901
-LAST_MSG_ID = 0x0FFF
-COMMAND_BIT = 0x1000  # a service's requests are commands, its answers telemetry of the same number
+    from rospy_shim.subscription import Subscription
 
 Header = dict[str, str]
 """What ROS tells the two ends of a connection: caller, type, md5sum, topic, ..."""
@@ -115,7 +108,7 @@ class Topic:
         for link in self.links:
             link.shared = shared
         self.header = None if shared else self.links[0].header if self.links else self.header
-        self.latching = any(link.latching for link in self.links)
+        self.latching = any(link.is_latch for link in self.links)
 
     def sender_of(self, packet: bytes) -> Header:
         """The connection header of whoever sent a packet."""
@@ -127,25 +120,41 @@ class Topic:
         return {"callerid": "", "latching": "0", "md5sum": self.md5sum, "topic": self.name, "type": self.type}
 
 
+class Call(NamedTuple):
+    """A service call under way: the caller's pipe for the answer, and what the request says of it."""
+
+    pipe: int
+    header: Header
+
+
 class ServiceEntry:
     """A service that is offered.
 
     Args:
         service: who handles its requests.
-        answer_id: MsgId of its answers; requests have the same with the command bit.
+        ids: gives it its MsgIds when they are first asked for.
     """
 
-    def __init__(self, service: Service, answer_id: int) -> None:
+    def __init__(self, service: Service, ids: MsgIds) -> None:
         self.service = service
-        self.answer_id = answer_id
-        self.request_id = answer_id | COMMAND_BIT
-        self.callers: dict[int, str] = {}  # by call number, while a call is under way
-        self._calls = 0
+        self.calls: dict[int, Call] = {}  # by number
+        self._ids = ids
+        self._count = 0
 
-    def begin(self, caller: str) -> int:
+    @cached_property
+    def answer_id(self) -> int:
+        """MsgId of its answers."""
+        return self._ids.of_service(self.service.resolved_name)
+
+    @property
+    def request_id(self) -> int:
+        """MsgId of its requests: that of its answers with the command bit."""
+        return self.answer_id | COMMAND_BIT
+
+    def begin(self, call: Call) -> int:
         """The number of a new call."""
-        self._calls = number = self._calls + 1
-        self.callers[number] = caller
+        self._count = number = self._count + 1
+        self.calls[number] = call
         return number
 
 
@@ -162,7 +171,7 @@ class Graph:
         self.nodes: dict[str, Node] = {}
         self.services: dict[str, ServiceEntry] = {}
         self.params = ParameterTree(config.params)
-        self._names: dict[int, str] = {topic.msg_id: name for name, topic in config.topics.items()}
+        self.ids = MsgIds(config)
 
     def topic(self, name: str) -> Topic:
         """The topic of a resolved name.
@@ -173,21 +182,8 @@ class Graph:
         topic = self.topics.get(name)
         if topic is None:
             pinned = self._config.topics.get(name)
-            msg_id = pinned.msg_id if pinned is not None else self._hashed(name)
-            topic = self.topics[name] = Topic(name, msg_id, pinned is not None and pinned.raw)
+            topic = self.topics[name] = Topic(name, self.ids.of_topic(name), pinned is not None and pinned.raw)
         return topic
-
-    def _hashed(self, name: str) -> int:
-        msg_id = msg_id_of(name)
-        holder = self._names.setdefault(msg_id, name)
-        if holder != name:
-            free = next(each for each in range(LAST_MSG_ID, FIRST_MSG_ID, -1) if each not in self._names)
-            raise UsageError(
-                f"topics {holder} and {name} both fall on MsgId 0x{msg_id:04X}; give one of them another in"
-                f' mission.yaml: "{name}: {{msg_id: 0x{free:04X}}}"',
-                field="topics",
-            )
-        return msg_id
 
     def register_node(self, node: Node) -> None:
         """A node has its name; one that has the same name already is shut down, as ROS does it."""
@@ -212,19 +208,11 @@ class Graph:
         former = self.services.get(name)
         if former is not None and former.service.node is service.node:
             raise ServiceException(f"service [{name}] already registered")
-        entry = ServiceEntry(service, former.answer_id if former is not None else self._service_id(name))
+        entry = ServiceEntry(service, self.ids)
         if former is not None:
             former.service.shutdown("another node offers the service")
         self.services[name] = entry
         return entry
-
-    def _service_id(self, name: str) -> int:
-        """The MsgId of a service's answers: from a hash of its name, the next free one if that is taken."""
-        label = f"service {name}"
-        msg_id = msg_id_of(label)
-        while self._names.setdefault(msg_id, label) != label:
-            msg_id = FIRST_MSG_ID + (msg_id + 1 - FIRST_MSG_ID) % (LAST_MSG_ID - FIRST_MSG_ID + 1)
-        return msg_id
 
     def forget_service(self, service: Service) -> None:
         """A service is offered no longer."""
@@ -238,14 +226,6 @@ class Graph:
         return [
             [topic.name, topic.type] for topic in self.topics.values() if topic.links and topic.name.startswith(prefix)
         ]
-
-
-def msg_id_of(name: str) -> int:
-    """The MsgId of a topic that the mission file does not name: 0x0901 to 0x0FFF, from a hash of its name."""
-    if name == ROSOUT:
-        return ROSOUT_MSG_ID
-    digest = hashlib.blake2b(name.encode(), digest_size=8).digest()
-    return FIRST_MSG_ID + int.from_bytes(digest, "big") % (LAST_MSG_ID - FIRST_MSG_ID + 1)
 
 
 def _remember(names: list[str], name: str) -> None:

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes.report import traceback_text
-from cfepy.nodes.script import exit_from_handler
 from cfepy.rtos import WaitList
 
 if TYPE_CHECKING:
@@ -67,35 +66,35 @@ class Life:
         if not self._node.cfe.es.run_loop():
             self.signal_shutdown("cFE asks the application to exit")
 
-    def add_client_shutdown_hook(self, hook: Callable[[], object]) -> None:
+    def add_client_shutdown_hook(self, h: Callable[[], object]) -> None:
         """rospy.on_shutdown: have a function called when the node shuts down, while it still is on the graph.
 
         Raises:
             TypeError: it cannot be called.
         """
-        _check(hook)
+        _check(h)
         if self._flag:
-            hook()
+            h()
         else:
-            self._client_hooks.append(hook)
+            self._client_hooks.append(h)
 
-    def add_preshutdown_hook(self, hook: Callable[[str], object]) -> None:
+    def add_preshutdown_hook(self, h: Callable[[str], object]) -> None:
         """Have a function called with the reason, after the client's hooks.
 
         Raises:
             TypeError: it cannot be called.
         """
-        _check(hook)
-        self._add(self._preshutdown_hooks, hook)
+        _check(h)
+        self._add(self._preshutdown_hooks, h)
 
-    def add_shutdown_hook(self, hook: Callable[[str], object]) -> None:
+    def add_shutdown_hook(self, h: Callable[[str], object]) -> None:
         """Have a function called with the reason, once `is_shutdown` is true.
 
         Raises:
             TypeError: it cannot be called.
         """
-        _check(hook)
-        self._add(self._shutdown_hooks, hook)
+        _check(h)
+        self._add(self._shutdown_hooks, h)
 
     def _add(self, hooks: list[Callable[[str], object]], hook: Callable[[str], object]) -> None:
         if self._flag:
@@ -171,18 +170,13 @@ class Life:
         return on_signal
 
     def interrupt(self, reason: str) -> None:
-        """The mission ends: what Ctrl-C is to a node. Its own handler runs; one set before `init_node` runs last."""
-        handler = self._node.universe.signals.get(signal.SIGINT)
-        if handler in self._own_handlers:
+        """The mission ends: what Ctrl-C is to a node. Rospy's handler runs first, one set before `init_node` last.
+
+        With `disable_signals` it is the node's own business: a KeyboardInterrupt in its main thread.
+        """
+        if self._node.universe.signals.get(signal.SIGINT) in self._own_handlers:
             self.signal_shutdown(reason)
-            handler = self._former_handlers[signal.SIGINT]
-        if not callable(handler) or handler is signal.default_int_handler:
-            self.signal_shutdown(reason)
-            return
-        try:
-            handler(int(signal.SIGINT), None)
-        except SystemExit as error:
-            exit_from_handler(self._node.universe, error)
+        self._node.universe.deliver_signal(signal.SIGINT)
 
 
 def _check(hook: object) -> None:

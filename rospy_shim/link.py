@@ -1,30 +1,30 @@
 """`Link`: the publishing side of one node on one topic, shared by all of its handles (CFE_SB_TransmitMsg).
 
 The hot path is `Link.send`: one serialisation, one call of the bus. A message that does not fit in a packet goes out in
-segments, one that nobody would get is not even serialised. May import cfepy.rtos and cfepy.status.
+segments, one that nobody would get is not even serialised. May import cfepy.status.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from cfepy.rtos import Mutex
 from cfepy.status import CfeError
 from rospy_shim.exceptions import ROSSerializationException
 from rospy_shim.genpy import SerializationError
 from rospy_shim.message import args_kwds_to_message, packer
-from rospy_shim.topic_handle import Connection, connections_of
+from rospy_shim.topic_handle import OUTBOUND, Connection, TopicSide
 from rospy_shim.transport import HEADER_BYTES, segments, whole_header
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rospy_shim.graph import Header, Topic
+    from rospy_shim.graph import Header
     from rospy_shim.node import Node
-    from rospy_shim.subscriber import Subscription
+    from rospy_shim.subscription import Subscription
 
 PACE_NS = 100_000  # between two looks whether a subscriber has room for the next segment
 PATIENCE = 100  # looks, before a segment is sent to a full queue and lost there
+FULL = 1 << 16  # more packets than any pipe holds
 
 
 class SubscribeListener:
@@ -39,8 +39,8 @@ class SubscribeListener:
         """A subscriber left, `num_peers` remain."""
 
 
-class Link:
-    """The publishing side of one node on one topic.
+class Link(TopicSide):
+    """The publishing side of one node on one topic (rospy.topics._PublisherImpl).
 
     Args:
         node: the node.
@@ -49,21 +49,18 @@ class Link:
     """
 
     def __init__(self, node: Node, name: str, data_class: Any) -> None:
-        self.node = node
-        self.name = name
-        self.data_class = data_class
-        self.handles = 0
+        super().__init__(node, name, data_class)
         self.has_header = bool(getattr(data_class, "_has_header", False))
         self._pack = packer(data_class)
         self.seq = 0
-        self.latching = False
-        self.latched: Any = None
-        self.listeners: list[SubscribeListener] = []
+        self.message_data_sent = 0  # bytes
+        self.is_latch = False
+        self.latch: Any = None  # the last message
+        self.subscriber_listeners: list[SubscribeListener] = []
         self.header: Header = {}
         self.shared = False  # with publishers of other nodes
         self.raw = False
         self.connected = False
-        self.topic: Topic | None = None  # None until connected, and when the node is shut down or the types differ
         self.msg_id = 0
         bus = node.cfe.sb
         self._bus = bus
@@ -75,7 +72,6 @@ class Link:
         self._slot_ns = node.publish_slot_ns
         self._slot = -1  # in which the last message went out
         self._room = bus.config.sb_max_msg_size - HEADER_BYTES
-        self._mutex: Mutex | None = None
 
     def connect(self) -> None:
         """The node is initialised: go on the graph.
@@ -100,24 +96,30 @@ class Link:
     def _own_header(self) -> Header:
         return {
             "callerid": self.node.names.name,
-            "latching": "1" if self.latching else "0",
+            "latching": "1" if self.is_latch else "0",
             "md5sum": self.data_class._md5sum,
             "message_definition": getattr(self.data_class, "_full_text", ""),
             "topic": self.name,
             "type": self.data_class._type,
         }
 
-    def latch(self) -> None:
+    def enable_latch(self) -> None:
         """Keep the last message for subscribers to come."""
-        self.latching = True
+        self.is_latch = True
         self.header["latching"] = "1"
         if self.topic is not None:
             self.topic.latching = True
 
+    def add_subscriber_listener(self, listener: SubscribeListener) -> None:
+        """Tell somebody else, too, of subscribers that come and go."""
+        self.subscriber_listeners.append(listener)
+
     def close(self) -> None:
         """Leave the graph; who still publishes is not heard any more."""
+        self.closed = True
         self._routes = {}
-        self.node.links.pop(self.name, None)
+        if self.node.links.get(self.name) is self:
+            del self.node.links[self.name]
         if self.topic is not None:
             self.topic.remove_link(self)
             self.topic.leave()
@@ -128,14 +130,16 @@ class Link:
         route = self._routes.get(self.msg_id)
         return len(route.active) if route is not None else 0
 
-    def has_connection(self, endpoint_id: str) -> bool:
-        """Whether the node of that name subscribes."""
-        return any(each.endpoint_id == endpoint_id for each in self.connections)
-
     @property
     def connections(self) -> list[Connection]:
         """The nodes that subscribe."""
-        return connections_of(self.topic.subscriptions) if self.topic is not None else []
+        subscriptions = self.topic.subscriptions if self.topic is not None else []
+        return [self.connection(each.node, OUTBOUND) for each in subscriptions]
+
+    def get_stats(self) -> tuple[str, int, list[tuple[int, int, int, bool]]]:
+        """The side as getBusStats gives it: topic, bytes, and for each connection number, bytes, messages, state."""
+        sent = self.message_data_sent
+        return self.name, sent, [(each.id, sent, self.seq, True) for each in self.connections]
 
     def send(self, message: Any) -> None:
         """Publish a message.
@@ -145,8 +149,8 @@ class Link:
         """
         if self._call_ns:
             self._charge(self._call_ns)
-        if self.latching:
-            self.latched = message
+        if self.is_latch:
+            self.latch = message
         route = self._routes.get(self.msg_id)
         if route is None or not route.active:
             return
@@ -189,9 +193,11 @@ class Link:
             if header.frame_id is None:
                 header.frame_id = "0"
         try:
-            return self._pack(message)
+            payload = self._pack(message)
         except SerializationError as error:
             raise ROSSerializationException(str(error)) from error
+        self.message_data_sent += len(payload)
+        return payload
 
     def _send_packet(self, message: Any) -> None:
         """A raw topic: the message's data are a whole packet."""
@@ -205,16 +211,17 @@ class Link:
 
     def _send_segments(self, payload: bytes) -> None:
         """One long message; as with a socket that is full, the caller waits while a subscriber's queue is."""
-        if self._mutex is None:
-            self._mutex = Mutex(self.node.kernel, f"segments of {self.name}")
-        self._mutex.take()
+        count = -(-len(payload) // self._room)
+        for subscription in self.topic.subscriptions if self.topic is not None else ():
+            subscription.expect_segments(count)
+        self.acquire()
         try:
             for index, packet in enumerate(segments(self.msg_id, payload, self._room)):
-                self._wait_for_room()
+                self._wait_for_room(count)
                 self._note(index)
                 self._bus.transmit_msg(packet)
         finally:
-            self._mutex.give()
+            self.release()
 
     def _note(self, index: int) -> None:
         """Remember who sends the next packet of the topic, since a packet cannot say."""
@@ -222,28 +229,33 @@ class Link:
         if self.topic is not None and route is not None:
             self.topic.notes[(route.sequence + 1) & 0x3FFF] = (self.header, index)
 
-    def _wait_for_room(self) -> None:
+    def _wait_for_room(self, count: int) -> None:
+        """Give subscribers the time to take what they have; who is busy with a callback then loses old messages."""
+        if self._has_room():
+            return
         kernel = self.node.kernel
-        if not self._has_room():
-            kernel.yield_cpu()
-        for _ in range(PATIENCE):
-            if self._has_room():
+        kernel.yield_cpu()
+        for look in range(PATIENCE):
+            if self._has_room(count if look else FULL):
                 return
             kernel.delay(PACE_NS)
 
-    def _has_room(self) -> bool:
+    def _has_room(self, count: int = FULL) -> bool:
+        """Whether every pipe takes a packet, or drops old messages for one of `count` packets."""
         route = self._routes.get(self.msg_id)
         return route is None or all(
-            each.puts - each.gets < each.limit and len(each.pipe.items) < each.pipe.depth for each in route.active
+            (each.puts - each.gets < each.limit and len(each.pipe.items) < each.pipe.depth)
+            or (each.pipe.keeps_newest and count <= each.pipe.depth)
+            for each in route.active
         )
 
     # -- subscribers that come and go --------------------------------------------------------------------------------
 
     def peer_joined(self, subscription: Subscription) -> None:
         """Give a new subscriber the latched message, and tell the listeners."""
-        if self.latching and self.latched is not None and not self.raw:
-            subscription.deliver(self.serialize(self.latched), self.header)
-        for listener in self.listeners:
+        if self.is_latch and self.latch is not None and not self.raw:
+            subscription.deliver(self.serialize(self.latch), self.header)
+        for listener in self.subscriber_listeners:
             self.node.start_task(self.name, lambda each=listener: self._tell(each, subscription))  # type: ignore[misc]
 
     def _tell(self, listener: SubscribeListener, subscription: Subscription) -> None:
@@ -258,6 +270,6 @@ class Link:
 
     def peer_left(self, remaining: int) -> None:
         """Tell the listeners."""
-        for listener in self.listeners:
+        for listener in self.subscriber_listeners:
             body = lambda each=listener: each.peer_unsubscribe(self.name, remaining)  # noqa: E731
             self.node.start_task(self.name, body)

@@ -1,18 +1,20 @@
-"""rospy's logging: `loginfo` and its kin, on the node's own `logging`, shown the way rospy shows it.
+"""rospy's logging: `loginfo` and its kin, on the node's own `logging`.
 
-Records go through the logger "rosout", so that a node can add handlers and set levels. Each is a line on the console of
-the simulated computer (OS_printf) and, when somebody subscribes, a message on /rosout. Imports nothing of cfepy.
+Records go through the logger "rosout", so that a node can add handlers and set levels; `rospy_shim.log_handlers` says
+where they are shown. As rospy does, `init_node` sets up the root logger too: its records are for a log file, not for
+the console. Imports nothing of cfepy.
 """
 
 from __future__ import annotations
 
+import os
 import sys
-from typing import TYPE_CHECKING, Any
+from types import FrameType
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from cfepy.rtos.units import NS_PER_S
-from rospy_shim.genpy import Time as MessageTime
-from rospy_shim.graph import ROSOUT
-from rospy_shim.msgs import message_class
+from rospy_shim.exceptions import ROSException
+from rospy_shim.log_handlers import FILE_FORMAT, LEVELS, log_file, make_rosout_handler, make_stream_handler
+from rospy_shim.msg_ids import ROSOUT
 from rospy_shim.rostime import nanoseconds
 
 if TYPE_CHECKING:
@@ -26,9 +28,9 @@ WARN = 4
 ERROR = 8
 FATAL = 16
 
-PYTHON_LEVELS = {DEBUG: 10, INFO: 20, WARN: 30, ERROR: 40, FATAL: 50}
-_SHOWN = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
-_ROS_LEVELS = {number: level for level, number in PYTHON_LEVELS.items()}
+Site = tuple[str, int, int]
+"""Where a log function was called: file, line and byte code offset."""
+
 _TOP = "rosout"
 
 
@@ -41,11 +43,14 @@ class Logs:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._once: set[tuple[str, int, int]] = set()
-        self._last: dict[tuple[str, int, int], int] = {}
-        self._last_text: dict[tuple[str, int, int], tuple[int, str]] = {}
+        self.once = LoggingOnce()
+        self.LoggingThrottle = type("LoggingThrottle", (LoggingThrottle,), {"__module__": "rospy.core", "_node": node})
+        self.throttle: LoggingThrottle = self.LoggingThrottle()
+        self.identical = LoggingIdentical()
+        self.file: str | None = None
         self._logging: Any = None
-        self._formatter: Any = None
+        self._postponed: list[Callable[[], None]] = []
+        self._handlers: dict[str, type] = {}
         for name, level in (("debug", 10), ("info", 20), ("warn", 30), ("err", 40), ("fatal", 50)):
             self._add(name, level)
 
@@ -62,24 +67,36 @@ class Logs:
             self._logging = self._node.universe.importer.load("logging")
         return self._logging
 
+    @property
+    def RosStreamHandler(self) -> type:  # rospy's name
+        """The class of the handler for the console."""
+        return self._handlers.get("console") or self._handlers.setdefault("console", make_stream_handler(self._node))
+
+    @property
+    def RosOutHandler(self) -> type:  # rospy's name
+        """The class of the handler for /rosout."""
+        return self._handlers.get("rosout") or self._handlers.setdefault("rosout", make_rosout_handler(self._node))
+
+    # -- log functions -----------------------------------------------------------------------------------------------
+
     def _add(self, name: str, level: int) -> None:
-        """The five functions of a level. They look at the call site, so they are called by the node directly."""
+        """The four functions of a level. They look at the call site, so they are called by the node directly."""
 
         def log(msg: Any, *args: Any, **kwargs: Any) -> None:
             self._log(level, msg, args, kwargs)
 
         def log_once(msg: Any, *args: Any, **kwargs: Any) -> None:
-            site = _call_site()
-            if site not in self._once:
-                self._once.add(site)
+            if self.once(_call_site()):
                 self._log(level, msg, args, kwargs)
 
         def log_throttle(period: Any, msg: Any, *args: Any, **kwargs: Any) -> None:
-            if self._is_due(_call_site(), period):
+            if not period or self.throttle(_call_site(), period):
                 self._log(level, msg, args, kwargs)
 
         def log_throttle_identical(period: Any, msg: Any, *args: Any, **kwargs: Any) -> None:
-            if self._is_new(_call_site(), period, str(msg)):
+            site = _call_site()
+            due = period is not None and self.throttle(site, period)
+            if self.identical(site, msg) or due:
                 self._log(level, msg, args, kwargs)
 
         for suffix, function in (
@@ -93,71 +110,187 @@ class Logs:
 
     def _log(self, level: int, msg: Any, args: tuple[Any, ...], kwargs: dict[str, Any]) -> None:
         name = kwargs.pop("logger_name", None)
-        kwargs.setdefault("stacklevel", 3)  # the node's line, behind this function and the one that it called
         logger = self.logging.getLogger(f"{_TOP}.{name}" if name else _TOP)
-        logger.log(level, msg, *args, **kwargs)
+        if logger.isEnabledFor(level):
+            logger.handle(_record(logger, level, sys._getframe(2), msg, args, **kwargs))
 
-    def _is_due(self, site: tuple[str, int, int], period: Any) -> bool:
-        now = self._node.clock.now_ns()
-        if now - self._last.get(site, -1 << 62) < nanoseconds(period):
-            return False
-        self._last[site] = now
-        return True
+    # -- set-up ------------------------------------------------------------------------------------------------------
 
-    def _is_new(self, site: tuple[str, int, int], period: Any, text: str) -> bool:
-        now = self._node.clock.now_ns()
-        when, former = self._last_text.get(site, (-1 << 62, ""))
-        if former == text and now - when < nanoseconds(period):
-            return False
-        self._last_text[site] = now, text
-        return True
-
-    def configure(self, level: int, publish: bool) -> None:
-        """`init_node`: show records from a level on, and publish them on /rosout.
+    def configure(self, level: int | None, publish: bool) -> None:
+        """`init_node`: show records, and publish them on /rosout.
 
         Args:
-            level: one of rosgraph_msgs/Log's.
+            level: one of rosgraph_msgs/Log's, from which on records count; None is INFO.
             publish: whether /rosout gets them.
         """
-        logger = self.logging.getLogger(_TOP)
-        logger.setLevel(PYTHON_LEVELS[level])
-        logger.propagate = False
-        self._formatter = self.logging.Formatter()
-        logger.addHandler(self._handler(self._show))
+        environ, mappings = self._node.universe.environ, self._node.names.get_mappings()
+        keep = "__log" in mappings or "ROS_LOG_DIR" in environ
+        self.file = self._file_of(self._node.names.name)
         if publish:
-            self._node.link(ROSOUT, message_class("rosgraph_msgs/Log"))
-            logger.addHandler(self._handler(self._publish))
+            self.init_rosout()
 
-    def _handler(self, emit: Callable[[Any], None]) -> Any:
-        handler = self.logging.Handler()
-        handler.emit = emit
-        handler.setFormatter(self._formatter)
+        def work() -> None:
+            self._set_up(self._node.names.name, keep)
+            if publish:
+                self.load_rosout_handlers(level)
+
+        self._postponed.append(work)
+        if keep or "logging" in self._node.universe.importer.modules:
+            self.load_logging()
+
+    def load_logging(self) -> Any:
+        """The node's `logging`, set up as far as `init_node` asked for it.
+
+        It is a third of what a small node costs, so nodes that neither log nor import it do without.
+        """
+        logging = self._node.universe.importer.load_standard("logging")
+        work, self._postponed = self._postponed, []
+        for each in work:
+            each()
+        return logging
+
+    def init_rosout(self) -> bool:
+        """Publish /rosout."""
+        link = self._node.link(ROSOUT, self._node.library.message_class("rosgraph_msgs/Log"))
+        link.enable_latch()
+        return True
+
+    def load_rosout_handlers(self, level: int | None) -> None:
+        """Have records published on /rosout.
+
+        Args:
+            level: one of rosgraph_msgs/Log's, from which on records count; None leaves it as it is.
+        """
+        logger = self.logging.getLogger(_TOP)
+        logger.addHandler(self.RosOutHandler())
+        if level is not None:
+            logger.setLevel(LEVELS[level])
+
+    def configure_logging(self, node_name: str, level: int = 20) -> None:
+        """rospy.core.configure_logging: set up the loggers, and keep a log file.
+
+        Args:
+            node_name: resolved name of the node; the file is called after it.
+            level: accepted, and without effect, as in rospy.
+
+        Raises:
+            ROSException: the name is "/".
+        """
+        self._set_up(node_name, keep=True)
+
+    def _set_up(self, node_name: str, keep: bool) -> None:
+        self.file = self._file_of(node_name)
+        root, rosout = self.logging.getLogger(), self.logging.getLogger(_TOP)
+        self._refit(root, self._file_handler() if keep else self.logging.NullHandler())
+        self._refit(rosout, self.RosStreamHandler())
+
+    def _file_of(self, node_name: str) -> str:
+        stem = node_name.replace("/", "_").removeprefix("_")
+        if not stem:
+            raise ROSException(f"invalid configure_logging parameter: {node_name}")
+        return log_file(self._node, f"{stem}.log")
+
+    def _refit(self, logger: Any, handler: Any) -> None:
+        """Give a logger one handler in place of those that it has."""
+        for former in logger.handlers[:]:
+            logger.removeHandler(former)
+        logger.addHandler(handler)
+        logger.setLevel(self.logging.INFO)
+
+    def _file_handler(self) -> Any:
+        os_module = self._node.universe.importer.load("os")
+        os_module.makedirs(os.path.dirname(str(self.file)), exist_ok=True)
+        handler = self.logging.FileHandler(self.file)
+        handler.setFormatter(self.logging.Formatter(FILE_FORMAT))
         return handler
 
-    def _show(self, record: Any) -> None:
-        """A line on the console: warnings and worse on stderr."""
-        text = self._formatter.format(record)
-        level = _SHOWN.get(record.levelno, record.levelname)
-        seconds, rest = divmod(self._node.universe.clock.epoch_ns + self._node.kernel.now, NS_PER_S)
-        streams = self._node.universe.importer.modules["sys"]
-        stream = streams.stderr if record.levelno >= 30 else streams.stdout
-        stream.write(f"[{level}] [{seconds}.{rest // 1000:06d}]: {text}\n")
 
-    def _publish(self, record: Any) -> None:
-        link = self._node.links.get(ROSOUT)
-        if link is None or not link.get_num_connections():
-            return
-        log = message_class("rosgraph_msgs/Log")()
-        log.header.stamp = MessageTime(*divmod(self._node.universe.clock.epoch_ns + self._node.kernel.now, NS_PER_S))
-        log.level = _ROS_LEVELS.get(record.levelno, INFO)
-        log.name = self._node.names.name
-        log.msg = record.getMessage()
-        log.file, log.function, log.line = record.filename, record.funcName, record.lineno
-        log.topics = list(self._node.links)
-        link.send(log)
+class LoggingOnce:
+    """Whether a call site logs for the first time (rospy.core.LoggingOnce)."""
+
+    __module__ = "rospy.core"
+
+    def __init__(self) -> None:
+        self.called_caller_ids: set[object] = set()
+
+    def __call__(self, caller_id: object) -> bool:
+        """Ask for a call site."""
+        first = caller_id not in self.called_caller_ids
+        self.called_caller_ids.add(caller_id)
+        return first
 
 
-def _call_site() -> tuple[str, int, int]:
-    """Where the node called the log function from: file, line and byte code offset."""
+class LoggingThrottle:
+    """Whether a call site last logged longer ago than a period, or later than now (rospy.core.LoggingThrottle).
+
+    Each node has a subclass that knows the node.
+    """
+
+    __module__ = "rospy.core"
+    _node: ClassVar[Node]
+
+    def __init__(self) -> None:
+        self.last_logging_time_table: dict[object, int] = {}  # ns
+
+    def __call__(self, caller_id: object, period: Any) -> bool:
+        """Ask for a call site, and a period in s.
+
+        Raises:
+            ROSInitException: before `init_node`.
+        """
+        now = self._node.clock.now_ns()
+        last = self.last_logging_time_table.get(caller_id)
+        if last is not None and last <= now <= last + nanoseconds(period):
+            return False
+        if last is not None and last > now:
+            self.last_logging_time_table.clear()
+        self.last_logging_time_table[caller_id] = now
+        return True
+
+
+class LoggingIdentical:
+    """Whether a call site logs something else than the last time (rospy.core.LoggingIdentical)."""
+
+    __module__ = "rospy.core"
+
+    def __init__(self) -> None:
+        self.last_logging_msg_table: dict[object, str] = {}
+
+    def __call__(self, caller_id: object, msg: Any) -> bool:
+        """Ask for a call site and its text."""
+        text = str(msg)
+        new = self.last_logging_msg_table.get(caller_id) != text
+        self.last_logging_msg_table[caller_id] = text
+        return new
+
+
+def _record(
+    logger: Any,
+    level: int,
+    frame: FrameType,
+    msg: Any,
+    args: tuple[Any, ...],
+    *,
+    exc_info: Any = None,
+    extra: dict[str, Any] | None = None,
+    stack_info: bool = False,
+    stacklevel: int = 1,
+) -> Any:
+    """A record of `logging` that names the line of the node, and the function with its class as rospy does."""
+    for _ in range(stacklevel - 1):
+        frame = frame.f_back or frame
+    if isinstance(exc_info, BaseException):
+        exc_info = (type(exc_info), exc_info, exc_info.__traceback__)
+    elif exc_info and not isinstance(exc_info, tuple):
+        exc_info = sys.exc_info()
+    code, owner = frame.f_code, frame.f_locals.get("self")
+    function = code.co_name if owner is None else f"{type(owner).__name__}.{code.co_name}"
+    stack = logger.findCaller(stack_info, 4)[3] if stack_info else None
+    where = (code.co_filename, frame.f_lineno)
+    return logger.makeRecord(logger.name, level, *where, msg, args, exc_info or None, function, extra, stack)
+
+
+def _call_site() -> Site:
+    """Where the node called the log function from."""
     frame = sys._getframe(2)
     return frame.f_code.co_filename, frame.f_lineno, frame.f_lasti

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any, BinaryIO, ClassVar
 
 from rospy_shim.exceptions import ROSException
-from rospy_shim.genpy import Message
+from rospy_shim.genpy import DeserializationError, Message
 
 
 class AnyMsg(Message):
@@ -149,8 +149,60 @@ def serialize_message(b: BinaryIO, seq: int, msg: Any) -> None:
     """
     if getattr(type(msg), "_has_header", False):
         msg.header.seq = seq
+        if msg.header.frame_id is None:
+            msg.header.frame_id = "0"
     payload = packer(type(msg))(msg)
     b.write(struct.pack("<I", len(payload)) + payload)
+
+
+def deserialize_messages(
+    b: BinaryIO,
+    msg_queue: list[Any],
+    data_class: Any,
+    queue_size: int | None = None,
+    max_msgs: int | None = None,
+    start: int = 0,
+) -> None:
+    """Read the messages that `serialize_message` wrote; what is left of one that is not complete stays.
+
+    Args:
+        b: bytes up to its position.
+        msg_queue: where the messages are added.
+        data_class: their class.
+        queue_size: messages that the queue keeps, the last ones; None for all.
+        max_msgs: messages to read at most; None for all.
+        start: where in `b` they begin.
+
+    Raises:
+        DeserializationError: the bytes are no messages of the class.
+    """
+    try:
+        found = _cut(b, start, max_msgs)
+        kept = found if queue_size is None else found[-queue_size:]
+        msg_queue.extend(data_class().deserialize(each) for each in kept)
+        if queue_size is not None:
+            del msg_queue[:-queue_size]
+    except Exception as error:
+        raise DeserializationError(f"cannot deserialize: {error}") from error
+
+
+def _cut(b: BinaryIO, start: int, most: int | None) -> list[bytes]:
+    """Take complete messages out of a buffer."""
+    end, at = b.tell(), start
+    b.seek(start)
+    data = b.read(end - start)
+    found: list[bytes] = []
+    while len(data) - (at - start) >= 4 and (not most or len(found) < most):
+        begin = at - start + 4
+        (size,) = struct.unpack_from("<I", data, begin - 4)
+        if begin + size > len(data):
+            break
+        found.append(data[begin : begin + size])
+        at += 4 + size
+    b.seek(start)
+    b.write(data[at - start :])
+    b.truncate()
+    return found
 
 
 def numpy_msg(msg_type: Any) -> Any:

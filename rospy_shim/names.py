@@ -7,14 +7,13 @@ Imports nothing of cfepy.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
 
 GLOBALNS = "/"
 SEP = "/"
 PRIV_NAME = "~"
 REMAP = ":="
-ANYTYPE = "*"
+ANYTYPE = TOPIC_ANYTYPE = SERVICE_ANYTYPE = "*"
 UNNAMED = "/unnamed"
 
 _LEGAL = re.compile(r"^[~/A-Za-z][\w/]*$")
@@ -64,17 +63,6 @@ def scoped_name(caller_id: str, name: str) -> str:
     if not caller_id or not caller_id.startswith(SEP):
         raise ROSException(f"caller_id must be global, not {caller_id!r}")
     return name[len(namespace_of(caller_id)) :]
-
-
-def global_name(param_name: str) -> Callable[[Any, str], str]:
-    """A validator that makes a relative name global."""
-
-    def validator(value: Any, caller_id: str) -> str:
-        if not value or not isinstance(value, str):
-            raise ValueError(f"parameter [{param_name}] must be a non-empty string")
-        return canonicalize_name(SEP + value.lstrip(SEP))
-
-    return validator
 
 
 def load_mappings(argv: Sequence[str]) -> dict[str, str]:
@@ -144,9 +132,11 @@ class Names:
     def initialize_mappings(self, node_name: str) -> None:
         """Resolve the remappings for a node."""
         self._resolved = {}
-        plain = {key: value for key, value in self._mappings.items() if not key.startswith("__")}
-        self._resolved = {
-            self.resolve_name(key, node_name): self.resolve_name(value, node_name) for key, value in plain.items()
+        special = {key: value for key, value in self._mappings.items() if key.startswith("__")}
+        self._resolved = special | {
+            self.resolve_name(key, node_name): self.resolve_name(value, node_name)
+            for key, value in self._mappings.items()
+            if key not in special
         }
 
     def get_name(self) -> str:
@@ -154,6 +144,11 @@ class Names:
         return self.name
 
     get_caller_id = get_name
+
+    def set_caller_id(self, caller_id: str) -> None:
+        """Give the node another resolved name, and the namespace that it lies in."""
+        self.name = caller_id
+        self.namespace = namespace_of(caller_id)
 
     def get_namespace(self) -> str:
         """The node's namespace, ending in a slash."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,8 +26,10 @@ from rospy_shim.publisher import make_publisher
 from rospy_shim.rate import make_rate
 from rospy_shim.rostime import RosClock
 from rospy_shim.service import Service, make_service
-from rospy_shim.service_proxy import make_service_proxy, wait_for_service
-from rospy_shim.subscriber import Subscription, make_subscriber
+from rospy_shim.service_proxy import AnswerPipes, make_service_proxy, wait_for_service
+from rospy_shim.subscriber import make_subscriber
+from rospy_shim.subscription import Subscription
+from rospy_shim.tapped_link import link_class
 from rospy_shim.timer import make_timer
 
 if TYPE_CHECKING:
@@ -71,6 +74,7 @@ class Node:
         self.links: dict[str, Link] = {}
         self.subscriptions: dict[str, Subscription] = {}
         self.services: list[Service] = []
+        self.connection_numbers = count(1)
         self._tasks = tasks
         self._timer: type | None = None
         script = Path(universe.script) if universe.script else None
@@ -86,6 +90,7 @@ class Node:
         self.Subscriber = make_subscriber(self)
         self.Service = make_service(self)
         self.ServiceProxy = make_service_proxy(self)
+        self.answer_pipes = AnswerPipes(self)
         self.Rate = make_rate(self)
 
     @property
@@ -127,7 +132,7 @@ class Node:
         self.leave_graph()
         for holder in holders:
             try:
-                holder.release()
+                holder.give_back()
             except CfeError:
                 pass  # ES has cleaned up before
 
@@ -135,16 +140,16 @@ class Node:
         """The publishing side of a topic, made when first asked for."""
         link = self.links.get(name)
         if link is None or link.data_class._md5sum != data_class._md5sum:
-            link = self.links[name] = Link(self, name, data_class)
+            link = self.links[name] = link_class(self)(self, name, data_class)
             if self.initialized:
                 link.connect()
         return link
 
-    def subscription(self, name: str, data_class: Any, depth: int | None) -> Subscription:
+    def subscription(self, name: str, data_class: Any) -> Subscription:
         """The subscribing side of a topic, made when first asked for."""
         found = self.subscriptions.get(name)
         if found is None or found.data_class is not data_class:
-            found = Subscription(self, name, data_class, depth)
+            found = Subscription(self, name, data_class)
             if self.initialized:
                 found.connect()
             self.subscriptions.setdefault(name, found)
@@ -229,6 +234,6 @@ class Node:
 def _depth_of_rospy() -> int:
     """How many of the innermost frames are rospy's own, this function's aside."""
     frame, depth = sys._getframe(1), 0
-    while frame.f_back is not None and frame.f_globals["__name__"].startswith("rospy_shim."):
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("rospy_shim."):
         frame, depth = frame.f_back, depth + 1
     return depth

@@ -54,13 +54,13 @@ class Publisher(TopicHandle):
         if queue_size is None:
             node.warn(NO_QUEUE_SIZE, SyntaxWarning)
         self.impl = link = node.link(self.resolved_name, data_class)
-        link.handles += 1
+        link.ref_count += 1
         if latch:
-            link.latch()
+            link.enable_latch()
         if headers:
             link.header.update(headers)
         if subscriber_listener is not None:
-            link.listeners.append(subscriber_listener)
+            link.subscriber_listeners.append(subscriber_listener)
             if link.topic is not None:
                 for subscription in link.topic.subscriptions:
                     link.peer_joined(subscription)
@@ -89,8 +89,8 @@ class Publisher(TopicHandle):
         if link is None:
             return
         self.impl = None
-        link.handles -= 1
-        if link.handles == 0:
+        link.ref_count -= 1
+        if link.ref_count == 0:
             link.close()
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from rospy_shim.exceptions import ROSTimeMovedBackwardsException
 from rospy_shim.rostime import Duration, Time
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ class Rate:
 
         Args:
             hz: rate in Hz; a negative one never sleeps.
-            reset: accepted; ROS time never goes backwards here.
+            reset: when simulated time is set back during a sleep, start a new period instead of raising.
 
         Raises:
             ROSInitException: before `init_node`.
@@ -36,6 +37,7 @@ class Rate:
         self._period_ns = int(1e9 / hz)
         self._reset = reset
         self._kernel = node.kernel
+        self._clock = node.clock
         self._epoch_ns = node.universe.clock.epoch_ns
         self._charge = node.universe.charge
 
@@ -63,7 +65,15 @@ class Rate:
         return Duration(0, self._period_ns - (now - min(now, self._last_ns)))
 
     def sleep(self) -> None:
-        """Sleep until the present period ends."""
+        """Sleep until the present period ends.
+
+        Raises:
+            ROSTimeMovedBackwardsException: simulated time was set back, and the Rate was made without `reset`.
+            ROSInterruptException: simulated time is used, and the node is shut down.
+        """
+        if not self._clock.is_wallclock():
+            self._sleep_on_simulated_time()
+            return
         kernel = self._kernel
         now = self._epoch_ns + kernel.now
         period = self._period_ns
@@ -73,6 +83,20 @@ class Rate:
         else:
             self._charge()
         self._last_ns = end if now - end <= 2 * period else now
+
+    def _sleep_on_simulated_time(self) -> None:
+        """As `sleep`, on a clock that others set, also back."""
+        clock, now = self._clock, self._clock.now_ns()
+        self._last_ns = min(now, self._last_ns)
+        try:
+            clock.sleep(Duration(0, self._last_ns + self._period_ns - now))
+        except ROSTimeMovedBackwardsException:
+            if not self._reset:
+                raise
+            self._last_ns = clock.now_ns()
+            return
+        end = self._last_ns + self._period_ns
+        self._last_ns = end if now - end <= 2 * self._period_ns else now
 
 
 def make_rate(node: Node) -> type[Rate]:

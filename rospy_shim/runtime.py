@@ -6,28 +6,61 @@ never cfepy.mission.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import count
 from pathlib import Path
-from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NamedTuple
 
+from cfepy.es.records import StartParams
 from cfepy.nodes import Universe
 from cfepy.nodes.config import NodeConfig, RosConfig
 from cfepy.rtos.units import NS_PER_S
 from rospy_shim import library_path
 from rospy_shim.graph import Graph, Topic, TopicRow
+from rospy_shim.library_parts import Factory, library_parts
+from rospy_shim.master import MASTER_PORT, Switchboard, xmlrpc_client
 from rospy_shim.modules import RosModules
 from rospy_shim.msgs import make_module
+from rospy_shim.msgs.configs import ConfigModules
+from rospy_shim.msgs.modules import MessageModule
 from rospy_shim.node import Node
+from rospy_shim.parameter_app import ParameterApp
+from rospy_shim.process_monitor import ProcessMonitor
 from rospy_shim.tasks import NodeTasks
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
     from cfepy.app import Cfe
     from cfepy.console import Console
+    from cfepy.osal.network import Network
     from cfepy.rtos import Kernel
 
 APP_ERROR = 3  # CFE_ES_RunStatus_APP_ERROR
+ROS_ENVIRONMENT = {
+    "ROS_DISTRO": "noetic",
+    "ROS_ETC_DIR": "/opt/ros/noetic/etc/ros",
+    "ROS_PYTHON_VERSION": "3",
+    "ROS_ROOT": "/opt/ros/noetic/share/ros",
+    "ROS_VERSION": "1",
+}
+"""What the set-up file of an installed ROS tells a node."""
+STACK_BYTES, PRIORITY = 16384, 100  # of nodes that nodes start, as in a startup script
+SHORTEST_RESPAWN_NS = 100_000_000  # how often roslaunch looks after its processes
+
+
+class NodeEnd(NamedTuple):
+    """How a node's program has ended.
+
+    Attributes:
+        name: what its output was marked with at last.
+        status: its exit status; None when it was ended from outside.
+    """
+
+    name: str
+    status: int | None
 
 
 class RosRuntime:
@@ -42,6 +75,11 @@ class RosRuntime:
         node_call_ns: virtual CPU time of a call of ROS's or Python's API in a node.
         max_publish_hz: messages a second that a publisher may send; it is held back at more. 0 for no limit.
         console: where nodes print and log.
+        network: what their sockets are plugged into; None refuses sockets.
+
+    Attributes:
+        parameters: the application ROS, which starts before the first node.
+        ended: how the programs have ended that did, by cFE application; of several starts, the last one.
     """
 
     def __init__(
@@ -55,8 +93,10 @@ class RosRuntime:
         node_call_ns: int,
         max_publish_hz: int = 0,
         console: Console,
+        network: Network | None = None,
     ) -> None:
         self.graph = Graph(config)
+        self._switchboard = Switchboard(self.graph)
         self._cfe = cfe
         self._kernel = kernel
         self._config = config
@@ -65,7 +105,13 @@ class RosRuntime:
         self._call_ns = node_call_ns
         self._publish_slot_ns = NS_PER_S // max_publish_hz if max_publish_hz else 0
         self._console = console
+        self._network = network
+        self.monitor = ProcessMonitor(config, console, kernel.stop)
+        self.parameters = ParameterApp(cfe, self.graph.params)
+        self._started: dict[str, NodeConfig] = {}
         self._running: list[Node] = []
+        self._pids = {MASTER_PORT}
+        self.ended: dict[str, NodeEnd] = {}
         self._task_numbers = count(1)
 
     def run_node(self, script: Path, app_name: str) -> None:
@@ -77,17 +123,27 @@ class RosRuntime:
 
         A node that fails ends its application with CFE_ES_RunStatus_APP_ERROR.
         """
-        config = self._config.nodes.get(app_name) or NodeConfig(app_name)
+        config = self._started.get(app_name) or self._config.nodes.get(app_name) or NodeConfig(app_name)
         self._cfe.es.run_loop()  # tells ES that the application runs, so that the mission can become operational
+        self.parameters.wait()
+        status = self._run_process(script, app_name, config)
+        while self.monitor.starts_again(config, status):
+            self._kernel.delay(max(config.respawn_delay_ns, SHORTEST_RESPAWN_NS))
+            status = self._run_process(script, app_name, config)
+        if status != 0 and not self.monitor.closing:
+            self._cfe.es.exit_app(APP_ERROR)
+
+    def _run_process(self, script: Path, app_name: str, config: NodeConfig) -> int:
+        """Run a node's script once, in a universe of its own; returns its exit status."""
         node = self._make_node(script, app_name, config)
         self._running.append(node)
         try:
-            status = node.universe.run_script()
+            return node.universe.run_script()
         finally:
             self._running.remove(node)
+            self._pids.remove(node.universe.pid)
+            self.ended[app_name] = NodeEnd(node.universe.name, node.universe.exit_status)
             node.abandon()
-        if status != 0:
-            self._cfe.es.exit_app(APP_ERROR)
 
     def _make_node(self, script: Path, app_name: str, config: NodeConfig) -> Node:
         tasks = NodeTasks(self._cfe, self._kernel, lambda: next(self._task_numbers))
@@ -96,30 +152,83 @@ class RosRuntime:
             name=config.name or app_name,
             script=script,
             argv=_command_line(config),
-            env={"ROS_MASTER_URI": "http://cfepy:11311", **config.env},
-            cwd=script.parent,
+            env={**ROS_ENVIRONMENT, "ROS_MASTER_URI": f"http://cfepy:{MASTER_PORT}", **config.env},
+            cwd=config.cwd or script.parent,
             library_paths=[library_path.FOLDER],
+            fallback_paths=[library_path.STAND_INS],
             seed=self._seed,
             epoch_ns=self._epoch_ns,
             call_cost_ns=self._call_ns,
             stdout=self._console.write,
             find_module=lambda name: find(name),
             priority=tasks.priority,
+            ordered_sets=self._config.ordered_sets if config.ordered_sets is None else config.ordered_sets,
+            keys=config.keys,
+            network=self._network,
             on_thread_start=tasks.thread,
         )
+        universe.pid = self._free_pid(universe.pid)
         node = Node(self._cfe, self.graph, universe, config, tasks, self._call_ns, self._publish_slot_ns)
-        universe.importer.path[1:1] = map(str, node.packages.code_folders())
-        find = _finder(node)
+        universe.importer.path[1:1] = [*_python_path(universe), *map(str, node.packages.code_folders())]
+        find = _finder(
+            node,
+            {"xmlrpc.client": xmlrpc_client(node, self._switchboard), **library_parts(node), **self._starter(node)},
+        )
         return node
 
-    def begin_shutdown(self, reason: str) -> None:
-        """Ask all nodes to end, as Ctrl-C ends a roslaunch.
+    def _starter(self, node: Node) -> dict[str, Factory]:
+        """What a node starts other nodes with; only a node that does imports what it needs."""
+
+        def make(universe: Universe) -> ModuleType:
+            from rospy_shim.roslaunch.starter import Starter
+
+            return Starter(self, node).module()(universe)
+
+        return {"roslaunch._processes": make}
+
+    def start_node(self, config: NodeConfig) -> None:
+        """Start a node that neither a startup script nor a launch file of the mission names (CFE_ES_AppCreate).
+
+        Raises:
+            CfeError: there is no room for another application.
+        """
+        self._started[config.app] = config
+        self._cfe.es.create_app(config.app, StartParams(f"/cf/{config.app}.so", "__main__", STACK_BYTES, PRIORITY))
+
+    def forget_start(self, app_name: str) -> None:
+        """A node that was started while the mission runs is not to come back."""
+        config = self._started.get(app_name)
+        if config is not None:
+            self._started[app_name] = replace(config, respawn=False)
+
+    def script_of(self, file: str) -> Path | None:
+        """The script of a node that was started while the mission runs, by its virtual path."""
+        config = self._started.get(Path(file).stem)
+        return None if config is None else config.script
+
+    def app_names(self) -> list[str]:
+        """Names that a new node's application cannot have."""
+        return [*(app.name for app in self._cfe.es.apps), *self._config.nodes, *self._started]
+
+    def _free_pid(self, wanted: int) -> int:
+        """A process number that no other node has; it is the port in the node's URI, too."""
+        while wanted in self._pids:
+            wanted += 1
+        self._pids.add(wanted)
+        return wanted
+
+    def begin_shutdown(self, reason: str, app_name: str | None = None) -> None:
+        """Ask all nodes to end, as Ctrl-C ends a roslaunch, or the one of an application.
 
         Args:
             reason: what their shutdown hooks are told.
+            app_name: cFE name of the application; None for all nodes.
         """
+        if app_name is None:
+            self.monitor.close()
         for node in self._running[:]:
-            node.ask_to_shut_down(reason)
+            if app_name in (None, node.config.app):
+                node.ask_to_shut_down(reason)
 
     def all_finished(self) -> bool:
         """Whether no node's program runs any more."""
@@ -142,6 +251,11 @@ class RosRuntime:
         )
 
 
+def _python_path(universe: Universe) -> list[str]:
+    """The folders that PYTHONPATH names, where Python looks next after the script's own."""
+    return [universe.resolve(folder) for folder in universe.environ.get("PYTHONPATH", "").split(os.pathsep) if folder]
+
+
 def _command_line(config: NodeConfig) -> list[str]:
     """The arguments that roslaunch would give the node."""
     found = [*config.args, *(f"{name}:={target}" for name, target in config.remap.items())]
@@ -151,19 +265,31 @@ def _command_line(config: NodeConfig) -> list[str]:
     return found
 
 
-def _finder(node: Node) -> Callable[[str], Callable[[Any], ModuleType] | None]:
-    """Finds what makes a module of ROS: rospy's own, genpy, message packages that have no code as well."""
-    rospy = RosModules(node)
+def _finder(node: Node, made: dict[str, Factory]) -> Callable[[str], Factory | None]:
+    """Finds what makes a module of ROS: rospy's own, genpy, message packages that have no code as well.
 
-    def find(name: str) -> Callable[[Any], ModuleType] | None:
-        factory = rospy.find(name)
+    Args:
+        node: whose modules they are.
+        made: factories of further modules by name.
+    """
+    rospy, configs = RosModules(node), ConfigModules(node.packages)
+
+    def find(name: str) -> Factory | None:
+        factory = rospy.find(name) or made.get(name)
         if factory is not None:
             return factory
+        if name == "logging":
+            return None if node.universe.importer.has_own(name) else lambda universe: node.logs.load_logging()
         if name in library_path.names():
             return None  # a package with code; its messages are made here all the same
+        config = configs.find(name)
+        if config is not None and ("." in name or not node.universe.importer.has_own(name)):
+            return config
         module = make_module(name, node.library)
         if module is None or ("." not in name and node.universe.importer.has_own(name)):
             return None
+        if isinstance(module, MessageModule):
+            module.hand_on(node.universe.importer.load)
         return lambda universe: module
 
     return find

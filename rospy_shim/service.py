@@ -1,14 +1,13 @@
-"""`rospy.Service`: a pipe of requests, a child task that calls the handler, a telemetry packet for each answer.
+"""`rospy.Service`: a pipe of requests, a child task that calls the handler, telemetry for each answer.
 
-On the Software Bus a service is a command MsgId for requests and a telemetry MsgId for answers. A request is a command
-packet (function code 0) with a call number and the serialised request; an answer carries the same number, whether the
-call went well, and the serialised response or the error's text. Requests are handled one after the other. May import
-cfepy.nodes, cfepy.rtos and cfepy.status.
+On the Software Bus a service is a command MsgId for requests and a telemetry MsgId for answers, and
+`rospy_shim.service_wire` says what stands in them. One task handles requests. When one comes while all of the service's
+tasks are in the handler, it gets another task until no request waits, so that handlers run side by side as in rospy.
+May import cfepy.nodes, cfepy.rtos, cfepy.sb and cfepy.status.
 """
 
 from __future__ import annotations
 
-import struct
 import sys
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,46 +17,53 @@ from cfepy.status import CfeError
 from rospy_shim.exceptions import ROSInterruptException, ServiceException
 from rospy_shim.genpy import Message, SerializationError
 from rospy_shim.message import packer, unpacker
-from rospy_shim.subscriber import DEFAULT_BUFF_SIZE, NO_PIPE
+from rospy_shim.service_wire import REQUEST_LEAD, Pieces, answer_packets, call_of_request
+from rospy_shim.subscription import DEFAULT_BUFF_SIZE, NO_PIPE
+from rospy_shim.transport import WHOLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from cfepy.sb.pipe import Pipe
     from rospy_shim.graph import ServiceEntry
     from rospy_shim.node import Node
 
-request_header = struct.Struct(">HHHBB").pack
-answer_header = struct.Struct(">HHH10x").pack
-call_number = struct.Struct("<I")
-answer_state = struct.Struct("<IB")
-REQUEST_AT = 8 + 4  # bytes in front of the serialised request: command header, call number
-ANSWER_AT = 16 + 5  # bytes in front of the serialised response: telemetry header, call number, success
 SERVE_TIMEOUT_NS = 500_000_000
+POLL = 0
+FOREVER_MS = -1
+PACE_NS = 100_000  # between two looks whether the callers have room for the next segment of an answer
+PATIENCE = 100  # looks
+WINDOW = 4  # packets of long requests and answers that may wait
 
 
-def response_of(value: Any, response_class: Any) -> Any:
+def response_of(response: Any, response_class: Any) -> Any:
     """The response that a handler's return value means.
 
     Args:
-        value: a response, or what it is made of: a list or tuple, a dictionary, or the value of its only field.
+        response: a response, or what it is made of: a list or tuple, a dictionary, or the value of its only field.
         response_class: its class.
 
     Raises:
         ServiceException: the value does not fit.
     """
-    if isinstance(value, Message) and value._type == response_class._type:
-        return value
-    if value is None:
+    if isinstance(response, Message) and response._type == response_class._type:
+        return response
+    if response is None:
         raise ServiceException("service handler returned None")
     try:
-        if isinstance(value, dict):
-            return response_class(**value)
-        if isinstance(value, (list, tuple)):
-            return response_class(*value)
-        return response_class(value)
+        if isinstance(response, dict):
+            return response_class(**response)
+        if isinstance(response, (list, tuple)):
+            return response_class(*response)
+        return response_class(response)
     except (TypeError, AttributeError) as error:
-        what = "wrong number of values" if isinstance(value, (list, tuple)) else "invalid value"
+        what = "wrong number of values" if isinstance(response, (list, tuple)) else "invalid value"
         raise ServiceException(f"handler returned {what}: {error}") from None
+
+
+def room_of(pipe: Pipe, packet: bytes) -> int:
+    """How many packets may wait in a pipe when another is sent; of long messages only a few, as they fill the bus."""
+    return pipe.depth if packet[2] & WHOLE == WHOLE else min(pipe.depth, WINDOW)
 
 
 class Service:
@@ -93,6 +99,7 @@ class Service:
         self.service_class = service_class
         self.request_class = service_class._request_class
         self.response_class = service_class._response_class
+        self.type = service_class._type
         self.handler = handler
         self.buff_size = buff_size
         if error_handler is not None:
@@ -100,21 +107,30 @@ class Service:
         self.uri = f"rosrpc://{node.universe.host_name}:{node.universe.pid}"
         self._done = False
         self._pipe = NO_PIPE
+        self._tasks = 0  # that serve
+        self._busy = 0  # of them in the handler
+        self._pieces = Pieces(REQUEST_LEAD)
+        self._unpack = unpacker(self.request_class)
+        self._pack = packer(self.response_class)
         self._entry: ServiceEntry = node.graph.register_service(self)
-        self._open()
+        node.services.append(self)
+        self._begin()
 
     @property
     def node(self) -> Node:
         """The node that offers it."""
         return self._node
 
+    def _begin(self) -> None:
+        self._open()
+        self._node.start_child(self.resolved_name, self._serve)
+
     def _open(self) -> None:
-        node, bus = self._node, self._node.cfe.sb
-        depth = bus.config.os_queue_max_depth
-        self._pipe = bus.create_pipe(depth, node.task_name(self.resolved_name))
-        bus.subscribe_ex(self._entry.request_id, self._pipe, 0, depth)
-        node.services.append(self)
-        node.start_child(self.resolved_name, self._serve)
+        if self._pipe == NO_PIPE:
+            bus = self._node.cfe.sb
+            depth = bus.config.os_queue_max_depth
+            self._pipe = bus.create_pipe(depth, self._node.task_name(self.resolved_name))
+            bus.subscribe_ex(self._entry.request_id, self._pipe, 0, depth)
 
     def error_handler(self, error: Exception, exc_type: Any, exc_value: Any, tb: Any) -> None:
         """Log an exception in the handler."""
@@ -128,9 +144,10 @@ class Service:
         self._node.graph.forget_service(self)
         if self in self._node.services:
             self._node.services.remove(self)
-        pipe = self._node.cfe.sb.find_pipe(self._pipe)
-        if pipe is not None:
-            self._node.kernel.wake_all(pipe.waits, TIMEOUT)
+        callers = [call.pipe for call in self._entry.calls.values()]
+        for pipe in map(self._node.cfe.sb.find_pipe, [self._pipe, *callers]):
+            if pipe is not None:
+                self._node.kernel.wake_all(pipe.waits, TIMEOUT)
 
     def spin(self) -> None:
         """Wait until the service or the node is shut down."""
@@ -141,49 +158,111 @@ class Service:
         except KeyboardInterrupt:
             self._node.life.signal_shutdown("keyboard interrupt")
 
-    # -- in the task -------------------------------------------------------------------------------------------------
+    # -- in its tasks ------------------------------------------------------------------------------------------------
+
+    def attend(self) -> None:
+        """A request waits: see to it that a task is free for it."""
+        if self._busy >= self._tasks and not self._done:
+            self._tasks += 1
+            self._node.start_task(self.resolved_name, self._help)
+
+    def has_room(self, packet: bytes) -> bool:
+        """Whether a packet of a request may be sent; none before the first task has made the pipe."""
+        pipe = self._node.cfe.sb.find_pipe(self._pipe)
+        return pipe is not None and len(pipe.items) < room_of(pipe, packet)
 
     def _serve(self) -> None:
-        receive, pipe = self._node.cfe.sb.receive_buffer, self._pipe
+        """The first task: it stays as long as the service is offered."""
+        self._tasks += 1
+        self._work(FOREVER_MS)
+        self.give_back()
+
+    def _help(self) -> None:
+        """Another task: it ends when no request waits."""
+        self._open()
+        self._work(POLL)
+
+    def _work(self, timeout_ms: int) -> None:
+        receive = self._node.cfe.sb.receive_buffer
         try:
             while not self._done:
-                packet = receive(pipe)
+                packet = receive(self._pipe, timeout_ms)
                 if packet is not None and not self._done:
-                    self._answer(packet)
+                    self._take(packet)
+                elif timeout_ms == POLL:
+                    return
         except CfeError as error:
             if not self._done:
                 self._node.logs.logerr("service %s ends: %s", self.resolved_name, error)
         finally:
-            self.release()
+            self._tasks -= 1
+            self._attend_waiting()
 
-    def release(self) -> None:
+    def _attend_waiting(self) -> None:
+        pipe = self._node.cfe.sb.find_pipe(self._pipe)
+        if pipe is not None and pipe.items:
+            self.attend()
+
+    def give_back(self) -> None:
         """Give the pipe back."""
         pipe, self._pipe = self._pipe, NO_PIPE
         if pipe != NO_PIPE and self._node.cfe.sb.find_pipe(pipe) is not None:
             self._node.cfe.sb.delete_pipe(pipe)
 
-    def _answer(self, packet: bytes) -> None:
-        (number,) = call_number.unpack_from(packet, 8)
+    def _take(self, packet: bytes) -> None:
+        number = call_of_request(packet)
+        request = self._pieces.add(number, packet)
+        if request is None:
+            return
+        self._busy += 1
         try:
-            request = unpacker(self.request_class)(packet, REQUEST_AT)
-            request._connection_header = {
-                "callerid": self._entry.callers.get(number, ""),
-                "md5sum": self.service_class._md5sum,
-                "service": self.resolved_name,
-            }
-            good, body = True, packer(self.response_class)(response_of(self.handler(request), self.response_class))
+            self._attend_waiting()
+            good, body = self._result(number, request)
+        finally:
+            self._busy -= 1
+        self._answer(number, good, body)
+
+    def _result(self, number: int, data: bytes) -> tuple[bool, bytes]:
+        """Call the handler: whether it went well, and the serialised response or the error's text."""
+        try:
+            request = self._unpack(data, 0)
+            call = self._entry.calls.get(number)
+            request._connection_header = call.header if call is not None else {}
+            return True, self._pack(response_of(self.handler(request), self.response_class))
         except (ServiceException, SerializationError, ROSInterruptException) as error:
-            good, body = False, f"service cannot process request: {error}".encode()
+            return False, f"service cannot process request: {error}".encode()
         except Exception as error:
             self.error_handler(error, *sys.exc_info())
-            good, body = False, f"error processing request: {error}".encode()
-        room = self._node.cfe.sb.config.sb_max_msg_size - ANSWER_AT
-        if len(body) > room:
-            good, body = False, f"service response of {len(body)} bytes: a packet has room for {room}".encode()
-        payload = answer_state.pack(number, good) + body
-        self._node.cfe.sb.transmit_msg(answer_header(self._entry.answer_id, 0xC000, len(payload) + 9) + payload)
+            return False, f"error processing request: {error}".encode()
+
+    def _answer(self, number: int, good: bool, body: bytes) -> None:
+        bus, answer_id = self._node.cfe.sb, self._entry.answer_id
+        for packet in answer_packets(answer_id, number, good, body, bus.config.sb_max_msg_size):
+            self._wait_for_room(packet)
+            bus.transmit_msg(packet)
+
+    def _wait_for_room(self, packet: bytes) -> None:
+        """Let the callers take what they have; each of them reads the answers to all."""
+        find = self._node.cfe.sb.find_pipe
+        for _ in range(PATIENCE):
+            pipes = [find(call.pipe) for call in self._entry.calls.values()]
+            if all(pipe is None or len(pipe.items) < room_of(pipe, packet) for pipe in pipes):
+                return
+            self._node.kernel.delay(PACE_NS)
+
+
+class QuietService(Service):
+    """A service that every node has and hardly anybody calls: it costs no pipe, task or MsgId before the first call."""
+
+    def _begin(self) -> None:
+        """Nothing; `attend` starts a task at the first call."""
 
 
 def make_service(node: Node) -> type[Service]:
     """The class `rospy.Service` of a node."""
     return type("Service", (Service,), {"__module__": Service.__module__, "_node": node})
+
+
+def make_quiet_service(node: Node) -> type[QuietService]:
+    """The class of a node's services that wait for their first call."""
+    return type("Service", (QuietService,), {"__module__": Service.__module__, "_node": node})

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cfepy.rtos.units import NS_PER_S
+from rospy_shim.exceptions import ROSInterruptException
 from rospy_shim.rostime import Duration, Time
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def make_timer(node: Node) -> type:
             period: a Duration.
             callback: takes a TimerEvent.
             oneshot: call it once.
-            reset: accepted; ROS time never goes backwards here.
+            reset: go on when simulated time is set back; without it the timer then ends with the exception.
         """
 
         def __init__(self, period: Duration, callback: Any, oneshot: bool = False, reset: bool = False) -> None:
@@ -64,14 +65,19 @@ def make_timer(node: Node) -> type:
             expected = clock.get_rostime() + self._period
             last_expected = last_real = last_duration = None
             while not life.is_shutdown() and not self._shutdown:
-                rate.sleep()
+                try:
+                    rate.sleep()
+                except ROSInterruptException:
+                    if life.is_shutdown():
+                        break
+                    raise
                 if self._shutdown or life.is_shutdown():
                     break
-                real = clock.get_rostime()
+                real, began = clock.get_rostime(), clock.wall_ns()
                 self._callback(TimerEvent(last_expected, last_real, expected, real, last_duration))
                 if self._oneshot:
                     break
-                last_duration = (clock.now_ns() - real.to_nsec()) / NS_PER_S
+                last_duration = (clock.wall_ns() - began) / NS_PER_S
                 last_expected, last_real = expected, real
                 expected += self._period
 

@@ -46,11 +46,14 @@ MAY_TOUCH_THE_HOST = {
 
 
 LIBRARIES = ROOT / "rospy_shim" / "libraries"
+INNER = ROOT / "rospy_shim" / "inner"  # modules of rospy that are code of nodes
+TOOLS = ROOT / "rospy_shim" / "roslaunch" / "tools"  # nodes that launch files take for granted
 
 
 def sources(package: str) -> list[Path]:
-    """Modules of a package; those of the libraries are code of nodes, and stand below a rule of their own."""
-    return sorted(path for path in (ROOT / package).rglob("*.py") if not path.is_relative_to(LIBRARIES))
+    """Modules of a package; libraries and tools are code of nodes, and stand below a rule of their own."""
+    nodes = (LIBRARIES, TOOLS, INNER)
+    return sorted(path for path in (ROOT / package).rglob("*.py") if not any(map(path.is_relative_to, nodes)))
 
 
 def imported(path: Path) -> Iterator[str]:
@@ -119,13 +122,17 @@ def test_only_the_kernel_knows_the_host(path: Path) -> None:
     assert not touched, f"{touched} belong to the host; only {', '.join(MAY_TOUCH_THE_HOST)} may use them"
 
 
-@pytest.mark.parametrize("path", sorted(LIBRARIES.rglob("*.py")), ids=lambda path: str(path.relative_to(LIBRARIES)))
+@pytest.mark.parametrize(
+    "path",
+    sorted([*LIBRARIES.rglob("*.py"), *TOOLS.glob("*.py"), *INNER.rglob("*.py")]),
+    ids=lambda path: str(path.relative_to(ROOT / "rospy_shim")),
+)
 def test_libraries_are_code_of_nodes(path: Path) -> None:
     """They run in a node's universe, with its rospy and its clock: they import what a node does, none of the house."""
-    others = {folder.name for folder in LIBRARIES.iterdir()}
+    others = {folder.name for folder in LIBRARIES.iterdir()} | {path.stem for path in TOOLS.glob("*.py")}
     for name in imported(path):
         top, _, rest = name.removeprefix("rospy_shim.libraries.").partition(".")
-        known = top in sys.stdlib_module_names or top in others or top in ("rospy", "genpy", "numpy", "yaml")
+        known = top in sys.stdlib_module_names or top in others or top in ("rospy", "genpy", "lz4", "numpy", "yaml")
         assert known or rest.split(".")[0] in ("msg", "srv"), f"a library must not import {name}"
 
 

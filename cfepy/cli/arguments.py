@@ -8,12 +8,14 @@ LONGEST_S = 1e9  # virtual time is a signed 64-bit number of ns
 SLOWEST, FASTEST = 1e-3, 1e9  # times real time
 
 HIGHEST_PORT = 65_535
+DEFAULT_RUNS, MOST_RUNS = 3, 64
 
 MISSION_HELP = "a startup script, a folder with a startup.scr, or a shipped mission's name"
 STATUS_HELP = """exit status:
   0    the run ended well
   1    an application died or could not be started, a mission's own application sent an ERROR or CRITICAL event,
-       or a failure reset the processor; with --script, a step of the script failed and nothing else counts
+       or a failure reset the processor; with --script, a step of the script failed and nothing else counts;
+       with --check-determinism, two runs differed, and nothing else counts
   2    bad usage, or a mission that cannot boot
   130  ended by Ctrl-C or SIGTERM (the report is still printed)"""
 
@@ -37,14 +39,16 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     run.add_argument("mission", metavar="MISSION", help=MISSION_HELP)
-    _add_machine(run)
+    add_end(run)
+    add_machine(run)
     _add_outside(run)
-    _add_outputs(run)
+    add_outputs(run)
+    _add_comparison(run)
     run.set_defaults(module="run")
 
 
-def _add_machine(run: argparse.ArgumentParser) -> None:
-    """How long the run is, and on what."""
+def add_end(run: argparse.ArgumentParser) -> None:
+    """How long the run is."""
     run.add_argument(
         "--for",
         dest="seconds",
@@ -52,6 +56,10 @@ def _add_machine(run: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help="virtual seconds to run (default: 10, or as long as the script takes; until Ctrl-C with --realtime)",
     )
+
+
+def add_machine(run: argparse.ArgumentParser) -> None:
+    """What the run is on, and what decides in it."""
     run.add_argument("--seed", type=int, default=0, metavar="N", help="of everything random (default: 0)")
     run.add_argument("--board", metavar="NAME|FILE", help="run on this board instead of the mission's own")
     run.add_argument(
@@ -85,18 +93,42 @@ def _add_outside(run: argparse.ArgumentParser) -> None:
         help="open the mission's port PORT, or send to it, as port HERE of this computer; 0 takes any free one",
     )
     run.add_argument("--script", metavar="FILE", help="send commands and check what comes of them, as a script says")
+    run.add_argument("--play", metavar="BAG", help="play a bag's topics into the mission, as rosbag play does")
     run.add_argument("--stop-on-failure", action="store_true", help="end the run with the script's first failed step")
 
 
-def _add_outputs(run: argparse.ArgumentParser) -> None:
+def add_outputs(run: argparse.ArgumentParser) -> None:
+    """What the run leaves behind, and what it shows."""
     run.add_argument("--json", metavar="FILE", help="write the report's numbers to a file")
     run.add_argument(
         "--save-files",
         metavar="DIR",
         help="at the end write the files that the mission wrote, such as /ram/x.log, to this folder, as DIR/ram/x.log",
     )
+    run.add_argument("--bag", metavar="FILE", help="record the ROS topics of the run into a bag (rosbag record -a)")
+    run.add_argument(
+        "--bag-topics",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="TOPIC",
+        help="record only these, such as /odom or '/arm/*' (default: all)",
+    )
     run.add_argument("--trace", metavar="FILE", help="write everything that happened to a file, a line each")
     run.add_argument("--quiet", action="store_true", help="no console and no status line, only the report")
+
+
+def _add_comparison(run: argparse.ArgumentParser) -> None:
+    """Runs that are compared with each other."""
+    run.add_argument(
+        "--check-determinism",
+        nargs="?",
+        type=runs_of,
+        const=DEFAULT_RUNS,
+        metavar="N",
+        help="run the mission N times side by side, each time under another hash seed and both on threads and on "
+        f"greenlets, and show the first thing that differs (default: {DEFAULT_RUNS} runs)",
+    )
 
 
 def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -126,6 +158,12 @@ def _add_mids(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         metavar="FILE",
         help="write the table as JSON to a file, or to standard output instead of the table",
     )
+    mids.add_argument(
+        "--lock",
+        action="store_true",
+        help="write topics.lock in the mission's folder, which gives every ROS topic and service a MsgId of its own; "
+        "ids that are in it already stay",
+    )
     mids.set_defaults(module="mids")
 
 
@@ -145,6 +183,13 @@ def count_of(text: str) -> int:
     """How many, at least one, for argparse."""
     if not text.isdecimal() or int(text) == 0:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number of packets; give 1 or more")
+    return int(text)
+
+
+def runs_of(text: str) -> int:
+    """How many runs to compare, for argparse."""
+    if not text.isdecimal() or not 2 <= int(text) <= MOST_RUNS:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of runs; give 2 to {MOST_RUNS}")
     return int(text)
 
 

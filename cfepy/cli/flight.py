@@ -105,7 +105,7 @@ class Flight:
         script = self._script
         if script is not None and (script.stopped or (script.finished and self._ends_with_script)):
             return False
-        return self.mission.kernel.now < self._until_ns and not self.interrupts.asked
+        return self.mission.kernel.now < self._until_ns and not self.interrupts.asked and not self.mission.over
 
     def _bridged(self, bridge: HostNetwork) -> Callable[[int], None]:
         """Running the mission until a virtual time in ns, then letting in and out what goes over the network."""

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from cfepy import __version__
-from cfepy.cli import arguments, file_arguments, ground_arguments
+from cfepy.cli import arguments, file_arguments, ground_arguments, launch_arguments, ros_arguments, topic_arguments
 from cfepy.status import UsageError
 
 ENDED_WELL = 0
@@ -61,7 +61,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"cfepy {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=_MixedParser)
-    for part in (arguments, ground_arguments, file_arguments):
+    for part in (arguments, ground_arguments, file_arguments, ros_arguments, topic_arguments, launch_arguments):
         part.add(commands)
     return parser
 

@@ -1,4 +1,4 @@
-"""`cfepy mids`: print the MsgIds of a mission."""
+"""`cfepy mids`: print the MsgIds of a mission, or write them to its lock file."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from pathlib import Path
 from cfepy.cli.failures import booting, writing
 from cfepy.cli.main import ENDED_WELL
 from cfepy.cli.table import Table, show_tables
-from cfepy.mission import read_mission
+from cfepy.mission import MissionSpec, read_mission
 from cfepy.mission.mids import MidRow, survey
+from cfepy.mission.topics_lock import lock, lock_path, lock_text
 
 STDOUT = "-"
 
@@ -26,6 +27,8 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: there is no such mission, it cannot boot, or the file cannot be written.
     """
     spec = read_mission(arguments.mission)
+    if arguments.lock:
+        return _lock(spec, arguments.board)
     with booting(spec.script):
         rows = survey(spec, arguments.board)
     text = json.dumps([row.to_dict() for row in rows], indent=2) + "\n"
@@ -36,6 +39,17 @@ def run(arguments: argparse.Namespace) -> int:
         with writing(arguments.json, "--json"):
             Path(arguments.json).write_text(text, encoding="utf-8")
     show_tables([_table(spec.name, rows)], sys.stdout)
+    return ENDED_WELL
+
+
+def _lock(spec: MissionSpec, board: str | None) -> int:
+    with booting(spec.script):
+        config = lock(spec, board)
+    path, former = lock_path(spec), len(spec.ros.locked_topics) + len(spec.ros.locked_services)
+    with writing(path, "--lock"):
+        path.write_text(lock_text(config), encoding="utf-8")
+    count = len(config.locked_topics) + len(config.locked_services)
+    print(f"{path}: {count} MsgIds, {count - former} of them new")
     return ENDED_WELL
 
 

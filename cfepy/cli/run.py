@@ -7,7 +7,7 @@ import contextlib
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 from cfepy.cli import report
 from cfepy.cli.arguments import LONGEST_S
@@ -25,12 +25,28 @@ from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
-    from cfepy.cli.trace_file import TraceFile
     from cfepy.io.host_network import HostNetwork
+    from cfepy.mission.bag import BagRecorder
     from cfepy.mission.script import ScriptRun
     from cfepy.mission.script_verdicts import Outcome
+    from cfepy.trace import Trace
 
 DEFAULT_S = 10.0
+
+
+class Recorder(Protocol):
+    """Takes the trace of a run; a context manager around it."""
+
+    @property
+    def trace(self) -> Trace:
+        """What the mission records in."""
+
+    def __enter__(self) -> Any: ...
+
+    def __exit__(self, *error: Any) -> Any: ...
+
+    def watch(self, mission: Mission) -> None:
+        """The mission is there and is about to run."""
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -42,34 +58,64 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: it cannot run like this.
     """
-    with Interrupts() as interrupts:
-        return _run(arguments, interrupts)
+    if arguments.check_determinism is not None:
+        if arguments.play or arguments.bag:
+            raise UsageError("runs that are compared play and record no bag", field="--check-determinism")
+        from cfepy.cli.check_determinism import check
 
-
-def _run(arguments: argparse.Namespace, interrupts: Interrupts) -> int:
+        return check(arguments)
     if arguments.port and arguments.realtime is None:
         raise UsageError("without --realtime no port is opened on this computer", field="--port")
     spec = read_mission(arguments.mission)
-    numbers = _output(arguments.json)
+    if arguments.play is not None:
+        from cfepy.mission.ground_node import with_player
+
+        spec = with_player(spec, arguments.play)
+    return run_spec(arguments, spec)
+
+
+def run_spec(arguments: argparse.Namespace, spec: MissionSpec) -> int:
+    """Run a mission as the command line says, and report.
+
+    Args:
+        arguments: of the command line.
+        spec: the mission.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: it cannot run like this.
+    """
+    for note in spec.notes:
+        print(f"cfepy: {note}", file=sys.stderr, flush=True)
+    with Interrupts() as interrupts:
+        return _run(arguments, spec, interrupts)
+
+
+def _run(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupts) -> int:
+    numbers = output_path(arguments.json)
     folder = saving_to(arguments.save_files)
-    script = _script(arguments, spec)
+    script = script_of(arguments, spec)
+    recorder = trace_file(arguments.trace) if arguments.trace else None
+    bag = _bag(arguments, script)
     with booting(spec.script):
-        flight = _fly(arguments, spec, interrupts, script)
+        flight = fly(arguments, spec, interrupts, script, recorder, bag=bag)
     results = Results.of(flight.mission, flight.at, flight.trace)
-    unwritten = None if numbers is None else _write(numbers, results, flight.outcome)
+    unwritten = None if numbers is None else write_numbers(numbers, results, flight.outcome)
     report.show(results, sys.stdout)
     if flight.outcome is not None:
         print(f"\n{flight.outcome.text()}")
-    _explain(results, arguments, interrupts.asked)
+    _explain(results, flight.mission, interrupts.asked)
     if folder is not None:
         save_files(flight.mission.files, folder)
     print(f"trace: {results.trace}", flush=True)
     if unwritten is not None:
         raise unwritten
-    return _status(results, interrupts.asked, flight.outcome)
+    return _status(results, flight.mission, interrupts.asked, flight.outcome)
 
 
-def _script(arguments: argparse.Namespace, spec: MissionSpec) -> ScriptRun | None:
+def script_of(arguments: argparse.Namespace, spec: MissionSpec) -> ScriptRun | None:
     """The script that the command line names; only a run with one imports what it needs."""
     if arguments.script is None:
         return None
@@ -80,7 +126,18 @@ def _script(arguments: argparse.Namespace, spec: MissionSpec) -> ScriptRun | Non
     return ScriptRun(read_script(arguments.script, spec, dictionary_of(spec)), arguments.stop_on_failure)
 
 
-def _trace_file(file: str) -> TraceFile:
+def _bag(arguments: argparse.Namespace, script: ScriptRun | None) -> BagRecorder | None:
+    """What records topics; only a run with a bag imports it."""
+    if arguments.bag is None:
+        if arguments.bag_topics:
+            raise UsageError("says what goes into a bag; give the bag, too: --bag FILE", field="--bag-topics")
+        return None
+    from cfepy.mission.bag import BagRecorder
+
+    return BagRecorder(arguments.bag, arguments.bag_topics, SoftwareBus if script is None else script.bus)
+
+
+def trace_file(file: str) -> Recorder:
     from cfepy.cli.trace_file import TraceFile
 
     return TraceFile(file)
@@ -95,15 +152,41 @@ def _duration(arguments: argparse.Namespace, script: ScriptRun | None) -> float:
     return DEFAULT_S if arguments.realtime is None else LONGEST_S
 
 
-def _fly(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupts, script: ScriptRun | None) -> Flight:
+def fly(
+    arguments: argparse.Namespace,
+    spec: MissionSpec,
+    interrupts: Interrupts,
+    script: ScriptRun | None,
+    recorder: Recorder | None = None,
+    display: Display | None = None,
+    bag: BagRecorder | None = None,
+) -> Flight:
+    """Run a mission to its end.
+
+    Args:
+        arguments: of the command line.
+        spec: the mission.
+        interrupts: says whether somebody pressed Ctrl-C.
+        script: what is to happen on the way.
+        recorder: takes the trace.
+        display: shows the run; None takes the one that suits standard output.
+        bag: records ROS topics.
+
+    Raises:
+        UsageError: it cannot run like this.
+        CfeError: it does not boot.
+    """
     seconds = _duration(arguments, script)
     flight: Flight | None = None
     try:
         with contextlib.ExitStack() as stack:
-            trace = stack.enter_context(_trace_file(arguments.trace)) if arguments.trace else None
-            display = make_display(arguments.quiet, seconds)
+            if recorder is not None:
+                stack.enter_context(recorder)
+            if bag is not None:
+                stack.enter_context(bag)
+            display = display or make_display(arguments.quiet, seconds)
             stack.callback(display.close)
-            mission = stack.enter_context(_mission(arguments, spec, display, trace, script))
+            mission = stack.enter_context(_mission(arguments, spec, display, recorder, script, bag))
             ends_with_script = arguments.seconds is None
             bridge = None if arguments.realtime is None else stack.enter_context(_bridge(arguments, mission, display))
             flight = Flight(mission, seconds, arguments.realtime, display, interrupts, script, ends_with_script, bridge)
@@ -119,8 +202,9 @@ def _mission(
     arguments: argparse.Namespace,
     spec: MissionSpec,
     display: Display,
-    trace: TraceFile | None,
+    recorder: Recorder | None,
     script: ScriptRun | None,
+    bag: BagRecorder | None,
 ) -> Mission:
     try:
         mission = Mission(
@@ -130,17 +214,19 @@ def _mission(
             tasks=arguments.tasks,
             console=Console(sink=display.line),
             policy=SeededRandom(arguments.seed) if arguments.schedule == "random" else None,
-            trace_sink=None if trace is None else trace.write,
-            bus=SoftwareBus if script is None else script.bus,
+            trace=None if recorder is None else recorder.trace,
+            bus=bag.bus if bag is not None else SoftwareBus if script is None else script.bus,
         )
     except UsageError:
         raise
     except ValueError as error:  # a task context that is not installed
         raise UsageError(str(error), field="--tasks") from None
-    if trace is not None:
-        trace.watch(mission)
+    if recorder is not None:
+        recorder.watch(mission)
     if script is not None:
         script.begin(mission)
+    if bag is not None:
+        bag.begin(mission)
     return mission
 
 
@@ -151,7 +237,7 @@ def _bridge(arguments: argparse.Namespace, mission: Mission, display: Display) -
     return HostNetwork(mission, dict(arguments.port), display.line)
 
 
-def _output(file: str | None) -> Path | None:
+def output_path(file: str | None) -> Path | None:
     """The path for the numbers; that it can be written is better known before the run than after it."""
     if file is None:
         return None
@@ -161,7 +247,7 @@ def _output(file: str | None) -> Path | None:
     return path
 
 
-def _write(file: Path, results: Results, outcome: Outcome | None) -> UsageError | None:
+def write_numbers(file: Path, results: Results, outcome: Outcome | None) -> UsageError | None:
     """Write the numbers; an error is returned, for the report of a long run must not be lost with them."""
     numbers = results.to_dict()
     if outcome is not None:
@@ -173,25 +259,25 @@ def _write(file: Path, results: Results, outcome: Outcome | None) -> UsageError 
     return None
 
 
-def _explain(results: Results, arguments: argparse.Namespace, interrupted: bool) -> None:
+def _explain(results: Results, mission: Mission, interrupted: bool) -> None:
     sys.stdout.flush()
     for problem in (*results.script_problems, *results.problems):
         print(f"cfepy: {problem}", file=sys.stderr)
     if results.script_problems:
-        text = f'the console says why, and "cfepy check {arguments.mission}" what can be seen without running it'
+        text = f'the console says why, and "cfepy check {mission.spec.script}" what can be seen without running it'
         print(f"cfepy: {text}", file=sys.stderr)
     if interrupted:
         print(f"cfepy: ended by Ctrl-C or SIGTERM after {results.virtual_s:g} virtual seconds", file=sys.stderr)
-    elif results.booted_s is None:
+    elif results.booted_s is None and not mission.over:
         text = f"not OPERATIONAL after {results.virtual_s:g} virtual seconds; run it for longer (--for)"
         print(f"cfepy: {text}", file=sys.stderr)
 
 
-def _status(results: Results, interrupted: bool, outcome: Outcome | None) -> int:
+def _status(results: Results, mission: Mission, interrupted: bool, outcome: Outcome | None) -> int:
     if interrupted:
         return INTERRUPTED
     if outcome is not None:
         return ENDED_WELL if outcome.ok else FOUND_PROBLEMS
     if results.script_problems or results.problems:
         return FOUND_PROBLEMS
-    return ENDED_WELL if results.booted_s is not None else BAD_USAGE
+    return ENDED_WELL if results.booted_s is not None or mission.over else BAD_USAGE

@@ -17,10 +17,11 @@ from types import TracebackType
 from cfepy.io.connection import Connection
 from cfepy.mission.ground import GroundLink
 from cfepy.mission.mission import Mission
-from cfepy.osal.endpoints import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Place
+from cfepy.osal.endpoints import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Place, Stream
 from cfepy.status import UsageError
 
 LOOPBACK = "127.0.0.1"
+DIAL_S = 1.0  # wall time; a program on the same computer answers at once
 MOST_AT_ONCE = 256  # datagrams of a port that are brought in between two pieces of a run
 UDP, TCP = "UDP", "TCP"
 
@@ -51,7 +52,9 @@ class HostNetwork:
         self._anonymous = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._anonymous.setblocking(False)
         self._foreign: list[str] = []
+        self._replies: dict[int, socket.socket] = {}
         self._link = GroundLink(mission, self._outbox.append)
+        mission.network.dial = self._dial
 
     def __enter__(self) -> HostNetwork:
         return self
@@ -70,6 +73,7 @@ class HostNetwork:
         """Sleep, at most until there is something to bring in or to send on."""
         readers = [opened for (protocol, port), opened in self._open.items() if protocol == UDP or self._has_room(port)]
         readers += [connection.host for connection in self._connections if connection.wants_to_read]
+        readers += self._replies.values()
         writers = [connection.host for connection in self._connections if connection.wants_to_write]
         if readers or writers:
             select.select(readers, writers, [], seconds)
@@ -88,6 +92,10 @@ class HostNetwork:
                 self._bring_in(port, opened)
             else:
                 self._accept(port, opened)
+        for port, opened in list(self._replies.items()):
+            self._bring_in(port, opened)
+            if (False, port) not in self._mission.network.datagrams.bound:
+                self._replies.pop(port).close()
         self._connections = [connection for connection in self._connections if connection.move()]
         while self._outbox:
             self._send_out(self._outbox.pop(0))
@@ -98,8 +106,9 @@ class HostNetwork:
             self._send_out(self._outbox.pop(0))
         for connection in self._connections:
             connection.close()
-        for opened in (*self._open.values(), self._anonymous):
+        for opened in (*self._open.values(), *self._replies.values(), self._anonymous):
             opened.close()
+        self._mission.network.dial = None
         self._link.close()
 
     # -- ports -------------------------------------------------------------------------------------------------------
@@ -142,11 +151,25 @@ class HostNetwork:
         if target.is_ip6 or not target.is_here:
             self._refuse(target.host)
             return
-        opened = self._open.get((UDP, datagram.source.port), self._anonymous)
+        opened = self._open.get((UDP, datagram.source.port)) or self._for_replies(datagram.source.port)
         try:
             opened.sendto(datagram.data, (target.reached().host, self._ports.get(target.port, target.port)))
         except OSError as error:
             self._tell(f"a datagram for port {target.port} could not be sent: {error.strerror}")
+
+    def _for_replies(self, port: int) -> socket.socket:
+        """What sends for a port that is not open on this computer: a socket to which the answers come, while it lives.
+
+        For a port that has been given back meanwhile it is one that nobody reads from.
+        """
+        if (False, port) not in self._mission.network.datagrams.bound:
+            return self._anonymous
+        opened = self._replies.get(port)
+        if opened is None:
+            opened = self._replies[port] = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            opened.setblocking(False)
+            opened.bind((LOOPBACK, 0))
+        return opened
 
     def _refuse(self, host: str) -> None:
         if host not in self._foreign:
@@ -154,6 +177,22 @@ class HostNetwork:
             self._tell(f"datagrams for {host} are dropped: only {LOOPBACK} is connected")
 
     # -- connections -------------------------------------------------------------------------------------------------
+
+    def _dial(self, source: Place, target: Place) -> Stream | None:
+        """Connect somebody of the mission with a program on this computer; None when none listens there."""
+        if target.is_ip6:
+            return None
+        host = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        host.settimeout(DIAL_S)
+        try:
+            host.connect((LOOPBACK, self._ports.get(target.port, target.port)))
+        except OSError:
+            host.close()
+            return None
+        near, far = Stream(source, target), Stream(target, source)
+        near.other, far.other = far, near
+        self._connections.append(Connection(host, far, self._note))
+        return near
 
     def _accept(self, port: int, opened: socket.socket) -> None:
         place = Place(LOOPBACK, port)

@@ -10,12 +10,14 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import NamedTuple
 
+from cfepy.config import PlatformConfig
 from cfepy.es import startup_script
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, Entry
 from cfepy.mission import sources
 from cfepy.mission.check_file import CheckedFile, check_file
 from cfepy.mission.loader import NODE_SYMBOL, find_code, find_node
-from cfepy.mission.spec import MISSION_FILE, find_script
+from cfepy.mission.spec import LOCK_FILE, MISSION_FILE, find_script, read_lock
+from cfepy.nodes.config import RosConfig
 from cfepy.osal.limits import OS_MAX_FILE_NAME
 from cfepy.psp.profile import BoardProfile, load_profile
 from cfepy.status import UsageError
@@ -58,8 +60,18 @@ def check_mission(mission: str, board: str | None = None) -> list[Finding]:
     said = check_file(path) if path is not None else CheckedFile()
     found += [Finding(Path(error.file or script), error.line or 0, _with_field(error)) for error in said.errors]
     found += _check_nodes(said, entries)
+    found += _check_lock(folder / LOCK_FILE, said)
     found += _check_board(script, entries, said, board, folder)
     return sorted(dict.fromkeys(found), key=lambda finding: (str(finding.file), finding.line))
+
+
+def _check_lock(path: Path, said: CheckedFile) -> Iterator[Finding]:
+    if not path.is_file():
+        return
+    try:
+        read_lock(path, RosConfig(topics=said.topics))
+    except UsageError as error:
+        yield Finding(Path(error.file or path), error.line or 0, _with_field(error))
 
 
 def _with_field(error: UsageError) -> str:
@@ -170,30 +182,41 @@ def _check_board(
         else:
             yield Finding(Path(error.file or script), error.line or 0, _with_field(error))
         return
-    yield from _check_limits(script, entries, profile)
-    yield from _check_stacks(script, entries, profile)
+    try:
+        config = said.limits.config(profile, any(entry.symbol == NODE_SYMBOL for entry in entries))
+    except UsageError as error:
+        yield Finding(Path(error.file or script), error.line or 0, _with_field(error))
+        return
+    yield from _check_limits(script, entries, profile, config)
+    yield from _check_stacks(script, entries, profile, config)
 
 
-def _check_limits(script: Path, entries: list[Entry], profile: BoardProfile) -> Iterator[Finding]:
-    config = profile.config()
+def _check_limits(
+    script: Path, entries: list[Entry], profile: BoardProfile, config: PlatformConfig
+) -> Iterator[Finding]:
+    ros = any(entry.symbol == NODE_SYMBOL for entry in entries)
     apps = [entry for entry in entries if entry.kind == CFE_APP]
     libraries = [entry for entry in entries if entry.kind == CFE_LIB]
     for what, these, limit in (
-        ("application", apps, config.es_max_applications - len(CORE_APPS)),
+        ("application", apps, config.es_max_applications - len(CORE_APPS) - ros),
         ("library", libraries, config.es_max_libraries),
     ):
+        name = "es_max_applications" if what == "application" else "es_max_libraries"
+        raise_it = "the board's limit" if name in profile.limits else f"limits.{name} in the mission file"
         for entry in these[limit:]:
             text = f"{entry.name} is one {what} too many, {profile.name} takes {limit}"
-            text += "; start fewer, or raise the board's limit"
+            text += f"; start fewer, or raise {raise_it}"
             yield Finding(script, entry.line, text)
 
 
-def _check_stacks(script: Path, entries: list[Entry], profile: BoardProfile) -> Iterator[Finding]:
+def _check_stacks(
+    script: Path, entries: list[Entry], profile: BoardProfile, config: PlatformConfig
+) -> Iterator[Finding]:
     """Stacks and task control blocks against the RAM; pools, queues and tables come on top of them when it runs."""
     if not profile.sram_size:
         return
     block = profile.memory_costs.task_control_block
-    used = len(CORE_APPS) * (profile.config().es_start_task_stack_size + block)
+    used = len(CORE_APPS) * (config.es_start_task_stack_size + block)
     for entry in entries:
         if entry.kind != CFE_APP:
             continue

@@ -11,8 +11,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from cfepy.mission.spec import SECTIONS, read_node, read_topic
-from cfepy.nodes.config import NodeConfig
+from cfepy.mission.launch import mission_environment, plan_of
+from cfepy.mission.limits import MissionLimits, read_limits
+from cfepy.mission.parameter_files import read_parameters
+from cfepy.mission.spec import SECTIONS, read_launches, read_node, read_topic, truth
+from cfepy.nodes.config import NodeConfig, TopicConfig
 from cfepy.psp.marked_yaml import Marked, load
 from cfepy.status import UsageError
 
@@ -27,6 +30,8 @@ class CheckedFile:
     errors: list[UsageError] = field(default_factory=list)
     nodes: dict[str, NodeConfig] = field(default_factory=dict)
     node_places: dict[str, Marked] = field(default_factory=dict)
+    topics: dict[str, TopicConfig] = field(default_factory=dict)
+    limits: MissionLimits = field(default_factory=MissionLimits)
     board: str | None = None
     board_place: Marked | None = None
 
@@ -49,8 +54,15 @@ def check_file(path: Path) -> CheckedFile:
             _check_nodes(said, value)
         elif key == "topics":
             _check_topics(said, value)
-        else:
-            _attempt(said, value.mapping)
+        elif key == "limits":
+            _check_limits(said, value)
+        elif key == "launch":
+            _check_launch(said, value)
+        elif key == "ordered_sets":
+            _attempt(said, partial(truth, value))
+        elif key in ("params", "params_from"):
+            own, files = (value, None) if key == "params" else (None, value)
+            _attempt(said, partial(read_parameters, own, files))
     if sections and "board" in sections and isinstance(sections["board"].value, str):
         said.board, said.board_place = sections["board"].value, sections["board"]
     return said
@@ -76,12 +88,30 @@ def _check_nodes(said: CheckedFile, section: Marked) -> None:
             said.nodes[app] = read_node(app, entry)
 
 
+def _check_launch(said: CheckedFile, section: Marked) -> None:
+    """Each launch file is read, with all that it includes."""
+    for item in _attempt(said, section.items) or []:
+        alone = Marked([item], item.file, item.line, section.field)
+        for file, args in _attempt(said, partial(read_launches, alone, item.file.parent)) or []:
+            _attempt(said, partial(plan_of, file, args, mission_environment()))
+
+
+def _check_limits(said: CheckedFile, section: Marked) -> None:
+    """Each limit by itself; those that are good are kept together."""
+    good = {}
+    for name, entry in (_attempt(said, section.mapping) or {}).items():
+        if _attempt(said, partial(read_limits, Marked({name: entry}, entry.file, entry.line, entry.field))) is not None:
+            good[name] = entry
+    said.limits = read_limits(Marked(good, section.file, section.line, section.field))
+
+
 def _check_topics(said: CheckedFile, section: Marked) -> None:
     by_id: dict[int, str] = {}
     for name, entry in (_attempt(said, section.mapping) or {}).items():
         topic = _attempt(said, partial(read_topic, name, entry))
         if topic is None:
             continue
+        said.topics[name] = topic
         other = by_id.setdefault(topic.msg_id, topic.name)
         if other != topic.name:
             said.errors.append(entry.fail(f"has the MsgId 0x{topic.msg_id:04X} of {other}; change one of them"))

@@ -18,6 +18,9 @@ from cfepy.mission.tracebacks import described
 from cfepy.resources import shipped
 from cfepy.tbl import TableType
 
+ROS_PACKETS = "rospy_shim.parameter_table"
+"""What the application ROS declares, which is there when there are nodes."""
+
 
 def declared(spec: MissionSpec | None, attributes: Sequence[str], problems: list[str]) -> list[Any]:
     """Everything that the apps and libraries of a mission declare.
@@ -56,12 +59,15 @@ def _codes(spec: MissionSpec | None) -> Iterator[tuple[str, Path | str]]:
     if spec is None:
         for package in sorted(shipped("apps").glob("*/__init__.py")):
             yield package.parent.name, package
+        yield ROS_PACKETS, ROS_PACKETS
         return
-    files = dict.fromkeys(entry.path for entry in entries(spec.script.read_bytes()) if entry.symbol != NODE_SYMBOL)
+    files = dict.fromkeys(entry.path for entry in entries(spec.startup_script) if entry.symbol != NODE_SYMBOL)
     for file in files:
         code = find_code(file, spec.folder)
         if code is not None:
             yield file, code
+    if spec.has_nodes:
+        yield ROS_PACKETS, ROS_PACKETS
 
 
 def _of_app(

@@ -12,7 +12,7 @@ from __future__ import annotations
 import importlib.util
 import inspect
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path, PurePosixPath
 from types import ModuleType
 from typing import Any
@@ -41,7 +41,9 @@ class ModuleLoader:
         folder: the mission's folder.
         console: for what went wrong while a module was executed.
         handle: what an app's main function gets.
-        run_node: runs a ROS node's script under an application's name.
+        node_main: gives the main function of a ROS node, by its script and its application's name.
+        script_of: the script of a node that has it outside the mission's folder, by virtual path.
+        built_in: main functions of applications that have no code on a disk, by virtual path.
     """
 
     def __init__(
@@ -50,18 +52,24 @@ class ModuleLoader:
         folder: Path,
         console: Console,
         handle: Callable[[], Any],
-        run_node: Callable[[Path, str], object],
+        node_main: Callable[[Path, str], Callable[[], object]],
+        script_of: Callable[[str], Path | None] = lambda file: None,
+        built_in: Mapping[str, Callable[[], object]] | None = None,
     ) -> None:
         self._files = files
         self._folder = folder
         self._console = console
         self._handle = handle
-        self._run_node = run_node
+        self._node_main = node_main
+        self._built_in = built_in or {}
+        self._script_of = script_of
         self._names = ModuleNames()
         self._libraries: list[ModuleType] = []
 
     def exists(self, file: str) -> bool:
         """Whether there is code behind a virtual path."""
+        if file in self._built_in or self._script_of(file) is not None:
+            return True
         try:
             return self._unchanged(find_node(file, self._folder)) is not None or self.find(file) is not None
         except OsalError:
@@ -94,9 +102,11 @@ class ModuleLoader:
             OsalError: there is no such file, or executing it failed (the traceback is on the console).
             SymbolError: it has no such function.
         """
+        if file in self._built_in:
+            return self._built_in[file]
         if symbol == NODE_SYMBOL:
             script = self._script(file)
-            return lambda: self._run_node(script, app_name)
+            return self._node_main(script, app_name)
         main = self._function(self.load_module(file, app_name), file, symbol)
         return lambda: main(self._handle())
 
@@ -140,7 +150,7 @@ class ModuleLoader:
         return found
 
     def _script(self, file: str) -> Path:
-        found = find_node(file, self._folder)
+        found = self._script_of(file) or find_node(file, self._folder)
         if found is None:
             raise self._missing(file)
         return found

@@ -61,7 +61,7 @@ def _rows(mission: Mission, senders_of: dict[int, set[str]]) -> list[MidRow]:
     bus = mission.cfe.sb
     names = names_of(mission.spec)
     ros = {row.msg_id: row for row in mission.ros.topics()} if mission.ros is not None else {}
-    nodes = {entry.name for entry in entries(mission.spec.script.read_bytes()) if entry.symbol == NODE_SYMBOL}
+    nodes = {entry.name for entry in entries(mission.spec.startup_script) if entry.symbol == NODE_SYMBOL}
     found = []
     for msg_id in sorted({*bus.routes, *senders_of, *ros}):
         row, route = ros.get(msg_id), bus.routes.get(msg_id)

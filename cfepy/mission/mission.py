@@ -6,7 +6,7 @@ boot on it. Nothing in the parts knows of this module.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -47,7 +47,7 @@ class Mission:
         tasks: "thread" or "greenlet".
         console: where lines go; None prints them.
         policy: who runs next among equals; see `cfepy.rtos.policy`.
-        trace_sink: gets the trace's records in batches.
+        trace: takes the records; None makes one that only keeps the digest.
         bus: the class of the Software Bus, for tools that look on.
 
     Attributes:
@@ -67,16 +67,16 @@ class Mission:
         tasks: str = "thread",
         console: Console | None = None,
         policy: Policy | None = None,
-        trace_sink: Callable[[list[bytes]], None] | None = None,
+        trace: Trace | None = None,
         bus: type[SoftwareBus] = SoftwareBus,
     ) -> None:
         self.spec = mission if isinstance(mission, MissionSpec) else read_mission(mission)
         self.seed = seed
         self.tasks = tasks
         self.board = board if isinstance(board, BoardProfile) else load_profile(board or self.spec.board)
-        self.config = self.board.config()
+        self.config = self.spec.limits.config(self.board, self.spec.has_nodes)
         self.console = console if console is not None else Console()
-        self.trace = Trace(trace_sink)
+        self.trace = Trace() if trace is None else trace
         self.console.record = self.trace.note
         self.record = RunRecord()
         self.files = FileSystem(self.spec.folder)
@@ -117,7 +117,7 @@ class Mission:
 
     def _packages(self) -> Iterator[Path]:
         """The folders of apps and libraries that are packages, in the order of the startup script."""
-        for entry in entries(self.spec.script.read_bytes()):
+        for entry in entries(self.spec.startup_script):
             code = None if entry.symbol == NODE_SYMBOL else find_code(entry.path, self.spec.folder)
             if isinstance(code, Path) and code.name == "__init__.py":
                 yield code.parent
@@ -143,6 +143,11 @@ class Mission:
     def booted(self) -> int | None:
         """Virtual ns at which the mission became OPERATIONAL for the first time, None before."""
         return self._first_boot if self._first_boot is not None else self.processor.booted
+
+    @property
+    def over(self) -> bool:
+        """Whether the run has come to its end by itself: a node ended that the others cannot do without, or all did."""
+        return self.ros is not None and bool(self.ros.monitor.over)
 
     # -- running ---------------------------------------------------------------------------------------------------
 

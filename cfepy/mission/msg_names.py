@@ -24,7 +24,7 @@ CORE_SERVICES = ("ES", "EVS", "SB", "TBL", "TIME")
 def names_of(spec: MissionSpec) -> dict[int, str]:
     """MsgId to name, as far as it can be told without running the mission; core services come first, topics last."""
     names = core_names()
-    for entry in entries(spec.script.read_bytes()):
+    for entry in entries(spec.startup_script):
         if entry.symbol != NODE_SYMBOL:
             for name, msg_id in declared(find_code(entry.path, spec.folder)):
                 names.setdefault(msg_id, _with_prefix(name, entry.name))

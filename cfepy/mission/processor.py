@@ -20,6 +20,7 @@ from cfepy.console import Console
 from cfepy.es import Boot, CoreApp, EsTask, ExecutiveServices, ObjectTable
 from cfepy.evs import EventServices
 from cfepy.fs.services import FileServices
+from cfepy.mission.launch import scripts_of
 from cfepy.mission.loader import ModuleLoader
 from cfepy.mission.record import RunRecord
 from cfepy.mission.spec import MissionSpec
@@ -40,6 +41,8 @@ from cfepy.time import TimeServices
 BOOT_PRIORITY = 0
 EVS_PRIORITY, SB_PRIORITY, ES_PRIORITY, TIME_PRIORITY, TBL_PRIORITY = 61, 64, 68, 60, 70
 CORE_APPS = ("CFE_EVS", "CFE_SB", "CFE_ES", "CFE_TIME", "CFE_TBL")
+ROS_FILE = "/cf/roscore.so"
+"""What stands for the code of ROS's own application (`rospy_shim.parameter_app`)."""
 UNIX_AT_CFE_EPOCH = 315_532_800  # 1980-01-01 in seconds since 1970-01-01
 
 
@@ -89,6 +92,7 @@ class Processor:
         self.ros: Any = None
         self.booted: int | None = None
         self._start_ns = start_ns
+        self._scripts = scripts_of(machine.spec)
         self._build(CpuCosts.of_board(machine.board))
         machine.kernel.spawn("CFE_ES_Main", self._boot, BOOT_PRIORITY)
 
@@ -107,7 +111,13 @@ class Processor:
             on_restart=machine.on_restart,
         )
         self.loader = ModuleLoader(
-            machine.files, machine.spec.folder, machine.console, lambda: self.cfe, self._run_node
+            machine.files,
+            machine.spec.folder,
+            machine.console,
+            lambda: self.cfe,
+            self._node_main,
+            self._script_of,
+            {ROS_FILE: lambda: self.ros.parameters.main()},
         )
         self.osal.modules = self.loader
         self.cfe = self._make_services(costs)
@@ -157,7 +167,7 @@ class Processor:
         if self._start_ns:
             self.machine.kernel.delay(self._start_ns)
         self.psp.boot()
-        Boot(self.cfe.es, self._object_table(), self.machine.spec.script.read_bytes(), self._operational).main()
+        Boot(self.cfe.es, self._object_table(), self.machine.spec.startup_script, self._operational).main()
 
     def _object_table(self) -> ObjectTable:
         """What CFE_ES_Main calls and starts before the startup script (CFE_ES_ObjectTable)."""
@@ -185,7 +195,8 @@ class Processor:
     def _operational(self) -> None:
         self.booted = self.machine.kernel.now
 
-    def _run_node(self, script: Path, app_name: str) -> None:
+    def _node_main(self, script: Path, app_name: str) -> Callable[[], object]:
+        """The main function of a node; ROS itself starts before the first one."""
         machine = self.machine
         if self.ros is None:
             runtime = importlib.import_module("rospy_shim.runtime")
@@ -198,8 +209,15 @@ class Processor:
                 node_call_ns=machine.board.node_call_ns,
                 max_publish_hz=machine.board.max_publish_hz,
                 console=machine.console,
+                network=machine.network,
             )
-        self.ros.run_node(script, app_name)
+        self.ros.parameters.ensure()
+        return lambda: self.ros.run_node(script, app_name)
+
+    def _script_of(self, file: str) -> Path | None:
+        """The script of a node that came with a launch file, or that another node has started."""
+        started: Path | None = None if self.ros is None else self.ros.script_of(file)
+        return self._scripts.get(file) or started
 
     def topics(self) -> list[Any]:
         """The rows of ROS's topics (`rospy_shim.graph.TopicRow`)."""

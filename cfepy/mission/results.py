@@ -276,7 +276,7 @@ def _script_problems(mission: Mission, apps: list[AppResult]) -> list[str]:
     if mission.booted is None:
         return []  # the startup script was not read to its end
     script = mission.spec.script
-    bad = (line for line in parse(script.read_bytes()) if isinstance(line, BadLine))
+    bad = (line for line in parse(mission.spec.startup_script) if isinstance(line, BadLine))
     loaded = {library.name for library in mission.cfe.es.libs}
     return [
         *(f"{script}:{line.line}: {line.explanation}" for line in bad),
@@ -319,4 +319,4 @@ def _libraries(mission: Mission) -> list[Entry]:
 
 
 def _entries(mission: Mission) -> list[Entry]:
-    return entries(mission.spec.script.read_bytes())
+    return entries(mission.spec.startup_script)

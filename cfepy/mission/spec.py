@@ -7,10 +7,15 @@ Errors say file, line and field.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from cfepy.es.startup_script import entries
+from cfepy.mission.launch import with_launch_files
+from cfepy.mission.limits import MissionLimits, read_limits
+from cfepy.mission.loader import NODE_SYMBOL
+from cfepy.mission.parameter_files import read_parameters
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes.config import NodeConfig, RosConfig, TopicConfig
 from cfepy.psp.marked_yaml import Marked, load
@@ -19,7 +24,9 @@ from cfepy.status import UsageError
 
 STARTUP_SCRIPT = "startup.scr"
 MISSION_FILE = "mission.yaml"
-SECTIONS = ("name", "board", "nodes", "topics", "params")
+LOCK_FILE = "topics.lock"
+SECTIONS = ("name", "board", "limits", "nodes", "topics", "params", "params_from", "ordered_sets", "launch")
+NODE_FIELDS = ("name", "namespace", "remap", "params", "params_from", "args", "env", "ordered_sets", "keys")
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +34,9 @@ class MissionSpec:
     """What a mission is made of.
 
     `folder` shows as /cf in the mission; `script` is the startup script; `mission_file` is None when there is none;
-    `board` is the board it is made for: a shipped board's name or a path.
+    `board` is the board it is made for: a shipped board's name or a path; `limits` is what it asks for of a platform.
+    `startup` is the startup script of a mission that was made in memory, where `script` names what it was made from;
+    `notes` are what its user should know before it runs.
     """
 
     name: str
@@ -36,6 +45,19 @@ class MissionSpec:
     mission_file: Path | None
     board: str
     ros: RosConfig
+    limits: MissionLimits = field(default_factory=MissionLimits)
+    startup: bytes | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def startup_script(self) -> bytes:
+        """The startup script's contents: its own, or those of the file `script`."""
+        return self.script.read_bytes() if self.startup is None else self.startup
+
+    @property
+    def has_nodes(self) -> bool:
+        """Whether its startup script starts a ROS node."""
+        return any(entry.symbol == NODE_SYMBOL for entry in entries(self.startup_script))
 
 
 def shipped_missions() -> list[str]:
@@ -79,22 +101,77 @@ def read_mission(mission: str) -> MissionSpec:
     mission_file = next((path for path in (script.with_suffix(".yaml"), folder / MISSION_FILE) if path.is_file()), None)
     name = folder.name if script.name == STARTUP_SCRIPT else script.stem
     if mission_file is None:
-        return MissionSpec(name, folder, script, None, "linux", RosConfig())
-    return _read_file(name, folder, script, mission_file)
+        spec = MissionSpec(name, folder, script, None, "linux", RosConfig())
+    else:
+        spec = _read_file(name, folder, script, mission_file)
+    lock = folder / LOCK_FILE
+    return replace(spec, ros=read_lock(lock, spec.ros)) if lock.is_file() else spec
 
 
 def _read_file(name: str, folder: Path, script: Path, mission_file: Path) -> MissionSpec:
-    root = load(mission_file)
-    entries = root.mapping(SECTIONS)
+    sections = load(mission_file).mapping(SECTIONS)
     ros = RosConfig(
-        nodes=_named(entries.get("nodes"), read_node),
-        topics=_topics(entries.get("topics")),
-        params=_tree(entries.get("params")),
+        nodes=_named(sections.get("nodes"), read_node),
+        topics=_topics(sections.get("topics")),
+        params=read_parameters(sections.get("params"), sections.get("params_from")),
+        ordered_sets=truth(sections["ordered_sets"]) if "ordered_sets" in sections else False,
     )
-    board = entries["board"].text() if "board" in entries else "linux"
+    board = sections["board"].text() if "board" in sections else "linux"
     if (folder / board).is_file():
         board = str(folder / board)
-    return MissionSpec(entries["name"].text() if "name" in entries else name, folder, script, mission_file, board, ros)
+    name = sections["name"].text() if "name" in sections else name
+    spec = MissionSpec(name, folder, script, mission_file, board, ros, read_limits(sections.get("limits")))
+    return with_launch_files(spec, read_launches(sections["launch"], folder)) if "launch" in sections else spec
+
+
+def read_launches(section: Marked, folder: Path) -> list[tuple[Path, Mapping[str, str]]]:
+    """The launch files under `launch:`, each by its path, or as a mapping with its arguments.
+
+    Args:
+        section: the list.
+        folder: the mission's, which their paths start at.
+
+    Raises:
+        UsageError: there is no such file, or an unknown key.
+    """
+    found: list[tuple[Path, Mapping[str, str]]] = []
+    for item in section.items():
+        fields = item.mapping(("file", "args")) if isinstance(item.value, dict) else {"file": item}
+        if "file" not in fields:
+            raise item.fail("needs a file, such as `file: demo.launch`")
+        path = folder / fields["file"].text()
+        if not path.is_file():
+            raise fields["file"].fail(
+                f"is {path}, which is no file; give a launch file's path from the mission's folder"
+            )
+        found.append((path, _texts(fields.get("args"))))
+    return found
+
+
+def read_lock(path: Path, ros: RosConfig) -> RosConfig:
+    """The MsgIds of a lock file, with all else that is said about ROS.
+
+    Args:
+        path: the file; see `cfepy.mission.topics_lock`.
+        ros: what the mission file says.
+
+    Raises:
+        UsageError: it is no such file, or gives a MsgId twice.
+    """
+    sections = load(path).mapping(("topics", "services"))
+    by_id = {topic.msg_id: topic.name for topic in ros.topics.values()}
+    found: dict[str, dict[str, int]] = {"topics": {}, "services": {}}
+    for title, section in sections.items():
+        for name, entry in section.mapping().items():
+            if title == "topics" and name in ros.topics:
+                continue  # the mission file has chosen another since
+            msg_id = entry.integer(1, HIGHEST_VALID_MSG_ID)
+            if msg_id in by_id:
+                text = f"has the MsgId 0x{msg_id:04X} of {by_id[msg_id]}; remove one, and lock the mission again"
+                raise entry.fail(text)
+            by_id[msg_id] = name
+            found[title][name] = msg_id
+    return replace(ros, locked_topics=found["topics"], locked_services=found["services"])
 
 
 def _named(section: Marked | None, read: Any) -> dict[str, Any]:
@@ -113,7 +190,7 @@ def read_node(app: str, entry: Marked) -> NodeConfig:
     Raises:
         UsageError: an unknown key, or a value that cannot be.
     """
-    fields = entry.mapping(["name", "namespace", "remap", "params", "args", "env"])
+    fields = entry.mapping(NODE_FIELDS)
     namespace = fields["namespace"].text() if "namespace" in fields else "/"
     if not namespace.startswith("/"):
         raise fields["namespace"].fail(f'is {namespace!r}; a namespace begins with "/"')
@@ -122,10 +199,21 @@ def read_node(app: str, entry: Marked) -> NodeConfig:
         name=fields["name"].text() if "name" in fields else None,
         namespace=namespace,
         remap=_texts(fields.get("remap")),
-        params=_tree(fields.get("params")),
+        params=read_parameters(fields.get("params"), fields.get("params_from")),
         args=tuple(str(item.value) for item in fields["args"].items()) if "args" in fields else (),
         env=_texts(fields.get("env")),
+        ordered_sets=truth(fields["ordered_sets"]) if "ordered_sets" in fields else None,
+        keys=_keys(fields["keys"]) if "keys" in fields else None,
     )
+
+
+def _keys(entry: Marked) -> tuple[str | float, ...]:
+    """What is typed at a node's terminal."""
+    keys = tuple(item.value for item in entry.items())
+    for item, key in zip(entry.items(), keys, strict=True):
+        if isinstance(key, bool) or not isinstance(key, str | int | float) or (not isinstance(key, str) and key < 0):
+            raise item.fail(f"is {key!r}; write a text that is typed, or a number of seconds to wait")
+    return keys
 
 
 def _topics(section: Marked | None) -> dict[str, TopicConfig]:
@@ -156,15 +244,19 @@ def read_topic(name: str, entry: Marked) -> TopicConfig:
     msg_id = fields["msg_id"].value
     if not isinstance(msg_id, int) or not 0 < msg_id <= HIGHEST_VALID_MSG_ID:
         raise fields["msg_id"].fail(f"is {msg_id!r}; a MsgId is a number from 1 to 0x{HIGHEST_VALID_MSG_ID:X}")
-    raw = fields["raw"].value if "raw" in fields else False
-    if not isinstance(raw, bool):
-        raise fields["raw"].fail(f"is {raw!r}; write true or false")
-    return TopicConfig(name, msg_id, raw)
+    return TopicConfig(name, msg_id, truth(fields["raw"]) if "raw" in fields else False)
+
+
+def truth(entry: Marked) -> bool:
+    """A value that is true or false.
+
+    Raises:
+        UsageError: it is neither.
+    """
+    if not isinstance(entry.value, bool):
+        raise entry.fail(f"is {entry.value!r}; write true or false")
+    return entry.value
 
 
 def _texts(section: Marked | None) -> Mapping[str, str]:
     return {key: str(value.value) for key, value in section.mapping().items()} if section is not None else {}
-
-
-def _tree(section: Marked | None) -> dict[str, Any]:
-    return {key: value.plain() for key, value in section.mapping().items()} if section is not None else {}

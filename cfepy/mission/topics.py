@@ -6,7 +6,6 @@ rospy_shim is loaded by name, and not before a topic's message is read. Imports 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -89,7 +88,7 @@ def surveyed_topics(spec: MissionSpec) -> list[Topic]:
     Raises:
         CfeError: it cannot boot.
     """
-    if all(entry.symbol != NODE_SYMBOL for entry in entries(spec.script.read_bytes())):
+    if all(entry.symbol != NODE_SYMBOL for entry in entries(spec.startup_script)):
         return []
     with Mission(spec, console=Console(quiet=True)) as mission:
         mission.run(LOOK_S)
@@ -98,7 +97,4 @@ def surveyed_topics(spec: MissionSpec) -> list[Topic]:
 
 def topic_id(spec: MissionSpec, name: str) -> int:
     """The MsgId that a topic has or would have in a mission."""
-    pinned: Mapping[str, Any] = spec.ros.topics
-    if name in pinned:
-        return int(pinned[name].msg_id)
-    return int(importlib.import_module("rospy_shim.graph").msg_id_of(name))
+    return int(importlib.import_module("rospy_shim.msg_ids").MsgIds(spec.ros).of_topic(name))

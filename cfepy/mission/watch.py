@@ -29,15 +29,18 @@ class Seen(NamedTuple):
         return self.packet[0] << 8 | self.packet[1]
 
 
-def watching(take: Callable[[Seen], object], wanted: Callable[[int], bool]) -> type[SoftwareBus]:
+def watching(
+    take: Callable[[Seen], object], wanted: Callable[[int], bool], base: type[SoftwareBus] = SoftwareBus
+) -> type[SoftwareBus]:
     """A class of Software Bus for `Mission(bus=...)` that shows what is sent.
 
     Args:
         take: gets each packet before its subscribers do; called inside the simulation, so it must not wait.
         wanted: which MsgIds it gets.
+        base: the class to start from, such as one that is looked at already.
     """
 
-    class WatchedBus(SoftwareBus):
+    class WatchedBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
         """A Software Bus that is looked at."""
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
@@ -49,7 +52,7 @@ def watching(take: Callable[[Seen], object], wanted: Callable[[int], bool]) -> t
             super().transmit_msg(packet, is_origination)
 
         def _is_packet(self, packet: Any) -> bool:
-            return PRIMARY_HEADER_SIZE < len(packet) <= self.config.sb_max_msg_size
+            return bool(PRIMARY_HEADER_SIZE < len(packet) <= self.config.sb_max_msg_size)
 
         def _as_sent(self, packet: bytes | bytearray) -> bytes:
             """With what origination fills in."""

@@ -129,6 +129,10 @@ class Mailbox(Endpoint):
         self._used -= len(datagram.data) + DATAGRAM_OVERHEAD
         return datagram
 
+    def peek(self) -> Datagram:
+        """The oldest datagram, which stays."""
+        return self._inbox[0]
+
 
 class Stream(Endpoint):
     """One end of a connection.
@@ -167,6 +171,10 @@ class Stream(Endpoint):
         if data and self.other is not None:
             self.other.changed()
         return data
+
+    def peek(self, limit: int) -> bytes:
+        """What `read` would return."""
+        return bytes(self._incoming[:limit])
 
     def write(self, data: bytes) -> int | None:
         """Send as many bytes as there is room for; how many, or None when nobody will ever read them."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from cfepy.osal.endpoints import Datagram, Endpoint, Listener, Mailbox, Place
+from cfepy.osal.endpoints import Datagram, Endpoint, Listener, Mailbox, Place, Stream
 
 FIRST_FREE_PORT, LAST_FREE_PORT = 32_768, 60_999  # given to sockets that ask for none
 
@@ -75,12 +75,15 @@ class Network:
         datagrams: who is bound to which UDP port.
         streams: who is bound to which TCP port.
         outlets: called with each datagram that nobody here is bound for: the ways out, such as the ground link.
+        dial: asked for a connection from a place to one where nobody here listens, None when nobody does there either;
+            only a network that is joined to another one has it.
     """
 
     def __init__(self) -> None:
         self.datagrams: Ports[Mailbox] = Ports()
         self.streams: Ports[Listener] = Ports()
         self.outlets: list[Callable[[Datagram], object]] = []
+        self.dial: Callable[[Place, Place], Stream | None] | None = None
 
     def send(self, datagram: Datagram) -> bool:
         """Bring a datagram to who is bound to its target, else to every outlet; whether anybody here took it."""

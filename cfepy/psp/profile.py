@@ -1,7 +1,7 @@
 """The board a mission runs on: processor speed, clock tick, memory, what kernel calls cost, and what limits follow.
 
 A profile is a file, boards/<name>.yaml; a number that is 0 or left out means "no limit" or "costs nothing". Imports
-cfepy.status, cfepy.config and cfepy.resources, and cfepy.psp.marked_yaml.
+cfepy.status, cfepy.ids, cfepy.config and cfepy.resources, and cfepy.psp.marked_yaml.
 """
 
 from __future__ import annotations
@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
-from cfepy.config import MAY_BE_ZERO, PlatformConfig
+from cfepy.config import COUNTED_BY_ID, MAY_BE_ZERO, PlatformConfig
+from cfepy.ids import SERIAL_MAX
 from cfepy.psp.marked_yaml import Marked, load
 from cfepy.resources import shipped
 from cfepy.rtos.units import NS_PER_S
@@ -19,6 +20,8 @@ DEFAULT_NODE_CALL_NS = 1000
 _UNITS = {"B": 1, "KiB": 1024, "MiB": 1024 * 1024}
 MOST_BYTES = 1 << 32  # a board with more needs none of this
 MOST_LIMIT = (1 << 31) - 1
+MOST_OBJECTS = SERIAL_MAX - 1  # a resource id has 16 bits for them
+LIMIT_NAMES = tuple(known.name for known in fields(PlatformConfig))
 
 Limit = int | str | tuple[int, ...]
 """A value of `PlatformConfig`."""
@@ -207,20 +210,28 @@ def _port_range(entry: Marked) -> PortRange:
 
 
 def _limits(entry: Marked) -> dict[str, Limit]:
-    defaults = PlatformConfig()
-    limits: dict[str, Limit] = {}
-    for name, item in entry.mapping([known.name for known in fields(PlatformConfig)]).items():
-        default = getattr(defaults, name)
-        if isinstance(default, str):
-            limits[name] = item.text()
-        elif isinstance(default, bool):
-            limits[name] = item.flag()
-        elif isinstance(default, tuple):
-            limits[name] = tuple(each.integer() for each in item.items())
-        else:
-            lowest = 0 if name in MAY_BE_ZERO else min(1, default)
-            limits[name] = item.integer(lowest, MOST_LIMIT)
-    return limits
+    return {name: read_limit(name, item) for name, item in entry.mapping(LIMIT_NAMES).items()}
+
+
+def read_limit(name: str, entry: Marked) -> Limit:
+    """One value of the platform configuration, as it stands in a file.
+
+    Args:
+        name: a field of `PlatformConfig`.
+        entry: its value.
+
+    Raises:
+        UsageError: it is of another kind, or no number that cFE could be built with.
+    """
+    default = getattr(PlatformConfig(), name)
+    if isinstance(default, str):
+        return entry.text()
+    if isinstance(default, bool):
+        return entry.flag()
+    if isinstance(default, tuple):
+        return tuple(each.integer() for each in entry.items())
+    lowest = 0 if name in MAY_BE_ZERO else min(1, default)
+    return entry.integer(lowest, MOST_OBJECTS if name in COUNTED_BY_ID else MOST_LIMIT)
 
 
 def _memory_costs(entry: Marked) -> MemoryCosts:

@@ -78,8 +78,8 @@ class Kernel(Scheduler):
         self._idents = ident = self._idents + 1
         task = Task(name, ident, entry, priority)
         task.owner = self.current.owner if owner is None else owner
+        self.context.create(task, self._main)  # fails where the host has no more threads
         self.tasks.append(task)
-        self.context.create(task, self._main)
         self.make_ready(task, None)
         return task
 
@@ -93,14 +93,40 @@ class Kernel(Scheduler):
         if task.done:
             return
         task.dying = True
-        task.timer = 0
-        if task.waits is not None:
-            task.waits.remove(task)
-            task.waits = None
+        task.interruption = None
+        self._stop_waiting(task)
         self.ready = [entry for entry in self.ready if entry[2] is not task]
         heapify(self.ready)
         self._finish_in(task)
         self.preempt()  # its end may have made a more urgent task ready
+
+    def interrupt(self, task: Task, error: BaseException) -> None:
+        """Have an exception come out of the call that another task waits in; it goes on from there.
+
+        Args:
+            task: one that has started and has not ended; else nothing happens.
+            error: the exception.
+        """
+        if task.done or task.dying or not task.started:
+            return
+        waiting = self.is_waiting(task)
+        task.dying = True
+        task.interruption = error
+        self._stop_waiting(task)
+        if waiting:
+            self.make_ready(task)
+
+    @staticmethod
+    def is_waiting(task: Task) -> bool:
+        """Whether a task waits for something, a time included."""
+        return task.waits is not None or task.timer != 0
+
+    @staticmethod
+    def _stop_waiting(task: Task) -> None:
+        task.timer = 0
+        if task.waits is not None:
+            task.waits.remove(task)
+            task.waits = None
 
     def exit_task(self) -> None:
         """End the current task."""

@@ -210,7 +210,7 @@ class Scheduler:
             if task.park is not None:
                 task.park()
             if task.dying:
-                raise TaskExit
+                raise _fate(task)
         return task.wake
 
     def make_ready(self, task: Task, value: Any = None) -> None:
@@ -360,7 +360,7 @@ class Scheduler:
         if task.park is not None:
             task.park()
         if task.dying:
-            raise TaskExit
+            raise _fate(task)
 
     def _refuse(self, task: Task) -> None:
         """A dying task, or the host, must not wait."""
@@ -382,3 +382,13 @@ class Scheduler:
         killer.resume()
         while task.park is not None:
             task.park()
+
+
+def _fate(task: Task) -> BaseException:
+    """What comes out of the call that a task waited in: its end, or an interruption that it survives."""
+    interruption = task.interruption
+    if interruption is None:
+        return TaskExit()
+    task.interruption = None
+    task.dying = False
+    return interruption

@@ -63,6 +63,7 @@ class Task:
         "exit_mark",
         "held",
         "ident",
+        "interruption",
         "killer",
         "mark",
         "mutex",
@@ -89,6 +90,7 @@ class Task:
         self.owner: Any = None  # whoever the task works for: an application of ES
         self.resume: Callable[[], Any] = _not_bound
         self.park: Callable[..., Any] | None = None
+        self.interruption: BaseException | None = None  # comes out of the call that it waits in
         self.carrier: Any = None  # what the context runs it on: an OS thread or a greenlet
         self.wake: Any = None  # the value that ended the last wait
         self.timer = 0  # number of the pending timer, 0 when there is none

@@ -18,8 +18,10 @@ import threading  # noqa: F401  # first imported in a task, it would take that t
 import time
 import traceback
 from collections.abc import Callable
+from contextvars import Context
 
 from cfepy.rtos.task import Task
+from cfepy.status import UsageError
 
 STACK_BYTES = 512 * 1024  # 64 KiB crashes in deep C recursion, 256 KiB still gives a clean RecursionError
 FIRST_PATIENCE_S = 0.2  # how long a computing task may take to reach its next kernel call after Ctrl-C
@@ -45,6 +47,12 @@ class _Carrier:
         old = _thread.stack_size(STACK_BYTES)
         try:
             self.ident = _thread.start_new_thread(self._loop, ())
+        except RuntimeError as error:
+            count = len(sys._current_frames())
+            raise UsageError(
+                f"this computer refuses another thread, this process has {count} ({error}): a task is a thread; "
+                "raise the limit (ulimit -u, or the container's limit of pids), or use --tasks greenlet"
+            ) from error
         finally:
             _thread.stack_size(old)
 
@@ -59,7 +67,7 @@ class _Carrier:
                 break
             if _HAS_AFFINITY and self.cpu >= 0:
                 os.sched_setaffinity(0, {self.cpu})
-            following = main(task)
+            following = Context().run(main, task)  # context variables are a thread's own, and die with it
             self.main = self.task = task = main = None
             _idle.append(self)
             following.resume()

@@ -8,6 +8,8 @@ every mission: it makes no object beside the packet and its queue entry, and the
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
+from typing import Any, ClassVar
 
 from cfepy.config import PlatformConfig
 from cfepy.msg import CMD_HEADER_SIZE, compute_checksum
@@ -32,12 +34,18 @@ from cfepy.trace import BATCH
 POLL = 0
 
 SECONDARY_BIT = SECONDARY >> 8
+FIRST_SEGMENT = 0x40  # of the sequence flags in byte 2: a message begins, whole or in segments
 unpack_primary = struct.Struct(">HH").unpack_from
 pack_telemetry = struct.Struct(">HHH6s").pack
 
 
 class SoftwareBus(PipeServices, SubscriptionServices):
-    """One processor's Software Bus; the arguments are those of `BusCore`."""
+    """One processor's Software Bus; the arguments are those of `BusCore`.
+
+    `on_unsent` of a bus that is looked at is shown what senders keep back because nobody would get it: sender, bytes.
+    """
+
+    on_unsent: ClassVar[Callable[[Any, bytes], object] | None] = None
 
     def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, costs: BusCosts | None = None) -> None:
         super().__init__(kernel, ports, config, costs)
@@ -112,9 +120,11 @@ class SoftwareBus(PipeServices, SubscriptionServices):
             items = pipe.items
             waiting = len(items)
             if waiting >= pipe.depth:
-                destination.overflow_drops += 1
-                failures = [*(failures or ()), (ev.Q_FULL_ERR_EID, destination)]
-                continue
+                if not (pipe.keeps_newest and waiting):
+                    destination.overflow_drops += 1
+                    failures = [*(failures or ()), (ev.Q_FULL_ERR_EID, destination)]
+                    continue
+                waiting = self._drop_oldest(pipe)
             self._queued_bytes += weight
             destination.puts = puts + 1
             items.append((packet, destination))
@@ -149,6 +159,20 @@ class SoftwareBus(PipeServices, SubscriptionServices):
             raise self.send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
         route.relayed += 1
         return bytes(packet)
+
+    def _drop_oldest(self, pipe: Pipe) -> int:
+        """Take the oldest message with all of its segments out of a pipe; how many packets still wait there."""
+        items = pipe.items
+        begins = False
+        while items and not begins:
+            packet, destination = items.popleft()
+            self._queued_bytes -= len(packet) + BUFFER_BYTES
+            destination.puts -= 1
+            destination.overflow_drops += 1
+            begins = bool(items) and items[0][0][2] & FIRST_SEGMENT != 0
+        if self._record is not None:
+            self._record(pipe.drop_mark)
+        return len(items)
 
     # -- receiving -------------------------------------------------------------------------------------------------
 

@@ -9,7 +9,8 @@ from cfepy.rtos import Kernel, Queue
 class Pipe(Queue):
     """The queue and who owns it.
 
-    `send_errors` counts what a message limit kept out, as NASA's SendErrors does; `overflows` what did not fit in.
+    `send_errors` counts what a message limit kept out, as NASA's SendErrors does; `overflows` what did not fit in. One
+    that `keeps_newest` makes room for a message by dropping the oldest one, as the queue of a ROS subscriber does.
 
     Args:
         kernel: where its readers wait.
@@ -23,6 +24,7 @@ class Pipe(Queue):
         "app_name",
         "claim",
         "drop_mark",
+        "keeps_newest",
         "opts",
         "overflows",
         "owner",
@@ -38,6 +40,7 @@ class Pipe(Queue):
         self.app_id: int = getattr(owner, "app_id", 0)
         self.app_name: str = getattr(owner, "name", "host")
         self.opts = 0
+        self.keeps_newest = False
         self.send_errors = self.overflows = 0
         self.claim = 0
         self.identify(0)

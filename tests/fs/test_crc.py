@@ -22,3 +22,13 @@ def test_other_kinds_give_zero(kind: int) -> None:
 
 def test_no_data_gives_the_crc_that_came_in() -> None:
     assert fs.calculate_crc(b"", 0x1234, fs.CRC_8) == 0x1234
+
+
+@pytest.mark.parametrize("size", [511, 512, 513, 1000, 4096, 5000])
+def test_long_data_are_what_their_bytes_are_one_by_one(size: int) -> None:
+    data = bytes(number * number % 251 for number in range(size))
+    for before in (0, 0x1234, 0xFFFF):
+        crc = before
+        for at in range(size):
+            crc = fs.crc16(data[at : at + 1], crc)
+        assert fs.crc16(data, before) == fs.crc16(memoryview(bytearray(data)), before) == crc

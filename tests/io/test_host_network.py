@@ -7,7 +7,7 @@ expected is there, and a run that never brings it ends at a virtual time.
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from cfepy.msg import command
 from cfepy.rtos.realtime import Pacer, Stopwatch
 from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
+from cfepy.trace import Trace
 
 LOOPBACK = "127.0.0.1"
 FAST = 500.0  # virtual seconds for a real one
@@ -97,18 +98,18 @@ class Session:
 
 
 @contextmanager
-def session(folder: Path, script: str, ci_port: int = 0) -> Iterator[Session]:
+def session(folder: Path, script: str, ci_port: int = 0, ports: Mapping[int, int] | None = None) -> Iterator[Session]:
     (folder / "startup.scr").write_text(script)
     (folder / "apps.py").write_text(APPS)
     told: list[str] = []
     records: list[bytes] = []
     with (
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground,
-        Mission(str(folder), console=Console(quiet=True), trace_sink=records.extend) as mission,
+        Mission(str(folder), console=Console(quiet=True), trace=Trace(records.extend)) as mission,
     ):
         ground.bind((LOOPBACK, 0))
         ground.setblocking(False)
-        numbers = {1234: ci_port, 7: 0, 1235: ground.getsockname()[1]}
+        numbers = {1234: ci_port, 7: 0, 1235: ground.getsockname()[1], **(ports or {})}
         with HostNetwork(mission, numbers, told.append) as bridge:
             yield Session(mission, told, records, ground, bridge)
 

@@ -4,10 +4,8 @@ real genpy where this machine has it."""
 from __future__ import annotations
 
 import json
-import math
 import subprocess
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -19,48 +17,13 @@ from rospy_shim import genpy
 from rospy_shim.msgs import message_class, shipped
 from rospy_shim.msgs.reference import encode
 from tests.rospy_shim.golden_msgs import build
+from tests.rospy_shim.msgs.values import plain
 
 TYPES = [f"{package}/{name}" for package in shipped().packages() for name in shipped().names(package) or ()]
 ROS_PYTHON = "/usr/bin/python3"
 PEER = Path(__file__).parent / "genpy_peer.py"
 
-_BITS = {"int8": 8, "int16": 16, "int32": 32, "int64": 64, "byte": 8}
-_SECONDS = {"time": (0, 2**32 - 1), "duration": (-(2**31), 2**31 - 1)}
 _SMALL = settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-
-
-@cache
-def plain(field_type: str) -> st.SearchStrategy[Any]:
-    """Plain values (see `build`) of a ROS type."""
-    if field_type.endswith("]"):
-        base, _, length = field_type[:-1].partition("[")
-        size: dict[str, Any] = {"min_size": int(length), "max_size": int(length)} if length else {"max_size": 4}
-        if base in ("uint8", "char"):
-            return st.binary(**size).map(lambda octets: {"__bytes_hex__": octets.hex()})
-        return st.lists(plain(base), **size)
-    if field_type in _SECONDS:
-        low, high = _SECONDS[field_type]
-        return st.fixed_dictionaries({"secs": st.integers(low, high), "nsecs": st.integers(0, 999_999_999)})
-    if "/" in field_type:
-        cls = message_class(field_type)
-        kinds = zip(cls.__slots__, cls._slot_types, strict=True)
-        return st.fixed_dictionaries({name: plain(kind) for name, kind in kinds})
-    return _primitive(field_type)
-
-
-def _primitive(field_type: str) -> st.SearchStrategy[Any]:
-    if field_type == "bool":
-        return st.booleans()
-    if field_type == "string":
-        return st.text(st.characters(exclude_categories=["Cs"]), max_size=12)
-    if field_type.startswith("float"):
-        # JSON carries one NaN only, so the payloads of others would be lost on the way to genpy.
-        numbers = st.floats(width=32 if field_type == "float32" else 64)
-        return numbers.map(lambda number: math.nan if math.isnan(number) else number)
-    if field_type in _BITS:
-        bits = _BITS[field_type]
-        return st.integers(-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
-    return st.integers(0, 2 ** (8 if field_type == "char" else int(field_type[4:])) - 1)
 
 
 typed_values = st.sampled_from(TYPES).flatmap(lambda name: st.tuples(st.just(name), plain(name)))

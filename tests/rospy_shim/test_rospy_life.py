@@ -235,7 +235,7 @@ finally:
     print("finally")
 """
     result = run_nodes(tmp_path, {"PROBE": script}, tasks=tasks)
-    assert result.printed["probe"] == ["enough", "atexit", "hook", "finally"]
+    assert result.printed["probe"] == ["finally", "enough", "atexit", "hook"]
     assert result.finished
 
 
@@ -358,3 +358,18 @@ print(message[0].data, message[1] == rospy.Time(5), repr(message[2]))
 """,
     )
     assert lines == ["True True True", "True True True", "x True rospy.Duration[1000000000]"]
+
+
+def test_the_end_of_the_run_interrupts_a_node_that_keeps_its_signals(tmp_path: Path) -> None:
+    script = """
+import rospy, time
+rospy.init_node("probe", disable_signals=True)
+rospy.on_shutdown(lambda: print("hook"))
+try:
+    while True:
+        time.sleep(0.3)
+except KeyboardInterrupt:
+    print("interrupted", rospy.is_shutdown())
+"""
+    result = run_nodes(tmp_path, {"PROBE": script})
+    assert result.printed["probe"] == ["interrupted False", "hook"]

@@ -84,3 +84,63 @@ rospy.sleep(0.1)
 """,
     )
     assert lines == ["[WARN]: heard 1", "/probe 4 heard 1 probe.py ['/rosout']"]
+
+
+def test_console_format(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+import os
+os.environ["ROSCONSOLE_FORMAT"] = "${severity}|${message}|${node}|${logger}|${function}|${line}|${time:%Y}|${other}"
+rospy.init_node("probe")
+class Arm:
+    def move(self):
+        rospy.logwarn("slow", logger_name="arm")
+Arm().move()
+""",
+    )
+    assert lines == ["WARN|slow|/probe|rosout.arm|Arm.move|8|1980|${other}"]
+
+
+def test_root_logger_belongs_to_the_log_file(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        f"""
+import os
+logging.basicConfig(level=logging.DEBUG)
+os.environ["ROS_LOG_DIR"] = {str(tmp_path / "log")!r}
+rospy.init_node("probe")
+logging.getLogger("mine").warning("not on the console")
+try:
+    1 / 0
+except ZeroDivisionError:
+    rospy.logerr("caught", exc_info=True)
+print(open({str(tmp_path / "log" / "probe.log")!r}).read().count("ZeroDivisionError"))
+""",
+    )
+    assert lines[0] == "[ERROR]: caught"
+    assert lines[-2:] == ["ZeroDivisionError: division by zero", "1"]
+    assert not any("not on the console" in line for line in lines)
+    assert "[mine][WARNING] " in (tmp_path / "log" / "probe.log").read_text()
+
+
+def test_logger_services_cost_nothing_before_they_are_called(tmp_path: Path) -> None:
+    other = """
+import rospy
+from rospy.logger_level_service_caller import LoggerLevelServiceCaller
+rospy.init_node("other")
+rospy.sleep(0.5)
+caller = LoggerLevelServiceCaller()
+print(caller.get_node_names(), "rosout" in caller.get_loggers("probe"))
+print(caller.send_logger_change_message("probe", "rosout", "debug"), caller.get_levels()[0])
+"""
+    node = """
+import rospy
+rospy.init_node("probe")
+rospy.logdebug("hidden")
+rospy.sleep(1.0)
+rospy.logdebug("shown")
+"""
+    result = run_nodes(tmp_path, {"PROBE": node, "OTHER": other})
+    assert result.printed["other"] == ["['/other', '/probe'] True", "True debug"]
+    assert [line.partition("]: ")[2] for line in result.printed["probe"]] == ["shown"]

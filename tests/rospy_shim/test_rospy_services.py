@@ -136,15 +136,55 @@ print(errors)
     assert lines[-1] == "['ZeroDivisionError']"
 
 
-def test_what_does_not_fit_in_a_packet(tmp_path: Path) -> None:
+def test_long_requests_and_responses(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
         """
-rospy.Service("big", Trigger, lambda r: (True, "x" * 100_000))
-attempt(rospy.ServiceProxy("big", Trigger))
+from diagnostic_msgs.srv import AddDiagnostics
+rospy.Service("big", AddDiagnostics, lambda r: (True, r.load_namespace + "!"))
+for size in (32_000, 32_760, 100_000, 3_000_000):
+    answer = rospy.ServiceProxy("big", AddDiagnostics)("x" * size).message
+    print(len(answer) - size, set(answer[:-1]), answer[-1])
 """,
     )
-    assert lines == [
-        "ServiceException service [/big] responded with an error:"
-        " b'service response of 100005 bytes: a packet has room for 32747'"
-    ]
+    assert lines == ["1 {'x'} !"] * 4
+
+
+def test_handlers_run_side_by_side(tmp_path: Path) -> None:
+    """A handler that waits for another call of the same service, and one that is called out of itself."""
+    lines = run(
+        tmp_path,
+        """
+import threading
+arrived = threading.Barrier(3)
+def meet(request):
+    return True, str(arrived.wait(5) >= 0)
+rospy.Service("meet", Trigger, meet)
+answers = []
+call = lambda: answers.append(rospy.ServiceProxy("meet", Trigger)().message)
+callers = [threading.Thread(target=call) for _ in "abc"]
+[each.start() for each in callers]
+[each.join() for each in callers]
+print(answers)
+depth = []
+def again(request):
+    depth.append(1)
+    return True, str(len(depth)) if len(depth) > 3 else rospy.ServiceProxy("again", Trigger)().message
+rospy.Service("again", Trigger, again)
+print(rospy.ServiceProxy("again", Trigger)().message)
+""",
+    )
+    assert lines == ["['True', 'True', 'True']", "4"]
+
+
+def test_headers_of_a_request(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+rospy.Service("head", Trigger, lambda r: (True, str(sorted(r._connection_header.items()))))
+print(rospy.ServiceProxy("head", Trigger, persistent=True, headers={"who": "me"})().message)
+""",
+    )
+    assert "('persistent', '1')" in lines[0]
+    assert "('who', 'me')" in lines[0]
+    assert "('callerid', '/probe')" in lines[0]

@@ -33,6 +33,70 @@ def test_a_killed_task_unwinds_before_kill_returns(kernel: Kernel, log: Log) -> 
     assert kernel.now == 5
 
 
+def test_an_interrupted_task_goes_on(kernel: Kernel, log: Log) -> None:
+    def sleeper() -> None:
+        try:
+            kernel.delay(1000)
+        except KeyError as error:
+            log(f"{error} at {kernel.now}")
+        kernel.delay(10)
+        log(f"done at {kernel.now}")
+
+    task = kernel.spawn("sleeper", sleeper)
+    kernel.spawn("other", lambda: (kernel.delay(5), kernel.interrupt(task, KeyError(1)), log("interrupted")))
+    kernel.run()
+    assert log == ["interrupted", "1 at 5", "done at 15"]
+
+
+def test_an_interrupted_wait_leaves_its_list(kernel: Kernel, log: Log) -> None:
+    waits = WaitList("something")
+
+    def waiter() -> None:
+        with pytest.raises(KeyError):
+            kernel.wait_on(waits)
+        log(f"{len(waits)} waiting")
+
+    task = kernel.spawn("waiter", waiter)
+    kernel.spawn("other", lambda: (kernel.interrupt(task, KeyError()), kernel.wake_first(waits)))
+    kernel.run()
+    assert log == ["0 waiting"]
+
+
+def test_a_preempted_task_can_be_interrupted(kernel: Kernel, log: Log) -> None:
+    def urgent() -> None:
+        kernel.delay(3)
+        assert not kernel.is_waiting(task)
+        kernel.interrupt(task, KeyError())
+
+    def work() -> None:
+        while kernel.now < 100:
+            kernel.charge(1)
+
+    def worker() -> None:
+        with pytest.raises(KeyError):
+            work()
+        log(f"at {kernel.now}")
+
+    task = kernel.spawn("worker", worker, 100)
+    kernel.spawn("urgent", urgent, 50)
+    kernel.run()
+    assert log == ["at 3"]
+
+
+def test_death_comes_before_an_interruption(kernel: Kernel, log: Log) -> None:
+    def victim() -> None:
+        try:
+            kernel.delay(10)
+        except KeyError:
+            log("interrupted")
+
+    task = kernel.spawn("victim", victim, 100)
+    kernel.spawn("killer", lambda: (kernel.delay(1), kernel.interrupt(task, KeyError()), kernel.kill(task)), 50)
+    kernel.run()
+    assert log == []
+    assert task.done
+
+
 def test_a_task_killed_before_it_began_never_runs(kernel: Kernel, log: Log) -> None:
     task = kernel.spawn("victim", log.writer("ran"))
     kernel.kill(task)

@@ -1,0 +1,148 @@
+"""Looking on at the ROS topics of a mission: every message, with who sent it and when.
+
+It looks on at the Software Bus, so it changes nothing: the run has the trace of one that nobody watches. It sees
+packets that cFE applications send to a topic's MsgId as well, and messages that nobody gets. rospy_shim is loaded by
+name.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Sequence
+from fnmatch import fnmatchcase
+from typing import Any
+
+from cfepy.mission.mission import Mission
+from cfepy.mission.watch import Seen, watching
+from cfepy.msg import TLM_HEADER_SIZE, SegmentationFlag, get_segmentation_flag
+from cfepy.rtos.units import NS_PER_S
+from cfepy.sb import SoftwareBus
+
+RAW_TYPE = "std_msgs/UInt8MultiArray"
+CLOCK_BYTES = 8
+
+
+class Message:
+    """A message on a topic.
+
+    Attributes:
+        topic: resolved name.
+        header: the connection header of its publisher.
+        data: as ROS serialises it.
+        at_ns: virtual time of its sending.
+        stamp_ns: ROS time of its sending: that of the spacecraft's clock, or of /clock when nodes use simulated time;
+            None as long as that has not begun.
+    """
+
+    __slots__ = ("at_ns", "data", "header", "stamp_ns", "topic")
+
+    def __init__(self, topic: str, header: dict[str, str], data: bytes, at_ns: int, stamp_ns: int | None) -> None:
+        self.topic, self.header, self.data = topic, header, data
+        self.at_ns, self.stamp_ns = at_ns, stamp_ns
+
+
+class TopicWatch:
+    """Looks on at the topics of a mission. Make it, make the mission with `bus`, `begin`, run.
+
+    Args:
+        take: gets each message when it is sent; called inside the simulation, so it must not wait.
+        patterns: names of topics, such as "/odom" or "/arm/*"; all when there are none.
+        base: the class of Software Bus to start from.
+
+    Attributes:
+        bus: the class of Software Bus that the mission needs.
+    """
+
+    def __init__(
+        self, take: Callable[[Message], object], patterns: Sequence[str] = (), base: type[SoftwareBus] = SoftwareBus
+    ) -> None:
+        self._take = take
+        self._patterns = tuple(patterns)
+        self._topics: dict[int, Any] = {}
+        self._known: tuple[Any, int] = (None, 0)
+        self._parts: dict[tuple[int, str], list[bytes]] = {}
+        self._clock_ns: int | None = None
+        self._mission: Mission | None = None
+        watched = watching(self._take_packet, self._is_wanted, base)
+        self.bus: type[SoftwareBus] = type("TopicBus", (watched,), {"on_unsent": staticmethod(self._take_unsent)})
+
+    def begin(self, mission: Mission) -> None:
+        """Take the mission that was made with `bus`, before it runs."""
+        self._mission = mission
+
+    # -- what is seen --------------------------------------------------------------------------------------------------
+
+    def _graph(self) -> Any:
+        ros = None if self._mission is None else self._mission.ros
+        return None if ros is None else ros.graph
+
+    def _topic(self, msg_id: int) -> Any:
+        """The topic of a MsgId, None when it is no topic's."""
+        graph = self._graph()
+        if graph is None:
+            return None
+        if self._known != (graph, len(graph.topics)):
+            self._known = (graph, len(graph.topics))
+            self._topics = {topic.msg_id: topic for topic in graph.topics.values()}
+        return self._topics.get(msg_id)
+
+    def _is_wanted(self, msg_id: int) -> bool:
+        topic = self._topic(msg_id)
+        return topic is not None and (topic.name == "/clock" or matches(topic.name, self._patterns))
+
+    def _take_packet(self, seen: Seen) -> None:
+        topic = self._topic(seen.msg_id)
+        data = seen.packet if topic.raw else self._whole(seen)
+        if data is not None:
+            header = next((link.header for link in topic.links if link.node.config.app == seen.sender), None)
+            self._show(topic, header or _header_of(topic, seen.sender), data, seen.at_ns)
+
+    def _whole(self, seen: Seen) -> bytes | None:
+        """The message in a packet, or the one that ends with it; None when there is more to come."""
+        flag, key = get_segmentation_flag(seen.packet), (seen.msg_id, seen.sender)
+        payload = seen.packet[TLM_HEADER_SIZE:]
+        if flag == SegmentationFlag.UNSEGMENTED:
+            return payload
+        parts = self._parts.setdefault(key, [])
+        if flag == SegmentationFlag.FIRST:
+            parts.clear()
+        parts.append(payload)
+        return b"".join(self._parts.pop(key)) if flag == SegmentationFlag.LAST else None
+
+    def _take_unsent(self, link: Any, data: bytes) -> None:
+        if self._is_wanted(link.msg_id):
+            self._show(link.topic, link.header, data, link.node.kernel.now)
+
+    def _show(self, topic: Any, header: dict[str, str], data: bytes, at_ns: int) -> None:
+        if topic.raw:
+            header, data = _as_bytes_message(header, data)
+        if topic.name == "/clock" and len(data) == CLOCK_BYTES:
+            self._clock_ns = int.from_bytes(data[:4], "little") * NS_PER_S + int.from_bytes(data[4:], "little")
+        if matches(topic.name, self._patterns) and "md5sum" in header:
+            self._take(Message(topic.name, dict(header), data, at_ns, self._stamp(at_ns)))
+
+    def _stamp(self, at_ns: int) -> int | None:
+        assert self._mission is not None
+        if self._mission.spec.ros.params.get("use_sim_time") is True:
+            return self._clock_ns
+        return self._mission.processor.machine.epoch_ns + at_ns
+
+
+def matches(topic: str, patterns: Sequence[str]) -> bool:
+    """Whether a topic is one of those that are meant; see `TopicWatch`."""
+    return not patterns or any(fnmatchcase(topic, pattern) for pattern in patterns)
+
+
+def _header_of(topic: Any, sender: str) -> dict[str, str]:
+    """A connection header for a cFE application that sends to a topic; empty as long as nobody knows its type."""
+    if not topic.md5sum:
+        return {}
+    about = {"md5sum": topic.md5sum, "message_definition": topic.definition, "topic": topic.name, "type": topic.type}
+    return {"callerid": f"/{sender}", "latching": "0", **about}
+
+
+def _as_bytes_message(header: dict[str, str], packet: bytes) -> tuple[dict[str, str], bytes]:
+    """A raw topic: nodes get the whole packet as the data of a message; so does the bag."""
+    kind = importlib.import_module("rospy_shim.msgs").message_class(RAW_TYPE)
+    about = {"type": RAW_TYPE, "md5sum": kind._md5sum, "message_definition": kind._full_text}
+    return {**header, **about}, kind(data=packet)._pack()

@@ -1,0 +1,139 @@
+"""`cfepy run --check-determinism`: what is found, what is said about it, and the exit status."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from tests.mission.flights import write_mission
+
+STARTUP = """
+    CFE_APP, talker.py, __main__, TALKER, 100, 16384, 0x0, 0;
+    CFE_APP, listener.py, __main__, LISTENER, 90, 16384, 0x0, 0;
+    !
+"""
+TALKER = """
+import rospy
+from std_msgs.msg import String
+
+rospy.init_node("talker")
+pub = rospy.Publisher("chat", String, queue_size=10)
+names = {{"alpha", "beta", "gamma", "delta", "epsilon", "zeta"}}
+for _ in range(3):
+    rospy.sleep(0.1)
+    for name in {names}:
+        pub.publish(String(name))
+"""
+LISTENER = """
+import rospy
+from std_msgs.msg import String
+
+rospy.init_node("listener")
+rospy.Subscriber("chat", String, lambda message: None)
+rospy.spin()
+"""
+
+
+def check(folder: str, *options: str) -> int:
+    return main(["run", folder, "--for", "3", "--check-determinism", *options])
+
+
+def test_a_deterministic_mission(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = write_mission(tmp_path, STARTUP, talker=TALKER.format(names="sorted(names)"), listener=LISTENER)
+    assert check(folder) == 0
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[0].startswith("3 runs: PYTHONHASHSEED=0 --tasks thread; PYTHONHASHSEED=1 --tasks greenlet; ")
+    assert main(["run", folder, "--for", "3", "--quiet"]) == 0
+    assert shown[-1] == capsys.readouterr().out.splitlines()[-1]  # the trace is that of an ordinary run
+
+
+def test_the_order_of_a_set(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = write_mission(tmp_path, STARTUP, talker=TALKER.format(names="names"), listener=LISTENER)
+    assert check(folder, "4") == 1
+    shown = capsys.readouterr().out
+    line = f"{tmp_path / 'talker.py'}:11"
+    assert shown.count(f"  made at {line} in <module>\n      pub.publish(String(name))\n") == 2
+    assert shown.count("/chat sequence 1 length") == 2
+    assert "with `ordered_sets: true` in the mission file these two agree" in shown
+    assert f"{tmp_path / 'talker.py'}:10: goes through a set: for name in names:" in shown
+
+
+@pytest.mark.parametrize(
+    "mission_yaml", ["ordered_sets: true\n", "ordered_sets: false\nnodes: {TALKER: {ordered_sets: true}}\n"]
+)
+def test_ordered_sets_in_the_mission_file(tmp_path: Path, mission_yaml: str) -> None:
+    folder = write_mission(
+        tmp_path, STARTUP, talker=TALKER.format(names="names"), listener=LISTENER, mission_yaml=mission_yaml
+    )
+    assert check(folder, "4") == 0
+
+
+@pytest.mark.parametrize(
+    ("expression", "cause"),
+    [
+        ("id(pub)", "even two runs alike differ"),
+        ("hash('text')", "it hangs on PYTHONHASHSEED, but ordered sets do not cure it"),
+    ],
+)
+def test_other_causes(tmp_path: Path, capsys: pytest.CaptureFixture[str], expression: str, cause: str) -> None:
+    program = f"""
+    import time
+    pub = [object()]
+    time.sleep(0.1)
+    print({expression})
+    """
+    folder = write_mission(tmp_path, STARTUP, talker=program, listener=LISTENER)
+    assert check(folder, "2") == 1
+    shown = capsys.readouterr().out
+    assert cause in shown
+    assert f"{tmp_path / 'talker.py'}:5: uses " in shown
+
+
+def test_an_application(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    program = """
+    def Main(cfe):
+        cfe.evs.register()
+        for name in {"alpha", "beta", "gamma", "delta"}:
+            cfe.evs.send_info(1, name)
+    """
+    folder = write_mission(tmp_path, "CFE_APP, app, Main, APP, 50, 16384, 0x0, 0;\n!\n", app=program)
+    assert check(folder, "4") == 1
+    assert f"made at {tmp_path / 'app.py'}:5 in Main" in capsys.readouterr().out
+
+
+def test_with_a_script_a_board_and_a_schedule(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    script = tmp_path / "flight.txt"
+    script.write_text("at 3 end\n")
+    arguments = ["run", "lab", "--check-determinism", "2", "--script", str(script), "--board", "rx64m", "--seed", "5"]
+    assert main([*arguments, "--schedule", "random"]) == 0
+    assert "all made the same " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--json", "x"], "--json: does not go with --check-determinism"),
+        (["--realtime"], "--realtime: does not go with --check-determinism"),
+        (["--board", "none"], "none"),
+    ],
+)
+def test_bad_usage(tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], said: str) -> None:
+    folder = write_mission(tmp_path, "!\n")
+    assert main(["run", folder, "--check-determinism", "2", *options]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_ordered_sets_are_true_or_false(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = write_mission(tmp_path, "!\n", mission_yaml="ordered_sets: 3\nnodes: {A: {ordered_sets: maybe}}\n")
+    assert main(["check", folder]) == 1
+    shown = "".join(capsys.readouterr())
+    assert "mission.yaml:1: ordered_sets: is 3; write true or false" in shown
+    assert "mission.yaml:2: nodes.A.ordered_sets: is 'maybe'; write true or false" in shown
+
+
+def test_impossible_numbers_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["run", "lab", "--check-determinism", "1"])
+    assert "'1' is not a number of runs; give 2 to 64" in capsys.readouterr().err

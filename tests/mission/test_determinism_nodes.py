@@ -1,0 +1,54 @@
+"""Nodes that use whatever of Python could tell one run from another: one trace, whatever runs them."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from cfepy.console import Console
+from cfepy.mission import Mission
+
+NODES = Path(__file__).parent / "busy_nodes"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> str:
+    names = sorted(path.stem for path in NODES.glob("*.py"))
+    for name in names:
+        shutil.copy(NODES / f"{name}.py", tmp_path)
+    startup = "".join(f"CFE_APP, {name}.py, __main__, {name.upper()}, 100, 16384, 0x0, 0;\n" for name in names)
+    (tmp_path / "startup.scr").write_text(startup + "!\n")
+    return str(tmp_path)
+
+
+def check(folder: str, runs: int, *options: str) -> int:
+    return main(["run", folder, "--for", "26", "--check-determinism", str(runs), *options])
+
+
+def test_all_nodes_come_to_their_end(folder: str) -> None:
+    with Mission(folder, console=Console(quiet=True)) as mission:
+        mission.run(26)
+        mission.shut_down_nodes()
+        printed = [line for line in mission.console.lines if line.startswith("[")]
+        assert mission.record.resets == []
+        assert not [line for line in mission.console.lines if "Traceback" in line or "died" in line]
+    last = {line.partition("]")[0][1:]: line.partition("] ")[2] for line in printed}
+    assert last["workers"] == "True 1"
+    assert last["loop"] == "[None, None, None]"
+    assert last["robot"] == "over 9"
+    assert last["clocks"].startswith("['clocks.py', 'loop.py', 'robot.py', 'startup.scr', 'workers.py']")
+
+
+def test_a_few_runs(folder: str) -> None:
+    assert check(folder, 3) == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("runs", "options"), [(20, []), (6, ["--schedule", "random", "--seed", "9"]), (6, ["--board", "rx64m"])]
+)
+def test_many_runs(folder: str, runs: int, options: list[str]) -> None:
+    assert check(folder, runs, *options) == 0

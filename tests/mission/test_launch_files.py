@@ -1,0 +1,100 @@
+"""Launch files in a mission: their nodes beside those of the startup script, parameters merged, errors with places."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.mission import read_mission
+from cfepy.mission.check import check_mission
+from cfepy.mission.launch import spec_of
+from cfepy.mission.mission import Mission
+from cfepy.nodes.config import NodeConfig
+from cfepy.status import UsageError
+
+SAY = "import rospy\nrospy.init_node('say')\nprint(rospy.get_name(), rospy.get_param('/shared', None))\n"
+LAUNCH = """
+    <launch>
+      <arg name="who" default="nobody"/>
+      <param name="shared" value="of the launch file"/>
+      <param name="only/here" value="1"/>
+      <node pkg="pack" type="say.py" name="$(arg who)"/>
+      <node pkg="pack" type="say.py" name="own"/>
+      <node pkg="pack" type="binary" name="left_out"/>
+    </launch>
+    """
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A mission of one node, OWN, with a package `pack` beside it."""
+    pack = tmp_path / "pack"
+    pack.mkdir()
+    (pack / "package.xml").write_text("<package><name>pack</name></package>")
+    (pack / "say.py").write_text(SAY)
+    (pack / "nodes.launch").write_text(textwrap.dedent(LAUNCH))
+    (tmp_path / "own.py").write_text(SAY)
+    (tmp_path / "startup.scr").write_text("CFE_APP, own, __main__, OWN, 100, 16384, 0x0, 0;\n!\n")
+    return tmp_path
+
+
+def fly(folder: Path) -> list[str]:
+    console = Console(quiet=True)
+    with Mission(str(folder), console=console) as mission:
+        mission.run(2)
+        assert not mission.over
+    return [line for line in console.lines if line.startswith("[")]
+
+
+def test_nodes_of_a_launch_file_run_beside_the_missions_own(folder: Path) -> None:
+    (folder / "mission.yaml").write_text("launch: [{file: pack/nodes.launch, args: {who: somebody}}]\n")
+    assert fly(folder) == [
+        "[say] /say of the launch file",
+        "[somebody] /somebody of the launch file",
+        "[own] /own of the launch file",
+    ]
+
+
+def test_the_mission_file_has_the_last_word(folder: Path) -> None:
+    (folder / "mission.yaml").write_text("launch: [pack/nodes.launch]\nparams: {shared: mine, only: {too: 2}}\n")
+    spec = read_mission(str(folder))
+    assert spec.ros.params["shared"] == "mine"
+    assert spec.ros.params["only"] == {"here": 1, "too": 2}
+    assert list(spec.ros.nodes) == ["NOBODY", "OWN2"]
+    assert spec.startup_script.startswith(
+        b"CFE_APP, own, __main__, OWN, 100, 16384, 0x0, 0;\nCFE_APP, NOBODY, __main__,"
+    )
+    (note,) = spec.notes
+    assert "node /left_out is left out" in note
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("launch: [none.launch]", "mission.yaml:1: launch[0]: is {folder}/none.launch, which is no file"),
+        ("launch: [{args: {a: 1}}]", "mission.yaml:1: launch[0]: needs a file"),
+        ("launch: [{file: a, arg: {}}]", "mission.yaml:1: launch[0].arg: is not known here"),
+        ("launch: [bad.launch]", "bad.launch:1: <node>: has no 'pkg'"),
+    ],
+)
+def test_errors_have_a_place(folder: Path, text: str, said: str) -> None:
+    (folder / "mission.yaml").write_text(text)
+    (folder / "bad.launch").write_text('<launch><node name="n" type="t"/></launch>')
+    with pytest.raises(UsageError) as raised:
+        read_mission(str(folder))
+    assert said.format(folder=folder) in str(raised.value)
+    (found,) = check_mission(str(folder))
+    assert found.text in str(raised.value)
+
+
+def test_a_mission_in_memory_has_room_for_its_nodes(tmp_path: Path) -> None:
+    script = tmp_path / "idle.py"
+    script.write_text("import rospy\nrospy.init_node('idle', anonymous=True)\nrospy.spin()\n")
+    nodes = {f"N{number}": NodeConfig(f"N{number}", script=script) for number in range(40)}
+    with Mission(spec_of(script, nodes, {}), console=Console(quiet=True)) as mission:
+        mission.run(2)
+        assert len(mission.ros.graph.nodes) == 40
+    assert not list(tmp_path.glob("*.scr"))

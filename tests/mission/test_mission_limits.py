@@ -1,0 +1,86 @@
+"""`limits:` of a mission file: what it raises and lowers, what a board forbids, and room for many nodes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.config import PlatformConfig
+from cfepy.console import Console
+from cfepy.mission import Mission, read_mission
+from cfepy.mission.check import check_mission
+from cfepy.mission.limits import PARAMETER_ROOM, MissionLimits, limits_for
+from cfepy.psp.profile import load_profile
+from cfepy.status import UsageError
+from tests.mission.flights import write_mission
+
+LINUX, RX64M = load_profile("linux"), load_profile("rx64m")
+
+
+def test_without_limits_a_mission_has_nasas_numbers() -> None:
+    assert MissionLimits().config(LINUX, has_nodes=False) == PlatformConfig()
+    assert MissionLimits().config(RX64M, has_nodes=True) == RX64M.config()
+
+
+def test_nodes_bring_room_for_their_parameters_where_ram_is_unlimited() -> None:
+    assert MissionLimits().config(LINUX, has_nodes=True) == PlatformConfig().with_limits(PARAMETER_ROOM)
+
+
+def test_a_mission_raises_and_lowers() -> None:
+    config = MissionLimits({"os_max_tasks": 300, "sb_max_pipes": 10}).config(LINUX, has_nodes=False)
+    assert (config.os_max_tasks, config.sb_max_pipes, config.os_max_queues) == (300, 10, 64)
+
+
+def test_a_board_is_the_most_that_there_is() -> None:
+    assert MissionLimits({"os_max_tasks": 20}).config(RX64M, has_nodes=True).os_max_tasks == 20
+    with pytest.raises(UsageError, match=r"limits.os_max_tasks: is 33, the board rx64m has 32; lower it"):
+        MissionLimits({"os_max_tasks": 33}).config(RX64M, has_nodes=True)
+    with pytest.raises(UsageError, match=r"limits.nodes: is 5, which takes es_max_applications: 38; the board"):
+        MissionLimits(nodes=5).config(RX64M, has_nodes=True)
+
+
+@pytest.mark.parametrize("nodes", [1, 50, 500, 4000])
+def test_any_number_of_nodes_has_room(nodes: int) -> None:
+    config = MissionLimits(nodes=nodes).config(LINUX, has_nodes=True)
+    assert config.es_max_applications - 6 >= nodes
+    assert config.os_max_tasks >= 8 * nodes
+    assert all(value < 0xFFFF for name, value in limits_for(nodes).items() if name != "sb_buf_memory_bytes")
+
+
+def test_fifty_nodes_fly_with_one_line_in_the_mission_file(tmp_path: Path) -> None:
+    startup = "".join(f"CFE_APP, n, __main__, N{number}, 100, 4096, 0, 0;\n" for number in range(50))
+    node = """
+        import os, rospy
+        from std_msgs.msg import String
+        rospy.init_node("n", anonymous=True)
+        rospy.Subscriber("all", String, lambda message: None)
+        publisher = rospy.Publisher("all", String, queue_size=1)
+        rospy.spin()
+        """
+    mission = write_mission(tmp_path, startup + "!\n", n=node, mission_yaml="limits: {nodes: 50}\n")
+    assert check_mission(mission) == []
+    with Mission(mission, console=Console(quiet=True)) as flight:
+        flight.run(1)
+        assert len(flight.ros.graph.nodes) == 50
+        assert len(flight.ros.graph.topics["/all"].subscriptions) == 50
+
+
+def test_check_says_which_line_asks_for_too_much_and_which_limit_to_raise(tmp_path: Path) -> None:
+    startup = "".join(f"CFE_APP, n, __main__, N{number}, 100, 4096, 0, 0;\n" for number in range(27)) + "!\n"
+    mission = write_mission(tmp_path, startup, n="import rospy\n")
+    assert [(found.line, found.text) for found in check_mission(mission)] == [
+        (27, "N26 is one application too many, linux takes 26; start fewer, or raise limits.es_max_applications in "
+         "the mission file")
+    ]  # fmt: skip
+    (tmp_path / "mission.yaml").write_text("limits:\n  os_max_tasks: 40\n  os_max_pipes: 3\n  sb_max_pipes: 70000\n")
+    texts = [f"{found.line}: {found.text}" for found in check_mission(mission, "rx64m")]
+    assert any(text.startswith("3: limits.os_max_pipes: is not known here") for text in texts), texts
+    assert "4: limits.sb_max_pipes: is 70000, it must be at most 65534" in texts
+    assert "2: limits.os_max_tasks: is 40, the board rx64m has 32; lower it, or take another board" in texts
+
+
+def test_a_wrong_limit_stops_a_run_with_file_and_line(tmp_path: Path) -> None:
+    mission = write_mission(tmp_path, "!\n", mission_yaml="board: rx64m\nlimits:\n  sb_max_pipes: 99\n")
+    with pytest.raises(UsageError, match=r"mission.yaml:3: limits.sb_max_pipes: is 99, the board rx64m has 32"):
+        Mission(read_mission(mission), console=Console(quiet=True))

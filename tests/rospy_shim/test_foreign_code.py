@@ -1,0 +1,77 @@
+"""Where a node finds code not its own: PYTHONPATH, packages on ROS_PACKAGE_PATH, stand-ins for what is missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cfepy.nodes.config import NodeConfig
+from tests.rospy_shim.missions import run_nodes
+
+SETUP = """from distutils.core import setup
+from catkin_pkg.python_setup import generate_distutils_setup
+setup(**generate_distutils_setup(packages=['arm'], package_dir={'': 'python'}))
+"""
+
+
+def printed(folder: Path, script: str, **env: str) -> list[str]:
+    """What one node printed."""
+    (folder / "mission").mkdir()
+    config = NodeConfig("NODE", env=env)
+    return run_nodes(folder / "mission", {"NODE": script}, nodes={"NODE": config}).printed["NODE"]
+
+
+def test_folders_of_pythonpath_come_after_the_scripts_own(tmp_path: Path) -> None:
+    (tmp_path / "one").mkdir()
+    (tmp_path / "one" / "helper.py").write_text("import time\nwhere, now = 'one', time.time()")
+    script = "import helper, sys, time\nprint(helper.where, helper.now > 0, sys.path[1])"
+    path = str(tmp_path / "one")
+    assert printed(tmp_path, script, PYTHONPATH=path) == [f"one True {path}"]
+
+
+def test_a_package_keeps_its_code_where_its_setup_says(tmp_path: Path) -> None:
+    package = tmp_path / "ws" / "arm"
+    (package / "python" / "arm").mkdir(parents=True)
+    (package / "python" / "arm" / "__init__.py").write_text("JOINTS = 6")
+    (package / "package.xml").write_text("<package><name>arm</name></package>")
+    (package / "setup.py").write_text(SETUP)
+    script = "from arm import JOINTS\nprint(JOINTS)"
+    assert printed(tmp_path, script, ROS_PACKAGE_PATH=str(tmp_path / "ws")) == ["6"]
+
+
+def test_stand_ins_are_found_when_nothing_else_is(tmp_path: Path) -> None:
+    script = """
+        from Cryptodome.Cipher import AES
+        from Cryptodome.Random import get_random_bytes
+        import gnupg
+        print(len(get_random_bytes(4)))
+        for use in (lambda: AES.new(b"key", AES.MODE_CBC), gnupg.GPG):
+            try:
+                use()
+            except ImportError as error:
+                print(error)
+    """
+    assert printed(tmp_path, script) == [
+        "4",
+        "encrypted bags need PyCryptodomex: pip install pycryptodomex",
+        "encrypted bags need python-gnupg: pip install python-gnupg",
+    ]
+
+
+def test_a_nodes_own_module_comes_before_a_stand_in(tmp_path: Path) -> None:
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "gnupg.py").write_text("GPG = 'mine'")
+    assert printed(tmp_path, "import gnupg\nprint(gnupg.GPG)", PYTHONPATH=str(tmp_path / "own")) == ["mine"]
+
+
+def test_catkin_finds_files_of_packages(tmp_path: Path) -> None:
+    package = tmp_path / "ws" / "arm"
+    package.mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>arm</name></package>")
+    script = """
+        from catkin.find_in_workspaces import find_in_workspaces
+        looked = []
+        found = find_in_workspaces(["share"], project="arm", path="package.xml", considered_paths=looked)
+        print(found == looked, found[0].rpartition("/ws/")[2])
+        print(find_in_workspaces(project="none"), find_in_workspaces(project="arm", path="none"), find_in_workspaces())
+    """
+    assert printed(tmp_path, script, ROS_PACKAGE_PATH=str(tmp_path / "ws")) == ["True arm/package.xml", "[] [] []"]

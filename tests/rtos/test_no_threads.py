@@ -1,0 +1,26 @@
+"""A host that has no more threads: said in words, and the run can still end."""
+
+from __future__ import annotations
+
+import _thread
+
+import pytest
+
+from cfepy.rtos import Kernel, threads
+from cfepy.status import UsageError
+
+
+def test_what_the_user_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(function: object, arguments: object) -> int:
+        raise RuntimeError("can't start new thread")
+
+    with Kernel(context="thread") as kernel:
+        kernel.spawn("first", lambda: kernel.delay(10))
+        threads.drain()
+        monkeypatch.setattr(_thread, "start_new_thread", refuse)
+        with pytest.raises(UsageError, match=r"refuses another thread.*ulimit -u.*--tasks greenlet"):
+            kernel.spawn("second", lambda: None)
+        monkeypatch.undo()
+        assert [task.name for task in kernel.tasks] == ["first"]
+        kernel.run(100)
+        assert kernel.tasks == []
