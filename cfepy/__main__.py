@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from cfepy.cli.main import main
+from cfepy.cli.main import process
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(process())

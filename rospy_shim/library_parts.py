@@ -1,4 +1,5 @@
-"""Parts of libraries that only a node's owner can make: where packages lie, which message definitions there are.
+"""Parts of libraries that only a node's owner can make: where packages lie, which message definitions there are, what
+is installed.
 
 A library such as rospkg is code of nodes and knows nothing of this package; what it needs to be told is a module in it
 that is made here. Whoever brings the library's original source never asks for it. Imports nothing of cfepy.
@@ -6,6 +7,7 @@ that is made here. Whoever brings the library's original source never asks for i
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -33,7 +35,19 @@ def library_parts(node: Node) -> dict[str, Factory]:
         "packages": library.packages,
         "text": library.text,
     }
-    return {"rosmsg._definitions": _factory(definitions), "rospkg._places": _factory(places)}
+    return {
+        "importlib.metadata": partial(_installed, "metadata_module"),
+        "pkg_resources": partial(_installed, "pkg_resources_module"),
+        "rosmsg._definitions": _factory(definitions),
+        "rospkg._places": _factory(places),
+    }
+
+
+def _installed(maker: str, universe: Any) -> ModuleType:
+    """A module that tells which distributions are installed; few nodes ask, and it takes much to import."""
+    distributions = importlib.import_module("rospy_shim.distributions")
+    module: ModuleType = getattr(distributions, maker)()
+    return module
 
 
 def _factory(contents: Mapping[str, Any]) -> Factory:
@@ -49,8 +63,7 @@ def _folders(node: Node, paths: Sequence[str] | None) -> dict[str, str]:
     """Folders of packages by name: those in some folders, or all that the node sees with its environment as it is."""
     universe = node.universe
     if paths is None:
-        script = Path(universe.script) if universe.script else None
-        packages = Packages(script, universe.environ, universe.resolve)
+        packages = Packages(node.place, universe.environ, universe.resolve)
         return {name: str(packages.path(name)) for name in packages.names()}
     found: dict[str, str] = {}
     for path in paths:

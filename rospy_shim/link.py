@@ -69,6 +69,7 @@ class Link(TopicSide):
         self._head = b""
         self._charge = node.kernel.charge
         self._call_ns = node.call_ns
+        self._count_items = getattr(data_class, "_count_items", None) if node.call_ns else None
         self._slot_ns = node.publish_slot_ns
         self._slot = -1  # in which the last message went out
         self._room = bus.config.sb_max_msg_size - HEADER_BYTES
@@ -157,6 +158,8 @@ class Link(TopicSide):
         if self._slot_ns:
             self._hold_back()
         payload = self.serialize(message)
+        if self._count_items is not None:
+            self._charge(self._call_ns * self._count_items(message))
         try:
             if self.raw:
                 self._send_packet(message)
@@ -217,7 +220,7 @@ class Link(TopicSide):
         self.acquire()
         try:
             for index, packet in enumerate(segments(self.msg_id, payload, self._room)):
-                self._wait_for_room(count)
+                self._wait_for_room(packet, count)
                 self._note(index)
                 self._bus.transmit_msg(packet)
         finally:
@@ -229,24 +232,28 @@ class Link(TopicSide):
         if self.topic is not None and route is not None:
             self.topic.notes[(route.sequence + 1) & 0x3FFF] = (self.header, index)
 
-    def _wait_for_room(self, count: int) -> None:
+    def _wait_for_room(self, packet: bytes, count: int) -> None:
         """Give subscribers the time to take what they have; who is busy with a callback then loses old messages."""
-        if self._has_room():
+        if self._has_room(packet):
             return
         kernel = self.node.kernel
         kernel.yield_cpu()
         for look in range(PATIENCE):
-            if self._has_room(count if look else FULL):
+            if self._has_room(packet, count if look else FULL):
                 return
             kernel.delay(PACE_NS)
 
-    def _has_room(self, count: int = FULL) -> bool:
-        """Whether every pipe takes a packet, or drops old messages for one of `count` packets."""
+    def _has_room(self, packet: bytes, count: int = FULL) -> bool:
+        """Whether the bus and every pipe take a packet, or drop old messages for one of `count` packets."""
         route = self._routes.get(self.msg_id)
-        return route is None or all(
-            (each.puts - each.gets < each.limit and len(each.pipe.items) < each.pipe.depth)
-            or (each.pipe.keeps_newest and count <= each.pipe.depth)
-            for each in route.active
+        return (
+            route is None
+            or (self._bus.has_room(packet)
+            and all(
+                (each.puts - each.gets < each.limit and len(each.pipe.items) < each.pipe.depth)
+                or (each.pipe.keeps_newest and count <= each.pipe.depth)
+                for each in route.active
+            ))
         )
 
     # -- subscribers that come and go --------------------------------------------------------------------------------
@@ -255,6 +262,8 @@ class Link(TopicSide):
         """Give a new subscriber the latched message, and tell the listeners."""
         if self.is_latch and self.latch is not None and not self.raw:
             subscription.deliver(self.serialize(self.latch), self.header)
+            if self.topic is not None:
+                self.topic.latched += 1
         for listener in self.subscriber_listeners:
             self.node.start_task(self.name, lambda each=listener: self._tell(each, subscription))  # type: ignore[misc]
 

@@ -71,6 +71,10 @@ class MsgIds:
         services = [label.removeprefix(_SERVICE) for label in self._claimed if label.startswith(_SERVICE)]
         return [label for label in self._claimed if not label.startswith(_SERVICE)], services
 
+    def services(self) -> dict[int, str]:
+        """The services that have MsgIds, by that of their answers."""
+        return {id_: label.removeprefix(_SERVICE) for id_, label in self._names.items() if label.startswith(_SERVICE)}
+
     def claim(self, label: str) -> int:
         """The id that a name falls on, or the next free one, from now on its own."""
         msg_id = self._claimed.get(label)

@@ -77,8 +77,8 @@ class Node:
         self.connection_numbers = count(1)
         self._tasks = tasks
         self._timer: type | None = None
-        script = Path(universe.script) if universe.script else None
-        self.packages = Packages(script, universe.environ, universe.resolve)
+        self.place = config.near or (Path(universe.script) if universe.script else None)
+        self.packages = Packages(self.place, universe.environ, universe.resolve)
         self.library = Library([OnDisk(self.packages)], base=shipped())
         self.names = Names(universe.argv, universe.environ)
         self.life = Life(self)
@@ -111,6 +111,8 @@ class Node:
         self.initialized = True
         self.universe.name = self.names.name.lstrip("/")
         self.graph.register_node(self)
+        for service in self.services:
+            service.connect()
         for link in list(self.links.values()):
             link.connect()
         for subscription in list(self.subscriptions.values()):
@@ -210,9 +212,9 @@ class Node:
         """A name for a task or a pipe that nothing else in the mission has."""
         return self._tasks.name(label)
 
-    def start_child(self, label: str, body: Callable[[], None]) -> None:
-        """Start a child task of the node's application; `label` tells what it is for."""
-        self._tasks.child(self, label, body)
+    def start_child(self, name: str, body: Callable[[], None]) -> None:
+        """Start a child task of the node's application, with a name from `task_name`."""
+        self._tasks.child(self, name, body)
 
     def start_task(self, label: str, body: Callable[[], None]) -> Task:
         """Start a task of the node from whatever task, or from the host."""

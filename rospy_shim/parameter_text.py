@@ -1,8 +1,9 @@
 """Parameters as text: the names and values that stand in ROS's parameter tables, for engineers to read and to write.
 
 A value is JSON: `10`, `2.5`, `true`, `[1, 2]`, `{}` for an empty namespace. A text needs quotes only where it would be
-read as something else: `hello`, but `"10"`. Bytes are `{"!!binary": "aGVsbG8="}`. A name is the full one, its parts as
-they are but for characters that no ROS name has, which are `%XX` as in a URL. Imports nothing of cfepy.
+read as something else: `hello`, but `"10"`. Bytes are `{"!!binary": "aGVsbG8="}`, a date and time is
+`{"!!timestamp": "20261121T18:50:00"}`. A name is the full one, its parts as they are but for characters that no ROS
+name has, which are `%XX` as in a URL. Imports nothing of cfepy.
 """
 
 from __future__ import annotations
@@ -14,11 +15,14 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-_BINARY, _ESCAPED = "!!binary", "!!map"
-_MARKS = (_BINARY, _ESCAPED)
+from rospy_shim.parameter_values import DateTime
+
+_BINARY, _TIME, _ESCAPED = "!!binary", "!!timestamp", "!!map"
+_MARKS = (_BINARY, _TIME, _ESCAPED)
 _BRACKETS = ("[", "{", '"')
 _ODD = re.compile(rb"[^!-~]|[%/]")
 _ESCAPE = re.compile(r"%([0-9A-F]{2})")
+_DATE_TIME = re.compile(r"\d{8}T\d\d:\d\d:\d\d")
 _NO_NAME = "%"  # the part of a name that has no characters
 _INT_MIN, _INT_MAX = -(1 << 31), (1 << 31) - 1
 
@@ -104,6 +108,8 @@ def _portable(value: Any) -> Any:
     """A value in the terms of JSON."""
     if type(value) is bytes:
         return {_BINARY: base64.b64encode(value).decode("ascii")}
+    if type(value) is DateTime:
+        return {_TIME: value.value}
     if type(value) is list:
         return [_portable(item) for item in value]
     if type(value) is not dict:
@@ -119,7 +125,9 @@ def _restored(value: Any) -> Any:
         if not _is_marked(value):
             return {key: _restored(item) for key, item in value.items()}
         ((mark, inner),) = value.items()
-        return _bytes(inner) if mark == _BINARY else {key: _restored(item) for key, item in dict(inner).items()}
+        if mark == _ESCAPED:
+            return {key: _restored(item) for key, item in dict(inner).items()}
+        return _bytes(inner) if mark == _BINARY else _date_time(inner)
     if value is None:
         raise ValueError("null is no value of a ROS parameter")
     if type(value) is int and not _INT_MIN <= value <= _INT_MAX:
@@ -129,6 +137,12 @@ def _restored(value: Any) -> Any:
 
 def _is_marked(value: dict[str, Any]) -> bool:
     return len(value) == 1 and next(iter(value)) in _MARKS
+
+
+def _date_time(text: Any) -> DateTime:
+    if not isinstance(text, str) or not _DATE_TIME.fullmatch(text):
+        raise ValueError(f"{text!r} is no date and time, such as 20261121T18:50:00")
+    return DateTime(text)
 
 
 def _bytes(text: Any) -> bytes:

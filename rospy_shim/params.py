@@ -1,7 +1,7 @@
 """Parameters: the functions through which a node reads and writes the mission's tree (`rospy_shim.parameter_tree`).
 
-Values are what XML-RPC can carry, since that is how ROS transports them: tuples become lists, bytes become Binary, None
-and big integers are refused with the same errors. Imports nothing of cfepy.
+Values are what XML-RPC can carry (`rospy_shim.parameter_values`): tuples become lists, bytes become Binary, None and
+big integers are refused with the same errors. Imports nothing of cfepy.
 """
 
 from __future__ import annotations
@@ -12,42 +12,12 @@ from typing import TYPE_CHECKING, Any
 from rospy_shim.exceptions import ROSException
 from rospy_shim.names import SEP, is_legal_name
 from rospy_shim.parameter_tree import ParameterTree
+from rospy_shim.parameter_values import DateTime, marshalled
 
 if TYPE_CHECKING:
     from rospy_shim.node import Node
 
-_INT_MAX = 2**31 - 1
-_INT_MIN = -(2**31)
 _MISSING = ParameterTree.MISSING
-
-
-def marshalled(value: Any) -> Any:
-    """A copy of a value as it looks after a trip over XML-RPC; bytes stay bytes.
-
-    Raises:
-        TypeError: None, a dictionary key that is no string, or an object that XML-RPC cannot carry.
-        OverflowError: an integer of more than 32 bits.
-    """
-    kind = type(value)
-    if kind in (bool, float, str, bytes):
-        return value
-    if kind is int:
-        if not _INT_MIN <= value <= _INT_MAX:
-            raise OverflowError("int exceeds XML-RPC limits")
-        return value
-    if kind in (list, tuple):
-        return [marshalled(item) for item in value]
-    if kind is dict:
-        if any(not isinstance(key, str) for key in value):
-            raise TypeError("dictionary key must be string")
-        return {key: marshalled(item) for key, item in value.items()}
-    if value is None:
-        raise TypeError("cannot marshal None unless allow_none is enabled")
-    if kind is bytearray:
-        return bytes(value)
-    if not hasattr(value, "__dict__") or isinstance(value, (int, float, str, bytes, list, tuple, dict)):
-        raise TypeError(f"cannot marshal {kind} objects")
-    return marshalled(dict(vars(value)))
 
 
 class Params:
@@ -70,7 +40,7 @@ class Params:
             default: given back when there is none; also None counts.
 
         Raises:
-            KeyError: there is none, and no default.
+            KeyError: there is none, and no default; it holds the name as it was asked for.
         """
         self._node.universe.charge()
         key = self._node.names.resolve_name(param_name)
@@ -78,7 +48,7 @@ class Params:
         if value is not _MISSING:
             return self._unpacked(value)
         if default is _MISSING:
-            raise KeyError(key)
+            raise KeyError(param_name)
         return default
 
     def get_param_cached(self, param_name: str, default: Any = _MISSING) -> Any:
@@ -111,7 +81,10 @@ class Params:
         Raises:
             KeyError: there is none.
         """
-        self._tree.delete(self._node.names.resolve_name(param_name))
+        try:
+            self._tree.delete(self._node.names.resolve_name(param_name))
+        except KeyError:
+            raise KeyError(param_name) from None
 
     def search_param(self, param_name: str) -> str | None:
         """The full name of the nearest parameter of that name, from the node's namespace upwards, or None.
@@ -131,11 +104,13 @@ class Params:
         return self._tree.names()
 
     def _unpacked(self, value: Any) -> Any:
-        """A copy for the node; bytes as the Binary of its own xmlrpc.client."""
+        """A copy for the node; bytes and dates as its own xmlrpc.client has them."""
         if type(value) is dict:
             return {key: self._unpacked(item) for key, item in value.items()}
         if type(value) is list:
             return [self._unpacked(item) for item in value]
         if type(value) is bytes:
             return self._node.universe.importer.load("xmlrpc.client").Binary(value)
+        if type(value) is DateTime:
+            return self._node.universe.importer.load("xmlrpc.client").DateTime(value.value)
         return value

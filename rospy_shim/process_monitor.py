@@ -24,12 +24,14 @@ class ProcessMonitor:
 
     Attributes:
         statuses: the exit status of each node that has ended by itself, by cFE name.
+        restarts: how often a node was started again, by cFE name.
         over: whether the run has come to its end.
         closing: whether the nodes were asked to end, so that how they do it is not their failure.
     """
 
     def __init__(self, config: RosConfig, console: Console, stop: Callable[[], object]) -> None:
         self.statuses: dict[str, int] = {}
+        self.restarts: dict[str, int] = {}
         self.over = False
         self._config = config
         self._console = console
@@ -51,6 +53,7 @@ class ProcessMonitor:
             return False
         self.statuses[node.app] = status
         if node.respawn:
+            self.restarts[node.app] = self.restarts.get(node.app, 0) + 1
             self._say(f"{node.name} has ended with exit status {status} and is started again")
             return True
         if node.required:

@@ -147,13 +147,14 @@ class RosRuntime:
 
     def _make_node(self, script: Path, app_name: str, config: NodeConfig) -> Node:
         tasks = NodeTasks(self._cfe, self._kernel, lambda: next(self._task_numbers))
+        cwd = config.cwd or script.parent
         universe = Universe(
             self._kernel,
             name=config.name or app_name,
             script=script,
             argv=_command_line(config),
-            env={**ROS_ENVIRONMENT, "ROS_MASTER_URI": f"http://cfepy:{MASTER_PORT}", **config.env},
-            cwd=config.cwd or script.parent,
+            env={**ROS_ENVIRONMENT, "HOME": str(cwd), "PWD": str(cwd), **config.env},
+            cwd=cwd,
             library_paths=[library_path.FOLDER],
             fallback_paths=[library_path.STAND_INS],
             seed=self._seed,
@@ -248,6 +249,7 @@ class RosRuntime:
             topic.lost,
             topic.held_back,
             topic.definition,
+            topic.latched,
         )
 
 

@@ -89,12 +89,15 @@ class Service:
             buff_size: accepted.
             error_handler: takes (error, type, value, traceback) of an exception in the handler; None logs it.
 
+        Before `init_node`, it is offered from then on.
+
         Raises:
-            ROSInitException: before `init_node`.
             ServiceException: the node offers it already.
+            ValueError: an empty name.
         """
         node = self._node
-        node.require_initialized()
+        if not name or not isinstance(name, str):
+            raise ValueError("service name is not a non-empty string")
         self.resolved_name = node.names.resolve_name(name)
         self.service_class = service_class
         self.request_class = service_class._request_class
@@ -112,8 +115,18 @@ class Service:
         self._pieces = Pieces(REQUEST_LEAD)
         self._unpack = unpacker(self.request_class)
         self._pack = packer(self.response_class)
-        self._entry: ServiceEntry = node.graph.register_service(self)
+        self._entry: ServiceEntry
+        if node.initialized:
+            self._entry = node.graph.register_service(self)
+        elif any(each.resolved_name == self.resolved_name for each in node.services):
+            raise ServiceException(f"service [{self.resolved_name}] already registered")
         node.services.append(self)
+        if node.initialized:
+            self._begin()
+
+    def connect(self) -> None:
+        """The node is initialised: offer the service that was made before."""
+        self._entry = self._node.graph.register_service(self)
         self._begin()
 
     @property
@@ -122,14 +135,15 @@ class Service:
         return self._node
 
     def _begin(self) -> None:
-        self._open()
-        self._node.start_child(self.resolved_name, self._serve)
+        name = self._node.task_name(self.resolved_name)
+        self._open(name)
+        self._node.start_child(name, self._serve)
 
-    def _open(self) -> None:
+    def _open(self, name: str) -> None:
         if self._pipe == NO_PIPE:
             bus = self._node.cfe.sb
             depth = bus.config.os_queue_max_depth
-            self._pipe = bus.create_pipe(depth, self._node.task_name(self.resolved_name))
+            self._pipe = bus.create_pipe(depth, name)
             bus.subscribe_ex(self._entry.request_id, self._pipe, 0, depth)
 
     def error_handler(self, error: Exception, exc_type: Any, exc_value: Any, tb: Any) -> None:
@@ -144,6 +158,8 @@ class Service:
         self._node.graph.forget_service(self)
         if self in self._node.services:
             self._node.services.remove(self)
+        if not self._node.initialized:
+            return
         callers = [call.pipe for call in self._entry.calls.values()]
         for pipe in map(self._node.cfe.sb.find_pipe, [self._pipe, *callers]):
             if pipe is not None:
@@ -179,7 +195,7 @@ class Service:
 
     def _help(self) -> None:
         """Another task: it ends when no request waits."""
-        self._open()
+        self._open(self._node.kernel.current.name)
         self._work(POLL)
 
     def _work(self, timeout_ms: int) -> None:
@@ -226,10 +242,13 @@ class Service:
         """Call the handler: whether it went well, and the serialised response or the error's text."""
         try:
             request = self._unpack(data, 0)
-            call = self._entry.calls.get(number)
-            request._connection_header = call.header if call is not None else {}
+        except SerializationError as error:
+            return False, f"service cannot process request: {error}".encode()
+        call = self._entry.calls.get(number)
+        request._connection_header = call.header if call is not None else {}
+        try:
             return True, self._pack(response_of(self.handler(request), self.response_class))
-        except (ServiceException, SerializationError, ROSInterruptException) as error:
+        except (ServiceException, ROSInterruptException) as error:
             return False, f"service cannot process request: {error}".encode()
         except Exception as error:
             self.error_handler(error, *sys.exc_info())

@@ -40,7 +40,7 @@ class Subscription(TopicSide):
 
     def __init__(self, node: Node, name: str, data_class: Any) -> None:
         super().__init__(node, name, data_class)
-        self._unpack = unpacker(data_class)
+        self._unpack = self._paid(unpacker(data_class))
         self.queue_size: int | None = None  # messages that may wait; None is as many as the platform allows
         self.buff_size = DEFAULT_BUFF_SIZE
         self.tcp_nodelay = False
@@ -53,6 +53,19 @@ class Subscription(TopicSide):
         self._segments = 1  # packets of the longest message so far
         self._pipe = NO_PIPE
         self._assembler = Assembler()
+
+    def _paid(self, unpack: Callable[[bytes, int], Any]) -> Callable[[bytes, int], Any]:
+        """`unpack` with the virtual time of a call for each message in arrays, which genpy makes one by one."""
+        count, cost, charge = getattr(self.data_class, "_count_items", None), self.node.call_ns, self.node.kernel.charge
+        if count is None or not cost:
+            return unpack
+
+        def unpack_and_pay(data: bytes, at: int) -> Any:
+            message = unpack(data, at)
+            charge(cost * count(message))
+            return message
+
+        return unpack_and_pay
 
     def set_queue_size(self, queue_size: int | None) -> None:
         """Let so many messages wait, and drop the oldest one when another comes.
@@ -132,7 +145,19 @@ class Subscription(TopicSide):
         if topic is not None:
             if self.node.params.get_param("/enable_statistics", False):
                 self._measure()
-            self.node.start_child(self.name, lambda: self._serve(topic))
+            name = self.node.task_name(self.name)
+            self._open(topic, name)
+            self.node.start_child(name, lambda: self._serve(topic))
+
+    def _open(self, topic: Topic, name: str) -> None:
+        """Make the pipe, join the topic, and take what publishers have latched; what comes now waits for the task."""
+        bus = self.node.cfe.sb
+        self._pipe = bus.create_pipe(self._depth(), name)
+        self._size_pipe()
+        bus.subscribe_ex(topic.msg_id, self._pipe, 0, NO_LIMIT)  # the pipe's depth is the limit, and can be changed
+        topic.add_subscription(self)
+        for link in list(topic.links):
+            link.peer_joined(self)
 
     def _measure(self) -> None:
         """Have each message go through the statistics first (rospy.impl.statistics)."""
@@ -186,9 +211,6 @@ class Subscription(TopicSide):
     # -- in the task -------------------------------------------------------------------------------------------------
 
     def _serve(self, topic: Topic) -> None:
-        if self.closed:
-            return
-        self._open(topic)
         try:
             self._receive(topic)
         except CfeError as error:
@@ -196,16 +218,6 @@ class Subscription(TopicSide):
                 self.node.logs.logerr("subscription of %s ends: %s", self.name, error)
         finally:
             self.give_back()
-
-    def _open(self, topic: Topic) -> None:
-        """Make the pipe, join the topic, and take what publishers have latched."""
-        bus = self.node.cfe.sb
-        self._pipe = bus.create_pipe(self._depth(), self.node.kernel.current.name)
-        self._size_pipe()
-        bus.subscribe_ex(topic.msg_id, self._pipe, 0, NO_LIMIT if self.queue_size is not None else self._depth())
-        topic.add_subscription(self)
-        for link in list(topic.links):
-            link.peer_joined(self)
 
     def give_back(self) -> None:
         """Give the pipe back."""

@@ -47,9 +47,9 @@ class NodeTasks:
         number = self._number()
         return f"{self._app[: 19 - len(tail) - len(str(number)) - 2]}.{tail}.{number}"
 
-    def child(self, node: Node, label: str, body: Callable[[], None]) -> None:
-        """Start a task for a subscription; pipe and task have the same name."""
-        name, entry = self.name(label), _in_universe(node.universe, body)
+    def child(self, node: Node, name: str, body: Callable[[], None]) -> None:
+        """Start a task for a pipe; both have the same name."""
+        entry = _in_universe(node.universe, body)
         if self._kernel.current is not self._main:
             self._cfe.os.task_create(name, entry, self._stack_size, self.priority)
             return

@@ -48,7 +48,7 @@ def commands(path: Path) -> Iterator[list[str]]:
 def is_understood(words: list[str]) -> bool:
     """Whether `cfepy` takes this command line."""
     try:
-        cli._parser().parse_args(words)
+        cli._parser(words).parse_args(words)
     except SystemExit as stopped:
         return stopped.code == 0  # --help and --version stop too
     return True

@@ -10,7 +10,7 @@ SLOWEST, FASTEST = 1e-3, 1e9  # times real time
 HIGHEST_PORT = 65_535
 DEFAULT_RUNS, MOST_RUNS = 3, 64
 
-MISSION_HELP = "a startup script, a folder with a startup.scr, or a shipped mission's name"
+MISSION_HELP = "a startup script, a folder with a startup.scr, a shipped mission's name, or a launch file"
 STATUS_HELP = """exit status:
   0    the run ended well
   1    an application died or could not be started, a mission's own application sent an ERROR or CRITICAL event,
@@ -38,13 +38,32 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         epilog=STATUS_HELP,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    run.add_argument("mission", metavar="MISSION", help=MISSION_HELP)
+    add_mission(run)
     add_end(run)
     add_machine(run)
     _add_outside(run)
     add_outputs(run)
     _add_comparison(run)
     run.set_defaults(module="run")
+
+
+def add_mission(parser: argparse.ArgumentParser) -> None:
+    """The mission that it is about, and what a launch file that is one gets."""
+    parser.add_argument("mission", metavar="MISSION", help=MISSION_HELP)
+    add_launch_arguments(parser)
+
+
+def add_launch_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of a launch file that is given as a mission."""
+    parser.add_argument(
+        "--arg",
+        dest="launch_args",
+        action="append",
+        type=launch_argument_of,
+        default=[],
+        metavar="NAME:=VALUE",
+        help="an argument of the launch file, if it is one",
+    )
 
 
 def add_end(run: argparse.ArgumentParser) -> None:
@@ -149,7 +168,7 @@ def _add_mids(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         help="show a mission's MsgIds: who sends and who subscribes",
         description="Run a mission quietly for 10 virtual seconds, and show its MsgIds.",
     )
-    mids.add_argument("mission", metavar="MISSION", help=MISSION_HELP)
+    add_mission(mids)
     mids.add_argument("--board", metavar="NAME|FILE", help="run on this board instead of the mission's own")
     mids.add_argument(
         "--json",
@@ -191,6 +210,14 @@ def runs_of(text: str) -> int:
     if not text.isdecimal() or not 2 <= int(text) <= MOST_RUNS:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number of runs; give 2 to {MOST_RUNS}")
     return int(text)
+
+
+def launch_argument_of(text: str) -> tuple[str, str]:
+    """An argument of a launch file and its value, for argparse."""
+    name, mark, value = text.partition(":=")
+    if not mark or not name:
+        raise argparse.ArgumentTypeError(f"{text!r} is not like rate:=20")
+    return name, value
 
 
 def factor_of(text: str) -> float:

@@ -5,17 +5,15 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from cfepy.cli.main import ENDED_WELL
-from cfepy.cli.run import run_spec
-from cfepy.mission import MissionSpec
-from cfepy.mission.launch import plan_of, spec_of
-from cfepy.mission.limits import MissionLimits
-from cfepy.nodes.config import NodeConfig
+from cfepy.cli.ros_view import BOOT_S, RosView
+from cfepy.cli.run import DEFAULT_S, View, run_spec
+from cfepy.mission.launch import plan_of, read_launch
 from cfepy.status import UsageError
 
 
@@ -29,14 +27,13 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: there is none, or something in it is wrong.
     """
     file, args = launch_file(arguments.words)
-    plan = plan_of(file, args, dict(os.environ), cwd=Path.cwd())
     if arguments.nodes or arguments.dump_params:
-        _tell(plan, arguments)
+        _tell(plan_of(file, args, dict(os.environ), cwd=Path.cwd()), arguments)
         return ENDED_WELL
-    if not plan.nodes:
-        why = "; ".join(plan.notes) or "it has no <node>"
-        raise UsageError(f"has no node that can run here: {why}", file=file)
-    return run_spec(arguments, mission_of(file, plan.nodes, plan, arguments.board))
+    spec = read_launch(file, args)
+    if arguments.seconds is not None or arguments.realtime is None:
+        arguments.seconds = BOOT_S + (DEFAULT_S if arguments.seconds is None else arguments.seconds)
+    return run_spec(arguments, spec, View() if arguments.console else RosView())
 
 
 def launch_file(words: Sequence[str]) -> tuple[Path, dict[str, str]]:
@@ -47,6 +44,8 @@ def launch_file(words: Sequence[str]) -> tuple[Path, dict[str, str]]:
     """
     args = dict(word.split(":=", 1) for word in words if ":=" in word)
     names = [word for word in words if ":=" not in word]
+    if len(names) > 1 and Path(names[0]).is_file():
+        raise UsageError(f"{names[1]!r} is no argument for it; write NAME:=VALUE", file=names[0])
     if len(names) == 2:
         here = Path.cwd() / names[1]
         plans = importlib.import_module("rospy_shim.roslaunch.plan")
@@ -59,13 +58,9 @@ def launch_file(words: Sequence[str]) -> tuple[Path, dict[str, str]]:
     return file.resolve(), args
 
 
-def mission_of(file: Path, nodes: Mapping[str, NodeConfig], plan: Any, board: str | None) -> MissionSpec:
-    """The mission of a plan's nodes; a board that somebody chose keeps its own limits."""
-    spec = spec_of(file, nodes, plan.params, tuple(plan.notes))
-    return spec if board is None else replace(spec, limits=MissionLimits())
-
-
 def _tell(plan: Any, arguments: argparse.Namespace) -> None:
+    for note in plan.notes:
+        print(f"cfepy: {note}", file=sys.stderr, flush=True)
     if arguments.nodes:
         for node in (*plan.nodes.values(), *(test.node for test in plan.tests if test.node is not None)):
             print(f"/{node.name}")

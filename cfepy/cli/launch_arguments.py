@@ -28,8 +28,9 @@ def _add_launch(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         epilog=STATUS_HELP,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    launch.add_argument("words", metavar="FILE|PACKAGE FILE [NAME:=VALUE]", nargs="+", help=_LAUNCH_WORDS)
+    launch.add_argument("words", metavar="WORD", nargs="+", help=_LAUNCH_WORDS)
     launch.add_argument("--nodes", action="store_true", help="only list the names of the nodes")
+    launch.add_argument("--console", action="store_true", help="show the flight computer's console and report as well")
     launch.add_argument("--dump-params", action="store_true", help="only show the parameters, as YAML")
     add_end(launch)
     add_machine(launch)
@@ -46,13 +47,20 @@ def _add_node(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         "most 60 virtual seconds.",
         epilog=_NODE_STATUS,
     )
-    node.add_argument("words", metavar="FILE|PACKAGE NODE [ARGUMENT]", nargs="+", help=_NODE_WORDS)
+    node.add_argument("words", metavar="WORD", nargs="+", help=_NODE_WORDS)
     add_end(node)
     add_machine(node)
     _add_pace(node)
     node.add_argument("--json", metavar="FILE", help="write the numbers of the run's report to a file")
     node.add_argument("--trace", metavar="FILE", help="write everything that happened to a file, a line each")
-    node.set_defaults(module="node", script=None, port=[], stop_on_failure=False, quiet=False)
+    node.set_defaults(
+        hint="; what the node itself is to get comes after --",
+        module="node",
+        script=None,
+        port=[],
+        stop_on_failure=False,
+        quiet=False,
+    )
 
 
 def _add_rostest(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -62,7 +70,7 @@ def _add_rostest(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Run each <test> of a launch file with the file's nodes, in virtual time, and report.",
         epilog=_TEST_STATUS,
     )
-    test.add_argument("words", metavar="FILE|PACKAGE FILE [NAME:=VALUE]", nargs="+", help=_LAUNCH_WORDS)
+    test.add_argument("words", metavar="WORD", nargs="+", help=_LAUNCH_WORDS)
     test.add_argument("--text", "-t", action="store_true", help="show what the nodes and tests print")
     test.add_argument("--results-file", metavar="FILE", help="write the results of all tests as JUnit XML")
     add_machine(test)

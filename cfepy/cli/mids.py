@@ -13,6 +13,7 @@ from cfepy.cli.table import Table, show_tables
 from cfepy.mission import MissionSpec, read_mission
 from cfepy.mission.mids import MidRow, survey
 from cfepy.mission.topics_lock import lock, lock_path, lock_text
+from cfepy.status import UsageError
 
 STDOUT = "-"
 
@@ -26,7 +27,10 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: there is no such mission, it cannot boot, or the file cannot be written.
     """
-    spec = read_mission(arguments.mission)
+    spec = read_mission(arguments.mission, dict(arguments.launch_args))
+    if arguments.lock and spec.ros.spread:
+        text = "has no topics.lock: its topics get free MsgIds by themselves; a mission with `launch:` has one"
+        raise UsageError(text, file=arguments.mission)
     if arguments.lock:
         return _lock(spec, arguments.board)
     with booting(spec.script):

@@ -14,11 +14,12 @@ from typing import TextIO
 from cfepy.cli.failures import booting
 from cfepy.cli.flight import Interrupts
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.ros_view import BOOT_S
 from cfepy.cli.run import fly, output_path, trace_file, write_numbers
 from cfepy.mission import Mission, MissionSpec
 from cfepy.mission.launch import spec_of
 from cfepy.mission.results import Results
-from cfepy.nodes.config import NodeConfig
+from cfepy.nodes.config import ROSCORE_PARAMS, NodeConfig
 from cfepy.status import UsageError
 
 LONGEST_S = 60.0  # virtual time that a node gets when nobody says how long
@@ -60,11 +61,12 @@ def run(arguments: argparse.Namespace) -> int:
     script, words = node_script(arguments.words)
     spec = spec_of_script(script, words)
     numbers = output_path(arguments.json)
-    if arguments.seconds is None and arguments.realtime is None:
-        arguments.seconds = LONGEST_S
+    is_open = arguments.seconds is None
+    if not is_open or arguments.realtime is None:
+        arguments.seconds = BOOT_S + (LONGEST_S if is_open else arguments.seconds)
     recorder = trace_file(arguments.trace) if arguments.trace else None
     with Interrupts() as interrupts, booting(spec.script):
-        flight = fly(arguments, spec, interrupts, None, recorder, NodeDisplay(sys.stdout))
+        flight = fly(arguments, spec, interrupts, None, recorder, lambda quiet, seconds: NodeDisplay(sys.stdout))
     results = Results.of(flight.mission, flight.at, flight.trace)
     unwritten = None if numbers is None else write_numbers(numbers, results, None)
     if unwritten is not None:
@@ -93,7 +95,7 @@ def spec_of_script(script: Path, words: list[str]) -> MissionSpec:
     environ = plans.node_environment(os.environ, os.environ.get("ROS_NAMESPACE", "/"))
     app = re.sub(r"\W", "_", script.stem, flags=re.ASCII).upper()[: plans.LONGEST_NAME]
     config = NodeConfig(app, args=tuple(words), env=environ, script=script, cwd=Path.cwd(), required=True)
-    return spec_of(script, {app: config}, plans.ROS_PARAMS)
+    return spec_of(script, {app: config}, ROSCORE_PARAMS)
 
 
 def _status(mission: Mission, results: Results) -> int:
@@ -106,5 +108,6 @@ def _status(mission: Mission, results: Results) -> int:
         print(f"cfepy: {problem}", file=sys.stderr)
     if results.script_problems or results.problems:
         return FOUND_PROBLEMS
-    print(f"cfepy: the node still runs after {results.virtual_s:g} virtual seconds; --for runs longer", file=sys.stderr)
+    seconds = results.virtual_s - BOOT_S
+    print(f"cfepy: the node still runs after {seconds:g} virtual seconds; --for runs longer", file=sys.stderr)
     return ENDED_WELL

@@ -38,7 +38,7 @@ def _parameters(arguments: argparse.Namespace) -> Parameters:
         found = of_files(Path(source), problems)
         _tell(problems)
         return found
-    spec = read_mission(source)
+    spec = read_mission(source, dict(arguments.launch_args))
     if arguments.seconds is not None:
         with booting(spec.script):
             return after(spec, arguments.seconds, arguments.board)

@@ -102,7 +102,7 @@ def run(plan: Plan) -> None:
         UsageError: the mission cannot run like this.
     """
     arguments = argparse.Namespace(**plan.arguments)
-    spec = read_mission(arguments.mission)
+    spec = read_mission(arguments.mission, dict(arguments.launch_args))
     if plan.ordered_sets:
         spec = _with_ordered_sets(spec)
     writer = RecordWriter(open(plan.pipe, "wb"))  # noqa: SIM115  # as long as the process

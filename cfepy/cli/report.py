@@ -12,6 +12,11 @@ def show(results: Results, stream: TextIO) -> None:
     """Print all tables and the line about speed."""
     tables = [_topics(results), _apps(results), _events(results)]
     show_tables([*tables, *_resets(results), *_pipes(results), *_memory(results)], stream)
+    show_speed(results, stream)
+
+
+def show_speed(results: Results, stream: TextIO) -> None:
+    """Print how long the run was, and what it was on."""
     line = f"{results.virtual_s:.3f} virtual s in {results.wall_s:.3f} s: {results.speed:.1f} x real time"
     print(f"\n{line}, board {results.board}, {results.tasks} tasks, seed {results.seed}", file=stream)
 
@@ -28,7 +33,7 @@ def _topics(results: Results) -> Table:
             topic.sent,
             topic.delivered,
             topic.dropped,
-            _why(topic),
+            why(topic),
             f"{topic.rate_hz:.1f}{mark}",
         )
     if any(topic.too_fast for topic in results.topics):
@@ -36,7 +41,7 @@ def _topics(results: Results) -> Table:
     return table
 
 
-def _why(topic: TopicResult) -> str:
+def why(topic: TopicResult) -> str:
     """Why messages were not delivered, or not when their publisher wanted."""
     reasons = (
         ("message limit", topic.dropped_limit),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from cfepy.cli.arguments import MISSION_HELP, seconds_of
+from cfepy.cli.arguments import MISSION_HELP, add_launch_arguments, seconds_of
 
 SOURCE_HELP = f"{MISSION_HELP}; or a file of a parameter table, or a folder with such files"
 FILES_HELP = "such as a dump of ROS.Params01; or a folder with such files"
@@ -48,6 +48,7 @@ def _add_show(
         help="fly the mission for so many virtual seconds first (default: what its mission file says)",
     )
     action.add_argument("--board", metavar="NAME|FILE", help="fly on this board instead of the mission's own")
+    add_launch_arguments(action)
     return action
 
 

@@ -6,6 +6,7 @@ import argparse
 import os
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +14,15 @@ from cfepy.cli.display import PlainDisplay, SilentDisplay
 from cfepy.cli.failures import booting, writing
 from cfepy.cli.flight import Flight, Interrupts
 from cfepy.cli.junit import FAILURE, TestResults, broken, read_results
-from cfepy.cli.launch import launch_file, mission_of
+from cfepy.cli.launch import launch_file
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.ros_view import BOOT_S, NodesDisplay
 from cfepy.cli.run import fly
-from cfepy.mission.launch import plan_of
+from cfepy.mission.launch import plan_of, spec_of
 from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
 
-BOOT_S = 1.0  # virtual time until the nodes start, which is none of the test's
+BOARD = "workstation"  # where the calls of nodes take time, as tests of nodes that never rest expect
 LAST_LINES = 25  # of what a test printed, when it leaves no results
 
 
@@ -84,12 +86,12 @@ class _Runner:
         if test.node is None:
             return broken(suite, "can_run_here", test.problem)
         nodes = {**self._plan.nodes, test.node.app: test.node}
-        spec = mission_of(self._file, nodes, self._plan, self._arguments.board)
+        spec = replace(spec_of(self._file, nodes, self._plan.params), board=BOARD)
         seconds = test.time_limit_ns / NS_PER_S
         arguments = argparse.Namespace(**{**vars(self._arguments), "seconds": seconds + BOOT_S})
-        display = PlainDisplay(sys.stdout) if self._arguments.text else SilentDisplay()
+        display = NodesDisplay(PlainDisplay(sys.stdout)) if self._arguments.text else SilentDisplay()
         with booting(self._file):
-            flight = fly(arguments, spec, self._interrupts, None, None, display)
+            flight = fly(arguments, spec, self._interrupts, None, None, lambda quiet, seconds: display)
         return self._judged(test, suite, flight, seconds)
 
     def _judged(self, test: Any, suite: str, flight: Flight, seconds: float) -> TestResults:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TextIO
 
 from cfepy.cli import report
 from cfepy.cli.arguments import LONGEST_S
@@ -49,6 +49,18 @@ class Recorder(Protocol):
         """The mission is there and is about to run."""
 
 
+class View:
+    """What a person sees of a run: the flight computer's console, and a report of all that is on it."""
+
+    def display(self, quiet: bool, seconds: float) -> Display:
+        """What shows the console; see `make_display`."""
+        return make_display(quiet, seconds)
+
+    def report(self, results: Results, mission: Mission, stream: TextIO) -> None:
+        """Print what the run came to."""
+        report.show(results, stream)
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Run the mission that the command line names.
 
@@ -66,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
         return check(arguments)
     if arguments.port and arguments.realtime is None:
         raise UsageError("without --realtime no port is opened on this computer", field="--port")
-    spec = read_mission(arguments.mission)
+    spec = read_mission(arguments.mission, dict(arguments.launch_args))
     if arguments.play is not None:
         from cfepy.mission.ground_node import with_player
 
@@ -74,12 +86,13 @@ def run(arguments: argparse.Namespace) -> int:
     return run_spec(arguments, spec)
 
 
-def run_spec(arguments: argparse.Namespace, spec: MissionSpec) -> int:
+def run_spec(arguments: argparse.Namespace, spec: MissionSpec, view: View | None = None) -> int:
     """Run a mission as the command line says, and report.
 
     Args:
         arguments: of the command line.
         spec: the mission.
+        view: what is shown of it; None shows the flight computer.
 
     Returns:
         The exit status.
@@ -90,20 +103,20 @@ def run_spec(arguments: argparse.Namespace, spec: MissionSpec) -> int:
     for note in spec.notes:
         print(f"cfepy: {note}", file=sys.stderr, flush=True)
     with Interrupts() as interrupts:
-        return _run(arguments, spec, interrupts)
+        return _run(arguments, spec, interrupts, view or View())
 
 
-def _run(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupts) -> int:
+def _run(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupts, view: View) -> int:
     numbers = output_path(arguments.json)
     folder = saving_to(arguments.save_files)
     script = script_of(arguments, spec)
     recorder = trace_file(arguments.trace) if arguments.trace else None
     bag = _bag(arguments, script)
     with booting(spec.script):
-        flight = fly(arguments, spec, interrupts, script, recorder, bag=bag)
+        flight = fly(arguments, spec, interrupts, script, recorder, view.display, bag)
     results = Results.of(flight.mission, flight.at, flight.trace)
     unwritten = None if numbers is None else write_numbers(numbers, results, flight.outcome)
-    report.show(results, sys.stdout)
+    view.report(results, flight.mission, sys.stdout)
     if flight.outcome is not None:
         print(f"\n{flight.outcome.text()}")
     _explain(results, flight.mission, interrupts.asked)
@@ -158,7 +171,7 @@ def fly(
     interrupts: Interrupts,
     script: ScriptRun | None,
     recorder: Recorder | None = None,
-    display: Display | None = None,
+    show: Callable[[bool, float], Display] = make_display,
     bag: BagRecorder | None = None,
 ) -> Flight:
     """Run a mission to its end.
@@ -169,7 +182,7 @@ def fly(
         interrupts: says whether somebody pressed Ctrl-C.
         script: what is to happen on the way.
         recorder: takes the trace.
-        display: shows the run; None takes the one that suits standard output.
+        show: makes what shows the run, as `make_display` does.
         bag: records ROS topics.
 
     Raises:
@@ -184,7 +197,7 @@ def fly(
                 stack.enter_context(recorder)
             if bag is not None:
                 stack.enter_context(bag)
-            display = display or make_display(arguments.quiet, seconds)
+            display = show(arguments.quiet, seconds)
             stack.callback(display.close)
             mission = stack.enter_context(_mission(arguments, spec, display, recorder, script, bag))
             ends_with_script = arguments.seconds is None
@@ -249,6 +262,8 @@ def output_path(file: str | None) -> Path | None:
 
 def write_numbers(file: Path, results: Results, outcome: Outcome | None) -> UsageError | None:
     """Write the numbers; an error is returned, for the report of a long run must not be lost with them."""
+    import json
+
     numbers = results.to_dict()
     if outcome is not None:
         numbers["script"] = outcome.to_dict()

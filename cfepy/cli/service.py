@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _services(arguments: argparse.Namespace) -> dict[str, dict[str, Any]]:
     """What is offered when the mission has flown, by name."""
-    with FlightSource(spec_for(arguments.source), arguments) as source:
+    with FlightSource(spec_for(arguments), arguments) as source:
         ros = source.fly().ros
         found = {} if ros is None else dict(sorted(ros.graph.services.items()))
         return {name: _described(name, entry.service) for name, entry in found.items()}
@@ -52,7 +52,10 @@ def _list(services: dict[str, dict[str, Any]], arguments: argparse.Namespace) ->
     if arguments.json:
         print(json.dumps(chosen, indent=2))
     else:
-        print("\n".join(each["service"] for each in chosen))
+        sys.stdout.writelines(f"{each['service']}\n" for each in chosen)
+    if not chosen:
+        sys.stdout.flush()
+        print(f"cfepy: no service in {start or '/'} in {arguments.source}", file=sys.stderr)
     return ENDED_WELL if chosen else FOUND_PROBLEMS
 
 
@@ -74,7 +77,7 @@ def _tell(services: dict[str, dict[str, Any]], arguments: argparse.Namespace) ->
 
 def _call(arguments: argparse.Namespace) -> int:
     name = arguments.service if arguments.service.startswith("/") else f"/{arguments.service}"
-    spec = with_ground_node(spec_for(arguments.source), "ground_call", [name, arguments.values, arguments.at])
+    spec = with_ground_node(spec_for(arguments), "ground_call", [name, arguments.values, arguments.at])
     ground = GroundConsole()
     with FlightSource(spec, arguments, Console(sink=ground.line)) as source:
         source.fly(lambda: bool(ground.said))

@@ -14,6 +14,7 @@ from cfepy.cli.topic_output import Bandwidth, Delay, Echo, Hz, Meter, candidates
 from cfepy.cli.topic_source import FlightSource, TopicRow, source_of, spec_for
 from cfepy.console import Console
 from cfepy.mission.ground_node import GroundConsole, with_ground_node
+from cfepy.mission.tracebacks import described
 from cfepy.status import UsageError
 
 
@@ -63,8 +64,14 @@ def _list(arguments: argparse.Namespace) -> int:
     elif arguments.verbose:
         print(_verbose(rows))
     else:
-        print("\n".join(dict.fromkeys(row.name for row in rows)))
-    return ENDED_WELL if rows else FOUND_PROBLEMS
+        sys.stdout.writelines(f"{name}\n" for name in dict.fromkeys(row.name for row in rows))
+    return ENDED_WELL if rows else _no_topic(f"in {start or '/'}", arguments)
+
+
+def _no_topic(which: str, arguments: argparse.Namespace) -> int:
+    sys.stdout.flush()
+    print(f"cfepy: no topic {which} in {arguments.source}", file=sys.stderr)
+    return FOUND_PROBLEMS
 
 
 def _verbose(rows: list[TopicRow]) -> str:
@@ -119,8 +126,8 @@ def _type(arguments: argparse.Namespace) -> int:
 
 def _find(arguments: argparse.Namespace) -> int:
     names = [row.name for row in _rows(arguments) if row.type == arguments.type]
-    print(json.dumps(names) if arguments.json else "\n".join(names))
-    return ENDED_WELL if names else FOUND_PROBLEMS
+    sys.stdout.writelines([json.dumps(names), "\n"] if arguments.json else [f"{name}\n" for name in names])
+    return ENDED_WELL if names else _no_topic(f"of type {arguments.type}", arguments)
 
 
 # -- the messages ------------------------------------------------------------------------------------------------------
@@ -145,7 +152,16 @@ def _filter(expression: str | None) -> Callable[[Any], Any]:
         code = compile(expression, "--filter", "eval")
     except SyntaxError as error:
         raise UsageError(f"{error.msg}; write something like 'm.data > 3'", field="--filter") from None
-    return lambda message: eval(code, {"m": message})
+
+    def wanted(message: Any) -> Any:
+        try:
+            return eval(code, {"m": message})
+        except Exception as error:  # whatever the expression makes of the message
+            raise UsageError(
+                f"{described(error)}; m is the whole message, here {message._type}", field="--filter"
+            ) from None
+
+    return wanted
 
 
 def _measure(arguments: argparse.Namespace, meter: Meter) -> int:
@@ -184,7 +200,7 @@ def _nothing(arguments: argparse.Namespace) -> int:
 def _publish(arguments: argparse.Namespace) -> int:
     topic = _rooted(arguments.topic)
     told = [topic, arguments.type, arguments.values, arguments.rate, arguments.at]
-    spec = with_ground_node(spec_for(arguments.source), "ground_publish", told)
+    spec = with_ground_node(spec_for(arguments), "ground_publish", told)
     ground = GroundConsole()
     with FlightSource(spec, arguments, Console(sink=ground.line)) as source:
         callers = [message.header.get("callerid", "") for message in source.messages([topic])]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from cfepy.cli.arguments import count_of, factor_of, seconds_of
+from cfepy.cli.arguments import add_launch_arguments, count_of, factor_of, seconds_of
 
 _SOURCE_HELP = "a bag, a mission (startup script, folder, shipped mission's name), a launch file, or a node's .py file"
 _MISSION_HELP = "a mission (startup script, folder, shipped mission's name), a launch file, or a node's .py file"
@@ -61,6 +61,7 @@ def _action(
     action.add_argument("--seed", type=int, default=0, metavar="N", help="of everything random (default: 0)")
     action.add_argument("--board", metavar="NAME|FILE", help="fly on this board instead of the mission's own")
     action.add_argument("--json", action="store_true", help="as JSON")
+    add_launch_arguments(action)
     action.set_defaults(stop_on_failure=False)
     return action
 

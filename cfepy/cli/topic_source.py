@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import os
+import importlib
 import sys
 from collections.abc import Callable, Generator, Iterator, Sequence
 from pathlib import Path
@@ -11,13 +11,11 @@ from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.cli.failures import booting
-from cfepy.cli.launch import mission_of
 from cfepy.cli.node import spec_of_script
 from cfepy.cli.run import script_of
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec, read_mission
 from cfepy.mission.bag import BagReader, is_bag
-from cfepy.mission.launch import plan_of
 from cfepy.mission.results import deaths
 from cfepy.mission.topic_watch import Message, TopicWatch
 from cfepy.rtos.units import NS_PER_MS, NS_PER_S
@@ -39,19 +37,16 @@ class TopicRow(NamedTuple):
     subscribers: tuple[str, ...]
 
 
-def spec_for(text: str) -> MissionSpec:
-    """The mission that a word means: a launch file, a node's script, or what `read_mission` takes.
+def spec_for(arguments: argparse.Namespace) -> MissionSpec:
+    """The mission that a command line means: a node's script, or what `read_mission` takes.
 
     Raises:
         UsageError: it is none of them.
     """
-    path = Path(text)
-    if path.is_file() and path.suffix in (".launch", ".test"):
-        plan = plan_of(path.resolve(), {}, dict(os.environ), cwd=Path.cwd())
-        return mission_of(path.resolve(), plan.nodes, plan, None)
-    if path.is_file() and path.suffix == ".py":
+    path = Path(arguments.source)
+    if path.is_file() and importlib.import_module("rospy_shim.roslaunch.scripts").is_python(path):
         return spec_of_script(path.resolve(), [])
-    return read_mission(text)
+    return read_mission(arguments.source, dict(arguments.launch_args))
 
 
 class BagSource:
@@ -190,4 +185,4 @@ def source_of(arguments: argparse.Namespace) -> Source:
     """What the command line names: a bag or a mission."""
     if is_bag(arguments.source):
         return BagSource(arguments.source, arguments.seconds)
-    return FlightSource(spec_for(arguments.source), arguments)
+    return FlightSource(spec_for(arguments), arguments)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from mmap import ACCESS_COPY, mmap
 
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -250,7 +251,8 @@ class MemPool:
     ) -> None:
         self.name = name
         self.mutex_id = 0
-        self._data = memoryview(bytearray(size))
+        # Zeros that take no room in the computer's memory before they are written: a pool may be 256 MiB.
+        self._data = memoryview(mmap(-1, size, access=ACCESS_COPY))
         self.blocks = GenericPool(
             self._read, self._write, log, start=0, size=size, alignment=max(alignment, MIN_ALIGNMENT), sizes=sizes
         )

@@ -5,6 +5,7 @@ Nothing of the mission is executed. Each finding says file, line, what is wrong 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from difflib import get_close_matches
 from pathlib import Path
@@ -15,6 +16,7 @@ from cfepy.es import startup_script
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, Entry
 from cfepy.mission import sources
 from cfepy.mission.check_file import CheckedFile, check_file
+from cfepy.mission.launch import LAUNCH_FILES, read_launch
 from cfepy.mission.loader import NODE_SYMBOL, find_code, find_node
 from cfepy.mission.spec import LOCK_FILE, MISSION_FILE, find_script, read_lock
 from cfepy.nodes.config import RosConfig
@@ -25,6 +27,7 @@ from cfepy.status import UsageError
 CORE_APPS = ("CFE_EVS", "CFE_SB", "CFE_ES", "CFE_TIME", "CFE_TBL")
 NO_SYMBOL = "NULL"
 FILES = "/cf/"
+_NOTE = re.compile(r"(.+?):(\d+): (.*)", re.DOTALL)  # of a launch file, as far as it is about a line
 
 
 class Finding(NamedTuple):
@@ -49,6 +52,8 @@ def check_mission(mission: str, board: str | None = None) -> list[Finding]:
         UsageError: there is no such mission.
     """
     script = find_script(mission)
+    if script.suffix in LAUNCH_FILES:
+        return _check_launch_file(script)
     folder = script.parent
     data = script.read_bytes()
     entries = startup_script.entries(data)
@@ -63,6 +68,16 @@ def check_mission(mission: str, board: str | None = None) -> list[Finding]:
     found += _check_lock(folder / LOCK_FILE, said)
     found += _check_board(script, entries, said, board, folder)
     return sorted(dict.fromkeys(found), key=lambda finding: (str(finding.file), finding.line))
+
+
+def _check_launch_file(file: Path) -> list[Finding]:
+    """What stops the file, or what of it is left out."""
+    try:
+        notes = read_launch(file).notes
+    except UsageError as error:
+        return [Finding(Path(error.file or file), error.line or 0, _with_field(error))]
+    places = ((_NOTE.fullmatch(note), note) for note in notes)
+    return [Finding(Path(at[1]), int(at[2]), at[3]) if at else Finding(file, 0, note) for at, note in places]
 
 
 def _check_lock(path: Path, said: CheckedFile) -> Iterator[Finding]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import os
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -30,7 +31,25 @@ def with_ground_node(spec: MissionSpec, script: str, arguments: Sequence[Any]) -
         arguments: what it is told.
     """
     path = Path(importlib.import_module("rospy_shim.library_path").FOLDER) / "ground_nodes" / f"{script}.py"
-    return _with_node(spec, NodeConfig(APP, args=(json.dumps(list(arguments)),), script=path, cwd=spec.folder))
+    node = NodeConfig(
+        APP,
+        args=(json.dumps(list(arguments)),),
+        env=_package_paths(spec),
+        script=path,
+        near=spec.script,
+        cwd=spec.folder,
+    )
+    return _with_node(spec, node)
+
+
+def _package_paths(spec: MissionSpec) -> dict[str, str]:
+    """Where the mission's nodes find packages: whoever talks to them needs their message types."""
+    found: dict[str, str] = {}
+    for name in ("ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH"):
+        said = [node.env[name] for node in spec.ros.nodes.values() if node.env.get(name)]
+        if said:
+            found[name] = os.pathsep.join(dict.fromkeys(os.pathsep.join(said).split(os.pathsep)))
+    return found
 
 
 def with_player(spec: MissionSpec, bag: str) -> MissionSpec:

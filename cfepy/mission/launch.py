@@ -16,12 +16,14 @@ from typing import TYPE_CHECKING, Any
 from cfepy.es.startup_script import entries
 from cfepy.mission.limits import MissionLimits
 from cfepy.nodes.config import NodeConfig, RosConfig
+from cfepy.status import UsageError
 
 if TYPE_CHECKING:
     from cfepy.mission.spec import MissionSpec
 
 PRIORITY, STACK_BYTES, RESTART_NOTHING = 100, 16384, 0
 ROOM = 64  # more nodes than there are that limits allow for, since on a workstation nobody counts threads
+LAUNCH_FILES = (".launch", ".test", ".xml")
 KEPT_ENVIRONMENT = ("HOME", "PATH", "ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH")
 
 
@@ -54,10 +56,27 @@ def spec_of(
         mission_file=None,
         board="linux",
         ros=RosConfig(nodes=nodes, params=params, spread=True, ends_with_nodes=bool(nodes)),
-        limits=MissionLimits(nodes=len(nodes) + ROOM),
+        limits=MissionLimits(nodes=len(nodes) + ROOM, yields=True),
         startup=lines_for(nodes) + b"!\n",
         notes=notes,
     )
+
+
+def read_launch(file: Path, args: Mapping[str, str] | None = None) -> MissionSpec:
+    """The mission that a launch file by itself is, in the user's environment.
+
+    Args:
+        file: the launch file.
+        args: values of its arguments.
+
+    Raises:
+        UsageError: it is wrong, or has no node that can run here.
+    """
+    plan = plan_of(file, args or {}, dict(os.environ), cwd=Path.cwd())
+    if not plan.nodes:
+        why = "; ".join(plan.notes) or "it has no <node>"
+        raise UsageError(f"has no node that can run here: {why}", file=file)
+    return spec_of(file, plan.nodes, plan.params, tuple(plan.notes))
 
 
 def with_launch_files(spec: MissionSpec, launches: list[tuple[Path, Mapping[str, str]]]) -> MissionSpec:

@@ -2,7 +2,7 @@
 
 The board is hardware, so its numbers are the most that there is: a mission file lowers them and never raises them. What
 no board has spoken of, a mission raises as it likes. Where RAM has no limit, a mission with ROS nodes gets room for
-their parameters besides.
+their parameters and their long messages besides.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ NODES = "nodes"
 
 MOST_NODES = 4000
 
-PARAMETER_ROOM: Mapping[str, int] = {"es_cds_size": 409_600}
-"""What cFE is built with when ROS's parameters, which are critical tables, are to fit as well."""
+ROS_ROOM: Mapping[str, int] = {"es_cds_size": 409_600, "os_max_tasks": 512, "sb_buf_memory_bytes": 64 << 20}
+"""What cFE is built with for ROS's parameters, which are critical tables, for threads, and for images on their way."""
 
 _PER_NODE: Mapping[str, int] = {
     "es_max_applications": 1,
@@ -38,6 +38,9 @@ _PER_NODE: Mapping[str, int] = {
 }
 """What a ROS node takes when it is no small one: threads, topics on both sides, services, messages under way."""
 
+_WORKSTATION: Mapping[str, int] = {"os_queue_max_depth": 10_000, "sb_buf_memory_bytes": 1 << 28}
+"""What a ROS node finds on a PC, where messages that nobody has taken yet wait in sockets and in lists."""
+
 _MOST: Mapping[str, int] = {"sb_max_msg_ids": HIGHEST_VALID_MSG_ID, "sb_buf_memory_bytes": (1 << 31) - 1}
 
 
@@ -48,11 +51,14 @@ class MissionLimits:
     Attributes:
         values: fields of `PlatformConfig`, under their names.
         nodes: room for so many ROS nodes; 0 for no more than cFE has by itself.
+        yields: nobody wrote `nodes` down: a board's own limits hold, whether they are enough or not; where RAM
+            has no limit, nodes get what a PC has.
         places: where each of them was said, for errors.
     """
 
     values: Mapping[str, Limit] = field(default_factory=dict)
     nodes: int = 0
+    yields: bool = False
     places: Mapping[str, Marked] = field(default_factory=dict)
 
     def config(self, board: BoardProfile, has_nodes: bool) -> PlatformConfig:
@@ -65,8 +71,12 @@ class MissionLimits:
         Raises:
             UsageError: the mission wants more than the board has.
         """
-        base = PlatformConfig().with_limits(PARAMETER_ROOM if has_nodes and not board.sram_size else {})
-        own = {**_at_least(limits_for(self.nodes), board), **self.values}
+        base = PlatformConfig().with_limits(ROS_ROOM if has_nodes and not board.sram_size else {})
+        room = {name: max(value, getattr(base, name)) for name, value in limits_for(self.nodes).items()}
+        if self.yields:
+            more = {} if board.sram_size else _WORKSTATION
+            room = {name: value for name, value in {**room, **more}.items() if name not in board.limits}
+        own = {**_at_least(room, board), **self.values}
         for name, value in own.items():
             self._check(name, value, board)
         return board.config(base).with_limits(own)
@@ -94,10 +104,11 @@ def read_limits(section: Marked | None) -> MissionLimits:
     """
     places = section.mapping([NODES, *LIMIT_NAMES]) if section is not None else {}
     values = {name: read_limit(name, entry) for name, entry in places.items() if name != NODES}
-    return MissionLimits(values, places[NODES].integer(1, MOST_NODES) if NODES in places else 0, places)
+    nodes = places[NODES].integer(1, MOST_NODES) if NODES in places else 0
+    return MissionLimits(values, nodes, places=places)
 
 
-def limits_for(nodes: int) -> dict[str, Limit]:
+def limits_for(nodes: int) -> dict[str, int]:
     """Limits under which so many ROS nodes have room, besides all that fits into cFE's defaults.
 
     Args:

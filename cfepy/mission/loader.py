@@ -211,17 +211,17 @@ def execute(found: Code, name: str) -> ModuleType | None:
 
 
 def find_node(file: str, folder: Path) -> Path | None:
-    """The script of a ROS node behind a virtual path below /cf: x.py, or a file x, as ROS scripts are often called.
+    """The script of a ROS node behind a virtual path below /cf: a file x, as ROS scripts are often called, or x.py.
 
     OSAL never opens it, so OSAL's limits for file names do not hold for it; it must be below /cf all the same.
     """
     if ".." in file:
         return None
-    found = find_code(file, folder)
-    if isinstance(found, Path):
-        return found
     plain = folder / file.removeprefix("/cf/").removesuffix(NODE_SUFFIX)
-    return plain if plain.is_file() else None
+    if plain.is_file():
+        return plain
+    found = find_code(file, folder)
+    return found if isinstance(found, Path) else None
 
 
 def _installed(name: str) -> str | None:

@@ -13,7 +13,7 @@ from cfepy.console import Console
 from cfepy.es.startup_script import entries
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.mission import Mission
-from cfepy.mission.msg_names import names_of
+from cfepy.mission.msg_names import names_in
 from cfepy.mission.results import kind_of
 from cfepy.mission.spec import MissionSpec
 from cfepy.mission.watch import Seen, watching
@@ -59,7 +59,7 @@ def survey(spec: MissionSpec, board: str | None = None) -> list[MidRow]:
 
 def _rows(mission: Mission, senders_of: dict[int, set[str]]) -> list[MidRow]:
     bus = mission.cfe.sb
-    names = names_of(mission.spec)
+    names = names_in(mission)
     ros = {row.msg_id: row for row in mission.ros.topics()} if mission.ros is not None else {}
     nodes = {entry.name for entry in entries(mission.spec.startup_script) if entry.symbol == NODE_SYMBOL}
     found = []

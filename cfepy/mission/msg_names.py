@@ -10,15 +10,20 @@ import ast
 import importlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cfepy.es.startup_script import entries
 from cfepy.mission.loader import NODE_SYMBOL, find_code
 from cfepy.mission.spec import MissionSpec
 from cfepy.msg import is_valid_msg_id, topics
 
+if TYPE_CHECKING:
+    from cfepy.mission.mission import Mission
+
 SUFFIX = "_MID"
 CORE_SERVICES = ("ES", "EVS", "SB", "TBL", "TIME")
+ROS, ROS_PACKETS = "ROS", "rospy_shim.parameter_table"
+COMMAND_BIT = 0x1000  # a ROS service's requests have the MsgId of its answers with this bit
 
 
 def names_of(spec: MissionSpec) -> dict[int, str]:
@@ -28,8 +33,20 @@ def names_of(spec: MissionSpec) -> dict[int, str]:
         if entry.symbol != NODE_SYMBOL:
             for name, msg_id in declared(find_code(entry.path, spec.folder)):
                 names.setdefault(msg_id, _with_prefix(name, entry.name))
+    if spec.has_nodes:
+        names |= _constants(ROS_PACKETS, ROS)
     for topic in spec.ros.topics.values():
         names.setdefault(topic.msg_id, topic.name)
+    return names
+
+
+def names_in(mission: Mission) -> dict[int, str]:
+    """MsgId to name, in a mission that runs or has run: those of its ROS services as well."""
+    names = names_of(mission.spec)
+    services = {} if mission.ros is None else mission.ros.graph.ids.services()
+    for msg_id, name in services.items():
+        names.setdefault(msg_id, f"{name} answer")
+        names.setdefault(msg_id | COMMAND_BIT, f"{name} request")
     return names
 
 
@@ -37,11 +54,17 @@ def core_names() -> dict[int, str]:
     """MsgId to NASA's name, for the messages of the five services: 0x0808 is CFE_EVS_LONG_EVENT_MSG."""
     names: dict[int, str] = {}
     for service in CORE_SERVICES:
-        module = importlib.import_module(f"cfepy.{service.lower()}.packets")
-        for name, value in vars(module).items():
-            if name.endswith(SUFFIX) and isinstance(value, int):
-                names.setdefault(value, _with_prefix(name, f"CFE_{service}"))
+        names = _constants(f"cfepy.{service.lower()}.packets", f"CFE_{service}") | names
     return names
+
+
+def _constants(module: str, owner: str) -> dict[int, str]:
+    """MsgId to name of everything called *_MID in a module of cfepy's own."""
+    found: dict[int, str] = {}
+    for name, value in vars(importlib.import_module(module)).items():
+        if name.endswith(SUFFIX) and isinstance(value, int):
+            found.setdefault(value, _with_prefix(name, owner))
+    return found
 
 
 def declared(code: Path | str | None) -> Iterator[tuple[str, int]]:

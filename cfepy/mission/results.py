@@ -13,7 +13,7 @@ from cfepy.es.records import APP_ERROR, STATE_NAMES
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, entries, parse
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.mission.mission import Mission
-from cfepy.mission.msg_names import names_of
+from cfepy.mission.msg_names import names_in
 from cfepy.mission.processor import CORE_APPS
 from cfepy.mission.record import Reset, Traffic
 from cfepy.mission.tracebacks import described
@@ -208,7 +208,7 @@ def _reset(reset: Reset) -> ResetResult:
 
 
 def _topics(mission: Mission, at: Mark) -> list[TopicResult]:
-    names = names_of(mission.spec)
+    names = names_in(mission)
     rows = mission.record.topics | {row.msg_id: row for row in mission.processor.topics()}
     found = []
     for msg_id, count in mission.record.traffic(mission.cfe.sb, mission.processor.topics()).items():
@@ -287,13 +287,21 @@ def _script_problems(mission: Mission, apps: list[AppResult]) -> list[str]:
 
 def _problems(mission: Mission, own_errors: dict[str, int]) -> list[str]:
     found = deaths(mission)
-    found += [f"{name} ended with CFE_ES_RunStatus_APP_ERROR" for name in _failed(mission)]
+    found += [f"{name} ended with {_end_of(mission, name)}" for name in _failed(mission)]
     for name, count in own_errors.items():
         found.append(f"{name} sent {count} ERROR or CRITICAL event{'s' if count > 1 else ''}")
     for reset in mission.record.resets:
         if reset.fault:
             found.append(f"the processor was reset at {reset.at_ns / NS_PER_S:g} s: {reset.reason}")
     return found
+
+
+def _end_of(mission: Mission, name: str) -> str:
+    """What an application has ended with: of a node, its program's exit status."""
+    end = None if mission.ros is None else mission.ros.ended.get(name)
+    if end is None or not end.status:
+        return "CFE_ES_RunStatus_APP_ERROR"
+    return f"exit status {end.status} (node /{end.name})"
 
 
 def deaths(mission: Mission) -> list[str]:

@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.es.startup_script import entries
-from cfepy.mission.launch import with_launch_files
+from cfepy.mission.launch import LAUNCH_FILES, read_launch, with_launch_files
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.parameter_files import read_parameters
 from cfepy.msg import HIGHEST_VALID_MSG_ID
-from cfepy.nodes.config import NodeConfig, RosConfig, TopicConfig
+from cfepy.nodes.config import ROSCORE_PARAMS, NodeConfig, RosConfig, TopicConfig
 from cfepy.psp.marked_yaml import Marked, load
 from cfepy.resources import shipped
 from cfepy.status import UsageError
@@ -66,16 +66,17 @@ def shipped_missions() -> list[str]:
 
 
 def find_script(mission: str) -> Path:
-    """The startup script that a user means.
+    """The startup script or launch file that a user means.
 
     Args:
-        mission: a path of a script, a folder with a startup.scr, or the name of a shipped mission.
+        mission: a path of a script or launch file, a folder with a startup.scr, or the name of a shipped mission.
 
     Raises:
         UsageError: nothing of the kind.
     """
     path = Path(mission)
     if path.is_file():
+        _check_kind(path)
         return path.resolve()
     if (path / STARTUP_SCRIPT).is_file():
         return (path / STARTUP_SCRIPT).resolve()
@@ -87,16 +88,34 @@ def find_script(mission: str) -> Path:
     )
 
 
-def read_mission(mission: str) -> MissionSpec:
-    """Find a mission and read its mission file.
+def _check_kind(path: Path) -> None:
+    """What is neither a startup script nor a launch file must not boot as an empty mission.
+
+    Raises:
+        UsageError: it is something else.
+    """
+    data = path.read_bytes()
+    if path.suffix == ".py" or data.startswith(b"#!"):
+        raise UsageError("is a program and no mission; `cfepy node` runs a ROS node by itself", file=path)
+    if path.suffix not in LAUNCH_FILES and data.strip() and not any(mark in data for mark in (b"!", b"CFE_")):
+        raise UsageError("is neither a startup script nor a launch file", file=path)
+
+
+def read_mission(mission: str, args: Mapping[str, str] | None = None) -> MissionSpec:
+    """Find a mission and read its mission file, or the launch file that it is.
 
     Args:
         mission: see `find_script`.
+        args: arguments for a launch file.
 
     Raises:
-        UsageError: there is no such mission, or its mission file is wrong.
+        UsageError: there is no such mission, its mission file is wrong, or it takes no arguments.
     """
     script = find_script(mission)
+    if script.suffix in LAUNCH_FILES:
+        return read_launch(script, args)
+    if args:
+        raise UsageError("only a launch file takes arguments", file=mission, field="--arg")
     folder = script.parent
     mission_file = next((path for path in (script.with_suffix(".yaml"), folder / MISSION_FILE) if path.is_file()), None)
     name = folder.name if script.name == STARTUP_SCRIPT else script.stem
@@ -104,6 +123,8 @@ def read_mission(mission: str) -> MissionSpec:
         spec = MissionSpec(name, folder, script, None, "linux", RosConfig())
     else:
         spec = _read_file(name, folder, script, mission_file)
+    if spec.has_nodes:
+        spec = replace(spec, ros=replace(spec.ros, params={**ROSCORE_PARAMS, **spec.ros.params}))
     lock = folder / LOCK_FILE
     return replace(spec, ros=read_lock(lock, spec.ros)) if lock.is_file() else spec
 

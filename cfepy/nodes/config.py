@@ -10,6 +10,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+ROSCORE_PARAMS: Mapping[str, Any] = {
+    "rosdistro": "noetic\n",
+    "rosversion": "1.16.0\n",
+    "run_id": "00000000-0000-1000-8000-000000000001",  # the same in every run
+}
+"""What roscore and roslaunch put on the parameter server, newlines included."""
+
 
 @dataclass(frozen=True, slots=True)
 class NodeConfig:
@@ -19,8 +26,9 @@ class NodeConfig:
     names as on rosrun's command line; `params` are private parameters; `args` go to `sys.argv`; `env` to `os.environ`;
     `ordered_sets`: sets in its code iterate in insertion order; None is as the mission says for all nodes;
     `keys` are typed at its terminal: texts, and numbers of seconds to wait; None leaves it without a terminal;
-    `script` is its program, `cwd` its working directory; None takes those of the mission's folder. `respawn`: it is
-    started again `respawn_delay_ns` after its end; `required`: its end is the end of the run.
+    `script` is its program, `cwd` its working directory; None takes those of the mission's folder; `near` is a file
+    near which its packages are, None for the script. `respawn`: it is started again `respawn_delay_ns` after its end;
+    `required`: its end is the end of the run.
     """
 
     app: str
@@ -32,6 +40,7 @@ class NodeConfig:
     env: Mapping[str, str] = field(default_factory=dict)
     ordered_sets: bool | None = None
     script: Path | None = None
+    near: Path | None = None
     cwd: Path | None = None
     respawn: bool = False
     respawn_delay_ns: int = 0

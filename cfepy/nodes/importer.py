@@ -142,7 +142,7 @@ class Importer:
         package = self.load(parent) if parent else None
         if name in self.modules:
             return self.modules[name]
-        if self._is_shared(parent) and name not in self._factories:
+        if self._is_shared(parent) and self._factory(name) is None:
             return self._share(name, package)
         module = self._load_own(name, package)
         if package is not None:

@@ -135,6 +135,12 @@ class Process:
         """As `memory_info`."""
         return 0.0
 
+    def net_connections(self, kind: str = "inet") -> list[Any]:
+        """None: the network of the simulated computer has no table of them."""
+        return []
+
+    connections = net_connections
+
     def num_threads(self) -> int:
         """How many tasks the node has."""
         return len(self._universe.tasks)

@@ -26,6 +26,8 @@ NETWORK = (
 )
 PROCESS = "start a thread (threading.Thread), or list the program as a node of its own in the mission"
 SIGNALS = "use threading.Timer"
+ENCRYPTION = "it takes entropy and a clock from outside; talk without encryption, or through topics and services"
+_MULTIPROCESSING_ERRORS = ("AuthenticationError", "BufferTooShort", "ProcessError", "TimeoutError")
 
 
 class RefusedError(OSError):
@@ -93,15 +95,39 @@ def subprocess_module(universe: Universe) -> ModuleType:
 
 def multiprocessing_module(universe: Universe) -> ModuleType:
     """`multiprocessing`: every name can be imported; a processor has one core and no processes."""
+    import multiprocessing
 
     def lookup(name: str) -> object:
         if name.startswith("__"):
             raise AttributeError(name)
+        if name[0].isupper():  # programs derive from Process and test against Queue
+            return vars(module).setdefault(name, refused_class(universe, "multiprocessing", name, PROCESS))
         return refusal(universe, f"multiprocessing.{name}", PROCESS)
 
-    return made("multiprocessing", __path__=[], __getattr__=lookup, cpu_count=lambda: 1)
+    errors = {name: getattr(multiprocessing, name) for name in _MULTIPROCESSING_ERRORS}
+    module = made("multiprocessing", __path__=[], __getattr__=lookup, cpu_count=lambda: 1, **errors)
+    return module
 
 
 def multiprocessing_submodule(universe: Universe) -> ModuleType:
-    """`multiprocessing.pool`, `.shared_memory` and so on."""
-    return made("multiprocessing", __getattr__=multiprocessing_module(universe).__getattr__)
+    """`multiprocessing.managers`, `.shared_memory` and so on."""
+    return made("multiprocessing", __getattr__=universe.importer.load("multiprocessing").__getattr__)
+
+
+def pool_module(universe: Universe) -> ModuleType:
+    """`multiprocessing.pool`: threads can be had."""
+    return universe.importer.load_file(
+        "multiprocessing.pool", os.path.join(os.path.dirname(__file__), "thread_pool.py")
+    )
+
+
+def dummy_module(name: str) -> Callable[[Universe], ModuleType]:
+    """The factory of `multiprocessing.dummy`, threads under the names of processes, or of its part `connection`."""
+
+    def factory(universe: Universe) -> ModuleType:
+        folder = os.path.join(_LIBRARIES, "multiprocessing", "dummy")
+        part = name.partition("dummy.")[2]
+        file = os.path.join(folder, f"{part or '__init__'}.py")
+        return universe.importer.load_file(name, file, None if part else folder)
+
+    return factory

@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from traceback import TracebackException
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-_HIDDEN = (os.path.join(_PACKAGE, "nodes", ""), os.path.join(_PACKAGE, "rtos", ""), "<frozen importlib")
+_MESSAGES = os.path.join(os.path.dirname(_PACKAGE), "rospy_shim", "msgs", "")  # at work while a node imports
+_HIDDEN = (os.path.join(_PACKAGE, "nodes", ""), os.path.join(_PACKAGE, "rtos", ""), _MESSAGES, "<frozen importlib")
 
 
 def is_hidden(file: str) -> bool:

@@ -41,6 +41,7 @@ def run_script(universe: Universe) -> int:
     finally:
         universe.end_threads()
         universe.sockets.close_all()
+        universe.files.close_all()
         universe.release_current()
         universe.stdout.finish()
         universe.stderr.finish()

@@ -49,10 +49,12 @@ HOST_PACKAGES = frozenset({"cfepy", "greenlet", "hypothesis", "_pytest", "pkg_re
 
 # fmt: off
 _MULTIPROCESSING = (
-    "connection", "context", "dummy", "managers", "pool", "process", "queues", "reduction", "shared_memory",
+    "connection", "context", "managers", "process", "queues", "reduction", "shared_memory",
     "sharedctypes", "synchronize",
 )
 # fmt: on
+
+_THREADS_AS_PROCESSES = ("multiprocessing.dummy", "multiprocessing.dummy.connection")
 
 _pure: dict[str, bool] = {}
 
@@ -62,10 +64,12 @@ def refused_modules() -> Mapping[str, Callable[[Universe], ModuleType]]:
     named = {
         "multiprocessing": refused.multiprocessing_module,
         "subprocess": refused.subprocess_module,
-        "ssl": refused.refused_import("ssl", refused.NETWORK),
-        "_ssl": refused.refused_import("_ssl", refused.NETWORK),
+        "ssl": refused.refused_import("ssl", refused.ENCRYPTION),
+        "_ssl": refused.refused_import("_ssl", refused.ENCRYPTION),
     }
     named.update({f"multiprocessing.{part}": refused.multiprocessing_submodule for part in _MULTIPROCESSING})
+    named["multiprocessing.pool"] = refused.pool_module
+    named.update({name: refused.dummy_module(name) for name in _THREADS_AS_PROCESSES})
     named.update({name: refused.refused_import(name, "it is not needed") for name in WITHOUT_ACCELERATOR})
     # Nodes import it for speed. To pickle itself, which asks while it is being loaded, it lacks all that matters.
     named["_pickle"] = lambda universe: universe.importer.load("pickle")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import builtins
 import io
-import os
 import sys
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -15,8 +14,6 @@ from cfepy.nodes.synth import made, proxy
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
-
-_PATHS = (str, bytes, os.PathLike)
 
 
 def sys_module(universe: Universe) -> ModuleType:
@@ -41,15 +38,6 @@ def sys_module(universe: Universe) -> ModuleType:
         stdin=universe.stdin,
         stdout=universe.stdout,
     )
-
-
-def open_in(universe: Universe) -> Any:
-    """`open` with paths relative to the node's working directory."""
-
-    def open_file(file: Any, *args: Any, **options: Any) -> Any:
-        return open(universe.resolve(file) if isinstance(file, _PATHS) else file, *args, **options)
-
-    return open_file
 
 
 def io_module(universe: Universe) -> ModuleType:
@@ -80,7 +68,7 @@ def builtins_module(universe: Universe, ordered_sets: bool) -> ModuleType:
         __import__=universe.importer.import_name,
         exit=leave,
         input=read_line,
-        open=open_in(universe),
+        open=universe.files.opener(),
         print=print_text,
         quit=leave,
     )

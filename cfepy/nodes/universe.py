@@ -34,6 +34,7 @@ from cfepy.nodes import (
 )
 from cfepy.nodes.importer import Factory, Importer
 from cfepy.nodes.locks import make_lock_types
+from cfepy.nodes.open_files import OpenFiles
 from cfepy.nodes.script import run_script
 from cfepy.nodes.sharing import refused_modules
 from cfepy.nodes.signal_module import NodeInterrupt
@@ -142,6 +143,7 @@ class Universe:
         self.terminal = self._make_terminal(keys) if keys is not None else None
         self.stdin: io.TextIOBase = TypedInput(self.terminal) if self.terminal is not None else NoInput()
         self.sockets = SocketTable(self, network)
+        self.files = OpenFiles(self.resolve)
         self.signals = signal_module.SignalTable(self)
         self.clock = time_module.VirtualClock(self, epoch_ns)
         self.locks = make_lock_types(self)

@@ -209,6 +209,10 @@ class BufferServices(BusCore):
         if self._most_bytes() > self.peaks.memory:
             self.note_peaks()
 
+    def has_room(self, packet: Packet) -> bool:
+        """Whether the pool takes a message now; `transmit_msg` of one that it does not take is CFE_SB_BUF_ALOC_ERR."""
+        return self._queued_bytes + len(packet) <= self._known_bytes or not self.pool_is_full(packet)
+
     def pool_is_full(self, packet: Packet) -> bool:
         """Whether there is no room for a message, counted exactly: more bytes may wait than ever before.
 

@@ -125,6 +125,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
                     failures = [*(failures or ()), (ev.Q_FULL_ERR_EID, destination)]
                     continue
                 waiting = self._drop_oldest(pipe)
+                puts = destination.puts
             self._queued_bytes += weight
             destination.puts = puts + 1
             items.append((packet, destination))

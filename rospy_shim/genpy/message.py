@@ -27,6 +27,8 @@ class Message:
 
     # A class made by the generator names itself here, so that it can be pickled where no "std_msgs" is importable.
     _restore_as: ClassVar[tuple[type, Any] | None] = None
+    # How many messages are in the arrays of one; None for a type that has no such arrays.
+    _count_items: ClassVar[Any] = None
 
     def __init__(self, *args: Any, **kwds: Any) -> None:
         """Set all fields from positional arguments, or some of them by name; the rest become None.

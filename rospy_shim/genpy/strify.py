@@ -92,9 +92,16 @@ class _Writer:
         return "\n" + text if indent else text
 
     def field(self, val: Any, field_type: str, indent: str) -> str:
-        if field_type.startswith("uint8[") and isinstance(val, bytes):
-            val = list(val)
+        if field_type.startswith("uint8["):
+            val = bytes_as_list(val)
         return self.text(val, indent + "  ")
+
+
+def bytes_as_list(val: Any) -> Any:
+    """The numbers of a field of bytes, which may be held as bytes, or as a text with a character for each."""
+    if isinstance(val, str):
+        return [ord(each) for each in val]
+    return list(val) if isinstance(val, bytes) else val
 
 
 def _quoted(val: str) -> str:

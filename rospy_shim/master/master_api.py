@@ -12,7 +12,7 @@ from rospy_shim.master.calls import Answer, answers
 from rospy_shim.master.registry import Entries, Registry
 from rospy_shim.names import PRIV_NAME, SEP
 from rospy_shim.parameter_tree import ParameterTree
-from rospy_shim.params import marshalled
+from rospy_shim.parameter_values import marshalled
 
 if TYPE_CHECKING:
     from rospy_shim.graph import Graph

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes.refused import RefusedError
 from rospy_shim.master.calls import UnknownMethod, call
+from rospy_shim.parameter_values import DateTime
 
 if TYPE_CHECKING:
     from cfepy.nodes import Universe
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from rospy_shim.node import Node
 
 NAME = "xmlrpc.client"
+ROUND_TRIP_NS = 500_000  # about what a request takes on one computer; a loop that asks until something is there gets on
 
 
 def xmlrpc_client(node: Node, switchboard: Switchboard) -> Callable[[Universe], ModuleType]:
@@ -39,6 +41,7 @@ def xmlrpc_client(node: Node, switchboard: Switchboard) -> Callable[[Universe], 
             raise ModuleNotFoundError(f"No module named {NAME!r}", name=NAME)
         module = universe.importer.load_file(NAME, spec.origin)
         vars(module)["Transport"].request = _request(node, switchboard, module)
+        vars(module)["WRAPPERS"] += (DateTime,)  # can be marshalled, too
         return module
 
     return make
@@ -49,7 +52,7 @@ def _request(node: Node, switchboard: Switchboard, module: Any) -> Callable[...,
     over_http = vars(module)["Transport"].request
 
     def request(self: Any, host: Any, handler: str, request_body: bytes, verbose: bool = False) -> Any:
-        node.universe.charge()
+        node.kernel.charge(ROUND_TRIP_NS)
         address, _, _ = self.get_host_info(host)
         api = switchboard.find(node, address)
         if api is None:

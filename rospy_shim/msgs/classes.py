@@ -7,7 +7,7 @@ seldom called are compiled at their first call. Imports nothing of cfepy.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, Protocol
 
@@ -65,6 +65,7 @@ def build_class(spec: Spec, table: TypeTable, restore: Callable[[str], Any] | No
         "serialize": serialize,
         "serialize_numpy": serialize_numpy,
         "_pack": _function(spec, names, pack_source(spec, table.spec, names), "_pack"),
+        "_count_items": _counter(spec, table, names),
     }
     cls: MessageClass = type(name, (Message,), body)
     _add_readers(cls, spec, table, names)
@@ -105,6 +106,24 @@ def _add_readers(cls: MessageClass, spec: Spec, table: TypeTable, names: Namespa
     _compile_later(cls, spec, names, "deserialize_numpy", partial(reader, Form.DESERIALIZE_NUMPY))
     with_numpy = partial(pack_source, spec, table.spec, names, with_numpy=True)
     _compile_later(cls, spec, names, "_pack_numpy", with_numpy)
+
+
+def _counter(spec: Spec, table: TypeTable, names: Namespace) -> Callable[[MessageClass], int] | None:
+    """What counts the messages in a message's arrays: those of itself, and of the single messages in it."""
+    lengths = " + ".join(f"len(self.{path})" for path in _arrays(spec, table))
+    if not lengths:
+        return None
+    return _function(spec, names, ["def _count_items(self):", f"    return {lengths}"], "_count_items")
+
+
+def _arrays(spec: Spec, table: TypeTable, owner: str = "") -> Iterator[str]:
+    for field in spec.fields:
+        if "/" not in field.base:
+            continue
+        if field.is_array:
+            yield owner + field.attribute
+        else:
+            yield from _arrays(table.spec(field.base), table, f"{owner}{field.attribute}.")
 
 
 def _compile_later(cls: MessageClass, spec: Spec, names: Namespace, name: str, source: Callable[[], list[str]]) -> None:

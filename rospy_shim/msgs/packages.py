@@ -93,15 +93,20 @@ def _code_roots(package: Path) -> list[str]:
 
 
 def near(script: Path) -> Iterator[Path]:
-    """Packages near a program: those it lies in and those beside them, then the folders beside the program itself."""
-    for folder in script.absolute().parents:
-        if has_manifest(folder):
-            yield folder
-            yield from filter(is_package, _subfolders(folder.parent))
+    """Packages near a program: those it lies in and those beside them, then the folders beside the program itself.
+
+    At last those of the catkin workspace, if the program's package lies in the `src` of one.
+    """
+    homes = [folder for folder in script.absolute().parents if has_manifest(folder)]
+    for folder in homes:
+        yield folder
+        yield from filter(is_package, _subfolders(folder.parent))
     here = script.absolute().parent
     if has_definitions(here):
         yield here
     yield from filter(is_package, _subfolders(here))
+    for source in [folder for home in homes[-1:] for folder in home.parents if folder.name == "src"][:1]:
+        yield from crawl(source)
 
 
 def crawl(root: Path) -> Iterator[Path]:

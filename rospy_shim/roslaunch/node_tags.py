@@ -57,8 +57,9 @@ def read_remap(launch: Launch, tag: Tag, scope: Scope) -> None:
     """
     attributes = Attributes(tag, scope)
     tell_unknown(launch, attributes, REMAP)
+    source, target = attributes.required("from"), attributes.required("to")
     try:
-        scope.add_remap(attributes.required("from"), attributes.required("to"))
+        scope.add_remap(source, target)
     except ValueError as error:
         raise tag.fail(str(error)) from None
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from cfepy.nodes.config import NodeConfig
+from cfepy.nodes.config import ROSCORE_PARAMS, NodeConfig
 from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
 from rospy_shim.msgs import Packages
@@ -23,11 +23,6 @@ from rospy_shim.roslaunch.reader import read
 from rospy_shim.roslaunch.scripts import ScriptError, find_file, find_script
 
 LONGEST_NAME = 16  # of OSAL's 19 characters; the rest is for numbers
-ROS_PARAMS = {  # what roscore and roslaunch put there, newlines included
-    "rosdistro": "noetic\n",
-    "rosversion": "1.16.0\n",
-    "run_id": "00000000-0000-1000-8000-000000000001",  # the same in every run
-}
 ROS_ENVIRONMENT = {"ROS_DISTRO": "noetic", "ROS_PYTHON_VERSION": "3", "ROS_VERSION": "1"}  # as ROS's setup.sh has it
 _NOT_OURS = ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "ROS_NAMESPACE")  # of the network that is not there
 
@@ -96,7 +91,7 @@ def node_file(package: str, node_type: str, near: Path, environ: Mapping[str, st
         UsageError: there is none.
     """
     try:
-        return find_script(Packages(near, environ), package, node_type)
+        return find_script(_packages(near, environ, package), package, node_type)
     except ScriptError as error:
         raise UsageError(str(error), field=f"{package} {node_type}") from None
 
@@ -113,11 +108,26 @@ def launch_file(package: str, name: str, near: Path, environ: Mapping[str, str])
     Raises:
         UsageError: there is none.
     """
-    file = find_file(Packages(near, environ), package, name)
+    packages = _packages(near, environ, package)
+    file = find_file(packages, package, name)
+    if file is None and packages.folders(package):
+        raise UsageError(f"package {package!r} has no file {name!r}", field=f"{package} {name}")
     if file is None:
-        text = f"no package {package!r} with a file {name!r} is near this folder or on ROS_PACKAGE_PATH"
+        text = f"there is no package {package!r}; go into its workspace, or put it on ROS_PACKAGE_PATH"
         raise UsageError(text, field=f"{package} {name}")
     return file
+
+
+def _packages(near: Path, environ: Mapping[str, str], package: str) -> Packages:
+    """Packages as seen from a folder: when the one that is asked for is not near, the catkin workspace counts, too."""
+    packages = Packages(near, environ)
+    if packages.folders(package):
+        return packages
+    sources = [near.parent / "src", *(folder for folder in near.parents if folder.name == "src")]
+    roots = [str(source) for source in sources[:2] if source.is_dir()]
+    return Packages(
+        near, {**environ, "ROS_PACKAGE_PATH": os.pathsep.join([environ.get("ROS_PACKAGE_PATH", ""), *roots])}
+    )
 
 
 def node_environment(environ: Mapping[str, str], namespace: str = SEP) -> dict[str, str]:
@@ -157,7 +167,7 @@ class Planner:
         Raises:
             UsageError: a required node cannot run here.
         """
-        plan = Plan(params=_tree({**ROS_PARAMS, **launch.params}, launch), notes=launch.notes)
+        plan = Plan(params=_tree({**ROSCORE_PARAMS, **launch.params}, launch), notes=launch.notes)
         for node in launch.nodes:
             try:
                 config = self.config(node)

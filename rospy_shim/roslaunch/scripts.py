@@ -37,7 +37,7 @@ def find_script(packages: Packages, package: str, node_type: str) -> Path:
     if found:
         raise ScriptError(f"{found[0]} is no Python script; cfepy runs nodes that are written in Python")
     if not packages.folders(package):
-        raise ScriptError(f"there is no package {package!r} beside the launch file's or on ROS_PACKAGE_PATH")
+        raise ScriptError(f"there is no package {package!r} near by or on ROS_PACKAGE_PATH")
     raise ScriptError(f"package {package!r} has no file {node_type!r}: a C++ node, or one that is not here")
 
 

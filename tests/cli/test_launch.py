@@ -88,7 +88,88 @@ def test_a_launch_file_by_its_package(
     assert shown.startswith("/talker\na:\n  b: 1\n")
     assert "talker:\n  count: 2\n" in shown
     assert main(["launch", "demo", "other.launch"]) == 2
-    assert "demo other.launch: no package 'demo' with a file 'other.launch'" in capsys.readouterr().err
+    assert "demo other.launch: package 'demo' has no file 'other.launch'" in capsys.readouterr().err
+    assert main(["launch", "dmo", "demo.launch"]) == 2
+    assert "dmo demo.launch: there is no package 'dmo'; go into its workspace, or" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("here", ["", "src", "src/stack/demo/scripts", "src/other"])
+def test_packages_of_the_workspace_that_one_is_in(
+    here: str, demo: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    workspace = demo.parent / "ws"
+    (workspace / "src/stack").mkdir(parents=True)
+    (workspace / "src/other").mkdir()
+    demo = demo.rename(workspace / "src/stack/demo")
+    (demo / "demo.launch").write_text(f"<launch>{TALKER.format('', COUNT.format(1))}</launch>")
+    monkeypatch.chdir(workspace / here)
+    assert main(["launch", "demo", "demo.launch", "--nodes"]) == 0
+    assert main(["node", "demo", "talker.py", "_count:=1"]) == 0
+    assert capsys.readouterr().out.startswith("/talker\nargv ")
+
+
+def test_what_is_shown(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nodes, topics and what became of both; the flight computer on demand."""
+    respawned = (
+        '<node pkg="demo" type="talker.py" name="late" respawn="true" ns="b"><param name="count" value="3"/></node>'
+    )
+    listener = '<node pkg="demo" type="listener.py" name="listener"/>'
+    file = write_launch(f"{TALKER.format('', COUNT.format(5))}{respawned}{listener}")
+    assert main(["launch", file, "--for", "2"]) == 0
+    shown = capsys.readouterr().out
+    assert shown.startswith("[talker] argv ")
+    assert "CFE_" not in shown
+    tables = [line.split() for line in shown.partition("\nTopics\n")[2].splitlines()]
+    assert ["/chatter", "4", "2.0", "0"] in tables  # the first one, before anybody had subscribed
+    assert ["/b/chatter", "0", "0.0", "0", "no", "subscriber"] in tables
+    assert ["/talker", "ended,", "exit", "status", "0", "0"] in tables
+    assert ["/listener", "running", "0"] in tables
+    assert ["/b/late", "running", "5"] in tables
+    assert not any(row[:1] == ["/rosout"] for row in tables)
+    assert "2.550 virtual s" in shown
+    assert main(["launch", file, "--for", "2", "--console"]) == 0
+    whole = capsys.readouterr().out
+    assert whole.startswith("CFE_PSP: ")
+    assert "\nApplications\n" in whole
+    assert whole.splitlines()[-1] == shown.splitlines()[-1]
+
+
+def test_even_a_short_run_is_one_of_the_nodes(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", write_launch(TALKER.format("", "")), "--for", "0.3"]) == 0
+    shown = capsys.readouterr()
+    assert shown.out.startswith("[talker] argv ")
+    assert shown.err == ""
+
+
+def test_a_launch_file_where_a_mission_is_meant(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
+    file = write_launch(TALKER.format("", COUNT.format(3)))
+    main(["launch", file, "--quiet"])
+    digest = capsys.readouterr().out.splitlines()[-1]
+    assert main(["run", file, "--quiet"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == digest
+    assert main(["run", file, "--board", "rx64m", "--quiet"]) == 0
+    capsys.readouterr()
+    assert main(["param", "get", file, "/talker/count"]) == 0
+    assert capsys.readouterr().out == "3\n"
+    assert main(["mids", file]) == 0
+    assert ["/chatter", "std_msgs/String", "/talker", "-"] in [
+        row.split()[1:] for row in capsys.readouterr().out.splitlines()
+    ]
+    assert main(["mids", file, "--lock"]) == 2
+    assert "has no topics.lock" in capsys.readouterr().err
+    assert main(["check", file]) == 0
+    with_argument = write_launch(f'<arg name="n"/>{TALKER.format("", COUNT.format("$(arg n)"))}')
+    capsys.readouterr()
+    assert main(["param", "get", with_argument, "/talker/count", "--arg", "n:=7"]) == 0
+    assert main(["topic", "echo", with_argument, "/chatter", "--arg", "n:=2"]) == 0
+    assert main(["run", with_argument, "--arg", "n:=1", "--quiet", "--check-determinism", "2"]) == 0
+    assert capsys.readouterr().out.startswith('7\ndata: "hello 0"\n---\ndata: "hello 1"\n---\n2 runs: ')
+    assert main(["run", "lab", "--arg", "n:=1"]) == 2
+    other = write_launch('<node pkg="demo" type="talker.py" name="a"/>\n<node pkg="none" type="x" name="b"/>')
+    assert main(["check", other]) == 1
+    assert f"{other}:2: node /b is left out: there is no package 'none'" in capsys.readouterr().out
+    assert main(["check", write_launch("<nod")]) == 1
+    assert f"{other}:1: " in capsys.readouterr().out
 
 
 def test_the_same_launch_makes_the_same_trace(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
@@ -134,6 +215,28 @@ URDF = """
   <joint name="end" type="fixed"><parent link="hand"/><child link="tip"/><origin xyz="0 1 0"/></joint>
 </robot>
 """
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ('xyz="1 0 x"', "joint turn: xyz='1 0 x': give three numbers"),
+        ('xyz="1 0"', "joint turn: xyz='1 0': give three numbers"),
+        ("<", "not well-formed"),
+    ],
+)
+def test_a_robot_description_with_a_mistake(
+    write_launch: Launch, demo: Path, capsys: pytest.CaptureFixture[str], wrong: str, said: str
+) -> None:
+    (demo / "r.urdf").write_text(URDF.replace('xyz="1 0 0"', wrong))
+    file = write_launch(
+        '<param name="robot_description" textfile="$(find demo)/r.urdf"/>'
+        '<node pkg="robot_state_publisher" type="robot_state_publisher" name="state"/>'
+    )
+    assert main(["launch", file]) == 1
+    (line,) = printed(capsys.readouterr().out, "state")
+    assert "robot_description is no URDF: " in line
+    assert said in line
 
 
 def test_a_robots_state_becomes_transforms(

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import argparse
+import importlib
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 import cfepy
-from cfepy.cli.main import main
+from cfepy.cli.main import COMMANDS, main
 
 
 @pytest.mark.parametrize("words", [["--help"], ["run", "--help"], ["check", "--help"], ["new", "--help"]])
@@ -45,11 +48,36 @@ def test_words_too_many_show_the_usage_of_the_command(
     assert f"{command}: error: unrecognized arguments: {words[-1]}" in said
 
 
+@pytest.mark.parametrize(("part", "names"), COMMANDS.items())
+def test_each_part_of_the_parser_adds_the_commands_that_it_is_asked_for(part: str, names: tuple[str, ...]) -> None:
+    commands = argparse.ArgumentParser().add_subparsers()
+    importlib.import_module(f"cfepy.cli.{part}").add(commands)
+    assert tuple(commands.choices) == names
+
+
+def test_a_wrong_command_is_answered_with_all_of_them(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["fly"])
+    said = capsys.readouterr().err
+    assert all(repr(name) in said for names in COMMANDS.values() for name in names)
+
+
 def test_help_imports_nothing_heavy() -> None:
     program = "import sys\nfrom cfepy.cli.main import main\ntry: main(['--help'])\nfinally: print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.splitlines()[-1].split())
     assert loaded.isdisjoint({"rich", "numpy", "yaml", "cfepy.mission", "cfepy.rtos"})
+
+
+def test_an_empty_run_imports_neither_ros_nor_what_other_commands_need(tmp_path: Path) -> None:
+    (tmp_path / "startup.scr").write_text("!\n")
+    words = ["run", str(tmp_path), "--for", "0.6", "--quiet"]
+    program = f"import sys\nfrom cfepy.cli.main import main\nmain({words})\nprint(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.splitlines()[-1].split())
+    assert {"cfepy.mission", "cfepy.rtos"} <= loaded
+    others = {f"cfepy.cli.{name}" for name in COMMANDS if name != "arguments"}
+    assert loaded.isdisjoint({"rich", "numpy", "json", "rospy_shim", "cfepy.io", "cfepy.mission.script"} | others)
 
 
 def test_boards(capsys: pytest.CaptureFixture[str]) -> None:

@@ -32,7 +32,8 @@ def mission(tmp_path: Path) -> str:
 
 
 def test_what_a_mission_starts_with(mission: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert said(capsys, "list", mission).split() == ["/n/gain", "/robot/axes", "/robot/rate"]
+    own, roscore = ["/n/gain", "/robot/axes", "/robot/rate"], ["/rosdistro", "/rosversion", "/run_id"]
+    assert said(capsys, "list", mission).split() == own + roscore
     assert said(capsys, "list", mission, "robot").split() == ["/robot/axes", "/robot/rate"]
     assert said(capsys, "get", mission, "/robot/rate") == "10\n"
     assert said(capsys, "dump", mission, "/robot") == "rate: 10\naxes:\n- x\n- y\n"
@@ -47,7 +48,7 @@ def test_what_there_is_after_some_time(mission: str, capsys: pytest.CaptureFixtu
 
 def test_a_node_whose_name_only_its_script_knows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE, mission_yaml="nodes: {N: {params: {gain: 1}}}\n")
-    assert said(capsys, "list", mission).startswith("cfepy: N has parameters of its own")
+    assert "cfepy: N has parameters of its own" in said(capsys, "list", mission)
     assert "/n/gain" in said(capsys, "list", mission, "--for", "2")
 
 
@@ -67,6 +68,10 @@ def test_files_for_the_ground(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert said(capsys, "get", out, "/new") == "a: true\n"
     assert said(capsys, "get", out, "/text") == "'10'\n"
     assert main(["tbl", "verify", str(out / "params01.tbl")]) == 0
+    assert [split((out / f"params0{n}.tbl").read_bytes())[0].description for n in (1, 2)] == [
+        "ROS parameters 1",
+        "ROS parameters 2",
+    ]
 
 
 @pytest.mark.parametrize(

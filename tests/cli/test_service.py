@@ -53,6 +53,40 @@ def test_calls(mission: str, capsys: Capture) -> None:
     assert 2.0 <= found["at"] < 2.01
 
 
+def test_the_missions_own_types(tmp_path: Path, capsys: Capture) -> None:
+    package = tmp_path / "rover"
+    for file, text in (
+        ("package.xml", "<package><name>rover</name></package>"),
+        ("srv/Drive.srv", "int32 speed\n---\nint32 twice\n"),
+        (
+            "node.py",
+            "import rospy\nfrom rover.srv import Drive\nrospy.init_node('rover')\n"
+            "rospy.Service('drive', Drive, lambda request: request.speed * 2)\nrospy.spin()\n",
+        ),
+        ("rover.launch", '<launch><node pkg="rover" type="node.py" name="rover"/></launch>'),
+        ("flight/startup.scr", "CFE_APP, node.py, __main__, ROVER, 100, 16384, 0x0, 0;\n!\n"),
+        ("flight/mission.yaml", "nodes: {ROVER: {env: {ROS_PACKAGE_PATH: ../../elsewhere}}}\n"),
+    ):
+        (package / file).parent.mkdir(parents=True, exist_ok=True)
+        (package / file).write_text(text)
+    assert said(capsys, "call", str(package / "rover.launch"), "/drive", "speed: 4") == "twice: 8\n"
+    (package / "node.py").rename(package / "flight/node.py")
+    (package / "srv").rename(tmp_path / "srv")
+    (tmp_path / "elsewhere/rover").mkdir(parents=True)
+    (tmp_path / "srv").rename(tmp_path / "elsewhere/rover/srv")
+    (package / "package.xml").rename(tmp_path / "elsewhere/rover/package.xml")
+    assert said(capsys, "call", str(package / "flight"), "/drive", "4") == "twice: 8\n"
+
+
+def test_requests_and_answers_have_names_on_the_bus(tmp_path: Path, capsys: Capture) -> None:
+    mission = robot(tmp_path)
+    with (mission / "robot.py").open("a") as file:
+        file.write("    if i == 3:\n        rospy.ServiceProxy('switch', SetBool)(True)\n        break\n")
+    assert main(["run", str(mission), "--for", "2", "--quiet"]) == 0
+    rows = [line.split()[1:5] for line in capsys.readouterr().out.splitlines() if "/switch" in line]
+    assert rows == [["/switch", "answer", "1", "1"], ["/switch", "request", "1", "1"]]
+
+
 def test_calls_that_fail(mission: str, capsys: Capture) -> None:
     assert main(["service", "call", mission, "/switch", "{dta: true}"]) == 1
     assert "No field name [dta]" in capsys.readouterr().err

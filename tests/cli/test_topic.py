@@ -37,7 +37,10 @@ def test_lists_of_topics(tmp_path: Path, capsys: Capture, bag: str) -> None:
     assert said(capsys, "list", bag) == "/odom\n/said\n"
     rows = json.loads(said(capsys, "list", bag, "--json"))
     assert rows[0] == {"name": "/odom", "type": "nav_msgs/Odometry", "publishers": ["/robot"], "subscribers": []}
-    assert said(capsys, "list", bag, "/none", status=1) == "\n"
+    assert main(["topic", "list", bag, "/none"]) == 1
+    assert capsys.readouterr() == ("", f"cfepy: no topic in /none/ in {bag}\n")
+    assert main(["topic", "find", bag, "std_msgs/Int8"]) == 1
+    assert capsys.readouterr() == ("", f"cfepy: no topic of type std_msgs/Int8 in {bag}\n")
     assert said(capsys, "find", bag, "nav_msgs/Odometry") == "/odom\n"
 
 
@@ -96,6 +99,8 @@ def test_nothing_to_echo(capsys: Capture, bag: str) -> None:
     assert "no message on /none" in capsys.readouterr().err
     assert said(capsys, "echo", bag, "/said/nothing", status=1) == ""
     assert main(["topic", "echo", bag, "/said", "--filter", "m."]) == 2
+    assert main(["topic", "echo", bag, "/said", "--filter", "m.x > 1"]) == 2
+    assert "no attribute 'x'; m is the whole message, here std_msgs/String" in capsys.readouterr().err
     assert main(["topic", "echo", bag + "x", "/said"]) == 2
 
 

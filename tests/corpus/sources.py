@@ -20,7 +20,7 @@ from tests.corpus.scenarios import Program, Scenario
 GITHUB = "https://github.com/{repo}.git"
 ENVIRONMENT = "CFEPY_CORPUS_SOURCES"
 FETCH = "python -m tests.corpus fetch FOLDER"
-_LEFT_OUT = (".stl", ".dae", ".obj", ".png", ".jpg", ".jpeg", ".gif", ".tif", ".svg", ".pdf", ".mp4", ".bag", ".pgm")
+_LEFT_OUT = (".stl", ".obj", ".png", ".jpg", ".jpeg", ".gif", ".tif", ".svg", ".pdf", ".mp4", ".bag", ".pgm")
 _LARGEST = "300k"  # of the files that are asked of a server
 
 

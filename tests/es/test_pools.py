@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 from cfepy.es.pools import BUCKETS, DESCRIPTOR, MemPool
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -84,3 +86,15 @@ def test_a_block_used_again_is_clean() -> None:
     block.memory[:] = b"leftover"
     pool.put(block)
     assert bytes(pool.get(8).memory) == bytes(8)
+
+
+def test_a_large_pool_takes_no_memory_before_it_is_used() -> None:
+    tracemalloc.start()
+    try:
+        pool = MemPool("P", 64 << 20)
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert most < 1 << 20
+    block = pool.get(80_000)
+    assert bytes(block.memory) == bytes(80_000)

@@ -165,3 +165,10 @@ def test_nodes_may_be_called_what_ros_scripts_are_called(tmp_path: Path, name: s
     with fly(write_mission(tmp_path, startup), 1) as mission:
         assert f"[TALKER] __main__ {name}" in text_of(mission)
         assert "Could not load file" not in text_of(mission)
+
+
+def test_a_script_without_suffix_is_not_the_one_with_suffix_beside_it(tmp_path: Path) -> None:
+    (tmp_path / "talker").write_text("print('the one that is meant')\n")
+    (tmp_path / "talker.py").write_text("print('another one')\n")
+    with fly(write_mission(tmp_path, "CFE_APP, talker, __main__, TALKER, 60, 16384, 0, 0;\n!"), 1) as mission:
+        assert "[TALKER] the one that is meant" in text_of(mission)

@@ -98,3 +98,19 @@ def test_a_mission_in_memory_has_room_for_its_nodes(tmp_path: Path) -> None:
         mission.run(2)
         assert len(mission.ros.graph.nodes) == 40
     assert not list(tmp_path.glob("*.scr"))
+
+
+def test_a_burst_waits_as_on_a_pc(tmp_path: Path) -> None:
+    """A thousand messages for a subscriber that has not come round to the first of them."""
+    script = tmp_path / "burst.py"
+    script.write_text(
+        "import rospy\nfrom std_msgs.msg import UInt32\nrospy.init_node('burst')\nseen = []\n"
+        "rospy.Subscriber('t', UInt32, lambda message: seen.append(message.data))\n"
+        "publisher = rospy.Publisher('t', UInt32, queue_size=1000)\n"
+        "for number in range(1000):\n    publisher.publish(number)\n"
+        "rospy.sleep(1)\nprint(seen == list(range(1000)))\n"
+    )
+    console = Console(quiet=True)
+    with Mission(spec_of(script, {"BURST": NodeConfig("BURST", script=script)}, {}), console=console) as mission:
+        mission.run(3)
+    assert "[burst] True" in console.lines

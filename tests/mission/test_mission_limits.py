@@ -10,7 +10,7 @@ from cfepy.config import PlatformConfig
 from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
 from cfepy.mission.check import check_mission
-from cfepy.mission.limits import PARAMETER_ROOM, MissionLimits, limits_for
+from cfepy.mission.limits import ROS_ROOM, MissionLimits, limits_for
 from cfepy.psp.profile import load_profile
 from cfepy.status import UsageError
 from tests.mission.flights import write_mission
@@ -23,8 +23,13 @@ def test_without_limits_a_mission_has_nasas_numbers() -> None:
     assert MissionLimits().config(RX64M, has_nodes=True) == RX64M.config()
 
 
-def test_nodes_bring_room_for_their_parameters_where_ram_is_unlimited() -> None:
-    assert MissionLimits().config(LINUX, has_nodes=True) == PlatformConfig().with_limits(PARAMETER_ROOM)
+def test_nodes_bring_room_for_parameters_and_images_where_ram_is_unlimited() -> None:
+    assert MissionLimits().config(LINUX, has_nodes=True) == PlatformConfig().with_limits(ROS_ROOM)
+
+
+def test_room_for_many_nodes_takes_none_from_images() -> None:
+    config = MissionLimits(nodes=50).config(LINUX, has_nodes=True)
+    assert config.sb_buf_memory_bytes == ROS_ROOM["sb_buf_memory_bytes"]
 
 
 def test_a_mission_raises_and_lowers() -> None:
@@ -84,3 +89,10 @@ def test_a_wrong_limit_stops_a_run_with_file_and_line(tmp_path: Path) -> None:
     mission = write_mission(tmp_path, "!\n", mission_yaml="board: rx64m\nlimits:\n  sb_max_pipes: 99\n")
     with pytest.raises(UsageError, match=r"mission.yaml:3: limits.sb_max_pipes: is 99, the board rx64m has 32"):
         Mission(read_mission(mission), console=Console(quiet=True))
+
+
+def test_a_mission_that_says_nothing_gets_a_pcs_queues_but_on_a_board_that_has_its_own() -> None:
+    nobody_said = MissionLimits(nodes=10, yields=True)
+    assert nobody_said.config(LINUX, has_nodes=True).os_queue_max_depth == 10_000
+    assert nobody_said.config(RX64M, has_nodes=True).os_queue_max_depth == RX64M.config().os_queue_max_depth
+    assert MissionLimits(nodes=10).config(LINUX, True).os_queue_max_depth == 50

@@ -8,6 +8,7 @@ import pytest
 
 from cfepy.mission import read_mission
 from cfepy.mission.check import check_mission
+from cfepy.nodes.config import ROSCORE_PARAMS
 from cfepy.status import UsageError
 from tests.mission.flights import write_mission
 
@@ -23,13 +24,14 @@ def mission_with(folder: Path, text: str, **files: str) -> str:
 def test_later_files_win_and_the_mission_file_wins_over_all(tmp_path: Path) -> None:
     text = "params_from: [one.yaml, {file: two.yaml, namespace: /arm}]\nparams: {arm: {top: 3}}\n"
     mission = mission_with(tmp_path, text, one="arm: {rate: 1, top: 1}\nname: r2\n", two="rate: 2\ngains: [1, 2.5]\n")
-    assert read_mission(mission).ros.params == {"arm": {"rate": 2, "top": 3, "gains": [1, 2.5]}, "name": "r2"}
+    own = {"arm": {"rate": 2, "top": 3, "gains": [1, 2.5]}, "name": "r2"}
+    assert read_mission(mission).ros.params == {**ROSCORE_PARAMS, **own}
 
 
 def test_one_file_needs_no_list_and_nodes_have_files_too(tmp_path: Path) -> None:
     text = "params_from: one.yaml\nnodes: {N: {params_from: [one.yaml], params: {b: 2}}}\n"
     ros = read_mission(mission_with(tmp_path, text, one="a: {x: !!binary aGk=}\n")).ros
-    assert (ros.params, ros.nodes["N"].params) == ({"a": {"x": b"hi"}}, {"a": {"x": b"hi"}, "b": 2})
+    assert (ros.params, ros.nodes["N"].params) == ({**ROSCORE_PARAMS, "a": {"x": b"hi"}}, {"a": {"x": b"hi"}, "b": 2})
 
 
 @pytest.mark.parametrize(

@@ -182,7 +182,8 @@ def test_signals_are_the_nodes_own(run):
         "import subprocess; subprocess.run(['ls'])",
         "import subprocess; subprocess.Popen('ls')",
         "import multiprocessing; multiprocessing.Process(target=print)",
-        "from multiprocessing.pool import ThreadPool; ThreadPool(2)",
+        "from multiprocessing.pool import Pool; Pool(2)",
+        "import multiprocessing\nclass Worker(multiprocessing.Process): pass\nWorker()",
         "import os; os.fork()",
         "import os; os.system('ls')",
         "import select; select.select([3], [], [])",
@@ -254,3 +255,34 @@ def test_settings_of_a_process_stay_in_the_node(run):
         "True 0 -1 (0.0, 0.0, 0.0)",
     ]
     assert (gc.isenabled(), gc.get_threshold(), len(gc.callbacks), locale.setlocale(locale.LC_ALL)) == before
+
+
+def test_what_was_written_to_open_files_is_in_them_at_the_end(run, tmp_path):
+    program = run(
+        """
+        import csv, io, pathlib
+        table = csv.writer(open("table.csv", "w", newline=""))
+        table.writerow([1, 2])
+        kept = [io.open("bytes.bin", "wb"), pathlib.Path("text.txt").open("w")]
+        kept[0].write(b"octets")
+        kept[1].write("letters")
+        def use(): return table, kept
+        raise RuntimeError("the end")
+        """,
+        cwd=tmp_path,
+    )
+    assert "the end" in program.text
+    assert (tmp_path / "table.csv").read_bytes() == b"1,2\r\n"
+    assert (tmp_path / "bytes.bin").read_bytes() == b"octets"
+    assert (tmp_path / "text.txt").read_text() == "letters"
+
+
+def test_what_a_killed_program_wrote_is_in_its_files(start, tmp_path):
+    program = start("kept = open('kept.txt', 'w'); kept.write('words')\nimport time; time.sleep(100)", cwd=tmp_path)
+    program.kernel.run(10**9)
+    program.kernel.unwind()
+    assert (tmp_path / "kept.txt").read_text() == "words"
+
+
+def test_no_option_brings_encryption(run):
+    assert "--realtime" not in run("import ssl").lines[-1]

@@ -32,3 +32,8 @@ def test_memory_is_an_idle_computers(run):
         """
     )
     assert program.lines == ["0.0 True True", "{} 0.0 0", "process PID not found (pid=1)"]
+
+
+def test_a_process_has_no_connections(run):
+    program = run("import psutil\nprint(psutil.Process().net_connections(), psutil.Process().connections('tcp'))")
+    assert program.lines == ["[] []"]

@@ -49,14 +49,15 @@ class Peer:
 
     def enough(self, passed: int) -> bool:
         """Whether that many are as many as pass on ROS, but for a twentieth and for those that are not counted."""
-        return self.passed is None or passed >= (self.passed - len(self.aside)) * SHARE
+        return passed >= ((self.passed or 0) - len(self.aside)) * SHARE
 
 
 class Peers(NamedTuple):
-    """All test files by name, the commit of each repository, and the files whose repository is not known."""
+    """All test files by name, the commit of each repository, and what is left out, with the reason."""
 
     files: Mapping[str, Peer]
     commits: Mapping[str, str]
+    left_out: tuple[tuple[str, str], ...] = ()
 
     def chosen(self, names: list[str]) -> list[Peer]:
         """The files of these names, or whose names begin so; all when there are none.
@@ -75,4 +76,5 @@ def read_peers(file: Path = FILE) -> Peers:
     """Read a list of test files."""
     root = json.loads(file.read_text(encoding="utf-8"))
     found = [Peer(**{**entry, "packages": tuple(entry.get("packages", ()))}) for entry in root["files"]]
-    return Peers({peer.name: peer for peer in found}, root["repositories"])
+    left_out = tuple((each["what"], each["why"]) for each in root["left_out"])
+    return Peers({peer.name: peer for peer in found}, root["repositories"], left_out)

@@ -32,6 +32,13 @@ tests along is run with that library, in the place of cfepy's; the others test c
 |---|---|---|---|---|---|---|
 """
 
+_LEFT_OUT = """
+## What is left out
+
+| files | why |
+|---|---|
+"""
+
 
 def row(verdict: Verdict) -> str:
     """A line of text."""
@@ -45,7 +52,8 @@ def page(peers: Peers, verdicts: Sequence[Verdict]) -> str:
     known = [verdict for verdict in verdicts if verdict.peer.passed is not None]
     good = sum(verdict.good for verdict in known)
     head = _HEAD.format(total=len(verdicts), known=len(known), good=good)
-    return head + "".join(_table_row(peers, verdict) for verdict in verdicts)
+    rows = "".join(_table_row(peers, verdict) for verdict in verdicts)
+    return f"{head}{rows}{_LEFT_OUT}" + "".join(f"| {what} | {why} |\n" for what, why in peers.left_out)
 
 
 def write_page(peers: Peers, verdicts: Sequence[Verdict]) -> None:

@@ -105,7 +105,7 @@ def test_wrong_files_say_where(tmp_path: Path, text: str, message: str) -> None:
 
 
 def test_unknown_boards() -> None:
-    with pytest.raises(UsageError, match="there is no board 'vax'; there are linux, rx64m"):
+    with pytest.raises(UsageError, match="there is no board 'vax'; there are linux, rx64m, workstation"):
         load_profile("vax")
     with pytest.raises(UsageError, match=r"nowhere\.yaml: cannot be read"):
         load_profile("nowhere.yaml")

@@ -13,6 +13,7 @@ from rospy_shim.parameter_rows import ParameterRows, ParametersFull
 from rospy_shim.parameter_table import FREE, pack, records, rows_for, tree_of, unpack
 from rospy_shim.parameter_text import leaves_of, parts_of, text_of, value_of, written
 from rospy_shim.parameter_tree import ParameterTree
+from rospy_shim.parameter_values import DateTime
 
 SCALARS = st.one_of(
     st.booleans(),
@@ -20,6 +21,7 @@ SCALARS = st.one_of(
     st.floats(allow_nan=False),
     st.text(max_size=120),
     st.binary(max_size=60),
+    st.datetimes().map(lambda when: DateTime(f"{when:%Y%m%dT%H:%M:%S}".rjust(17, "0"))),
 )
 NAMES = st.one_of(st.sampled_from(["a", "b", "c", "rate", "n" * 60]), st.text(max_size=3))
 VALUES = st.recursive(

@@ -88,13 +88,39 @@ def test_bytes_come_back_as_bytes(tmp_path: Path) -> None:
         rospy.init_node("n")
         print(type(rospy.get_param("/raw", None)).__name__)
         import xmlrpc.client
-        rospy.set_param("/raw", bytes(range(256)))
+        rospy.set_param("/raw", xmlrpc.client.Binary(bytes(range(256))))
         """
     with fly(tmp_path, node) as mission:
         mission.run(2)
         reset(mission, PROCESSOR_RESET)
         assert mission.ros.graph.params.find("/raw") == bytes(range(256))
         assert printed(mission) == ["NoneType", "Binary"]
+
+
+def test_dates_are_those_of_xmlrpc_and_come_back(tmp_path: Path) -> None:
+    node = """
+        import datetime, rospy, xmlrpc.client
+        rospy.init_node("n")
+        if not rospy.has_param("/when"):
+            known = datetime.datetime(2026, 11, 21, 18, 50)
+            rospy.set_param("/when", [known, xmlrpc.client.DateTime("20260102T03:04:05")])
+        found = rospy.get_param("/when")
+        print([each.value for each in found], isinstance(found[0], xmlrpc.client.DateTime))
+        print(rospy.get_master().getParam("/when")[2] == found)
+        try:
+            rospy.set_param("/day", datetime.date(2026, 11, 21))
+        except TypeError as error:
+            print(error)
+        rospy.spin()
+    """
+    with fly(tmp_path, node) as mission:
+        mission.run(2)
+        reset(mission, PROCESSOR_RESET)
+        shown = ["['20261121T18:50:00', '20260102T03:04:05'] True", "True"]
+        refused = "cannot marshal <class 'datetime.date'> objects"
+        assert printed(mission) == [*shown, refused] * 2
+        row = ("/when", '[{"!!timestamp": "20261121T18:50:00"}, {"!!timestamp": "20260102T03:04:05"}]')
+        assert row in rows_of(mission)
 
 
 def test_the_ground_reads_the_rows_of_a_dump(tmp_path: Path) -> None:
@@ -145,6 +171,7 @@ def test_a_table_from_the_ground_changes_what_nodes_read(tmp_path: Path) -> None
     [
         ({"mode": "safe"}, "Params01, row 0: 'mode' is no full name, such as /robot/rate"),
         ({"/good": "1", "/mode": "[1, 2"}, "Params01, row 1: '[1, 2' is no JSON"),
+        ({"/when": '{"!!timestamp": "noon"}'}, "Params01, row 0: 'noon' is no date and time"),
         ({"/mode": "5000000000"}, "Params01, row 0: 5000000000 has more than 32 bits"),
     ],
 )

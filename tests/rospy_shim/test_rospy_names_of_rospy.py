@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import textwrap
 from pathlib import Path
 
 from tests.rospy_shim.missions import run_nodes
@@ -72,3 +73,41 @@ def test_names_and_arguments(tmp_path: Path) -> None:
     found = json.loads((tmp_path / "found.json").read_text())
     assert found["absent"] == sorted(ABSENT)
     assert found["wrong"] == {}
+
+
+def test_importing_rospy_imports_the_messages_that_it_uses(tmp_path: Path) -> None:
+    source = """
+    import rospy, std_msgs, roscpp, rosgraph_msgs
+    print(std_msgs.msg.Bool().data, roscpp.srv.Empty()._type, rosgraph_msgs.msg.Log.ERROR)
+    """
+    result = run_nodes(tmp_path, {"NODE": textwrap.dedent(source)})
+    assert result.printed["NODE"] == ["False roscpp/Empty 8"]
+
+
+def test_a_key_error_names_the_parameter_as_it_was_asked_for(tmp_path: Path) -> None:
+    source = """
+    import rospy
+    rospy.init_node("node")
+    for function in (rospy.get_param, rospy.get_param_cached, rospy.delete_param):
+        for name in ("~own", "near/by", "/far"):
+            try:
+                function(name)
+            except KeyError as error:
+                print(*error.args)
+    """
+    result = run_nodes(tmp_path, {"NODE": textwrap.dedent(source)})
+    assert result.printed["node"] == ["~own", "near/by", "/far"] * 3
+
+
+def test_import_rospy_shows_the_modules_of_rospy_impl(tmp_path: Path) -> None:
+    source = """
+    import rospy
+    print(rospy.impl.rosout.RosOutHandler.__module__, rospy.impl.registration.Registration.PUB)
+    print([name for name in dir(rospy.impl) if not name.startswith("_")])
+    """
+    result = run_nodes(tmp_path, {"NODE": textwrap.dedent(source)})
+    modules = "init masterslave paramserver registration rosout simtime statistics tcpros tcpros_base tcpros_pubsub"
+    assert result.printed["NODE"] == [
+        "rospy.impl.rosout pub",
+        str([*modules.split(), "tcpros_service", "transport", "validators"]),
+    ]

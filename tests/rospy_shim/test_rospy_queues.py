@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.console import Console
+from cfepy.mission import Mission, read_mission
 from tests.rospy_shim.missions import Run, run_nodes
 
 SUBSCRIBER = """
@@ -22,6 +24,16 @@ from std_msgs.msg import String, UInt32
 rospy.init_node("pub")
 rospy.sleep(1.0)
 """
+
+COUNTER = (
+    SUBSCRIBER
+    + """
+def on_message(message):
+    print(message.data[0], len(message.data))
+rospy.Subscriber("big", String, on_message)
+rospy.spin()
+"""
+)
 
 
 def both(tmp_path: Path, publisher: str, subscriber: str, priority: int = 100) -> Run:
@@ -59,8 +71,8 @@ def test_without_queue_size_the_bus_reports_what_is_lost(tmp_path: Path) -> None
         "rospy.sleep(3)\nprint(seen)",
         priority=120,
     )
-    assert result.printed["sub"][-1] == str(list(range(50)))
-    assert any("Msg Limit Err" in line for line in result.lines)
+    assert result.printed["sub"][-1] == str(list(range(51)))
+    assert any("Pipe Overflow" in line for line in result.lines)
 
 
 def test_the_last_queue_size_counts(tmp_path: Path) -> None:
@@ -74,6 +86,17 @@ def test_the_last_queue_size_counts(tmp_path: Path) -> None:
     assert result.printed["sub"][-1] == "[0, 6, 7, 8]"
 
 
+def test_a_queue_size_that_comes_later_counts_for_any_number_of_messages(tmp_path: Path) -> None:
+    result = both(
+        tmp_path,
+        'publisher = rospy.Publisher("q", UInt32, queue_size=10)\nfor n in range(200): publisher.publish(n)',
+        'rospy.Subscriber("q", UInt32, lambda m: (seen.append(m.data), rospy.sleep(0.01)))\n'
+        'rospy.sleep(0.5)\nrospy.Subscriber("q", UInt32, lambda m: None, queue_size=1)\nrospy.sleep(3)\nprint(seen)',
+        priority=120,
+    )
+    assert result.printed["sub"][-1] == "[0, 199]"
+
+
 def test_a_slow_callback_gets_the_newest_long_message_whole(tmp_path: Path) -> None:
     result = both(
         tmp_path,
@@ -83,3 +106,30 @@ def test_a_slow_callback_gets_the_newest_long_message_whole(tmp_path: Path) -> N
         "rospy.sleep(4.0)\nprint([sorted(set(text)) for text in seen], {len(text) for text in seen})",
     )
     assert result.printed["sub"][-1] == "[['A'], ['K'], ['U'], ['^']] {100000}"
+
+
+@pytest.mark.parametrize("megabytes", [1, 6])
+def test_an_image_arrives_at_every_subscriber(tmp_path: Path, megabytes: int) -> None:
+    scripts = {
+        "PUB": PUBLISHER + 'publisher = rospy.Publisher("big", String, queue_size=1)\n'
+        f"for n in range(3):\n    publisher.publish(chr(65 + n) * {megabytes << 20})\n    rospy.sleep(0.1)",
+        "ONE": COUNTER,
+        "TWO": COUNTER.replace('"sub"', '"other"'),
+    }
+    result = run_nodes(tmp_path, scripts, seconds=2)
+    expected = [f"{letter} {megabytes << 20}" for letter in "ABC"]
+    assert result.printed["sub"] == result.printed["other"] == expected
+
+
+def test_a_message_longer_than_the_pool_waits_for_room_in_it(tmp_path: Path) -> None:
+    publisher = 'publisher = rospy.Publisher("big", String, queue_size=1)\npublisher.publish("A" * 300_000)'
+    startup = {"sub.py": COUNTER, "pub.py": PUBLISHER + publisher}
+    for name, source in startup.items():
+        (tmp_path / name).write_text(source)
+    entry = "CFE_APP, {0}, __main__, {1}, 100, 4096, 0, 0;\n"
+    lines = [entry.format(name, name[:3].upper()) for name in startup]
+    (tmp_path / "startup.scr").write_text("".join(lines) + "!")
+    (tmp_path / "mission.yaml").write_text("limits: {sb_buf_memory_bytes: 150000}\n")
+    with Mission(read_mission(str(tmp_path)), console=Console(quiet=True)) as mission:
+        mission.run(2)
+        assert "[sub] A 300000" in mission.console.lines

@@ -188,3 +188,38 @@ print(rospy.ServiceProxy("head", Trigger, persistent=True, headers={"who": "me"}
     assert "('persistent', '1')" in lines[0]
     assert "('who', 'me')" in lines[0]
     assert "('callerid', '/probe')" in lines[0]
+
+
+def test_a_service_made_before_init_node_is_offered_after_it(tmp_path: Path) -> None:
+    script = """
+early = rospy.Service("early", Trigger, lambda request: (True, "here"))
+attempt(rospy.Service, "early", Trigger, None)
+gone = rospy.Service("gone", Trigger, None)
+gone.shutdown()
+attempt(rospy.wait_for_service, "early", 0.1)
+rospy.init_node("probe", log_level=rospy.FATAL)
+attempt(rospy.wait_for_service, "early", 1)
+print(rospy.ServiceProxy("early", Trigger)().message)
+attempt(rospy.wait_for_service, "gone", 0.1)
+"""
+    result = run_nodes(tmp_path, {"PROBE": HEAD + script})
+    assert [line for lines in result.printed.values() for line in lines] == [
+        "ServiceException service [/early] already registered",
+        "ROSException timeout exceeded while waiting for service /early",
+        "None",
+        "here",
+        "ROSException timeout exceeded while waiting for service /gone",
+    ]
+
+
+def test_a_response_that_cannot_be_serialized_is_an_error_of_the_handler(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+handle = lambda error, *of: print("handled", error)
+rospy.Service("odd", Trigger, lambda request: (3.5, ""), error_handler=handle)
+attempt(rospy.ServiceProxy("odd", Trigger))
+""",
+    )
+    refused = "service [/odd] responded with an error: b'error processing request: field success is not a bool'"
+    assert lines == ["handled field success is not a bool", f"ServiceException {refused}"]

@@ -53,6 +53,44 @@ print(seen[0][2] != threading.get_ident())
     assert lines == ["[0, 1, 2] 1 1", "1 1", "True"]
 
 
+def test_messages_wait_for_a_subscriber_from_the_moment_it_subscribes(tmp_path: Path) -> None:
+    """ES starts its task 50 ms later; what is published meanwhile, or is latched, comes then and in order."""
+    lines = run(
+        tmp_path,
+        """
+latched = rospy.Publisher("o", String, queue_size=5, latch=True)
+latched.publish("latched")
+seen = []
+rospy.Subscriber("o", String, lambda message: seen.append(message.data))
+print(latched.get_num_connections())
+latched.publish("at once")
+rospy.sleep(0.02)
+latched.publish("soon")
+rospy.sleep(0.1)
+print(seen)
+""",
+    )
+    assert lines == ["1", "['latched', 'at once', 'soon']"]
+
+
+def test_a_subscriber_that_ends_before_its_task_starts_leaves_nothing(tmp_path: Path) -> None:
+    """A sixty-fourth pipe more would be one too many."""
+    lines = run(
+        tmp_path,
+        """
+for _ in range(8):
+    passing = [rospy.Subscriber(f"o{n}", String, print) for n in range(20)]
+    for each in passing:
+        each.unregister()
+    rospy.sleep(0.1)
+publisher = rospy.Publisher("o1", String, queue_size=5)
+publisher.publish("nobody")
+print(publisher.get_num_connections())
+""",
+    )
+    assert lines == ["0"]
+
+
 def test_header_sequence_and_connection_header(tmp_path: Path) -> None:
     lines = run(
         tmp_path,

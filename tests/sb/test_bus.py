@@ -125,6 +125,17 @@ def test_pipe_overflow_does_not_keep_others_from_it(bench: Bench) -> None:
     assert bench.bus.routes[MID].totals() == (4, 0, 0, 2)
 
 
+def test_a_pipe_that_keeps_the_newest_counts_what_it_drops(bench: Bench) -> None:
+    pipe = subscriber(bench, "A", depth=2, limit=4)
+    found = bench.bus.find_pipe(pipe)
+    assert found is not None
+    found.keeps_newest = True
+    for number in range(9):  # more than the message limit: dropped ones do not count for it
+        bench.do("SENDER", lambda number=number: bench.bus.transmit_msg(packet(MID, bytes([number]))))
+    assert bench.bus.routes[MID].totals() == (0, 2, 0, 7)
+    assert [each[16:] for each in drain(bench, pipe)] == [b"\7", b"\10"]
+
+
 def test_no_subscriber_is_an_event_and_no_error(bench: Bench) -> None:
     bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID)))
     assert bench.events.sent == [(14, "No subscribers for MsgId 0x881,sender SENDER")]

@@ -36,6 +36,17 @@ def nop_cb(goal_handle: ServerGoalHandle) -> None:
     """Cancel callback of a server that has none."""
 
 
+def _is_over(tracker: StatusTracker, now: Any, oldest_ns: int) -> bool:
+    """Whether a goal ended before `oldest_ns`; in whole ns, since a server may have a thousand goals to look at."""
+    ended = tracker.handle_destruction_time
+    ended_ns = ended.to_nsec()
+    if ended_ns == 0 or ended_ns >= oldest_ns:
+        return False
+    texts = tracker.status.goal_id, ended.to_sec(), now.to_sec()
+    rospy.logdebug("Item %s with destruction time of %.3f being removed from list.  Now = %.3f", *texts)
+    return True
+
+
 class ActionServer:
     """Server of one action, for any number of goals at a time.
 
@@ -172,17 +183,10 @@ class ActionServer:
         """Publish all statuses, without those whose goal ended some time ago."""
         with self.lock:
             now = rospy.Time.now()
-            self.status_list[:] = [tracker for tracker in self.status_list if not self._is_over(tracker, now)]
+            oldest_ns = now.to_nsec() - self.status_list_timeout.to_nsec()
+            self.status_list[:] = [tracker for tracker in self.status_list if not _is_over(tracker, now, oldest_ns)]
             statuses = [tracker.status for tracker in self.status_list]
             self._send(self.status_pub, GoalStatusArray(status_list=statuses))
-
-    def _is_over(self, tracker: StatusTracker, now: Any) -> bool:
-        ended = tracker.handle_destruction_time
-        if ended == rospy.Time() or ended + self.status_list_timeout >= now:
-            return False
-        texts = tracker.status.goal_id, ended.to_sec(), now.to_sec()
-        rospy.logdebug("Item %s with destruction time of %.3f being removed from list.  Now = %.3f", *texts)
-        return True
 
     def _send(self, publisher: Any, message: Any) -> None:
         message.header.stamp = rospy.Time.now()

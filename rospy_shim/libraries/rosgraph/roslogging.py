@@ -31,7 +31,7 @@ class RospyLogger(logging.Logger):
 def configure_logging(
     logname: str, level: int = logging.INFO, filename: str | None = None, env: Mapping[str, str] | None = None
 ) -> str:
-    """Set the level of the root logger.
+    """Set the level of the root logger, and show what the logger "rosout" gets on the console.
 
     Args:
         logname: of the program.
@@ -45,6 +45,10 @@ def configure_logging(
     from rospkg import get_log_dir
 
     logging.getLogger().setLevel(level)
+    rosout = logging.getLogger("rosout")
+    if not rosout.handlers:
+        rosout.addHandler(RosStreamHandler())
+        rosout.setLevel(level)
     return os.path.join(get_log_dir(env), filename or f"{logname or 'unknown'}-{os.getpid()}.log")
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Mapping, Sequence
 
 import rosgraph.rosenv
@@ -62,9 +64,21 @@ def get_ros_package_path(required: bool = False, env: Mapping[str, str] | None =
 
 def get_master_uri(
     required: bool = True, env: Mapping[str, str] | None = None, argv: Sequence[str] | None = None
-) -> str:
-    """Where the master answers; see rosgraph.rosenv."""
-    return rosgraph.rosenv.get_master_uri(env, argv)
+) -> str | None:
+    """Where the master answers, as the environment or an argument `__master:=` says.
+
+    Raises:
+        ROSEnvException: it is required, and neither says so; or the argument is wrong.
+    """
+    words = sys.argv if argv is None else argv
+    said = ROS_MASTER_URI in (os.environ if env is None else env) or any(
+        word.startswith("__master:=") for word in words
+    )
+    try:
+        uri = rosgraph.rosenv.get_master_uri(env, argv) if said else None
+    except ValueError as error:
+        raise ROSEnvException(str(error)) from None
+    return _required(uri, ROS_MASTER_URI, required)
 
 
 def _required(value: str | None, name: str, required: bool) -> str | None:

@@ -54,6 +54,7 @@ def srv_file(package: str, type_: str) -> str:
 def load_from_file(file_name: str, package_context: str = "") -> tuple[str, SrvSpec]:
     """Name and definition in a file; see roslib.msgs.load_from_file."""
     short = os.path.basename(file_name).removesuffix(EXT)
+    package_context = package_context.rstrip("/")
     name = resource_name(package_context, short)
     with open(file_name, encoding="utf-8") as file:
         return name, load_from_string(file.read(), package_context, name, short)

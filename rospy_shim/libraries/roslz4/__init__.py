@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
-from rosbag_storage.lz4_frames import LZ4Compressor, LZ4Decompressor, compress, decompress
+from rosbag_storage.lz4_frames import compress, decompress
+
+from roslz4._roslz4 import LZ4Compressor, LZ4Decompressor
 
 __all__ = ["LZ4Compressor", "LZ4Decompressor", "compress", "decompress"]

@@ -49,3 +49,4 @@ __all__ = [
     "on_ros_path",
     "parse_manifest_file",
 ]
+__version__ = "1.4.0"  # the release whose functions these are

@@ -106,9 +106,13 @@ def _text(value: Any, time_offset: Any) -> str:
 
 def _plain(value: Any, name: str, field_filter: Filter | None) -> Iterable[tuple[str, Any]]:
     """The plain values in a message, with their names."""
-    if hasattr(value, "_slot_types"):
+    if hasattr(value, "_slot_types") and not isinstance(value, genpy.TVal):
+        types = dict(zip(value.__slots__, value._slot_types, strict=False))
         for field in value.__slots__ if field_filter is None else field_filter(value):
-            yield from _plain(getattr(value, field), f"{name}.{field}", field_filter)
+            inner = getattr(value, field)
+            if types.get(field, "").startswith("uint8[") and isinstance(inner, str):
+                inner = inner.encode("latin-1")  # a character for each byte
+            yield from _plain(inner, f"{name}.{field}", field_filter)
     elif isinstance(value, (list, tuple, bytes)):
         for index, each in enumerate(value):
             yield from _plain(each, f"{name}{index}", field_filter)

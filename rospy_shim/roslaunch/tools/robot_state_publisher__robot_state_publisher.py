@@ -27,6 +27,9 @@ class Joint:
 
     Args:
         tag: its <joint>.
+
+    Raises:
+        ValueError: an attribute is no number, or not three of them.
     """
 
     def __init__(self, tag: ElementTree.Element) -> None:
@@ -61,7 +64,33 @@ def _link(tag: ElementTree.Element, side: str) -> str:
 
 
 def _numbers(tag: ElementTree.Element | None, name: str, default: str) -> Any:
-    return numpy.array([float(word) for word in (default if tag is None else tag.get(name, default)).split()])
+    text = default if tag is None else tag.get(name, default)
+    try:
+        numbers = numpy.array([float(word) for word in text.split()])
+    except ValueError:
+        numbers = numpy.zeros(0)
+    if len(numbers) != 3:
+        raise ValueError(f"{name}={text!r}: give three numbers")
+    return numbers
+
+
+def joints_of(text: str) -> list[Joint]:
+    """The joints of a URDF.
+
+    Raises:
+        ValueError: it is none, or something in a joint is wrong.
+    """
+    try:
+        tags = ElementTree.fromstring(text).findall("joint")
+    except ElementTree.ParseError as error:
+        raise ValueError(str(error)) from None
+    found = []
+    for tag in tags:
+        try:
+            found.append(Joint(tag))
+        except ValueError as error:
+            raise ValueError(f"joint {tag.get('name')}: {error}") from None
+    return found
 
 
 class RobotStatePublisher:
@@ -116,11 +145,11 @@ def main() -> int:
     rospy.init_node("robot_state_publisher")
     key = rospy.search_param("robot_description")
     try:
-        robot = ElementTree.fromstring(rospy.get_param(key or "robot_description"))
-    except (KeyError, ElementTree.ParseError) as error:
+        joints = joints_of(rospy.get_param(key or "robot_description"))
+    except (KeyError, ValueError) as error:
         rospy.logerr("robot_description is no URDF: %s", error)
         return 1
-    RobotStatePublisher([Joint(tag) for tag in robot.findall("joint")])
+    RobotStatePublisher(joints)
     rospy.spin()
     return 0
 

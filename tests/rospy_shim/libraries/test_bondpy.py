@@ -35,7 +35,7 @@ bond.shutdown()
 def test_other_end_breaks_the_bond(tmp_path: Path) -> None:
     other = OTHER.format(lives=1.0, end="bond.break_bond()\nprint(bond.wait_until_broken(rospy.Duration(5)), bond)")
     run = run_nodes(tmp_path, {"ONE": ONE, "OTHER": other}, seconds=30.0)
-    assert run.printed["one"] == ["formed", "True False", "broken", "True True 2"]
+    assert run.printed["one"] == ["formed", "True False", "broken", "True True 1"]
     assert run.printed["other"][0] == "True"
     assert run.printed["other"][1].startswith("True [Bond id, Instance ")
     assert run.printed["other"][1].endswith("(SM.Dead)]")
@@ -44,7 +44,7 @@ def test_other_end_breaks_the_bond(tmp_path: Path) -> None:
 def test_other_end_falls_silent(tmp_path: Path) -> None:
     other = OTHER.format(lives=1.5, end="bond.pub.unregister()\nbond.pub.publish = lambda message: None\nrospy.spin()")
     run = run_nodes(tmp_path, {"ONE": ONE, "OTHER": other}, seconds=30.0)
-    assert run.printed["one"] == ["formed", "True False", "broken", "True True 4"]
+    assert run.printed["one"] == ["formed", "True False", "broken", "True True 3"]
 
 
 def test_nobody_comes(tmp_path: Path) -> None:

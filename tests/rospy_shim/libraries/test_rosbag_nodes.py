@@ -52,7 +52,7 @@ def recorded(folder: Path, *args: str, seconds: float = 3.0) -> list[str]:
 
 def test_all_topics(tmp_path: Path) -> None:
     (line,) = recorded(tmp_path, "-a", "-O", "run", "-x", "/rosout.*", seconds=3.6)
-    assert line == "run.bag [('/chatter', 20), ('/state', 1)]"
+    assert line == "run.bag [('/chatter', 21), ('/state', 1)]"
 
 
 def test_some_topics(tmp_path: Path) -> None:

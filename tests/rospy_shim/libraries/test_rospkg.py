@@ -190,3 +190,36 @@ def test_files_of_packages(tmp_path: Path) -> None:
         "('a_package_that_is_not_there',)",
         "False http://cfepy:11311",
     ]
+
+
+def test_rosenv_takes_the_master_from_environment_and_arguments(tmp_path: Path) -> None:
+    script = """
+        from roslib.rosenv import ROSEnvException, get_master_uri
+        print(get_master_uri(False, {}), get_master_uri(True, {"ROS_MASTER_URI": "http://a:1"}))
+        print(get_master_uri(False, {}, ["__master:=http://b:2"]))
+        for argv in ([], ["__master:=http://b:2:=c"]):
+            try:
+                get_master_uri(True, {}, argv)
+            except ROSEnvException as error:
+                print(str(error).splitlines()[0])
+    """
+    assert said(tmp_path, script) == [
+        "None http://a:1",
+        "http://b:2",
+        "The ROS_MASTER_URI environment variable has not been set.",
+        "__master remapping argument '__master:=http://b:2:=c' improperly specified",
+    ]
+
+
+def test_definitions_and_loggers(tmp_path: Path) -> None:
+    (tmp_path / "S.srv").write_text("int8 a\n---\n")
+    script = f"""
+        import logging, roslib.srvs, rosgraph.roslogging
+        print(roslib.srvs.load_from_file({str(tmp_path / "S.srv")!r}, "p/")[0])
+        rosgraph.roslogging.configure_logging("tool", logging.WARNING)
+        logger = logging.getLogger("rosout")
+        print([type(each).__name__ for each in logger.handlers], logger.level)
+        rosgraph.roslogging.configure_logging("tool", logging.INFO)
+        print(len(logger.handlers))
+    """
+    assert said(tmp_path, script) == ["p/S", "['RosStreamHandler'] 30", "1"]

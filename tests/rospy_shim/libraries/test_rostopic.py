@@ -163,3 +163,24 @@ def test_values_of_files_and_parameters(tmp_path: Path) -> None:
         "Parameter [/words] in not a valid type",
         "file does not exist: none.yaml",
     ]
+
+
+def test_times_are_one_value_and_texts_of_bytes_are_numbers(tmp_path: Path) -> None:
+    script = """
+        import rospy, rostopic
+        from std_msgs.msg import Header, UInt8MultiArray
+        header = Header(3, rospy.Time(123, 456), "map")
+        print(rostopic._str_plot_fields(header, "field", None))
+        print(rostopic._str_plot(header, current_time=rospy.Time(1)))
+        numbers = UInt8MultiArray(data=chr(2) + chr(200))
+        print(rostopic._str_plot_fields(numbers, "field", None))
+        print(rostopic._str_plot(numbers, current_time=rospy.Time(1)))
+        print(str(numbers).splitlines()[-1])
+    """
+    assert said(tmp_path, script)[:5] == [
+        "time,field.seq,field.stamp,field.frame_id",
+        "1000000000,3,123000000456,map",
+        "time,field.layout.data_offset,field.data0,field.data1",
+        "1000000000,0,2,200",
+        "data: [2, 200]",
+    ]

@@ -123,3 +123,16 @@ def test_a_tool_that_the_node_brings_runs_on_it(tmp_path: Path) -> None:
     """
     run = run_nodes(tmp_path, {"ASKS": script}, seconds=1)
     assert run.printed["asks"] == ["['/asks'] 1 False"]
+
+
+def test_a_request_takes_time_so_that_a_loop_of_them_ends(tmp_path: Path) -> None:
+    script = """
+        import time
+        from xmlrpc.client import ServerProxy
+        master, begin, count = ServerProxy("http://cfepy:11311/"), time.time(), 0
+        while time.time() < begin + 1:
+            master.getPid("/x")
+            count += 1
+        print(500 < count <= 2000)
+    """
+    assert run_nodes(tmp_path, {"NODE": script}).printed["NODE"] == ["True"]

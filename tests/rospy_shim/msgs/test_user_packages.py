@@ -159,8 +159,9 @@ def test_a_package_beside_the_node_has_code_and_messages(tmp_path: Path) -> None
 
 def test_a_mistake_ends_the_node_with_its_place(tmp_path: Path) -> None:
     write(tmp_path / "arm", msg__Joint="float64 angle\nfloat64\n")
-    run = run_nodes(tmp_path, {"ARM": "from arm.msg import Joint\n"})
-    assert any("arm/msg/Joint.msg:2: 'float64' is not a field" in line for line in run.printed["ARM"])
+    printed = run_nodes(tmp_path, {"ARM": "from arm.msg import Joint\n"}).printed["ARM"]
+    assert "arm/msg/Joint.msg:2: 'float64' is not a field" in printed[-1]
+    assert {line.split('"')[1] for line in printed if "  File " in line} == {str(tmp_path / "arm.py")}
 
 
 def test_tools_read_the_topics_of_user_types(tmp_path: Path) -> None:

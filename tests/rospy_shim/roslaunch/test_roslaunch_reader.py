@@ -37,12 +37,14 @@ def read_file(file: Path, args: Mapping[str, str] | None = None, environ: Mappin
         ('<param name="a" value="$(find nothing)"/>', "there is no package 'nothing'; put it beside"),
         ('<include file="none.launch"/>', "x.launch:3: <include file>: none.launch cannot be read: No such file"),
         ("<rosparam>a: rad(two)</rosparam>", "'two' is no angle"),
+        ('<remap from="a"/>', "x.launch:3: <remap>: has no 'to'; write to="),
     ],
 )
 def test_an_error_says_where_and_what(tmp_path: Path, tag: str, said: str) -> None:
     with pytest.raises(UsageError) as raised:
         launch(tmp_path, f"\n{tag}\n")
     assert said in str(raised.value)
+    assert str(raised.value).count("x.launch:") <= 1
 
 
 def test_an_error_in_an_included_file_names_that_file(tmp_path: Path) -> None:

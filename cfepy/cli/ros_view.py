@@ -1,0 +1,89 @@
+"""What a ROS engineer sees of a run: what the nodes print, and a report of topics and nodes.
+
+The flight computer below them, its console and its own messages, is what `cfepy.cli.run.View` shows.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any, TextIO
+
+from cfepy.cli.display import Display
+from cfepy.cli.report import show_speed, why
+from cfepy.cli.run import View
+from cfepy.cli.table import Table, show_tables
+from cfepy.mission import Mission
+from cfepy.mission.results import NOT_STARTED, Results
+
+LOG_TOPIC = "/rosout"
+BOOT_S = 0.55  # virtual time until the nodes start, which is none of theirs
+_OF_NODES = re.compile(r"\[[\w/]+\] |launch: ")  # how lines of nodes begin, and what is said about them
+
+
+class NodesDisplay:
+    """Shows what nodes print, and nothing of the flight computer's console.
+
+    Args:
+        display: shows what is left.
+    """
+
+    def __init__(self, display: Display) -> None:
+        self._display = display
+        self.update = display.update
+        self.close = display.close
+
+    def line(self, text: str) -> None:
+        """A line of the console."""
+        if _OF_NODES.match(text):
+            self._display.line(text)
+
+
+class RosView(View):
+    """See `cfepy.cli.run.View`; this one is of the nodes."""
+
+    def display(self, quiet: bool, seconds: float) -> Display:
+        """What shows the nodes' output."""
+        return NodesDisplay(super().display(quiet, seconds))
+
+    def report(self, results: Results, mission: Mission, stream: TextIO) -> None:
+        """Print topics, nodes, and the line about speed."""
+        show_tables([_topics(results, mission), _nodes(results, mission)], stream)
+        show_speed(results, stream)
+
+
+def _topics(results: Results, mission: Mission) -> Table:
+    table = Table("Topics", ("name", "messages", "Hz", "lost", "why"), right=(1, 2, 3))
+    found = {topic.msg_id: topic for topic in results.topics}
+    seconds = results.virtual_s - BOOT_S
+    rows = {row.name: row for row in (*mission.record.topics.values(), *mission.processor.topics())}
+    for _, row in sorted(rows.items()):
+        topic = found.get(row.msg_id)
+        if row.name == LOG_TOPIC and not row.subscribers:
+            continue  # every node has it
+        if topic is None or not topic.sent:
+            table.add(row.name, 0, "0.0", 0, _missing(row))
+        else:
+            table.add(row.name, topic.sent, f"{topic.sent / seconds:.1f}", topic.dropped, why(topic))
+    return table
+
+
+def _missing(row: Any) -> str:
+    """Why no messages were sent to all on a topic (`rospy_shim.graph.TopicRow`)."""
+    if not row.publishers:
+        return "no publisher"
+    if not row.subscribers:
+        return "no subscriber"
+    return f"{row.latched} latched" if row.latched else ""
+
+
+def _nodes(results: Results, mission: Mission) -> Table:
+    table = Table("Nodes", ("name", "state", "restarts"), right=(2,))
+    states = {app.name: app.state for app in results.apps}
+    monitor = None if mission.ros is None else mission.ros.monitor
+    for app, node in mission.spec.ros.nodes.items():
+        if monitor is not None and app in monitor.statuses and not node.respawn:
+            state = f"ended, exit status {monitor.statuses[app]}"
+        else:
+            state = "not started" if states.get(app) == NOT_STARTED else "running"
+        table.add(f"/{node.name}", state, 0 if monitor is None else monitor.restarts.get(app, 0))
+    return table

@@ -1,0 +1,57 @@
+"""Bytes to documents."""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+from bson.binary import BINARY_SUBTYPE, Binary
+from bson.errors import InvalidBSON
+
+_FIXED = {0x01: "<d", 0x08: "<?", 0x10: "<i", 0x12: "<q"}
+
+
+def read_document(data: bytes) -> dict[str, Any]:
+    """The document that bytes are.
+
+    Raises:
+        InvalidBSON: they are none.
+    """
+    try:
+        document, end = _document(data, 0)
+    except (IndexError, ValueError, struct.error) as error:
+        raise InvalidBSON(f"not a document: {error}") from None
+    if end != len(data):
+        raise InvalidBSON(f"{len(data) - end} bytes behind the document")
+    return document
+
+
+def _document(data: bytes, at: int) -> tuple[dict[str, Any], int]:
+    """The document that begins at a place, and where it ends."""
+    end = at + struct.unpack_from("<i", data, at)[0]
+    at += 4
+    found: dict[str, Any] = {}
+    while data[at]:
+        zero = data.index(b"\0", at + 1)
+        found[data[at + 1 : zero].decode()], at = _value(data[at], data, zero + 1)
+    if at + 1 != end:
+        raise InvalidBSON("a document is not as long as it says")
+    return found, end
+
+
+def _value(kind: int, data: bytes, at: int) -> tuple[Any, int]:
+    """A value of a type that begins at a place, and where it ends."""
+    if kind == 0x0A:
+        return None, at
+    if kind in _FIXED:
+        return struct.unpack_from(_FIXED[kind], data, at)[0], at + struct.calcsize(_FIXED[kind])
+    if kind in (0x03, 0x04):
+        document, end = _document(data, at)
+        return (document if kind == 0x03 else list(document.values())), end
+    length = struct.unpack_from("<i", data, at)[0]
+    if kind == 0x02:
+        return data[at + 4 : at + 3 + length].decode(), at + 4 + length
+    if kind == 0x05:
+        content, subtype = data[at + 5 : at + 5 + length], data[at + 4]
+        return (content if subtype == BINARY_SUBTYPE else Binary(content, subtype)), at + 5 + length
+    raise InvalidBSON(f"unknown type 0x{kind:02x}")

@@ -1,0 +1,1 @@
+"""The part of nose.plugins that tests import."""

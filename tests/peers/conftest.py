@@ -1,0 +1,28 @@
+"""Tests over public test files run where their sources are; where they are not, the end of the test run says so."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from tests.peers.__main__ import ENVIRONMENT
+from tests.peers.peers import read_peers
+
+HOW = f"{len(read_peers().files)} public test files were NOT run: `python -m tests.peers fetch FOLDER`, then set "
+HOW += ENVIRONMENT
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """One test for each file, or one that says that there are no sources."""
+    if "peer_name" in metafunc.fixturenames:
+        names = list(read_peers().files)
+        absent = [pytest.param("", marks=pytest.mark.skip(reason=HOW), id="no-sources")]
+        metafunc.parametrize("peer_name", names if ENVIRONMENT in os.environ else absent)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say what was not tried."""
+    skipped = terminalreporter.stats.get("skipped", [])
+    if any(HOW in str(report.longrepr) for report in skipped):
+        terminalreporter.write_line(HOW, yellow=True)
