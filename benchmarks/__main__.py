@@ -11,6 +11,7 @@ from pathlib import Path
 from benchmarks.bus import bus
 from benchmarks.codec import codec
 from benchmarks.crowd import crowd
+from benchmarks.frames import frames
 from benchmarks.measure import machine
 from benchmarks.missions import missions
 from benchmarks.services import services
@@ -25,6 +26,7 @@ def main(arguments: list[str] | None = None) -> int:
         "missions": lambda: missions(contexts),
         "crowd": lambda: crowd(contexts),
         "services": lambda: services(contexts),
+        "frames": lambda: frames(contexts),
         "codec": codec,
         "universe": lambda: {f"{name}.{each}": value for each in contexts for name, value in universe(each).items()},
     }

@@ -246,24 +246,26 @@ class Link(TopicSide):
     def _has_room(self, packet: bytes, count: int = FULL) -> bool:
         """Whether the bus and every pipe take a packet, or drop old messages for one of `count` packets."""
         route = self._routes.get(self.msg_id)
-        return (
-            route is None
-            or (self._bus.has_room(packet)
+        return route is None or (
+            self._bus.has_room(packet)
             and all(
                 (each.puts - each.gets < each.limit and len(each.pipe.items) < each.pipe.depth)
                 or (each.pipe.keeps_newest and count <= each.pipe.depth)
                 for each in route.active
-            ))
+            )
         )
 
     # -- subscribers that come and go --------------------------------------------------------------------------------
 
-    def peer_joined(self, subscription: Subscription) -> None:
-        """Give a new subscriber the latched message, and tell the listeners."""
+    def give_latched(self, subscription: Subscription) -> None:
+        """Give a new subscriber the latched message, if there is one."""
         if self.is_latch and self.latch is not None and not self.raw:
             subscription.deliver(self.serialize(self.latch), self.header)
             if self.topic is not None:
                 self.topic.latched += 1
+
+    def peer_joined(self, subscription: Subscription) -> None:
+        """Tell the listeners of a new subscriber."""
         for listener in self.subscriber_listeners:
             self.node.start_task(self.name, lambda each=listener: self._tell(each, subscription))  # type: ignore[misc]
 

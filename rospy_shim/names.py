@@ -169,18 +169,21 @@ class Names:
             name: global, relative or private (`~name`).
             caller_id: a node name to resolve it for instead.
         """
+        resolved = self._full(name, caller_id)
+        return self._resolved.get(resolved, resolved) if name else resolved
+
+    def _full(self, name: str, caller_id: str | None) -> str:
+        """The global name, without remappings."""
         if not caller_id:
             caller_id = self.name if self.name != UNNAMED else join(self.get_namespace(), UNNAMED[1:])
         if not name:
             return namespace_of(caller_id)
         name = canonicalize_name(name)
         if name.startswith(SEP):
-            resolved = name
-        elif name.startswith(PRIV_NAME):
-            resolved = join(caller_id, canonicalize_name(name[1:]))
-        else:
-            resolved = namespace_of(caller_id) + name
-        return self._resolved.get(resolved, resolved)
+            return name
+        if name.startswith(PRIV_NAME):
+            return join(caller_id, canonicalize_name(name[1:]))
+        return namespace_of(caller_id) + name
 
     def resolve_name_without_node_name(self, name: str) -> str:
         """As `resolve_name`, while the node has no name.
@@ -198,15 +201,11 @@ class Names:
         return resolved
 
     def remap_name(self, name: str, caller_id: str | None = None, resolved: bool = True) -> str:
-        """Apply the remappings to a name.
+        """What a remapping, as it was written on the command line, makes of a name; any other name as it is.
 
         Args:
             name: the name.
-            caller_id: whose namespace counts; None is the node.
-            resolved: also resolve the result.
+            caller_id: whose namespace counts for the remapping's target; None is the node.
+            resolved: accepted, as in rospy.
         """
-        caller_id = caller_id or self.name
-        target = self._mappings.get(name)
-        if target is not None:
-            return self.resolve_name(target, caller_id) if resolved else target
-        return self.resolve_name(name, caller_id) if resolved else name
+        return self._full(self._mappings[name], caller_id) if name in self._mappings else name

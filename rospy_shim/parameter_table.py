@@ -106,8 +106,8 @@ def rows_for(name: str, text: str) -> list[Row]:
 
 
 def pack(row: Row) -> bytes:
-    """A row's bytes."""
-    return _ROW.pack(row[0].encode("ascii"), row[1].encode("ascii"))
+    """A row's bytes; those that no parameter has stay as `unpack` found them."""
+    return _ROW.pack(row[0].encode("latin-1"), row[1].encode("latin-1"))
 
 
 def unpack(image: bytes | memoryview) -> list[Row]:

@@ -39,14 +39,18 @@ if TYPE_CHECKING:
     from cfepy.rtos import Kernel
 
 APP_ERROR = 3  # CFE_ES_RunStatus_APP_ERROR
-ROS_ENVIRONMENT = {
+ENVIRONMENT = {
+    "LANG": "C.UTF-8",
+    "PATH": "/usr/local/bin:/usr/bin:/bin",
     "ROS_DISTRO": "noetic",
     "ROS_ETC_DIR": "/opt/ros/noetic/etc/ros",
+    "ROS_MASTER_URI": f"http://cfepy:{MASTER_PORT}",
     "ROS_PYTHON_VERSION": "3",
     "ROS_ROOT": "/opt/ros/noetic/share/ros",
     "ROS_VERSION": "1",
+    "USER": "ros",
 }
-"""What the set-up file of an installed ROS tells a node."""
+"""What a login and the set-up file of an installed ROS tell a node, the same on every host."""
 STACK_BYTES, PRIORITY = 16384, 100  # of nodes that nodes start, as in a startup script
 SHORTEST_RESPAWN_NS = 100_000_000  # how often roslaunch looks after its processes
 
@@ -127,7 +131,7 @@ class RosRuntime:
         self._cfe.es.run_loop()  # tells ES that the application runs, so that the mission can become operational
         self.parameters.wait()
         status = self._run_process(script, app_name, config)
-        while self.monitor.starts_again(config, status):
+        while self.monitor.starts_again(self._started.get(app_name, config), status):
             self._kernel.delay(max(config.respawn_delay_ns, SHORTEST_RESPAWN_NS))
             status = self._run_process(script, app_name, config)
         if status != 0 and not self.monitor.closing:
@@ -153,7 +157,7 @@ class RosRuntime:
             name=config.name or app_name,
             script=script,
             argv=_command_line(config),
-            env={**ROS_ENVIRONMENT, "HOME": str(cwd), "PWD": str(cwd), **config.env},
+            env={**ENVIRONMENT, "HOME": str(cwd), "PWD": str(cwd), **config.env},
             cwd=cwd,
             library_paths=[library_path.FOLDER],
             fallback_paths=[library_path.STAND_INS],

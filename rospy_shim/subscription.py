@@ -27,6 +27,7 @@ DEFAULT_BUFF_SIZE = 65536
 WHOLE = 0xC0
 NO_PIPE = -1
 NO_LIMIT = 0xFFFF
+POLL = 0
 
 
 class Subscription(TopicSide):
@@ -150,7 +151,7 @@ class Subscription(TopicSide):
             self.node.start_child(name, lambda: self._serve(topic))
 
     def _open(self, topic: Topic, name: str) -> None:
-        """Make the pipe, join the topic, and take what publishers have latched; what comes now waits for the task."""
+        """Make the pipe and join the topic; what comes from now on waits for the task."""
         bus = self.node.cfe.sb
         self._pipe = bus.create_pipe(self._depth(), name)
         self._size_pipe()
@@ -212,12 +213,21 @@ class Subscription(TopicSide):
 
     def _serve(self, topic: Topic) -> None:
         try:
+            self._take_latched(topic)
             self._receive(topic)
         except CfeError as error:
             if self._pipe != NO_PIPE:
                 self.node.logs.logerr("subscription of %s ends: %s", self.name, error)
         finally:
             self.give_back()
+
+    def _take_latched(self, topic: Topic) -> None:
+        """As for one who connects to a latching publisher in ROS: of all that came before, only the last counts."""
+        if topic.latching and not self.closed:
+            while self.node.cfe.sb.receive_buffer(self._pipe, POLL) is not None:
+                pass
+            for link in topic.links:
+                link.give_latched(self)
 
     def give_back(self) -> None:
         """Give the pipe back."""

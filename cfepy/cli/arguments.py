@@ -157,7 +157,7 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="Find what is wrong with a mission; none of its code is executed.",
         epilog="exit status: 0 nothing found, 1 something found, 2 no such mission",
     )
-    check.add_argument("mission", metavar="MISSION", help=MISSION_HELP)
+    add_mission(check)
     check.add_argument("--board", metavar="NAME|FILE", help="check against this board instead of the mission's own")
     check.set_defaults(module="check")
 

@@ -19,7 +19,7 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: there is no such mission.
     """
-    findings = check_mission(arguments.mission, arguments.board)
+    findings = check_mission(arguments.mission, arguments.board, dict(arguments.launch_args))
     for finding in findings:
         print(_line(finding))
     count = len(findings)

@@ -128,7 +128,9 @@ def _fly(spec: MissionSpec, names: list[str], arguments: argparse.Namespace) -> 
     sys.stdout.flush()
     for problem in problems:
         print(f"cfepy: {problem}", file=sys.stderr)
-    return ENDED_WELL if shown else _nothing(f"no such packet was sent in {end_s:g} virtual seconds")
+    is_topic = any(name.startswith("/") for name in names)
+    hint = "; a topic is sent when somebody subscribes, `cfepy topic echo` shows it in any case" if is_topic else ""
+    return ENDED_WELL if shown else _nothing(f"no such packet was sent in {end_s:g} virtual seconds{hint}")
 
 
 def _msg_id(spec: MissionSpec, dictionary: Dictionary, name: str) -> int:

@@ -6,6 +6,7 @@ Recording looks on (`cfepy.mission.topic_watch`), so it changes nothing in the r
 from __future__ import annotations
 
 import importlib
+import struct
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -13,6 +14,7 @@ from typing import Any
 
 from cfepy.mission.mission import Mission
 from cfepy.mission.topic_watch import Message, TopicWatch, matches
+from cfepy.mission.tracebacks import described
 from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
 
@@ -92,7 +94,7 @@ class BagReader:
         try:
             self._bag.read_version()
             self._bag.open()
-        except storage().ROSBagException as error:
+        except _broken() as error:
             self._file.close()
             hint = "; rosbag reindex makes an index" if isinstance(error, storage().ROSBagUnindexedException) else ""
             raise UsageError(f"{error}{hint}", file=file) from None
@@ -103,14 +105,24 @@ class BagReader:
         return list(self._bag.contents.connections.values())
 
     def messages(self, patterns: Sequence[str] = ()) -> Iterator[Message]:
-        """The messages by time, `at_ns` since the first one of the bag; see `TopicWatch` for the patterns."""
+        """The messages by time, `at_ns` since the first one of the bag; see `TopicWatch` for the patterns.
+
+        Raises:
+            UsageError: the bag is broken.
+        """
         contents = self._bag.contents
         start_ns = min((chunk.start for chunk in contents.chunks), default=0)
         chosen = [each for each in self.connections if matches(each.topic, patterns)]
         for entry in contents.entries(chosen):
-            connection, time, data = self._bag.read(entry)
+            connection, time, data = self._read(entry)
             header = {name: value.decode(errors="replace") for name, value in connection.header.items()}
             yield Message(connection.topic, header, data, time - start_ns, time)
+
+    def _read(self, entry: Any) -> Any:
+        try:
+            return self._bag.read(entry)
+        except _broken() as error:
+            raise UsageError(f"is broken: {described(error)}", file=self._file.name) from None
 
     def __enter__(self) -> BagReader:
         return self
@@ -128,6 +140,11 @@ def is_bag(file: str) -> bool:
             return found.read(7) == b"#ROSBAG"
     except OSError:
         return False
+
+
+def _broken() -> tuple[type[Exception], ...]:
+    """What reading bytes that are no bag, or no longer one, raises."""
+    return (storage().ROSBagException, ValueError, LookupError, OSError, EOFError, struct.error)
 
 
 def storage() -> Any:

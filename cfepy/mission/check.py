@@ -6,7 +6,7 @@ Nothing of the mission is executed. Each finding says file, line, what is wrong 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import NamedTuple
@@ -38,12 +38,13 @@ class Finding(NamedTuple):
     text: str
 
 
-def check_mission(mission: str, board: str | None = None) -> list[Finding]:
+def check_mission(mission: str, board: str | None = None, args: Mapping[str, str] | None = None) -> list[Finding]:
     """Find everything that is wrong with a mission.
 
     Args:
         mission: see `spec.find_script`.
         board: name or file of a board; None takes the mission's own.
+        args: arguments for a launch file.
 
     Returns:
         What was found, by file and line; nothing for a mission that can boot.
@@ -53,7 +54,7 @@ def check_mission(mission: str, board: str | None = None) -> list[Finding]:
     """
     script = find_script(mission)
     if script.suffix in LAUNCH_FILES:
-        return _check_launch_file(script)
+        return _check_launch_file(script, args)
     folder = script.parent
     data = script.read_bytes()
     entries = startup_script.entries(data)
@@ -70,10 +71,10 @@ def check_mission(mission: str, board: str | None = None) -> list[Finding]:
     return sorted(dict.fromkeys(found), key=lambda finding: (str(finding.file), finding.line))
 
 
-def _check_launch_file(file: Path) -> list[Finding]:
+def _check_launch_file(file: Path, args: Mapping[str, str] | None) -> list[Finding]:
     """What stops the file, or what of it is left out."""
     try:
-        notes = read_launch(file).notes
+        notes = read_launch(file, args).notes
     except UsageError as error:
         return [Finding(Path(error.file or file), error.line or 0, _with_field(error))]
     places = ((_NOTE.fullmatch(note), note) for note in notes)

@@ -44,11 +44,13 @@ def with_ground_node(spec: MissionSpec, script: str, arguments: Sequence[Any]) -
 
 def _package_paths(spec: MissionSpec) -> dict[str, str]:
     """Where the mission's nodes find packages: whoever talks to them needs their message types."""
+    near = importlib.import_module("rospy_shim.msgs.packages").near
+    nodes = spec.ros.nodes.values()
+    folders = [str(folder) for node in nodes if node.script is not None for folder in near(node.script)]
     found: dict[str, str] = {}
-    for name in ("ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH"):
-        said = [node.env[name] for node in spec.ros.nodes.values() if node.env.get(name)]
-        if said:
-            found[name] = os.pathsep.join(dict.fromkeys(os.pathsep.join(said).split(os.pathsep)))
+    for name, first in (("ROS_PACKAGE_PATH", folders), ("CMAKE_PREFIX_PATH", [])):
+        said = os.pathsep.join([*first, *(node.env[name] for node in nodes if node.env.get(name))])
+        found[name] = os.pathsep.join(dict.fromkeys(said.split(os.pathsep)))
     return found
 
 

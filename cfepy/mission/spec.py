@@ -6,6 +6,7 @@ Errors say file, line and field.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -97,7 +98,8 @@ def _check_kind(path: Path) -> None:
     data = path.read_bytes()
     if path.suffix == ".py" or data.startswith(b"#!"):
         raise UsageError("is a program and no mission; `cfepy node` runs a ROS node by itself", file=path)
-    if path.suffix not in LAUNCH_FILES and data.strip() and not any(mark in data for mark in (b"!", b"CFE_")):
+    is_text = b"\0" not in data and any(mark in data for mark in (b"!", b"CFE_"))
+    if path.suffix not in LAUNCH_FILES and data.strip() and not is_text:
         raise UsageError("is neither a startup script nor a launch file", file=path)
 
 
@@ -160,7 +162,7 @@ def read_launches(section: Marked, folder: Path) -> list[tuple[Path, Mapping[str
         fields = item.mapping(("file", "args")) if isinstance(item.value, dict) else {"file": item}
         if "file" not in fields:
             raise item.fail("needs a file, such as `file: demo.launch`")
-        path = folder / fields["file"].text()
+        path = Path(os.path.normpath(folder / fields["file"].text()))
         if not path.is_file():
             raise fields["file"].fail(
                 f"is {path}, which is no file; give a launch file's path from the mission's folder"

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
 
 Factory = Callable[["Universe"], ModuleType]
+_WHERE = "(put its source near the node or on ROS_PACKAGE_PATH, or install it into the Python that cfepy runs in)"
 
 
 class Importer:
@@ -209,7 +210,9 @@ class Importer:
         spec = importlib.util.find_spec(name) or found  # a mere folder of the node comes last, as in Python
         spec = spec or PathFinder.find_spec(name, self._fallbacks)
         if spec is None:
-            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+            error = ModuleNotFoundError(f"No module named {name!r}", name=name)
+            error.add_note(_WHERE)
+            raise error
         return self._from_spec(spec, own=False) if sharing.is_pure_python(spec) else self._share(name)
 
     def _from_spec(self, spec: ModuleSpec, own: bool) -> ModuleType:

@@ -11,6 +11,8 @@ from cfepy.nodes.signal_module import NodeInterrupt
 from cfepy.nodes.sources import code_of_file
 from cfepy.rtos import TaskExit
 
+EXIT_BITS = 0xFF  # what of a program's exit status its parent gets to see
+
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
 
@@ -81,7 +83,7 @@ def _exit_code(universe: Universe, code: Any) -> int:
     if code is None:
         return 0
     if isinstance(code, int):
-        return code
+        return code & EXIT_BITS
     universe.print_error(f"{code}\n")
     return 1
 

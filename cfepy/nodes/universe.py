@@ -35,7 +35,7 @@ from cfepy.nodes import (
 from cfepy.nodes.importer import Factory, Importer
 from cfepy.nodes.locks import make_lock_types
 from cfepy.nodes.open_files import OpenFiles
-from cfepy.nodes.script import run_script
+from cfepy.nodes.script import EXIT_BITS, run_script
 from cfepy.nodes.sharing import refused_modules
 from cfepy.nodes.signal_module import NodeInterrupt
 from cfepy.nodes.socket_table import SocketTable
@@ -243,7 +243,7 @@ class Universe:
 
     def exit_now(self, status: int) -> NoReturn:
         """`os._exit`: the node ends here, with all its threads and without its exit hooks."""
-        self.exit_status = status
+        self.exit_status = status & EXIT_BITS
         self.end_threads()
         raise TaskExit
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rospy_shim.names import PRIV_NAME, canonicalize_name
+from rospy_shim.parameter_values import marshalled
 from rospy_shim.roslaunch.attributes import Attributes
 from rospy_shim.roslaunch.commands import output_of
 from rospy_shim.roslaunch.document import Tag
@@ -31,13 +32,19 @@ def add_param(launch: Launch, name: str, value: Any, tag: Tag) -> None:
         name: resolved.
         value: no mapping.
         tag: that says so.
+
+    Raises:
+        UsageError: XML-RPC, and so ROS, cannot carry the value.
     """
     name = canonicalize_name(name)
     parents = [name[:index] for index, letter in enumerate(name) if letter == "/" and index]
     for parent in parents:
         if parent in launch.params:
             launch.notes.append(f"{tag.file}:{tag.line}: parameter {name} replaces {parent}, which it lies below")
-    launch.params[name] = value
+    try:
+        launch.params[name] = None if value is None else marshalled(value)
+    except (TypeError, OverflowError) as error:
+        raise tag.fail(f"{name} is {value!r}, which no parameter can be: {error}; put text in quotes") from None
 
 
 def read_param(launch: Launch, tag: Tag, scope: Scope, of_node: bool = False) -> None:

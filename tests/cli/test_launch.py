@@ -141,6 +141,32 @@ def test_even_a_short_run_is_one_of_the_nodes(write_launch: Launch, capsys: pyte
     assert shown.err == ""
 
 
+@pytest.mark.parametrize(
+    ("file", "text", "said"),
+    [
+        ("node.py", "import rospy\n", "is a program and no mission; `cfepy node` runs"),
+        ("node", "#!/usr/bin/env python\n", "is a program and no mission"),
+        ("mission.yaml", "board: linux\n", "is neither a startup script nor a launch file"),
+        ("run.bag", "#ROSBAG V2.0\n!\0\0", "is neither a startup script nor a launch file"),
+    ],
+)
+def test_what_is_no_mission(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], file: str, text: str, said: str
+) -> None:
+    (tmp_path / file).write_text(text)
+    for command in ("run", "check", "mids"):
+        assert main([command, str(tmp_path / file)]) == 2
+        assert said in capsys.readouterr().err
+
+
+def test_hints_at_what_was_meant(write_launch: Launch, demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", write_launch(TALKER.format("", "")), "n=3"]) == 2
+    assert "'n=3' is no argument for it; write NAME:=VALUE" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["node", str(demo / "scripts/talker.py"), "--verbose"])
+    assert "unrecognized arguments: --verbose; what the node itself is to get comes after --" in capsys.readouterr().err
+
+
 def test_a_launch_file_where_a_mission_is_meant(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
     file = write_launch(TALKER.format("", COUNT.format(3)))
     main(["launch", file, "--quiet"])
@@ -164,6 +190,8 @@ def test_a_launch_file_where_a_mission_is_meant(write_launch: Launch, capsys: py
     assert main(["topic", "echo", with_argument, "/chatter", "--arg", "n:=2"]) == 0
     assert main(["run", with_argument, "--arg", "n:=1", "--quiet", "--check-determinism", "2"]) == 0
     assert capsys.readouterr().out.startswith('7\ndata: "hello 0"\n---\ndata: "hello 1"\n---\n2 runs: ')
+    assert main(["check", with_argument]) == 1
+    assert main(["check", with_argument, "--arg", "n:=1"]) == 0
     assert main(["run", "lab", "--arg", "n:=1"]) == 2
     other = write_launch('<node pkg="demo" type="talker.py" name="a"/>\n<node pkg="none" type="x" name="b"/>')
     assert main(["check", other]) == 1

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
+from cfepy.fs import read_table_file
 from tests.mission.flights import write_mission
 
 STARTUP = "CFE_APP, n, __main__, N, 100, 16384, 0x0, 0;\n!\n"
@@ -68,10 +69,8 @@ def test_files_for_the_ground(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert said(capsys, "get", out, "/new") == "a: true\n"
     assert said(capsys, "get", out, "/text") == "'10'\n"
     assert main(["tbl", "verify", str(out / "params01.tbl")]) == 0
-    assert [split((out / f"params0{n}.tbl").read_bytes())[0].description for n in (1, 2)] == [
-        "ROS parameters 1",
-        "ROS parameters 2",
-    ]
+    headers = [read_table_file((out / f"params0{number}.tbl").read_bytes())[0] for number in (1, 2)]
+    assert [header.description for header in headers] == ["ROS parameters 1", "ROS parameters 2"]
 
 
 @pytest.mark.parametrize(

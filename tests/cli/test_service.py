@@ -70,6 +70,10 @@ def test_the_missions_own_types(tmp_path: Path, capsys: Capture) -> None:
         (package / file).parent.mkdir(parents=True, exist_ok=True)
         (package / file).write_text(text)
     assert said(capsys, "call", str(package / "rover.launch"), "/drive", "speed: 4") == "twice: 8\n"
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other/startup.scr").write_text("!\n")
+    (tmp_path / "other/mission.yaml").write_text("launch: [../rover/rover.launch]\n")
+    assert said(capsys, "call", str(tmp_path / "other"), "/drive", "speed: 4") == "twice: 8\n"
     (package / "node.py").rename(package / "flight/node.py")
     (package / "srv").rename(tmp_path / "srv")
     (tmp_path / "elsewhere/rover").mkdir(parents=True)

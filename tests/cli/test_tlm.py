@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from types import TracebackType
 
 import pytest
@@ -13,6 +14,7 @@ from cfepy.evs.packets import LONG_EVENT
 from cfepy.io.udp import Listener
 from cfepy.msg import get_fcn_code, get_msg_id, telemetry
 from tests.cli.conftest import Write
+from tests.cli.ros_missions import robot
 
 EVENT = bytes(
     telemetry(0x0808, LONG_EVENT.pack(PacketID={"AppName": "APP", "EventID": 3, "EventType": 2}, Message="all is well"))
@@ -179,3 +181,8 @@ def test_a_count_that_is_none(count: str, capsys: pytest.CaptureFixture[str]) ->
 def test_bad_usage(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["tlm", *words]) == 2
     assert said in capsys.readouterr().err
+
+
+def test_a_topic_without_a_subscriber(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["tlm", str(robot(tmp_path)), "/odom", "--for", "1"]) == 1
+    assert "a topic is sent when somebody subscribes, `cfepy topic echo`" in capsys.readouterr().err

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
@@ -187,3 +190,23 @@ def test_files_that_cannot_be(tmp_path: Path) -> None:
         file.write(bytes(8))
     with pytest.raises(UsageError, match="Unindexed bag; rosbag reindex makes an index"):
         BagReader(str(tmp_path / "cut.bag"))
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small bag."""
+    folder = tmp_path_factory.mktemp("bag")
+    fly(folder, {"HEARS": HEARS, "TALKS": TALKS}, str(folder / "run.bag"), patterns=["/alone", "/latched"])
+    return folder / "run.bag"
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(st.tuples(st.floats(0, 1, exclude_max=True), st.integers(0, 255)), min_size=1, max_size=5))
+def test_a_broken_bag_is_read_or_named(whole: Path, changes: list[tuple[float, int]]) -> None:
+    data = bytearray(whole.read_bytes())
+    for where, byte in changes:
+        data[int(where * len(data))] = byte
+    broken = whole.with_name("broken.bag")
+    broken.write_bytes(data)
+    with contextlib.suppress(UsageError):  # anything else is a fault of ours
+        read(broken)

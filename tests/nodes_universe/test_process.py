@@ -60,6 +60,8 @@ def test_working_directory_is_virtual(run, tmp_path):
         ("pass", 0, ""),
         ("sys.exit()", 0, ""),
         ("sys.exit(3)", 3, ""),
+        ("sys.exit(-1)", 255, ""),
+        ("sys.exit(True)", 1, ""),
         ("sys.exit('bad')", 1, "bad"),
         ("exit(4)", 4, ""),
         ("os._exit(5)", 5, ""),

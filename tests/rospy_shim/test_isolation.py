@@ -129,3 +129,16 @@ def test_fifty_nodes_of_one_script(tmp_path: Path) -> None:
     assert len(lines) == 50
     assert {tuple(line[:5]) for line in lines} == {("1", "1", "1", "1", "1")}
     assert [len({line[at] for line in lines}) for at in (5, 6, 7)] == [50, 50, 50]
+
+
+def test_the_environment_is_the_same_on_every_host(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("USER", "somebody")
+    monkeypatch.setenv("ROS_MASTER_URI", "http://elsewhere:11311")
+    source = """
+        import os
+        names = ("HOME", "LANG", "PATH", "PWD", "ROS_DISTRO", "ROS_MASTER_URI", "USER")
+        print(*(os.environ[name] for name in names))
+    """
+    run = run_nodes(tmp_path, {"NODE": source})
+    plain = f"{tmp_path} C.UTF-8 /usr/local/bin:/usr/bin:/bin {tmp_path} noetic http://cfepy:11311 ros"
+    assert run.printed["NODE"] == [plain]

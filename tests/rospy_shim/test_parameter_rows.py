@@ -154,3 +154,9 @@ def test_rows_that_make_no_sense_are_left_out_and_emptied() -> None:
     rows = ParameterRows(content, good)
     assert list(rows.changed) == [0, 2, 3, 4]
     assert [record.name for record in records(rows.rows)] == ["/a", "/d"]
+
+
+@settings(max_examples=50)
+@given(st.binary(min_size=128, max_size=128))
+def test_rows_that_no_parameter_has_can_be_written_again(image: bytes) -> None:
+    assert unpack(b"".join(map(pack, unpack(image)))) == unpack(image)

@@ -9,6 +9,7 @@ import pytest
 from cfepy.mission.table_file import take_apart
 from cfepy.mission.watch import Seen, watching
 from cfepy.msg import command
+from rospy_shim.parameter_rows import ParametersFull
 from rospy_shim.parameter_table import HK_TLM, NOOP, RESET_COUNTERS, SEND_HK, TABLES
 from tests.rospy_shim.parameter_flights import (
     POWERON_RESET,
@@ -233,6 +234,19 @@ def test_the_application_can_be_restarted_and_then_has_its_parameters(tmp_path: 
         mission.ros.graph.params.set("/mode", "later")
         mission.run(1)
         assert rows_of(mission) == [("/mode", "later"), ("/meanwhile", "true")]
+
+
+def test_parameters_work_on_when_the_application_is_deleted(tmp_path: Path) -> None:
+    """Then there are no tables that could be full."""
+    with fly(tmp_path, WATCHING, board="rx64m") as mission:
+        mission.run(2)
+        params = mission.ros.graph.params
+        with pytest.raises(ParametersFull):
+            params.set("/long", "x" * 5000)
+        mission.cfe.es.delete_app(mission.cfe.es.app_named("ROS").app_id)
+        mission.run(6)
+        params.set("/long", "x" * 5000)
+        assert params.find("/long") == "x" * 5000
 
 
 def test_a_board_without_room_keeps_parameters_until_the_reset(tmp_path: Path) -> None:

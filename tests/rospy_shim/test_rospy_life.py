@@ -373,3 +373,17 @@ except KeyboardInterrupt:
 """
     result = run_nodes(tmp_path, {"PROBE": script})
     assert result.printed["probe"] == ["interrupted False", "hook"]
+
+
+def test_remap_name_resolves_only_what_is_remapped(tmp_path: Path) -> None:
+    config = NodeConfig("PROBE", remap={"old": "new", "new": "newest"})
+    lines = printed(
+        tmp_path,
+        """
+print([rospy.remap_name(name) for name in ("old", "/old", "other", "~own", "/far")])
+rospy.init_node("node")
+print([rospy.remap_name(name) for name in ("old", "/old", "other", "~own", "/far")])
+""",
+        nodes={"PROBE": config},
+    )
+    assert lines == [str(["/new", "/old", "other", "~own", "/far"])] * 2

@@ -48,6 +48,25 @@ add.close()
     assert result.printed["client"] == ["3 7 5", "/server /add AddTwoIntsRequest"]
 
 
+def test_calls_take_no_longer_than_the_handler(tmp_path: Path) -> None:
+    """Short and long ones, also while another caller waits for its answer."""
+    result = two(
+        tmp_path,
+        'rospy.Service("say", SetBool, lambda r: (True, "x" * (100_000 if r.data else 1)))\n'
+        'rospy.Service("slow", Empty, lambda r: rospy.sleep(1.0) or [])\nrospy.spin()',
+        """
+import threading
+say = rospy.ServiceProxy("say", SetBool)
+rospy.sleep(0.2)
+threading.Thread(target=rospy.ServiceProxy("slow", Empty)).start()
+for long in (False, True):
+    begin = rospy.get_time()
+    print(len(say(long).message), rospy.get_time() - begin < 0.001)
+""",
+    )
+    assert result.printed["client"] == ["1 True", "100000 True"]
+
+
 def test_what_handlers_may_return(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
@@ -110,12 +129,14 @@ attempt(lambda: rospy.ServiceProxy("add", SetBool)(True))
 def test_service_that_ends_during_a_call(tmp_path: Path) -> None:
     result = two(
         tmp_path,
-        'rospy.Service("slow", Empty, lambda r: rospy.sleep(60))\nrospy.sleep(1.0)',
-        'rospy.wait_for_service("slow")\nattempt(rospy.ServiceProxy("slow", Empty))',
+        'rospy.Service("slow", Empty, lambda r: rospy.sleep(60))\nrospy.sleep(1.2)',
+        'rospy.wait_for_service("slow")\nbegin = rospy.get_time()\n'
+        'attempt(rospy.ServiceProxy("slow", Empty))\nprint(rospy.get_time() - begin < 1.25)',
         seconds=5,
     )
     assert result.printed["client"] == [
-        "ServiceException transport error completing service call: the service has ended"
+        "ServiceException transport error completing service call: the service has ended",
+        "True",
     ]
 
 

@@ -54,23 +54,29 @@ print(seen[0][2] != threading.get_ident())
 
 
 def test_messages_wait_for_a_subscriber_from_the_moment_it_subscribes(tmp_path: Path) -> None:
-    """ES starts its task 50 ms later; what is published meanwhile, or is latched, comes then and in order."""
+    """ES starts its task 50 ms later; what is published meanwhile comes then, of latched messages the last one."""
     lines = run(
         tmp_path,
         """
-latched = rospy.Publisher("o", String, queue_size=5, latch=True)
-latched.publish("latched")
+plain = rospy.Publisher("plain", String, queue_size=5)
+latching = rospy.Publisher("latching", String, queue_size=5, latch=True)
+latching.publish("before")
 seen = []
-rospy.Subscriber("o", String, lambda message: seen.append(message.data))
-print(latched.get_num_connections())
-latched.publish("at once")
+for topic in ("plain", "latching"):
+    rospy.Subscriber(topic, String, lambda message: seen.append(message.data))
+print(plain.get_num_connections(), latching.get_num_connections())
+for publisher in (plain, latching):
+    publisher.publish("at once")
 rospy.sleep(0.02)
-latched.publish("soon")
+for publisher in (plain, latching):
+    publisher.publish("soon")
+rospy.sleep(0.1)
+latching.publish("later")
 rospy.sleep(0.1)
 print(seen)
 """,
     )
-    assert lines == ["1", "['latched', 'at once', 'soon']"]
+    assert lines == ["1 1", "['at once', 'soon', 'soon', 'later']"]
 
 
 def test_a_subscriber_that_ends_before_its_task_starts_leaves_nothing(tmp_path: Path) -> None:

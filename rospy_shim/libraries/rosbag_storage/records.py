@@ -33,6 +33,7 @@ VERSION = b"#ROSBAG V2.0\n"
 FILE_HEADER_LENGTH = 4096  # bytes of the file header's record, so that it can be written again in place
 INDEX_VERSION = 1
 CHUNK_INDEX_VERSION = 1
+PIECE = 1 << 24  # bytes that are read at once: a length that is a mistake must not take all memory
 NS_PER_S = 1_000_000_000
 
 Fields = Mapping[str, "bytes | str"]
@@ -98,7 +99,9 @@ def read(file: BinaryIO, size: int) -> bytes:
     Raises:
         ROSBagException: the file ends before.
     """
-    data = file.read(size)
+    data = file.read(min(size, PIECE))
+    while len(data) < size and (more := file.read(min(size - len(data), PIECE))):
+        data += more
     if len(data) != size:
         raise ROSBagException(f"expecting {size} bytes, read {len(data)}")
     return data

@@ -82,6 +82,8 @@ class ManifestManager:
             self._manifests[name] = parse_manifest_file(self.get_path(name), self._manifest_name, rospack=self)
         return self._manifests[name]
 
+    _load_manifest = get_manifest  # rospkg's name for reading one; FlexBE looks for its behaviors with it
+
     def get_depends(self, name: str, implicit: bool = True) -> Sequence[str]:
         """Names of what a package depends on.
 

@@ -54,6 +54,21 @@ print(process.is_alive())
     assert run.printed["home/kid"] == ["runs /home/kid None ['-v', 'a:=b', '__name:=kid']", "ends"]
 
 
+def test_a_node_that_is_stopped_does_not_come_back(folder: Path) -> None:
+    source = """
+launch = roslaunch.scriptapi.ROSLaunch()
+launch.start()
+process = launch.launch(roslaunch.core.Node("pack", "child.py", name="kid", respawn=True))
+rospy.sleep(1)
+launch.stop()
+rospy.sleep(3)
+print(process.is_alive())
+"""
+    run = fly(folder, source)
+    assert run.printed["boss"] == ["False"]
+    assert [line.split()[0] for line in run.printed["kid"]] == ["runs", "ends"]
+
+
 def test_a_launch_file_with_arguments(folder: Path) -> None:
     source = """
 uuid = roslaunch.rlutil.get_or_generate_uuid(None, False)

@@ -223,3 +223,22 @@ def test_definitions_and_loggers(tmp_path: Path) -> None:
         print(len(logger.handlers))
     """
     assert said(tmp_path, script) == ["p/S", "['RosStreamHandler'] 30", "1"]
+
+
+def test_the_distribution_is_that_of_the_environment(tmp_path: Path) -> None:
+    source = """
+        import os
+        import rospkg.distro
+        print(rospkg.distro.current_distro_codename())
+        os.environ["ROS_DISTRO"] = "melodic"
+        print(rospkg.distro.current_distro_codename())
+    """
+    assert run_nodes(tmp_path, {"NODE": source}).printed["NODE"] == ["noetic", "melodic"]
+
+
+def test_exports_by_the_name_that_flexbe_uses(tmp_path: Path) -> None:
+    script = """
+        import rospkg
+        print([(each.tag, sorted(each.attrs)) for each in rospkg.RosPack()._load_manifest("hand").exports])
+    """
+    assert said(tmp_path, script) == ["[('nodelet', ['plugin'])]"]

@@ -23,6 +23,16 @@ ASKS = """
 """
 
 
+def test_the_master_cannot_be_ended(tmp_path: Path) -> None:
+    script = """
+        import rospy
+        rospy.init_node("n")
+        print(rospy.get_master().shutdown("enough"), rospy.get_master().getPid()[0])
+    """
+    answers = run_nodes(tmp_path, {"N": script}).printed["n"]
+    assert answers == ["[0, 'the master ends with the mission', 0] 1"]
+
+
 def test_the_master_answers_as_rosmaster(tmp_path: Path) -> None:
     run = run_nodes(tmp_path, {"ASKS": ASKS.format(file=str(ANSWERS))}, seconds=1)
     recorded = json.loads(ANSWERS.read_text())

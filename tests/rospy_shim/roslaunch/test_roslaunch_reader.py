@@ -10,6 +10,7 @@ import pytest
 
 from cfepy.status import UsageError
 from rospy_shim.msgs import Packages
+from rospy_shim.parameter_values import DateTime
 from rospy_shim.roslaunch.model import Launch
 from rospy_shim.roslaunch.reader import read
 
@@ -37,6 +38,8 @@ def read_file(file: Path, args: Mapping[str, str] | None = None, environ: Mappin
         ('<param name="a" value="$(find nothing)"/>', "there is no package 'nothing'; put it beside"),
         ('<include file="none.launch"/>', "x.launch:3: <include file>: none.launch cannot be read: No such file"),
         ("<rosparam>a: rad(two)</rosparam>", "'two' is no angle"),
+        ("<rosparam>a: 2001-01-01</rosparam>", "<rosparam>: /a is datetime.date(2001, 1, 1), which no"),
+        ('<param name="a" value="4294967296"/>', "<param>: /a is 4294967296, which no parameter can be: int exceeds"),
         ('<remap from="a"/>', "x.launch:3: <remap>: has no 'to'; write to="),
     ],
 )
@@ -45,6 +48,11 @@ def test_an_error_says_where_and_what(tmp_path: Path, tag: str, said: str) -> No
         launch(tmp_path, f"\n{tag}\n")
     assert said in str(raised.value)
     assert str(raised.value).count("x.launch:") <= 1
+
+
+def test_a_date_and_time_is_a_parameter(tmp_path: Path) -> None:
+    found = launch(tmp_path, "<rosparam>when: 2026-11-21 18:50:00</rosparam>").params
+    assert found == {"/when": DateTime("20261121T18:50:00")}
 
 
 def test_an_error_in_an_included_file_names_that_file(tmp_path: Path) -> None:

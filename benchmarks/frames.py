@@ -1,0 +1,39 @@
+"""Coordinate frames: the wall time of a tf2 lookup through a chain of ten frames, in a node."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+
+from cfepy.console import Console
+from cfepy.mission import Mission
+
+NODES = Path(__file__).parent / "nodes" / "frames"
+REPEATS = 5
+LINE = 100  # lookups for each line that the node prints
+START_S = 1.5  # virtual; a little later the node looks up for the first time
+LOOKING_S = 0.0002  # virtual; looking up takes none, but asking whether to go on does
+
+
+def lookup_us(context: str) -> float:
+    """Wall time of a lookup in us."""
+    with Mission(str(NODES), tasks=context, console=Console(quiet=True)) as flight:
+        flight.run(START_S)
+        while not _looked(flight):
+            flight.run(LOOKING_S)
+        return min(_once(flight) for _ in range(REPEATS))
+
+
+def _once(flight: Mission) -> float:
+    before, begin = _looked(flight), perf_counter()
+    flight.run(LOOKING_S)
+    return (perf_counter() - begin) / (_looked(flight) - before) / LINE * 1e6
+
+
+def _looked(flight: Mission) -> int:
+    return flight.console.lines.count("[looker] looked")
+
+
+def frames(contexts: tuple[str, ...]) -> dict[str, float]:
+    """Times in us of a lookup, by context."""
+    return {f"lookup_us.{context}": lookup_us(context) for context in contexts}
