@@ -15,11 +15,25 @@ _SECONDS = {"time": (0, 2**32 - 1), "duration": (-(2**31), 2**31 - 1)}
 
 
 @cache
+def weight(field_type: str) -> int:
+    """Roughly how many numbers and texts a value of a type has."""
+    if field_type.endswith("]"):
+        base, _, length = field_type[:-1].partition("[")
+        return 1 if base in ("uint8", "char") else int(length or most(base)) * weight(base)
+    return sum(map(weight, message_class(field_type)._slot_types)) if "/" in field_type else 1
+
+
+def most(base: str) -> int:
+    """Items of an array without a length: few of a type that is big itself, or a planning scene would never end."""
+    return 4 if weight(base) <= 16 else 2 if weight(base) <= 64 else 1
+
+
+@cache
 def plain(field_type: str) -> st.SearchStrategy[Any]:
     """Plain values (see `build`) of a ROS type."""
     if field_type.endswith("]"):
         base, _, length = field_type[:-1].partition("[")
-        size: dict[str, Any] = {"min_size": int(length), "max_size": int(length)} if length else {"max_size": 4}
+        size: dict[str, Any] = {"min_size": int(length), "max_size": int(length)} if length else {"max_size": most(base)}
         if base in ("uint8", "char"):
             return st.binary(**size).map(lambda octets: {"__bytes_hex__": octets.hex()})
         return st.lists(plain(base), **size)
