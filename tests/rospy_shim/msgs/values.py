@@ -33,7 +33,8 @@ def plain(field_type: str) -> st.SearchStrategy[Any]:
     """Plain values (see `build`) of a ROS type."""
     if field_type.endswith("]"):
         base, _, length = field_type[:-1].partition("[")
-        size: dict[str, Any] = {"min_size": int(length), "max_size": int(length)} if length else {"max_size": most(base)}
+        exactly = {"min_size": int(length), "max_size": int(length)} if length else None
+        size: dict[str, Any] = exactly or {"max_size": most(base)}
         if base in ("uint8", "char"):
             return st.binary(**size).map(lambda octets: {"__bytes_hex__": octets.hex()})
         return st.lists(plain(base), **size)
