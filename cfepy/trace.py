@@ -20,6 +20,7 @@ GET = b"G"  # followed by the queue
 RECEIVE = b"R"  # followed by the pipe
 DROP = b"D"  # followed by the pipe
 NOTE = b"N"  # followed by a text, UTF-8
+UNSENT = b"U"  # followed by a topic, a zero byte, and a message that nobody gets; only runs that are compared have it
 
 BATCH = 4096
 

@@ -20,10 +20,10 @@ from cfepy.cli.main import BAD_USAGE, ENDED_WELL
 from cfepy.cli.run import fly, script_of
 from cfepy.cli.trace_text import TraceText
 from cfepy.mission import Mission, MissionSpec, read_mission
-from cfepy.mission.determinism import RecordWriter
+from cfepy.mission.determinism import ComparedTrace, RecordWriter, comparing
 from cfepy.mission.determinism_look import Look, LookingTrace
+from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
-from cfepy.trace import Trace
 
 LINES = 6  # records that are shown before the one that is looked at
 
@@ -53,7 +53,7 @@ class RecordPipe:
     """The recorder of a run that writes all records."""
 
     def __init__(self, writer: RecordWriter) -> None:
-        self.trace = Trace(writer.write)
+        self.trace = ComparedTrace(writer.write)
         self._writer = writer
 
     def __enter__(self) -> RecordPipe:
@@ -62,6 +62,10 @@ class RecordPipe:
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         if kind is None:
             self._writer.end({"digest": self.trace.digest()})
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """One that also records what nobody gets."""
+        return comparing(base, self.trace)
 
     def watch(self, mission: Mission) -> None:
         """Nothing to learn."""
@@ -81,6 +85,10 @@ class Lookout:
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         if kind is None:
             self._seen(self.trace.look(b""))
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `RecordPipe.bus`; the two must make the same records."""
+        return comparing(base, self.trace)
 
     def watch(self, mission: Mission) -> None:
         """Learn the names in this mission."""

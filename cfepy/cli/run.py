@@ -45,6 +45,9 @@ class Recorder(Protocol):
 
     def __exit__(self, *error: Any) -> Any: ...
 
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """The class of Software Bus that it needs, made of another one."""
+
     def watch(self, mission: Mission) -> None:
         """The mission is there and is about to run."""
 
@@ -219,6 +222,7 @@ def _mission(
     script: ScriptRun | None,
     bag: BagRecorder | None,
 ) -> Mission:
+    bus = bag.bus if bag is not None else SoftwareBus if script is None else script.bus
     try:
         mission = Mission(
             spec,
@@ -228,7 +232,7 @@ def _mission(
             console=Console(sink=display.line),
             policy=SeededRandom(arguments.seed) if arguments.schedule == "random" else None,
             trace=None if recorder is None else recorder.trace,
-            bus=bag.bus if bag is not None else SoftwareBus if script is None else script.bus,
+            bus=bus if recorder is None else recorder.bus(bus),
         )
     except UsageError:
         raise

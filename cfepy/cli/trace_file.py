@@ -7,6 +7,7 @@ from types import TracebackType
 from cfepy.cli.failures import writing
 from cfepy.cli.trace_text import TraceText
 from cfepy.mission import Mission
+from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
 from cfepy.trace import Trace
 
@@ -48,6 +49,10 @@ class TraceFile:
             self._error = self._error or error
         if self._error is not None:
             raise UsageError(f"could not be written: {self._error.strerror}", file=self._path, field="--trace")
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """The bus as it is."""
+        return base
 
     def watch(self, mission: Mission) -> None:
         """Learn names of tasks, pipes and messages from this mission."""

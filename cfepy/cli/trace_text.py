@@ -68,6 +68,9 @@ class TraceText:
             return None
         if kind == tr.NOTE:
             return f"console {record[1:].decode('utf-8', 'replace')}"
+        if kind == tr.UNSENT:
+            topic, _, message = record[1:].partition(b"\0")
+            return f"publish {topic.decode()} length {len(message)}, which nobody gets"
         (number,) = _number(record)
         return self._event(kind, number)
 

@@ -1,7 +1,8 @@
 """Comparing the traces of several runs of one mission while they are made: where do they part first?
 
 A run that is compared writes its records to a pipe as frames; the comparison reads a frame at a time from each, so the
-memory it takes does not grow with the runs, and a run that is ahead waits for the others. May import cfepy.status.
+memory it takes does not grow with the runs, and a run that is ahead waits for the others. May import cfepy.sb and
+cfepy.trace.
 """
 
 from __future__ import annotations
@@ -14,8 +15,38 @@ from dataclasses import dataclass, field
 from itertools import accumulate, pairwise
 from typing import Any, BinaryIO
 
+from cfepy.sb import SoftwareBus
+from cfepy.trace import UNSENT, Trace
+
 _head = struct.Struct("<II")  # records, and bytes that follow; no records: the bytes are what ends the stream
 _LENGTH = "I"
+
+
+class ComparedTrace(Trace):
+    """A trace that also has the messages nobody gets; its digest leaves them out, so it is that of any other run."""
+
+    __slots__ = ()
+
+    def flush(self) -> None:
+        """See `Trace.flush`."""
+        self._hash.update(b"".join(record for record in self.records if record[:1] != UNSENT))
+        if self._sink is not None:
+            self._sink(self.records)
+        self.records.clear()
+
+
+def comparing(bus: type[SoftwareBus], trace: Trace) -> type[SoftwareBus]:
+    """A class of Software Bus that records what is published without a subscriber, which is never sent.
+
+    Args:
+        bus: the class to begin with.
+        trace: where it is recorded.
+    """
+
+    def note(link: Any, message: bytes) -> None:
+        trace.append(UNSENT + link.name.encode() + b"\0" + message)
+
+    return type("ComparedBus", (bus,), {"on_unsent": staticmethod(note)})
 
 
 class RunEndedError(Exception):

@@ -60,6 +60,27 @@ def test_the_order_of_a_set(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert f"{tmp_path / 'talker.py'}:10: goes through a set: for name in names:" in shown
 
 
+def test_messages_without_a_subscriber_count(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    startup = "CFE_APP, talker.py, __main__, TALKER, 100, 16384, 0x0, 0;\n!\n"
+    folder = write_mission(tmp_path, startup, talker=TALKER.format(names="names"))
+    assert check(folder, "4") == 1
+    shown = capsys.readouterr().out
+    assert shown.count("publish /chat length") == 2
+    assert shown.count(f"  made at {tmp_path / 'talker.py'}:11 in <module>\n") == 2
+    assert "ordered_sets: true" in shown
+
+
+def test_messages_without_a_subscriber_are_not_in_the_digest(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    startup = "CFE_APP, talker.py, __main__, TALKER, 100, 16384, 0x0, 0;\n!\n"
+    folder = write_mission(tmp_path, startup, talker=TALKER.format(names="sorted(names)"))
+    assert check(folder) == 0
+    compared = capsys.readouterr().out.splitlines()[-1]
+    assert main(["run", folder, "--for", "3", "--quiet"]) == 0
+    assert compared == capsys.readouterr().out.splitlines()[-1]
+
+
 @pytest.mark.parametrize(
     "mission_yaml", ["ordered_sets: true\n", "ordered_sets: false\nnodes: {TALKER: {ordered_sets: true}}\n"]
 )
