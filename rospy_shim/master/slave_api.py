@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from rospy_shim.node import Node
 
 TRANSPORT = "cFE SB"  # in place of TCPROS
-NOT_COUNTED = -1  # bytes of a connection
 
 
 def _global_name(value: Any, caller: str) -> Any:
@@ -113,16 +112,16 @@ class SlaveApi:
 
     @answers([])
     def getBusStats(self, caller: str) -> Answer:
-        """Statistics of publishers, subscribers and services; bytes are not counted, which shows as -1."""
+        """Bytes and messages of publishers and subscribers, for each of their connections; services have none."""
         numbered = [[number, *each] for number, each in enumerate(self._connections(), 1)]
-        sent = [
-            [name, NOT_COUNTED, [[each[0], NOT_COUNTED, link.seq, True] for each in _of(numbered, name, "o")]]
-            for name, link in self._node.links.items()
-        ]
-        received = [
-            [name, [[each[0], NOT_COUNTED, NOT_COUNTED, NOT_COUNTED, True] for each in _of(numbered, name, "i")]]
-            for name in self._node.subscriptions
-        ]
+        sent = []
+        for name, link in self._node.links.items():
+            _, size, _ = link.get_stats()
+            sent.append([name, size, [[each[0], size, link.seq, True] for each in _of(numbered, name, "o")]])
+        received = []
+        for name, subscription in self._node.subscriptions.items():
+            rows = zip(_of(numbered, name, "i"), subscription.get_stats()[1], strict=False)
+            received.append([name, [[each[0], *counted[1:]] for each, counted in rows]])
         return 1, "", [sent, received, []]
 
     @answers([], calls.name_of_thing("topic"), calls.something("protocols"))

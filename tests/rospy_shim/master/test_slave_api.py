@@ -51,7 +51,7 @@ def test_connections(tmp_path: Path) -> None:
     )
     assert printed[1].startswith("/asks o cFE SB /words True cFE SB connection on MsgId 0x0")
     assert printed[2].startswith("True i cFE SB /numbers True cFE SB connection on MsgId 0x0")
-    assert printed[3] == "[['/words', -1, [[1, -1, 1, True]]]] [['/numbers', [[2, -1, -1, -1, True]]]] []"
+    assert printed[3] == "[['/words', 5, [[1, 5, 1, True]]]] [['/numbers', [[2, 0, 0, -1, True]]]] []"
 
 
 def test_parameters_and_publishers_are_told(tmp_path: Path) -> None:
