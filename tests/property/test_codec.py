@@ -21,7 +21,7 @@ from tests.rospy_shim.msgs.values import plain
 
 TYPES = [f"{package}/{name}" for package in shipped().packages() for name in shipped().names(package) or ()]
 ROS_PYTHON = "/usr/bin/python3"
-PEER = Path(__file__).parent / "genpy_peer.py"
+PEER = Path(__file__).parents[1] / "rospy_shim/msgs/genpy_peer.py"
 
 _SMALL = settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 

@@ -7,12 +7,12 @@ writes and imports a file, so a type that has several others as fields stands fo
 from __future__ import annotations
 
 import importlib
-import io
 import json
 import sys
 from typing import Any
 
-genpy = importlib.import_module("genpy")
+from genpy_messages import build, encoded  # beside this script
+
 genmsg = importlib.import_module("genmsg")
 generate_dynamic = importlib.import_module("genpy.dynamic").generate_dynamic
 msg_loader = importlib.import_module("genmsg.msg_loader")
@@ -20,7 +20,6 @@ compute_md5 = importlib.import_module("genmsg.gentools").compute_md5
 
 ALL = "everything/All"
 LINE = "=" * 80
-TIMES = {"time": genpy.Time, "duration": genpy.Duration}
 
 
 def classes_of(names: list[str], texts: dict[str, str]) -> dict[str, Any]:
@@ -38,27 +37,6 @@ def service_md5sums(texts: dict[str, str], services: dict[str, str]) -> dict[str
     for name, text in services.items():
         found[name] = compute_md5(context, msg_loader.load_srv_from_string(context, text, name))
     return found
-
-
-def build(classes: dict[str, Any], field_type: str, value: Any) -> Any:
-    if isinstance(value, dict) and "__bytes_hex__" in value:
-        return bytes.fromhex(value["__bytes_hex__"])
-    if field_type.endswith("]"):
-        return [build(classes, field_type[: field_type.index("[")], item) for item in value]
-    if field_type in TIMES:
-        return TIMES[field_type](value["secs"], value["nsecs"])
-    if "/" not in field_type:
-        return value
-    message = classes[field_type]()
-    for name, kind in zip(message.__slots__, message._slot_types):  # noqa: B905
-        setattr(message, name, build(classes, kind, value[name]))
-    return message
-
-
-def encoded(message: Any) -> str:
-    buff = io.BytesIO()
-    message.serialize(buff)
-    return buff.getvalue().hex()
 
 
 def answer(cls: Any, message: Any) -> dict[str, str]:
