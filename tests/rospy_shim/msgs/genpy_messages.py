@@ -1,4 +1,4 @@
-"""Messages of real genpy made of plain values, and their bytes, for the scripts beside this file that its Python runs."""
+"""Messages of real genpy from plain values, and their bytes, for the scripts beside this file that its Python runs."""
 
 from __future__ import annotations
 
