@@ -15,6 +15,7 @@ from xmlrpc.client import ServerProxy
 
 import rosgraph
 import rosgraph.names
+from ros_tools import command_of
 
 NAME = "rosnode"
 ID = "/rosnode"
@@ -356,11 +357,4 @@ def rosnodemain(argv: Sequence[str] | None = None) -> None:
 
 def __getattr__(name: str) -> Any:
     """The commands one by one, under the names by which tests and tools call them: `_rosnode_cmd_list(argv)`."""
-    from rosnode.command import COMMANDS, print_usage
-
-    command = COMMANDS.get(name.removeprefix("_rosnode_cmd_")) if name.startswith("_rosnode_cmd_") else None
-    if command is not None:
-        return lambda argv=sys.argv: command(argv[2:])
-    if name == "_fullusage":
-        return print_usage
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return command_of("rosnode", name)

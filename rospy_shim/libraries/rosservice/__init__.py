@@ -15,6 +15,7 @@ import rosgraph.names
 import roslib.message
 import rosmsg
 import rospy
+from ros_tools import command_of
 
 NAME = "rosservice"
 ID = "/rosservice"
@@ -237,11 +238,4 @@ def rosservicemain(argv: Sequence[str] | None = None) -> None:
 
 def __getattr__(name: str) -> Any:
     """The commands one by one, under the names by which tests and tools call them: `_rosservice_cmd_list(argv)`."""
-    from rosservice.command import COMMANDS, print_usage
-
-    command = COMMANDS.get(name.removeprefix("_rosservice_cmd_")) if name.startswith("_rosservice_cmd_") else None
-    if command is not None:
-        return lambda argv=sys.argv: command(argv[2:])
-    if name == "_fullusage":
-        return print_usage
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return command_of("rosservice", name)

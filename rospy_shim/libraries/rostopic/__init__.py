@@ -14,6 +14,7 @@ import rosgraph
 import rosgraph.names
 import roslib.message
 import rospy
+from ros_tools import command_of
 
 from rostopic.echo import CallbackEcho, create_field_filter, create_value_transform
 from rostopic.errors import ROSTopicException, ROSTopicIOException
@@ -253,11 +254,4 @@ def rostopicmain(argv: Sequence[str] | None = None) -> None:
 
 def __getattr__(name: str) -> Any:
     """The commands one by one, under the names by which tests and tools call them: `_rostopic_cmd_list(argv)`."""
-    from rostopic.command import COMMANDS, print_usage
-
-    command = COMMANDS.get(name.removeprefix("_rostopic_cmd_")) if name.startswith("_rostopic_cmd_") else None
-    if command is not None:
-        return lambda argv=sys.argv: command(argv[2:])
-    if name == "_fullusage":
-        return print_usage
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return command_of("rostopic", name)
