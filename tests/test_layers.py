@@ -29,10 +29,12 @@ LAYERS = [
     {"osal"},
     {"psp", "msg", "fs"},
     {"es", "sb", "evs", "time", "tbl"},
-    {"app"},
-    {"nodes", "apps"},
+    {"app", "attachment"},
+    {"nodes", "apps", "faults"},
     {"mission"},
-    {"io"},
+    {"journal"},
+    {"io", "explore", "reports"},
+    {"testing"},
     {"cli", "__main__"},
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}

@@ -14,6 +14,7 @@ import sys
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
+from cfepy.attachment import Recorder
 from cfepy.cli.failures import booting
 from cfepy.cli.flight import Interrupts
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL
@@ -49,15 +50,12 @@ class Plan:
         return json.dumps(dataclasses.asdict(self))
 
 
-class RecordPipe:
+class RecordPipe(Recorder):
     """The recorder of a run that writes all records."""
 
     def __init__(self, writer: RecordWriter) -> None:
         self.trace = ComparedTrace(writer.write)
         self._writer = writer
-
-    def __enter__(self) -> RecordPipe:
-        return self
 
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         if kind is None:
@@ -67,30 +65,24 @@ class RecordPipe:
         """One that also records what nobody gets."""
         return comparing(base, self.trace)
 
-    def watch(self, mission: Mission) -> None:
-        """Nothing to learn."""
 
-
-class Lookout:
+class Lookout(Recorder):
     """The recorder of a run that looks at one record, and ends the process then and there."""
 
     def __init__(self, writer: RecordWriter, index: int) -> None:
-        self.trace = LookingTrace(index, self._lines, self._seen)
+        self.trace = self._looking = LookingTrace(index, self._lines, self._seen)
         self._writer = writer
         self._text = TraceText()
 
-    def __enter__(self) -> Lookout:
-        return self
-
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         if kind is None:
-            self._seen(self.trace.look(b""))
+            self._seen(self._looking.look(b""))
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """See `RecordPipe.bus`; the two must make the same records."""
         return comparing(base, self.trace)
 
-    def watch(self, mission: Mission) -> None:
+    def begin(self, mission: Mission) -> None:
         """Learn the names in this mission."""
         self._text.watch(mission)
 

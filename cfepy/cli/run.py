@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TextIO
+from typing import TYPE_CHECKING, TextIO
 
+from cfepy.attachment import Attachment, Recorder
 from cfepy.cli import report
 from cfepy.cli.arguments import LONGEST_S
 from cfepy.cli.display import Display, make_display
@@ -21,7 +22,6 @@ from cfepy.mission import Mission, MissionSpec, read_mission
 from cfepy.mission.results import Results
 from cfepy.rtos.policy import SeededRandom
 from cfepy.rtos.units import NS_PER_S
-from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -32,24 +32,6 @@ if TYPE_CHECKING:
     from cfepy.trace import Trace
 
 DEFAULT_S = 10.0
-
-
-class Recorder(Protocol):
-    """Takes the trace of a run; a context manager around it."""
-
-    @property
-    def trace(self) -> Trace:
-        """What the mission records in."""
-
-    def __enter__(self) -> Any: ...
-
-    def __exit__(self, *error: Any) -> Any: ...
-
-    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """The class of Software Bus that it needs, made of another one."""
-
-    def watch(self, mission: Mission) -> None:
-        """The mission is there and is about to run."""
 
 
 class View:
@@ -114,7 +96,7 @@ def _run(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupt
     folder = saving_to(arguments.save_files)
     script = script_of(arguments, spec)
     recorder = trace_file(arguments.trace) if arguments.trace else None
-    bag = _bag(arguments, script)
+    bag = _bag(arguments)
     with booting(spec.script):
         flight = fly(arguments, spec, interrupts, script, recorder, view.display, bag)
     results = Results.of(flight.mission, flight.at, flight.trace)
@@ -142,7 +124,7 @@ def script_of(arguments: argparse.Namespace, spec: MissionSpec) -> ScriptRun | N
     return ScriptRun(read_script(arguments.script, spec, dictionary_of(spec)), arguments.stop_on_failure)
 
 
-def _bag(arguments: argparse.Namespace, script: ScriptRun | None) -> BagRecorder | None:
+def _bag(arguments: argparse.Namespace) -> BagRecorder | None:
     """What records topics; only a run with a bag imports it."""
     if arguments.bag is None:
         if arguments.bag_topics:
@@ -150,7 +132,7 @@ def _bag(arguments: argparse.Namespace, script: ScriptRun | None) -> BagRecorder
         return None
     from cfepy.mission.bag import BagRecorder
 
-    return BagRecorder(arguments.bag, arguments.bag_topics, SoftwareBus if script is None else script.bus)
+    return BagRecorder(arguments.bag, arguments.bag_topics)
 
 
 def trace_file(file: str) -> Recorder:
@@ -202,7 +184,9 @@ def fly(
                 stack.enter_context(bag)
             display = show(arguments.quiet, seconds)
             stack.callback(display.close)
-            mission = stack.enter_context(_mission(arguments, spec, display, recorder, script, bag))
+            attachments = [each for each in (script, bag, recorder) if each is not None]
+            trace = None if recorder is None else recorder.trace
+            mission = stack.enter_context(_mission(arguments, spec, display, attachments, trace))
             ends_with_script = arguments.seconds is None
             bridge = None if arguments.realtime is None else stack.enter_context(_bridge(arguments, mission, display))
             flight = Flight(mission, seconds, arguments.realtime, display, interrupts, script, ends_with_script, bridge)
@@ -218,33 +202,24 @@ def _mission(
     arguments: argparse.Namespace,
     spec: MissionSpec,
     display: Display,
-    recorder: Recorder | None,
-    script: ScriptRun | None,
-    bag: BagRecorder | None,
+    attachments: Sequence[Attachment],
+    trace: Trace | None,
 ) -> Mission:
-    bus = bag.bus if bag is not None else SoftwareBus if script is None else script.bus
     try:
-        mission = Mission(
+        return Mission(
             spec,
             seed=arguments.seed,
             board=arguments.board,
             tasks=arguments.tasks,
             console=Console(sink=display.line),
             policy=SeededRandom(arguments.seed) if arguments.schedule == "random" else None,
-            trace=None if recorder is None else recorder.trace,
-            bus=bus if recorder is None else recorder.bus(bus),
+            trace=trace,
+            attachments=attachments,
         )
     except UsageError:
         raise
     except ValueError as error:  # a task context that is not installed
         raise UsageError(str(error), field="--tasks") from None
-    if recorder is not None:
-        recorder.watch(mission)
-    if script is not None:
-        script.begin(mission)
-    if bag is not None:
-        bag.begin(mission)
-    return mission
 
 
 def _bridge(arguments: argparse.Namespace, mission: Mission, display: Display) -> HostNetwork:

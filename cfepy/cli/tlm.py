@@ -18,7 +18,7 @@ from cfepy.mission.results import deaths
 from cfepy.mission.spec import find_script
 from cfepy.mission.topics import topic_id, topics_of
 from cfepy.mission.values import packet_of
-from cfepy.mission.watch import Seen, watching
+from cfepy.mission.watch import PacketWatch, Seen
 from cfepy.msg import TLM_HEADER_SIZE, get_header_size, get_msg_id
 from cfepy.rtos.realtime import Stopwatch
 from cfepy.rtos.units import NS_PER_MS, NS_PER_S
@@ -120,9 +120,9 @@ def _fly(spec: MissionSpec, names: list[str], arguments: argparse.Namespace) -> 
     dictionary = dictionary_of(spec)
     wanted = {_msg_id(spec, dictionary, name) for name in names}
     seen: list[Seen] = []
-    bus = watching(seen.append, lambda msg_id: msg_id in wanted if wanted else msg_id & 0x1800 == 0x0800)
+    watch = PacketWatch(seen.append, lambda msg_id: msg_id in wanted if wanted else msg_id & 0x1800 == 0x0800)
     output = make_output(dictionary, arguments.json, sys.stdout, is_live=False)
-    with booting(spec.script), Mission(spec, console=Console(quiet=True), bus=bus) as mission:
+    with booting(spec.script), Mission(spec, console=Console(quiet=True), attachments=[watch]) as mission:
         shown = _show_flight(mission, seen, output, dictionary, arguments)
         problems, end_s = deaths(mission), mission.kernel.now / NS_PER_S
     sys.stdout.flush()

@@ -19,7 +19,6 @@ from cfepy.mission.bag import BagReader, is_bag
 from cfepy.mission.results import deaths
 from cfepy.mission.topic_watch import Message, TopicWatch
 from cfepy.rtos.units import NS_PER_MS, NS_PER_S
-from cfepy.sb import SoftwareBus
 
 if TYPE_CHECKING:
     from cfepy.mission.script import ScriptRun
@@ -120,19 +119,15 @@ class FlightSource:
         """Fly piece by piece; messages go into `seen`, if anybody wants them."""
         arguments = self._arguments
         script = script_of(arguments, self._spec)
-        base = SoftwareBus if script is None else script.bus
-        watch = None if seen is None else TopicWatch(seen.append, patterns, base)
+        watch = None if seen is None else TopicWatch(seen.append, patterns)
         with booting(self._spec.script):
             self.mission = mission = Mission(
                 self._spec,
                 seed=arguments.seed,
                 board=arguments.board,
                 console=self._console,
-                bus=base if watch is None else watch.bus,
+                attachments=[each for each in (script, watch) if each is not None],
             )
-            for each in (watch, script):
-                if each is not None:
-                    each.begin(mission)
             until_ns = self._end_ns(script)
             while mission.kernel.now < until_ns and not mission.over and not self._is_done(script):
                 stop_ns = min(until_ns, mission.kernel.now + PIECE_NS)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from types import TracebackType
 
+from cfepy.attachment import Recorder
 from cfepy.cli.failures import writing
 from cfepy.cli.trace_text import TraceText
 from cfepy.mission import Mission
-from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
 from cfepy.trace import Trace
 
 
-class TraceFile:
+class TraceFile(Recorder):
     """Writes trace records as text; use as a context manager around the mission.
 
     Args:
@@ -33,9 +33,6 @@ class TraceFile:
         self._text = TraceText()
         self._error: OSError | None = None
 
-    def __enter__(self) -> TraceFile:
-        return self
-
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
     ) -> None:
@@ -50,11 +47,7 @@ class TraceFile:
         if self._error is not None:
             raise UsageError(f"could not be written: {self._error.strerror}", file=self._path, field="--trace")
 
-    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """The bus as it is."""
-        return base
-
-    def watch(self, mission: Mission) -> None:
+    def begin(self, mission: Mission) -> None:
         """Learn names of tasks, pipes and messages from this mission."""
         self._text.watch(mission)
 

@@ -12,35 +12,30 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from cfepy.mission.mission import Mission
 from cfepy.mission.topic_watch import Message, TopicWatch, matches
 from cfepy.mission.tracebacks import described
-from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
 
 CHUNK_BYTES = 768 * 1024
 
 
-class BagRecorder:
+class BagRecorder(TopicWatch):
     """Records topics into a bag; use as a context manager around the run.
 
     Args:
         file: the bag; an older one is written over.
         patterns: see `TopicWatch`.
-        base: the class of Software Bus to start from.
 
     Raises:
         UsageError: the file cannot be written.
 
     Attributes:
-        bus: the class of Software Bus that the mission needs.
         count: messages so far.
     """
 
-    def __init__(self, file: str, patterns: Sequence[str] = (), base: type[SoftwareBus] = SoftwareBus) -> None:
+    def __init__(self, file: str, patterns: Sequence[str] = ()) -> None:
+        super().__init__(self._write, patterns)
         self.count = 0
-        self._watch = TopicWatch(self._write, patterns, base)
-        self.bus = self._watch.bus
         self._connections: dict[tuple[str, str], Any] = {}
         try:
             self._file = Path(file).open("w+b")  # noqa: SIM115  # closed by `__exit__`
@@ -48,10 +43,6 @@ class BagRecorder:
             raise UsageError(f"could not be written: {error.strerror}", file=file, field="--bag") from None
         self._bag = storage().BagFile(self._file)
         self._bag.create()
-
-    def begin(self, mission: Mission) -> None:
-        """Take the mission that was made with `bus`, before it runs."""
-        self._watch.begin(mission)
 
     def __enter__(self) -> BagRecorder:
         return self

@@ -11,7 +11,7 @@ from cfepy.mission.mission import Mission
 from cfepy.mission.results import deaths
 from cfepy.mission.script_packets import EVENT_IDS, Event
 from cfepy.mission.spec import MissionSpec
-from cfepy.mission.watch import Seen, receivers, watching
+from cfepy.mission.watch import PacketWatch, Seen, receivers
 from cfepy.msg import MsgType, get_msg_id, get_type
 from cfepy.rtos.units import NS_PER_MS, NS_PER_S
 from cfepy.status import CFE_ES_OPERATION_TIMED_OUT, CfeError
@@ -56,8 +56,7 @@ def try_command(spec: MissionSpec, dictionary: Dictionary, packet: bytes, second
         UsageError: no such board.
     """
     seen: list[Seen] = []
-    bus = watching(seen.append, lambda msg_id: True)
-    with Mission(spec, console=Console(quiet=True), bus=bus) as mission:
+    with Mission(spec, console=Console(quiet=True), attachments=[PacketWatch(seen.append)]) as mission:
         _boot(mission)
         seen.clear()
         takers, sent_ns = receivers(mission.cfe.sb, get_msg_id(packet)), mission.kernel.now

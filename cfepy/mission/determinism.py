@@ -1,8 +1,8 @@
 """Comparing the traces of several runs of one mission while they are made: where do they part first?
 
 A run that is compared writes its records to a pipe as frames; the comparison reads a frame at a time from each, so the
-memory it takes does not grow with the runs, and a run that is ahead waits for the others. May import cfepy.sb and
-cfepy.trace.
+memory it takes does not grow with the runs, and a run that is ahead waits for the others. May import cfepy.sb,
+cfepy.trace and the watch on the bus.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from itertools import accumulate, pairwise
 from typing import Any, BinaryIO
 
+from cfepy.mission.watch import hearing
 from cfepy.sb import SoftwareBus
 from cfepy.trace import UNSENT, Trace
 
@@ -43,10 +44,7 @@ def comparing(bus: type[SoftwareBus], trace: Trace) -> type[SoftwareBus]:
         trace: where it is recorded.
     """
 
-    def note(link: Any, message: bytes) -> None:
-        trace.append(UNSENT + link.name.encode() + b"\0" + message)
-
-    return type("ComparedBus", (bus,), {"on_unsent": staticmethod(note)})
+    return hearing(bus, lambda link, message: trace.append(UNSENT + link.name.encode() + b"\0" + message))
 
 
 class RunEndedError(Exception):

@@ -16,7 +16,7 @@ from cfepy.mission.mission import Mission
 from cfepy.mission.msg_names import names_in
 from cfepy.mission.results import kind_of
 from cfepy.mission.spec import MissionSpec
-from cfepy.mission.watch import Seen, watching
+from cfepy.mission.watch import PacketWatch, Seen
 
 LOOK_S = 10.0
 
@@ -52,7 +52,7 @@ def survey(spec: MissionSpec, board: str | None = None) -> list[MidRow]:
     def note(seen: Seen) -> None:
         senders.setdefault(seen.msg_id, set()).add(seen.sender)
 
-    with Mission(spec, board=board, console=Console(quiet=True), bus=watching(note, lambda msg_id: True)) as mission:
+    with Mission(spec, board=board, console=Console(quiet=True), attachments=[PacketWatch(note)]) as mission:
         mission.run(LOOK_S)
         return _rows(mission, senders)
 

@@ -6,12 +6,13 @@ boot on it. Nothing in the parts knows of this module.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from cfepy.app import Cfe
+from cfepy.attachment import Attachment
 from cfepy.console import Console
 from cfepy.es.startup_script import entries
 from cfepy.mission.loader import NODE_SYMBOL, find_code
@@ -48,7 +49,7 @@ class Mission:
         console: where lines go; None prints them.
         policy: who runs next among equals; see `cfepy.rtos.policy`.
         trace: takes the records; None makes one that only keeps the digest.
-        bus: the class of the Software Bus, for tools that look on.
+        attachments: what looks on or meddles, in the order in which they are told.
 
     Attributes:
         spec, seed, tasks, board, config, console: as given, or as found.
@@ -68,7 +69,7 @@ class Mission:
         console: Console | None = None,
         policy: Policy | None = None,
         trace: Trace | None = None,
-        bus: type[SoftwareBus] = SoftwareBus,
+        attachments: Sequence[Attachment] = (),
     ) -> None:
         self.spec = mission if isinstance(mission, MissionSpec) else read_mission(mission)
         self.seed = seed
@@ -87,11 +88,22 @@ class Mission:
         self._watch = StallWatch(self.kernel)
         self._first_boot: int | None = None
         self._resetting = False
+        self._attachments = tuple(attachments)
         self._provide_tables()
-        self._machine = self._make_machine(bus)
+        self._machine = self._make_machine()
         self.processor = Processor(self._machine)
+        for each in self._attachments:
+            each.begin(self)
+        self._power_up()
 
-    def _make_machine(self, bus: type[SoftwareBus]) -> Machine:
+    def _power_up(self) -> None:
+        for each in self._attachments:
+            each.power_up(self.processor)
+
+    def _make_machine(self) -> Machine:
+        bus = SoftwareBus
+        for each in self._attachments:
+            bus = each.bus(bus)
         eeprom_bytes = self.board.data_flash or EEPROM_BYTES
         return Machine(
             spec=self.spec,
@@ -183,6 +195,8 @@ class Mission:
         self.processor.end()
         self.kernel.shutdown()
         self._watch.end()
+        for each in self._attachments:
+            each.close()
 
     def __enter__(self) -> Mission:
         return self
@@ -219,3 +233,4 @@ class Mission:
         self.record.close_books(old.cfe.sb, old.topics())
         self._resetting = False
         self.processor = Processor(self._machine, RESTART_NS)
+        self._power_up()

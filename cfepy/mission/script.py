@@ -19,22 +19,20 @@ from cfepy.mission.script_expectation import Expectation
 from cfepy.mission.script_text import Script, Step, read_script
 from cfepy.mission.script_verdicts import OVER, Outcome, Verdict
 from cfepy.mission.spec import MissionSpec, read_mission
-from cfepy.mission.watch import Seen, receivers, watching
+from cfepy.mission.watch import PacketWatch, Seen, receivers
 from cfepy.msg import get_msg_id
 from cfepy.rtos.kernel import ENDLESS
-from cfepy.sb import SoftwareBus
 from cfepy.status import CfeError
 
 
-class ScriptRun:
-    """A script while it runs. Make it, make the mission with `bus`, `begin`; then let whoever runs the mission ask.
+class ScriptRun(PacketWatch):
+    """A script while it runs; whoever runs the mission that it is attached to asks it what is next.
 
     Args:
         script: what to do.
         stop_on_failure: the script ends with the first step that fails.
 
     Attributes:
-        bus: the class of Software Bus that the mission needs.
         finished: there is nothing more to do.
         stopped: a failure ended it before its last step.
     """
@@ -52,10 +50,10 @@ class ScriptRun:
         self._mark_ns = 0
         self._window = Window(0, 0)
         wanted = {each for step in script.steps if step.condition is not None for each in step.condition.msg_ids}
-        self.bus: type[SoftwareBus] = watching(self._packets.append, wanted.__contains__)
+        super().__init__(self._packets.append, wanted.__contains__)
 
     def begin(self, mission: Mission) -> None:
-        """Take the mission that was made for this script, before it runs."""
+        """See `Attachment.begin`."""
         self._scene = Scene(mission, self.script.dictionary, self._packets)
 
     def advance(self) -> int:
@@ -184,8 +182,7 @@ def run_script(
     """
     spec = mission if isinstance(mission, MissionSpec) else read_mission(mission)
     script = ScriptRun(read_script(path, spec, dictionary_of(spec)), stop_on_failure)
-    with Mission(spec, bus=script.bus, **options) as flown:
-        script.begin(flown)
+    with Mission(spec, attachments=[script], **options) as flown:
         wake_ns = script.advance()
         while not script.finished:
             flown.run_until(wake_ns)

@@ -13,7 +13,7 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from cfepy.mission.mission import Mission
-from cfepy.mission.watch import Seen, watching
+from cfepy.mission.watch import PacketWatch, Seen, hearing
 from cfepy.msg import TLM_HEADER_SIZE, SegmentationFlag, get_segmentation_flag
 from cfepy.rtos.units import NS_PER_S
 from cfepy.sb import SoftwareBus
@@ -41,33 +41,30 @@ class Message:
         self.at_ns, self.stamp_ns = at_ns, stamp_ns
 
 
-class TopicWatch:
-    """Looks on at the topics of a mission. Make it, make the mission with `bus`, `begin`, run.
+class TopicWatch(PacketWatch):
+    """Looks on at the topics of a mission.
 
     Args:
         take: gets each message when it is sent; called inside the simulation, so it must not wait.
         patterns: names of topics, such as "/odom" or "/arm/*"; all when there are none.
-        base: the class of Software Bus to start from.
-
-    Attributes:
-        bus: the class of Software Bus that the mission needs.
     """
 
-    def __init__(
-        self, take: Callable[[Message], object], patterns: Sequence[str] = (), base: type[SoftwareBus] = SoftwareBus
-    ) -> None:
-        self._take = take
+    def __init__(self, take: Callable[[Message], object], patterns: Sequence[str] = ()) -> None:
+        super().__init__(self._take_packet, self._is_wanted)
+        self._take_message = take
         self._patterns = tuple(patterns)
         self._topics: dict[int, Any] = {}
         self._known: tuple[Any, int] = (None, 0)
         self._parts: dict[tuple[int, str], list[bytes]] = {}
         self._clock_ns: int | None = None
         self._mission: Mission | None = None
-        watched = watching(self._take_packet, self._is_wanted, base)
-        self.bus: type[SoftwareBus] = type("TopicBus", (watched,), {"on_unsent": staticmethod(self._take_unsent)})
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        return hearing(super().bus(base), self._take_unsent)
 
     def begin(self, mission: Mission) -> None:
-        """Take the mission that was made with `bus`, before it runs."""
+        """See `Attachment.begin`."""
         self._mission = mission
 
     # -- what is seen --------------------------------------------------------------------------------------------------
@@ -119,7 +116,7 @@ class TopicWatch:
         if topic.name == "/clock" and len(data) == CLOCK_BYTES:
             self._clock_ns = int.from_bytes(data[:4], "little") * NS_PER_S + int.from_bytes(data[4:], "little")
         if matches(topic.name, self._patterns) and "md5sum" in header:
-            self._take(Message(topic.name, dict(header), data, at_ns, self._stamp(at_ns)))
+            self._take_message(Message(topic.name, dict(header), data, at_ns, self._stamp(at_ns)))
 
     def _stamp(self, at_ns: int) -> int | None:
         assert self._mission is not None

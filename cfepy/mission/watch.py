@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from cfepy import msg
+from cfepy.attachment import Attachment
 from cfepy.msg import PRIMARY_HEADER_SIZE
 from cfepy.sb import SoftwareBus
 
@@ -29,17 +30,43 @@ class Seen(NamedTuple):
         return self.packet[0] << 8 | self.packet[1]
 
 
-def watching(
-    take: Callable[[Seen], object], wanted: Callable[[int], bool], base: type[SoftwareBus] = SoftwareBus
-) -> type[SoftwareBus]:
-    """A class of Software Bus for `Mission(bus=...)` that shows what is sent.
+def hearing(base: type[SoftwareBus], note: Callable[[Any, bytes], object]) -> type[SoftwareBus]:
+    """A class of Software Bus that tells of messages which are never sent, since their topic has no subscriber.
+
+    Args:
+        base: the class to start from; whom that tells is told first.
+        note: gets the publisher's link and the message.
+    """
+    before = base.on_unsent
+
+    def tell(link: Any, message: bytes) -> None:
+        if before is not None:
+            before(link, message)
+        note(link, message)
+
+    return type("HeardBus", (base,), {"on_unsent": staticmethod(tell)})
+
+
+class PacketWatch(Attachment):
+    """Shows what is sent.
 
     Args:
         take: gets each packet before its subscribers do; called inside the simulation, so it must not wait.
         wanted: which MsgIds it gets.
-        base: the class to start from, such as one that is looked at already.
     """
 
+    def __init__(self, take: Callable[[Seen], object], wanted: Callable[[int], bool] = lambda msg_id: True) -> None:
+        self._take = take
+        self._wanted = wanted
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        return _watched(base, self._take, self._wanted)
+
+
+def _watched(
+    base: type[SoftwareBus], take: Callable[[Seen], object], wanted: Callable[[int], bool]
+) -> type[SoftwareBus]:
     class WatchedBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
         """A Software Bus that is looked at."""
 

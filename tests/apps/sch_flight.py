@@ -9,7 +9,7 @@ from apps.sch import packets as pk
 from apps.sch.definition import activity, message_image, schedule_image
 from cfepy.console import Console
 from cfepy.mission import Mission
-from cfepy.mission.watch import Seen, watching
+from cfepy.mission.watch import PacketWatch, Seen
 from cfepy.msg import command, init
 from cfepy.rtos.units import NS_PER_MS, NS_PER_S
 from cfepy.tbl import build
@@ -31,10 +31,9 @@ class Flight:
 
     def __init__(self, folder: Path, board: str | None = None) -> None:
         self.seen: list[Seen] = []
-        bus = watching(
-            self.seen.append, lambda msg_id: msg_id in (FIRST, SECOND, THIRD, pk.HK_TLM_MID, pk.DIAG_TLM_MID)
-        )
-        self.mission = Mission(str(folder), board=board, console=Console(quiet=True), bus=bus)
+        shown = (FIRST, SECOND, THIRD, pk.HK_TLM_MID, pk.DIAG_TLM_MID)
+        watch = PacketWatch(self.seen.append, shown.__contains__)
+        self.mission = Mission(str(folder), board=board, console=Console(quiet=True), attachments=[watch])
 
     def send(self, *commands: bytes | bytearray) -> None:
         """Send commands from the ground."""

@@ -103,9 +103,8 @@ def fly(
             return mission.trace.digest()
     with (
         BagRecorder(bag, patterns) as recorder,
-        Mission(spec, tasks=tasks, console=console, bus=recorder.bus) as mission,
+        Mission(spec, tasks=tasks, console=console, attachments=[recorder]) as mission,
     ):
-        recorder.begin(mission)
         mission.run(seconds)
         return mission.trace.digest()
 

@@ -11,7 +11,7 @@ from cfepy.mission import Mission, read_mission
 from cfepy.mission.dictionary import Dictionary, dictionary_of
 from cfepy.mission.topics import Topic, surveyed_topics, topic_id, topics_of
 from cfepy.mission.values import flat, packet_of
-from cfepy.mission.watch import Seen, watching
+from cfepy.mission.watch import PacketWatch, Seen
 from cfepy.msg import Command, Layout, Telemetry, command, telemetry
 from cfepy.status import UsageError
 from tests.mission.flights import write_mission
@@ -146,7 +146,8 @@ def test_packets_that_cannot_be_read_say_why(small: Dictionary) -> None:
 def test_topics_are_read_when_their_type_is_known(mission: str) -> None:
     spec = read_mission(mission)
     found, seen = dictionary_of(spec), list[Seen]()
-    with Mission(spec, console=Console(quiet=True), bus=watching(seen.append, lambda each: each == 0x0950)) as flight:
+    watch = PacketWatch(seen.append, lambda each: each == 0x0950)
+    with Mission(spec, console=Console(quiet=True), attachments=[watch]) as flight:
         flight.run(2)
         assert found.decode(seen[0].packet).problem == "the type of its messages is not known"
         found.learn(topics_of(flight))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from cfepy.console import Console
 from cfepy.mission import Mission
-from cfepy.mission.watch import Seen, watching
+from cfepy.mission.watch import PacketWatch, Seen
 from cfepy.msg import get_sequence_count, validate_checksum
 from tests.mission.flights import write_mission
 
@@ -27,7 +27,7 @@ STARTUP = "CFE_APP, own, Main, OWN, 50, 8192, 0, 0;\n!\n"
 
 def fly(folder: Path, seen: list[Seen] | None) -> str:
     mission = write_mission(folder, STARTUP, own=APP)
-    options = {} if seen is None else {"bus": watching(seen.append, lambda msg_id: True)}
+    options = {} if seen is None else {"attachments": [PacketWatch(seen.append)]}
     with Mission(mission, console=Console(quiet=True), **options) as flight:  # type: ignore[arg-type]
         flight.run(2)
         return flight.trace.digest()

@@ -18,7 +18,7 @@ from cfepy.mission import Mission, read_mission
 from cfepy.mission.dictionary import Dictionary, dictionary_of
 from cfepy.mission.topics import Topic, topics_of
 from cfepy.mission.values import flat
-from cfepy.mission.watch import Seen, watching
+from cfepy.mission.watch import PacketWatch, Seen
 from cfepy.mission.xtce import NAMESPACE, xtce_of
 from cfepy.mission.xtce_names import cells_with_padding, xtce_name
 from cfepy.msg import Command, Layout, MsgType, Telemetry, get_type, telemetry
@@ -65,7 +65,7 @@ class Export:
         self.dictionary = dictionary_of(spec)
         self.packets: dict[int, bytes] = {}
         self.events: list[bytes] = []
-        with Mission(spec, console=Console(quiet=True), bus=watching(self._take, lambda msg_id: True)) as mission:
+        with Mission(spec, console=Console(quiet=True), attachments=[PacketWatch(self._take)]) as mission:
             mission.run(2)
             for command in self.dictionary.commands.values():
                 if command.name.endswith("_SEND_HK"):

@@ -11,7 +11,7 @@ from apps.sch import packets as sch
 from cfepy.cli.main import main
 from cfepy.console import Console
 from cfepy.mission import Mission
-from cfepy.mission.watch import Seen, watching
+from cfepy.mission.watch import PacketWatch, Seen
 from cfepy.resources import shipped
 from cfepy.rtos.units import NS_PER_S
 from cfepy.tbl import build
@@ -36,8 +36,8 @@ def test_its_tables_are_good(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_housekeeping_is_collected_slot_by_slot() -> None:
     seen: list[Seen] = []
-    bus = watching(seen.append, lambda msg_id: msg_id in (COMBINED, SAMPLE_HK))
-    with Mission("sched", console=Console(quiet=True), bus=bus) as mission:
+    watch = PacketWatch(seen.append, lambda msg_id: msg_id in (COMBINED, SAMPLE_HK))
+    with Mission("sched", console=Console(quiet=True), attachments=[watch]) as mission:
         mission.run(20)
         assert mission.cfe.evs.errors_by_app == {}
     for msg_id, slot in ((COMBINED, 75), (SAMPLE_HK, 45)):
@@ -49,9 +49,8 @@ def test_housekeeping_is_collected_slot_by_slot() -> None:
 
 def test_a_group_is_silenced_from_the_ground() -> None:
     seen: list[Seen] = []
-    with Mission(
-        "sched", console=Console(quiet=True), bus=watching(seen.append, lambda mid: mid == SAMPLE_HK)
-    ) as mission:
+    watch = PacketWatch(seen.append, lambda msg_id: msg_id == SAMPLE_HK)
+    with Mission("sched", console=Console(quiet=True), attachments=[watch]) as mission:
         mission.run(4.5)
         mission.cfe.sb.transmit_msg(sch.DISABLE_GROUP.packet(GroupData=0x10))
         mission.run(5)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from cfepy.attachment import Attachment
 from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.spec import MissionSpec
 from cfepy.msg import command
 from cfepy.nodes.config import NodeConfig, RosConfig
-from cfepy.sb import SoftwareBus
 from cfepy.tbl import build
 from cfepy.tbl.packets import ACTIVATE, ACTIVE_BUFFER, DUMP, LOAD, VALIDATE
 from rospy_shim.parameter_table import TABLES, Row, rows_for, unpack
@@ -30,7 +30,7 @@ def fly(
     limits: Mapping[str, Any] | None = None,
     board: str = "linux",
     tasks: str = "thread",
-    bus: type[SoftwareBus] = SoftwareBus,
+    attachments: Sequence[Attachment] = (),
 ) -> Mission:
     """A mission with one node, N; it has not run yet."""
     (folder / "n.py").write_text(textwrap.dedent(node))
@@ -38,7 +38,7 @@ def fly(
     script.write_text("CFE_APP, n, __main__, N, 100, 16384, 0x0, 0;\n!\n")
     ros = RosConfig({"N": NodeConfig("N", params=private or {})}, params=params or {})
     spec = MissionSpec("test", folder, script, None, board, ros, limits=MissionLimits(limits or {}))
-    return Mission(spec, tasks=tasks, console=Console(quiet=True), bus=bus)
+    return Mission(spec, tasks=tasks, console=Console(quiet=True), attachments=attachments)
 
 
 def printed(mission: Mission) -> list[str]:

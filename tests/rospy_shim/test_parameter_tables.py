@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.mission.table_file import take_apart
-from cfepy.mission.watch import Seen, watching
+from cfepy.mission.watch import PacketWatch, Seen
 from cfepy.msg import command
 from rospy_shim.parameter_rows import ParametersFull
 from rospy_shim.parameter_table import HK_TLM, NOOP, RESET_COUNTERS, SEND_HK, TABLES
@@ -271,7 +271,8 @@ def test_the_small_board_has_one_table(tmp_path: Path) -> None:
 
 def test_commands_and_housekeeping_of_the_application(tmp_path: Path) -> None:
     seen: list[Seen] = []
-    with fly(tmp_path, COUNTING, bus=watching(seen.append, lambda msg_id: msg_id == HK_TLM.msg_id)) as mission:
+    watch = PacketWatch(seen.append, lambda msg_id: msg_id == HK_TLM.msg_id)
+    with fly(tmp_path, COUNTING, attachments=[watch]) as mission:
         mission.run(2)
         for packet in (NOOP.packet(), command(NOOP.msg_id, 99), command(NOOP.msg_id, 0, b"long"), SEND_HK.packet()):
             mission.cfe.sb.transmit_msg(packet, is_origination=False)

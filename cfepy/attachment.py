@@ -1,0 +1,52 @@
+"""What looks on at a mission or meddles with it: a script, a bag, faults, invariants, a trace file.
+
+`Mission` takes any number of attachments. None of its parts knows of them, and a run without any pays nothing for them.
+May import cfepy.sb and cfepy.trace.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cfepy.sb import SoftwareBus
+from cfepy.trace import Trace
+
+
+class Attachment:
+    """Does nothing; those who do something say what."""
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """The class of Software Bus that it needs, made of another one; every processor gets a bus of it.
+
+        Args:
+            base: what the attachments before this one need.
+        """
+        return base
+
+    def begin(self, mission: Any) -> None:
+        """The mission (`cfepy.mission.Mission`) was made, and nothing of it has run."""
+
+    def power_up(self, processor: Any) -> None:
+        """A processor (`cfepy.mission.processor.Processor`) was made, at the beginning and after each reset.
+
+        Nothing of it has run. The first one comes after `begin`.
+        """
+
+    def close(self) -> None:
+        """The mission is over, and all its tasks have ended."""
+
+
+class Recorder(Attachment):
+    """An attachment that takes the trace of the run; a context manager around the mission.
+
+    Attributes:
+        trace: what the mission records in.
+    """
+
+    trace: Trace
+
+    def __enter__(self) -> Any:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, where: Any) -> None:
+        """The run is over, or there was none."""
