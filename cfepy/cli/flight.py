@@ -14,14 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.cli.display import Display
 from cfepy.cli.main import INTERRUPTED
-from cfepy.mission import Mission
-from cfepy.mission.results import Mark, mark
+from cfepy.mission.course import Course
+from cfepy.mission.results import Mark
 from cfepy.rtos.realtime import Pacer, Stopwatch
 from cfepy.rtos.units import NS_PER_S
 
 if TYPE_CHECKING:
     from cfepy.io.host_network import HostNetwork
-    from cfepy.mission.script import ScriptRun
     from cfepy.mission.script_verdicts import Outcome
 
 FIRST_PIECE_NS = 10_000_000
@@ -35,77 +34,61 @@ class Flight:
     """A run that goes on until its time is over, or until somebody presses Ctrl-C.
 
     Args:
-        mission: the mission.
-        seconds: virtual time to run.
+        course: how long it goes on.
         realtime: pace it to the wall clock, so many times as fast; None runs as fast as it goes.
         display: is told between the pieces.
         interrupts: says whether somebody pressed Ctrl-C.
-        script: what is to happen on the way.
-        ends_with_script: the run is over when the script is, whatever `seconds` says.
         bridge: to this computer's network; a paced run has one.
 
     Attributes:
-        at: what there was when the time was over; set by `go`.
-        outcome: of the script, None without one; set by `go`.
+        mission: the mission.
         trace: the digest; set by `go`.
     """
 
     def __init__(
         self,
-        mission: Mission,
-        seconds: float,
+        course: Course,
         realtime: float | None,
         display: Display,
         interrupts: Interrupts,
-        script: ScriptRun | None = None,
-        ends_with_script: bool = False,
         bridge: HostNetwork | None = None,
     ) -> None:
-        self.mission = mission
+        self.mission = course.mission
         self.interrupts = interrupts
         self.trace = ""
-        self.at: Mark
-        self.outcome: Outcome | None = None
-        self._script = script
-        self._ends_with_script = ends_with_script
+        self._course = course
         self._display = display
-        self._until_ns = round(seconds * NS_PER_S)
         self._piece_ns = FIRST_PIECE_NS
         self._step: Callable[[int], None] = self._free_step
         if realtime is not None and bridge is not None:
-            self._step = Pacer(mission.kernel, self._bridged(bridge), realtime, bridge.wait).step
+            self._step = Pacer(self.mission.kernel, self._bridged(bridge), realtime, bridge.wait).step
 
     def go(self) -> None:
         """Run, let the nodes shut down, and take down what there is to know before the tasks end."""
         watch = Stopwatch()
         with _no_collection_between_pieces():
             try:
-                stop_ns = self._next_stop()
-                while self._goes_on():
+                stop_ns = self._course.next_stop()
+                while self._course.goes_on and not self.interrupts.asked:
                     self._step(stop_ns)
                     self._display.update(self.mission)
-                    stop_ns = self._next_stop()
-                self._take_down(watch)
+                    stop_ns = self._course.next_stop()
+                self._course.end(watch.elapsed_ns())
                 self.mission.shut_down_nodes()
             except KeyboardInterrupt:
                 self.interrupts.asked = True  # also when an app raised it: what it looks like is what it is
-                self._take_down(watch)
+                self._course.end(watch.elapsed_ns())
         self.trace = self.mission.trace.digest()
 
-    def _take_down(self, watch: Stopwatch) -> None:
-        self.at = mark(self.mission, watch.elapsed_ns())
-        if self._script is not None:
-            self.outcome = self._script.end()
+    @property
+    def at(self) -> Mark:
+        """What there was when the time was over."""
+        return self._course.at
 
-    def _next_stop(self) -> int:
-        """Virtual time until which the run may go on by itself; the script does what is due now."""
-        return self._until_ns if self._script is None else min(self._until_ns, self._script.advance())
-
-    def _goes_on(self) -> bool:
-        script = self._script
-        if script is not None and (script.stopped or (script.finished and self._ends_with_script)):
-            return False
-        return self.mission.kernel.now < self._until_ns and not self.interrupts.asked and not self.mission.over
+    @property
+    def outcome(self) -> Outcome | None:
+        """Of the script, None without one."""
+        return self._course.outcome
 
     def _bridged(self, bridge: HostNetwork) -> Callable[[int], None]:
         """Running the mission until a virtual time in ns, then letting in and out what goes over the network."""

@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import importlib
-import os
 import re
 import sys
-from collections.abc import Sequence
-from pathlib import Path
 from typing import TextIO
 
 from cfepy.cli.failures import booting
 from cfepy.cli.flight import Interrupts
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
-from cfepy.cli.ros_view import BOOT_S
 from cfepy.cli.run import fly, output_path, trace_file, write_numbers
-from cfepy.mission import Mission, MissionSpec
-from cfepy.mission.launch import spec_of
+from cfepy.mission import Mission
+from cfepy.mission.course import BOOT_S, NODE_S
 from cfepy.mission.results import Results
-from cfepy.nodes.config import ROSCORE_PARAMS, NodeConfig
-from cfepy.status import UsageError
+from cfepy.mission.single_node import node_script, spec_of_script
 
-LONGEST_S = 60.0  # virtual time that a node gets when nobody says how long
 _OWN_LINE = re.compile(r"\[[\w/]+\] (.*)", re.DOTALL)  # as the console has what nodes print
 
 
@@ -63,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     numbers = output_path(arguments.json)
     is_open = arguments.seconds is None
     if not is_open or arguments.realtime is None:
-        arguments.seconds = BOOT_S + (LONGEST_S if is_open else arguments.seconds)
+        arguments.seconds = BOOT_S + (NODE_S if is_open else arguments.seconds)
     recorder = trace_file(arguments.trace) if arguments.trace else None
     with Interrupts() as interrupts, booting(spec.script):
         flight = fly(arguments, spec, interrupts, None, recorder, lambda quiet, seconds: NodeDisplay(sys.stdout))
@@ -72,30 +65,6 @@ def run(arguments: argparse.Namespace) -> int:
     if unwritten is not None:
         raise unwritten
     return INTERRUPTED if interrupts.asked else _status(flight.mission, results)
-
-
-def node_script(words: Sequence[str]) -> tuple[Path, list[str]]:
-    """The script that a command line names, and what is left for the node.
-
-    Raises:
-        UsageError: there is none.
-    """
-    if Path(words[0]).is_file():
-        return Path(words[0]).resolve(), list(words[1:])
-    if len(words) == 1 or words[0].endswith(".py"):
-        raise UsageError("there is no such script; give one, or a package and the name of a node in it", file=words[0])
-    plans = importlib.import_module("rospy_shim.roslaunch.plan")
-    found = plans.node_file(words[0], words[1], Path.cwd() / words[1], os.environ)
-    return Path(found), list(words[2:])
-
-
-def spec_of_script(script: Path, words: list[str]) -> MissionSpec:
-    """The mission that one node is, with its arguments."""
-    plans = importlib.import_module("rospy_shim.roslaunch.plan")
-    environ = plans.node_environment(os.environ, os.environ.get("ROS_NAMESPACE", "/"))
-    app = re.sub(r"\W", "_", script.stem, flags=re.ASCII).upper()[: plans.LONGEST_NAME]
-    config = NodeConfig(app, args=tuple(words), env=environ, script=script, cwd=Path.cwd(), required=True)
-    return spec_of(script, {app: config}, ROSCORE_PARAMS)
 
 
 def _status(mission: Mission, results: Results) -> int:

@@ -13,10 +13,10 @@ from cfepy.cli.report import show_speed, why
 from cfepy.cli.run import View
 from cfepy.cli.table import Table, show_tables
 from cfepy.mission import Mission
+from cfepy.mission.course import BOOT_S
 from cfepy.mission.results import NOT_STARTED, Results
 
 LOG_TOPIC = "/rosout"
-BOOT_S = 0.55  # virtual time until the nodes start, which is none of theirs
 _OF_NODES = re.compile(r"\[[\w/]+\] |launch: ")  # how lines of nodes begin, and what is said about them
 
 

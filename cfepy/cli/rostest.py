@@ -14,11 +14,11 @@ from cfepy.cli.display import PlainDisplay, SilentDisplay
 from cfepy.cli.failures import booting, writing
 from cfepy.cli.flight import Flight, Interrupts
 from cfepy.cli.junit import FAILURE, TestResults, broken, read_results
-from cfepy.cli.launch import launch_file
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
-from cfepy.cli.ros_view import BOOT_S, NodesDisplay
+from cfepy.cli.ros_view import NodesDisplay
 from cfepy.cli.run import fly
-from cfepy.mission.launch import plan_of, spec_of
+from cfepy.mission.course import BOOT_S
+from cfepy.mission.launch import launch_file, plan_of, spec_of
 from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
 

@@ -19,9 +19,9 @@ from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.saved_files import save_files, saving_to
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec, read_mission
+from cfepy.mission.course import Course, duration
 from cfepy.mission.results import Results
 from cfepy.rtos.policy import SeededRandom
-from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from cfepy.mission.script import ScriptRun
     from cfepy.mission.script_verdicts import Outcome
     from cfepy.trace import Trace
-
-DEFAULT_S = 10.0
 
 
 class View:
@@ -142,12 +140,10 @@ def trace_file(file: str) -> Recorder:
 
 
 def _duration(arguments: argparse.Namespace, script: ScriptRun | None) -> float:
-    """Virtual seconds that the run takes; with a script, at most."""
-    if arguments.seconds is not None:
-        return float(arguments.seconds)
-    if script is not None:
-        return script.script.longest_ns / NS_PER_S
-    return DEFAULT_S if arguments.realtime is None else LONGEST_S
+    """Virtual seconds that the run takes; with a script, at most; a paced one goes on until Ctrl-C."""
+    if arguments.seconds is None and script is None and arguments.realtime is not None:
+        return LONGEST_S
+    return duration(arguments.seconds, script)
 
 
 def fly(
@@ -187,9 +183,9 @@ def fly(
             attachments = [each for each in (script, bag, recorder) if each is not None]
             trace = None if recorder is None else recorder.trace
             mission = stack.enter_context(_mission(arguments, spec, display, attachments, trace))
-            ends_with_script = arguments.seconds is None
+            course = Course(mission, seconds if script is None else arguments.seconds, script)
             bridge = None if arguments.realtime is None else stack.enter_context(_bridge(arguments, mission, display))
-            flight = Flight(mission, seconds, arguments.realtime, display, interrupts, script, ends_with_script, bridge)
+            flight = Flight(course, arguments.realtime, display, interrupts, bridge)
             flight.go()
     except KeyboardInterrupt:
         if flight is None or not flight.trace:

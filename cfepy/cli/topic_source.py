@@ -11,12 +11,12 @@ from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.cli.failures import booting
-from cfepy.cli.node import spec_of_script
 from cfepy.cli.run import script_of
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec, read_mission
 from cfepy.mission.bag import BagReader, is_bag
 from cfepy.mission.results import deaths
+from cfepy.mission.single_node import spec_of_script
 from cfepy.mission.topic_watch import Message, TopicWatch
 from cfepy.rtos.units import NS_PER_MS, NS_PER_S
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -77,6 +77,28 @@ def read_launch(file: Path, args: Mapping[str, str] | None = None) -> MissionSpe
         why = "; ".join(plan.notes) or "it has no <node>"
         raise UsageError(f"has no node that can run here: {why}", file=file)
     return spec_of(file, plan.nodes, plan.params, tuple(plan.notes))
+
+
+def launch_file(words: Sequence[str]) -> tuple[Path, dict[str, str]]:
+    """The launch file and the arguments that a command line names.
+
+    Raises:
+        UsageError: there is no such file.
+    """
+    args = dict(word.split(":=", 1) for word in words if ":=" in word)
+    names = [word for word in words if ":=" not in word]
+    if len(names) > 1 and Path(names[0]).is_file():
+        raise UsageError(f"{names[1]!r} is no argument for it; write NAME:=VALUE", file=names[0])
+    if len(names) == 2:
+        here = Path.cwd() / names[1]
+        plans = importlib.import_module("rospy_shim.roslaunch.plan")
+        return Path(plans.launch_file(names[0], names[1], here, os.environ)), args
+    if len(names) != 1:
+        raise UsageError(f"{len(names)} names; give a launch file, or a package and the name of a launch file in it")
+    file = Path(names[0])
+    if not file.is_file():
+        raise UsageError("there is no such launch file", file=file)
+    return file.resolve(), args
 
 
 def with_launch_files(spec: MissionSpec, launches: list[tuple[Path, Mapping[str, str]]]) -> MissionSpec:
