@@ -14,6 +14,7 @@ from benchmarks.crowd import crowd
 from benchmarks.frames import frames
 from benchmarks.measure import machine
 from benchmarks.missions import missions
+from benchmarks.schedules import schedules
 from benchmarks.services import services
 from benchmarks.universe import universe
 
@@ -24,6 +25,7 @@ def main(arguments: list[str] | None = None) -> int:
     suites: dict[str, Callable[[], Mapping[str, float]]] = {
         "bus": lambda: bus(contexts),
         "missions": lambda: missions(contexts),
+        "schedules": lambda: schedules(contexts),
         "crowd": lambda: crowd(contexts),
         "services": lambda: services(contexts),
         "frames": lambda: frames(contexts),

@@ -32,6 +32,12 @@ class Attachment:
         Nothing of it has run. The first one comes after `begin`.
         """
 
+    def conclude(self) -> None:
+        """The time of the run is over; the nodes are about to be asked to shut down. Called in the host, once."""
+
+    def finish(self) -> None:
+        """The run is over, and its digest is taken: what tasks do while they are ended is no part of it."""
+
     def close(self) -> None:
         """The mission is over, and all its tasks have ended."""
 

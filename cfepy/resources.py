@@ -1,10 +1,12 @@
-"""Where the files are that cfepy brings along: boards, ready missions, apps.
+"""Where the files are that cfepy brings along: boards, ready missions, apps; and where it is itself.
 
 In a source checkout they lie beside the package, in an installed wheel under cfepy/share. Imports only cfepy.status.
 """
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
 
 from cfepy.status import UsageError
@@ -26,3 +28,8 @@ def shipped(kind: str) -> Path:
             return place
     looked = " nor ".join(str(place) for place in places)
     raise UsageError(f"this installation of cfepy has no {kind}: neither {looked} exists; install cfepy again")
+
+
+def import_path() -> str:
+    """PYTHONPATH of a process that is to find cfepy, however this process found it."""
+    return os.pathsep.join(path for path in sys.path if path) or os.curdir

@@ -48,6 +48,22 @@ class Trace:
         self._hash = blake2b(digest_size=16)
         self._sink = sink
 
+    def also(self, sink: Callable[[list[bytes]], None]) -> None:
+        """Have somebody else called with each batch of records as well, after the sink that there is."""
+        first = self._sink
+
+        def both(records: list[bytes]) -> None:
+            if first is not None:
+                first(records)
+            sink(records)
+
+        self._sink = both
+
+    @property
+    def hashed(self) -> str:
+        """The digest of all records that were hashed so far; in a sink, those of its batch are among them."""
+        return self._hash.hexdigest()
+
     def flush(self) -> None:
         """Hash what was collected and let it go."""
         self._hash.update(b"".join(self.records))

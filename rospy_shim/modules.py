@@ -196,9 +196,10 @@ class RosModules:
         ready |= pick(logs, ("DEBUG", "INFO", "WARN", "ERROR", "FATAL"))
         tools: Makers = {name: partial(self._core_tool, name) for name in ("get_ros_root", "parse_rosrpc_uri")}
         master: Makers = {"MasterProxy": lambda: node.universe.importer.load("rospy.msproxy").MasterProxy}
-        module = RosModule("rospy", ready, {**tools, **master, "Timer": lambda: node.Timer, **self._submodules()})
+        submodules = self._submodules()
+        module = RosModule("rospy", ready, {**tools, **master, "Timer": lambda: node.Timer, **submodules})
         module.__path__ = []
-        module.__all__ = [name for name in module.__all__ if name not in self._submodules()]
+        module.__all__ = [name for name in module.__all__ if name not in submodules]
         for name in _IMPORTED:
             node.universe.importer.load(name)
         return module

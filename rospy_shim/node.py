@@ -77,7 +77,7 @@ class Node:
         self.connection_numbers = count(1)
         self._tasks = tasks
         self._timer: type | None = None
-        self.place = config.near or (Path(universe.script) if universe.script else None)
+        self.place = config.near or (Path(universe.resolve(universe.script)) if universe.script else None)
         self.packages = Packages(self.place, universe.environ, universe.resolve)
         self.library = Library([OnDisk(self.packages)], base=shipped())
         self.names = Names(universe.argv, universe.environ)

@@ -38,7 +38,6 @@ class Rate:
         self._reset = reset
         self._kernel = node.kernel
         self._clock = node.clock
-        self._epoch_ns = node.universe.clock.epoch_ns
         self._charge = node.universe.charge
 
     @property
@@ -75,9 +74,9 @@ class Rate:
             self._sleep_on_simulated_time()
             return
         kernel = self._kernel
-        now = self._epoch_ns + kernel.now
+        now = self._clock.wall_ns()
         period = self._period_ns
-        end = self._last_ns + period
+        end = min(now, self._last_ns) + period  # the clock may have been set back
         if end > now:
             kernel.delay(end - now)
         else:

@@ -92,6 +92,12 @@ class RosClock:
         new: Callable[[type[Time]], Time] = object.__new__
         kind = self.Time
 
+        def shift(by_ns: int) -> None:
+            """The mission's clock was set, by so many ns."""
+            nonlocal epoch_ns
+            epoch_ns += by_ns
+            self._epoch_ns = epoch_ns
+
         def get_rostime() -> Time:
             """The present ROS time.
 
@@ -106,6 +112,7 @@ class RosClock:
             value.secs, value.nsecs = divmod(epoch_ns + kernel.now, NS_PER_S)
             return value
 
+        self.shift = shift
         return get_rostime
 
     def get_time(self) -> float:

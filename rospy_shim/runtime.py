@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from cfepy.es.records import StartParams
 from cfepy.nodes import Universe
 from cfepy.nodes.config import NodeConfig, RosConfig
+from cfepy.rtos.errors import InjectedCrash
 from cfepy.rtos.units import NS_PER_S
 from rospy_shim import library_path
 from rospy_shim.graph import Graph, Topic, TopicRow
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from cfepy.osal.network import Network
     from cfepy.rtos import Kernel
 
+CRASHED = 139  # 128 + SIGSEGV, as a shell tells it
 APP_ERROR = 3  # CFE_ES_RunStatus_APP_ERROR
 ENVIRONMENT = {
     "LANG": "C.UTF-8",
@@ -143,21 +145,30 @@ class RosRuntime:
         self._running.append(node)
         try:
             return node.universe.run_script()
+        except InjectedCrash as error:
+            return self._crashed(node, error)
         finally:
             self._running.remove(node)
             self._pids.remove(node.universe.pid)
             self.ended[app_name] = NodeEnd(node.universe.name, node.universe.exit_status)
             node.abandon()
 
+    def _crashed(self, node: Node, error: InjectedCrash) -> int:
+        """The end of a process that crashes; its threads have ended already, and no exit hook was called."""
+        self._console.write(f"[{node.universe.name}] Segmentation fault ({error})")
+        node.universe.exit_status = CRASHED
+        return CRASHED
+
     def _make_node(self, script: Path, app_name: str, config: NodeConfig) -> Node:
         tasks = NodeTasks(self._cfe, self._kernel, lambda: next(self._task_numbers))
         cwd = config.cwd or script.parent
+        home = str(cwd).removeprefix(self._config.root)
         universe = Universe(
             self._kernel,
             name=config.name or app_name,
             script=script,
             argv=_command_line(config),
-            env={**ENVIRONMENT, "HOME": str(cwd), "PWD": str(cwd), **config.env},
+            env={**ENVIRONMENT, "HOME": home, "PWD": home, **config.env},
             cwd=cwd,
             library_paths=[library_path.FOLDER],
             fallback_paths=[library_path.STAND_INS],
@@ -170,6 +181,7 @@ class RosRuntime:
             ordered_sets=self._config.ordered_sets if config.ordered_sets is None else config.ordered_sets,
             keys=config.keys,
             network=self._network,
+            root=self._config.root,
             on_thread_start=tasks.thread,
         )
         universe.pid = self._free_pid(universe.pid)
@@ -199,6 +211,13 @@ class RosRuntime:
         """
         self._started[config.app] = config
         self._cfe.es.create_app(config.app, StartParams(f"/cf/{config.app}.so", "__main__", STACK_BYTES, PRIORITY))
+
+    def shift_clock(self, by_ns: int) -> None:
+        """The mission's clock was set, by so many ns: all nodes read another time of day from now on."""
+        self._epoch_ns += by_ns
+        for node in self._running:
+            node.universe.clock.epoch_ns += by_ns
+            node.clock.shift(by_ns)
 
     def forget_start(self, app_name: str) -> None:
         """A node that was started while the mission runs is not to come back."""

@@ -264,7 +264,7 @@ class Service:
         """Let the callers take what they have; each of them reads the answers to all."""
         find = self._node.cfe.sb.find_pipe
         for _ in range(PATIENCE):
-            pipes = [find(call.pipe) for call in self._entry.calls.values()]
+            pipes = [find(call.pipe) for call in list(self._entry.calls.values())]  # they come and go
             if all(pipe is None or len(pipe.items) < room_of(pipe, packet) for pipe in pipes):
                 return
             self._node.kernel.delay(PACE_NS)

@@ -67,11 +67,18 @@ class NodeTasks:
             RuntimeError: OSAL has no task left; as Python says it.
         """
         name = self.name(label)
+        begun: list[Task] = []
+
+        def first() -> None:
+            begun.append(self._kernel.current)
+            entry()
+
         try:
-            self._cfe.os.task_create(name, entry, self._stack_size, priority)
+            self._cfe.os.task_create(name, first, self._stack_size, priority)
         except OsalError as error:
             raise RuntimeError(f"can't start new thread: {error}") from error
-        return next(task for task in reversed(self._kernel.tasks) if task.name == name)
+        # One that has begun may have ended by now, and is no longer among the tasks.
+        return begun[0] if begun else next(task for task in reversed(self._kernel.tasks) if task.name == name)
 
     def helper(self, node: Node, label: str, body: Callable[[], None]) -> Task:
         """Start a short task from outside the application; ES ends it with the application."""

@@ -4,5 +4,7 @@ from __future__ import annotations
 
 from hypothesis import settings
 
+pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # the latter has this name when it is installed, too
+
 settings.register_profile("cfepy", settings.default, deadline=None)
 settings.load_profile("cfepy")

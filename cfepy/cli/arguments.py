@@ -85,10 +85,16 @@ def add_machine(run: argparse.ArgumentParser) -> None:
         "--tasks", choices=("thread", "greenlet"), default="thread", help="what tasks run on (default: thread)"
     )
     run.add_argument(
+        "--faults",
+        metavar="FILE|seed:N",
+        help="let faults happen: those of a plan, or random ones (seed:N or seed:N:low, :medium, :high); see cfepy faults",
+    )
+    run.add_argument(
         "--schedule",
-        choices=("fifo", "random"),
         default="fifo",
-        help="who is next among ready tasks of equal priority: the first that became ready, or any, by the seed",
+        metavar="TEXT",
+        help="who runs next where there is a choice: fifo (default), random[:SEED], pct:SEED:DEPTH[:STEPS] or at:42=1 "
+        "(at decision 42 candidate 1), these with :any (of any priority) or :hold=500us (tasks may be held up)",
     )
 
 
@@ -134,7 +140,20 @@ def add_outputs(run: argparse.ArgumentParser) -> None:
         help="record only these, such as /odom or '/arm/*' (default: all)",
     )
     run.add_argument("--trace", metavar="FILE", help="write everything that happened to a file, a line each")
+    add_recording(run)
     run.add_argument("--quiet", action="store_true", help="no console and no status line, only the report")
+
+
+def add_recording(run: argparse.ArgumentParser) -> None:
+    """The journal of the run."""
+    run.add_argument(
+        "--record", metavar="FILE", help="write a journal, from which `cfepy replay FILE` does the same run again"
+    )
+    run.add_argument(
+        "--record-no-files",
+        action="store_true",
+        help="leave the mission's files out of the journal; it still has their checksums",
+    )
 
 
 def _add_comparison(run: argparse.ArgumentParser) -> None:
@@ -159,6 +178,11 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     add_mission(check)
     check.add_argument("--board", metavar="NAME|FILE", help="check against this board instead of the mission's own")
+    check.add_argument(
+        "--faults",
+        metavar="FILE",
+        help="check a fault plan against the mission, too, which flies for 3 virtual seconds for that",
+    )
     check.set_defaults(module="check")
 
 

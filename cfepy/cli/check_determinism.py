@@ -8,19 +8,17 @@ from __future__ import annotations
 import argparse
 import contextlib
 import dataclasses
-import os
-import subprocess
 import sys
-import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
-from typing import IO, Any
+from typing import Any
 
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.parting import Finding, show
 from cfepy.cli.recorded_run import Plan
-from cfepy.mission.determinism import RecordReader, RunEndedError, first_parting
+from cfepy.cli.side_by_side import RunInProcess, facts_of, failure, started
+from cfepy.mission.determinism import RunEndedError, first_parting
 from cfepy.mission.determinism_look import Look
 from cfepy.status import UsageError
 
@@ -109,23 +107,19 @@ class Runs:
             Two variants that part and the number of the record, None when there are none such; how the runs ended.
         """
         with contextlib.ExitStack() as stack:
-            started = [stack.enter_context(self._started(each, ordered_sets=ordered_sets)) for each in variants]
+            runs = [stack.enter_context(self._started(each, ordered_sets=ordered_sets)) for each in variants]
             try:
-                parting, agreed = first_parting([run.reader for run in started])
+                parting, agreed = first_parting([run.reader for run in runs])
             except RunEndedError:
-                raise _failure(started) from None
+                raise failure(runs) from None
             if parting is not None:
                 return (variants[0], variants[parting.run], parting.index), {}
-            return None, {**(started[0].reader.facts or {}), "records": agreed}
+            return None, {**(runs[0].reader.facts or {}), "records": agreed}
 
     def look(self, variant: Variant, index: int) -> Look:
         """Run again, up to a record, and look at it."""
         with self._started(variant, look_at=index) as run:
-            try:
-                run.reader.fill()
-            except RunEndedError:
-                raise _failure([run]) from None
-            return Look.from_dict(run.reader.facts or {})
+            return Look.from_dict(facts_of(run))
 
     def cause(self, one: Variant, other: Variant) -> str:
         """What the difference hangs on, found out by running again."""
@@ -137,44 +131,8 @@ class Runs:
             return _HASHES
         return _TASKS
 
-    @contextlib.contextmanager
-    def _started(self, variant: Variant, look_at: int | None = None, ordered_sets: bool = False) -> Iterator[_Run]:
-        out, into = os.pipe()
-        plan = Plan({**self._arguments, "tasks": variant.tasks}, into, look_at, ordered_sets)
-        environment = {**os.environ, "PYTHONHASHSEED": str(variant.hash_seed), "PYTHONPATH": _import_path()}
-        command = [sys.executable, "-m", "cfepy.cli.recorded_run", plan.to_json()]
-        with tempfile.TemporaryFile() as said, open(out, "rb") as pipe:
-            process = subprocess.Popen(command, pass_fds=[into], env=environment, stdout=said, stderr=said)
-            os.close(into)
-            try:
-                yield _Run(process, RecordReader(pipe), said)
-            finally:
-                process.kill()
-                process.wait()
-
-
-@dataclass(frozen=True, slots=True)
-class _Run:
-    """A run in its process, and what it said beside its records."""
-
-    process: subprocess.Popen[bytes]
-    reader: RecordReader
-    said: IO[bytes]
-
-
-def _failure(runs: Sequence[_Run]) -> UsageError:
-    """Why a run did not come to its end."""
-    for run in runs:
-        if run.process.poll() is None and run.reader.facts is None:
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                run.process.wait(1)
-        if run.process.poll():
-            run.said.seek(0)
-            text = run.said.read().decode("utf-8", "replace").strip()
-            return UsageError(text or f"a run ended with status {run.process.returncode}")
-    return UsageError("a run ended in the middle")
-
-
-def _import_path() -> str:
-    """Where a run finds cfepy, however this process found it."""
-    return os.pathsep.join(path for path in sys.path if path) or os.curdir
+    def _started(
+        self, variant: Variant, look_at: int | None = None, ordered_sets: bool = False
+    ) -> contextlib.AbstractContextManager[RunInProcess]:
+        plan = Plan({**self._arguments, "tasks": variant.tasks}, look_at=look_at, ordered_sets=ordered_sets)
+        return started(plan, variant.hash_seed)

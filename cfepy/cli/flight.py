@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.cli.display import Display
 from cfepy.cli.main import INTERRUPTED
-from cfepy.mission.course import Course
+from cfepy.mission.course import BROKEN_OFF, OVER, Course
+from cfepy.mission.course import INTERRUPTED as INTERRUPTED_BETWEEN
 from cfepy.mission.results import Mark
 from cfepy.rtos.realtime import Pacer, Stopwatch
 from cfepy.rtos.units import NS_PER_S
@@ -39,10 +40,12 @@ class Flight:
         display: is told between the pieces.
         interrupts: says whether somebody pressed Ctrl-C.
         bridge: to this computer's network; a paced run has one.
+        pause: called between the pieces.
 
     Attributes:
         mission: the mission.
         trace: the digest; set by `go`.
+        broken_off: a task was interrupted in its middle.
     """
 
     def __init__(
@@ -52,10 +55,13 @@ class Flight:
         display: Display,
         interrupts: Interrupts,
         bridge: HostNetwork | None = None,
+        pause: Callable[[], object] = lambda: None,
     ) -> None:
         self.mission = course.mission
         self.interrupts = interrupts
         self.trace = ""
+        self.broken_off = False
+        self._pause = pause
         self._course = course
         self._display = display
         self._piece_ns = FIRST_PIECE_NS
@@ -71,19 +77,29 @@ class Flight:
                 stop_ns = self._course.next_stop()
                 while self._course.goes_on and not self.interrupts.asked:
                     self._step(stop_ns)
+                    self._pause()
                     self._display.update(self.mission)
                     stop_ns = self._course.next_stop()
                 self._course.end(watch.elapsed_ns())
                 self.mission.shut_down_nodes()
             except KeyboardInterrupt:
-                self.interrupts.asked = True  # also when an app raised it: what it looks like is what it is
+                self.broken_off = self.interrupts.asked = (
+                    True  # also when an app raised it: what it looks like is what it is
+                )
                 self._course.end(watch.elapsed_ns())
-        self.trace = self.mission.trace.digest()
+        self.trace = self.mission.finish()
 
     @property
     def at(self) -> Mark:
         """What there was when the time was over."""
         return self._course.at
+
+    @property
+    def reason(self) -> str:
+        """How the run has ended (`cfepy.mission.course`)."""
+        if self.broken_off:
+            return BROKEN_OFF
+        return INTERRUPTED_BETWEEN if self.interrupts.asked else OVER
 
     @property
     def outcome(self) -> Outcome | None:

@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.cli.main import ENDED_WELL
+from cfepy.cli.recording import recording
 from cfepy.cli.ros_view import RosView
 from cfepy.cli.run import View, run_spec
 from cfepy.mission.course import BOOT_S, DEFAULT_S
 from cfepy.mission.launch import launch_file, plan_of, read_launch
+from cfepy.mission.run_plan import LAUNCH
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -28,10 +30,11 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.nodes or arguments.dump_params:
         _tell(plan_of(file, args, dict(os.environ), cwd=Path.cwd()), arguments)
         return ENDED_WELL
-    spec = read_launch(file, args)
-    if arguments.seconds is not None or arguments.realtime is None:
-        arguments.seconds = BOOT_S + (DEFAULT_S if arguments.seconds is None else arguments.seconds)
-    return run_spec(arguments, spec, View() if arguments.console else RosView())
+    with recording(arguments, arguments.words, LAUNCH) as journal:
+        spec = read_launch(file, args)
+        if arguments.seconds is not None or arguments.realtime is None:
+            arguments.seconds = BOOT_S + (DEFAULT_S if arguments.seconds is None else arguments.seconds)
+        return run_spec(arguments, spec, View() if arguments.console else RosView(), journal)
 
 
 def _tell(plan: Any, arguments: argparse.Namespace) -> None:

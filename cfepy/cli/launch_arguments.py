@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from cfepy.cli.arguments import STATUS_HELP, add_end, add_machine, add_outputs, factor_of
+from cfepy.cli.arguments import STATUS_HELP, add_end, add_machine, add_outputs, add_recording, factor_of
 
 _LAUNCH_WORDS = "a launch file, or a package and the name of a launch file in it; then its arguments, as NAME:=VALUE"
 _NODE_WORDS = "a script, or a package and the name of a node in it; then what the node gets (options of it after --)"
@@ -53,6 +53,7 @@ def _add_node(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     _add_pace(node)
     node.add_argument("--json", metavar="FILE", help="write the numbers of the run's report to a file")
     node.add_argument("--trace", metavar="FILE", help="write everything that happened to a file, a line each")
+    add_recording(node)
     node.set_defaults(
         hint="; what the node itself is to get comes after --",
         module="node",

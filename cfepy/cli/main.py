@@ -29,6 +29,10 @@ COMMANDS = {
     "ros_arguments": ("param",),
     "topic_arguments": ("topic", "service"),
     "launch_arguments": ("launch", "node", "rostest"),
+    "fault_arguments": ("faults",),
+    "explore_arguments": ("explore",),
+    "journal_arguments": ("replay", "diff"),
+    "look_arguments": ("trace", "report"),
 }
 """What each module adds to the parser; only the one in question is asked, since setting up all of them takes 10 ms."""
 

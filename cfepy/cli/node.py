@@ -5,18 +5,29 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from cfepy.cli.failures import booting
 from cfepy.cli.flight import Interrupts
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.recording import recording
 from cfepy.cli.run import fly, output_path, trace_file, write_numbers
-from cfepy.mission import Mission
+from cfepy.mission import Mission, MissionSpec
 from cfepy.mission.course import BOOT_S, NODE_S
 from cfepy.mission.results import Results
+from cfepy.mission.run_plan import NODE
 from cfepy.mission.single_node import node_script, spec_of_script
 
+if TYPE_CHECKING:
+    from cfepy.journal.recorder import JournalRecorder
+    from cfepy.journal.replay import Replay
+
 _OWN_LINE = re.compile(r"\[[\w/]+\] (.*)", re.DOTALL)  # as the console has what nodes print
+
+
+def node_display(quiet: bool, seconds: float) -> NodeDisplay:
+    """What shows the node; see `cfepy.cli.display.make_display`."""
+    return NodeDisplay(sys.stdout)
 
 
 class NodeDisplay:
@@ -51,16 +62,37 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: there is no such node, or it cannot run like this.
     """
-    script, words = node_script(arguments.words)
-    spec = spec_of_script(script, words)
+    with recording(arguments, arguments.words, NODE) as journal:
+        spec = spec_of_script(*node_script(arguments.words))
+        is_open = arguments.seconds is None
+        if not is_open or arguments.realtime is None:
+            arguments.seconds = BOOT_S + (NODE_S if is_open else arguments.seconds)
+        return run_node(arguments, spec, journal)
+
+
+def run_node(
+    arguments: argparse.Namespace,
+    spec: MissionSpec,
+    journal: JournalRecorder | None = None,
+    replay: Replay | None = None,
+) -> int:
+    """Run a mission that is one node; see `run`.
+
+    Args:
+        arguments: of the command line.
+        spec: the mission.
+        journal: writes it down.
+        replay: makes it the run of a journal.
+    """
     numbers = output_path(arguments.json)
-    is_open = arguments.seconds is None
-    if not is_open or arguments.realtime is None:
-        arguments.seconds = BOOT_S + (NODE_S if is_open else arguments.seconds)
     recorder = trace_file(arguments.trace) if arguments.trace else None
     with Interrupts() as interrupts, booting(spec.script):
-        flight = fly(arguments, spec, interrupts, None, recorder, lambda quiet, seconds: NodeDisplay(sys.stdout))
+        flight = fly(arguments, spec, interrupts, None, recorder, node_display, None, journal, replay)
     results = Results.of(flight.mission, flight.at, flight.trace)
+    if journal is not None:
+        journal.end(results, None, flight.reason)
+    if replay is not None:
+        replay.compare(results)
     unwritten = None if numbers is None else write_numbers(numbers, results, None)
     if unwritten is not None:
         raise unwritten

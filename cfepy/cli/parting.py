@@ -30,8 +30,15 @@ def show(finding: Finding, cause: str, stream: TextIO) -> None:
         cause: what it hangs on.
         stream: where to.
     """
-    one, other = finding.looks
     print(f"\nnot deterministic: record {finding.index} is the first that differs", file=stream)
+    show_sides(finding, stream)
+    print(f"\n{cause}", file=stream)
+    _suspects(finding, stream)
+
+
+def show_sides(finding: Finding, stream: TextIO) -> None:
+    """Write down what was before the record, and what each run did then."""
+    one, other = finding.looks
     if one.lines[:-1]:
         print("\nbefore it, in both:", file=stream)
         _indented(one.lines[: len(one.lines) - bool(one.record)], stream)
@@ -40,8 +47,6 @@ def show(finding: Finding, cause: str, stream: TextIO) -> None:
         _side(look, stream)
     if one.record and other.record:
         _bytes(one.record, other.record, stream)
-    print(f"\n{cause}", file=stream)
-    _suspects(finding, stream)
 
 
 def _side(look: Look, stream: TextIO) -> None:

@@ -12,14 +12,19 @@ import json
 import os
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, NoReturn
 
 from cfepy.attachment import Recorder
 from cfepy.cli.failures import booting
 from cfepy.cli.flight import Interrupts
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL
+from cfepy.cli.recording import arguments_of
 from cfepy.cli.run import fly, script_of
 from cfepy.cli.trace_text import TraceText
+from cfepy.journal.journal import read_journal
+from cfepy.journal.replay import Replay
+from cfepy.journal.stage import staged
 from cfepy.mission import Mission, MissionSpec, read_mission
 from cfepy.mission.determinism import ComparedTrace, RecordWriter, comparing
 from cfepy.mission.determinism_look import Look, LookingTrace
@@ -38,12 +43,16 @@ class Plan:
         pipe: descriptor to write to.
         look_at: number of the record to look at; None writes all records.
         ordered_sets: all nodes get ordered sets, whatever the mission file says.
+        journal: path of a journal that is replayed, in place of all that `arguments` say; None for none.
+        lines: records that are shown before the one that is looked at.
     """
 
     arguments: dict[str, Any]
-    pipe: int
+    pipe: int = -1
     look_at: int | None = None
     ordered_sets: bool = False
+    journal: str | None = None
+    lines: int = LINES
 
     def to_json(self) -> str:
         """Itself as text."""
@@ -69,7 +78,8 @@ class RecordPipe(Recorder):
 class Lookout(Recorder):
     """The recorder of a run that looks at one record, and ends the process then and there."""
 
-    def __init__(self, writer: RecordWriter, index: int) -> None:
+    def __init__(self, writer: RecordWriter, index: int, lines: int) -> None:
+        self._before = lines
         self.trace = self._looking = LookingTrace(index, self._lines, self._seen)
         self._writer = writer
         self._text = TraceText()
@@ -87,7 +97,7 @@ class Lookout(Recorder):
         self._text.watch(mission)
 
     def _lines(self, records: list[bytes]) -> list[str]:
-        return list(self._text.lines(records))[-LINES - 1 :]
+        return list(self._text.lines(records))[-self._before - 1 :]
 
     def _seen(self, look: Look) -> NoReturn:
         """It is called from deep inside the simulation, where a run cannot be given up in an orderly way."""
@@ -101,14 +111,33 @@ def run(plan: Plan) -> None:
     Raises:
         UsageError: the mission cannot run like this.
     """
+    if plan.journal is not None:
+        run_again(plan, plan.journal)
+        return
     arguments = argparse.Namespace(**plan.arguments)
     spec = read_mission(arguments.mission, dict(arguments.launch_args))
     if plan.ordered_sets:
         spec = _with_ordered_sets(spec)
-    writer = RecordWriter(open(plan.pipe, "wb"))  # noqa: SIM115  # as long as the process
-    recorder = RecordPipe(writer) if plan.look_at is None else Lookout(writer, plan.look_at)
     with Interrupts() as interrupts, booting(spec.script):
-        fly(arguments, spec, interrupts, script_of(arguments, spec), recorder)
+        fly(arguments, spec, interrupts, script_of(arguments, spec), _recorder(plan))
+
+
+def run_again(plan: Plan, path: str) -> None:
+    """Replay a journal with its own files.
+
+    Raises:
+        UsageError: its mission cannot run.
+    """
+    journal = read_journal(path)
+    with staged(journal) as stage, Interrupts() as interrupts, booting(Path(path)):
+        spec, replay = stage.spec(), Replay(journal, plan=stage.plan, root=stage.root)
+        arguments = arguments_of(replay.plan, quiet=True)
+        fly(arguments, spec, interrupts, script_of(arguments, spec), _recorder(plan), replay=replay)
+
+
+def _recorder(plan: Plan) -> RecordPipe | Lookout:
+    writer = RecordWriter(open(plan.pipe, "wb"))  # noqa: SIM115  # as long as the process
+    return RecordPipe(writer) if plan.look_at is None else Lookout(writer, plan.look_at, plan.lines)
 
 
 def _with_ordered_sets(spec: MissionSpec) -> MissionSpec:

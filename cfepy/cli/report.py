@@ -5,13 +5,23 @@ from __future__ import annotations
 from typing import TextIO
 
 from cfepy.cli.table import Table, show_tables
+from cfepy.mission.deadlines import time_text
 from cfepy.mission.results import Results, TopicResult
+from cfepy.rtos.units import NS_PER_S
 
 
 def show(results: Results, stream: TextIO) -> None:
     """Print all tables and the line about speed."""
     tables = [_topics(results), _apps(results), _events(results)]
-    show_tables([*tables, *_resets(results), *_pipes(results), *_memory(results)], stream)
+    more = [
+        *_resets(results),
+        *_faults(results),
+        *_pipes(results),
+        *_deadlines(results),
+        *_invariants(results),
+        *_memory(results),
+    ]
+    show_tables([*tables, *more], stream)
     show_speed(results, stream)
 
 
@@ -77,12 +87,49 @@ def _resets(results: Results) -> list[Table]:
     return [table] if table.rows else []
 
 
+def _faults(results: Results) -> list[Table]:
+    """What was to go wrong, and what became of it."""
+    table = Table("Faults", ("name", "what", "times", "first at, s", "last at, s", "what happened"), right=(2, 3, 4))
+    for row in results.faults:
+        times = [f"{row[key]:.3f}" for key in ("first_at_s", "last_at_s")] if row["times"] else ["", ""]
+        said = row["details"][0] if row["times"] else f"never happened: {row['never']}"
+        table.add(row["name"], row["what"], row["times"], *times, said)
+    return [table] if table.rows else []
+
+
 def _pipes(results: Results) -> list[Table]:
     """Only pipes that were ever full, or lost something."""
     table = Table("Pipes that were full", ("name", "application", "depth", "peak", "dropped"), right=(2, 3, 4))
     for pipe in results.pipes:
         if pipe.dropped or pipe.peak >= pipe.depth:
             table.add(pipe.name, pipe.app, pipe.depth, pipe.peak, pipe.dropped)
+    return [table] if table.rows else []
+
+
+def _deadlines(results: Results) -> list[Table]:
+    """What the mission is held to, each deadline with its worst case."""
+    table = Table(
+        "Deadlines", ("of", "what", "limit", "measured", "missed", "worst", "first at, s"), right=(3, 4, 5, 6)
+    )
+    for each in results.deadlines:
+        table.add(
+            each.owner,
+            each.kind,
+            each.limit_text,
+            each.checked,
+            each.overruns,
+            "" if each.worst_s is None else time_text(round(each.worst_s * NS_PER_S)),
+            "" if each.first_at_s is None else f"{each.first_at_s:.3f}",
+        )
+    return [table] if table.rows else []
+
+
+def _invariants(results: Results) -> list[Table]:
+    """What must hold of messages; one that was never judged says nothing."""
+    table = Table("Invariants", ("name", "judged", "violated", "first at, s", "what was wrong"), right=(1, 2, 3))
+    for each in results.invariants:
+        at = "" if each.first_at_s is None else f"{each.first_at_s:.3f}"
+        table.add(each.name, each.judged, each.violated, at, each.first or ("" if each.judged else "never judged"))
     return [table] if table.rows else []
 
 

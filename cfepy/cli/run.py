@@ -16,16 +16,20 @@ from cfepy.cli.display import Display, make_display
 from cfepy.cli.failures import booting, writing
 from cfepy.cli.flight import Flight, Interrupts
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.recording import plan_of, recording
 from cfepy.cli.saved_files import save_files, saving_to
 from cfepy.console import Console
-from cfepy.mission import Mission, MissionSpec, read_mission
+from cfepy.mission import Mission, MissionSpec
 from cfepy.mission.course import Course, duration
 from cfepy.mission.results import Results
-from cfepy.rtos.policy import SeededRandom
+from cfepy.rtos.policy import Policy
+from cfepy.rtos.schedule import Schedule
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
     from cfepy.io.host_network import HostNetwork
+    from cfepy.journal.recorder import JournalRecorder
+    from cfepy.journal.replay import Replay
     from cfepy.mission.bag import BagRecorder
     from cfepy.mission.script import ScriptRun
     from cfepy.mission.script_verdicts import Outcome
@@ -61,21 +65,25 @@ def run(arguments: argparse.Namespace) -> int:
         return check(arguments)
     if arguments.port and arguments.realtime is None:
         raise UsageError("without --realtime no port is opened on this computer", field="--port")
-    spec = read_mission(arguments.mission, dict(arguments.launch_args))
-    if arguments.play is not None:
-        from cfepy.mission.ground_node import with_player
-
-        spec = with_player(spec, arguments.play)
-    return run_spec(arguments, spec)
+    with recording(arguments, [arguments.mission]) as journal:
+        return run_spec(arguments, plan_of(arguments, [arguments.mission]).spec(), journal=journal)
 
 
-def run_spec(arguments: argparse.Namespace, spec: MissionSpec, view: View | None = None) -> int:
+def run_spec(
+    arguments: argparse.Namespace,
+    spec: MissionSpec,
+    view: View | None = None,
+    journal: JournalRecorder | None = None,
+    replay: Replay | None = None,
+) -> int:
     """Run a mission as the command line says, and report.
 
     Args:
         arguments: of the command line.
         spec: the mission.
         view: what is shown of it; None shows the flight computer.
+        journal: writes it down.
+        replay: makes it the run of a journal.
 
     Returns:
         The exit status.
@@ -86,18 +94,29 @@ def run_spec(arguments: argparse.Namespace, spec: MissionSpec, view: View | None
     for note in spec.notes:
         print(f"cfepy: {note}", file=sys.stderr, flush=True)
     with Interrupts() as interrupts:
-        return _run(arguments, spec, interrupts, view or View())
+        return _run(arguments, spec, interrupts, view or View(), journal, replay)
 
 
-def _run(arguments: argparse.Namespace, spec: MissionSpec, interrupts: Interrupts, view: View) -> int:
+def _run(
+    arguments: argparse.Namespace,
+    spec: MissionSpec,
+    interrupts: Interrupts,
+    view: View,
+    journal: JournalRecorder | None,
+    replay: Replay | None,
+) -> int:
     numbers = output_path(arguments.json)
     folder = saving_to(arguments.save_files)
     script = script_of(arguments, spec)
     recorder = trace_file(arguments.trace) if arguments.trace else None
     bag = _bag(arguments)
     with booting(spec.script):
-        flight = fly(arguments, spec, interrupts, script, recorder, view.display, bag)
+        flight = fly(arguments, spec, interrupts, script, recorder, view.display, bag, journal, replay)
     results = Results.of(flight.mission, flight.at, flight.trace)
+    if journal is not None:
+        journal.end(results, flight.outcome, flight.reason)
+    if replay is not None:
+        replay.compare(results)
     unwritten = None if numbers is None else write_numbers(numbers, results, flight.outcome)
     view.report(results, flight.mission, sys.stdout)
     if flight.outcome is not None:
@@ -154,6 +173,8 @@ def fly(
     recorder: Recorder | None = None,
     show: Callable[[bool, float], Display] = make_display,
     bag: BagRecorder | None = None,
+    journal: JournalRecorder | None = None,
+    replay: Replay | None = None,
 ) -> Flight:
     """Run a mission to its end.
 
@@ -165,6 +186,8 @@ def fly(
         recorder: takes the trace.
         show: makes what shows the run, as `make_display` does.
         bag: records ROS topics.
+        journal: writes it down.
+        replay: makes it the run of a journal.
 
     Raises:
         UsageError: it cannot run like this.
@@ -180,12 +203,17 @@ def fly(
                 stack.enter_context(bag)
             display = show(arguments.quiet, seconds)
             stack.callback(display.close)
-            attachments = [each for each in (script, bag, recorder) if each is not None]
+            attachments: list[Attachment] = [each for each in (script, bag, recorder, journal) if each is not None]
+            attachments += [] if replay is None else replay.attachments
+            attachments += faults_of(arguments, spec)
             trace = None if recorder is None else recorder.trace
-            mission = stack.enter_context(_mission(arguments, spec, display, attachments, trace))
-            course = Course(mission, seconds if script is None else arguments.seconds, script)
+            policy = _policy(arguments, journal, replay)
+            mission = stack.enter_context(_mission(arguments, spec, display, attachments, trace, policy))
+            make_course = Course if replay is None else replay.make_course
+            course = make_course(mission, seconds if script is None else arguments.seconds, script)
             bridge = None if arguments.realtime is None else stack.enter_context(_bridge(arguments, mission, display))
-            flight = Flight(course, arguments.realtime, display, interrupts, bridge)
+            pause = _nothing if journal is None else journal.mark
+            flight = Flight(course, arguments.realtime, display, interrupts, bridge, pause)
             flight.go()
     except KeyboardInterrupt:
         if flight is None or not flight.trace:
@@ -194,12 +222,37 @@ def fly(
     return flight
 
 
+def faults_of(arguments: argparse.Namespace, spec: MissionSpec) -> list[Attachment]:
+    """What lets the faults happen that the command line asks for; only a run with some imports it."""
+    if arguments.faults is None:
+        return []
+    from cfepy.mission.fault_check import check_plan
+    from cfepy.mission.fault_plans import injector_of
+
+    injector = injector_of(arguments.faults, spec)
+    for problem in check_plan(injector.plan, spec):
+        print(f"cfepy: {problem}", file=sys.stderr, flush=True)
+    return [injector]
+
+
+def _policy(arguments: argparse.Namespace, journal: JournalRecorder | None, replay: Replay | None) -> Policy | None:
+    """Who goes first."""
+    if replay is not None:
+        return replay.policy
+    return Schedule.parse(arguments.schedule, arguments.seed).policy() if journal is None else journal.policy
+
+
+def _nothing() -> None:
+    """What happens between two pieces of a run that nobody writes down."""
+
+
 def _mission(
     arguments: argparse.Namespace,
     spec: MissionSpec,
     display: Display,
     attachments: Sequence[Attachment],
     trace: Trace | None,
+    policy: Policy | None,
 ) -> Mission:
     try:
         return Mission(
@@ -208,7 +261,7 @@ def _mission(
             board=arguments.board,
             tasks=arguments.tasks,
             console=Console(sink=display.line),
-            policy=SeededRandom(arguments.seed) if arguments.schedule == "random" else None,
+            policy=policy,
             trace=trace,
             attachments=attachments,
         )
@@ -253,6 +306,9 @@ def _explain(results: Results, mission: Mission, interrupted: bool) -> None:
     sys.stdout.flush()
     for problem in (*results.script_problems, *results.problems):
         print(f"cfepy: {problem}", file=sys.stderr)
+    for row in results.faults:
+        if not row["times"]:
+            print(f"cfepy: fault {row['name']} ({row['what']}) never happened: {row['never']}", file=sys.stderr)
     if results.script_problems:
         text = f'the console says why, and "cfepy check {mission.spec.script}" what can be seen without running it'
         print(f"cfepy: {text}", file=sys.stderr)

@@ -1,11 +1,10 @@
-"""One TCP connection of this computer, joined to a connection of the virtual network. May import cfepy.osal."""
+"""One TCP connection of this computer, joined to a connection of the virtual network. May import cfepy.mission."""
 
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable
 
-from cfepy.osal.endpoints import Stream
+from cfepy.mission.outside import OutsideStream
 
 CHUNK = 65_536
 
@@ -16,16 +15,14 @@ class Connection:
     Args:
         host: the real socket, connected.
         stream: the end of the virtual connection that stands for it.
-        note: called with the mission's port and the bytes that enter there.
 
     Attributes:
         host: the real socket.
     """
 
-    def __init__(self, host: socket.socket, stream: Stream, note: Callable[[int, bytes], object]) -> None:
+    def __init__(self, host: socket.socket, stream: OutsideStream) -> None:
         self.host = host
         self._stream = stream
-        self._note = note
         self._pending = b""  # left the virtual side, not yet taken by the real one
         self._host_ended = self._stream_ended = False
         host.setblocking(False)
@@ -50,7 +47,7 @@ class Connection:
         except OSError:  # the other program is gone
             self.close()
             return False
-        if self._stream_ended and (self._host_ended or self._stream.other is None):
+        if self._stream_ended and (self._host_ended or self._stream.alone):
             self.close()
             return False
         return True
@@ -68,10 +65,8 @@ class Connection:
                 return
             if not data:
                 self._host_ended = True
-                self._stream.shut(read=False, write=True)
+                self._stream.end()
                 return
-            target = self._stream.remote
-            self._note(target.port, data)
             self._stream.write(data)
 
     def _send_out(self) -> None:

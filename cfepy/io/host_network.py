@@ -181,32 +181,36 @@ class HostNetwork:
     def _dial(self, source: Place, target: Place) -> Stream | None:
         """Connect somebody of the mission with a program on this computer; None when none listens there."""
         if target.is_ip6:
-            return None
+            return self._joined(source, target, None)
         host = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         host.settimeout(DIAL_S)
         try:
             host.connect((LOOPBACK, self._ports.get(target.port, target.port)))
         except OSError:
             host.close()
+            return self._joined(source, target, None)
+        return self._joined(source, target, host)
+
+    def _joined(self, source: Place, target: Place, host: socket.socket | None) -> Stream | None:
+        """The mission's end of a connection with a real socket; without one, nobody has answered."""
+        ends = self._mission.outside.answer(source, target, host is not None)
+        if ends is None or host is None:
             return None
-        near, far = Stream(source, target), Stream(target, source)
-        near.other, far.other = far, near
-        self._connections.append(Connection(host, far, self._note))
+        near, far = ends
+        self._connections.append(Connection(host, far))
         return near
 
     def _accept(self, port: int, opened: socket.socket) -> None:
-        place = Place(LOOPBACK, port)
         while self._has_room(port):
             try:
                 host, (name, source) = opened.accept()
             except OSError:  # nobody more there
                 return
-            listener = self._listener(port)
-            if listener is None:
+            stream = self._mission.outside.call(port, Place(name, source))
+            if stream is None:
                 host.close()
             else:
-                stream = listener.connect(Place(name, source), place)
-                self._connections.append(Connection(host, stream, self._note))
+                self._connections.append(Connection(host, stream))
 
     def _listener(self, port: int) -> Listener | None:
         """Who takes connections at a port of the mission; None when nobody does any more."""
@@ -217,10 +221,6 @@ class HostNetwork:
         """Whether a connection that waits on this computer can be brought in, or turned away."""
         listener = self._listener(port)
         return listener is None or listener.has_room
-
-    def _note(self, port: int, data: bytes) -> None:
-        mission = self._mission
-        mission.trace.note(f"stream to {port} at {mission.kernel.now}: {data.hex()}")
 
 
 def _is_public(endpoint: Endpoint) -> bool:

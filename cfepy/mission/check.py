@@ -6,7 +6,7 @@ Nothing of the mission is executed. Each finding says file, line, what is wrong 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import NamedTuple
@@ -21,6 +21,7 @@ from cfepy.mission.loader import NODE_SYMBOL, find_code, find_node
 from cfepy.mission.spec import LOCK_FILE, MISSION_FILE, find_script, read_lock
 from cfepy.nodes.config import RosConfig
 from cfepy.osal.limits import OS_MAX_FILE_NAME
+from cfepy.psp.marked_yaml import Marked
 from cfepy.psp.profile import BoardProfile, load_profile
 from cfepy.status import UsageError
 
@@ -66,6 +67,7 @@ def check_mission(mission: str, board: str | None = None, args: Mapping[str, str
     said = check_file(path) if path is not None else CheckedFile()
     found += [Finding(Path(error.file or script), error.line or 0, _with_field(error)) for error in said.errors]
     found += _check_nodes(said, entries)
+    found += _check_deadlines(said, entries)
     found += _check_lock(folder / LOCK_FILE, said)
     found += _check_board(script, entries, said, board, folder)
     return sorted(dict.fromkeys(found), key=lambda finding: (str(finding.file), finding.line))
@@ -164,9 +166,7 @@ def _check_nodes(said: CheckedFile, entries: list[Entry]) -> Iterator[Finding]:
     names: dict[str, str] = {}
     for app, place in said.node_places.items():
         if app not in symbols:
-            near = get_close_matches(app, symbols, 1)
-            hint = f"is {near[0]} meant?" if near else f"the startup script has {', '.join(symbols) or 'none'}"
-            yield Finding(place.file, place.line, f"nodes.{app}: no application is called {app}; {hint}")
+            yield _unknown_app(f"nodes.{app}", app, place, symbols)
         elif symbols[app] != NODE_SYMBOL:
             text = f"nodes.{app}: {app} is no ROS node, its entry point is {symbols[app]}"
             text += f"; write {NODE_SYMBOL} in the startup script, or remove this"
@@ -178,6 +178,20 @@ def _check_nodes(said: CheckedFile, entries: list[Entry]) -> Iterator[Finding]:
             if other != app:
                 text = f"nodes.{app}: the node name {full} is that of {other} too; change one, or ROS ends the older"
                 yield Finding(place.file, place.line, text)
+
+
+def _check_deadlines(said: CheckedFile, entries: list[Entry]) -> Iterator[Finding]:
+    """Deadlines of applications that are not there."""
+    apps = [*(entry.name for entry in entries if entry.kind == CFE_APP), *CORE_APPS, "ROS"]
+    for app, place in said.deadline_places.items():
+        if app not in apps and not said.launches:
+            yield _unknown_app(f"deadlines.apps.{app}", app, place, apps)
+
+
+def _unknown_app(field: str, app: str, place: Marked, apps: Collection[str]) -> Finding:
+    near = get_close_matches(app, apps, 1)
+    hint = f"is {near[0]} meant?" if near else f"the startup script has {', '.join(apps) or 'none'}"
+    return Finding(place.file, place.line, f"{field}: no application is called {app}; {hint}")
 
 
 # -- the board ---------------------------------------------------------------------------------------------------------

@@ -11,9 +11,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from cfepy.mission.deadlines import entries_of, read_app_deadline, read_topic_deadline
+from cfepy.mission.invariants import read_invariant
 from cfepy.mission.launch import mission_environment, plan_of
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import read_parameters
+from cfepy.mission.selected_results import read_selected_result
 from cfepy.mission.spec import SECTIONS, read_launches, read_node, read_topic, truth
 from cfepy.nodes.config import NodeConfig, TopicConfig
 from cfepy.psp.marked_yaml import Marked, load
@@ -24,7 +27,8 @@ from cfepy.status import UsageError
 class CheckedFile:
     """What a mission file says, as far as it could be read, and what is wrong with it.
 
-    `node_places` has every entry under `nodes:`, also those that are wrong and so missing in `nodes`.
+    `node_places` has every entry under `nodes:`, also those that are wrong and so missing in `nodes`;
+    `deadline_places` those of applications under `deadlines:`. `launches` says that launch files add more nodes.
     """
 
     errors: list[UsageError] = field(default_factory=list)
@@ -32,6 +36,8 @@ class CheckedFile:
     node_places: dict[str, Marked] = field(default_factory=dict)
     topics: dict[str, TopicConfig] = field(default_factory=dict)
     limits: MissionLimits = field(default_factory=MissionLimits)
+    deadline_places: dict[str, Marked] = field(default_factory=dict)
+    launches: bool = False
     board: str | None = None
     board_place: Marked | None = None
 
@@ -58,6 +64,14 @@ def check_file(path: Path) -> CheckedFile:
             _check_limits(said, value)
         elif key == "launch":
             _check_launch(said, value)
+        elif key == "invariants":
+            for name, entry in (_attempt(said, value.mapping) or {}).items():
+                _attempt(said, partial(read_invariant, name, entry, path.parent))
+        elif key == "results":
+            for name, entry in (_attempt(said, value.mapping) or {}).items():
+                _attempt(said, partial(read_selected_result, name, entry))
+        elif key == "deadlines":
+            _check_deadlines(said, value)
         elif key == "ordered_sets":
             _attempt(said, partial(truth, value))
         elif key in ("params", "params_from"):
@@ -90,6 +104,7 @@ def _check_nodes(said: CheckedFile, section: Marked) -> None:
 
 def _check_launch(said: CheckedFile, section: Marked) -> None:
     """Each launch file is read, with all that it includes."""
+    said.launches = True
     for item in _attempt(said, section.items) or []:
         alone = Marked([item], item.file, item.line, section.field)
         for file, args in _attempt(said, partial(read_launches, alone, item.file.parent)) or []:
@@ -103,6 +118,13 @@ def _check_limits(said: CheckedFile, section: Marked) -> None:
         if _attempt(said, partial(read_limits, Marked({name: entry}, entry.file, entry.line, entry.field))) is not None:
             good[name] = entry
     said.limits = read_limits(Marked(good, section.file, section.line, section.field))
+
+
+def _check_deadlines(said: CheckedFile, section: Marked) -> None:
+    for part, name, entry in _attempt(said, lambda: list(entries_of(section))) or []:
+        if part == "apps":
+            said.deadline_places[name] = entry
+        _attempt(said, partial(read_app_deadline if part == "apps" else read_topic_deadline, name, entry))
 
 
 def _check_topics(said: CheckedFile, section: Marked) -> None:

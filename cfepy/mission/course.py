@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from cfepy.mission.script import ScriptRun
     from cfepy.mission.script_verdicts import Outcome
 
+OVER, INTERRUPTED, BROKEN_OFF = "over", "interrupted", "broken off"
+"""How a run ends: by itself; by Ctrl-C between two instants; by Ctrl-C in the middle of a task."""
 DEFAULT_S = 10.0
 NODE_S = 60.0  # virtual time that a single node gets when nobody says how long
 BOOT_S = 0.55  # virtual time until nodes of a launch file start, which is none of theirs
@@ -44,10 +46,15 @@ class Course:
     @property
     def goes_on(self) -> bool:
         """Whether there is something left to run."""
+        return self.mission.kernel.now < self.until_ns and not self.is_over
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the run has come to its end before its time is over: its script has, or its nodes have."""
         script = self._script
         if script is not None and (script.stopped or (script.finished and self._ends_with_script)):
-            return False
-        return self.mission.kernel.now < self.until_ns and not self.mission.over
+            return True
+        return self.mission.over
 
     def next_stop(self) -> int:
         """Virtual time in ns until which the run may go on by itself; the script does what is due now."""
@@ -66,6 +73,7 @@ class Course:
         Args:
             wall_ns: wall-clock time that the run took.
         """
+        self.mission.conclude()
         self.at = mark(self.mission, wall_ns)
         if self._script is not None:
             self.outcome = self._script.end()

@@ -66,7 +66,7 @@ class Look:
     @property
     def culprit(self) -> Line | None:
         """The innermost line of code that somebody wrote for this mission, not for a library."""
-        own = [line for line in self.stack if not _is_library(line.file)]
+        own = [line for line in self.stack if not is_library(line.file)]
         return own[-1] if own else None
 
 
@@ -126,10 +126,11 @@ class LookingTrace(Trace):
         waiting = [each for each in self.records if each]
         self._before.update(b"".join(waiting))
         lines = self._describe([*self._latest, *waiting, record])
-        return Look(record, self._before.hexdigest(), tuple(lines), _stack(frame), tuple(own_files()))
+        return Look(record, self._before.hexdigest(), tuple(lines), stack_of(frame), tuple(own_files()))
 
 
-def _stack(frame: FrameType | None) -> tuple[Line, ...]:
+def stack_of(frame: FrameType | None) -> tuple[Line, ...]:
+    """The lines of node, application and libraries that a frame and its callers execute, outermost first."""
     found: list[Line] = []
     while frame is not None:
         code = frame.f_code
@@ -146,6 +147,7 @@ def _is_shown(file: str) -> bool:
     return not hidden
 
 
-def _is_library(file: str) -> bool:
+def is_library(file: str) -> bool:
+    """Whether a source file is the standard library's or that of an installed package."""
     parts = Path(file).parts
     return file.startswith((_STANDARD_LIBRARY, _LIBRARIES)) or any(name in parts for name in _INSTALLED)

@@ -43,10 +43,7 @@ class GroundLink:
         Returns:
             Whether anybody took it: False when no socket is bound there, or the one that is has no room left.
         """
-        mission = self._mission
-        mission.trace.note(f"uplink to {port} at {mission.kernel.now}: {packet.hex()}")
-        mailbox = mission.network.datagrams.find(Place(GROUND.host, port))
-        return mailbox is not None and mailbox.offer(Datagram(source, Place(GROUND.host, port), bytes(packet)))
+        return self._mission.outside.datagram(port, source, bytes(packet))
 
     def received(self, port: int = TO_PORT) -> list[tuple[int, bytes]]:
         """What has come down since the last call, in order.

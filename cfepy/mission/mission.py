@@ -15,7 +15,9 @@ from cfepy.app import Cfe
 from cfepy.attachment import Attachment
 from cfepy.console import Console
 from cfepy.es.startup_script import entries
+from cfepy.mission.host_acts import HostActs
 from cfepy.mission.loader import NODE_SYMBOL, find_code
+from cfepy.mission.outside import Outside
 from cfepy.mission.processor import Machine, Processor
 from cfepy.mission.record import Reset, RunRecord
 from cfepy.mission.spec import MissionSpec, read_mission
@@ -27,7 +29,7 @@ from cfepy.psp.memory import MemoryBudget
 from cfepy.psp.profile import BoardProfile, load_profile
 from cfepy.psp.psp import PanicError
 from cfepy.psp.retained import EEPROM_BYTES, Retained
-from cfepy.rtos import Kernel, Task
+from cfepy.rtos import Task, make_kernel
 from cfepy.rtos.policy import Policy
 from cfepy.rtos.units import NS_PER_MS, NS_PER_S
 from cfepy.rtos.watchdog import StallWatch
@@ -47,13 +49,14 @@ class Mission:
         board: name or file of a board profile; None takes the mission's own.
         tasks: "thread" or "greenlet".
         console: where lines go; None prints them.
-        policy: who runs next among equals; see `cfepy.rtos.policy`.
+        policy: who runs next where there is a choice (`cfepy.rtos.policy`); None is first come, first served.
         trace: takes the records; None makes one that only keeps the digest.
         attachments: what looks on or meddles, in the order in which they are told.
 
     Attributes:
         spec, seed, tasks, board, config, console: as given, or as found.
         kernel, trace, files, network: the parts that outlive a reset.
+        outside: the door through which anything comes in while it runs.
         record: what the report tells; `record.resets` are the resets so far.
         processor: what runs between two resets; a reset puts another one here.
         booted: virtual ns at which the mission became OPERATIONAL for the first time, None before.
@@ -83,18 +86,31 @@ class Mission:
         self.files = FileSystem(self.spec.folder)
         self.network = Network()
         switch_ns = CpuCosts.of_board(self.board).switch_ns
-        self.kernel = Kernel(tasks, self.trace, policy, tick_ns=self.board.tick_ns, switch_cost_ns=switch_ns, seed=seed)
+        self.kernel = make_kernel(tasks, self.trace, policy, self.board.tick_ns, switch_ns, seed)
+        self.outside = Outside(self.kernel, self.network, self.trace)
+        self.outside.do = HostActs(self).do
         self.kernel.on_task_error = self._task_failed
         self._watch = StallWatch(self.kernel)
         self._first_boot: int | None = None
         self._resetting = False
-        self._attachments = tuple(attachments)
+        self._attachments = (*self._own_attachments(), *attachments)
         self._provide_tables()
         self._machine = self._make_machine()
         self.processor = Processor(self._machine)
         for each in self._attachments:
             each.begin(self)
         self._power_up()
+
+    def _own_attachments(self) -> Iterator[Attachment]:
+        """What the mission file asks for; only a mission that does imports it."""
+        if self.spec.invariants:
+            from cfepy.mission.invariant_watch import InvariantWatch
+
+            yield InvariantWatch(self.spec)
+        if self.spec.deadlines:
+            from cfepy.mission.deadline_monitor import DeadlineMonitor
+
+            yield DeadlineMonitor(self.spec.deadlines)
 
     def _power_up(self) -> None:
         for each in self._attachments:
@@ -174,11 +190,17 @@ class Mission:
     def run_until(self, until_ns: int) -> None:
         """Run until a virtual time in ns; on the way the processor is reset as often as somebody wants it."""
         self._watch.begin()
+        self.outside.begin_piece(until_ns)
         self._reset_if_asked()
         self.kernel.run(until_ns)
         while self._resetting:
             self._reset_if_asked()
             self.kernel.run(until_ns)
+
+    def conclude(self) -> None:
+        """Say that the time of the run is over; what comes now is the shutdown."""
+        for each in self._attachments:
+            each.conclude()
 
     def shut_down_nodes(self) -> None:
         """Ask all ROS nodes to end, and give them a little virtual time for their shutdown hooks."""
@@ -189,6 +211,13 @@ class Mission:
         end = self.kernel.now + SHUTDOWN_NS
         while not ros.all_finished() and self.kernel.now < end and not self._resetting:
             self.kernel.run(min(end, self.kernel.now + SHUTDOWN_NS // 20))
+
+    def finish(self) -> str:
+        """The run is over: its digest. What tasks do while they are ended is no part of it."""
+        digest = self.trace.digest()
+        for each in self._attachments:
+            each.finish()
+        return digest
 
     def close(self) -> None:
         """End every task; the numbers stay readable."""

@@ -20,6 +20,7 @@ from cfepy.console import Console
 from cfepy.es import Boot, CoreApp, EsTask, ExecutiveServices, ObjectTable
 from cfepy.evs import EventServices
 from cfepy.fs.services import FileServices
+from cfepy.mission.call_points import handle_for_apps
 from cfepy.mission.launch import scripts_of
 from cfepy.mission.loader import ModuleLoader
 from cfepy.mission.record import RunRecord
@@ -81,7 +82,8 @@ class Processor:
         start_ns: how long after now the board comes up.
 
     Attributes:
-        cfe: the handle that apps get.
+        cfe: the services.
+        handle: the services as apps and nodes reach them.
         ports, osal, psp, memory, loader, es_task, sb_task: the parts.
         ros: the ROS side (`rospy_shim.runtime.RosRuntime`), made when the first node starts; None before.
         booted: virtual ns at which it became OPERATIONAL, None before.
@@ -114,13 +116,14 @@ class Processor:
             machine.files,
             machine.spec.folder,
             machine.console,
-            lambda: self.cfe,
+            lambda: self.handle,
             self._node_main,
             self._script_of,
             {ROS_FILE: lambda: self.ros.parameters.main()},
         )
         self.osal.modules = self.loader
         self.cfe = self._make_services(costs)
+        self.handle = handle_for_apps(self.cfe, machine.kernel)
         self.sb_task = SbTask(self.cfe.sb)
         checksum = zlib.crc32(versions.CFE_VERSION.encode()) & 0xFFFF
         self.es_task = EsTask(self.cfe.es, machine.spec.name, self._build_text(), checksum)
@@ -201,7 +204,7 @@ class Processor:
         if self.ros is None:
             runtime = importlib.import_module("rospy_shim.runtime")
             self.ros = runtime.RosRuntime(
-                self.cfe,
+                self.handle,
                 machine.kernel,
                 machine.spec.ros,
                 seed=machine.seed,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from cfepy.es.records import AppHistory
+from cfepy.mission.deadline_checks import Check, Overrun
 from cfepy.sb import SoftwareBus
 
 
@@ -25,6 +26,27 @@ class Reset:
     reset_type: int
     reason: str
     fault: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """An invariant did not hold: what was wrong, when in virtual ns, who sent the message, and the message."""
+
+    text: str
+    at_ns: int
+    sender: str
+    detail: str = ""
+
+
+@dataclass(slots=True)
+class InvariantRecord:
+    """What became of an invariant: `place` is `file:line`, `judged` and `violated` count messages."""
+
+    name: str
+    place: str
+    judged: int = 0
+    violated: int = 0
+    first: Violation | None = None
 
 
 @dataclass(slots=True)
@@ -51,7 +73,9 @@ class RunRecord:
     """Everything that outlives a reset for the sake of the report.
 
     `history` is by application name, `event_counts` by event type, `errors_by_app` counts ERROR and CRITICAL events:
-    the services of each processor write into these three themselves. `topics` has rows of ROS topics by MsgId.
+    the services of each processor write into these three themselves. `topics` has rows of ROS topics by MsgId,
+    `invariants` are by name, `deadlines` as in the mission file, with the first `overruns` of each.
+    `faults` is the fault injector (`cfepy.faults.FaultInjector`), which has the rows of the report, None without one.
     """
 
     resets: list[Reset] = field(default_factory=list)
@@ -59,6 +83,10 @@ class RunRecord:
     event_counts: dict[int, int] = field(default_factory=dict)
     errors_by_app: dict[str, int] = field(default_factory=dict)
     topics: dict[int, Any] = field(default_factory=dict)
+    invariants: dict[str, InvariantRecord] = field(default_factory=dict)
+    faults: Any = None
+    deadlines: list[Check] = field(default_factory=list)
+    overruns: list[Overrun] = field(default_factory=list)
     _traffic: dict[int, Traffic] = field(default_factory=dict)
 
     def close_books(self, bus: SoftwareBus, topics: Iterable[Any]) -> None:

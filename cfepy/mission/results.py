@@ -12,10 +12,11 @@ from typing import Any
 from cfepy.es.records import APP_ERROR, STATE_NAMES
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, entries, parse
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
+from cfepy.mission.deadline_checks import DeadlineResult
 from cfepy.mission.mission import Mission
 from cfepy.mission.msg_names import names_in
 from cfepy.mission.processor import CORE_APPS
-from cfepy.mission.record import Reset, Traffic
+from cfepy.mission.record import InvariantRecord, Reset, Traffic
 from cfepy.mission.tracebacks import described
 from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.rtos.units import NS_PER_S
@@ -100,6 +101,18 @@ class MemoryResult:
 
 
 @dataclass(frozen=True, slots=True)
+class InvariantResult:
+    """What became of an invariant: `judged` and `violated` count messages; what was wrong first, and when in s."""
+
+    name: str
+    place: str
+    judged: int
+    violated: int
+    first_at_s: float | None
+    first: str
+
+
+@dataclass(frozen=True, slots=True)
 class Mark:
     """The state of a run when its time was over."""
 
@@ -110,6 +123,7 @@ class Mark:
     pipes: list[PipeResult]
     memory: MemoryResult
     sb: dict[str, int]
+    deadlocks: list[str]
 
 
 def mark(mission: Mission, wall_ns: int) -> Mark:
@@ -129,6 +143,7 @@ def mark(mission: Mission, wall_ns: int) -> Mark:
         [PipeResult(pipe.name, pipe.app_name, pipe.depth, pipe.peak, pipe.dropped) for pipe in sb.pipes],
         MemoryResult(memory.used, memory.peak, memory.limit, memory.by_owner()),
         mission.processor.sb_task.housekeeping(),
+        ["; ".join(map(str, circle)) for circle in mission.kernel.deadlocked()],
     )
 
 
@@ -138,7 +153,7 @@ class Results:
 
     `booted_s` is of the first boot, `resets` are in order; pipes, memory and `sb` are of the processor since the last
     one. `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` says, a line each,
-    why the run did not end well, `script_problems` what of the startup script could not be started.
+    why the run did not end well, `faults` has a row for each fault that was to happen, `script_problems` what of the startup script could not be started.
     """
 
     mission: str
@@ -159,7 +174,10 @@ class Results:
     sb: dict[str, int]
     pipes: list[PipeResult]
     memory: MemoryResult
+    deadlines: list[DeadlineResult]
+    faults: list[dict[str, Any]]
     script_problems: list[str]
+    invariants: list[InvariantResult]
     problems: list[str]
 
     @classmethod
@@ -194,13 +212,23 @@ class Results:
             sb=at.sb,
             pipes=at.pipes,
             memory=at.memory,
+            deadlines=[check.result() for check in record.deadlines],
+            faults=[] if record.faults is None else record.faults.rows(),
             script_problems=_script_problems(mission, apps),
-            problems=_problems(mission, own_errors),
+            invariants=[_invariant(each) for each in record.invariants.values()],
+            problems=[*_problems(mission, own_errors), *(f"deadlock: {circle}" for circle in at.deadlocks)],
         )
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dicts, lists, numbers and text."""
         return asdict(self)
+
+
+def _invariant(record: InvariantRecord) -> InvariantResult:
+    first = record.first
+    at_s = None if first is None else first.at_ns / NS_PER_S
+    text = "" if first is None else first.text
+    return InvariantResult(record.name, record.place, record.judged, record.violated, at_s, text)
 
 
 def _reset(reset: Reset) -> ResetResult:
@@ -287,16 +315,22 @@ def _script_problems(mission: Mission, apps: list[AppResult]) -> list[str]:
 
 def _problems(mission: Mission, own_errors: dict[str, int]) -> list[str]:
     found = deaths(mission)
-    found += [f"{name} ended with {_end_of(mission, name)}" for name in _failed(mission)]
+    found += [f"{name} ended with {end_of(mission, name)}" for name in ended_badly(mission)]
     for name, count in own_errors.items():
         found.append(f"{name} sent {count} ERROR or CRITICAL event{'s' if count > 1 else ''}")
     for reset in mission.record.resets:
         if reset.fault:
             found.append(f"the processor was reset at {reset.at_ns / NS_PER_S:g} s: {reset.reason}")
-    return found
+    for each in mission.record.invariants.values():
+        if each.first is not None:
+            found.append(
+                f"invariant {each.name!r} ({each.place}) at {each.first.at_ns / NS_PER_S:g} s: {each.first.text}"
+            )
+    missed = (check.result().problem for check in mission.record.deadlines)
+    return found + [problem for problem in missed if problem is not None]
 
 
-def _end_of(mission: Mission, name: str) -> str:
+def end_of(mission: Mission, name: str) -> str:
     """What an application has ended with: of a node, its program's exit status."""
     end = None if mission.ros is None else mission.ros.ended.get(name)
     if end is None or not end.status:
@@ -314,7 +348,7 @@ def deaths(mission: Mission) -> list[str]:
     return found
 
 
-def _failed(mission: Mission) -> list[str]:
+def ended_badly(mission: Mission) -> list[str]:
     """Applications that ended themselves because of an error."""
     es = mission.cfe.es
     ended = [history.name for history in es.history.values() if history.error_exits]

@@ -7,7 +7,7 @@ each can say the command that does the same run again. Scripts and faults are im
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +49,7 @@ class RunPlan:
         script: path of a mission script; None without one.
         stop_on_failure: the run ends with the first step of the script that fails.
         faults: what goes wrong: path of a fault plan, or seed:N; None for nothing.
+        play: path of a bag whose topics are played into the mission; None for nothing.
     """
 
     words: tuple[str, ...]
@@ -62,6 +63,7 @@ class RunPlan:
     script: str | None = None
     stop_on_failure: bool = False
     faults: str | None = None
+    play: str | None = None
 
     def spec(self) -> MissionSpec:
         """The mission.
@@ -73,7 +75,12 @@ class RunPlan:
             return read_launch(*launch_file(self.words))
         if self.command == NODE:
             return spec_of_script(*node_script(self.words))
-        return read_mission(self.words[0], dict(self.launch_args))
+        spec = read_mission(self.words[0], dict(self.launch_args))
+        if self.play is None:
+            return spec
+        from cfepy.mission.ground_node import with_player
+
+        return with_player(spec, self.play)
 
     @property
     def virtual_s(self) -> float | None:
@@ -97,6 +104,19 @@ class RunPlan:
 
         return ScriptRun(read_script(self.script, spec, dictionary_of(spec)), self.stop_on_failure)
 
+    def fault_injectors(self, spec: MissionSpec) -> list[Attachment]:
+        """What lets its faults happen, ready to be attached as the last ones.
+
+        Raises:
+            UsageError: there is no such plan, or something in it is wrong.
+            CfeError: a mission that needs random faults cannot boot.
+        """
+        if self.faults is None:
+            return []
+        from cfepy.mission.fault_plans import injector_of
+
+        return [injector_of(self.faults, spec)]
+
     def fly(
         self,
         attachments: Sequence[Attachment] = (),
@@ -105,6 +125,7 @@ class RunPlan:
         console: Console | None = None,
         policy: Policy | None = None,
         trace: Trace | None = None,
+        make_course: Callable[[Mission, float | None, ScriptRun | None], Course] = Course,
     ) -> Flown:
         """Fly it to its end, in virtual time.
 
@@ -114,6 +135,7 @@ class RunPlan:
             console: takes the lines; None drops them.
             policy: who goes first, in place of `schedule`, such as one that records.
             trace: takes the records.
+            make_course: makes the course that it flies.
 
         Raises:
             UsageError: something in it is wrong.
@@ -129,14 +151,14 @@ class RunPlan:
             console=Console(quiet=True) if console is None else console,
             policy=Schedule.parse(self.schedule).policy() if policy is None else policy,
             trace=trace,
-            attachments=[*(() if script is None else (script,)), *attachments],
+            attachments=[*(() if script is None else (script,)), *attachments, *self.fault_injectors(spec)],
         )
         with mission:
-            course = Course(mission, self.virtual_s, script)
+            course = make_course(mission, self.virtual_s, script)
             course.run()
             course.end()
             mission.shut_down_nodes()
-            digest = mission.trace.digest()
+            digest = mission.finish()
         return Flown(mission, Results.of(mission, course.at, digest), course.outcome)
 
     def command_line(self, **changes: Any) -> str:
@@ -151,7 +173,7 @@ class RunPlan:
             options += ["--arg", f"{name}:={value}"]
         if plan.seconds is not None:
             options += ["--for", f"{plan.seconds:.12g}"]
-        for each in ("seed", "board", "tasks", "schedule", "script", "faults"):
+        for each in ("seed", "board", "tasks", "schedule", "script", "play", "faults"):
             if getattr(plan, each) != _DEFAULTS[each]:
                 options += [f"--{each}", str(getattr(plan, each))]
         if plan.stop_on_failure:

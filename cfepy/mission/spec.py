@@ -13,10 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.es.startup_script import entries
+from cfepy.mission.deadlines import Deadlines, read_deadlines
+from cfepy.mission.invariants import Invariant, read_invariants
 from cfepy.mission.launch import LAUNCH_FILES, read_launch, with_launch_files
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.parameter_files import read_parameters
+from cfepy.mission.selected_results import SelectedResult, read_selected_results
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes.config import ROSCORE_PARAMS, NodeConfig, RosConfig, TopicConfig
 from cfepy.psp.marked_yaml import Marked, load
@@ -26,7 +29,10 @@ from cfepy.status import UsageError
 STARTUP_SCRIPT = "startup.scr"
 MISSION_FILE = "mission.yaml"
 LOCK_FILE = "topics.lock"
-SECTIONS = ("name", "board", "limits", "nodes", "topics", "params", "params_from", "ordered_sets", "launch")
+SECTIONS = (
+    *("name", "board", "limits", "nodes", "topics", "params", "params_from", "ordered_sets", "launch"),
+    *("invariants", "results", "deadlines"),
+)
 NODE_FIELDS = ("name", "namespace", "remap", "params", "params_from", "args", "env", "ordered_sets", "keys")
 
 
@@ -37,7 +43,8 @@ class MissionSpec:
     `folder` shows as /cf in the mission; `script` is the startup script; `mission_file` is None when there is none;
     `board` is the board it is made for: a shipped board's name or a path; `limits` is what it asks for of a platform.
     `startup` is the startup script of a mission that was made in memory, where `script` names what it was made from;
-    `notes` are what its user should know before it runs.
+    `notes` are what its user should know before it runs; `invariants` must hold of its messages, and `results` must not
+    depend on who runs first; `deadlines` are what it is held to.
     """
 
     name: str
@@ -49,6 +56,9 @@ class MissionSpec:
     limits: MissionLimits = field(default_factory=MissionLimits)
     startup: bytes | None = None
     notes: tuple[str, ...] = ()
+    invariants: tuple[Invariant, ...] = ()
+    results: tuple[SelectedResult, ...] = ()
+    deadlines: Deadlines = field(default_factory=Deadlines)
 
     @property
     def startup_script(self) -> bytes:
@@ -143,7 +153,18 @@ def _read_file(name: str, folder: Path, script: Path, mission_file: Path) -> Mis
     if (folder / board).is_file():
         board = str(folder / board)
     name = sections["name"].text() if "name" in sections else name
-    spec = MissionSpec(name, folder, script, mission_file, board, ros, read_limits(sections.get("limits")))
+    spec = MissionSpec(
+        name,
+        folder,
+        script,
+        mission_file,
+        board,
+        ros,
+        read_limits(sections.get("limits")),
+        invariants=read_invariants(sections.get("invariants"), folder),
+        results=read_selected_results(sections.get("results")),
+        deadlines=read_deadlines(sections.get("deadlines")),
+    )
     return with_launch_files(spec, read_launches(sections["launch"], folder)) if "launch" in sections else spec
 
 

@@ -68,7 +68,8 @@ class RosConfig:
     `ordered_sets` is for the nodes that do not say it themselves. `locked_topics` and `locked_services` are MsgIds by
     name, from the mission's `topics.lock`, for what `topics` does not pin. With `spread` a topic whose MsgId is taken
     gets the next free one, in order of registration; otherwise that is an error, since the id may be another in the
-    next run. `ends_with_nodes`: the run is over when all its nodes have ended.
+    next run. `ends_with_nodes`: the run is over when all its nodes have ended. `root` is a folder that stands for the
+    computer's root, for a mission that was brought from elsewhere (`Universe`).
     """
 
     nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
@@ -79,3 +80,4 @@ class RosConfig:
     locked_topics: Mapping[str, int] = field(default_factory=dict)
     locked_services: Mapping[str, int] = field(default_factory=dict)
     spread: bool = False
+    root: str = ""

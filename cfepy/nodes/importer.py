@@ -219,6 +219,8 @@ class Importer:
         """A module from a file; it is in the table, and in its package, before its code runs."""
         name = spec.name
         module = _empty_module(spec)
+        if spec.origin is not None:
+            module.__file__ = self._universe.shown(spec.origin)
         self.modules[name] = module
         parent, _, child = name.rpartition(".")
         if parent:
@@ -253,7 +255,7 @@ class Importer:
         if own:
             if not isinstance(spec.loader, SourceFileLoader) or spec.origin is None:
                 raise ImportError(f"{spec.name}: a node's own module must be a Python source file, not {spec.origin}")
-            code = code_of_file(spec.origin, self._ordered)
+            code = code_of_file(spec.origin, self._ordered, self._universe.shown(spec.origin))
         else:
             code = code_of_library(spec)
         vars(module)["__builtins__"] = vars(self._universe.builtins)

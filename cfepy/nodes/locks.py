@@ -12,14 +12,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cfepy.rtos import FOREVER, TIMEOUT, WaitList
+from cfepy.rtos import FOREVER, TIMEOUT, ExploringKernel, WaitList
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from cfepy.nodes.universe import Universe
     from cfepy.rtos import Task
 
 POLLS = 16  # so many calls of an uncontended lock cost one charge: a loop that polls under a lock makes progress
 MAX_WAIT_S = 1e9
+_TAKING = ("acquire", "acquire_lock", "__enter__")
+_GIVING = ("release", "release_lock", "__exit__", "_release_save")
+_ANYBODY = False  # holds a lock that is used as a signal
 
 
 class LockTypes(NamedTuple):
@@ -51,8 +56,46 @@ def timeout_ns(blocking: bool, timeout: float) -> int:
 
 def make_lock_types(universe: Universe) -> LockTypes:
     """The lock classes of a universe."""
-    lock = _make_lock(universe)
-    return LockTypes(lock, _make_rlock(universe))
+    types = LockTypes(_make_lock(universe), _make_rlock(universe))
+    if isinstance(universe.kernel, ExploringKernel):
+        for each in types:
+            _explore(each, universe.kernel)
+    return types
+
+
+def _explore(lock: type, kernel: ExploringKernel) -> None:
+    """Make each call that takes or gives back a lock a scheduling point, and note who holds a plain one."""
+
+    def taking(method: Callable[..., bool]) -> Callable[..., bool]:
+        def take(self: Any, *args: Any, **options: Any) -> bool:
+            kernel.point()
+            taken = method(self, *args, **options)
+            if taken and self.holder is not _ANYBODY:
+                self.holder = kernel.current
+            return taken
+
+        return take
+
+    def pointed(method: Callable[..., Any]) -> Callable[..., Any]:
+        def call(self: Any, *args: Any) -> Any:
+            kernel.point()
+            return method(self, *args)
+
+        return call
+
+    plain = "holder" in vars(lock)
+    for name in _TAKING:
+        if name in vars(lock):
+            setattr(lock, name, (taking if plain else pointed)(vars(lock)[name]))
+    for name in _GIVING:
+        if name in vars(lock):
+            setattr(lock, name, pointed(vars(lock)[name]))
+
+
+def without_holder(lock: Any) -> Any:
+    """A plain lock that is a signal: whoever took it does not stand in the way of those who wait for it."""
+    lock.holder = _ANYBODY
+    return lock
 
 
 def _wait_for(universe: Universe, waits: WaitList, wait: int, give_back: Any) -> bool:
@@ -77,12 +120,13 @@ def _make_lock(universe: Universe) -> type:
     class lock:
         """A lock that anybody may release."""
 
-        __slots__ = ("__weakref__", "_locked", "_polls", "_serial", "_waits")
+        __slots__ = ("__weakref__", "_locked", "_polls", "_serial", "_waits", "holder")
 
         def __init__(self) -> None:
             self._locked = False
             self._polls = POLLS
             self._waits: WaitList | None = None
+            self.holder: Any = None  # the task, or `_ANYBODY`; only known while schedules are explored
             universe.serial = self._serial = universe.serial + 1
 
         def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
@@ -103,6 +147,7 @@ def _make_lock(universe: Universe) -> type:
                 return False
             if self._waits is None:
                 self._waits = WaitList(f"lock {self._serial} of {name}")
+                self._waits.owner = lambda: self.holder or None
             return _wait_for(universe, self._waits, wait, self.release)
 
         def release(self) -> None:

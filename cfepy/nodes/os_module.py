@@ -7,6 +7,7 @@ process, is refused or does nothing.
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Iterator
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -37,6 +38,9 @@ _NO_EFFECT = (
 # fmt: on
 
 
+LISTED = "cfepy.listing"  # Python's audit hooks are told of each folder that a node looks into, and what is in it
+
+
 class Environ(dict[str, str]):
     """`os.environ`: changes stay in the node."""
 
@@ -60,7 +64,9 @@ class Entries:
 
     def __init__(self, path: Any) -> None:
         with os.scandir(path) as entries:
-            self._entries = iter(sorted(entries, key=lambda entry: entry.name))
+            found = sorted(entries, key=lambda entry: entry.name)
+        sys.audit(LISTED, path, [entry.name for entry in found])
+        self._entries = iter(found)
 
     def __iter__(self) -> Iterator[os.DirEntry[Any]]:
         return self._entries
@@ -111,7 +117,10 @@ def _paths(universe: Universe) -> dict[str, Any]:
         os.symlink(target, resolve(path), target_is_directory, **options)
 
     def listdir(path: Any = ".") -> list[Any]:
-        return sorted(os.listdir(resolve(path)))
+        place = resolve(path)
+        names = sorted(os.listdir(place))
+        sys.audit(LISTED, place, names)
+        return names
 
     def scandir(path: Any = ".") -> Entries:
         return Entries(resolve(path))

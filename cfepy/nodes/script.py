@@ -62,7 +62,8 @@ def _execute(universe: Universe) -> int:
     )
     universe.importer.modules["__main__"] = module
     try:
-        exec(code_of_file(universe.script, universe.ordered_sets), vars(module))
+        place = universe.resolve(universe.script)
+        exec(code_of_file(place, universe.ordered_sets, universe.script), vars(module))
     except BaseException as error:
         return _status_of(universe, error)
     return 0

@@ -8,17 +8,21 @@ from __future__ import annotations
 
 import importlib.machinery
 import os
+import sys
 from types import CodeType
+
+AGAIN = "cfepy.source"  # Python's audit hooks are told of a file that was compiled before, as they are of opened ones
 
 _compiled: dict[tuple[object, ...], CodeType] = {}
 
 
-def code_of_file(path: str, ordered: bool) -> CodeType:
+def code_of_file(path: str, ordered: bool, name: str) -> CodeType:
     """The code of a source file of a node.
 
     Args:
         path: the file.
         ordered: set displays in it make ordered sets.
+        name: what the code believes to be its file.
 
     Raises:
         OSError: it cannot be read.
@@ -27,10 +31,12 @@ def code_of_file(path: str, ordered: bool) -> CodeType:
     stat = os.stat(path)
     key = (path, stat.st_mtime_ns, stat.st_size, ordered)
     code = _compiled.get(key)
-    if code is None:
-        with open(path, "rb") as file:
-            source = file.read()
-        _compiled[key] = code = _compile(source, path, ordered)
+    if code is not None:
+        sys.audit(AGAIN, path)
+        return code
+    with open(path, "rb") as file:
+        source = file.read()
+    _compiled[key] = code = _compile(source, name, ordered)
     return code
 
 

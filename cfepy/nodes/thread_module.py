@@ -13,12 +13,12 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from cfepy.nodes.local import make_local
-from cfepy.nodes.locks import MAX_WAIT_S
+from cfepy.nodes.locks import MAX_WAIT_S, without_holder
 from cfepy.nodes.report import traceback_text
 from cfepy.nodes.serials import hash_by_serial
 from cfepy.nodes.signal_module import NodeInterrupt
 from cfepy.nodes.synth import made
-from cfepy.rtos import TaskExit
+from cfepy.rtos import ExploringKernel, TaskExit
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
@@ -122,6 +122,9 @@ def fix_threading(universe: Universe, module: Any) -> None:
         universe.charge()
         return bool(is_set(event))
 
+    if isinstance(universe.kernel, ExploringKernel):
+        allocate_lock = module._allocate_lock  # which makes the locks by which `Condition` wakes its waiters
+        module._allocate_lock = lambda: without_holder(allocate_lock())
     module._make_invoke_excepthook = make_quiet_invoke
     hash_by_serial(universe, module.Thread)
     module.Event.is_set = charged_is_set

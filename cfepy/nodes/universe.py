@@ -82,6 +82,8 @@ class Universe:
         ordered_sets: sets in the node's code iterate in insertion order.
         keys: what is typed at its terminal (`cfepy.nodes.terminal`); None leaves it without one, its input at the end.
         network: what its sockets are plugged into; None refuses them.
+        root: folder that stands for the computer's root: what is there is taken from there, and the program believes
+            that it is where it was ("" for none).
         on_thread_start: `(task name, entry, priority) -> Task`, starts the task of a thread, so that the owner of the
             node also owns its threads; None uses `Kernel.spawn`.
     """
@@ -108,16 +110,18 @@ class Universe:
         ordered_sets: bool = False,
         keys: Sequence[Key] | None = None,
         network: Network | None = None,
+        root: str = "",
         on_thread_start: StartThread | None = None,
     ) -> None:
         self.kernel = kernel
         self.name = name
-        self.script = os.path.abspath(script) if script else ""
-        self.argv = [os.fspath(script), *argv]
+        self._root = root
+        self.script = self.shown(os.path.abspath(script)) if script else ""
+        self.argv = [self.shown(os.fspath(script)), *argv]
         self.host_name = "cfepy"
         self.pid = 1000 + zlib.crc32(name.encode()) % 30000
         self.priority = priority
-        self.cwd = os.path.abspath(cwd if cwd is not None else os.getcwd())
+        self.cwd = self.shown(os.path.abspath(cwd if cwd is not None else os.getcwd()))
         self.rng = random.Random(f"{seed}/{name}")
         self.serial = 0  # of locks and threads, which hash by it
         # The current task made a call that polls: it takes virtual CPU time, and others get their turn.
@@ -286,15 +290,26 @@ class Universe:
         plain = os.fspath(path)
         if plain == _TERMINAL:
             raise OSError(errno.ENXIO, os.strerror(errno.ENXIO), _TERMINAL)
-        if os.path.isabs(plain):
-            return path
-        return os.path.join(os.fsencode(self.cwd) if isinstance(plain, bytes) else self.cwd, plain)
+        if not os.path.isabs(plain):
+            path = os.path.join(os.fsencode(self.cwd) if isinstance(plain, bytes) else self.cwd, plain)
+        return self._below_root(path) if self._root else path
+
+    def shown(self, path: str) -> str:
+        """A path of the host as the program sees it."""
+        return path.removeprefix(self._root)
+
+    def _below_root(self, path: Any) -> str:
+        """Where a path leads: below the root, if it or its folder is there; else it is the host's own."""
+        plain = os.fsdecode(path)
+        inside = self._root + self.shown(plain)
+        is_new = not os.path.lexists(plain) and os.path.isdir(os.path.dirname(inside))
+        return inside if is_new or os.path.lexists(inside) else plain
 
     def change_directory(self, path: str | os.PathLike[str]) -> None:
         """`os.chdir`."""
         target = os.path.normpath(self.resolve(path))
         os.listdir(target)  # raises what os.chdir would
-        self.cwd = target
+        self.cwd = self.shown(target)
 
     # -- output ------------------------------------------------------------------------------------------------------
 

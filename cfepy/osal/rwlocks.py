@@ -32,6 +32,7 @@ class OsRwLock(OsObject):
         self.writer: Task | None = None
         self.waiting_readers = WaitList(f"readers of lock {name}")
         self.waiting_writers = WaitList(f"writers of lock {name}")
+        self.waiting_readers.owner = self.waiting_writers.owner = lambda: self.writer
 
 
 class RwLockApi(Core):

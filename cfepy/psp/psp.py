@@ -131,7 +131,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         self._is_resetting = False
         self.exceptions = self.retained.exceptions
         has_watchdog = profile.watchdog_max_ms > 0
-        self.watchdog = Watchdog(kernel, self._bite if has_watchdog else None, profile.watchdog_max_ms or WATCHDOG_MAX)
+        self.watchdog = Watchdog(kernel, self.bite if has_watchdog else None, profile.watchdog_max_ms or WATCHDOG_MAX)
         self.declare_ports(profile.ports)
         if profile.data_flash:
             self.protect_eeprom()
@@ -198,11 +198,15 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         self.retained.next_reset_type = 0 if is_poweron else reset_type  # the boot record is removed too
         self.retained.exited = not is_poweron
 
-    def _bite(self) -> None:
-        """The watchdog resets the processor; software has no say in it."""
+    def bite(self, reason: str = "") -> None:
+        """The watchdog resets the processor; software has no say in it.
+
+        Args:
+            reason: why; empty stands for the usual one, that nobody served it in time.
+        """
         self.retained.next_reset_type = RST_TYPE_PROCESSOR
         self.retained.next_subtype = RST_SUBTYPE_HW_WATCHDOG
-        self._reset(RST_TYPE_PROCESSOR, f"the watchdog was not served for {self.watchdog.value_ms} ms", True)
+        self._reset(RST_TYPE_PROCESSOR, reason or f"the watchdog was not served for {self.watchdog.value_ms} ms", True)
 
     def _reset(self, reset_type: int, reason: str, fault: bool) -> None:
         if self.on_restart is not None:

@@ -15,8 +15,7 @@ from typing import Any
 from cfepy import trace as tr
 from cfepy.rtos.context import make_context
 from cfepy.rtos.errors import DeadlockError
-from cfepy.rtos.policy import Policy
-from cfepy.rtos.report import waiting_report
+from cfepy.rtos.report import Wait, deadlocks, waiting_report
 from cfepy.rtos.scheduler import Scheduler
 from cfepy.rtos.task import Task, TaskExit
 
@@ -30,7 +29,6 @@ class Kernel(Scheduler):
     Args:
         context: "thread" or "greenlet"; see `cfepy.rtos.context`.
         trace: where the records of the run go; None records nothing (for measurements only).
-        policy: who runs next among equals; None is first come, first served.
         tick_ns: deadlines are rounded up to multiples of this; 0 for a tickless clock.
         switch_cost_ns: virtual CPU time that a change of task takes.
         seed: what random streams above the kernel are derived from; the kernel itself uses no randomness.
@@ -40,12 +38,11 @@ class Kernel(Scheduler):
         self,
         context: str = "thread",
         trace: tr.Trace | None = None,
-        policy: Policy | None = None,
         tick_ns: int = 0,
         switch_cost_ns: int = 0,
         seed: int = 0,
     ) -> None:
-        super().__init__(trace, policy, tick_ns, switch_cost_ns)
+        super().__init__(trace, tick_ns, switch_cost_ns)
         self.seed = seed
         self.context = make_context(context)
         self.on_task_error: Callable[[Task, BaseException], bool] = lambda task, error: False
@@ -264,6 +261,14 @@ class Kernel(Scheduler):
     def waiting(self) -> str:
         """Who waits for what, held by whom: the deadlock report."""
         return waiting_report(self.tasks, self.timers)
+
+    def deadlocked(self) -> list[tuple[Wait, ...]]:
+        """The circles of tasks that wait for each other for ever, and the tasks that wait for one that has ended.
+
+        Known are the holders of OSAL's mutexes and of what writes under OSAL's readers-writer locks, of the recursive
+        locks of nodes, and, while schedules are explored, of their plain locks.
+        """
+        return deadlocks(self.tasks)
 
     def progress(self) -> tuple[int, int, int]:
         """Numbers of which one changes with every kernel call that lets time or another task go on."""

@@ -1,64 +1,231 @@
-"""Who runs next among ready tasks of the same, highest priority.
+"""Who runs next, where there is a choice.
 
-Without a policy the kernel takes the one that has been ready for longest. A policy is asked only when there is a
-choice, and its answers make the run: replaying them replays it.
+Without a policy the kernel goes on with the running task, or takes the one that has been ready for longest (fifo). A
+policy is asked at every scheduling point of an `ExploringKernel` that has more than one candidate: these decisions,
+counted from 0, are what a schedule is made of. Giving the same answers again gives the same run.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from random import Random
-from typing import Protocol
+from typing import NamedTuple
 
 from cfepy.rtos.task import Task
 
-
-class Policy(Protocol):
-    """Chooses among equals."""
-
-    def choose(self, candidates: Sequence[Task]) -> int:
-        """Index of the task to run.
-
-        Args:
-            candidates: at least two ready tasks of one priority, the one that became ready first in front.
-        """
+HOLD_ODDS = 16  # one in so many chances to hold a task up is taken: time would else run away from the work
+HOLD = "hold"  # in place of a task's name: nobody runs until the next timer
 
 
-class SeededRandom:
-    """Any of the candidates, the same ones for the same seed."""
+@dataclass(slots=True)
+class Decision:
+    """What a policy is asked.
 
-    def __init__(self, seed: int) -> None:
-        self._random = Random(seed)
-
-    def choose(self, candidates: Sequence[Task]) -> int:
-        """See `Policy.choose`."""
-        return self._random.randrange(len(candidates))
-
-
-class Recorded:
-    """Asks another policy, or takes the first, and keeps the answers in `choices`."""
-
-    def __init__(self, inner: Policy | None = None) -> None:
-        self._inner = inner
-        self.choices: list[int] = []
-
-    def choose(self, candidates: Sequence[Task]) -> int:
-        """See `Policy.choose`."""
-        choice = self._inner.choose(candidates) if self._inner is not None else 0
-        self.choices.append(choice)
-        return choice
-
-
-class Replay:
-    """Gives recorded choices again, then takes the first.
-
-    Args:
-        choices: as `Recorded.choices` kept them.
+    Attributes:
+        number: how many decisions there were before it in the run.
+        now: virtual time in ns.
+        tasks: who could run, the one that fifo would take first.
+        running: whether `tasks[0]` is the running task, which could go on: another answer than 0 preempts it.
+        hold: whether there is one more answer, `len(tasks)`: the running task is held up until the next timer is due.
+        left: the task that gave up its turn just now, because it yields or used up its time slice, or None.
     """
 
-    def __init__(self, choices: Sequence[int]) -> None:
-        self._choices = list(reversed(choices))
+    number: int
+    now: int
+    tasks: Sequence[Task]
+    running: bool
+    hold: bool
+    left: Task | None
 
-    def choose(self, candidates: Sequence[Task]) -> int:
-        """See `Policy.choose`; a choice that is not possible any more becomes the last candidate."""
-        return min(self._choices.pop(), len(candidates) - 1) if self._choices else 0
+    @property
+    def width(self) -> int:
+        """The number of possible answers, 2 or more; 1 where a policy (`From`) leaves no choice."""
+        return len(self.tasks) + self.hold
+
+
+class Policy:
+    """Goes on as fifo would; the base of the others.
+
+    Args:
+        any_priority: candidates are all ready tasks, not only those of the most urgent priority.
+        hold_ns: a task may be held up until the next timer is due, if that is within so many ns; 0 for never.
+    """
+
+    def __init__(self, any_priority: bool = False, hold_ns: int = 0) -> None:
+        self.any_priority = any_priority
+        self.hold_ns = hold_ns
+
+    def choose(self, decision: Decision) -> int:
+        """The answer, from 0 to below `decision.width`."""
+        return 0
+
+
+class SeededRandom(Policy):
+    """Any of the candidates, the same ones for the same seed; the other arguments are those of `Policy`."""
+
+    def __init__(self, seed: int, any_priority: bool = False, hold_ns: int = 0) -> None:
+        super().__init__(any_priority, hold_ns)
+        self._random = Random(seed).random
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`."""
+        width = len(decision.tasks)
+        if decision.hold and self._random() * HOLD_ODDS < 1:
+            return width
+        return int(self._random() * width)
+
+
+class PCT(Policy):
+    """Probabilistic concurrency testing (Burckhardt, Kothari, Musuvathi, Nagarakatte: ASPLOS 2010).
+
+    Every task draws a rank; of the candidates the one of highest rank runs. At `depth - 1` of `steps` decisions, drawn
+    beforehand, the task that would run falls below all others (or, where it can be, is held up instead, half of the
+    times). A bug that needs `depth` ordered events is found with a probability of at least 1 / (tasks * steps **
+    (depth - 1)). A task that gives up its turn, as one that polls does at the end of each slice, falls below all
+    others too: the paper's guarantee assumes that no task waits for another by polling.
+
+    Args:
+        seed: of ranks and places.
+        depth: of the bugs that are looked for, at least 1.
+        steps: how many decisions a run has, about.
+        any_priority: see `Policy`.
+        hold_ns: see `Policy`.
+    """
+
+    def __init__(self, seed: int, depth: int, steps: int, any_priority: bool = False, hold_ns: int = 0) -> None:
+        super().__init__(any_priority, hold_ns)
+        self._random = random = Random(seed)
+        self._changes = frozenset(random.sample(range(steps), min(depth - 1, steps)))
+        self._ranks: dict[Task, float] = {}
+        self._lowest = 0
+        self._count = -1
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`."""
+        self._count += 1
+        if decision.left is not None:
+            self._demote(decision.left)
+        best = self._best(decision.tasks)
+        if self._count in self._changes:
+            if decision.hold and self._random.random() < 0.5:
+                return len(decision.tasks)
+            self._demote(decision.tasks[best])
+            best = self._best(decision.tasks)
+        return best
+
+    def _best(self, tasks: Sequence[Task]) -> int:
+        ranks = self._ranks
+        for task in tasks:
+            if task not in ranks:
+                ranks[task] = self._random.random()
+        return max(range(len(tasks)), key=lambda index: ranks[tasks[index]])
+
+    def _demote(self, task: Task) -> None:
+        self._lowest -= 1
+        self._ranks[task] = self._lowest
+
+
+class Deviations(Policy):
+    """Fifo but for some decisions.
+
+    Args:
+        choices: the answer by number of the decision; one that is not possible becomes the last that is.
+        any_priority: see `Policy`.
+        hold_ns: see `Policy`.
+    """
+
+    def __init__(self, choices: Mapping[int, int], any_priority: bool = False, hold_ns: int = 0) -> None:
+        super().__init__(any_priority, hold_ns)
+        self._choices = dict(choices)
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`."""
+        return min(self._choices.get(decision.number, 0), decision.width - 1)
+
+
+class From(Policy):
+    """Fifo up to an instant, then another policy.
+
+    Args:
+        inner: the other one.
+        from_ns: the instant, in virtual ns.
+    """
+
+    def __init__(self, inner: Policy, from_ns: int) -> None:
+        super().__init__(inner.any_priority, inner.hold_ns)
+        self._inner = inner
+        self._from_ns = from_ns
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`."""
+        if decision.now >= self._from_ns:
+            return self._inner.choose(decision)
+        decision.tasks, decision.hold = decision.tasks[:1], False
+        return 0
+
+
+class Moment(NamedTuple):
+    """A decision that was not fifo's.
+
+    Attributes:
+        decision: its number.
+        choice: the answer.
+        now: virtual ns.
+        instead_of: name of the task that fifo would have run.
+        chosen: name of the task that ran, or `HOLD`.
+        preemption: whether the one that fifo would have run was running, and could have gone on.
+    """
+
+    decision: int
+    choice: int
+    now: int
+    instead_of: str
+    chosen: str
+    preemption: bool
+
+
+class Recorded(Policy):
+    """Asks another policy, and keeps what was decided.
+
+    Args:
+        inner: who decides; None is fifo.
+
+    Attributes:
+        choices: the answers, in order.
+        widths: how many answers each decision had.
+        running: for each decision, whether the running task could have gone on.
+        moments: the decisions that were not fifo's.
+    """
+
+    def __init__(self, inner: Policy | None = None) -> None:
+        self._inner = inner or Policy()
+        super().__init__(self._inner.any_priority, self._inner.hold_ns)
+        self.choices: list[int] = []
+        self.widths: list[int] = []
+        self.running: list[bool] = []
+        self.moments: list[Moment] = []
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`."""
+        choice = self._inner.choose(decision)
+        if choice:
+            tasks = decision.tasks
+            chosen = tasks[choice].name if choice < len(tasks) else HOLD
+            self.moments.append(
+                Moment(decision.number, choice, decision.now, tasks[0].name, chosen, decision.running)
+            )
+        self.choices.append(choice)
+        self.widths.append(decision.width)
+        self.running.append(decision.running)
+        return choice
+
+    @property
+    def deviations(self) -> dict[int, int]:
+        """The answers that were not fifo's, by number of the decision: with `Deviations` they give the run again."""
+        return {moment.decision: moment.choice for moment in self.moments}
+
+    @property
+    def preemptions(self) -> int:
+        """How many of the deviations took the CPU from a task that could have gone on."""
+        return sum(moment.preemption for moment in self.moments)

@@ -40,13 +40,13 @@ def whole(time_ns: Any) -> int:
 class Scheduler:
     """The base of `Kernel`; see there for the arguments."""
 
-    def __init__(self, trace: tr.Trace | None, policy: Policy | None, tick_ns: int, switch_cost_ns: int) -> None:
+    def __init__(self, trace: tr.Trace | None, tick_ns: int, switch_cost_ns: int) -> None:
         self.now = 0
         self.tick_ns = tick_ns
         self.switch_cost_ns = switch_cost_ns
         self.trace = trace
         self.record: Callable[[bytes], None] | None = trace.append if trace is not None else None
-        self.policy = policy
+        self.policy: Policy | None = None  # without one it is first come, first served
         self.tasks: list[Task] = []
         self.ready: list[tuple[int, int, Task]] = []
         self.timers: list[tuple[int, int, Task]] = []
@@ -129,8 +129,7 @@ class Scheduler:
             self._refuse(task)
         ready = self.ready
         if ready and ready[0][0] <= task.priority:
-            self.sequence = sequence = self.sequence + 1
-            heappush(ready, (task.priority, sequence, task))
+            self._push_back(task)
             self._switch(task, self._take())
 
     def charge(self, duration_ns: int) -> None:
@@ -158,8 +157,7 @@ class Scheduler:
         first = ready[0][0] if ready else HOST_PRIORITY
         paused = self.now > self._until
         if first == task.priority and self.now >= self._slice_end and self._turn_is_over(task, duration_ns):
-            self.sequence = sequence = self.sequence + 1
-            heappush(ready, (task.priority, sequence, task))
+            self._push_back(task)
         elif first < task.priority or paused:
             self._push_front(task)
         else:
@@ -285,18 +283,14 @@ class Scheduler:
         self._front = front = self._front - 1
         heappush(self.ready, (task.priority, front, task))
 
+    def _push_back(self, task: Task) -> None:
+        """The running task goes on after the others of its priority."""
+        self.sequence = sequence = self.sequence + 1
+        heappush(self.ready, (task.priority, sequence, task))
+
     def _take(self) -> Task:
         """Remove the task that runs next from the ready heap."""
-        if self.policy is None:
-            return heappop(self.ready)[2]
-        first = heappop(self.ready)
-        equals = [first]
-        while self.ready and self.ready[0][0] == first[0]:
-            equals.append(heappop(self.ready))
-        chosen = equals.pop(self.policy.choose([entry[2] for entry in equals])) if len(equals) > 1 else equals.pop()
-        for entry in equals:
-            heappush(self.ready, entry)
-        return chosen[2]
+        return heappop(self.ready)[2]
 
     def _next(self) -> Task:
         return self._take() if self.ready else self._advance()

@@ -8,6 +8,7 @@ cfe_tbl_internal.c. Imports only cfepy.msg, cfepy.ports, cfepy.status and its ne
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 from cfepy.msg import sys_time_fields
 from cfepy.ports import Ports
@@ -16,6 +17,28 @@ from cfepy.tbl.packets import CRITICAL_RECORD
 from cfepy.tbl.registry import Table
 
 REGISTRY_NAME = "CFE_TBL.CritReg"
+
+
+_REMEMBERED = 1024  # the registry is written whole whenever one of its records changes
+
+
+@lru_cache(_REMEMBERED)
+def _packed(
+    handle: int,
+    name: str,
+    file_time: tuple[int, int],
+    last_update: tuple[int, int],
+    last_file: str,
+    loaded_once: bool,
+) -> bytes:
+    return CRITICAL_RECORD.pack(
+        CDSHandle=handle,
+        FileTime=sys_time_fields(file_time),
+        TimeOfLastUpdate=sys_time_fields(last_update),
+        LastFileLoaded=last_file,
+        Name=name,
+        TableLoadedOnce=loaded_once,
+    )
 
 
 @dataclass(slots=True, eq=False)
@@ -37,14 +60,7 @@ class CriticalRecord:
 
     def pack(self) -> bytes:
         """Its bytes in the CDS."""
-        return CRITICAL_RECORD.pack(
-            CDSHandle=self.handle,
-            FileTime=sys_time_fields(self.file_time),
-            TimeOfLastUpdate=sys_time_fields(self.last_update),
-            LastFileLoaded=self.last_file,
-            Name=self.name,
-            TableLoadedOnce=self.loaded_once,
-        )
+        return _packed(self.handle, self.name, self.file_time, self.last_update, self.last_file, self.loaded_once)
 
     def unpack(self, data: bytes, at: int) -> None:
         """Take over what bytes of the CDS say."""

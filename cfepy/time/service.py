@@ -45,6 +45,7 @@ class TimeServices:
     Attributes:
         clock: reference state, and the cached telemetry stamp `clock.stamp_now` of `clock.stamp_at`.
         tone: the tone's state and counters.
+        task: its tasks, with the local 1 Hz signal.
         commands: counters of the commands.
         now: spacecraft time as SysTime.
         stamp: spacecraft time for a telemetry header, seconds << 16 | upper subseconds.
@@ -67,7 +68,7 @@ class TimeServices:
         self.tone = Tone(self.clock, settings, ports, tone_ready.give, self._notify)
         self.commands = TimeCommands(ports, self.clock, self.tone, settings, self._save)
         self._sender = ToneDataSender(ports, self.clock, self.tone, settings)
-        self._task = TimeTask(kernel, ports, config, settings, self.tone, self._sender, self.commands, tone_ready)
+        self.task = TimeTask(kernel, ports, config, settings, self.tone, self._sender, self.commands, tone_ready)
 
     def early_init(self, kept: dict[str, Any]) -> None:
         """Start the clock, before any task exists (CFE_TIME_EarlyInit).
@@ -82,11 +83,11 @@ class TimeServices:
         clock.update(latch=clock.local())
         met = from_ticks(clock.reference.met)
         self.tone.virtual_met = met.seconds
-        self._task.whole_second_ns = self._kernel.now - (met.subseconds * NS_PER_S >> 32)
+        self.task.whole_second_ns = self._kernel.now - (met.subseconds * NS_PER_S >> 32)
 
     def task_main(self) -> None:
         """The main task of CFE_TIME (CFE_TIME_TaskMain)."""
-        self._task.main()
+        self.task.main()
 
     def cleanup_app(self, app_id: int) -> None:
         """Forget the callback of an application that ended (CFE_TIME_CleanUpApp)."""
@@ -197,7 +198,7 @@ class TimeServices:
 
     def local1hz_isr(self) -> None:
         """A local 1 Hz signal from a board without timers (CFE_TIME_Local1HzISR)."""
-        self._task.interrupt(self.clock.local())
+        self.task.interrupt(self.clock.local())
 
     def external_tone(self) -> None:
         """A tone from outside, at this instant (CFE_TIME_ExternalTone)."""

@@ -153,6 +153,10 @@ class TimeTask:
         self._tone.counters.local_interrupt += 1
         self.one_hz_ready.give()
 
+    def take_tone(self, latch: int) -> None:
+        """A simulated tone came (CFE_TIME_Tone1HzISR); see `Tone.interrupt`."""
+        self._tone.interrupt(latch)
+
     # -- messages about the tone -----------------------------------------------------------------------------------
 
     def _one_hz_command(self, packet: bytes) -> None:
@@ -161,7 +165,7 @@ class TimeTask:
         self._tone.one_hz()
         self._ports.es.perf_log_exit(ONE_HZ_PERF_ID)
         if self._settings.fake_tone:
-            self._tone.interrupt(self._one_hz_latch)
+            self.take_tone(self._one_hz_latch)
 
     def _data_command(self, packet: bytes) -> None:
         fields = pk.DATA_CMD.read(packet)

@@ -1,0 +1,99 @@
+"""`cfepy diff`: where two runs part, and what else they differ in."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import sys
+from pathlib import Path
+
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.parting import Finding, show_sides
+from cfepy.cli.recorded_run import Plan
+from cfepy.cli.side_by_side import facts_of, failure, started
+from cfepy.cli.text_diff import compare_texts
+from cfepy.journal.frames import MARK
+from cfepy.journal.header_diff import differences
+from cfepy.journal.journal import Journal, read_journal
+from cfepy.mission.determinism import RunEndedError, first_parting
+from cfepy.mission.determinism_look import Look
+from cfepy.status import UsageError
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compare the two runs that the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: a file is neither a journal nor a trace, or one of each kind.
+    """
+    paths = (arguments.one, arguments.other)
+    if arguments.lines < 0:
+        raise UsageError(f"is {arguments.lines}; give 0 or more", field="--lines")
+    kinds = {_is_journal(path) for path in paths}
+    if len(kinds) > 1:
+        raise UsageError("one is a journal and the other is not; give two journals, or two files of --trace")
+    if not kinds.pop():
+        return ENDED_WELL if compare_texts(*paths, arguments.lines, sys.stdout) else FOUND_PROBLEMS
+    return _Comparison(read_journal(paths[0]), read_journal(paths[1]), arguments.lines).run()
+
+
+def _is_journal(path: str) -> bool:
+    try:
+        with open(path, "rb") as file:
+            return file.read(len(MARK)) == MARK
+    except OSError as error:
+        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+
+
+class _Comparison:
+    """Compares two journals by replaying both."""
+
+    def __init__(self, one: Journal, other: Journal, lines: int) -> None:
+        self._journals = (one, other)
+        self._lines = lines
+
+    def run(self) -> int:
+        """Compare, and say what was found; the exit status."""
+        one, other = self._journals
+        for line in differences(one, other):
+            print(line)
+        if one.end is not None and other.end is not None and one.end.trace == other.end.trace:
+            print(f"the same run: all {one.end.records:,} records are alike\ntrace: {one.end.trace}")
+            return ENDED_WELL
+        index, agreed = self._first_difference()
+        if index is None:
+            print(f"all {agreed:,} records that can be replayed are alike")
+            return self._without_difference()
+        looks = (self._look(one, index), self._look(other, index))
+        print(f"\nthe first {index:,} records are alike; record {index:,} differs (counted from 0)")
+        show_sides(Finding((one.path, other.path), index, looks), sys.stdout)
+        return FOUND_PROBLEMS
+
+    def _first_difference(self) -> tuple[int | None, int]:
+        with contextlib.ExitStack() as stack:
+            runs = [stack.enter_context(started(_plan(each))) for each in self._journals]
+            try:
+                parting, agreed = first_parting([run.reader for run in runs])
+            except RunEndedError:
+                raise failure(runs) from None
+            return (None if parting is None else parting.index), agreed
+
+    def _look(self, journal: Journal, index: int) -> Look:
+        with started(_plan(journal, index, self._lines)) as run:
+            facts = facts_of(run)
+        return Look.from_dict(facts)
+
+    def _without_difference(self) -> int:
+        """The replays are alike: then the journals are, or one of the replays is not what was recorded."""
+        ends = [journal.end for journal in self._journals]
+        if None in ends:
+            return ENDED_WELL
+        print("and yet the recorded runs were not: a replay is not what was recorded; `cfepy replay` says where")
+        return FOUND_PROBLEMS
+
+
+def _plan(journal: Journal, look_at: int | None = None, lines: int = 0) -> Plan:
+    return Plan({}, look_at=look_at, journal=str(Path(journal.path).resolve()), lines=lines)

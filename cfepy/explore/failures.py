@@ -1,0 +1,162 @@
+"""What went wrong in a run: collected while it flies, and read from its numbers when it is over.
+
+May import cfepy.mission and everything to its left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from cfepy.attachment import Attachment
+from cfepy.evs.events import CRITICAL, ERROR
+from cfepy.explore import verdict
+from cfepy.explore.console_errors import TracebackReader
+from cfepy.explore.verdict import Failure
+from cfepy.mission.mission import Mission
+from cfepy.mission.processor import CORE_APPS
+from cfepy.mission.results import end_of, ended_badly
+from cfepy.mission.script_packets import EVENT_IDS, Event
+from cfepy.mission.script_verdicts import OVER, Outcome
+from cfepy.mission.tracebacks import app_traceback, reason
+from cfepy.mission.watch import PacketWatch, Seen
+from cfepy.rtos import Task
+from cfepy.rtos.units import NS_PER_S
+from cfepy.sb import SoftwareBus
+
+EVENT_LEVELS = {"error": (ERROR, CRITICAL), "critical": (CRITICAL,), "none": ()}
+"""Which events count as failures, by what `--events` of `cfepy explore` says."""
+
+
+class FailureWatch(Attachment):
+    """Collects what goes wrong in a run.
+
+    Args:
+        events: a key of EVENT_LEVELS.
+
+    Attributes:
+        trouble: errors of cfepy's own tasks, a traceback each; they say nothing about the mission.
+        end_ns: virtual time at the end of the run.
+    """
+
+    def __init__(self, events: str = "error") -> None:
+        self.trouble: list[str] = []
+        self.end_ns = 0
+        self._levels = EVENT_LEVELS[events]
+        self._found: list[Failure] = []
+        self._circles: list[Failure] = []
+        self._tracebacks = TracebackReader()
+        self._events = PacketWatch(self._take_event, EVENT_IDS.__contains__)
+        self._mission: Mission | None = None
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        return self._events.bus(base) if self._levels else base
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._mission = mission
+        mission.kernel.on_task_error = self._watched(mission.kernel.on_task_error)
+        mission.console.record = self._reading(mission.console.record)
+
+    def conclude(self) -> None:
+        """See `Attachment.conclude`: who waits for each other now does so for ever."""
+        assert self._mission is not None
+        self.end_ns = self._mission.kernel.now
+        self._circles = list(_deadlocks(self._mission))
+
+    def failures(self, outcome: Outcome | None) -> tuple[Failure, ...]:
+        """All that there is to say, by time; what is true at the end comes last.
+
+        Args:
+            outcome: of the script that the run had.
+        """
+        assert self._mission is not None
+        mission = self._mission
+        found = [*self._found, *self._tracebacks.found, *_resets(mission), *_violations(mission), *_missed(outcome)]
+        found += _overruns(mission)
+        found.sort(key=lambda failure: failure.at_ns or 0)
+        return (*found, *self._circles, *_bad_ends(mission, found))
+
+    def _reading(self, record: Callable[[str], object] | None) -> Callable[[str], None]:
+        """What the console gives its lines to, with a look at them."""
+
+        def take(line: str) -> None:
+            if record is not None:
+                record(line)
+            assert self._mission is not None
+            self._tracebacks.take(line, self._mission.kernel.now)
+
+        return take
+
+    def _watched(self, handle: Callable[[Task, BaseException], bool]) -> Callable[[Task, BaseException], bool]:
+        """What the kernel calls for an exception that comes out of a task, with a look at it."""
+
+        def on_task_error(task: Task, error: BaseException) -> bool:
+            if task.owner is not None:
+                self._take_death(task, error)
+            return handle(task, error)
+
+        return on_task_error
+
+    def _take_death(self, task: Task, error: BaseException) -> None:
+        assert self._mission is not None
+        if task.owner.name in CORE_APPS:
+            self.trouble.append(app_traceback(error))
+        else:
+            now_ns = self._mission.kernel.now
+            self._found.append(Failure(verdict.DIED, task.owner.name, reason(error), now_ns, app_traceback(error)))
+
+    def _take_event(self, seen: Seen) -> None:
+        event = Event.of(seen)
+        if event.event_type in self._levels and event.app not in CORE_APPS:
+            text = f"{event.type_name} event {event.event_id}: {event.text}"
+            self._found.append(Failure(verdict.EVENT, event.app, text, seen.at_ns))
+
+
+def _resets(mission: Mission) -> Iterator[Failure]:
+    for reset in mission.record.resets:
+        if reset.fault:
+            yield Failure(verdict.RESET, "", reset.reason, reset.at_ns)
+
+
+def _violations(mission: Mission) -> Iterator[Failure]:
+    for each in mission.record.invariants.values():
+        if each.first is not None:
+            sender = f"sent by {each.first.sender}: " if each.first.sender else ""
+            detail = f"{sender}{each.first.detail}"
+            yield Failure(verdict.INVARIANT, each.name, each.first.text, each.first.at_ns, detail)
+
+
+def _missed(outcome: Outcome | None) -> Iterator[Failure]:
+    """Steps of the script that did not go well; those that were never reached follow from the one before."""
+    for each in () if outcome is None else outcome.verdicts:
+        if not each.ok and each.detail != OVER:
+            who = f"{outcome.file.rpartition('/')[2]}:{each.line}"  # type: ignore[union-attr]  # there are verdicts
+            text = f"{each.step}: {each.detail}" if each.detail else each.step
+            yield Failure(verdict.EXPECTATION, who, text, round(each.at_s * NS_PER_S))
+
+
+def _deadlocks(mission: Mission) -> Iterator[Failure]:
+    """Tasks that wait for each other, or for one that has ended."""
+    for circle in mission.kernel.deadlocked():
+        owners = dict.fromkeys(wait.task.owner.name for wait in circle if wait.task.owner is not None)
+        yield Failure(verdict.DEADLOCK, " and ".join(owners), "; ".join(map(str, circle)))
+
+
+def _overruns(mission: Mission) -> Iterator[Failure]:
+    for check in mission.record.deadlines:
+        result = check.result()
+        if result.first_at_s is not None:
+            text = f"{result.kind} {result.limit_text} was missed"
+            yield Failure(
+                verdict.DEADLINE, result.owner, text, round(result.first_at_s * NS_PER_S), result.problem or ""
+            )
+
+
+def _bad_ends(mission: Mission, found: list[Failure]) -> Iterator[Failure]:
+    """Applications and nodes that ended themselves with an error, and did not die of an exception before."""
+    dead = {failure.who for failure in found if failure.kind in (verdict.DIED, verdict.RAISED)}
+    for name in ended_badly(mission):
+        end = None if mission.ros is None else mission.ros.ended.get(name)
+        if name not in dead and (end is None or end.name not in dead):
+            yield Failure(verdict.ENDED, name, end_of(mission, name))

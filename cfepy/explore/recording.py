@@ -1,0 +1,134 @@
+"""A run with an eye on a few tasks: where in its source each one was whenever another could have got in.
+
+It looks on: the run is that of the schedule. May import everything to the left of cfepy.explore.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from pathlib import PurePath
+from types import FrameType
+from typing import Any
+
+from cfepy.attachment import Attachment
+from cfepy.mission.determinism_look import Line, is_library, stack_of
+from cfepy.mission.message_watch import Heard, MessageWatch
+from cfepy.mission.mission import Mission
+from cfepy.mission.spec import MissionSpec
+from cfepy.mission.topics import plain
+from cfepy.mission.values import line_of
+from cfepy.rtos.policy import HOLD, Decision, Policy
+from cfepy.sb import SoftwareBus
+
+AT, WAITS, SENDS, PREEMPTED, ORDERED = "at", "waits", "sends", "preempted", "ordered"
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """Something that a task did.
+
+    Attributes:
+        at_ns: virtual time.
+        task: its name.
+        kind: AT a line of source, WAITS for something, SENDS a message, is PREEMPTED by `text`, or `text` is ORDERED
+            before it.
+        text: what.
+    """
+
+    at_ns: int
+    task: str
+    kind: str
+    text: str
+
+
+class TaskLook(Attachment):
+    """Keeps what some tasks do.
+
+    Args:
+        spec: the mission.
+        tasks: their names.
+
+    Attributes:
+        rows: in the order in which it happened.
+    """
+
+    def __init__(self, spec: MissionSpec, tasks: Collection[str]) -> None:
+        self.rows: list[Row] = []
+        self._tasks = frozenset(tasks)
+        self._messages = MessageWatch(spec, self._take_message, ("*",))
+        self._mission: Mission | None = None
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        return self._messages.bus(base)
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`; every wait goes through the kernel's `block`, which is looked up anew each time."""
+        self._mission = mission
+        self._messages.begin(mission)
+        mission.kernel.block = self._blocking(mission.kernel.block)  # type: ignore[method-assign]
+
+    def policy(self, inner: Policy) -> Policy:
+        """A policy that decides as another does, and looks at who is where when it is asked."""
+        return _LookingPolicy(inner, self)
+
+    def add(self, task: str, kind: str, text: str) -> None:
+        """Keep something, if the task is one of those."""
+        if task in self._tasks and self._mission is not None:
+            row = Row(self._mission.kernel.now, task, kind, text)
+            if not self.rows or (self.rows[-1].task, self.rows[-1].kind, self.rows[-1].text) != (task, kind, text):
+                self.rows.append(row)
+
+    def look(self, frame: FrameType | None) -> None:
+        """Keep where the running task is."""
+        if self._mission is not None and self._mission.kernel.current.name in self._tasks:
+            text = place_text(frame)
+            if text:
+                self.add(self._mission.kernel.current.name, AT, text)
+
+    def _blocking(self, block: Callable[[], Any]) -> Callable[[], Any]:
+        def wait() -> Any:
+            assert self._mission is not None
+            task = self._mission.kernel.current
+            if task.name in self._tasks:
+                self.look(sys._getframe(1))
+                what = "its time" if task.waits is None else task.waits.what
+                self.add(task.name, WAITS, f"waits for {what}")
+            return block()
+
+        return wait
+
+    def _take_message(self, heard: Heard) -> None:
+        assert self._mission is not None
+        try:
+            values = plain(heard.msg)
+        except Exception as error:  # the type of its messages is not known
+            values = {"?": str(error)}
+        task = self._mission.kernel.current.name
+        self.look(sys._getframe(1))
+        self.add(task, SENDS, f"sends {heard.topic}: {line_of(values) if isinstance(values, dict) else values}")
+
+
+class _LookingPolicy(Policy):
+    def __init__(self, inner: Policy, look: TaskLook) -> None:
+        super().__init__(inner.any_priority, inner.hold_ns)
+        self._inner = inner
+        self._look = look
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`. It is asked in the task that gives the processor away."""
+        choice = self._inner.choose(decision)
+        self._look.look(sys._getframe(1))
+        if choice:
+            first = decision.tasks[0].name
+            chosen = decision.tasks[choice].name if choice < len(decision.tasks) else HOLD
+            self._look.add(first, PREEMPTED if decision.running else ORDERED, chosen)
+        return choice
+
+
+def place_text(frame: FrameType | None) -> str:
+    """The innermost line of the mission's own code in a stack: `arm.py:12 self.count += 1`; empty without one."""
+    lines: list[Line] = [line for line in stack_of(frame) if not is_library(line.file)]
+    return f"{PurePath(lines[-1].file).name}:{lines[-1].number} {lines[-1].source}" if lines else ""

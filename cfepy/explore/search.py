@@ -1,0 +1,88 @@
+"""Which schedules are flown: from seeds, one policy after the other, or systematically.
+
+A search gives the same schedules in the same order however many processes fly them. May import cfepy.rtos.
+"""
+
+from __future__ import annotations
+
+from cfepy.explore.verdict import Verdict
+from cfepy.rtos.depth_first import DepthFirst
+from cfepy.rtos.schedule import Schedule
+
+POLICIES = ("all", "random", "pct", "dfs")
+PCT_DEPTH, DFS_DEPTH = 3, 2
+PORTFOLIO_DEPTHS = (2, 3, 1)
+"""Of PCT in the policy `all`: most races need two ordered events, some three, and starvation one."""
+
+
+class SeededSearch:
+    """Schedules from seeds, each with one of its own: of one kind, or of several by turns.
+
+    Args:
+        kinds: schedules whose seed is replaced.
+        first_seed: of the first one.
+    """
+
+    def __init__(self, kinds: tuple[Schedule, ...], first_seed: int = 0) -> None:
+        self._kinds = kinds
+        self._number = 0
+        self._first_seed = first_seed
+
+    def next(self) -> str | None:
+        """See `cfepy.explore.campaign.Search`: without end."""
+        number, self._number = self._number, self._number + 1
+        return self._kinds[number % len(self._kinds)].with_seed(self._first_seed + number).text()
+
+    def tell(self, number: int, verdict: Verdict) -> None:
+        """See `cfepy.explore.campaign.Search`: nothing is learned."""
+
+
+class SystematicSearch:
+    """All schedules with few deviations from fifo, those with fewer first.
+
+    Args:
+        depth: how many preemptions, and how many other changes of order, there are at most.
+        options: a schedule whose options all have.
+    """
+
+    def __init__(self, depth: int, options: Schedule) -> None:
+        self._tree = DepthFirst(depth, depth, options)
+
+    def next(self) -> str | None:
+        """See `cfepy.explore.campaign.Search`."""
+        schedule = self._tree.next()
+        return None if schedule is None else schedule.text()
+
+    def tell(self, number: int, verdict: Verdict) -> None:
+        """See `cfepy.explore.campaign.Search`."""
+        widths = [abs(width) for width in verdict.widths]
+        self._tree.learn(Schedule.parse(verdict.schedule), widths, [width < 0 for width in verdict.widths])
+
+
+def make_search(
+    policy: str, depth: int | None, steps: int, options: Schedule, first_seed: int = 0
+) -> SeededSearch | SystematicSearch:
+    """The search that a command asks for.
+
+    Args:
+        policy: one of POLICIES.
+        depth: of the bugs that PCT looks for, and the most preemptions of a systematic search; None takes 3 and 2,
+            and for `all` PCT of depths 1 to 3.
+        steps: decisions of a run, about, as the reference run had them.
+        options: a schedule whose options all have.
+        first_seed: of the first schedule.
+    """
+    steps = max(steps, 1)
+    if policy == "dfs":
+        return SystematicSearch(DFS_DEPTH if depth is None else depth, options)
+    random = Schedule("random", any_priority=options.any_priority, hold_ns=options.hold_ns)
+    depths = PORTFOLIO_DEPTHS if depth is None and policy == "all" else (PCT_DEPTH if depth is None else depth,)
+    pct = [
+        Schedule("pct", depth=each, steps=steps, any_priority=options.any_priority, hold_ns=options.hold_ns)
+        for each in depths
+    ]
+    if policy == "random":
+        return SeededSearch((random,), first_seed)
+    if policy == "pct":
+        return SeededSearch(tuple(pct), first_seed)
+    return SeededSearch((random, *pct), first_seed)

@@ -1,0 +1,216 @@
+"""`FaultInjector`: a plan at work on a mission. An attachment: the mission and its parts know nothing of it.
+
+A run without a plan has no injector and pays nothing. With one, only what its faults strike is wrapped: the bus for
+messages, the kernel's calls for applications that hang, one function for calls that fail. Imports its neighbours.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Sequence
+from functools import partial
+from random import Random
+from typing import Any
+
+from cfepy.attachment import Attachment
+from cfepy.faults import apps, memory
+from cfepy.faults.agenda import Agenda
+from cfepy.faults.bus import faulty
+from cfepy.faults.calls import CallFault
+from cfepy.faults.clocks import Drift, Jump, LostSignal
+from cfepy.faults.gate import Gate
+from cfepy.faults.messages import CLASSES, DATAGRAM_CLASSES, MessageFault, Setting
+from cfepy.faults.names import Names
+from cfepy.faults.network import strike_datagrams
+from cfepy.faults.pipes import Fill
+from cfepy.faults.plan import Fault, FaultPlan
+from cfepy.faults.plan_text import DATAGRAMS
+from cfepy.faults.report import FaultReport
+from cfepy.faults.resets import ProcessorFault
+from cfepy.faults.strain import Strain
+from cfepy.faults.switchboard import MessageSwitchboard
+from cfepy.sb import SoftwareBus
+from cfepy.sb.pipe import Pipe
+
+NAMES = "cfepy.mission.fault_names"
+"""What knows the names in a mission; loaded by name, since it stands above this package."""
+
+Strike = Callable[[Any], object]
+
+
+class FaultInjector(Attachment):
+    """Lets the faults of a plan happen.
+
+    Give it to `Mission(attachments=[...])`, as the last one: scripts and bags before it then see what faults left of a
+    message for all.
+
+    Args:
+        plan: the faults.
+        names: what the mission calls its messages; None finds it by itself.
+
+    Attributes:
+        report: what became of the faults; there is one when the mission has begun.
+    """
+
+    def __init__(self, plan: FaultPlan, names: Names | None = None) -> None:
+        self.plan = plan
+        self.report: FaultReport
+        self._names = names
+        self._board: MessageSwitchboard | None = None
+        self._power_ups: list[Strike] = []
+        self._first: list[Strike] = []
+        self._gates: dict[str, Gate] = {}
+        self._processor: Any = None
+        self._strain: Strain | None = None
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        return faulty(base, _Late(self)) if any(_needs_bus(fault) for fault in self.plan.faults) else base
+
+    def begin(self, mission: Any) -> None:
+        """See `Attachment.begin`."""
+        kernel = self._kernel = mission.kernel
+        self.report = FaultReport(self.plan.faults, lambda: kernel.now, mission.console.write, mission.trace.note)
+        mission.record.faults = self
+        self._agenda = Agenda(kernel)
+        self._gates = {
+            fault.name: Gate(fault.when, Random(f"{mission.seed}:{fault.name}")) for fault in self.plan.faults
+        }
+        names = self._names if self._names is not None else importlib.import_module(NAMES).MissionNames()
+        names.begin(mission)
+        setting = Setting(kernel, self._agenda, self.report, names)
+        on_bus = [self._message(fault, CLASSES, setting) for fault in self.plan.faults if _is_message(fault)]
+        self._board = MessageSwitchboard(on_bus, names)
+        datagrams = [self._message(f, DATAGRAM_CLASSES, setting) for f in self.plan.faults if _is_datagram(f)]
+        if datagrams:
+            strike_datagrams(mission.network, datagrams)
+        for fault in self.plan.faults:
+            if not _is_message(fault) and not _is_datagram(fault):
+                self._prepare(fault)
+
+    def power_up(self, processor: Any) -> None:
+        """See `Attachment.power_up`."""
+        self._processor = processor
+        for strike in self._power_ups:
+            strike(processor)
+        for strike in self._first:
+            strike(processor)
+        self._first = []
+        self._agenda.power_up()
+
+    def _message(self, fault: Fault, classes: dict[str, type[MessageFault]], setting: Setting) -> MessageFault:
+        return classes[fault.kind](fault, self._gates[fault.name], setting)
+
+    def _prepare(self, fault: Fault) -> None:
+        """Have a fault that is none of a message happen at its times."""
+        gate, report, kernel = self._gates[fault.name], self.report, self._kernel
+        if fault.kind == "fail":
+            self._power_ups.append(CallFault(fault, gate, report, kernel).power_up)
+        elif fault.kind == "lose_1hz":
+            self._power_ups.append(LostSignal(fault, gate, report, kernel).power_up)
+        elif fault.kind == "drift_clock":
+            self._at(fault.when.after_ns, Drift(fault, gate, self._agenda, report).strike)
+        elif fault.kind == "slow":
+            self._kernel_strain().burdens.append(apps.Slow(fault, gate, report, kernel).burden)
+        elif fault.kind in memory.CLASSES:
+            self._at_times(fault, memory.CLASSES[fault.kind](fault, gate.random, report).strike)
+        elif fault.kind in ("crash", "hang", "stop", "restart"):
+            self._prepare_app(fault)
+        else:
+            self._at_times(fault, self._once(fault))
+
+    def _once(self, fault: Fault) -> Strike:
+        """What happens at each of a fault's times."""
+        if fault.kind == "fill":
+            return Fill(fault, self._agenda, self.report).strike
+        return (Jump if fault.kind == "jump_clock" else ProcessorFault)(fault, self.report).strike
+
+    def _prepare_app(self, fault: Fault) -> None:
+        """At its times, or when the application has taken certain messages out of its pipes."""
+        for name in fault.target:
+            strike = self._app_fault(fault, name).strike
+            if not _counts_messages(fault):
+                self._at_times(fault, strike)
+            elif self._board is not None:
+                self._board.on_take.append(partial(self._on_take, fault, name, strike))
+
+    def _app_fault(self, fault: Fault, name: str) -> apps.AppFault:
+        if fault.kind == "hang":
+            return apps.Hang(fault, name, self.report, self._kernel_strain())
+        return apps.CLASSES[fault.kind](fault, name, self.report)
+
+    def _on_take(self, fault: Fault, app_name: str, strike: Strike, packet: bytes, pipe: Pipe) -> None:
+        """An application takes a message: have the fault happen at this instant, if that is what it waits for."""
+        if pipe.app_name != app_name or self._board is None:
+            return
+        wanted = fault.options.get("message")
+        if wanted is not None and not self._board.is_called(packet, wanted):
+            return
+        if self._gates[fault.name].opens(self._kernel.now):
+            self._agenda.add(self._kernel.now, lambda: strike(self._processor))
+
+    def _kernel_strain(self) -> Strain:
+        if self._strain is None:
+            self._strain = Strain(self._kernel)
+        return self._strain
+
+    def _at_times(self, fault: Fault, strike: Strike) -> None:
+        """At its instants; what has none happens before the boot, and so does a change of memory at 0."""
+        for when_ns in fault.when.at_ns or (0,):
+            if when_ns == 0 and fault.kind in memory.CLASSES:
+                self._first.append(strike)
+            else:
+                self._at(when_ns, strike)
+
+    def _at(self, when_ns: int, strike: Strike) -> None:
+        self._agenda.add(when_ns, lambda: strike(self._processor), survives=True)
+
+    # -- the report ----------------------------------------------------------------------------------------------------
+
+    def rows(self) -> list[dict[str, Any]]:
+        """What became of each fault; see `FaultReport.rows`."""
+        for name, gate in self._gates.items():
+            record = self.report.records[name]
+            if not record.times and not gate.fired and not _is_timed(record.fault):
+                unsent = _is_message(record.fault) and not gate.seen
+                record.why_not = "no such message was sent to anybody" if unsent else gate.why_not()
+        return self.report.rows()
+
+
+class _Late:
+    """The switchboard of an injector, which is made after the class of the bus."""
+
+    def __init__(self, injector: FaultInjector) -> None:
+        self._injector = injector
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._injector._board, name)
+
+
+def _is_datagram(fault: Fault) -> bool:
+    return fault.kind in CLASSES and fault.target[0].startswith(DATAGRAMS)
+
+
+def _is_message(fault: Fault) -> bool:
+    return fault.kind in CLASSES and not _is_datagram(fault)
+
+
+def _counts_messages(fault: Fault) -> bool:
+    """Whether an application's fault waits for messages, and not for a time alone."""
+    return not fault.when.at_ns or "message" in fault.options
+
+
+def _needs_bus(fault: Fault) -> bool:
+    return _is_message(fault) or (fault.kind in ("crash", "hang", "stop", "restart") and _counts_messages(fault))
+
+
+def _is_timed(fault: Fault) -> bool:
+    """Whether it happens at a time, whatever goes on then."""
+    if fault.kind in ("crash", "hang", "stop", "restart"):
+        return not _counts_messages(fault)
+    return fault.kind in ("fill", "jump_clock", "reset", "drift_clock", *memory.CLASSES)
+
+
+def injectors(attachments: Sequence[Attachment]) -> list[FaultInjector]:
+    """Those among attachments that let faults happen."""
+    return [each for each in attachments if isinstance(each, FaultInjector)]

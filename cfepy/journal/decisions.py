@@ -1,0 +1,65 @@
+"""The decisions of a run's policy: noted while it runs, given again when it is replayed. May import cfepy.rtos."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from cfepy.rtos.policy import Decision, Policy
+
+
+class NotedPolicy(Policy):
+    """Asks another policy, and keeps what is not fifo's answer.
+
+    Args:
+        inner: who decides.
+
+    Attributes:
+        count: how many decisions there were.
+    """
+
+    def __init__(self, inner: Policy) -> None:
+        super().__init__(inner.any_priority, inner.hold_ns)
+        self.count = 0
+        self._inner = inner
+        self._last = -1
+        self._pending: list[int] = []  # the distance from one such decision to the next, and the answer, in turn
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`."""
+        choice = self._inner.choose(decision)
+        if choice:
+            self._pending += (self.count - self._last, choice)
+            self._last = self.count
+        self.count += 1
+        return choice
+
+    def taken(self) -> list[int]:
+        """What there is since the last call: gaps and answers, in turn."""
+        pending, self._pending = self._pending, []
+        self._last = self.count - 1
+        return pending
+
+
+class RetoldPolicy(Policy):
+    """Gives the recorded answers again; asks the schedule's own policy for those that the journal does not have.
+
+    Args:
+        answers: those that were not fifo's, by number of the decision.
+        known: how many decisions they cover.
+        own: the schedule's own policy.
+    """
+
+    def __init__(self, answers: Mapping[int, int], known: int, own: Policy) -> None:
+        super().__init__(own.any_priority, own.hold_ns)
+        self._answers = answers
+        self._known = known
+        self._own = own
+        self._count = -1
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`."""
+        self._count += 1
+        own = self._own.choose(decision)
+        if self._count >= self._known:
+            return own
+        return min(self._answers.get(self._count, 0), decision.width - 1)

@@ -1,0 +1,240 @@
+"""`JournalRecorder`: writes down a run while it goes on.
+
+A message costs nothing: what is written are files, what comes from outside, and how far the run has come, each time
+that some thousands of records were hashed anyway. May import cfepy.mission and its neighbours in cfepy.journal.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from cfepy.attachment import Attachment
+from cfepy.journal.decisions import NotedPolicy
+from cfepy.journal.facts import environ_of, host_facts, versions
+from cfepy.journal.frames import FrameWriter
+from cfepy.journal.journal import ANSWER, CHECK, END, FILE, FOLDER, HEADER, PAUSE, Header
+from cfepy.journal.mission_files import CARRIED, MOST_FILES, Carrier, files_of
+from cfepy.journal.reading import ReadFiles
+from cfepy.journal.result_digest import digest_of
+from cfepy.mission import outside
+from cfepy.mission.course import OVER
+from cfepy.mission.mission import Mission
+from cfepy.mission.results import Results
+from cfepy.mission.run_plan import Flown, RunPlan
+from cfepy.mission.script_verdicts import Outcome
+from cfepy.rtos.policy import Policy
+from cfepy.rtos.schedule import Schedule
+from cfepy.status import UsageError
+
+CHECK_NS = 100_000_000  # virtual time between two marks of how far a run has come, when it stops more often
+
+
+class JournalRecorder(Attachment):
+    """Writes a journal; use as a context manager around reading the mission, and the run.
+
+    Args:
+        path: the file.
+        plan: what is run.
+        carried: bytes of the mission's files that the journal carries; 0 for none.
+        paced: times real time, for a run that is joined to the computer's network.
+        policy: who goes first in the run, None for fifo; take `policy` of the recorder for the mission.
+
+    Raises:
+        UsageError: the file cannot be written.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        plan: RunPlan,
+        *,
+        carried: int = CARRIED,
+        paced: float | None = None,
+        policy: Policy | None = None,
+    ) -> None:
+        self.policy = None if policy is None else NotedPolicy(policy)
+        self._path = path
+        self._plan = plan
+        self._paced = paced
+        self._carrier = Carrier(carried)
+        self._reading = ReadFiles(self._file, self._folder)
+        self._reading.forget(str(path))
+        self._files: list[str] = []  # read before the header is written
+        self._known: set[str] = set()
+        self._error: OSError | None = None
+        self._finished = self._begun = False
+        self._count = 0
+        self._checked_ns = 0
+        self._digest = ""
+        self._mission: Mission | None = None
+        self._pause: tuple[int, int] | None = None
+        self._events: list[list[Any]] = []
+        try:
+            self._writer = FrameWriter(path)
+        except OSError as error:
+            raise UsageError(f"cannot be written: {error.strerror}", file=path, field="--record") from None
+
+    def __enter__(self) -> JournalRecorder:
+        self._reading.__enter__()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self._reading.__exit__()
+        self._writer.close()
+        if self._error is not None and kind is None:
+            raise UsageError(f"could not be written: {self._error.strerror}", file=self._path, field="--record")
+
+    # -- the run -----------------------------------------------------------------------------------------------------
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`: write down what is known."""
+        self._mission = mission
+        self._write(HEADER, self._header(mission).to_dict())
+        self._begun = True
+        for path in dict.fromkeys((*self._files, *files_of(mission.spec))):
+            self._file(path)
+        mission.outside.listener = self._from_outside
+        mission.trace.also(self._hashed)
+
+    def mark(self) -> None:
+        """The run stands still: write down how far it has come, unless that was done a short time ago."""
+        mission = self._mission
+        if mission is not None:
+            self._write_pause()
+            if mission.kernel.now - self._checked_ns >= CHECK_NS:
+                mission.trace.flush()
+
+    def finish(self) -> None:
+        """See `Attachment.finish`; the digest of the run was taken."""
+        mission = self._mission
+        assert mission is not None
+        self._write_pause()
+        self._check(mission.kernel.now)
+        mission.outside.listener = None
+        self._finished = True
+
+    def end(self, results: Results, outcome: Outcome | None = None, reason: str = OVER) -> None:
+        """Write down what the run came to, after all.
+
+        Args:
+            results: its numbers.
+            outcome: of its script.
+            reason: why it is over (`cfepy.mission.course`).
+        """
+        mission = self._mission
+        if mission is None or not self._finished:
+            return
+        body = {
+            "reason": reason,
+            "until_ns": mission.outside.until_ns,
+            "visits": mission.outside.visits,
+            "now_ns": self._checked_ns,
+            "records": self._count,
+            "trace": results.trace,
+            "results": digest_of(results),
+            "outcome": {} if outcome is None else outcome.to_dict(),
+        }
+        self._write(END, body)
+
+    def _header(self, mission: Mission) -> Header:
+        spec, policy = mission.spec, self.policy
+        return Header(
+            plan=self._plan,
+            paced=self._paced,
+            policy=None if policy is None else {"any_priority": policy.any_priority, "hold_ns": policy.hold_ns},
+            mission=spec.name,
+            folder=str(spec.folder),
+            startup=str(spec.script),
+            cwd=os.getcwd(),
+            environ=environ_of(spec),
+            versions=versions(),
+            host=host_facts(),
+        )
+
+    # -- what is written ---------------------------------------------------------------------------------------------
+
+    def _file(self, path: str) -> None:
+        """A file of the mission's."""
+        if not self._begun:
+            self._files.append(path)
+        elif path not in self._known:
+            self._known.add(path)
+            record = self._carrier.record(path)
+            self._write(FILE, {name: getattr(record, name) for name in ("path", "size", "sha256", "packed")})
+
+    def _folder(self, path: str, names: list[str]) -> None:
+        """A node looks into a folder."""
+        kinds = {name: os.path.isdir(os.path.join(path, name)) for name in names[:MOST_FILES]}
+        self._write(FOLDER, {"path": path, "names": kinds})
+
+    def _from_outside(self, event: outside.Event) -> None:
+        mission = self._mission
+        assert mission is not None
+        if event.kind == outside.ANSWER:
+            self._write_pause()
+            self._write(ANSWER, {"values": event.values})
+            return
+        pause = (mission.outside.until_ns, mission.outside.visits)
+        if pause != self._pause:
+            self._write_pause()
+            self._pause = pause
+        self._events.append([event.kind, event.values])
+
+    def _write_pause(self) -> None:
+        if self._pause is not None:
+            until_ns, visits = self._pause
+            self._write(PAUSE, {"until_ns": until_ns, "visits": visits, "events": self._events})
+            self._pause, self._events = None, []
+
+    def _hashed(self, records: Sequence[bytes]) -> None:
+        """A batch of records was hashed."""
+        mission = self._mission
+        assert mission is not None
+        if self._finished:
+            return
+        self._count += len(records) - records.count(b"")  # the host's empty marks are no records
+        self._digest = mission.trace.hashed
+        self._check(mission.kernel.now)
+
+    def _check(self, now_ns: int) -> None:
+        policy = self.policy
+        self._checked_ns = now_ns
+        body = {
+            "at": (now_ns, self._count, self._digest),
+            "decisions": [] if policy is None else policy.taken(),
+            "decided": 0 if policy is None else policy.count,
+        }
+        self._write(CHECK, body)
+
+    def _write(self, kind: str, body: dict[str, Any]) -> None:
+        """Write a frame; that the disk is full is told at the end, for it must not change the run."""
+        if self._error is None:
+            try:
+                self._writer.write(kind, body)
+            except OSError as error:
+                self._error = error
+
+
+def record(plan: RunPlan, path: str | Path, attachments: Sequence[Attachment] = (), **options: Any) -> Flown:
+    """Fly a plan to its end, and write its journal.
+
+    Args:
+        plan: what to run.
+        path: of the journal.
+        attachments: what looks on.
+        options: of `RunPlan.fly`, such as console and trace.
+
+    Raises:
+        UsageError: something in the plan is wrong, or the journal cannot be written.
+        CfeError: the mission cannot boot.
+    """
+    with JournalRecorder(path, plan, policy=Schedule.parse(plan.schedule, plan.seed).policy()) as recorder:
+        flown = plan.fly([*attachments, recorder], policy=recorder.policy, **options)
+        recorder.end(flown.results, flown.outcome)
+    return flown

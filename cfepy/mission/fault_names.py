@@ -1,0 +1,127 @@
+"""Names of a mission's messages for fault plans, and their fields (`cfepy.faults.names.Names`).
+
+ROS topics by their names, commands and telemetry by those of the dictionary, all of them by MsgId. A fault injector
+loads this module by name, since it stands below.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from cfepy import msg
+from cfepy.mission.dictionary import Dictionary, dictionary_of
+from cfepy.mission.mission import Mission
+from cfepy.mission.msg_names import names_of
+from cfepy.mission.topics import Topic, library_of, topics_of
+from cfepy.msg import Command, Telemetry
+from cfepy.status import CfeError, UsageError
+
+_STEP = re.compile(r"[^.\[\]]+")
+
+
+class MissionNames:
+    """What one mission calls its messages; what it executes to find out is what `cfepy cmd` executes, too."""
+
+    def __init__(self) -> None:
+        self._mission: Mission | None = None
+        self._dictionary = Dictionary()
+        self._constants: dict[int, str] = {}
+
+    def begin(self, mission: Mission) -> None:
+        """See `cfepy.faults.names.Names`."""
+        self._mission = mission
+        self._dictionary = dictionary_of(mission.spec)
+        self._constants = names_of(mission.spec)
+
+    def version(self) -> object:
+        """See `cfepy.faults.names.Names`."""
+        ros = None if self._mission is None else self._mission.ros
+        return None if ros is None else (id(ros), len(ros.graph.topics))
+
+    def of(self, packet: bytes | bytearray) -> Sequence[str]:
+        """See `cfepy.faults.names.Names`."""
+        msg_id = packet[0] << 8 | packet[1]
+        topic, entry = self._topic(msg_id), self._entry(packet)
+        names = [each.name for each in (topic, entry) if each is not None]
+        return (*names, *filter(None, [self._constants.get(msg_id)]), f"0x{msg_id:04X}")
+
+    def known(self) -> list[str]:
+        """All names that there are at this time, sent or not."""
+        topics = topics_of(self._mission) if self._mission is not None else []
+        numbers = [f"0x{msg_id:04X}" for msg_id in self._constants]
+        declared = (*self._dictionary.telemetry, *self._dictionary.commands, *self._constants.values())
+        return [*(topic.name for topic in topics), *declared, *numbers]
+
+    def _topic(self, msg_id: int) -> Any:
+        ros = None if self._mission is None else self._mission.ros
+        topics = () if ros is None else ros.graph.topics.values()
+        return next((topic for topic in topics if topic.msg_id == msg_id), None)
+
+    def _entry(self, packet: bytes | bytearray) -> Command | Telemetry | Topic | None:
+        """The declaration of a packet that an application has."""
+        msg_id = packet[0] << 8 | packet[1]
+        if not msg_id & 0x1000:
+            return next((each for each in self._dictionary.telemetry.values() if each.msg_id == msg_id), None)
+        code = packet[6] & 0x7F if len(packet) > 6 else 0
+        commands = [each for each in self._dictionary.commands.values() if each.msg_id == msg_id]
+        return next((each for each in commands if (each.code or 0) == code), None)
+
+    def edit(self, packet: bytes, values: Mapping[str, Any]) -> bytes:
+        """See `cfepy.faults.names.Names`."""
+        topic = self._topic(packet[0] << 8 | packet[1])
+        if topic is not None and not topic.raw:
+            return self._edit_message(packet, topic.name, values)
+        entry = self._entry(packet)
+        if not isinstance(entry, Command | Telemetry):
+            raise UsageError(f"the layout of {self.of(packet)[0]} is not known, so no field of it can be set")
+        header = msg.get_header_size(packet)
+        try:
+            fields = entry.read(packet)
+            for path, value in values.items():
+                _set(fields, path, value, entry.name)
+            return packet[:header] + entry.payload.pack(fields)
+        except CfeError as error:
+            raise UsageError(str(error)) from None
+
+    def _edit_message(self, packet: bytes, name: str, values: Mapping[str, Any]) -> bytes:
+        assert self._mission is not None
+        topic = next(each for each in topics_of(self._mission) if each.name == name)
+        if msg.get_segmentation_flag(packet) != msg.SegmentationFlag.UNSEGMENTED:
+            raise UsageError(f"a message on {name} is sent in segments; no field of one can be set")
+        try:
+            message = library_of(topic).message_class(topic.type)().deserialize(packet[msg.TLM_HEADER_SIZE :])
+            for path, value in values.items():
+                _set(message, path, value, name)
+            payload = message._pack()
+        except UsageError:
+            raise
+        except Exception as error:  # whatever the generated code raises for values that do not fit
+            raise UsageError(f"{name}: {error}") from None
+        changed = bytearray(packet[: msg.TLM_HEADER_SIZE] + payload)
+        msg.set_size(changed, len(changed))
+        return bytes(changed)
+
+
+def _set(whole: Any, path: str, value: Any, owner: str) -> None:
+    """Set a field by its path, such as "pose.position.x" or "ranges[3]"."""
+    steps = _STEP.findall(path)
+    try:
+        for step in steps[:-1]:
+            whole = _part(whole, step)
+        _part(whole, steps[-1])
+        if isinstance(whole, dict):
+            whole[steps[-1]] = value
+        elif isinstance(whole, list):
+            whole[int(steps[-1])] = value
+        else:
+            setattr(whole, steps[-1], value)
+    except (AttributeError, LookupError, ValueError, TypeError):
+        raise UsageError(f"{owner} has no field {path} that can be set") from None
+
+
+def _part(whole: Any, step: str) -> Any:
+    if isinstance(whole, dict):
+        return whole[step]
+    return whole[int(step)] if isinstance(whole, list | tuple) else getattr(whole, step)

@@ -1,0 +1,201 @@
+"""The one door through which anything from outside enters a running mission: datagrams, connections and their bytes.
+
+Whoever brings something in (the ground link, the bridge to real sockets, a replay) does it here, while the run stands
+still between two pieces of it; only a call of the mission's own to somebody outside is answered within a piece. A
+listener is told of each event, so that a journal can have all of them and a replay can do them again. May import
+cfepy.osal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from cfepy.osal.endpoints import Datagram, Place, Stream
+from cfepy.osal.network import Network
+from cfepy.rtos import Kernel
+from cfepy.trace import Trace
+
+LOOPBACK = "127.0.0.1"
+DATAGRAM, CALL, ANSWER, BYTES, TAKEN, ENDED, CLOSED = "datagram", "call", "answer", "bytes", "taken", "ended", "closed"
+ACT = "act"
+
+
+class Event(NamedTuple):
+    """Something that came from outside: its kind, and what belongs to it, as plain values.
+
+    DATAGRAM: port of the mission, host and port of the sender, data. CALL: somebody outside connects: port, host and
+    port of the caller. ANSWER: somebody of the mission connects: host and port of both sides, whether it was answered.
+    Of a connection, by its number from 0: BYTES that came, how many the outside has TAKEN, that the outside ENDED what
+    it sends, that it CLOSED the connection. ACT: somebody has a hand in the mission itself (`cfepy.mission.host_acts`):
+    name and values of the act.
+    """
+
+    kind: str
+    values: tuple[Any, ...]
+
+
+class Outside:
+    """The outside of one mission.
+
+    Args:
+        kernel: the simulated computer's.
+        network: what its sockets are plugged into.
+        trace: gets a note of what comes in.
+
+    Attributes:
+        until_ns: the virtual time until which the present or last piece of the run goes.
+        visits: which piece with that end it is, from 1.
+        listener: is told of each event; None for nobody.
+        do: does acts; the mission puts it here.
+    """
+
+    def __init__(self, kernel: Kernel, network: Network, trace: Trace) -> None:
+        self.until_ns = -1
+        self.visits = 0
+        self.listener: Callable[[Event], object] | None = None
+        self.do: Callable[..., Any]
+        self._kernel = kernel
+        self._network = network
+        self._trace = trace
+        self._streams: list[Stream] = []
+
+    def begin_piece(self, until_ns: int) -> None:
+        """The run goes on until a virtual time in ns."""
+        self.visits = self.visits + 1 if until_ns == self.until_ns else 1
+        self.until_ns = until_ns
+
+    def datagram(self, port: int, source: Place, data: bytes) -> bool:
+        """A datagram arrives at a port; whether anybody took it."""
+        self._tell(DATAGRAM, port, source.host, source.port, data)
+        self._trace.note(f"uplink to {port} at {self._kernel.now}: {data.hex()}")
+        mailbox = self._network.datagrams.find(Place(LOOPBACK, port))
+        return mailbox is not None and mailbox.offer(Datagram(source, Place(LOOPBACK, port), data))
+
+    def call(self, port: int, source: Place) -> OutsideStream | None:
+        """Somebody connects to a port; None when nobody takes connections there."""
+        listener = self._network.streams.find(Place(LOOPBACK, port))
+        if listener is None or not listener.listening or not listener.has_room:
+            return None
+        self._tell(CALL, port, source.host, source.port)
+        return self._keep(listener.connect(source, Place(LOOPBACK, port)))
+
+    def answer(self, source: Place, target: Place, answered: bool) -> tuple[Stream, OutsideStream] | None:
+        """Somebody of the mission connects to the outside, where the call was answered or not.
+
+        Returns:
+            The mission's end of the connection, and the outside's.
+        """
+        self._tell(ANSWER, source.host, source.port, target.host, target.port, answered)
+        if not answered:
+            return None
+        near, far = Stream(source, target), Stream(target, source)
+        near.other, far.other = far, near
+        return near, self._keep(far)
+
+    def act(self, name: str, *values: Any) -> Any:
+        """Somebody has a hand in the mission itself; arguments, result and errors as `HostActs.do`."""
+        self._tell(ACT, name, *values)
+        return self.do(name, *values)
+
+    def repeat(self, event: Event) -> None:
+        """Do again what was told of, but for an ANSWER, which is given when it is asked for.
+
+        Raises:
+            LookupError: it is about a connection that there is not.
+        """
+        kind, values = event
+        if kind == DATAGRAM:
+            port, host, source, data = values
+            self.datagram(port, Place(host, source), data)
+        elif kind == CALL:
+            port, host, source = values
+            self.call(port, Place(host, source))
+        elif kind == ACT:
+            self.act(*values)
+        else:
+            self._repeat_on(self._stream(values[0]), kind, values)
+
+    def _repeat_on(self, stream: OutsideStream, kind: str, values: tuple[Any, ...]) -> None:
+        if kind == BYTES:
+            stream.write(values[1])
+        elif kind == TAKEN:
+            stream.read(values[1])
+        elif kind == ENDED:
+            stream.end()
+        elif kind == CLOSED:
+            stream.close()
+        else:
+            raise LookupError(f"there is no event {kind!r}")
+
+    def _stream(self, number: int) -> OutsideStream:
+        if not 0 <= number < len(self._streams):
+            raise LookupError(f"there is no connection {number}")
+        return OutsideStream(self, number, self._streams[number])
+
+    def _keep(self, stream: Stream) -> OutsideStream:
+        self._streams.append(stream)
+        return OutsideStream(self, len(self._streams) - 1, stream)
+
+    def _tell(self, kind: str, *values: Any) -> None:
+        if self.listener is not None:
+            self.listener(Event(kind, values))
+
+
+class OutsideStream:
+    """The outside's end of a connection with the mission.
+
+    Args:
+        outside: the door.
+        number: of the connection.
+        stream: the end of the virtual connection.
+    """
+
+    def __init__(self, outside: Outside, number: int, stream: Stream) -> None:
+        self._outside = outside
+        self._number = number
+        self._stream = stream
+
+    @property
+    def room(self) -> int:
+        """Bytes that the mission's end would take now."""
+        return self._stream.room
+
+    @property
+    def readable(self) -> bool:
+        """Whether the mission has sent something, or will send no more."""
+        return self._stream.readable
+
+    @property
+    def ended(self) -> bool:
+        """Whether the mission sends no more."""
+        return self._stream.ended
+
+    @property
+    def alone(self) -> bool:
+        """Whether the mission has left the connection."""
+        return self._stream.other is None
+
+    def write(self, data: bytes) -> None:
+        """Bytes come in; there is room for them."""
+        outside, port = self._outside, self._stream.remote.port
+        outside._tell(BYTES, self._number, data)
+        outside._trace.note(f"stream to {port} at {outside._kernel.now}: {data.hex()}")
+        self._stream.write(data)
+
+    def read(self, limit: int) -> bytes:
+        """Take at most so many bytes that the mission has sent, which makes room for more."""
+        data = self._stream.read(limit)
+        if data:
+            self._outside._tell(TAKEN, self._number, len(data))
+        return data
+
+    def end(self) -> None:
+        """The outside sends no more."""
+        self._outside._tell(ENDED, self._number)
+        self._stream.shut(read=False, write=True)
+
+    def close(self) -> None:
+        """The outside leaves the connection."""
+        self._outside._tell(CLOSED, self._number)
+        self._stream.close()

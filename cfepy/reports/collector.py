@@ -1,0 +1,174 @@
+"""What a page about a run shows beside its numbers: what happened when, how long messages took, events, the console.
+
+A long run is summed up while it goes on, so the memory that this takes does not grow with it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from cfepy.mission.live_names import LiveNames
+from cfepy.mission.observer import Observer, Sent, app_of
+from cfepy.reports.bins import Bins, Histogram
+from cfepy.reports.event_packets import Event, event_in
+from cfepy.reports.text_marks import mark_of
+from cfepy.rtos import Task
+from cfepy.sb.pipe import Pipe
+
+MOST = 2_000
+"""Events, lines and marks that are kept of each; the others are only counted."""
+
+
+class Line(NamedTuple):
+    """A line of the console, and its virtual time in ns."""
+
+    at_ns: int
+    text: str
+
+
+class Mark(NamedTuple):
+    """Something that stands out: a "reset", "note", or what `mark_of` knows, at a virtual time in ns."""
+
+    at_ns: int
+    kind: str
+    text: str
+
+
+class Drop(NamedTuple):
+    """Where messages were lost: MsgId, name of the pipe, why."""
+
+    msg_id: int
+    pipe: str
+    why: str
+
+
+@dataclass(slots=True)
+class AppActivity:
+    """An application: how often its tasks got the processor, and the ns that they used it."""
+
+    runs: Bins = field(default_factory=Bins)
+    busy: Bins = field(default_factory=Bins)
+
+
+@dataclass(slots=True)
+class TopicActivity:
+    """A MsgId: when it was sent, and how long each receiver waited for it."""
+
+    sent: Bins = field(default_factory=Bins)
+    latency: Histogram = field(default_factory=Histogram)
+
+
+class Collector(Observer):
+    """Collects; what the attributes hold is complete when the run is over.
+
+    Attributes:
+        apps: by name, in order of appearance.
+        topics: by MsgId, likewise.
+        drops: how many messages were lost where.
+        events, lines, marks: the first `MOST` of each; `event_count`, `line_count` and `mark_count` count all.
+        memory: bytes that are booked by (owner, purpose).
+        end_ns: when the time of the run was over.
+        names: of MsgIds.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.apps: dict[str, AppActivity] = {}
+        self.topics: dict[int, TopicActivity] = {}
+        self.drops: dict[Drop, int] = {}
+        self.events: list[Event] = []
+        self.lines: list[Line] = []
+        self.marks: list[Mark] = []
+        self.event_count = self.line_count = self.mark_count = 0
+        self.memory: dict[tuple[str, str], int] = {}
+        self.end_ns = 0
+        self.names: LiveNames
+        self._since_ns = 0
+
+    def begin(self, mission: Any) -> None:
+        """See `Observer.begin`."""
+        super().begin(mission)
+        self.names = LiveNames(mission)
+
+    def power_up(self, processor: Any) -> None:
+        """See `Observer.power_up`."""
+        super().power_up(processor)
+        resets = self.mission.record.resets
+        if resets:
+            self._mark("reset", resets[-1].reason, resets[-1].at_ns)
+
+    def conclude(self) -> None:
+        """Take down what the end of the tasks would change."""
+        self.end_ns = self._kernel.now
+        self.memory = self.mission.memory.totals()
+
+    def on_run(self, task: Task, at_ns: int) -> None:
+        """See `Observer.on_run`."""
+        self._app(task).runs.add(at_ns)
+        self._since_ns = at_ns
+
+    def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
+        """See `Observer.on_leave`."""
+        if at_ns > self._since_ns:
+            self._app(task).busy.add_span(self._since_ns, at_ns)
+
+    def _app(self, task: Task) -> AppActivity:
+        name = app_of(task)
+        app = self.apps.get(name)
+        if app is None:
+            app = self.apps[name] = AppActivity()
+        return app
+
+    def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
+        """See `Observer.on_send`."""
+        self._topic(sent.msg_id).sent.add(sent.at_ns)
+        event = event_in(sent.msg_id, packet, sent.at_ns)
+        if event is not None:
+            self.event_count += 1
+            _keep(self.events, event)
+
+    def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
+        """See `Observer.on_receive`."""
+        if sent is not None:
+            self._topic(sent.msg_id).latency.add(at_ns - sent.at_ns)
+
+    def _topic(self, msg_id: int) -> TopicActivity:
+        topic = self.topics.get(msg_id)
+        if topic is None:
+            topic = self.topics[msg_id] = TopicActivity()
+        return topic
+
+    def on_drop(self, msg_id: int, pipe: Pipe, why: str, at_ns: int) -> None:
+        """See `Observer.on_drop`."""
+        drop = Drop(msg_id, pipe.name, why)
+        self.drops[drop] = self.drops.get(drop, 0) + 1
+
+    def on_console(self, line: str, at_ns: int) -> None:
+        """See `Observer.on_console`."""
+        self.line_count += 1
+        _keep(self.lines, Line(at_ns, line))
+        mark = mark_of(line)
+        if mark is not None:
+            self._mark(*mark, at_ns)
+
+    def on_note(self, text: str, at_ns: int) -> None:
+        """See `Observer.on_note`."""
+        self._mark(*(mark_of(text) or ("note", text)), at_ns)
+
+    def _mark(self, kind: str, text: str, at_ns: int) -> None:
+        self.mark_count += 1
+        _keep(self.marks, Mark(at_ns, kind, text))
+
+    # -- for the timeline --------------------------------------------------------------------------------------------
+
+    def width_ns(self) -> int:
+        """The width of a bin that suits all of them."""
+        all_bins = [bins for app in self.apps.values() for bins in (app.runs, app.busy)]
+        all_bins += [topic.sent for topic in self.topics.values()]
+        return max((bins.width_ns for bins in all_bins), default=1)
+
+
+def _keep(kept: list[Any], thing: Any) -> None:
+    if len(kept) < MOST:
+        kept.append(thing)

@@ -1,0 +1,147 @@
+"""HTML as text: everything that a mission may have said is escaped here. Imports nothing of cfepy."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+_CONTROLS = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
+
+
+def escaped(text: object) -> str:
+    """Text for an element or an attribute; characters that no page may have are shown by their number."""
+    return html.escape(_CONTROLS.sub(lambda match: f"\\x{ord(match[0]):02x}", str(text)))
+
+
+def json_text(value: Any) -> str:
+    """JSON that can stand in a script element: nothing in it can end that."""
+    text = json.dumps(value, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def element(name: str, inside: str = "", **attributes: object) -> str:
+    """An element around HTML; `class_` is the attribute class, `data_path` is data-path, None leaves one out."""
+    given = "".join(
+        f' {key.rstrip("_").replace("_", "-")}="{escaped(value)}"'
+        for key, value in attributes.items()
+        if value is not None
+    )
+    return f"<{name}{given}>{inside}</{name}>"
+
+
+class Part(str):
+    """HTML of a part of the page, which has a heading and an anchor to link to."""
+
+    heading: str
+    anchor: str
+
+    def __new__(cls, heading: str, anchor: str, inside: str) -> Part:
+        """Made of HTML."""
+        part = super().__new__(cls, inside)
+        part.heading, part.anchor = heading, anchor
+        return part
+
+
+def section(title: str, anchor: str, inside: str, about: str = "") -> Part:
+    """A part of the page with a heading; `about` is HTML that says what it shows."""
+    lead = element("p", about, class_="about") if about else ""
+    head = element("h2", escaped(title), id=f"{anchor}-title")
+    return Part(title, anchor, element("section", head + lead + inside, id=anchor, aria_labelledby=f"{anchor}-title"))
+
+
+class Numbers:
+    """The numbers of a run, each of which is to be on the page under its path, such as "topics.3.sent".
+
+    Args:
+        results: as `cfepy run --json` writes them.
+    """
+
+    def __init__(self, results: Mapping[str, Any]) -> None:
+        self._left = dict(numbers_in(results))
+
+    def show(self, path: str, text: str | None = None) -> str:
+        """A number as a `data` element with its exact value.
+
+        Args:
+            path: where it is in the results.
+            text: what people see; None shows it as it is.
+        """
+        value = self._left.pop(path, None)
+        if value is None:
+            return "" if text is None else escaped(text)
+        shown = _plain(value) if text is None else text
+        return element("data", escaped(shown), value=json.dumps(value), data_path=path)
+
+    def rest(self) -> list[tuple[str, str]]:
+        """Path and element of all numbers that were not shown yet."""
+        return [(path, self.show(path)) for path in list(self._left)]
+
+
+def numbers_in(value: Any, path: str = "") -> Iterator[tuple[str, int | float]]:
+    """Path and value of every number in nested data; truth values are none."""
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            yield from numbers_in(item, f"{path}.{key}" if path else str(key))
+    elif isinstance(value, list | tuple):
+        for index, item in enumerate(value):
+            yield from numbers_in(item, f"{path}.{index}" if path else str(index))
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        yield path, value
+
+
+def _plain(value: int | float) -> str:
+    return f"{value:,}" if isinstance(value, int) else f"{value:,.6g}"
+
+
+class Cell(str):
+    """HTML of a cell of a table; `order` is what the table is sorted by, None for the text."""
+
+    order: int | float | None
+
+    def __new__(cls, inside: str, order: int | float | None = None) -> Cell:
+        """Made of HTML."""
+        cell = super().__new__(cls, inside)
+        cell.order = order
+        return cell
+
+
+def table(
+    caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: Sequence[int] = (), **more: Any
+) -> str:
+    """A table that scrolls by itself where it is too wide.
+
+    Args:
+        caption: text that says what it is.
+        heads: texts of its columns.
+        rows: HTML of its cells, the first one of each row being its name.
+        numeric: columns whose cells are numbers.
+        more: attributes of the table.
+    """
+    marks = ["number" if index in numeric else None for index in range(len(heads))]
+    head = "".join(
+        element("th", escaped(text), scope="col", class_=mark) for text, mark in zip(heads, marks, strict=True)
+    )
+    body = "".join(element("tr", "".join(_cells(row, marks))) for row in rows)
+    parts = element("caption", escaped(caption)) + element("thead", element("tr", head)) + element("tbody", body)
+    return element(
+        "div", element("table", parts, **more), class_="scroll", tabindex="0", role="region", aria_label=caption
+    )
+
+
+def _cells(row: Sequence[str], marks: Sequence[str | None]) -> Iterator[str]:
+    for index, (inside, mark) in enumerate(zip(row, marks, strict=True)):
+        order = getattr(inside, "order", None)
+        if index:
+            yield element("td", inside, class_=mark, data_order=order)
+        else:
+            yield element("th", inside, scope="row", class_=mark, data_order=order)
+
+
+def meter(share: float, text: str) -> str:
+    """A bar from 0 to 1 with a text; more than 1 is shown as full."""
+    level = "high" if share >= 0.95 else "raised" if share >= 0.75 else None
+    width = f"--share:{min(max(share, 0.0), 1.0) * 100:.2f}%"
+    return element("span", element("span", "", class_="bar", style=width), class_=f"meter {level or ''}".strip()) + text

@@ -1,0 +1,183 @@
+"""A kernel that asks a policy who runs at every scheduling point, in order to find what fifo never shows.
+
+Scheduling points are: each call of an app or a node into the API (`point`), each charge of virtual CPU time, each call
+that makes another task ready or changes a priority, and each wait. Taking candidate 0 every time gives exactly the run
+of `Kernel`, which pays nothing for this module.
+"""
+
+from __future__ import annotations
+
+from heapq import heappop
+from typing import Any
+
+from cfepy import trace as tr
+from cfepy.rtos.kernel import Kernel
+from cfepy.rtos.policy import Decision, Policy
+from cfepy.rtos.task import Task
+
+
+def make_kernel(
+    context: str = "thread",
+    trace: tr.Trace | None = None,
+    policy: Policy | None = None,
+    tick_ns: int = 0,
+    switch_cost_ns: int = 0,
+    seed: int = 0,
+) -> Kernel:
+    """The kernel for a run: the plain one without a policy. The arguments are those of `ExploringKernel`."""
+    if policy is None:
+        return Kernel(context, trace, tick_ns, switch_cost_ns, seed)
+    return ExploringKernel(context, trace, policy, tick_ns, switch_cost_ns, seed)
+
+
+class ExploringKernel(Kernel):
+    """A kernel whose choices are a policy's.
+
+    Args:
+        context: see `Kernel`, as for the arguments not named here.
+        policy: who runs next.
+    """
+
+    def __init__(
+        self,
+        context: str,
+        trace: tr.Trace | None,
+        policy: Policy,
+        tick_ns: int = 0,
+        switch_cost_ns: int = 0,
+        seed: int = 0,
+    ) -> None:
+        super().__init__(context, trace, tick_ns, switch_cost_ns, seed)
+        self.policy = policy
+        self._any = policy.any_priority
+        self._hold_ns = policy.hold_ns
+        self._decisions = 0
+        self._going_on: Task | None = None  # the task that was put in front just now: it could go on
+        self._left: Task | None = None  # the task that gave up its turn just now
+
+    # -- scheduling points -----------------------------------------------------------------------------------------
+
+    def point(self) -> None:
+        """The current task calls something: others may get in before that."""
+        task = self.current
+        if task is self.host or task.dying or not self._has_choice(task):
+            return
+        self._push_front(task)
+        following = self._take()
+        if following is not task:
+            self._switch(task, following)
+
+    def preempt(self) -> None:
+        """Others may run now, more urgent ones as always."""
+        self.point()
+
+    def delay(self, duration_ns: int) -> None:
+        """See `Scheduler.delay`."""
+        self.point()
+        super().delay(duration_ns)
+
+    def make_ready(self, task: Task, value: Any = None) -> None:
+        """See `Scheduler.make_ready`."""
+        self.enqueue(task, value)
+        self.point()
+
+    def charge(self, duration_ns: int) -> None:
+        """See `Scheduler.charge`."""
+        task = self.current
+        if task is not self.host:
+            task.cpu_ns += duration_ns
+            self.now += duration_ns
+            self._catch_up(task, duration_ns)
+
+    def _catch_up(self, task: Task, duration_ns: int) -> None:
+        """As the base class, but equals get their chance each time, not only when the time slice is used up."""
+        self._fire_due()
+        paused = self.now > self._until
+        if task.dying or not (paused or self._has_choice(task)):
+            return
+        if self._slice_is_used_up(task, duration_ns):
+            self._push_back(task)
+        else:
+            self._push_front(task)
+        if paused:
+            self._last = task
+        following = self.host if paused else self._take()
+        if following is not task:
+            self._switch(task, following)
+
+    def _slice_is_used_up(self, task: Task, duration_ns: int) -> bool:
+        ready = self.ready
+        return (
+            bool(ready)
+            and ready[0][0] == task.priority
+            and self.now >= self._slice_end
+            and self._turn_is_over(task, duration_ns)
+        )
+
+    def _has_choice(self, task: Task) -> bool:
+        """Whether anybody but the running task might go on from here."""
+        ready = self.ready
+        return bool(ready and (self._any or ready[0][0] <= task.priority)) or bool(
+            self._hold_ns and self._next_timer() is not None
+        )
+
+    # -- choosing --------------------------------------------------------------------------------------------------
+
+    def _push_front(self, task: Task) -> None:
+        super()._push_front(task)
+        self._going_on = task
+
+    def _push_back(self, task: Task) -> None:
+        super()._push_back(task)
+        self._left = task
+
+    def _take(self) -> Task:
+        """Ask the policy; a pause of the run does not make it a second decision."""
+        ready = self.ready
+        while True:
+            ready.sort()  # a sorted list is a heap, and stays one without any of its items
+            first = ready[0]
+            if first[2] is self.host:
+                return heappop(ready)[2]
+            choice = self._choose(first[2], self._width())
+            if choice >= 0:
+                self._going_on = self._left = None
+                return ready.pop(choice)[2]
+            self._fire_due()
+            if self.now > self._until:
+                self._last = first[2]
+                return self.host
+
+    def _width(self) -> int:
+        """How many of the ready tasks, which are in order, are candidates."""
+        ready = self.ready
+        if self._any:
+            return len(ready)
+        width = 1
+        while width < len(ready) and ready[width][0] == ready[0][0]:
+            width += 1
+        return width
+
+    def _choose(self, first: Task, width: int) -> int:
+        """Which of the first `width` ready tasks runs; -1 when none does, and it is later now."""
+        running = first is self._going_on
+        timer = self._next_timer() if running and self._hold_ns else None
+        if width == 1 and timer is None:
+            return 0
+        tasks = [entry[2] for entry in self.ready[:width]]
+        decision = Decision(self._decisions, self.now, tasks, running, timer is not None, self._left)
+        self._decisions += 1
+        assert self.policy is not None
+        choice = self.policy.choose(decision)
+        if choice < width:
+            return choice
+        assert timer is not None
+        self.now = timer
+        return -1
+
+    def _next_timer(self) -> int | None:
+        """When the next timer is due, if that is soon enough for a task to be held up until then."""
+        timers = self.timers
+        while timers and timers[0][2].timer != timers[0][1]:
+            heappop(timers)
+        return timers[0][0] if timers and timers[0][0] - self.now <= self._hold_ns else None

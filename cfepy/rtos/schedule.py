@@ -1,0 +1,171 @@
+"""`Schedule`: which policy a run has, as a text that a person can write, read and send to a colleague.
+
+    fifo                    first come, first served
+    random:7                any of the candidates, by seed 7
+    pct:7:3                 PCT, seed 7, for bugs of depth 3 (`cfepy.rtos.policy.PCT`)
+    pct:7:3:5000            the same for runs of about 5000 decisions
+    at:42=1,97=2            fifo, but at decision 42 candidate 1, and at decision 97 candidate 2
+
+Every kind but fifo takes options at its end: `any` (tasks of less urgent priority may run before more urgent ones) and
+`hold=500us` (the running task may be held up until the next timer is due, if that is within 500 us), and `from=600ms`
+(fifo up to 600 ms after the start of the run; what comes before still counts as decisions).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from cfepy.rtos.policy import PCT, Deviations, From, Policy, SeededRandom
+from cfepy.status import UsageError
+
+DEPTH = 3  # of PCT, where the text gives none
+STEPS = 1000
+_UNITS = {"ns": 1, "us": 1000, "ms": 1_000_000, "s": 1_000_000_000}
+_TIME = re.compile(r"(\d+)(ns|us|ms|s)")
+_FORMS = (
+    "fifo, random:SEED, pct:SEED:DEPTH[:STEPS] or at:DECISION=CHOICE,..., the last three with :any, :hold=500us or "
+    ":from=600ms"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """Who runs next, where there is a choice.
+
+    Args:
+        kind: "fifo", "random", "pct" or "at".
+        seed: of random and pct.
+        depth: of the bugs pct looks for, at least 1.
+        steps: how many decisions pct expects of the run, at least 1.
+        deviations: pairs of decision and choice of at, in order.
+        any_priority: see `Policy`.
+        hold_ns: see `Policy`.
+        from_ns: virtual ns up to which it is fifo.
+    """
+
+    kind: str = "fifo"
+    seed: int = 0
+    depth: int = DEPTH
+    steps: int = STEPS
+    deviations: tuple[tuple[int, int], ...] = ()
+    any_priority: bool = False
+    hold_ns: int = 0
+    from_ns: int = 0
+
+    @classmethod
+    def parse(cls, text: str, seed: int = 0) -> Schedule:
+        """The schedule that a text means.
+
+        Args:
+            text: see the module's.
+            seed: for `random` and `pct` without one.
+
+        Raises:
+            UsageError: it means none.
+        """
+        kind, *fields = text.split(":")
+        found = cls(kind, seed)
+        while fields and (option := _option(fields[-1])) is not None:
+            found = replace(found, **option)
+            fields.pop()
+        if kind == "fifo" and found == cls(kind, seed) and not fields:
+            return cls()
+        if kind in ("random", "pct") and len(fields) <= (1 if kind == "random" else 3):
+            return replace(found, **_numbers(text, fields))
+        if kind == "at" and len(fields) <= 1:
+            return replace(found, seed=0, deviations=_deviations(text, fields[0] if fields else ""))
+        raise _wrong(text)
+
+    def text(self) -> str:
+        """The shortest text that `parse` gives this schedule for."""
+        words = [self.kind]
+        if self.kind in ("random", "pct"):
+            words.append(str(self.seed))
+        if self.kind == "pct":
+            words.append(str(self.depth))
+            words += [str(self.steps)] if self.steps != STEPS else []
+        if self.deviations:
+            words.append(",".join(f"{decision}={choice}" for decision, choice in self.deviations))
+        words += ["any"] if self.any_priority else []
+        words += [f"hold={_time_text(self.hold_ns)}"] if self.hold_ns else []
+        words += [f"from={_time_text(self.from_ns)}"] if self.from_ns else []
+        return ":".join(words)
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def policy(self) -> Policy | None:
+        """A policy for one run; None for fifo."""
+        if self.kind == "fifo":
+            return None
+        policy = self._policy()
+        return From(policy, self.from_ns) if self.from_ns else policy
+
+    def _policy(self) -> Policy:
+        if self.kind == "random":
+            return SeededRandom(self.seed, self.any_priority, self.hold_ns)
+        if self.kind == "pct":
+            return PCT(self.seed, self.depth, self.steps, self.any_priority, self.hold_ns)
+        return Deviations(dict(self.deviations), self.any_priority, self.hold_ns)
+
+    def at(self, deviations: Mapping[int, int]) -> Schedule:
+        """The schedule that takes some decisions otherwise than fifo, with this one's options.
+
+        Args:
+            deviations: choice by number of the decision, as `Recorded.deviations` has them.
+        """
+        return replace(
+            self, kind="at", seed=0, depth=DEPTH, steps=STEPS, deviations=tuple(sorted(deviations.items()))
+        )
+
+    def with_seed(self, seed: int) -> Schedule:
+        """The same with another seed."""
+        return replace(self, seed=seed)
+
+
+def _option(field: str) -> dict[str, Any] | None:
+    """What a field at the end of the text sets, if it is an option."""
+    if field == "any":
+        return {"any_priority": True}
+    name, _, time = field.partition("=")
+    if name not in ("hold", "from"):
+        return None
+    match = _TIME.fullmatch(time)
+    if match is None or not int(match[1]):
+        raise UsageError(f"{field!r} wants a time in ns, us, ms or s, such as {name}=500us", field="--schedule")
+    return {f"{name}_ns": int(match[1]) * _UNITS[match[2]]}
+
+
+def _numbers(text: str, fields: list[str]) -> dict[str, Any]:
+    names = ("seed", "depth", "steps")
+    found: dict[str, int] = {}
+    for name, field in zip(names, fields, strict=False):
+        if re.fullmatch(r"\d+", field, re.ASCII) is None or (name != "seed" and not int(field)):
+            least = "0" if name == "seed" else "1"
+            wrong = f"{name.upper()} is a whole number of at least {least}, not {field!r}"
+            raise UsageError(f"schedule {text!r}: {wrong}", field="--schedule")
+        found[name] = int(field)
+    return found
+
+
+def _deviations(text: str, field: str) -> tuple[tuple[int, int], ...]:
+    found: dict[int, int] = {}
+    for pair in field.split(",") if field else ():
+        match = re.fullmatch(r"(\d+)=(\d+)", pair, re.ASCII)
+        if match is None or int(match[1]) in found:
+            wrong = f"{pair!r} is not DECISION=CHOICE" if match is None else f"decision {match[1]} comes twice"
+            raise UsageError(f"schedule {text!r}: {wrong}; write for instance at:42=1,97=2", field="--schedule")
+        found[int(match[1])] = int(match[2])
+    return tuple((decision, choice) for decision, choice in sorted(found.items()) if choice)
+
+
+def _wrong(text: str) -> UsageError:
+    return UsageError(f"no schedule is called {text!r}; write {_FORMS}", field="--schedule")
+
+
+def _time_text(time_ns: int) -> str:
+    unit, size = max(((unit, size) for unit, size in _UNITS.items() if time_ns % size == 0), key=lambda each: each[1])
+    return f"{time_ns // size}{unit}"

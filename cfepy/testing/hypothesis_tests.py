@@ -1,0 +1,89 @@
+"""Tests with @given: each example has missions of its own, and a failing one can be given to a colleague.
+
+Hypothesis is not imported here before a test uses it.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from cfepy.status import UsageError
+
+_CODE = re.compile(r"@reproduce_failure\((['\"])(?P<version>[^'\"]+)\1, b(['\"])(?P<code>.*?)\3\)")
+
+
+class ExampleTests:
+    """What tests with @given need.
+
+    Args:
+        code: of the one example to run, as `code_of` gives it; None runs them as Hypothesis does.
+        end_example: called when an example is over, with whether it has failed.
+    """
+
+    def __init__(self, code: str | None, end_example: Callable[[bool], object]) -> None:
+        self._code = code
+        self._end_example = end_example
+
+    def concerns(self, item: pytest.Item) -> bool:
+        """Whether a test has examples."""
+        return bool(getattr(getattr(item, "obj", None), "is_hypothesis_test", False))
+
+    def prepare(self, item: pytest.Item) -> None:
+        """Before a test runs.
+
+        Raises:
+            UsageError: `code` is none.
+        """
+        if not self.concerns(item):
+            return
+        from hypothesis import reproduce_failure, settings
+
+        test: Any = item.obj  # type: ignore[attr-defined]
+        function = getattr(test, "__func__", test)
+        function._hypothesis_internal_use_settings = settings(
+            function._hypothesis_internal_use_settings, print_blob=True
+        )
+        inner = function.hypothesis.inner_test
+        if not hasattr(inner, "_cfepy_ends"):
+            function.hypothesis.inner_test = self._ending(inner)
+        if self._code is not None:
+            version, colon, code = self._code.partition(":")
+            if not colon:
+                raise UsageError("is no example; take it as the failure told it", field="--cfepy-example")
+            reproduce_failure(version, code.encode())(function)
+
+    def _ending(self, inner: Callable[..., Any]) -> Callable[..., Any]:
+        """The test's own function, which ends its missions after each example."""
+
+        @functools.wraps(inner)
+        def example(*args: Any, **kwargs: Any) -> Any:
+            failed = True
+            try:
+                result = inner(*args, **kwargs)
+                failed = False
+                return result
+            finally:
+                self._end_example(failed)
+
+        example._cfepy_ends = True  # type: ignore[attr-defined]
+        return example
+
+    def code_of(self, error: BaseException) -> str | None:
+        """The code of the example that has failed; None when Hypothesis told none."""
+        for note in _notes(error):
+            found = _CODE.search(note)
+            if found is not None:
+                return f"{found['version']}:{found['code']}"
+        return None
+
+
+def _notes(error: BaseException) -> Iterator[str]:
+    yield from getattr(error, "__notes__", ())
+    if isinstance(error, BaseExceptionGroup):
+        for each in error.exceptions:
+            yield from _notes(each)

@@ -1,0 +1,113 @@
+"""Journals of the missions of failed tests, for `--cfepy-record`."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from cfepy.journal.recorder import JournalRecorder
+from cfepy.mission.run_plan import RunPlan
+from cfepy.rtos.policy import Policy
+
+if TYPE_CHECKING:
+    from cfepy.testing.flight import Flight
+
+UNDECIDED = ".undecided"  # while the test runs
+
+
+class Journal:
+    """The journal of one mission.
+
+    Args:
+        path: while it is not decided whether it is kept.
+        plan: what is flown.
+        policy: who goes first.
+
+    Attributes:
+        recorder: to be attached to the mission, with its own `policy`.
+        flight: the mission; set when it was made.
+    """
+
+    flight: Flight
+
+    def __init__(self, path: Path, plan: RunPlan, policy: Policy | None) -> None:
+        self.recorder = JournalRecorder(path, plan, policy=policy)
+        self.recorder.__enter__()
+        self._path = path
+        self._ended = False
+
+    def end(self) -> None:
+        """The run is over, whatever it came to."""
+        if not self._ended:
+            self._ended = True
+            self.recorder.end(self.flight.results)
+            self.recorder.__exit__(None, None, None)
+
+    def keep(self, path: Path) -> Path:
+        """Give it the name that it keeps."""
+        self.end()
+        return self._path.replace(path)
+
+    def drop(self) -> None:
+        """Nobody needs it."""
+        self.end()
+        self._path.unlink()
+
+
+class Journals:
+    """Writes a journal for each mission, and keeps those of tests that fail.
+
+    Args:
+        folder: where; it is made if it is not there.
+
+    Attributes:
+        kept: paths of the journals of the test that has failed last.
+    """
+
+    def __init__(self, folder: str) -> None:
+        self.kept: list[Path] = []
+        self._folder = Path(folder)
+        self._folder.mkdir(parents=True, exist_ok=True)
+        self._open: list[Journal] = []
+        self._failed: list[Journal] = []  # of the last example of Hypothesis that has failed
+        self._count = 0
+
+    def begin(self, plan: RunPlan, policy: Policy | None) -> Journal:
+        """The journal of a mission that is about to be made."""
+        self._count += 1
+        journal = Journal(self._folder / f"{self._count}{UNDECIDED}", plan, policy)
+        self._open.append(journal)
+        return journal
+
+    def set_aside(self) -> None:
+        """What was written so far is of an example that has failed; the test may go on with others."""
+        for journal in self._failed:
+            journal.drop()
+        self._failed, self._open = self._open, []
+        for journal in self._failed:
+            journal.end()
+
+    def keep(self, item: pytest.Item) -> None:
+        """The test has failed: name its journals after it."""
+        found = self._open or self._failed
+        name = re.sub(r"[^\w.-]+", "-", item.nodeid).strip("-")
+        numbered = [f"{name}-{number}" for number in range(1, len(found) + 1)] if len(found) > 1 else [name]
+        self.kept = [each.keep(self._folder / f"{own}.cfepy") for each, own in zip(found, numbered, strict=True)]
+        found.clear()
+
+    def drop(self) -> None:
+        """What is left is of missions that did well."""
+        for journal in self._open:
+            journal.drop()
+        self._open.clear()
+
+    def end_test(self) -> None:
+        """The test is over."""
+        self.drop()
+        for journal in self._failed:
+            journal.drop()
+        self._failed.clear()
+        self.kept = []

@@ -1,0 +1,272 @@
+"""`Missions`, which the fixture `mission` gives: it boots missions, and ends them with the test or fixture that did.
+
+It is a pytest plugin of its own, registered when the first test asks for a mission. It tells of a test that failed what
+its missions had come to, and the command that does the same again.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from cfepy.attachment import Attachment
+from cfepy.mission.run_plan import FIFO, RunPlan
+from cfepy.rtos.policy import Policy, Recorded
+from cfepy.rtos.schedule import Schedule
+from cfepy.testing.errors import ExpectationError
+from cfepy.testing.fault_options import Faults, fault_attachments, fault_text
+from cfepy.testing.flight import Flight
+from cfepy.testing.hypothesis_tests import ExampleTests
+from cfepy.testing.pytest_command import pytest_command
+
+if TYPE_CHECKING:
+    from cfepy.testing.journals import Journals
+
+__tracebackhide__ = True  # pytest shows the line of the test
+
+SECTION = "cfepy"
+BETWEEN = ";"  # schedules of several missions in one test
+UNDER_TEST = pytest.StashKey["Conditions"]()
+"""In the stash of the configuration: what the missions of an explored test are flown under."""
+BELOW = 'the command in the section "cfepy" below'
+
+
+@dataclass(slots=True)
+class Conditions:
+    """What the missions of one run of an explored test are flown under.
+
+    Attributes:
+        schedule: of each, as `--cfepy-schedule` has it.
+        policy: in place of the schedule's own; None for that.
+        recorded: what the policies have decided, a mission each.
+    """
+
+    schedule: str
+    policy: Policy | None = None
+    recorded: list[Recorded] = field(default_factory=list)
+
+
+class Missions:
+    """Boots missions for tests; see the fixture `mission`.
+
+    Args:
+        config: pytest's.
+        current: where the stash of `config` has the test that runs.
+
+    Attributes:
+        flown: the missions of this test, in order; those of fixtures of a wider scope are not among them.
+    """
+
+    def __init__(self, config: pytest.Config, current: pytest.StashKey[pytest.Item]) -> None:
+        self.flown: list[Flight] = []
+        self._config = config
+        self._current = current
+        self._fixtures: list[pytest.FixtureRequest] = []  # that are being set up
+        folder = config.getoption("--cfepy-record")
+        self._journals = None if folder is None else _journals(folder)
+        self._examples = ExampleTests(config.getoption("--cfepy-example"), self._end_example)
+
+    def __call__(
+        self,
+        name: str | os.PathLike[str],
+        *,
+        board: str | None = None,
+        seed: int | None = None,
+        schedule: str | Schedule | None = None,
+        tasks: str | None = None,
+        faults: Faults = None,
+        args: Mapping[str, object] | None = None,
+        attachments: Sequence[Attachment] = (),
+    ) -> Flight:
+        """Boot a mission: it stands at virtual time 0, and runs when the test says so.
+
+        Args:
+            name: a mission's folder, startup script or launch file, seen from the test's file first; or the name of a
+                shipped mission.
+            board: name or file of a board; None takes the mission's own.
+            seed: of everything random in it; None takes --cfepy-seed.
+            schedule: who goes first, such as "random:7"; None takes that of @explore or --cfepy-schedule.
+            tasks: "thread" or "greenlet"; None takes --cfepy-tasks.
+            faults: what goes wrong: a plan's path, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
+            args: of a launch file.
+            attachments: what else looks on or meddles (`cfepy.attachment.Attachment`).
+
+        Raises:
+            UsageError: there is no such mission or board, or something in it is wrong.
+        """
+        text = str(schedule) if schedule is not None else self._schedule_of_next()
+        plan = RunPlan(
+            (self._place(name),),
+            launch_args=tuple((key, str(value)) for key, value in (args or {}).items()),
+            seed=self._config.getoption("--cfepy-seed") if seed is None else seed,
+            board=board,
+            tasks=tasks or self._config.getoption("--cfepy-tasks") or self._usual_tasks(),
+            schedule=Schedule.parse(text).text(),
+            faults=fault_text(faults, self._place),
+        )
+        return self._fly(plan, fault_attachments(faults), attachments)
+
+    def _fly(self, plan: RunPlan, faults: Sequence[Attachment], attachments: Sequence[Attachment]) -> Flight:
+        policy: Policy | None = Schedule.parse(plan.schedule).policy()
+        conditions = None if self._is_wide else self._conditions
+        if conditions is not None:
+            policy = Recorded(policy if conditions.policy is None else conditions.policy)
+            conditions.recorded.append(policy)
+        journal = None if self._journals is None else self._journals.begin(plan, policy)
+        flight = Flight(
+            plan,
+            policy=policy if journal is None else journal.recorder.policy,
+            attachments=[*attachments, *([] if journal is None else [journal.recorder]), *faults],
+            again=None if self._item is None else self._again,
+        )
+        flight.touched = bool(attachments or faults)
+        if journal is not None:
+            journal.flight = flight
+        if self._fixtures:
+            self._fixtures[-1].addfinalizer(flight.close)
+        if not self._is_wide:
+            self.flown.append(flight)
+        return flight
+
+    # -- where it is ---------------------------------------------------------------------------------------------------
+
+    @property
+    def _item(self) -> pytest.Item | None:
+        return self._config.stash.get(self._current, None)
+
+    @property
+    def _conditions(self) -> Conditions | None:
+        """Those of an explored test, None in others."""
+        return self._config.stash.get(UNDER_TEST, None)
+
+    @property
+    def _is_wide(self) -> bool:
+        """Whether a fixture of a wider scope than a test's is being set up."""
+        return bool(self._fixtures) and self._fixtures[-1].scope != "function"
+
+    def _place(self, name: str | os.PathLike[str]) -> str:
+        """A path as the command line would have it, or a name as it is."""
+        item = self._item
+        beside = None if item is None else item.path.parent / os.fspath(name)
+        if beside is None or not (beside.is_file() or (beside / "startup.scr").is_file()):
+            return os.fspath(name)
+        found = beside.resolve()
+        here = Path.cwd()
+        return os.path.relpath(found, here) if found.is_relative_to(here) else str(found)
+
+    def _schedule_of_next(self) -> str:
+        """The schedule of the next mission that gets none."""
+        is_wide, conditions = self._is_wide, self._conditions
+        if conditions is None or is_wide:
+            texts = (self._config.getoption("--cfepy-schedule") or FIFO).split(BETWEEN)
+        else:
+            texts = conditions.schedule.split(BETWEEN)
+        return texts[0 if is_wide else min(len(self.flown), len(texts) - 1)]
+
+    def _usual_tasks(self) -> str:
+        """Greenlets are quicker where there are many runs, and the runs are the same."""
+        return "greenlet" if self._conditions is not None and find_spec("greenlet") is not None else "thread"
+
+    def command(self, item: pytest.Item, schedule: str | None = None, example: str | None = None) -> str:
+        """The command that does a test again.
+
+        Args:
+            item: the test.
+            schedule: of its missions; None for the present one.
+            example: of a Hypothesis test, as `--cfepy-example` takes it.
+        """
+        conditions = self._conditions
+        present = self._config.getoption("--cfepy-schedule") if conditions is None else conditions.schedule
+        tasks = self._config.getoption("--cfepy-tasks")
+        options = [
+            "--cfepy-seed",
+            str(self._config.getoption("--cfepy-seed")),
+            "--cfepy-schedule",
+            schedule or present or FIFO,
+        ]
+        options += ["--cfepy-tasks", tasks] if tasks else []
+        options += ["--cfepy-example", example] if example else []
+        return pytest_command(self._config, item, options)
+
+    def _again(self) -> str:
+        item = self._item
+        assert item is not None
+        return BELOW if self._examples.concerns(item) else self.command(item)
+
+    # -- pytest's hooks ------------------------------------------------------------------------------------------------
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, request: pytest.FixtureRequest) -> Generator[None, Any, Any]:
+        """Know for which fixture a mission is booted."""
+        self._fixtures.append(request)
+        try:
+            return (yield)
+        finally:
+            self._fixtures.pop()
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_call(self, item: pytest.Item) -> Generator[None, Any, Any]:
+        """Look after the examples of Hypothesis."""
+        self._examples.prepare(item)
+        return (yield)
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_makereport(
+        self, item: pytest.Item, call: pytest.CallInfo[None]
+    ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+        """Tell of a failure how to get it again."""
+        report = yield
+        if call.excinfo is not None and report.failed:
+            if self._journals is not None:
+                self._journals.keep(item)
+            lines = self._lines(item, call.excinfo.value)
+            if lines:
+                report.sections.append((SECTION, "\n".join(lines)))
+        return report
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_teardown(self, item: pytest.Item) -> Generator[None, Any, Any]:
+        """End the missions of the test."""
+        try:
+            return (yield)
+        finally:
+            self._end_all()
+            if self._journals is not None:
+                self._journals.end_test()
+
+    def _lines(self, item: pytest.Item, error: BaseException) -> list[str]:
+        lines = [] if self._journals is None else [f"journal: {path}" for path in self._journals.kept]
+        if not self.flown and not self._examples.concerns(item):
+            return lines
+        if not isinstance(error, ExpectationError):
+            lines += [line for flight in self.flown[-1:] for line in flight.state_lines()]
+        if not isinstance(error, ExpectationError) or self._examples.concerns(item):
+            example = self._examples.code_of(error)
+            lines.append(f"the same again: {self.command(item, example=example)}")
+        return lines
+
+    def _end_example(self, failed: bool) -> None:
+        """An example of Hypothesis is over."""
+        if failed and self._journals is not None:
+            self._journals.set_aside()
+        self._end_all()
+
+    def _end_all(self) -> None:
+        for flight in reversed(self.flown):
+            flight.close()
+        self.flown.clear()
+        if self._journals is not None:
+            self._journals.drop()
+
+
+def _journals(folder: str) -> Journals:
+    """Only runs with --cfepy-record import what journals need."""
+    from cfepy.testing.journals import Journals
+
+    return Journals(folder)

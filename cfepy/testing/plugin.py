@@ -1,0 +1,77 @@
+"""The pytest plugin: options, the fixture `mission`, and what is loaded only for tests that need it.
+
+A suite that has nothing to do with cfepy pays for some options and a look at its collected tests. Imports pytest, and
+nothing of cfepy before a test asks for a mission.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from cfepy.testing.missions import Missions
+
+EXPLORE_MARK = "cfepy_explore"
+CURRENT = pytest.StashKey[pytest.Item]()
+"""In the stash of the configuration: the test that runs."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The options of cfepy."""
+    group = parser.getgroup("cfepy", "cfepy: missions under test")
+    group.addoption("--cfepy-seed", type=int, default=0, metavar="N", help="seed of missions that a test gives none")
+    group.addoption(
+        "--cfepy-schedule",
+        default=None,
+        metavar="TEXT",
+        help="schedule of missions that a test gives none: fifo, random:SEED, pct:SEED:DEPTH, at:DECISION=CHOICE,...;"
+        " of several missions in one test with ';' between them. Tests with @explore are run under this one alone",
+    )
+    group.addoption("--cfepy-tasks", choices=["thread", "greenlet"], default=None, help="what missions' tasks run on")
+    group.addoption("--cfepy-schedules", type=int, metavar="N", help="how many schedules each @explore goes through")
+    group.addoption("--cfepy-record", metavar="DIR", help="keep journals of the missions of failed tests there")
+    group.addoption("--cfepy-example", metavar="CODE", help="the Hypothesis example to run, as a failure tells it")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """The mark that `cfepy.testing.explore` makes."""
+    config.addinivalue_line("markers", f"{EXPLORE_MARK}(exploration): made by @cfepy.testing.explore(...)")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Load what tests with @explore need, if there are any."""
+    if any(item.get_closest_marker(EXPLORE_MARK) for item in items):
+        from cfepy.testing.explored_tests import ExploredTests
+
+        _add(config, "cfepy-explore", ExploredTests)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Note which test runs."""
+    item.config.stash[CURRENT] = item
+
+
+def _add(config: pytest.Config, name: str, plugin: type) -> None:
+    if not config.pluginmanager.has_plugin(name):
+        config.pluginmanager.register(plugin(), name)
+
+
+@pytest.fixture(scope="session")
+def mission(request: pytest.FixtureRequest) -> Missions:
+    """Boots missions: `flight = mission("capture", seed=1)`, by folder, launch file or shipped name.
+
+    A path is seen from the test's file first. The flight ends with the test, or with the fixture that made it. Give
+    board=, seed=, schedule=, tasks=, faults=, args= (of a launch file) or attachments= as needed; docs/testing.md has
+    examples.
+    """
+    from cfepy.testing.missions import Missions
+
+    found = request.config.pluginmanager.get_plugin("cfepy-missions")
+    if found is None:
+        found = Missions(request.config, CURRENT)
+        request.config.pluginmanager.register(found, "cfepy-missions")
+    assert isinstance(found, Missions)
+    return found

@@ -1,0 +1,55 @@
+"""Thousands of schedules of the capture mission: no error of cfepy, and no memory that is not given back.
+
+All 100,000, by hand: `cfepy explore capture --for 0.2 --seeds 100000 --results capture.results`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.explore.campaign import Campaign
+from cfepy.explore.crews import make_crew
+from cfepy.explore.results_file import ResultsFile, read_results
+from cfepy.explore.search import make_search
+from cfepy.explore.trial import Trial
+from cfepy.explore.verdict import Verdict
+from cfepy.explore.workers import Processes, usable_cpus
+from cfepy.mission.run_plan import RunPlan
+from cfepy.rtos.schedule import Schedule
+
+COUNT = 4000
+SETTLED = 1000  # schedules after which everything that is made once has been made
+SLACK_KB = 24 * 1024  # garbage of a batch of missions, which comes and goes
+
+
+def resident_kb(pid: int | str) -> int:
+    """Memory of a process."""
+    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS:"))
+
+
+@pytest.mark.slow
+def test_many_schedules_of_capture(tmp_path: Path) -> None:
+    crew = make_crew(COUNT)
+    assert isinstance(crew, Processes)
+    trial = Trial(RunPlan(("capture",), seconds=0.2))
+    search = make_search("all", None, trial.run("random:0").decisions, Schedule())
+    settled: dict[int | str, int] = {}
+    grown: dict[int | str, int] = {}
+
+    def look(number: int, verdict: Verdict) -> None:
+        assert not verdict.trouble
+        processes = ["self", *(worker.pid for worker in crew.workers)]
+        if number == SETTLED:
+            settled.update({process: resident_kb(process) for process in processes})
+        if number == COUNT - 1:
+            grown.update({process: resident_kb(process) - settled[process] for process in processes})
+
+    path = tmp_path / "results"
+    tally = Campaign(trial, search, COUNT, crew, ResultsFile(path, {"mission": "capture"})).run(look)
+    assert (tally.done, tally.troubled) == (COUNT, 0)
+    assert len(grown) == usable_cpus() + 1  # none of the workers had to be replaced
+    assert max(grown.values()) < SLACK_KB, grown
+    assert sorted(number for number, _ in read_results(path)[1]) == list(range(COUNT))

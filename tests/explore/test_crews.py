@@ -1,0 +1,40 @@
+"""Which crew a command line gets."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy.explore.campaign import Campaign
+from cfepy.explore.crews import make_crew
+from cfepy.explore.search import make_search
+from cfepy.explore.trial import Trial
+from cfepy.explore.verdict import Verdict
+from cfepy.explore.workers import Processes
+from cfepy.mission.run_plan import RunPlan
+from cfepy.rtos.schedule import Schedule
+from cfepy.status import UsageError
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"jobs": 0}, "--jobs: 0 processes cannot run anything; give 1 or more"),
+        ({"longest_s": 0}, "--longest: 0 s are no time for a schedule; give more than 0"),
+        ({"jobs": 2, "cluster": "local:2"}, "--jobs: says how many processes run here; with --cluster none do"),
+    ],
+)
+def test_options_that_make_no_sense(options: dict[str, int], told: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        make_crew(10, **options)  # type: ignore[arg-type]  # the mistake
+    assert str(caught.value) == told
+
+
+def test_worker_processes_find_what_this_process_finds() -> None:
+    trial = Trial(RunPlan(("capture",), seconds=0.05))
+    crew = make_crew(6, jobs=2)
+    assert isinstance(crew, Processes)
+    told: list[Verdict] = []
+    search = make_search("all", None, 100, Schedule())
+    Campaign(trial, search, 6, crew).run(lambda _, verdict: told.append(verdict))
+    assert told == [trial.run(verdict.schedule) for verdict in told]
+    assert len({verdict.schedule for verdict in told}) == 6

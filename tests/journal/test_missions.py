@@ -1,0 +1,102 @@
+"""Missions of every kind are recorded, and replay to the same digest on both kinds of tasks."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from cfepy.journal import read_journal, record, replay
+from cfepy.mission.results import Results
+from cfepy.mission.run_plan import LAUNCH, NODE, RunPlan
+from cfepy.resources import shipped
+from tests.journal.missions import SHIPPED, SMALL, paths
+from tests.journal.replays import assert_replays, plan_for
+
+SCHEDULES = ("fifo", "random:4", "pct:2:3:300", "random:1:hold=200us", "at:5=1,9=1")
+
+
+@pytest.mark.parametrize("mission", SHIPPED)
+def test_shipped_missions(mission: str, tmp_path: Path) -> None:
+    assert_replays(plan_for(mission, 1.5), tmp_path)
+
+
+@pytest.mark.parametrize("mission", SMALL)
+@pytest.mark.parametrize("schedule", ["fifo", "random:9"])
+def test_missions_in_which_something_happens(mission: str, schedule: str, tmp_path: Path) -> None:
+    (tmp_path / "mission").mkdir()
+    assert_replays(plan_for(SMALL[mission](tmp_path / "mission"), 4, schedule=schedule, seed=5), tmp_path)
+
+
+@pytest.mark.parametrize("schedule", SCHEDULES)
+def test_schedules_on_a_board_where_calls_take_time(schedule: str, tmp_path: Path) -> None:
+    assert_replays(plan_for("capture", 0.8, schedule=schedule, board="rx64m"), tmp_path)
+
+
+def test_a_script_is_done_again(tmp_path: Path) -> None:
+    script = tmp_path / "noop.txt"
+    script.write_text("wait 1 s\nsend CFE_ES_NOOP\nexpect CFE_ES_HK_TLM within 8 s\n")
+    outcome = assert_replays(plan_for("lab", script=str(script)), tmp_path).outcome
+    assert outcome is not None
+    assert outcome.ok
+
+
+def test_faults_happen_again(tmp_path: Path) -> None:
+    flown = assert_replays(plan_for("capture", 1.5, faults="seed:3"), tmp_path)
+    assert flown.trace != plan_for("capture", 1.5).fly().trace
+
+
+def test_the_seed_counts(tmp_path: Path) -> None:
+    plan = plan_for(SMALL["race"](tmp_path), 2)
+    one, other = (record(plan_for(*plan.words, 2, seed=seed), tmp_path / f"{seed}.cfepy") for seed in (1, 2))
+    assert one.trace != other.trace
+    assert [replay(read_journal(tmp_path / f"{seed}.cfepy")).flown.trace for seed in (1, 2)] == [one.trace, other.trace]
+
+
+def test_a_node_and_a_launch_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    paths(tmp_path)
+    (tmp_path / "both.launch").write_text(
+        '<launch><node pkg="p" type="race.py" name="one"/><param name="home" value="$(env SOMEWHERE)"/></launch>'
+    )
+    (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
+    race = tmp_path / "race.py"
+    race.write_text("#!/usr/bin/env python3\nimport os, rospy\nprint(rospy.get_param('/home'), os.environ['SOMEWHERE'])\n")
+    race.chmod(0o755)
+    monkeypatch.setenv("SOMEWHERE", "here")
+    monkeypatch.chdir(tmp_path)
+    for number, plan in enumerate((RunPlan(("paths.py", "x"), NODE), RunPlan(("both.launch",), LAUNCH, seconds=2))):
+        record(plan, tmp_path.parent / f"{tmp_path.name}-{number}.cfepy")
+    monkeypatch.setenv("SOMEWHERE", "elsewhere")
+    monkeypatch.chdir("/")
+    for number in range(2):
+        again = replay(read_journal(tmp_path.parent / f"{tmp_path.name}-{number}.cfepy"))
+        assert again.verdict.same, again.verdict
+        assert any("here" in line or "as asked" in line for line in again.flown.mission.console.lines)
+
+
+@pytest.mark.parametrize("change", ["edited", "gone"])
+@pytest.mark.parametrize("mission", [*SMALL, "capture"])
+def test_the_files_of_the_journal_are_enough(mission: str, change: str, tmp_path: Path) -> None:
+    folder = tmp_path / "mission"
+    if mission == "capture":
+        shutil.copytree(shipped("missions") / "capture", folder)
+    else:
+        folder.mkdir()
+        SMALL[mission](folder)
+    flown = record(plan_for(str(folder), 2, schedule="random:2"), tmp_path / "run.cfepy")
+    if change == "gone":
+        shutil.rmtree(folder)
+    else:
+        (folder / "out.txt").unlink(missing_ok=True)
+        for path in folder.glob("*.py"):
+            path.write_text("raise SystemExit('another file')\n")
+    again = replay(read_journal(tmp_path / "run.cfepy"))
+    assert again.verdict.same, again.verdict
+    assert again.flown.trace == flown.trace
+    assert results_of(again.flown.results) == results_of(flown.results)
+
+
+def results_of(results: Results) -> list[object]:
+    """What a user sees of them, paths aside."""
+    return [results.topics, results.apps, results.events, results.resets, results.problems]

@@ -1,0 +1,199 @@
+"""A paced run with real sockets is replayed without them, in virtual time, to the same digest.
+
+No test looks at the clock: the pacer is driven until what is expected is there.
+"""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.io.host_network import TCP, HostNetwork
+from cfepy.journal import JournalRecorder, read_journal, replay
+from cfepy.mission import Mission, outside
+from cfepy.mission.course import INTERRUPTED, Course
+from cfepy.mission.results import Results
+from cfepy.rtos.realtime import Pacer
+from cfepy.rtos.schedule import Schedule
+from cfepy.rtos.units import NS_PER_S
+from tests.journal.replays import assert_same_again, plan_for
+
+LOOPBACK = "127.0.0.1"
+FAST = 500.0  # virtual seconds for a real one
+PATIENCE_NS = 3_000 * NS_PER_S
+STARTUP = """\
+CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;
+CFE_APP, apps, Echo, ECHO, 80, 16384, 0x0, 0;
+CFE_APP, caller, __main__, CALLER, 90, 16384, 0x0, 0;
+!
+"""
+APPS = '''
+def Echo(cfe):
+    """Sends back what comes to TCP port 7, in capitals, until the other side has no more."""
+    server = cfe.os.socket_open(1, 2)
+    address = cfe.os.socket_addr_init(1)
+    cfe.os.socket_addr_set_port(address, 7)
+    cfe.os.socket_bind(server, address)
+    while True:
+        connection, _ = cfe.os.socket_accept(server)
+        while data := cfe.os.read(connection, 5000):
+            at = 0
+            while at < len(data):
+                at += cfe.os.write(connection, data[at:].upper())
+        cfe.os.close(connection)
+'''
+CALLER = """
+import socket, time
+for _ in range(2000):
+    caller = socket.socket()
+    try:
+        caller.connect(("127.0.0.1", 9))
+    except OSError:
+        time.sleep(0.1)
+        continue
+    caller.sendall(b"who is there?")
+    print("answered:", caller.recv(100).decode())
+    break
+"""
+
+
+class Session:
+    """A paced mission with real ports that is recorded."""
+
+    def __init__(self, course: Course, bridge: HostNetwork, recorder: JournalRecorder) -> None:
+        self.course = course
+        self.mission = course.mission
+        self.bridge = bridge
+        self._recorder = recorder
+        self._pacer = Pacer(self.mission.kernel, self._run_until, FAST, bridge.wait)
+
+    def run_while(self, missing: Callable[[], bool]) -> None:
+        """Let the run go on until nothing is missing any more."""
+        while missing():
+            assert self.mission.kernel.now < PATIENCE_NS, "what was expected never came"
+            self._pacer.step(PATIENCE_NS)
+
+    def console_has(self, text: str) -> bool:
+        return any(text in line for line in self.mission.console.lines)
+
+    def _run_until(self, until_ns: int) -> None:
+        self.mission.run_until(until_ns)
+        self.bridge.exchange()
+        self._recorder.mark()
+
+
+@contextmanager
+def session(folder: Path, schedule: str = "fifo", board: str = "linux", port: int = 0) -> Iterator[Session]:
+    """A mission that is recorded into run.cfepy, and then interrupted."""
+    for name, text in (("startup.scr", STARTUP), ("apps.py", APPS), ("caller.py", CALLER)):
+        (folder / name).write_text(text)
+    plan = plan_for(str(folder), schedule=schedule, board=board)
+    policy = Schedule.parse(schedule).policy()
+    with JournalRecorder(folder / "run.cfepy", plan, paced=FAST, policy=policy) as recorder:
+        mission = Mission(
+            plan.spec(), board=board, console=Console(quiet=True), policy=recorder.policy, attachments=[recorder]
+        )
+        with mission, HostNetwork(mission, {1234: 0, 7: 0, 9: port}) as bridge:
+            course = Course(mission, PATIENCE_NS / NS_PER_S)
+            yield Session(course, bridge, recorder)
+            course.end()
+            mission.shut_down_nodes()
+            digest = mission.finish()
+        recorder.end(Results.of(mission, course.at, digest), None, INTERRUPTED)
+
+
+@pytest.mark.parametrize(("schedule", "board"), [("fifo", "linux"), ("random:3", "rx64m"), ("pct:1:3:500", "linux")])
+def test_datagrams_and_connections_come_again(tmp_path: Path, schedule: str, board: str) -> None:
+    with (
+        socket.create_server((LOOPBACK, 0)) as server,
+        session(tmp_path, schedule, board, server.getsockname()[1]) as run,
+    ):
+        server.setblocking(False)
+        run.run_while(lambda: run.bridge.host_port(1234) is None or run.bridge.host_port(7, TCP) is None)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
+            for _ in range(3):
+                ground.sendto(bytes.fromhex("1884c000000100a2"), (LOOPBACK, run.bridge.host_port(1234) or 0))
+            run.run_while(lambda: not run.console_has("CI: NOOP command"))
+        text = b"a long story; " * 9_000
+        back = echoed(run, text)
+        assert back == text.upper()
+        answer(run, server)
+        run.run_while(lambda: not run.console_has("answered: nobody"))
+    journal = read_journal(tmp_path / "run.cfepy")
+    kinds = {event.kind for pause in journal.pauses for event in pause.events}
+    assert kinds == {outside.DATAGRAM, outside.CALL, outside.BYTES, outside.TAKEN, outside.ENDED, outside.CLOSED}
+    assert journal.answers[-1].values[-1] is True
+    assert journal.end is not None
+    assert_same_again(journal, journal.end.trace)
+
+
+def test_a_replay_can_end_between_two_inputs(tmp_path: Path) -> None:
+    with session(tmp_path) as run:
+        run.run_while(lambda: run.bridge.host_port(1234) is None)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
+            for count in (1, 2):
+                ground.sendto(bytes.fromhex("1884c000000100a2"), (LOOPBACK, run.bridge.host_port(1234) or 0))
+                run.run_while(lambda count=count: _noops(run.mission) < count)  # type: ignore[misc]
+    journal = read_journal(tmp_path / "run.cfepy")
+    second = journal.pauses[-1].until_ns
+    early = replay(journal, until_ns=second - 1)
+    assert early.verdict.same
+    assert not early.verdict.whole
+    assert _noops(early.flown.mission) == 1
+
+
+def _noops(mission: Mission) -> int:
+    return sum("CI: NOOP command" in line for line in mission.console.lines)
+
+
+def echoed(run: Session, text: bytes) -> bytes:
+    """Send a text to the echo and get it back, with a socket that takes little at a time."""
+    back = bytearray()
+    with socket.create_connection((LOOPBACK, run.bridge.host_port(7, TCP) or 0)) as client:
+        client.setblocking(False)
+        left = memoryview(text)
+
+        def missing() -> bool:
+            nonlocal left
+            try:
+                left = left[client.send(left[:20_000]) :] if left else left
+            except BlockingIOError:
+                pass
+            try:
+                back.extend(client.recv(3_000))
+            except BlockingIOError:
+                pass
+            return len(back) < len(text)
+
+        run.run_while(missing)
+        client.shutdown(socket.SHUT_WR)
+        run.run_while(lambda: not _is_at_its_end(client))
+    return bytes(back)
+
+
+def _is_at_its_end(client: socket.socket) -> bool:
+    try:
+        return not client.recv(100)
+    except BlockingIOError:
+        return False
+
+
+def answer(run: Session, server: socket.socket) -> None:
+    """Take the call of the mission's own node, and answer it."""
+    found: list[socket.socket] = []
+
+    def missing() -> bool:
+        try:
+            found.append(server.accept()[0])
+        except BlockingIOError:
+            return True
+        return False
+
+    run.run_while(missing)
+    found[0].sendall(b"nobody")
+    found[0].close()

@@ -1,0 +1,100 @@
+"""Whole missions under schedules: the same one gives the same trace, on the other context too, and nothing piles up."""
+
+from __future__ import annotations
+
+import gc
+import resource
+import threading
+from pathlib import Path
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.mission import Mission
+from cfepy.mission.spec import read_mission
+from cfepy.rtos import Policy, Recorded, Schedule
+from tests.mission.flights import write_mission
+
+pytest.importorskip("greenlet")
+LOCKED = """
+    import threading
+    import rospy
+
+    rospy.init_node("locked", anonymous=True)
+    first, second = threading.{kind}(), threading.{kind}()
+
+    def work(one, other):
+        with one:
+            rospy.get_time()
+            with other:
+                pass
+
+    threading.Thread(target=work, args=(first, second)).start()
+    threading.Thread(target=work, args=(second, first)).start()
+    with threading.Condition() as condition:
+        condition.wait()
+"""
+
+
+def fly(
+    mission: str, schedule: Schedule | None, tasks: str = "greenlet", seconds: float = 0.65
+) -> tuple[str, Recorded]:
+    """Digest and decisions of one flight; without a schedule, of one on the plain kernel."""
+    recorded = Recorded(None if schedule is None else schedule.policy())
+    policy = None if schedule is None else recorded
+    with Mission(mission, console=Console(quiet=True), tasks=tasks, policy=policy) as flight:
+        flight.run(seconds)
+        return flight.trace.digest(), recorded
+
+
+@pytest.mark.parametrize("mission", ["capture", "sched", "rx64m_pubsub"])
+def test_exploring_without_a_deviation_is_the_run_that_everybody_has(mission: str) -> None:
+    assert fly(mission, Schedule("at"))[0] == fly(mission, None)[0]
+
+
+@pytest.mark.parametrize("mission", ["capture", "rx64m_pubsub"])
+@pytest.mark.parametrize("text", ["random:1", "pct:2:3", "random:3:any", "random:4:hold=500us", "pct:5:2:any:hold=1ms"])
+def test_a_schedule_can_be_given_again_on_the_other_context(mission: str, text: str) -> None:
+    schedule = Schedule.parse(text)
+    digest, recorded = fly(mission, schedule)
+    again, replayed = fly(mission, schedule.at(recorded.deviations), "thread")
+    assert again == digest
+    assert replayed.choices == recorded.choices
+    assert recorded.moments
+
+
+@pytest.mark.parametrize("kind", ["Lock", "RLock"])
+def test_locks_of_a_node_in_opposite_order_are_a_deadlock(tmp_path: Path, kind: str) -> None:
+    startup = "CFE_APP, locked.py, __main__, LOCKED, 100, 65536, 0x0, 0;\n!\n"
+    mission = write_mission(tmp_path, startup, locked=LOCKED.replace("{kind}", kind))
+
+    def circles(policy: Policy) -> list[list[str]]:
+        with Mission(mission, console=Console(quiet=True), tasks="greenlet", policy=policy) as flight:
+            flight.run(0.65)
+            return [[str(wait) for wait in circle] for circle in flight.kernel.deadlocked()]
+
+    assert circles(Policy()) == []
+    found = next(each for seed in range(50) if (each := circles(Schedule("random", seed).policy() or Policy())))
+    assert len(found) == 1
+    assert len(found[0]) == 2
+    assert all(" waits for lock " in wait and ", held by " in wait for wait in found[0])
+
+
+@pytest.mark.slow
+def test_ten_thousand_schedules_leave_nothing_in_the_process() -> None:
+    """Of a mission cut short, so that most of the time goes into boot and end; garbage is collected now and then."""
+    spec = read_mission("capture")
+    seen: list[tuple[int, int, int]] = []
+    for seed in range(10_001):
+        policy = Schedule("random", seed, any_priority=True).policy()
+        with Mission(spec, console=Console(quiet=True), tasks="thread", policy=policy) as flight:
+            flight.run(0.2)
+        if seed % 10 == 0:
+            gc.collect()
+        if seed % 2_000 == 0:
+            memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+            seen.append((len(gc.get_objects()), threading.active_count(), memory))
+    objects, threads, memory = zip(*seen[1:], strict=True)
+    assert max(objects) - min(objects) < 100
+    assert len(set(threads)) == 1
+    assert memory[-1] - memory[0] < 4_096

@@ -1,0 +1,48 @@
+"""What shrinking leaves of a schedule that shows a bug."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from cfepy.explore.shrink import Shrinker
+from tests.quality.bugs import Bug, reference_trial
+
+
+@dataclass(frozen=True, slots=True)
+class Shrunk:
+    """The shortest schedule that was found.
+
+    Attributes:
+        preemptions: how often a task that could have gone on loses the processor.
+        others: how often another than the first of the waiting tasks goes on.
+        probes: runs that it took.
+        schedule: itself.
+    """
+
+    preemptions: int
+    others: int
+    probes: int
+    schedule: str
+
+    def __str__(self) -> str:
+        return f"{self.preemptions} + {self.others}" if self.others else str(self.preemptions)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data."""
+        return asdict(self)
+
+
+def shrunk(bug: Bug, schedule: str) -> Shrunk:
+    """Shrink a schedule.
+
+    Args:
+        bug: that it shows.
+        schedule: under which the mission fails.
+    """
+    trial = reference_trial(bug.folder)
+    group = trial.run(schedule).groups[0]
+    found = Shrinker(trial, schedule, group).run()
+    assert found is not None, f"{schedule} does not show {bug.name} again"
+    preemptions = sum(move.preempts for move in found.moves)
+    return Shrunk(preemptions, len(found.moves) - preemptions, found.probes, found.verdict.schedule)

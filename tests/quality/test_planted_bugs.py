@@ -1,0 +1,93 @@
+"""Planted bugs are found by exploring, not by flying the mission as always; mended missions never fail."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.explore.trial import Trial
+from cfepy.explore.verdict import Verdict
+from tests.quality.bugs import BUGS, MISSIONS, Bug, by_name, reference_trial
+from tests.quality.measure import LONGEST, Hunt, hunts
+from tests.quality.report import best, load
+from tests.quality.shrinking import shrunk
+
+EACH = pytest.mark.parametrize("bug", BUGS, ids=[bug.name for bug in BUGS])
+SHRUNK_HERE = ("frame_counter", "late_subscription")
+
+
+def first_failure(hunt: Hunt, longest: int) -> Verdict | None:
+    """What a search finds within so many schedules."""
+    for _ in range(longest):
+        verdict = hunt.step()
+        if verdict is None or verdict.failed:
+            return verdict
+    return None
+
+
+def found_by(bug: Bug, policy: str) -> Verdict:
+    verdict = first_failure(hunts(reference_trial(bug.folder), policy, 1)[0], LONGEST)
+    assert verdict is not None, f"{policy} does not find {bug.name}"
+    return verdict
+
+
+def test_every_mission_is_listed() -> None:
+    assert sorted(bug.name for bug in BUGS) == sorted(path.parent.name for path in MISSIONS.glob("*/startup.scr"))
+
+
+@EACH
+def test_first_come_first_served_shows_nothing(bug: Bug) -> None:
+    trial = reference_trial(bug.folder)
+    plain, asked = trial.run("fifo"), trial.run("at:")
+    assert not plain.failures
+    assert not plain.trouble
+    assert asked.trace == plain.trace
+
+
+@EACH
+def test_the_best_policy_finds_it_and_the_schedule_shows_it_again_on_threads(bug: Bug) -> None:
+    verdict = found_by(bug, best(load(), bug.name)[0])
+    assert verdict.failures[0].kind in bug.kinds
+    deviations = ",".join(f"{decision}={choice}" for decision, choice in verdict.deviations)
+    for tasks in ("greenlet", "thread"):
+        again = reference_trial(bug.folder, tasks).run(f"at:{deviations}")
+        assert again.failures == verdict.failures
+        assert again.trace == verdict.trace
+
+
+def never_fails(trial: Trial, policy: str, schedules: int) -> None:
+    failed = first_failure(hunts(trial, policy, 1)[0], schedules)
+    assert failed is None, failed
+
+
+@EACH
+def test_mended_it_does_not_fail(bug: Bug, tmp_path: Path) -> None:
+    never_fails(reference_trial(bug.write_fixed(tmp_path)), "all", 4)
+
+
+@pytest.mark.slow
+@EACH
+@pytest.mark.parametrize("policy", ["all", "dfs 2"])
+def test_mended_it_never_fails(bug: Bug, policy: str, tmp_path: Path) -> None:
+    never_fails(reference_trial(bug.write_fixed(tmp_path)), policy, 200)
+
+
+def shrinks(bug: Bug) -> None:
+    """What shrinking leaves of a schedule at random fails in the same way, on both contexts."""
+    verdict = found_by(bug, best(load(), bug.name)[0])
+    small = shrunk(bug, verdict.schedule)
+    assert small.preemptions <= 3
+    for tasks in ("greenlet", "thread"):
+        assert verdict.groups[0] in reference_trial(bug.folder, tasks).run(small.schedule).groups
+
+
+@pytest.mark.parametrize("name", SHRUNK_HERE)
+def test_shrinking_leaves_few_preemptions(name: str) -> None:
+    shrinks(by_name(name))
+
+
+@pytest.mark.slow
+@EACH
+def test_shrinking_leaves_few_preemptions_of_every_bug(bug: Bug) -> None:
+    shrinks(bug)

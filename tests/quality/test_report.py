@@ -1,0 +1,43 @@
+"""The page of planted bugs is made of what was measured, and says what it is to say."""
+
+from __future__ import annotations
+
+import statistics
+
+from tests.quality.bugs import BUGS, CFE
+from tests.quality.measure import LONGEST, POLICIES, TRIALS
+from tests.quality.report import PAGE, SHRUNK, best, complete, load, medians, page
+from tests.quality.shrinking import Shrunk
+
+
+def test_everything_was_measured() -> None:
+    measured = load()
+    assert complete(measured), "run python -m tests.quality report"
+    assert set(measured) == {bug.name for bug in BUGS}
+    for bug in BUGS:
+        for policy, found in medians(measured, bug.name).items():
+            assert found.trials == (1 if policy.startswith("dfs") else TRIALS)
+
+
+def test_the_page_is_what_was_measured() -> None:
+    assert PAGE.read_text() == page(load()), "run python -m tests.quality report"
+
+
+def test_every_bug_is_found_and_half_of_them_soon() -> None:
+    measured = load()
+    found = [best(measured, bug.name)[1] for bug in BUGS]
+    assert all(each.found and each.schedules <= LONGEST for each in found)
+    assert statistics.median(each.schedules for each in found) <= 50
+
+
+def test_shrinking_leaves_at_most_three_preemptions() -> None:
+    measured = load()
+    assert all(Shrunk(**measured[bug.name][SHRUNK]).preemptions <= 3 for bug in BUGS)
+
+
+def test_the_bugs_are_of_all_kinds() -> None:
+    worlds = [bug.world for bug in BUGS]
+    assert len(BUGS) >= 25
+    assert worlds.count(CFE) >= 5
+    assert len({kind for bug in BUGS for kind in bug.kinds}) >= 6
+    assert len(POLICIES) == 6

@@ -1,0 +1,32 @@
+"""One flight for all tests of this folder that only look at what came of it."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import pytest
+
+from cfepy.mission.run_plan import Flown
+from cfepy.reports.collector import Collector
+from cfepy.reports.page import About, page_of
+from tests.reports import looked_at
+
+
+class Shown(NamedTuple):
+    """A flight, what was collected, its page, and its trace for Perfetto."""
+
+    mission: str
+    flown: Flown
+    collector: Collector
+    page: str
+    events: list[dict[str, Any]]
+
+
+@pytest.fixture(scope="session")
+def shown(tmp_path_factory: pytest.TempPathFactory) -> Shown:
+    mission = looked_at.busy_mission(tmp_path_factory.mktemp("busy"))
+    collector = Collector()
+    flown = looked_at.fly(mission, collector)
+    page = page_of(flown, collector, About(f"cfepy run --for 3 {mission}", "fifo", mission))
+    _, events = looked_at.perfetto(mission)
+    return Shown(mission, flown, collector, page, events)

@@ -1,0 +1,67 @@
+"""Who waits for whom in a circle."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy.rtos import Kernel, Task, WaitList
+
+
+class World:
+    """Tasks that wait for what others hold."""
+
+    def __init__(self, kernel: Kernel) -> None:
+        self.kernel = kernel
+        self.tasks: dict[str, Task] = {}
+
+    def add(self, name: str, holder: str, timeout_ns: int = -1) -> None:
+        """A task that waits for something that another one holds; nobody holds what "" holds."""
+        waits = WaitList(f"lock of {holder}")
+        waits.owner = lambda: self.tasks.get(holder)
+        self.tasks[name] = self.kernel.spawn(name, lambda: self.kernel.wait_on(waits, timeout_ns))
+
+    def found(self) -> list[list[str]]:
+        """What the kernel tells, after some time."""
+        self.kernel.run(1000)
+        return [[str(wait) for wait in circle] for circle in self.kernel.deadlocked()]
+
+
+@pytest.fixture
+def world(kernel: Kernel) -> World:
+    """Nobody waits yet."""
+    return World(kernel)
+
+
+def test_a_circle_is_told_once_and_who_waits_outside_it_is_not(world: World) -> None:
+    for name, holder in (("outside", "b"), ("a", "b"), ("b", "c"), ("c", "a"), ("d", "e"), ("e", "")):
+        world.add(name, holder)
+    assert world.found() == [
+        [
+            "b waits for lock of c, held by c",
+            "c waits for lock of a, held by a",
+            "a waits for lock of b, held by b",
+        ]
+    ]
+
+
+def test_a_wait_that_ends_by_itself_is_no_deadlock(world: World) -> None:
+    world.add("a", "b")
+    world.add("b", "a", 1_000_000)
+    assert world.found() == []
+
+
+def test_a_task_may_wait_for_itself(world: World) -> None:
+    world.add("a", "a")
+    assert world.found() == [["a waits for lock of a, held by a"]]
+
+
+def test_a_task_that_waits_for_one_that_has_ended(world: World) -> None:
+    world.tasks["dead"] = world.kernel.spawn("dead", lambda: None)
+    world.add("a", "dead")
+    assert world.found() == [["a waits for lock of dead, held by dead, which has ended"]]
+
+
+def test_two_circles(world: World) -> None:
+    for name, holder in (("a", "b"), ("b", "a"), ("c", "d"), ("d", "c")):
+        world.add(name, holder)
+    assert [len(circle) for circle in world.found()] == [2, 2]

@@ -1,0 +1,133 @@
+"""Small missions for suites that `pytester` runs, and the commands that they print."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import cfepy.testing.explored_tests
+import cfepy.testing.journals
+import cfepy.testing.strategies  # noqa: F401  # imported here, or each suite would import it anew
+from cfepy.mission.run_plan import RunPlan
+from cfepy.testing import Flight
+
+ROOT = Path(__file__).parents[2]
+NODE_LINE = "CFE_APP, {name}.py, __main__, {app}, 100, 65536, 0x0, 0;\n"
+
+TALKER = """
+import rospy
+from std_msgs.msg import Int32
+from std_srvs.srv import Trigger, TriggerResponse
+
+
+def reset(request):
+    global number
+    number = 0
+    return TriggerResponse(success=True, message="from 0")
+
+
+number = 0
+rospy.init_node("talker")
+publisher = rospy.Publisher("count", Int32, queue_size=10)
+rospy.Subscriber("jump", Int32, lambda message: publisher.publish(message.data))
+rospy.Service("reset", Trigger, reset)
+print("talking")
+while not rospy.is_shutdown():
+    number += rospy.get_param("~step", 1)
+    publisher.publish(number)
+    rospy.sleep(0.1)
+"""
+
+RACY = """
+import threading
+
+import rospy
+from std_msgs.msg import Int32
+
+
+def add():
+    global total
+    for _ in range(3):
+        before = total
+        rospy.get_param("/step", 1)
+        total = before + 1
+
+
+total = 0
+rospy.init_node("racy")
+publisher = rospy.Publisher("total", Int32, queue_size=10, latch=True)
+threads = [threading.Thread(target=add) for _ in range(2)]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+publisher.publish(total)
+print("total", total)
+rospy.spin()
+"""
+
+Suite = Callable[..., pytest.RunResult]
+
+
+def write_mission(folder: Path, **nodes: str) -> Path:
+    """A mission of ROS nodes: their programs by name."""
+    folder.mkdir()
+    lines = [NODE_LINE.format(name=name, app=name.upper()) for name in nodes]
+    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    for name, text in nodes.items():
+        (folder / f"{name}.py").write_text(text)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def loaded(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Every module that a mission needs is there: pytester lets go of those that a suite imports."""
+    folder = write_mission(tmp_path_factory.mktemp("loaded") / "talk", talker=TALKER, racy=RACY)
+    for tasks in ("thread", "greenlet"):
+        with Flight(RunPlan((str(folder),), tasks=tasks)) as flight:
+            flight.run(1)
+            flight.publish("/jump", data=1)
+            assert flight.call_service("/reset").success
+            assert not flight.results.problems
+
+
+@pytest.fixture
+def missions(pytester: pytest.Pytester, loaded: None) -> Path:
+    """The folder of a suite, with the missions `talk` and `race` in it."""
+    write_mission(pytester.path / "talk", talker=TALKER)
+    write_mission(pytester.path / "race", racy=RACY)
+    return pytester.path
+
+
+@pytest.fixture
+def suite(pytester: pytest.Pytester, missions: Path) -> Suite:
+    """Runs the text of a test file in this process, with options."""
+
+    def run(text: str, *options: str) -> pytest.RunResult:
+        pytester.makepyfile(test_it=text)
+        return pytester.runpytest_inprocess("-p", "cfepy.testing.plugin", "-p", "no:cacheprovider", *options)
+
+    return run
+
+
+def told_command(result: pytest.RunResult) -> str:
+    """The last command that a run says does the same again."""
+    found = re.findall(r"the same again: (pytest .*)", result.stdout.str())
+    assert found, result.stdout.str()
+    return str(found[-1])
+
+
+def given_verbatim(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """A command, given to a shell as it was printed."""
+    bin_folder = str(Path(sys.executable).parent)
+    env = {**os.environ, "PATH": os.pathsep.join([bin_folder, os.environ["PATH"]]), "PYTHONPATH": str(ROOT)}
+    env |= {"PYTEST_PLUGINS": "cfepy.testing.plugin", "PYTEST_ADDOPTS": "", "COLUMNS": "300"}
+    assert shlex.split(command)[0] == "pytest"
+    return subprocess.run(command, shell=True, cwd=folder, env=env, capture_output=True, text=True, check=False)

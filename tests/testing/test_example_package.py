@@ -1,0 +1,20 @@
+"""The example package of a user: its tests are run as its user runs them."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PROBE = ROOT / "examples" / "probe"
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_its_tests_pass(pytester: pytest.Pytester, loaded: None, tasks: str) -> None:
+    shutil.copytree(PROBE, pytester.path / "probe", ignore=shutil.ignore_patterns("__pycache__", ".*"))
+    result = pytester.runpytest_inprocess("-p", "cfepy.testing.plugin", "--cfepy-tasks", tasks, "probe")
+    outcomes = result.parseoutcomes()
+    assert outcomes.pop("passed") >= 15
+    assert outcomes == {}

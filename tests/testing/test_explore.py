@@ -1,0 +1,148 @@
+"""@explore: a race is found, shrunk, told, and found again by the command that is told."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from cfepy.status import UsageError
+from cfepy.testing import explore
+from tests.testing.conftest import Suite, given_verbatim, told_command
+
+RACE = """
+from cfepy.testing import explore
+
+@explore(seeds=60, policy={policy!r}, shrink={shrink})
+def test_total(mission):
+    mission("race").expect_message("/total", data=6, within=0.8)
+"""
+
+
+def test_a_race_is_found_and_shrunk(suite: Suite) -> None:
+    result = suite(RACE.format(policy="random", shrink=100))
+    result.assert_outcomes(failed=1)
+    text = result.stdout.str()
+    assert re.search(r"failed under the \d+\. of 60 schedules, random:\d+", text)
+    shortest = re.search(r"the shortest schedule that fails in this way, after \d+ runs: at:(\S+)", text)
+    assert shortest is not None
+    assert shortest[1].count("=") <= 3
+    assert text.count("ran instead") == shortest[1].count("=")
+
+
+def test_pct_finds_it_too_and_need_not_be_shrunk(suite: Suite) -> None:
+    result = suite(RACE.format(policy="pct", shrink=0))
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["failed under the *. of 60 schedules, pct:*", "*--cfepy-schedule pct:*"])
+    result.stdout.no_fnmatch_line("*the shortest schedule*")
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_the_command_fails_in_the_same_way(suite: Suite, missions: Path, tasks: str) -> None:
+    result = suite(RACE.format(policy="random", shrink=10), "--cfepy-tasks", tasks)
+    again = given_verbatim(told_command(result), missions)
+    assert again.returncode == 1
+    instead = [re.findall(r"E +instead: (.*)", text) for text in (result.stdout.str(), again.stdout)]
+    assert instead[0] == instead[1] != []
+
+
+def test_fifo_is_the_first_schedule_and_finds_nothing(suite: Suite) -> None:
+    suite(RACE.format(policy="random", shrink=10), "--cfepy-schedules", "1").assert_outcomes(passed=1)
+    suite(RACE.format(policy="random", shrink=10), "--cfepy-schedule", "fifo").assert_outcomes(passed=1)
+
+
+def test_each_schedule_has_fixtures_of_its_own(suite: Suite) -> None:
+    result = suite(
+        """
+        import pytest
+        from cfepy.testing import explore
+
+        seen, ended, wide = [], [], []
+
+        @pytest.fixture
+        def flight(mission, tmp_path):
+            flight = mission("talk")
+            yield flight
+            ended.append(flight)
+
+        @pytest.fixture(scope="module", params=["a", "b"])
+        def shared(request):
+            wide.append(request.param)
+            yield request.param
+            wide.remove(request.param)
+
+        @explore(seeds=3)
+        @pytest.mark.parametrize("number", [1, 2])
+        def test_it(flight, tmp_path, number, shared):
+            assert not list(tmp_path.iterdir())
+            (tmp_path / "mine").touch()
+            assert flight.now == 0
+            flight.run(0.1)
+            assert wide == [shared]
+            seen.append((number, shared, flight.plan.schedule))
+
+        def test_what_was_seen():
+            schedules = ["fifo", "random:1", "random:2"]
+            expected = [(number, shared, each) for shared in "ab" for number in (1, 2) for each in schedules]
+            assert sorted(seen) == sorted(expected)
+            assert len(ended) == 12
+            assert all(flight.closed for flight in ended)
+        """
+    )
+    result.assert_outcomes(passed=5)
+
+
+def test_failures_other_than_of_the_call(suite: Suite) -> None:
+    result = suite(
+        """
+        import pytest
+        from cfepy.testing import explore
+
+        @pytest.fixture
+        def broken(mission):
+            raise RuntimeError("no setup")
+
+        @pytest.fixture(scope="module")
+        def untidy():
+            yield
+            raise RuntimeError("no teardown")
+
+        @explore(seeds=3)
+        def test_setup(broken): ...
+
+        @explore(seeds=3)
+        def test_skipped(): pytest.skip("not today")
+
+        @explore(seeds=3)
+        @pytest.mark.xfail(reason="known")
+        def test_xfail(mission): assert False
+
+        @explore(seeds=3)
+        def test_teardown(untidy): ...
+        """
+    )
+    result.assert_outcomes(errors=2, skipped=1, xfailed=1, passed=1)
+
+
+def test_several_missions_have_the_schedule_all(suite: Suite) -> None:
+    result = suite(
+        """
+        def test_it(mission):
+            flights = [mission("talk") for _ in range(3)]
+            assert [each.plan.schedule for each in flights] == ["at:1=1", "random:3", "random:3"]
+            assert mission("talk", schedule="pct:1:2", seed=9).plan.schedule == "pct:1:2"
+        """,
+        "--cfepy-schedule",
+        "at:1=1;random:3",
+    )
+    result.assert_outcomes(passed=1)
+
+
+def test_wrong_arguments() -> None:
+    with pytest.raises(UsageError, match="'fancy' is no policy; there are random, pct"):
+        explore(policy="fancy")
+    with pytest.raises(UsageError, match="seeds"):
+        explore(seeds=0)
+    with pytest.raises(UsageError):
+        explore(hold="soon")

@@ -1,0 +1,173 @@
+"""The pytest plugin: missions in tests, what it tells of a failure, what it costs those who do not need it."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from cfepy.journal import read_journal, replay
+from tests.testing.conftest import ROOT, Suite, given_verbatim, told_command
+
+WAITS = """
+def test_it(mission):
+    flight = mission("talk")
+    flight.run_until_operational()
+    {act}
+    flight.expect_message("/count", data=77, within=0.5)
+"""
+
+
+def test_a_mission_flies(suite: Suite) -> None:
+    suite(
+        """
+        def test_it(mission):
+            flight = mission("talk")
+            flight.run_until_operational()
+            flight.publish("/jump", data=77)
+            assert flight.expect_message("/count", data=77, within=0.2).data == 77
+            assert flight.stdout("talker") == ["talking"]
+        """
+    ).assert_outcomes(passed=1)
+
+
+def test_a_failure_says_what_there_was_instead(suite: Suite) -> None:
+    result = suite(WAITS.format(act="flight.publish('/jump', data=76)"))
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            "*expected message on /count with data=77 within 0.5 s, until 1.*",
+            "*instead: * messages, the last: data: * at *",
+            "*console until 1.*",
+            "*talker*talking*",
+            "*the same again: pytest test_it.py::test_it --cfepy-seed 0 --cfepy-schedule fifo",
+        ]
+    )
+
+
+def test_the_command_fails_in_the_same_way(suite: Suite, missions: Path) -> None:
+    result = suite(
+        WAITS.format(act="flight.set_param('/talker/step', 7)"), "--cfepy-seed", "3", "--cfepy-tasks", "thread"
+    )
+    again = given_verbatim(told_command(result), missions)
+    assert again.returncode == 1
+    said = [
+        re.findall(r"E\s+(.*(?:expected|instead|console|the same).*)", text)
+        for text in (result.stdout.str(), again.stdout)
+    ]
+    assert said[0] == said[1] != []
+
+
+def test_a_test_that_only_looks_on_is_a_run_of_the_command_line(
+    suite: Suite, missions: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = WAITS.format(act="pass") + "\ndef test_trace(mission):\n    flight = mission('talk')\n"
+    text += "    flight.run_until(1.5)\n    open('trace', 'w').write(flight.results.trace)\n"
+    result = suite(text, "--cfepy-seed", "5", "--cfepy-schedule", "random:2")
+    result.assert_outcomes(failed=1, passed=1)
+    commands = re.findall(r"the same again: cfepy (run .*)", result.stdout.str())
+    assert commands == ["run --for 1.100001 --seed 5 --schedule random:2 talk"]
+    monkeypatch.chdir(missions)
+    assert main([*commands[0].replace("1.100001", "1.5").split(), "--quiet"]) == 0
+    assert capsys.readouterr().out.split()[-1] == (missions / "trace").read_text()
+
+
+def test_missions_are_closed_and_no_thread_is_left(suite: Suite) -> None:
+    before = {each for each in threading.enumerate() if "cfepy" not in each.name}
+    result = suite(
+        """
+        import pytest
+
+        kept = []
+
+        @pytest.fixture
+        def flight(mission):
+            flight = mission("talk")
+            kept.append(flight)
+            yield flight
+            assert not flight.closed
+
+        @pytest.fixture(scope="module")
+        def shared(mission):
+            flight = mission("talk")
+            flight.run_until_operational()
+            return flight
+
+        def test_fails(mission, flight, shared):
+            kept.append(mission("talk"))
+            kept[-1].run(1)
+            raise ValueError("whatever")
+
+        def test_all_are_over(shared):
+            assert [flight.closed for flight in kept] == [True, True]
+            shared.run(0.1)
+            assert not shared.closed
+        """
+    )
+    result.assert_outcomes(passed=1, failed=1)
+    assert {each for each in threading.enumerate() if "cfepy" not in each.name} == before
+
+
+def test_the_failure_of_an_assertion_has_the_console_too(suite: Suite) -> None:
+    result = suite(
+        """
+        def test_it(mission):
+            flight = mission('talk')
+            flight.run(1)
+            assert not flight.messages('/count')
+        """
+    )
+    result.stdout.fnmatch_lines(["*cfepy*", "console until 1.000:", "*the same again: pytest test_it.py::test_it *"])
+
+
+def test_paths_are_seen_from_the_test_file(pytester: pytest.Pytester, missions: Path) -> None:
+    inner = pytester.mkdir("tests")
+    (inner / "test_deep.py").write_text(
+        "def test_it(mission):\n    assert mission('../talk').plan.words == ('talk',)\n"
+    )
+    pytester.runpytest_inprocess("-p", "cfepy.testing.plugin").assert_outcomes(passed=1)
+
+
+def test_an_unknown_mission_is_told(suite: Suite) -> None:
+    result = suite("def test_it(mission):\n    mission('nowhere')\n")
+    result.stdout.fnmatch_lines(["*no shipped mission*"])
+
+
+def test_journals_of_failed_tests_are_kept_and_replay(suite: Suite, missions: Path) -> None:
+    text = WAITS.format(act="flight.publish('/jump', data=76); flight.call_service('/reset')")
+    result = suite(text + "\ndef test_fine(mission):\n    mission('talk').run(1)\n", "--cfepy-record", "journals")
+    result.assert_outcomes(failed=1, passed=1)
+    found = list((missions / "journals").iterdir())
+    assert [each.name for each in found] == ["test_it.py-test_it.cfepy"]
+    result.stdout.fnmatch_lines(["journal: journals/test_it.py-test_it.cfepy"])
+    replayed = replay(read_journal(found[0]))
+    assert replayed.verdict.same
+    assert "[talker] talking" in replayed.flown.mission.console.lines
+
+
+def test_the_fixture_tells_what_it_is(pytester: pytest.Pytester) -> None:
+    result = pytester.runpytest_inprocess("-p", "cfepy.testing.plugin", "--fixtures")
+    result.stdout.fnmatch_lines(["mission [[]session scope[]]*", "*Boots missions*"])
+
+
+def test_other_suites_import_nothing() -> None:
+    code = "import pytest, sys; before = set(sys.modules); import cfepy.testing.plugin as plugin"
+    code += "; print(*sorted(set(sys.modules) - before))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["cfepy", "cfepy.testing", "cfepy.testing.plugin"]
+
+
+def test_a_suite_without_missions_loads_nothing_more(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(
+        "import sys\n\ndef test_it():\n    print(*(name for name in sys.modules if name.startswith('cfepy.')))\n"
+    )
+    code = "import sys, pytest; sys.exit(pytest.main(['-s', '-q', '-p', 'cfepy.testing.plugin']))"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=pytester.path, env={"PYTHONPATH": str(ROOT)}, capture_output=True, text=True
+    )
+    assert "cfepy.testing cfepy.testing.plugin\n" in done.stdout

@@ -1,0 +1,152 @@
+"""The strategies: what they give is good, or bad in the way that was asked for; and small where it fails."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, find, given, settings
+from hypothesis import strategies as st
+
+from cfepy.faults import FaultPlan
+from cfepy.mission.dictionary import dictionary_of
+from cfepy.mission.spec import read_mission
+from cfepy.msg import get_msg_id, get_size
+from cfepy.rtos.schedule import Schedule
+from cfepy.status import UsageError
+from cfepy.testing.message_library import library_near
+from cfepy.testing.strategies import fault_plans, messages, packets, schedules, tables
+from cfepy.testing.table_types import table_type
+from rospy_shim.msgs import message_class
+
+PROBE = Path(__file__).parents[2] / "examples/probe"
+LAB = dictionary_of(read_mission("lab"))
+quick = settings(max_examples=25, suppress_health_check=[HealthCheck.too_slow])
+
+
+@quick
+@given(message=messages("nav_msgs/Odometry"))
+def test_messages_can_be_sent(message: Any) -> None:
+    kind = message_class("nav_msgs/Odometry")
+    assert type(message) is kind
+    assert kind._unpack(message._pack())._pack() == message._pack()
+
+
+@quick
+@given(message=messages("probe_msgs/Count", near=PROBE / "mission", number=st.just(3)))
+def test_messages_of_an_own_package(message: Any) -> None:
+    assert (message._type, message.number) == ("probe_msgs/Count", 3)
+
+
+@quick
+@given(message=messages(message_class("std_msgs/Header")))
+def test_messages_of_a_class(message: Any) -> None:
+    assert type(message) is message_class("std_msgs/Header")
+
+
+@quick
+@given(message=messages(library_near(PROBE / "mission").message_class("probe_msgs/Count")))
+def test_messages_of_a_class_of_an_own_package(message: Any) -> None:
+    assert 0 <= message.number < 2**32
+
+
+@quick
+@given(pose=messages("geometry_msgs/Pose", position=messages("geometry_msgs/Point", x=st.just(1.0))))
+def test_nested_messages_can_be_given(pose: Any) -> None:
+    assert pose.position.x == 1.0
+    assert len(pose._pack()) == 56
+
+
+def test_messages_shrink() -> None:
+    found = find(messages("sensor_msgs/JointState"), lambda message: len(message.position) > 1)
+    assert found.position == [0.0, 0.0]
+    assert (found.name, found.header.frame_id, found.header.stamp.secs) == ([], "", 0)
+
+
+def test_messages_that_there_are_not() -> None:
+    with pytest.raises(UsageError, match="no_msgs/Nothing"):
+        messages("no_msgs/Nothing")
+    with pytest.raises(UsageError, match="date: std_msgs/String has no such field; it has data"):
+        messages("std_msgs/String", date=st.text())
+    with pytest.raises(UsageError, match="no ROS message class"):
+        messages(int)
+
+
+@quick
+@given(packet=packets("SAMPLE_APP_DISPLAY_PARAM", fields={"ValI16": st.just(-1)}))
+def test_packets_by_name(packet: bytes) -> None:
+    declared = LAB.commands["SAMPLE_APP_DISPLAY_PARAM"]
+    assert (get_msg_id(packet), get_size(packet), len(packet)) == (declared.msg_id, declared.length, declared.length)
+    assert declared.read(packet)["ValI16"] == -1
+    assert declared.packet(declared.read(packet)) == packet
+
+
+@quick
+@given(packet=packets("HEATER_HK_TLM", mission=str(PROBE / "mission")))
+def test_telemetry_of_a_mission(packet: bytes) -> None:
+    assert get_msg_id(packet) == 0x08A0
+
+
+@quick
+@given(packet=packets() | packets(0x1882))
+def test_packets_of_any_kind(packet: bytes) -> None:
+    assert get_size(packet) == len(packet)
+
+
+@quick
+@given(packet=packets("SAMPLE_APP_DISPLAY_PARAM", malformed=True))
+def test_malformed_packets_have_a_mistake(packet: bytes) -> None:
+    declared = LAB.commands["SAMPLE_APP_DISPLAY_PARAM"]
+    assert get_msg_id(packet) == declared.msg_id
+    assert len(packet) != declared.length or get_size(packet) != len(packet) or packet[6] == 0x7F
+
+
+def test_packets_that_there_are_not() -> None:
+    with pytest.raises(UsageError, match="no command or telemetry packet is called SAMPLE_APP_NOP; is SAMPLE_APP_NOOP"):
+        packets("SAMPLE_APP_NOP")
+    with pytest.raises(UsageError, match="Val: SAMPLE_APP_DISPLAY_PARAM has no such field; it has ValU32, "):
+        packets("SAMPLE_APP_DISPLAY_PARAM", fields={"Val": st.just(1)})
+
+
+@quick
+@given(rows=tables("HK.CopyTable", fields={"NumBytes": st.integers(1, 4)}))
+def test_tables_fit_their_definition(rows: list[dict[str, Any]]) -> None:
+    kind = table_type("CopyTable", None)
+    assert kind.unpack(kind.pack(rows))[: len(rows)] == rows
+    assert all(1 <= row["NumBytes"] <= 4 for row in rows)
+
+
+def test_tables_that_there_are_not() -> None:
+    with pytest.raises(UsageError, match="no table is called 'HK.Copy'; there are HK.CopyTable, "):
+        tables("HK.Copy")
+
+
+@quick
+@given(schedule=schedules())
+def test_schedules_are_ones(schedule: str) -> None:
+    assert Schedule.parse(schedule).text() == schedule
+
+
+def test_schedules_shrink_to_the_deviations_that_matter() -> None:
+    found = find(schedules(), lambda schedule: any(at >= 42 for at, _ in Schedule.parse(schedule).deviations))
+    assert found == "at:42=1"
+
+
+@quick
+@given(faults=fault_plans(messages=["/odom"], apps=["ARM"]))
+def test_fault_plans_are_ones(faults: dict[str, Any]) -> None:
+    assert len(FaultPlan.from_dict(faults).faults) == len(faults["faults"])
+
+
+def test_fault_plans_shrink() -> None:
+    assert find(fault_plans(messages=["/odom"]), lambda faults: bool(faults["faults"])) == {
+        "faults": [{"drop": "/odom", "number": 1}]
+    }
+
+
+def test_fault_plans_of_a_mission_strike_what_is_there() -> None:
+    faults = find(fault_plans(PROBE / "mission"), lambda faults: any("crash" in each for each in faults["faults"]))
+    assert faults["faults"][0]["crash"] in ("HEATER", "COUNTER")
+    with pytest.raises(UsageError, match="there is nothing to strike"):
+        fault_plans()
