@@ -14,6 +14,7 @@ from benchmarks.crowd import crowd
 from benchmarks.frames import frames
 from benchmarks.measure import machine
 from benchmarks.missions import missions
+from benchmarks.recording import recording
 from benchmarks.schedules import schedules
 from benchmarks.services import services
 from benchmarks.universe import universe
@@ -28,6 +29,7 @@ def main(arguments: list[str] | None = None) -> int:
         "schedules": lambda: schedules(contexts),
         "crowd": lambda: crowd(contexts),
         "services": lambda: services(contexts),
+        "recording": lambda: recording(contexts),
         "frames": lambda: frames(contexts),
         "codec": codec,
         "universe": lambda: {f"{name}.{each}": value for each in contexts for name, value in universe(each).items()},

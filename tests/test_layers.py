@@ -33,7 +33,7 @@ LAYERS = [
     {"nodes", "apps", "faults"},
     {"mission"},
     {"journal"},
-    {"io", "explore", "reports"},
+    {"io", "explore", "reports", "debugger"},
     {"testing"},
     {"cli", "__main__"},
 ]

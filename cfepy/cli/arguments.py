@@ -87,7 +87,8 @@ def add_machine(run: argparse.ArgumentParser) -> None:
     run.add_argument(
         "--faults",
         metavar="FILE|seed:N",
-        help="let faults happen: those of a plan, or random ones (seed:N or seed:N:low, :medium, :high); see cfepy faults",
+        help="let faults happen: those of a plan, or random ones (seed:N, or seed:N:low, :medium, :high); "
+        "cfepy faults has more",
     )
     run.add_argument(
         "--schedule",

@@ -30,7 +30,7 @@ of objects in a frozenset), a file that changes, or a library written in C"""
 _HASHES = """it hangs on PYTHONHASHSEED, but ordered sets do not cure it: hash() of a text, a frozenset, a set that a
 library makes (d.keys() & e)"""
 _TASKS = "it hangs on --tasks; threads and greenlets must not differ, so this is a fault of cfepy: please report it"
-_NOT_TOGETHER = ("realtime", "json", "save_files", "trace")
+_NOT_TOGETHER = ("realtime", "json", "save_files", "trace", "record")
 
 
 @dataclass(frozen=True, slots=True)

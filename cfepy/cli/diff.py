@@ -5,19 +5,23 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.parting import Finding, show_sides
 from cfepy.cli.recorded_run import Plan
 from cfepy.cli.side_by_side import facts_of, failure, started
 from cfepy.cli.text_diff import compare_texts
-from cfepy.journal.frames import MARK
+from cfepy.journal.frames import is_journal
 from cfepy.journal.header_diff import differences
 from cfepy.journal.journal import Journal, read_journal
 from cfepy.mission.determinism import RunEndedError, first_parting
 from cfepy.mission.determinism_look import Look
 from cfepy.status import UsageError
+
+MOST_FIELDS = 12
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -42,8 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _is_journal(path: str) -> bool:
     try:
-        with open(path, "rb") as file:
-            return file.read(len(MARK)) == MARK
+        return is_journal(path)
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
 
@@ -67,9 +70,11 @@ class _Comparison:
         if index is None:
             print(f"all {agreed:,} records that can be replayed are alike")
             return self._without_difference()
-        looks = (self._look(one, index), self._look(other, index))
+        facts = [self._facts(each, index) for each in self._journals]
+        looks = (Look.from_dict(facts[0]), Look.from_dict(facts[1]))
         print(f"\nthe first {index:,} records are alike; record {index:,} differs (counted from 0)")
         show_sides(Finding((one.path, other.path), index, looks), sys.stdout)
+        _show_fields(facts[0]["fields"], facts[1]["fields"])
         return FOUND_PROBLEMS
 
     def _first_difference(self) -> tuple[int | None, int]:
@@ -81,10 +86,10 @@ class _Comparison:
                 raise failure(runs) from None
             return (None if parting is None else parting.index), agreed
 
-    def _look(self, journal: Journal, index: int) -> Look:
+    def _facts(self, journal: Journal, index: int) -> dict[str, Any]:
+        """What there is to see at a record."""
         with started(_plan(journal, index, self._lines)) as run:
-            facts = facts_of(run)
-        return Look.from_dict(facts)
+            return facts_of(run)
 
     def _without_difference(self) -> int:
         """The replays are alike: then the journals are, or one of the replays is not what was recorded."""
@@ -93,6 +98,17 @@ class _Comparison:
             return ENDED_WELL
         print("and yet the recorded runs were not: a replay is not what was recorded; `cfepy replay` says where")
         return FOUND_PROBLEMS
+
+
+def _show_fields(one: Mapping[str, str], other: Mapping[str, str]) -> None:
+    """The fields in which two packets differ; of two that have hardly one in common, none."""
+    names = [name for name in one if name in other and one[name] != other[name]]
+    if names:
+        print("\nfields that differ:")
+    for name in names[:MOST_FIELDS]:
+        print(f"  {name}: {one[name]}, {other[name]}")
+    if len(names) > MOST_FIELDS:
+        print(f"  and {len(names) - MOST_FIELDS} more")
 
 
 def _plan(journal: Journal, look_at: int | None = None, lines: int = 0) -> Plan:

@@ -60,15 +60,16 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _options(arguments: argparse.Namespace) -> Schedule:
-    words = [
-        BASE,
-        *(["any"] if arguments.any_priority else []),
-        *([f"hold={arguments.hold}"] if arguments.hold else []),
-    ]
-    try:
-        return Schedule.parse(":".join(words))
-    except UsageError as error:
-        raise UsageError(error.text, field="--hold") from None
+    words = [BASE]
+    words += ["any"] if arguments.any_priority else []
+    for option in ("hold", "from"):
+        time = getattr(arguments, option)
+        words += [f"{option}={time}"] if time else []
+        try:
+            Schedule.parse(":".join(words))
+        except UsageError as error:
+            raise UsageError(error.text, field=f"--{option}") from None
+    return Schedule.parse(":".join(words))
 
 
 def _plan(arguments: argparse.Namespace) -> RunPlan:
@@ -115,7 +116,7 @@ def _fly(
 
 
 def _identity(arguments: argparse.Namespace, trial: Trial, files: list[str]) -> dict[str, Any]:
-    names = ("policy", "depth", "first_seed", "any_priority", "hold", "events")
+    names = ("policy", "depth", "first_seed", "any_priority", "hold", "from", "events")
     return identity_of(trial.plan, files, {name: getattr(arguments, name) for name in names})
 
 
@@ -125,8 +126,12 @@ def _report(
     """What was found, each failure shrunk and with its timeline."""
     report = Report(trial, reference, tally, findings.troubles)
     for finding in findings.all():
-        shrunk = None if tally.interrupted else _shrunk(arguments, trial, finding)
-        lines = _timeline(shrunk, finding) if shrunk is not None else []
+        shrunk, lines = None, []
+        try:
+            shrunk = None if tally.interrupted else _shrunk(arguments, trial, finding)
+            lines = _timeline(shrunk, finding) if shrunk is not None else []
+        except KeyboardInterrupt:  # what was found must not be lost with it
+            tally.interrupted = True
         report.findings.append((finding, shrunk, lines))
     return report
 

@@ -72,6 +72,9 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
         metavar="TIME",
         help="the running task may be held up until the next timer is due, if that is within a time such as 500us",
     )
+    explore.add_argument(
+        "--from", metavar="TIME", help="explore from this virtual time on, such as 600ms; what comes before is fifo's"
+    )
     explore.add_argument("--until-failure", action="store_true", help="stop with the first failure")
 
 

@@ -30,9 +30,11 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     replay.add_argument("journal", metavar="FILE", help="the journal")
+    replay.add_argument("--info", action="store_true", help="only show what the journal has, and run nothing")
     replay.add_argument(
         "--until", type=seconds_of, metavar="SECONDS", help="end at this virtual time (default: where the run ended)"
     )
+    _add_stops(replay)
     add_source(replay)
     replay.add_argument("--tasks", choices=("thread", "greenlet"), help="what tasks run on (default: as recorded)")
     replay.add_argument("--console", action="store_true", help="show the flight computer's console of a launch, too")
@@ -43,6 +45,26 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     replay.add_argument("--trace", metavar="FILE", help="write everything that happened to a file, a line each")
     replay.add_argument("--quiet", action="store_true", help="no console and no status line, only the report")
     replay.set_defaults(module="replay")
+
+
+def _add_stops(replay: argparse.ArgumentParser) -> None:
+    """Where the whole mission is to stand still, for somebody to look at it."""
+    replay.add_argument(
+        "--break",
+        dest="stops",
+        action="append",
+        default=[],
+        metavar="WHAT",
+        help="stop at an event (APP:ID or APP:ERROR), at a MsgId, packet or topic by its name, or at messages of which "
+        "a Python expression holds, such as 'topic == \"/odom\" and msg.x > 3'; may be given several times",
+    )
+    replay.add_argument("--step", action="store_true", help="stop at everything that happens, from --until on")
+    replay.add_argument(
+        "--pdb",
+        metavar="APP",
+        help="open Python's debugger in this application: at its first line, at the first stop of --break, or from "
+        "--until on; and where an exception ends it",
+    )
 
 
 def add_source(parser: argparse.ArgumentParser) -> None:

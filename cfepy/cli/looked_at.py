@@ -1,4 +1,4 @@
-"""What `cfepy trace` and `cfepy report` look at: the run of a journal, replayed, or a mission that is flown for them."""
+"""What `cfepy trace` and `cfepy report` look at: a journal's run, replayed, or a mission that is flown for them."""
 
 from __future__ import annotations
 
@@ -105,12 +105,10 @@ def _replay(arguments: argparse.Namespace, attachments: Sequence[Attachment]) ->
     journal = read_journal(arguments.source)
     until_ns = None if arguments.until is None else round(arguments.until * NS_PER_S)
     with staged(journal, arguments.from_disk) as stage:
-        again = Replay(journal, until_ns=until_ns, plan=stage.plan)
-        with booting(again.plan.spec().script):
-            flown = again.plan.fly(
-                [*again.attachments, *attachments], policy=again.policy, make_course=again.make_course
-            )
-        verdict = again.compare(flown.results)
+        again = Replay(journal, stage, until_ns=until_ns)
+        with booting(Path(journal.header.startup)):
+            flown = again.fly(attachments)
+    verdict = again.verdict
     warnings: tuple[str, ...] = ()
     if not verdict.same:
         warnings = (f"this is not the run of {arguments.source}: the replay differs", *stage.reasons)

@@ -11,7 +11,7 @@ from cfepy.cli.failures import booting
 from cfepy.cli.flight import Interrupts
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.recording import recording
-from cfepy.cli.run import fly, output_path, trace_file, write_numbers
+from cfepy.cli.run import fly, output_path, tell_faults, trace_file, write_numbers
 from cfepy.mission import Mission, MissionSpec
 from cfepy.mission.course import BOOT_S, NODE_S
 from cfepy.mission.results import Results
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from cfepy.journal.recorder import JournalRecorder
     from cfepy.journal.replay import Replay
 
+FAULT = "cfepy fault "  # how lines about faults begin
 _OWN_LINE = re.compile(r"\[[\w/]+\] (.*)", re.DOTALL)  # as the console has what nodes print
 
 
@@ -45,6 +46,8 @@ class NodeDisplay:
         own = _OWN_LINE.fullmatch(text)
         if own is not None:
             print(own[1], file=self._stream, flush=True)
+        elif text.startswith(FAULT):
+            print(text, file=sys.stderr, flush=True)
 
     def update(self, mission: Mission) -> None:
         """Nothing is drawn between pieces of the run."""
@@ -93,6 +96,7 @@ def run_node(
         journal.end(results, None, flight.reason)
     if replay is not None:
         replay.compare(results)
+    tell_faults(results)
     unwritten = None if numbers is None else write_numbers(numbers, results, None)
     if unwritten is not None:
         raise unwritten

@@ -19,6 +19,7 @@ from cfepy.attachment import Recorder
 from cfepy.cli.failures import booting
 from cfepy.cli.flight import Interrupts
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL
+from cfepy.cli.record_fields import fields_of
 from cfepy.cli.recording import arguments_of
 from cfepy.cli.run import fly, script_of
 from cfepy.cli.trace_text import TraceText
@@ -83,6 +84,7 @@ class Lookout(Recorder):
         self.trace = self._looking = LookingTrace(index, self._lines, self._seen)
         self._writer = writer
         self._text = TraceText()
+        self._mission: Mission | None = None
 
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         if kind is None:
@@ -94,6 +96,7 @@ class Lookout(Recorder):
 
     def begin(self, mission: Mission) -> None:
         """Learn the names in this mission."""
+        self._mission = mission
         self._text.watch(mission)
 
     def _lines(self, records: list[bytes]) -> list[str]:
@@ -101,7 +104,8 @@ class Lookout(Recorder):
 
     def _seen(self, look: Look) -> NoReturn:
         """It is called from deep inside the simulation, where a run cannot be given up in an orderly way."""
-        self._writer.end(look.to_dict())
+        fields = {} if self._mission is None else fields_of(look.record, self._mission)
+        self._writer.end({**look.to_dict(), "fields": fields})
         os._exit(ENDED_WELL)
 
 
@@ -130,7 +134,7 @@ def run_again(plan: Plan, path: str) -> None:
     """
     journal = read_journal(path)
     with staged(journal) as stage, Interrupts() as interrupts, booting(Path(path)):
-        spec, replay = stage.spec(), Replay(journal, plan=stage.plan, root=stage.root)
+        spec, replay = stage.spec(), Replay(journal, stage)
         arguments = arguments_of(replay.plan, quiet=True)
         fly(arguments, spec, interrupts, script_of(arguments, spec), _recorder(plan), replay=replay)
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import os
 import sys
 from collections.abc import Iterator, Sequence
 from typing import TextIO
 
 from cfepy.attachment import Attachment
+from cfepy.cli.journal_info import show_info
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.node import run_node
 from cfepy.cli.recording import arguments_of
@@ -17,13 +19,15 @@ from cfepy.cli.run import View, run_spec
 from cfepy.cli.trace_text import TraceText
 from cfepy.journal.journal import Journal, read_journal
 from cfepy.journal.replay import Replay, Verdict
-from cfepy.journal.stage import Stage, staged
+from cfepy.journal.stage import staged
 from cfepy.mission import Mission
+from cfepy.mission.course import BROKEN_OFF
 from cfepy.mission.run_plan import LAUNCH, NODE
 from cfepy.rtos.units import NS_PER_S
 
 MOST_LINES = 12
-_OPTIONS = ("json", "save_files", "bag", "bag_topics", "trace", "quiet")
+_FILES = ("json", "save_files", "bag", "trace")  # what a replay leaves behind
+_OPTIONS = ("bag_topics", "quiet")
 
 
 class RecordLines(Attachment):
@@ -55,58 +59,66 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: it is no journal, or its mission cannot run.
     """
     journal = read_journal(arguments.journal)
-    with replaying(arguments, journal) as (replay, stage):
-        status = fly_again(arguments, replay, stage)
-        _tell(journal, replay.verdict, stage, sys.stderr)
-    if status == INTERRUPTED and not _ended_so(journal):
+    if arguments.info:
+        show_info(journal, sys.stdout)
+        return ENDED_WELL
+    if journal.end is None:
+        known = f"the journal has no end, which was sudden; it goes to {_seconds(journal.known_until_ns)}"
+        print(f"cfepy: {known}: --until SECONDS goes on", file=sys.stderr)
+    elif journal.end.reason == BROKEN_OFF:
+        text = "a second Ctrl-C broke the run off in the middle of a task; its end is not compared"
+        print(f"cfepy: {text}", file=sys.stderr)
+    with replaying(arguments, journal) as replay:
+        status = fly_again(arguments, replay)
+        _tell(replay, sys.stderr)
+    if status == INTERRUPTED:
         return INTERRUPTED
     return ENDED_WELL if replay.verdict.same else FOUND_PROBLEMS
 
 
 @contextlib.contextmanager
-def replaying(arguments: argparse.Namespace, journal: Journal) -> Iterator[tuple[Replay, Stage]]:
+def replaying(arguments: argparse.Namespace, journal: Journal) -> Iterator[Replay]:
     """Around the replay of a journal: what makes it one, and where its files are."""
     lines = RecordLines()
+    for name in _FILES:  # the working directory is about to change
+        path = getattr(arguments, name)
+        setattr(arguments, name, None if path is None else os.path.abspath(path))
     with staged(journal, arguments.from_disk) as stage:
         for note in stage.notes:
             print(f"cfepy: {note}", file=sys.stderr, flush=True)
-        until_ns = None if arguments.until is None else round(arguments.until * NS_PER_S)
-        replay = Replay(
-            journal,
-            tasks=arguments.tasks,
-            until_ns=until_ns,
-            plan=stage.plan,
-            root=stage.root,
-            describe=lines.describe,
-        )
+        begins_there = (arguments.step or arguments.pdb is not None) and not arguments.stops
+        until_ns = None if arguments.until is None or begins_there else round(arguments.until * NS_PER_S)
+        tasks = arguments.tasks if arguments.pdb is None else "thread"  # only a thread has a debugger of its own
+        replay = Replay(journal, stage, tasks=tasks, until_ns=until_ns, describe=lines.describe)
         replay.attachments.append(lines)
-        yield replay, stage
+        yield replay
 
 
-def fly_again(arguments: argparse.Namespace, replay: Replay, stage: Stage) -> int:
+def fly_again(arguments: argparse.Namespace, replay: Replay) -> int:
     """Fly the mission of a replay, and report as its command does; the exit status of that.
 
     Args:
         arguments: of `cfepy replay`.
         replay: the replay; it has a verdict afterwards.
-        stage: where its files are.
     """
     plan = replay.plan
-    again = arguments_of(plan, **{name: getattr(arguments, name) for name in _OPTIONS})
-    spec = stage.spec()
+    again = arguments_of(plan, **{name: getattr(arguments, name) for name in (*_FILES, *_OPTIONS)})
+    spec = replay.stage.spec()
+    is_stopped = arguments.stops or arguments.step or arguments.pdb is not None
+    if is_stopped:
+        from cfepy.cli.debugging import DebugView, debugger_of
+
+        replay.attachments.append(debugger_of(arguments, spec, replay))
     if plan.command == NODE:
         return run_node(again, spec, replay=replay)
     view = RosView() if plan.command == LAUNCH and not arguments.console else View()
-    return run_spec(again, spec, view, replay=replay)
+    return run_spec(again, spec, DebugView(view) if is_stopped else view, replay=replay)
 
 
-def _ended_so(journal: Journal) -> bool:
-    return False
-
-
-def _tell(journal: Journal, verdict: Verdict, stage: Stage, stream: TextIO) -> None:
+def _tell(replay: Replay, stream: TextIO) -> None:
     """Say whether it was the same run."""
     sys.stdout.flush()
+    journal, verdict = replay.journal, replay.verdict
     agreed = verdict.agreed
     if verdict.difference is None:
         print(f"cfepy: {_same(journal, verdict)}", file=stream)
@@ -119,7 +131,7 @@ def _tell(journal: Journal, verdict: Verdict, stage: Stage, stream: TextIO) -> N
     print("cfepy: this is what the replay did next:", file=stream)
     for line in verdict.difference.lines or ("nothing more",):
         print(f"  {line}", file=stream)
-    for reason in stage.reasons:
+    for reason in replay.stage.reasons:
         print(f"cfepy: {reason}", file=stream)
 
 

@@ -15,7 +15,7 @@ def show(results: Results, stream: TextIO) -> None:
     tables = [_topics(results), _apps(results), _events(results)]
     more = [
         *_resets(results),
-        *_faults(results),
+        *faults(results),
         *_pipes(results),
         *_deadlines(results),
         *_invariants(results),
@@ -87,8 +87,8 @@ def _resets(results: Results) -> list[Table]:
     return [table] if table.rows else []
 
 
-def _faults(results: Results) -> list[Table]:
-    """What was to go wrong, and what became of it."""
+def faults(results: Results) -> list[Table]:
+    """What was to go wrong, and what became of it; no table without faults."""
     table = Table("Faults", ("name", "what", "times", "first at, s", "last at, s", "what happened"), right=(2, 3, 4))
     for row in results.faults:
         times = [f"{row[key]:.3f}" for key in ("first_at_s", "last_at_s")] if row["times"] else ["", ""]

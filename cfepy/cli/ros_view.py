@@ -9,7 +9,7 @@ import re
 from typing import Any, TextIO
 
 from cfepy.cli.display import Display
-from cfepy.cli.report import show_speed, why
+from cfepy.cli.report import faults, show_speed, why
 from cfepy.cli.run import View
 from cfepy.cli.table import Table, show_tables
 from cfepy.mission import Mission
@@ -17,7 +17,7 @@ from cfepy.mission.course import BOOT_S
 from cfepy.mission.results import NOT_STARTED, Results
 
 LOG_TOPIC = "/rosout"
-_OF_NODES = re.compile(r"\[[\w/]+\] |launch: ")  # how lines of nodes begin, and what is said about them
+_OF_NODES = re.compile(r"\[[\w/]+\] |launch: |cfepy fault ")  # how lines of nodes begin, and what is said about them
 
 
 class NodesDisplay:
@@ -47,7 +47,7 @@ class RosView(View):
 
     def report(self, results: Results, mission: Mission, stream: TextIO) -> None:
         """Print topics, nodes, and the line about speed."""
-        show_tables([_topics(results, mission), _nodes(results, mission)], stream)
+        show_tables([_topics(results, mission), _nodes(results, mission), *faults(results)], stream)
         show_speed(results, stream)
 
 

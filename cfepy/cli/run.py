@@ -302,13 +302,18 @@ def write_numbers(file: Path, results: Results, outcome: Outcome | None) -> Usag
     return None
 
 
+def tell_faults(results: Results) -> None:
+    """Say which faults have never happened, and why."""
+    for row in results.faults:
+        if not row["times"]:
+            print(f"cfepy: fault {row['name']} ({row['what']}) never happened: {row['never']}", file=sys.stderr)
+
+
 def _explain(results: Results, mission: Mission, interrupted: bool) -> None:
     sys.stdout.flush()
     for problem in (*results.script_problems, *results.problems):
         print(f"cfepy: {problem}", file=sys.stderr)
-    for row in results.faults:
-        if not row["times"]:
-            print(f"cfepy: fault {row['name']} ({row['what']}) never happened: {row['never']}", file=sys.stderr)
+    tell_faults(results)
     if results.script_problems:
         text = f'the console says why, and "cfepy check {mission.spec.script}" what can be seen without running it'
         print(f"cfepy: {text}", file=sys.stderr)

@@ -65,7 +65,7 @@ class FailureWatch(Attachment):
         self._circles = list(_deadlocks(self._mission))
 
     def failures(self, outcome: Outcome | None) -> tuple[Failure, ...]:
-        """All that there is to say, by time; what is true at the end comes last.
+        """All that there is to say, by time, of each group the first; what is true at the end comes last.
 
         Args:
             outcome: of the script that the run had.
@@ -75,7 +75,11 @@ class FailureWatch(Attachment):
         found = [*self._found, *self._tracebacks.found, *_resets(mission), *_violations(mission), *_missed(outcome)]
         found += _overruns(mission)
         found.sort(key=lambda failure: failure.at_ns or 0)
-        return (*found, *self._circles, *_bad_ends(mission, found))
+        found += [*self._circles, *_bad_ends(mission, found)]
+        first: dict[str, Failure] = {}
+        for failure in found:
+            first.setdefault(failure.group, failure)
+        return tuple(first.values())
 
     def _reading(self, record: Callable[[str], object] | None) -> Callable[[str], None]:
         """What the console gives its lines to, with a look at them."""

@@ -5,6 +5,7 @@ May import cfepy.mission and cfepy.journal.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from hashlib import file_digest
 from typing import Any
@@ -15,12 +16,13 @@ from cfepy.journal.reading import ReadFiles
 from cfepy.mission.run_plan import RunPlan
 from cfepy.status import CfeError
 
-_VOLATILE = ("/proc/", "/sys/", "/dev/")
 _DIGITS = 16  # of a hash that is shown to a person
 
 
 def files_read(plan: RunPlan) -> list[str]:
     """Absolute paths of the files that a run depends on, sorted; it is flown once to see which it opens.
+
+    All files of a folder that it looks into are among them.
 
     Args:
         plan: the run.
@@ -29,13 +31,17 @@ def files_read(plan: RunPlan) -> list[str]:
         UsageError: it cannot be flown.
     """
     seen: list[str] = []
-    with ReadFiles(seen.append):
+
+    def listed(folder: str, names: list[str]) -> None:
+        seen.extend(filter(os.path.isfile, (os.path.join(folder, name) for name in names)))
+
+    with ReadFiles(seen.append, listed):
         spec = plan.spec()
         try:
             plan.fly(spec=spec)
         except CfeError:
             pass  # it cannot boot, which is a result too
-    return sorted(path for path in {*seen, *files_of(spec)} if not path.startswith(_VOLATILE))
+    return sorted({*seen, *files_of(spec)})
 
 
 def identity_of(plan: RunPlan, files: Sequence[str], search: Mapping[str, Any]) -> dict[str, Any]:

@@ -30,8 +30,9 @@ class Move(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """A decision that there was: the task of fifo, its number as of `Move`, and the others that could have run."""
+    """A decision that there was: when in virtual ns, the task of fifo, its number as of `Move`, who else could run."""
 
+    now: int
     task: str
     number: int
     others: tuple[str, ...]
@@ -60,7 +61,7 @@ class MoveRecorder(Policy):
         task = names[0]
         number = self._counts[task]
         self._counts[task] += 1
-        self.choices.append(Choice(task, number, tuple(names[1:]), decision.running))
+        self.choices.append(Choice(decision.now, task, number, tuple(names[1:]), decision.running))
         if choice:
             self.moves.append(Move(task, number, names[choice], decision.running))
         return choice

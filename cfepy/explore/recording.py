@@ -94,8 +94,8 @@ class TaskLook(Attachment):
             task = self._mission.kernel.current
             if task.name in self._tasks:
                 self.look(sys._getframe(1))
-                what = "its time" if task.waits is None else task.waits.what
-                self.add(task.name, WAITS, f"waits for {what}")
+                what = "sleeps" if task.waits is None else f"waits for {task.waits.what}"
+                self.add(task.name, WAITS, what)
             return block()
 
         return wait
@@ -131,4 +131,7 @@ class _LookingPolicy(Policy):
 def place_text(frame: FrameType | None) -> str:
     """The innermost line of the mission's own code in a stack: `arm.py:12 self.count += 1`; empty without one."""
     lines: list[Line] = [line for line in stack_of(frame) if not is_library(line.file)]
-    return f"{PurePath(lines[-1].file).name}:{lines[-1].number} {lines[-1].source}" if lines else ""
+    if not lines:
+        return ""
+    source = " ".join(lines[-1].source.partition("  #")[0].split())
+    return f"{PurePath(lines[-1].file).name}:{lines[-1].number} {source}"

@@ -1,54 +1,49 @@
 """The files of a mission on their way to another computer.
 
 There they lie in a folder as they lie here in the root: /home/me/arm/startup.scr in FOLDER/home/me/arm/startup.scr. So
-whatever names another file in a relative way finds it. May import cfepy.mission and cfepy.journal.
+whatever names another file in a relative way finds it, and the mission does not see the folder. May import
+cfepy.mission and cfepy.journal.
 """
 
 from __future__ import annotations
 
 import os
-import zlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
+from typing import Any
 
+from cfepy.attachment import Attachment
 from cfepy.explore.verdict import Failure, Verdict
 from cfepy.journal.facts import environ_of
+from cfepy.journal.mission_files import Carrier, FileRecord
+from cfepy.journal.moved import HiddenRoot, moved_environ, settled
 from cfepy.mission.launch import launch_file
-from cfepy.mission.run_plan import LAUNCH, NODE, RunPlan
+from cfepy.mission.run_plan import LAUNCH, NODE, Flown, RunPlan
 from cfepy.mission.single_node import node_script
-from cfepy.mission.spec import find_script
+from cfepy.mission.spec import MissionSpec, find_script
 from cfepy.status import UsageError
 
 LIMIT = 256 << 20  # bytes
-_PATHS = ("ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH")
 
 
 @dataclass(frozen=True, slots=True)
-class PackedFile:
-    """A file.
+class PlanElsewhere(RunPlan):
+    """A run whose mission lies below a folder that stands for the root of another computer.
 
     Attributes:
-        path: absolute.
-        mode: its permissions.
-        packed: its content, compressed.
+        root: the folder.
     """
 
-    path: str
-    mode: int
-    packed: bytes
+    root: str = ""
 
-    @classmethod
-    def of(cls, path: str) -> PackedFile:
-        """The file as it is now."""
-        return cls(path, os.stat(path).st_mode & 0o777, zlib.compress(Path(path).read_bytes()))
+    def spec(self) -> MissionSpec:
+        """See `RunPlan.spec`."""
+        return settled(RunPlan.spec(self), self.root)
 
-    def unpack(self, root: Path) -> None:
-        """Write it where it belongs in a folder that stands for the root."""
-        target = Path(f"{root}{self.path}")
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(zlib.decompress(self.packed))
-        target.chmod(self.mode | 0o600)
+    def fly(self, attachments: Sequence[Attachment] = (), **options: Any) -> Flown:
+        """See `RunPlan.fly`."""
+        return RunPlan.fly(self, [HiddenRoot(self.root), *attachments], **options)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +58,7 @@ class Shipment:
     """
 
     plan: RunPlan
-    files: tuple[PackedFile, ...] = field(repr=False)
+    files: tuple[FileRecord, ...] = field(repr=False)
     folder: str
     environ: Mapping[str, str]
 
@@ -74,31 +69,29 @@ class Shipment:
             root: the folder.
         """
         for file in self.files:
-            file.unpack(root)
+            target = Path(f"{root}{file.path}")
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(file.data or b"")
+            target.chmod(0o755)  # roslaunch starts executable files only
         inside = Unpacked(root, Path(f"{root}{self.folder}"))
         inside.folder.mkdir(parents=True, exist_ok=True)
         return inside
 
-    def plan_in(self, inside: Unpacked) -> RunPlan:
+    def plan_in(self, inside: Unpacked) -> PlanElsewhere:
         """The run, with the files where they were unpacked."""
         plan = self.plan
-        return replace(
-            plan,
-            words=tuple(map(inside.moved, plan.words)),
-            launch_args=tuple((name, inside.moved(value)) for name, value in plan.launch_args),
-            board=plan.board and inside.moved(plan.board),
-            script=plan.script and inside.moved(plan.script),
-            faults=plan.faults and inside.moved(plan.faults),
-        )
+        same = {each.name: getattr(plan, each.name) for each in fields(plan)}
+        places = {name: value and inside.moved(value) for name, value in same.items() if name in _FILES}
+        words = tuple(map(inside.moved, plan.words))
+        return PlanElsewhere(**{**same, **places, "words": words}, root=str(inside.root))
 
     def environ_in(self, inside: Unpacked) -> dict[str, str]:
         """The variables, with the files where they were unpacked."""
-        moved = {
-            name: os.pathsep.join(map(inside.moved, self.environ[name].split(os.pathsep)))
-            for name in _PATHS
-            if name in self.environ
-        }
-        return {**self.environ, **moved}
+        return moved_environ(self.environ, str(inside.root))
+
+
+_FILES = ("board", "script", "faults", "play")
+"""Attributes of a plan that may be paths."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +139,7 @@ def ship(plan: RunPlan, files: Sequence[str]) -> Shipment:
         )
         raise UsageError(text, file=plan.words[0], field="--cluster")
     plan = replace(plan, words=_absolute(plan))
-    return Shipment(plan, tuple(map(PackedFile.of, files)), os.getcwd(), environ_of(plan.spec()))
+    return Shipment(plan, tuple(map(Carrier(LIMIT).record, files)), os.getcwd(), environ_of(plan.spec()))
 
 
 def _absolute(plan: RunPlan) -> tuple[str, ...]:

@@ -7,8 +7,10 @@ import everything to the left of cfepy.explore.
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from itertools import islice
 
 from cfepy.explore.moves import Choice, Move, MovePolicy, MoveRecorder
 from cfepy.explore.trial import Trial
@@ -19,8 +21,10 @@ from cfepy.rtos.units import NS_PER_S
 
 MOST_PROBES = 800
 REACH = 64  # how many decisions a move is tried later
+SINGLES = 200  # how many single moves are tried
 AROUND = 30  # how many decisions before and after two moves one is tried in their place
 TENTH_NS = NS_PER_S // 10
+COLLECT_EVERY = 16  # probes
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +84,7 @@ class Shrinker:
         if not best.fails:
             return None
         best = self._without_tail(best)
-        best = self._with_less(best)
+        best = self._with_less(best, self._most // 2)
         best = self._with_one(best)
         best = self._later(self._merged(best))
         return self._finish(best)
@@ -99,10 +103,10 @@ class Shrinker:
                 least = middle + 1
         return best
 
-    def _with_less(self, best: _Flight) -> _Flight:
+    def _with_less(self, best: _Flight, most: int | None = None) -> _Flight:
         """Leave out pieces, smaller and smaller ones, until no single move can be left out."""
         size = max(len(best.moves) // 2, 1)
-        while best.moves:
+        while best.moves and (most is None or self.probes < most):
             found = next(self._tries(_without_pieces(best.moves, size), best), None)
             if found is not None:
                 best = found
@@ -114,14 +118,13 @@ class Shrinker:
         return best
 
     def _with_one(self, best: _Flight) -> _Flight:
-        """One preemption, or one other move, in the place of several."""
-        if len(best.moves) < 2:
+        """One move in the place of all, tried in the run of fifo, where it stands closest to the failure first."""
+        if len(best.moves) < 2 or self.probes >= self._most:
             return best
-        for fewer in _replacements(best):
-            found = next(self._tries([fewer], best), None)
-            if found is not None:
-                return self._with_one(self._with_less(found))
-        return best
+        fifo = self._fly(MovePolicy((), self._schedule.any_priority, self._schedule.hold_ns))
+        at_ns = best.verdict.end_ns if (failure := best.verdict.failure(self._group)) is None else failure.at_ns
+        ones = islice(_single_moves(fifo, at_ns, _names(best)), SINGLES)
+        return next(self._tries(((move,) for move in ones), best), best)
 
     def _merged(self, best: _Flight) -> _Flight:
         """One move in the place of two that follow each other."""
@@ -191,6 +194,8 @@ class Shrinker:
         self.probes += 1
         recorder = MoveRecorder(policy)
         verdict, _ = self._trial.fly(self._schedule, policy=recorder)
+        if self.probes % COLLECT_EVERY == 0:
+            gc.collect()  # missions are full of circles, and with collections off while one runs they would pile up
         fails = verdict.failure(self._group) is not None
         return _Flight(fails, verdict, tuple(recorder.moves), tuple(recorder.choices))
 
@@ -201,15 +206,12 @@ def _without_pieces(moves: tuple[Move, ...], size: int) -> Iterator[tuple[Move, 
         yield (*moves[:start], *moves[start + size :])
 
 
-def _replacements(best: _Flight) -> Iterator[tuple[Move, ...]]:
-    """A single move between the tasks that matter, at each decision that there was; preemptions last."""
-    names = _names(best)
-    for preempts in (False, True):
-        for choice in best.choices:
-            if choice.task in names and choice.preempts == preempts:
-                yield from (
-                    (Move(choice.task, choice.number, other, preempts),) for other in choice.others if other in names
-                )
+def _single_moves(fifo: _Flight, at_ns: int | None, names: set[str]) -> Iterator[Move]:
+    """All that there are between the tasks that matter, before the failure, the last ones first."""
+    for choice in reversed(fifo.choices):
+        if choice.task in names and (at_ns is None or choice.now <= at_ns):
+            others = [name for name in choice.others if name in names]
+            yield from (Move(choice.task, choice.number, name, choice.preempts) for name in others)
 
 
 def _between(best: _Flight, without: _Flight, at: int) -> Iterator[Move]:

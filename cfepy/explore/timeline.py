@@ -43,10 +43,10 @@ def timeline(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[M
 
 
 def tasks_of(moves: Sequence[Move]) -> tuple[str, ...]:
-    """The tasks that the moves are about, in the order in which they appear; those most often named when too many."""
+    """The tasks that the moves are about, in the order in which they appear; those of the last moves when too many."""
     names = [name for move in moves for name in (move.task, move.chosen) if name != HOLD]
-    most = sorted(dict.fromkeys(names), key=lambda name: -names.count(name))[:MOST_COLUMNS]
-    return tuple(name for name in dict.fromkeys(names) if name in most)
+    last = list(dict.fromkeys(reversed(names)))[:MOST_COLUMNS]
+    return tuple(name for name in dict.fromkeys(names) if name in last)
 
 
 def drawn(rows: Sequence[Row], tasks: Sequence[str]) -> list[str]:

@@ -17,7 +17,7 @@ from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from typing import Any
 
-from cfepy.explore.campaign import judge
+from cfepy.explore.pilot import Pilot
 from cfepy.status import UsageError
 
 READY = "ready"
@@ -30,6 +30,7 @@ def main() -> None:
     descriptor = int(sys.argv[1])
     os.set_inheritable(descriptor, False)
     connection: Connection[Any, Any] = Connection(descriptor)
+    os.register_at_fork(after_in_child=connection.close)  # whose end means that of this process alone
     inbox: SimpleQueue[bytes] = SimpleQueue()
     threading.Thread(target=_read, args=(connection, inbox), daemon=True).start()
     _serve(connection, inbox)
@@ -38,13 +39,13 @@ def main() -> None:
 def _serve(connection: Connection[Any, Any], inbox: SimpleQueue[bytes]) -> None:
     import pickle
 
-    trial = pickle.loads(inbox.get())
+    pilot = Pilot(pickle.loads(inbox.get()))
     gc.freeze()
     connection.send(READY)
     while True:
         jobs = pickle.loads(inbox.get())
         try:
-            connection.send([(number, judge(trial, schedule)) for number, schedule in jobs])
+            connection.send([(number, pilot.judge(schedule)) for number, schedule in jobs])
         except UsageError as error:
             connection.send(error)
         gc.collect()  # missions are full of circles, and with collections off while one runs they would pile up

@@ -79,7 +79,7 @@ class Worker:
                     **(os.environ if environ is None else environ),
                     "PYTHONPATH": import_path(),
                 },
-                process_group=0,  # Ctrl-C on the terminal goes to this process alone
+                process_group=0,  # with what it forks; Ctrl-C on the terminal goes to this process alone
             )
         self._send(trial)
 
@@ -137,18 +137,24 @@ class Worker:
 
     def abort(self) -> None:
         """End it, with its stacks for last words."""
-        self._process.send_signal(signal.SIGABRT)
+        self._signal(signal.SIGABRT)
         try:
             self._process.wait(ABORT_S)
         except subprocess.TimeoutExpired:
-            self._process.kill()
+            self._signal(signal.SIGKILL)
 
     def close(self) -> None:
-        """End it."""
-        self._process.kill()
+        """End it, and what it has forked."""
+        self._signal(signal.SIGKILL)
         self._process.wait()
         self.connection.close()
         self._said.close()
+
+    def _signal(self, number: int) -> None:
+        try:
+            os.killpg(self.pid, number)
+        except ProcessLookupError:
+            pass  # all of them have ended
 
     def _send(self, data: bytes) -> None:
         try:

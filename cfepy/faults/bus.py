@@ -8,10 +8,11 @@ its neighbours.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from cfepy import msg
 from cfepy.faults.messages import MessageFault, pass_through
+from cfepy.faults.switchboard import MessageSwitchboard
 from cfepy.ports import PEND_FOREVER
 from cfepy.rtos.units import NS_PER_MS
 from cfepy.sb import SoftwareBus
@@ -24,32 +25,13 @@ SMALLEST = 7
 HOST = "host"
 
 
-class Switchboard(Protocol):
-    """Which faults a message meets; `cfepy.faults.switchboard.MessageSwitchboard` is one."""
-
-    def on_send(self, packet: bytes | bytearray, sender: str) -> Sequence[MessageFault]:
-        """The faults that are about a message for all of its receivers."""
-
-    def on_receive(self, packet: bytes, pipe: Pipe) -> Sequence[MessageFault]:
-        """The faults that are about a message for the owner of a pipe."""
-
-    def sent(self, packet: bytes | bytearray, sequence: int, sender: str) -> None:
-        """A message is sent, with this sequence count; called before its receivers get it."""
-
-    def took(self, packet: bytes, pipe: Pipe) -> None:
-        """An application takes a message out of its pipe; it may never return."""
-
-    def shown(self, packet: bytes | bytearray) -> str:
-        """A message in words."""
-
-
 class Passed(bytes):
     """A message in a pipe that has met its faults already."""
 
     __slots__ = ()
 
 
-def faulty(base: type[SoftwareBus], switchboard: Switchboard) -> type[SoftwareBus]:
+def faulty(base: type[SoftwareBus], switchboard: MessageSwitchboard) -> type[SoftwareBus]:
     """A class of Software Bus with faults.
 
     Args:

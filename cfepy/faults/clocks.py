@@ -6,9 +6,9 @@ The kernel's virtual time always goes on: it is what the simulation runs by. Imp
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-from cfepy.faults.agenda import Agenda
 from cfepy.faults.gate import Gate
 from cfepy.faults.plan import Fault
 from cfepy.faults.report import FaultReport
@@ -63,15 +63,17 @@ class Drift:
     Args:
         fault: what the plan says; its target is how fast, in ppm.
         gate: its window.
-        agenda: has it done every second.
         report: is told once.
+        again: has `strike` called at a virtual time, after a reset of the processor with the one that runs then.
     """
 
-    def __init__(self, fault: Fault, gate: Gate, agenda: Agenda, report: FaultReport) -> None:
+    def __init__(
+        self, fault: Fault, gate: Gate, report: FaultReport, again: Callable[[int, Callable[[Any], object]], object]
+    ) -> None:
         self._fault = fault
         self._gate = gate
-        self._agenda = agenda
         self._report = report
+        self._again = again
 
     def strike(self, processor: Any) -> None:
         """A second is over; the next one follows as long as the window is open."""
@@ -83,7 +85,7 @@ class Drift:
             self._report.happened(self._fault, f"lets the clock drift by {ppm:g} ppm")
         self._gate.seen += 1
         shift(processor, round(ppm * PPM_NS), self._fault.options.get("clock", "all"))
-        self._agenda.add(now + NS_PER_S, lambda: self.strike(processor))
+        self._again(now + NS_PER_S, self.strike)
 
 
 class LostSignal:

@@ -7,7 +7,8 @@ messages, the kernel's calls for applications that hang, one function for calls 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from random import Random
 from typing import Any
@@ -19,6 +20,7 @@ from cfepy.faults.bus import faulty
 from cfepy.faults.calls import CallFault
 from cfepy.faults.clocks import Drift, Jump, LostSignal
 from cfepy.faults.gate import Gate
+from cfepy.faults.kinds import APP, APP_OPTIONS, KINDS
 from cfepy.faults.messages import CLASSES, DATAGRAM_CLASSES, MessageFault, Setting
 from cfepy.faults.names import Names
 from cfepy.faults.network import strike_datagrams
@@ -56,16 +58,17 @@ class FaultInjector(Attachment):
         self.plan = plan
         self.report: FaultReport
         self._names = names
-        self._board: MessageSwitchboard | None = None
+        self._board = MessageSwitchboard()
         self._power_ups: list[Strike] = []
         self._first: list[Strike] = []
-        self._gates: dict[str, Gate] = {}
-        self._processor: Any = None
         self._strain: Strain | None = None
+        self._gates: dict[str, Gate] = {}
+        self._faults: list[Fault] = []  # of the plan, with applications by their cFE names
+        self._processor: Any = None
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """See `Attachment.bus`."""
-        return faulty(base, _Late(self)) if any(_needs_bus(fault) for fault in self.plan.faults) else base
+        return faulty(base, self._board) if any(_needs_bus(fault) for fault in self.plan.faults) else base
 
     def begin(self, mission: Any) -> None:
         """See `Attachment.begin`."""
@@ -73,18 +76,20 @@ class FaultInjector(Attachment):
         self.report = FaultReport(self.plan.faults, lambda: kernel.now, mission.console.write, mission.trace.note)
         mission.record.faults = self
         self._agenda = Agenda(kernel)
+        self._power_ups, self._first, self._strain = [], [], None
         self._gates = {
             fault.name: Gate(fault.when, Random(f"{mission.seed}:{fault.name}")) for fault in self.plan.faults
         }
         names = self._names if self._names is not None else importlib.import_module(NAMES).MissionNames()
         names.begin(mission)
         setting = Setting(kernel, self._agenda, self.report, names)
-        on_bus = [self._message(fault, CLASSES, setting) for fault in self.plan.faults if _is_message(fault)]
-        self._board = MessageSwitchboard(on_bus, names)
-        datagrams = [self._message(f, DATAGRAM_CLASSES, setting) for f in self.plan.faults if _is_datagram(f)]
+        self._faults = [_by_app(fault, names) for fault in self.plan.faults]
+        on_bus = [self._message(fault, CLASSES, setting) for fault in self._faults if _is_message(fault)]
+        self._board.begin(on_bus, names)
+        datagrams = [self._message(f, DATAGRAM_CLASSES, setting) for f in self._faults if _is_datagram(f)]
         if datagrams:
             strike_datagrams(mission.network, datagrams)
-        for fault in self.plan.faults:
+        for fault in self._faults:
             if not _is_message(fault) and not _is_datagram(fault):
                 self._prepare(fault)
 
@@ -109,7 +114,7 @@ class FaultInjector(Attachment):
         elif fault.kind == "lose_1hz":
             self._power_ups.append(LostSignal(fault, gate, report, kernel).power_up)
         elif fault.kind == "drift_clock":
-            self._at(fault.when.after_ns, Drift(fault, gate, self._agenda, report).strike)
+            self._at(fault.when.after_ns, Drift(fault, gate, report, self._at).strike)
         elif fault.kind == "slow":
             self._kernel_strain().burdens.append(apps.Slow(fault, gate, report, kernel).burden)
         elif fault.kind in memory.CLASSES:
@@ -131,7 +136,7 @@ class FaultInjector(Attachment):
             strike = self._app_fault(fault, name).strike
             if not _counts_messages(fault):
                 self._at_times(fault, strike)
-            elif self._board is not None:
+            else:
                 self._board.on_take.append(partial(self._on_take, fault, name, strike))
 
     def _app_fault(self, fault: Fault, name: str) -> apps.AppFault:
@@ -141,7 +146,7 @@ class FaultInjector(Attachment):
 
     def _on_take(self, fault: Fault, app_name: str, strike: Strike, packet: bytes, pipe: Pipe) -> None:
         """An application takes a message: have the fault happen at this instant, if that is what it waits for."""
-        if pipe.app_name != app_name or self._board is None:
+        if pipe.app_name != app_name:
             return
         wanted = fault.options.get("message")
         if wanted is not None and not self._board.is_called(packet, wanted):
@@ -177,14 +182,11 @@ class FaultInjector(Attachment):
         return self.report.rows()
 
 
-class _Late:
-    """The switchboard of an injector, which is made after the class of the bus."""
-
-    def __init__(self, injector: FaultInjector) -> None:
-        self._injector = injector
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._injector._board, name)
+def _by_app(fault: Fault, names: Names) -> Fault:
+    """A fault that calls applications by their cFE names, where its plan has names of nodes."""
+    options = {key: names.app(value) if key in APP_OPTIONS else value for key, value in fault.options.items()}
+    is_app = KINDS[fault.kind].strikes == APP
+    return replace(fault, target=tuple(map(names.app, fault.target)) if is_app else fault.target, options=options)
 
 
 def _is_datagram(fault: Fault) -> bool:
@@ -209,8 +211,3 @@ def _is_timed(fault: Fault) -> bool:
     if fault.kind in ("crash", "hang", "stop", "restart"):
         return not _counts_messages(fault)
     return fault.kind in ("fill", "jump_clock", "reset", "drift_clock", *memory.CLASSES)
-
-
-def injectors(attachments: Sequence[Attachment]) -> list[FaultInjector]:
-    """Those among attachments that let faults happen."""
-    return [each for each in attachments if isinstance(each, FaultInjector)]

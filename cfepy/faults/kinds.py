@@ -29,6 +29,9 @@ CLOCKS = ("all", "cfe", "ros")
 UNITS = ("message", "segment")
 CHECKSUMS = ("keep", "fix")
 
+APP_OPTIONS = ("from", "to", "app")
+"""Options that name an application; `to` may be a pipe, too."""
+
 
 @dataclass(frozen=True, slots=True)
 class Kind:

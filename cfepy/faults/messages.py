@@ -54,23 +54,30 @@ class MessageFault:
         self._by_segment = fault.options.get("unit") == "segment"
         self._struck: dict[object, bool] = {}  # by stream: whether the message that is under way in segments is struck
 
-    def strikes(self, data: bytes, flags: int, stream: object, where: str) -> bool:
+    def strikes(self, data: bytes, flags: int, stream: object) -> bool:
         """Whether it happens to a message, or to the segment of one.
 
         Args:
             data: the message.
             flags: its sequence flags; `WHOLE` for what is no segment.
             stream: tells senders apart whose segments may mingle.
-            where: the message in words, for the report.
         """
         if flags != WHOLE and flags != FIRST and not self._by_segment:
             return self._struck.get(stream, False)
         struck = self.gate.opens(self.setting.kernel.now) and self.is_possible(data)
         if flags == FIRST:
             self._struck[stream] = struck
-        if struck:
-            self.setting.report.happened(self.fault, f"{self.words()} {where}")
         return struck
+
+    def tell(self, flags: int, where: str) -> None:
+        """It happens: report it, of a long message once.
+
+        Args:
+            flags: the message's sequence flags.
+            where: the message in words.
+        """
+        if flags in (WHOLE, FIRST) or self._by_segment:
+            self.setting.report.happened(self.fault, f"{self.words()} {where}")
 
     def is_possible(self, data: bytes) -> bool:
         """Whether it can happen to this message; when not, it has told the report why."""
@@ -124,11 +131,11 @@ class Delay(MessageFault):
         self._least, self._most = fault.options["by"]
         self._by = self._least
 
-    def strikes(self, data: bytes, flags: int, stream: object, where: str) -> bool:
+    def strikes(self, data: bytes, flags: int, stream: object) -> bool:
         """See `MessageFault.strikes`."""
         if self._least != self._most and (flags in (WHOLE, FIRST) or self._by_segment):
             self._by = self.gate.random.randint(self._least, self._most)
-        return super().strikes(data, flags, stream, where)
+        return super().strikes(data, flags, stream)
 
     def words(self) -> str:
         """With the time."""
@@ -150,7 +157,7 @@ class Reorder(MessageFault):
 
     def act(self, data: bytes, flags: int, send: Send) -> None:
         """Keep it."""
-        held = [self._past + (flags in (WHOLE, LAST) or self._by_segment), lambda: send(data)]
+        held = [self._past + 1, lambda: send(data)]  # one more, since this message counts as well
         self._held.append(held)
         self.setting.agenda.add(self.setting.kernel.now + self._within, lambda: self._let_go(held))
 
@@ -271,7 +278,15 @@ def pass_through(
         where: the message in words.
         send: what the last one sends with.
     """
-    for fault in reversed([fault for fault in faults if fault.strikes(data, flags, stream, where)]):
+    struck = [fault for fault in faults if fault.strikes(data, flags, stream)]  # each is asked, whatever others do
+    for number, fault in enumerate(struck):
+        fault.tell(flags, where)
+        if isinstance(fault, Drop):
+            for other in struck[number + 1 :]:
+                other.setting.report.missed(other.fault, f"{fault.fault.name} has dropped the message before")
+            struck = struck[: number + 1]
+            break
+    for fault in reversed(struck):
         send = _through(fault, flags, send)
     send(data)
     for fault in faults:

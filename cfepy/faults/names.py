@@ -19,6 +19,9 @@ class Names(Protocol):
     def of(self, packet: bytes | bytearray) -> Sequence[str]:
         """All names of a packet, the one to show first; its MsgId as "0x0801" is one."""
 
+    def app(self, name: str) -> str:
+        """The cFE name of a node's application, by the node's name, such as "/arm_control"; any other name as it is."""
+
     def edit(self, packet: bytes, values: Mapping[str, Any]) -> bytes:
         """A packet with some fields set.
 

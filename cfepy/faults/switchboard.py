@@ -14,33 +14,45 @@ SEQUENCES = 1 << 14
 
 
 class MessageSwitchboard:
-    """The faults on messages of a run.
-
-    Args:
-        faults: those that are about messages on the bus.
-        names: what messages are called.
+    """The faults on messages of a run; none before `begin`.
 
     Attributes:
         on_take: called for each message that an application takes out of its pipe.
     """
 
-    def __init__(self, faults: Sequence[MessageFault], names: Names) -> None:
-        self._names = names
-        self._for_all = [fault for fault in faults if fault.receiver is None]
-        self._for_one = [fault for fault in faults if fault.receiver is not None]
+    _names: Names
+
+    def __init__(self) -> None:
         self.on_take: list[Took] = []
+        self._for_all: list[MessageFault] = []
+        self._for_one: list[MessageFault] = []
         self._known: object = None
         self._found: dict[tuple[int, int], tuple[list[MessageFault], list[MessageFault]]] = {}
         self._senders: dict[tuple[int, int], str] = {}
+        self._asks_sender = False
+
+    def begin(self, faults: Sequence[MessageFault], names: Names) -> None:
+        """Take the faults of a run.
+
+        Args:
+            faults: those that are about messages on the bus.
+            names: what messages are called.
+        """
+        self._names = names
+        self._known = None
+        for each in (self.on_take, self._found, self._senders):
+            each.clear()
+        self._for_all = [fault for fault in faults if fault.receiver is None]
+        self._for_one = [fault for fault in faults if fault.receiver is not None]
         self._asks_sender = any(fault.sender is not None for fault in self._for_one)
 
     def on_send(self, packet: bytes | bytearray, sender: str) -> Sequence[MessageFault]:
-        """See `cfepy.faults.bus.Switchboard`."""
+        """The faults that are about a message for all of its receivers."""
         found = self._about(packet)[0]
         return [fault for fault in found if fault.sender in (None, sender)] if found else found
 
     def on_receive(self, packet: bytes, pipe: Pipe) -> Sequence[MessageFault]:
-        """See `cfepy.faults.bus.Switchboard`."""
+        """The faults that are about a message for the owner of a pipe."""
         found = [fault for fault in self._about(packet)[1] if fault.receiver in (pipe.app_name, pipe.name)]
         if not found or not self._asks_sender:
             return found
@@ -53,12 +65,12 @@ class MessageSwitchboard:
             self._senders[packet[0] << 8 | packet[1], sequence % SEQUENCES] = sender
 
     def took(self, packet: bytes, pipe: Pipe) -> None:
-        """See `cfepy.faults.bus.Switchboard`."""
+        """An application takes a message out of its pipe; it may never come back from that."""
         for take in self.on_take:
             take(packet, pipe)
 
     def shown(self, packet: bytes | bytearray) -> str:
-        """See `cfepy.faults.bus.Switchboard`."""
+        """A message in words."""
         return f"{self._names.of(packet)[0]} #{get_sequence_count(packet)}"
 
     def is_called(self, packet: bytes | bytearray, target: str) -> bool:

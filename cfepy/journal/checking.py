@@ -63,6 +63,10 @@ class Checker(Attachment):
         self._trace = mission.trace
         self._trace.also(self._take)
 
+    def end_early(self) -> None:
+        """The replay does not go to the end of the journal after all."""
+        self._end = None
+
     def conclude(self) -> None:
         """See `Attachment.conclude`: how the nodes shut down is the run's own only at the run's own end."""
         if self._end is None:
@@ -77,7 +81,8 @@ class Checker(Attachment):
             self._part(Checkpoint(end.now_ns, end.records, end.trace))
 
     def _take(self, records: list[bytes]) -> None:
-        if self._finished or self.difference is not None:
+        is_over = not self._coming and self._end is None  # the replay goes on where the journal has ended
+        if self._finished or is_over or self.difference is not None:
             return
         rest = [record for record in records if record and record[:1] != UNSENT]
         while self._coming and self.difference is None:

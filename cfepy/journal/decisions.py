@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from cfepy.rtos.policy import Decision, Policy
+
+
+def settings_of(policy: Policy) -> dict[str, Any]:
+    """What a policy tells the kernel beside its answers, such as `any_priority`."""
+    return {name: value for name, value in vars(policy).items() if not name.startswith("_")}
 
 
 class NotedPolicy(Policy):
@@ -18,7 +24,8 @@ class NotedPolicy(Policy):
     """
 
     def __init__(self, inner: Policy) -> None:
-        super().__init__(inner.any_priority, inner.hold_ns)
+        super().__init__()
+        vars(self).update(settings_of(inner))
         self.count = 0
         self._inner = inner
         self._last = -1
@@ -50,7 +57,8 @@ class RetoldPolicy(Policy):
     """
 
     def __init__(self, answers: Mapping[int, int], known: int, own: Policy) -> None:
-        super().__init__(own.any_priority, own.hold_ns)
+        super().__init__()
+        vars(self).update(settings_of(own))
         self._answers = answers
         self._known = known
         self._own = own

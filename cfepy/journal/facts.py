@@ -9,18 +9,42 @@ import os
 import platform
 import re
 import sys
+from functools import cache
+from hashlib import blake2b
+from pathlib import Path
 
 import cfepy
 from cfepy.mission.launch import KEPT_ENVIRONMENT
 from cfepy.mission.spec import MissionSpec
+from cfepy.resources import shipped
 from cfepy.versions import CFE_VERSION
 
 _SECRET = re.compile(r"TOKEN|SECRET|PASSW|PASSPHRASE|CREDENTIAL|API_?KEY|PRIVATE|AUTH|COOKIE|SESSION", re.IGNORECASE)
 
 
 def versions() -> dict[str, str]:
-    """Of cfepy, cFE and Python."""
-    return {"cfepy": cfepy.__version__, "cfe": CFE_VERSION, "python": platform.python_version()}
+    """Of cfepy, cFE and Python; `source` stands for cfepy's own files, which may change between two versions."""
+    python = platform.python_version()
+    return {"cfepy": cfepy.__version__, "cfe": CFE_VERSION, "python": python, "source": _source()}
+
+
+def own_places() -> tuple[str, ...]:
+    """The folders of cfepy's own files, shipped applications and boards among them."""
+    package = Path(cfepy.__file__).resolve().parent
+    return tuple(map(str, (package, package.parent / "rospy_shim", shipped("apps"), shipped("boards"))))
+
+
+@cache
+def _source() -> str:
+    """A digest of names and sizes of cfepy's own files, made once a process; to read them all would take too long."""
+    whole = blake2b(digest_size=8)
+    for place in own_places():
+        for folder, folders, names in os.walk(place):
+            folders[:] = sorted(name for name in folders if name not in ("__pycache__", "share"))
+            for name in sorted(names):
+                path = os.path.join(folder, name)
+                whole.update(f"{path.removeprefix(place)} {os.stat(path).st_size}\n".encode())
+    return whole.hexdigest()
 
 
 def host_facts() -> dict[str, str]:

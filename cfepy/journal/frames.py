@@ -20,6 +20,16 @@ LARGEST = 1 << 30  # bytes of a frame; a length beyond is no length
 _head = struct.Struct("<II")
 
 
+def is_journal(path: str | Path) -> bool:
+    """Whether a file begins as a journal does.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    with open(path, "rb") as file:
+        return file.read(len(MARK)) == MARK
+
+
 class JournalError(UsageError):
     """A file that is no journal, is broken, or is of a kind that cannot be read here."""
 

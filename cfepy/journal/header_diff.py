@@ -38,7 +38,9 @@ def _inputs(journal: Journal) -> str:
     return f"{count} event{'' if count == 1 else 's'}"
 
 
-def _changes(what: str, one: Mapping[str, Any], other: Mapping[str, Any], left_out: tuple[str, ...] = ()) -> Iterator[str]:
+def _changes(
+    what: str, one: Mapping[str, Any], other: Mapping[str, Any], left_out: tuple[str, ...] = ()
+) -> Iterator[str]:
     for name in dict.fromkeys((*one, *other)):
         mine, theirs = one.get(name), other.get(name)
         if mine != theirs and name not in left_out:

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from cfepy.journal.frames import JournalError, read_frames
 from cfepy.journal.mission_files import FileRecord, hash_of
+from cfepy.mission.course import BROKEN_OFF
 from cfepy.mission.outside import Event
 from cfepy.mission.run_plan import RunPlan
 
@@ -26,7 +27,7 @@ class Header:
     Attributes:
         plan: what was run, and on what.
         paced: times real time, when it was joined to the network of its computer; None for one that was not.
-        policy: of the scheduler beside its decisions: `any_priority` and `hold_ns`; None for plain fifo.
+        policy: what the policy told the kernel beside its answers (`cfepy.rtos.policy`); None for plain fifo.
         mission: its name; `folder` is what shows as /cf, `startup` what it was read from, as paths of the computer.
         cwd: the working directory.
         environ: environment variables that the mission could see.
@@ -149,7 +150,8 @@ class Journal:
     def known_until_ns(self) -> int:
         """The virtual time until which the journal knows the run."""
         if self.end is not None:
-            return self.end.until_ns
+            is_broken = self.end.reason == BROKEN_OFF  # in the middle of what happened at its last instant
+            return self.end.now_ns - 1 if is_broken else self.end.until_ns
         return max((0, *(each.until_ns for each in self.pauses[-1:]), *(each.now_ns for each in self.checkpoints[-1:])))
 
     def _take(self, kind: str, body: dict[str, Any]) -> None:

@@ -23,7 +23,9 @@ from cfepy.nodes.config import NodeConfig
 def moved_plan(header: Header, root: str) -> RunPlan:
     """The plan of a run, with the paths that its files have below a root."""
     plan = header.plan
-    files = {name: _moved(getattr(plan, name), header.cwd, root) for name in ("script", "faults", "play", "board")}
+    files: dict[str, Any] = {
+        name: _moved(getattr(plan, name), header.cwd, root) for name in ("script", "faults", "play", "board")
+    }
     return replace(plan, words=(root + header.startup, *_arguments(header)), **files)
 
 

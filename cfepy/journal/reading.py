@@ -14,13 +14,12 @@ import sys
 import sysconfig
 from collections.abc import Callable, Sequence
 from functools import cache
-from pathlib import Path
 from typing import Any
 
+from cfepy.journal.facts import own_places
 from cfepy.nodes.os_module import LISTED
 from cfepy.nodes.sources import AGAIN
 
-_CFEPY = Path(__file__).resolve().parents[1]
 _BYTE_CODE = ".pyc"
 _VOLATILE = ("/proc/", "/sys/", "/dev/")  # no files, but questions to the operating system
 
@@ -34,7 +33,9 @@ class ReadFiles:
             for those of files that the run has written.
     """
 
-    def __init__(self, seen: Callable[[str], object], listed: Callable[[str, list[str]], object]) -> None:
+    def __init__(
+        self, seen: Callable[[str], object], listed: Callable[[str, list[str]], object] = lambda path, names: None
+    ) -> None:
         self._seen = seen
         self._listed = listed
         self._known: set[str] = set()
@@ -51,6 +52,11 @@ class ReadFiles:
     def forget(self, path: str) -> None:
         """A file that is none of the run's."""
         self._known.add(os.path.abspath(path))
+        self._written.add(os.path.abspath(path))
+
+    def is_product(self, path: str) -> bool:
+        """Whether the run, or what looks on, has written a file."""
+        return path in self._written
 
     def opened(self, path: Any, flags: int) -> None:
         """A file is opened."""
@@ -120,6 +126,6 @@ def _source_of(name: str) -> str:
 def _left_out() -> tuple[str, ...]:
     """Where Python, installed packages and cfepy itself lie."""
     places = {sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")}
-    places |= {*site.getsitepackages(), site.getusersitepackages(), str(_CFEPY), str(_CFEPY.parent / "rospy_shim")}
+    places |= {*site.getsitepackages(), site.getusersitepackages(), *own_places()}
     names = {name for place in places if place for name in (place, os.path.realpath(place))}
     return tuple(sorted(os.path.join(name, "") for name in names))

@@ -13,9 +13,9 @@ from types import TracebackType
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.journal.decisions import NotedPolicy
+from cfepy.journal.decisions import NotedPolicy, settings_of
 from cfepy.journal.facts import environ_of, host_facts, versions
-from cfepy.journal.frames import FrameWriter
+from cfepy.journal.frames import FrameWriter, is_journal
 from cfepy.journal.journal import ANSWER, CHECK, END, FILE, FOLDER, HEADER, PAUSE, Header
 from cfepy.journal.mission_files import CARRIED, MOST_FILES, Carrier, files_of
 from cfepy.journal.reading import ReadFiles
@@ -57,6 +57,7 @@ class JournalRecorder(Attachment):
         policy: Policy | None = None,
     ) -> None:
         self.policy = None if policy is None else NotedPolicy(policy)
+        self._settings = None if policy is None else settings_of(policy)
         self._path = path
         self._plan = plan
         self._paced = paced
@@ -143,11 +144,11 @@ class JournalRecorder(Attachment):
         self._write(END, body)
 
     def _header(self, mission: Mission) -> Header:
-        spec, policy = mission.spec, self.policy
+        spec = mission.spec
         return Header(
             plan=self._plan,
             paced=self._paced,
-            policy=None if policy is None else {"any_priority": policy.any_priority, "hold_ns": policy.hold_ns},
+            policy=self._settings,
             mission=spec.name,
             folder=str(spec.folder),
             startup=str(spec.script),
@@ -163,10 +164,17 @@ class JournalRecorder(Attachment):
         """A file of the mission's."""
         if not self._begun:
             self._files.append(path)
-        elif path not in self._known:
+        elif path not in self._known and not self._is_left_out(path):
             self._known.add(path)
             record = self._carrier.record(path)
             self._write(FILE, {name: getattr(record, name) for name in ("path", "size", "sha256", "packed")})
+
+    def _is_left_out(self, path: str) -> bool:
+        """Whether a file that lies beside a mission is a journal, or what this run has written."""
+        try:
+            return self._reading.is_product(path) or is_journal(path)
+        except OSError:
+            return False
 
     def _folder(self, path: str, names: list[str]) -> None:
         """A node looks into a folder."""

@@ -7,6 +7,7 @@ import cfepy.mission and its neighbours in cfepy.journal.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from cfepy.attachment import Attachment
@@ -16,12 +17,12 @@ from cfepy.journal.decisions import RetoldPolicy
 from cfepy.journal.journal import Checkpoint, Journal
 from cfepy.journal.moved import HiddenRoot
 from cfepy.journal.result_digest import digest_of
-from cfepy.journal.stage import staged
+from cfepy.journal.stage import Stage, staged
 from cfepy.mission.course import BROKEN_OFF, Course
 from cfepy.mission.mission import Mission
 from cfepy.mission.outside import Event
 from cfepy.mission.results import Results
-from cfepy.mission.run_plan import Flown, RunPlan
+from cfepy.mission.run_plan import Flown
 from cfepy.mission.script import ScriptRun
 from cfepy.osal.endpoints import Place, Stream
 from cfepy.rtos.policy import Policy
@@ -50,14 +51,18 @@ class ReplayCourse(Course):
     ) -> None:
         super().__init__(mission, seconds, script)
         end = journal.end
-        known = journal.known_until_ns if end is None else end.until_ns
-        self._visits = 1 if end is None else end.visits
-        if until_ns is not None and until_ns < known:
-            known, self._visits = until_ns, 1
-        elif until_ns is not None and end is None:
-            known = until_ns  # nobody knows what came after that, but the run may go on
+        known = journal.known_until_ns
+        has_end = end is not None and end.reason != BROKEN_OFF
+        self._visits = end.visits if end is not None and has_end else 1
+        if until_ns is not None and (until_ns < known or not has_end):
+            known, self._visits = until_ns, 1  # nobody knows what came after a sudden end, but the run may go on
         self.until_ns = known
         self._pauses = [pause for pause in reversed(journal.pauses) if pause.until_ns <= known]
+
+    def end_here(self) -> None:
+        """The run does not go on."""
+        self.until_ns, self._visits = -1, 0
+        self._pauses.clear()
 
     @property
     def goes_on(self) -> bool:
@@ -72,7 +77,8 @@ class ReplayCourse(Course):
         outside, pauses = self.mission.outside, self._pauses
         while pauses and (pauses[-1].until_ns, pauses[-1].visits) <= (outside.until_ns, outside.visits):
             for event in pauses.pop().events:
-                outside.repeat(event)
+                with suppress(Exception):  # what failed then fails again, and a run that has parted may lack its target
+                    outside.repeat(event)
         stop_ns = super().next_stop()
         return min(stop_ns, pauses[-1].until_ns) if pauses else stop_ns
 
@@ -99,14 +105,13 @@ class Replay:
 
     Args:
         journal: the run.
+        stage: where its files are; it must last as long as the replay.
         tasks: what tasks run on; None as in the journal.
         until_ns: virtual time at which to end; None for the end of the run.
-        plan: with paths of this computer; None for those of the run.
-        root: folder that stands for the root of the recorded computer; empty for this one's own.
         describe: makes text of what differs.
 
     Attributes:
-        journal: as given.
+        journal, stage: as given.
         plan: what to run.
         policy: who goes first; None for fifo.
         checker: compares the records.
@@ -119,34 +124,70 @@ class Replay:
     def __init__(
         self,
         journal: Journal,
+        stage: Stage,
         *,
         tasks: str | None = None,
         until_ns: int | None = None,
-        plan: RunPlan | None = None,
-        root: str = "",
         describe: Describe = lambda records, now_ns: [],
     ) -> None:
         self.journal = journal
-        plan = journal.plan if plan is None else plan
-        self.plan = plan if tasks is None else replace(plan, tasks=tasks)
+        self.stage = stage
+        self.plan = stage.plan if tasks is None else replace(stage.plan, tasks=tasks)
         self.until_ns = until_ns
         self.policy = self._policy()
         self.checker = Checker(journal.checkpoints, journal.end if self.is_whole else None, describe)
         paced = journal.header.paced is not None
         self.attachments: list[Attachment] = [*([_Answers(journal.answers)] if paced else []), self.checker]
-        self.attachments += [HiddenRoot(root)] if root else []
-        self._root = root
+        self.attachments += [HiddenRoot(stage.root)] if stage.root else []
+        self._course: ReplayCourse
 
     def _policy(self) -> Policy | None:
         own = Schedule.parse(self.plan.schedule, self.plan.seed).policy()
         recorded = self.journal.header.policy
         if recorded is None:
             return own
-        return RetoldPolicy(self.journal.decisions, self.journal.decided, Policy(**recorded) if own is None else own)
+        if own is None:
+            own = Policy()
+            vars(own).update(recorded)
+        return RetoldPolicy(self.journal.decisions, self.journal.decided, own)
+
+    def fly(
+        self, attachments: Sequence[Attachment] = (), *, console: Console | None = None, trace: Trace | None = None
+    ) -> Flown:
+        """Fly to the end in one go, and compare.
+
+        Args:
+            attachments: what looks on.
+            console: takes the lines; None drops them.
+            trace: takes the records.
+
+        Raises:
+            UsageError: something in the mission is wrong.
+            CfeError: it cannot boot.
+        """
+        flown = self.plan.fly(
+            [*self.attachments, *attachments],
+            spec=self.stage.spec(),
+            console=console,
+            policy=self.policy,
+            trace=trace,
+            make_course=self.make_course,
+        )
+        self.compare(flown.results)
+        return flown
 
     def make_course(self, mission: Mission, seconds: float | None, script: ScriptRun | None) -> ReplayCourse:
         """The course to fly."""
-        return ReplayCourse(mission, seconds, script, self.journal, self.until_ns)
+        self._course = ReplayCourse(mission, seconds, script, self.journal, self.until_ns)
+        return self._course
+
+    def end_here(self) -> None:
+        """Somebody has seen enough: the run ends as soon as the task that runs waits."""
+        kernel = self._course.mission.kernel
+        self.until_ns = kernel.now
+        self.checker.end_early()
+        self._course.end_here()
+        kernel.stop()
 
     def compare(self, results: Results) -> Verdict:
         """Whether it was the same run, now that it is over.
@@ -155,7 +196,9 @@ class Replay:
             results: what it came to.
         """
         end, difference = self.journal.end, self.checker.difference
-        is_other = self.is_whole and difference is None and end is not None and digest_of(results, self._root) != end.results
+        is_other = False
+        if self.is_whole and difference is None and end is not None:
+            is_other = digest_of(results, self.stage.root) != end.results
         self.verdict = Verdict(difference, self.checker.agreed, self.is_whole, is_other)
         return self.verdict
 
@@ -224,13 +267,5 @@ def replay(
         CfeError: the mission cannot boot.
     """
     with staged(journal, from_disk) as stage:
-        again = Replay(journal, tasks=tasks, until_ns=until_ns, plan=stage.plan, root=stage.root)
-        flown = again.plan.fly(
-            [*again.attachments, *attachments],
-            spec=stage.spec(),
-            console=console,
-            policy=again.policy,
-            trace=trace,
-            make_course=again.make_course,
-        )
-        return Replayed(flown, again.compare(flown.results))
+        again = Replay(journal, stage, tasks=tasks, until_ns=until_ns)
+        return Replayed(again.fly(attachments, console=console, trace=trace), again.verdict)

@@ -1,8 +1,8 @@
 """Where a replay finds the files of its mission, and what is not as it was when the run was recorded.
 
 Files come from the journal, if it carries them: they are unpacked into a folder that stands for the root of the
-computer, so the mission sees them at the paths that they had, and what it writes there harms nobody. May import its neighbours in
-cfepy.journal and cfepy.mission.
+computer, so the mission sees them at the paths that they had, and what it writes there harms nobody. May import
+cfepy.mission and its neighbours in cfepy.journal.
 """
 
 from __future__ import annotations
@@ -161,6 +161,8 @@ def _warnings(journal: Journal) -> Iterator[str]:
     for name in ("cfepy", "cfe"):
         if then.get(name) != now[name]:
             yield f"recorded with {name} {then.get(name)}, this is {now[name]}: the run may be another one"
+    if then.get("cfepy") == now["cfepy"] and then.get("source") != now["source"]:
+        yield "recorded with another state of cfepy's own source: the run may be another one"
     if _minor(then.get("python", "")) != _minor(now["python"]):
         yield f"recorded with Python {then.get('python')}, this is {now['python']}: the run may be another one"
 

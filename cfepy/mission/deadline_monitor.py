@@ -123,7 +123,7 @@ class DeadlineMonitor(Observer):
             return
         for check in state.checks:
             if check.kind == "response":
-                self._measure(check, at_ns - began, at_ns, f"task {task.name}")
+                self._measure(check, at_ns - began, at_ns, f"in task {task.name}")
 
     def on_ready(self, task: Task, at_ns: int) -> None:
         """The wait of a task is over."""
@@ -145,7 +145,7 @@ class DeadlineMonitor(Observer):
             return
         for check in state.checks:
             if check.kind == "period" and self._is_paced(task, check.owner):
-                self._measure(check, woken_ns - before, at_ns, f"task {task.name}")
+                self._measure(check, woken_ns - before, at_ns, f"in task {task.name}")
 
     def _is_paced(self, task: Task, app: str) -> bool:
         named = next(each.task for each, _ in self._apps if each.app == app)

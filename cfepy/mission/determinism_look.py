@@ -134,14 +134,14 @@ def stack_of(frame: FrameType | None) -> tuple[Line, ...]:
     found: list[Line] = []
     while frame is not None:
         code = frame.f_code
-        if _is_shown(code.co_filename):
+        if is_shown(code.co_filename):
             text = linecache.getline(code.co_filename, frame.f_lineno).strip()
             found.append(Line(code.co_filename, frame.f_lineno, code.co_qualname, text))
         frame = frame.f_back
     return tuple(reversed(found))
 
 
-def _is_shown(file: str) -> bool:
+def is_shown(file: str) -> bool:
     """Whether code is the mission's or a library's, not the simulator's."""
     hidden = file.startswith((_CFEPY, "<")) or (file.startswith(_ROSPY) and not file.startswith(_LIBRARIES))
     return not hidden

@@ -15,20 +15,20 @@ from cfepy.faults import kinds as k
 from cfepy.faults.kinds import KINDS
 from cfepy.faults.names import number_as_name
 from cfepy.faults.plan_text import DATAGRAMS
+from cfepy.mission.fault_names import apps_of_nodes
 from cfepy.mission.fault_plans import Found
 from cfepy.mission.msg_names import ROS
 from cfepy.mission.processor import CORE_APPS
 from cfepy.mission.spec import MissionSpec
+from cfepy.mission.watch import HOST
 from cfepy.osal import FileSystem
 from cfepy.status import OsalError, UsageError
 
-APP_OPTIONS = ("from", "app")
-
 
 def app_names(spec: MissionSpec) -> list[str]:
-    """The applications of a mission, as its startup script has them."""
+    """The applications of a mission, as its startup script has them, and names of nodes that stand for them."""
     own = [entry.name for entry in entries(spec.startup_script) if entry.kind == CFE_APP]
-    return [*own, *CORE_APPS, *([ROS] if spec.has_nodes else [])]
+    return [*own, *CORE_APPS, *([ROS] if spec.has_nodes else []), *apps_of_nodes(spec)]
 
 
 def check_plan(plan: FaultPlan, spec: MissionSpec, found: Found | None = None) -> list[UsageError]:
@@ -51,7 +51,7 @@ def _problems(fault: Fault, spec: MissionSpec, found: Found | None) -> Iterator[
     strikes = KINDS[fault.kind].strikes
     if strikes == k.APP:
         yield from _unknown("application", fault.target, apps)
-    yield from _unknown("application", [fault.options[o] for o in APP_OPTIONS if o in fault.options], apps)
+    yield from _unknown("application", [fault.options[o] for o in ("from", "app") if o in fault.options], [*apps, HOST])
     if strikes == k.FILE and fault.when.at_ns in ((), (0,)):
         yield from _unknown_file(fault.target[0], spec)
     if found is None:

@@ -14,11 +14,18 @@ from cfepy import msg
 from cfepy.mission.dictionary import Dictionary, dictionary_of
 from cfepy.mission.mission import Mission
 from cfepy.mission.msg_names import names_of
+from cfepy.mission.spec import MissionSpec
 from cfepy.mission.topics import Topic, library_of, topics_of
 from cfepy.msg import Command, Telemetry
 from cfepy.status import CfeError, UsageError
 
 _STEP = re.compile(r"[^.\[\]]+")
+
+
+def apps_of_nodes(spec: MissionSpec) -> dict[str, str]:
+    """cFE names of applications by the names of the nodes in them, as far as the mission file gives these."""
+    named = ((node.app, node.namespace, node.name) for node in spec.ros.nodes.values() if node.name is not None)
+    return {f"{namespace.rstrip('/')}/{name}": app for app, namespace, name in named}
 
 
 class MissionNames:
@@ -68,6 +75,10 @@ class MissionNames:
         commands = [each for each in self._dictionary.commands.values() if each.msg_id == msg_id]
         return next((each for each in commands if (each.code or 0) == code), None)
 
+    def app(self, name: str) -> str:
+        """See `cfepy.faults.names.Names`."""
+        return name if self._mission is None else apps_of_nodes(self._mission.spec).get(name, name)
+
     def edit(self, packet: bytes, values: Mapping[str, Any]) -> bytes:
         """See `cfepy.faults.names.Names`."""
         topic = self._topic(packet[0] << 8 | packet[1])
@@ -105,23 +116,28 @@ class MissionNames:
 
 
 def _set(whole: Any, path: str, value: Any, owner: str) -> None:
-    """Set a field by its path, such as "pose.position.x" or "ranges[3]"."""
-    steps = _STEP.findall(path)
+    """Set a field by its path, such as "pose.position.x" or "ranges[3]".
+
+    Raises:
+        UsageError: there is no such field.
+    """
     try:
-        for step in steps[:-1]:
-            whole = _part(whole, step)
-        _part(whole, steps[-1])
-        if isinstance(whole, dict):
-            whole[steps[-1]] = value
-        elif isinstance(whole, list):
-            whole[int(steps[-1])] = value
-        else:
-            setattr(whole, steps[-1], value)
+        _changed(whole, _STEP.findall(path), value)
     except (AttributeError, LookupError, ValueError, TypeError):
-        raise UsageError(f"{owner} has no field {path} that can be set") from None
+        raise UsageError(f"{owner} has no field {path} that can be set so") from None
 
 
-def _part(whole: Any, step: str) -> Any:
+def _changed(whole: Any, steps: Sequence[str], value: Any) -> Any:
+    """A value in which the part that the steps lead to is another; what cannot be changed in place is made anew."""
+    if not steps:
+        return value
+    step = steps[0]
     if isinstance(whole, dict):
-        return whole[step]
-    return whole[int(step)] if isinstance(whole, list | tuple) else getattr(whole, step)
+        whole[step] = _changed(whole[step], steps[1:], value)
+    elif isinstance(whole, list | tuple | bytes):
+        parts = list(whole)
+        parts[int(step)] = _changed(parts[int(step)], steps[1:], value)
+        return type(whole)(parts)
+    else:
+        setattr(whole, step, _changed(getattr(whole, step), steps[1:], value))
+    return whole

@@ -183,7 +183,10 @@ class InvariantWatch(Attachment):
         selections = [each for invariant in self._invariants for each in _selections(invariant)]
         topics = tuple(dict.fromkeys(name for each in selections for name in each.topics or _all(each)))
         packets = tuple(dict.fromkeys(name for each in selections for name in each.packets))
-        self._messages = MessageWatch(spec, self._take, topics, packets)
+        try:
+            self._messages = MessageWatch(spec, self._take, topics, packets)
+        except UsageError as error:
+            raise UsageError(error.text, file=spec.mission_file, field="invariants") from None
         self._mission: Mission | None = None
         self._make_judges()
 

@@ -15,14 +15,17 @@ from cfepy.mission.spec import MissionSpec
 from cfepy.mission.topic_watch import Message, TopicWatch
 from cfepy.mission.topics import Topic, library_of
 from cfepy.mission.watch import PacketWatch, Seen
-from cfepy.msg import Command, get_fcn_code
+from cfepy.msg import Command, get_fcn_code, get_header_size
 from cfepy.rtos.units import NS_PER_S
 from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
 
 
 class Fields(dict[str, Any]):
-    """The fields of a packet: `msg.Payload.CommandCounter`, and as a dict."""
+    """The fields of a packet: `msg.PacketID.AppName`, and as a dict.
+
+    A packet whose layout nobody declares has one field, `data`, its bytes behind the header.
+    """
 
     def __getattr__(self, name: str) -> Any:
         try:
@@ -115,6 +118,9 @@ class MessageWatch(Attachment):
         found = self._dictionary.telemetry_of(name) if found is None else found
         return found.msg_id, found.code if isinstance(found, Command) else None
 
+    def _has_layout(self, name: str) -> bool:
+        return name in self._dictionary.telemetry or name in self._dictionary.commands
+
     def _take_message(self, message: Message) -> None:
         about = Topic(
             message.topic, 0, message.header.get("type", ""), False, message.header.get("message_definition", "")
@@ -130,6 +136,8 @@ class MessageWatch(Attachment):
 
     def _fields_of(self, packet: bytes) -> Fields:
         decoded = self._dictionary.decode(packet)
+        if decoded.problem and not decoded.values and not self._has_layout(decoded.name):
+            return Fields(data=packet[get_header_size(packet) :])
         if decoded.problem:
             raise UsageError(f"{decoded.name}: {decoded.problem}")
         fields: Fields = _as_fields(decoded.values)

@@ -58,6 +58,7 @@ class Mission:
         kernel, trace, files, network: the parts that outlive a reset.
         outside: the door through which anything comes in while it runs.
         record: what the report tells; `record.resets` are the resets so far.
+        stall_watch: tells of a task that computes for ever.
         processor: what runs between two resets; a reset puts another one here.
         booted: virtual ns at which the mission became OPERATIONAL for the first time, None before.
     """
@@ -90,7 +91,7 @@ class Mission:
         self.outside = Outside(self.kernel, self.network, self.trace)
         self.outside.do = HostActs(self).do
         self.kernel.on_task_error = self._task_failed
-        self._watch = StallWatch(self.kernel)
+        self.stall_watch = StallWatch(self.kernel)
         self._first_boot: int | None = None
         self._resetting = False
         self._attachments = (*self._own_attachments(), *attachments)
@@ -189,7 +190,7 @@ class Mission:
 
     def run_until(self, until_ns: int) -> None:
         """Run until a virtual time in ns; on the way the processor is reset as often as somebody wants it."""
-        self._watch.begin()
+        self.stall_watch.begin()
         self.outside.begin_piece(until_ns)
         self._reset_if_asked()
         self.kernel.run(until_ns)
@@ -223,7 +224,7 @@ class Mission:
         """End every task; the numbers stay readable."""
         self.processor.end()
         self.kernel.shutdown()
-        self._watch.end()
+        self.stall_watch.end()
         for each in self._attachments:
             each.close()
 

@@ -90,7 +90,7 @@ class Observer(Attachment):
         return _observed(self, base)
 
     def begin(self, mission: Any) -> None:
-        """Stand beside the console, the trace, the kernel's record and its waits, which are looked up for every call."""
+        """Stand beside the console, the trace, the kernel's record and its waits: they are looked up for every call."""
         self.mission = mission
         self._kernel = kernel = mission.kernel
         trace, console = mission.trace, mission.console

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from cfepy.osal.endpoints import Datagram, Place, Stream
 from cfepy.osal.network import Network
 from cfepy.rtos import Kernel
+from cfepy.status import CfeError
 from cfepy.trace import Trace
 
 LOOPBACK = "127.0.0.1"
@@ -112,7 +113,10 @@ class Outside:
             port, host, source = values
             self.call(port, Place(host, source))
         elif kind == ACT:
-            self.act(*values)
+            try:
+                self.act(*values)
+            except CfeError:
+                pass  # as it was refused the first time
         else:
             self._repeat_on(self._stream(values[0]), kind, values)
 

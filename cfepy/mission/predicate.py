@@ -86,7 +86,11 @@ class Predicate:
 
 def short(value: Any) -> str:
     """A value on one line, cut off when it is long."""
-    text = " ".join(repr(value).split())
+    return shortened(" ".join(repr(value).split()))
+
+
+def shortened(text: str) -> str:
+    """A text, cut off when it is long."""
     return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."
 
 

@@ -153,7 +153,8 @@ class Results:
 
     `booted_s` is of the first boot, `resets` are in order; pipes, memory and `sb` are of the processor since the last
     one. `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` says, a line each,
-    why the run did not end well, `faults` has a row for each fault that was to happen, `script_problems` what of the startup script could not be started.
+    why the run did not end well, `faults` has a row for each fault that was to happen, `deadlines` one for each of the
+    mission file, `script_problems` what of the startup script could not be started.
     """
 
     mission: str

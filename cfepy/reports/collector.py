@@ -17,7 +17,9 @@ from cfepy.rtos import Task
 from cfepy.sb.pipe import Pipe
 
 MOST = 2_000
-"""Events, lines and marks that are kept of each; the others are only counted."""
+"""Events and lines that are kept of each; the others are only counted."""
+
+MOST_OF_A_KIND = 500  # marks, so that many of one kind leave room for the others
 
 
 class Line(NamedTuple):
@@ -66,7 +68,8 @@ class Collector(Observer):
         apps: by name, in order of appearance.
         topics: by MsgId, likewise.
         drops: how many messages were lost where.
-        events, lines, marks: the first `MOST` of each; `event_count`, `line_count` and `mark_count` count all.
+        events, lines: the first `MOST` of each; `event_count` and `line_count` count all.
+        marks: the first `MOST_OF_A_KIND` of each kind; `mark_counts` counts all, by kind.
         memory: bytes that are booked by (owner, purpose).
         end_ns: when the time of the run was over.
         names: of MsgIds.
@@ -80,7 +83,8 @@ class Collector(Observer):
         self.events: list[Event] = []
         self.lines: list[Line] = []
         self.marks: list[Mark] = []
-        self.event_count = self.line_count = self.mark_count = 0
+        self.event_count = self.line_count = 0
+        self.mark_counts: dict[str, int] = {}
         self.memory: dict[tuple[str, str], int] = {}
         self.end_ns = 0
         self.names: LiveNames
@@ -157,8 +161,9 @@ class Collector(Observer):
         self._mark(*(mark_of(text) or ("note", text)), at_ns)
 
     def _mark(self, kind: str, text: str, at_ns: int) -> None:
-        self.mark_count += 1
-        _keep(self.marks, Mark(at_ns, kind, text))
+        self.mark_counts[kind] = count = self.mark_counts.get(kind, 0) + 1
+        if count <= MOST_OF_A_KIND:
+            self.marks.append(Mark(at_ns, kind, text))
 
     # -- for the timeline --------------------------------------------------------------------------------------------
 

@@ -140,8 +140,14 @@ def _cells(row: Sequence[str], marks: Sequence[str | None]) -> Iterator[str]:
             yield element("th", inside, scope="row", class_=mark, data_order=order)
 
 
-def meter(share: float, text: str) -> str:
-    """A bar from 0 to 1 with a text; more than 1 is shown as full."""
-    level = "high" if share >= 0.95 else "raised" if share >= 0.75 else None
+def meter(share: float, text: str, is_lost: bool = True) -> str:
+    """A bar from 0 to 1 with a text; more than 1 is shown as full.
+
+    Args:
+        share: how much of it is used.
+        text: HTML beside it.
+        is_lost: whether a full bar is bad, or just full.
+    """
+    level = "high" if share >= 0.95 and is_lost else "raised" if share >= 0.75 else None
     width = f"--share:{min(max(share, 0.0), 1.0) * 100:.2f}%"
     return element("span", element("span", "", class_="bar", style=width), class_=f"meter {level or ''}".strip()) + text

@@ -211,6 +211,7 @@ function sort(table, column) {
 
 for (const table of document.querySelectorAll("table.sortable"))
   [...table.tHead.rows[0].cells].forEach((head, column) => {
+    if (table.tBodies[0].querySelector("tr > :nth-child(" + (column + 1) + ") svg")) return;  // a picture has no order
     const button = document.createElement("button");
     button.type = "button";
     button.textContent = head.textContent;

@@ -15,6 +15,7 @@ from typing import Any
 from cfepy import __version__, versions
 from cfepy.mission.run_plan import Flown
 from cfepy.reports import page_sections as parts
+from cfepy.reports import page_verdicts as verdicts
 from cfepy.reports.collector import Collector
 from cfepy.reports.html_text import Numbers, Part, element, escaped, json_text, section
 
@@ -54,9 +55,11 @@ def page_of(flown: Flown, collector: Collector, about: About) -> str:
     body = [
         _header(flown, numbers, about),
         _timeline(),
-        parts.deadlines(results, numbers),
-        parts.marks(results, numbers, collector),
-        parts.script(flown.outcome, numbers),
+        verdicts.deadlines(results, numbers),
+        verdicts.invariants(results, numbers),
+        verdicts.faults(results, numbers),
+        verdicts.marks(results, numbers, collector),
+        verdicts.script(flown.outcome, numbers),
         parts.messages(results, numbers),
         parts.latencies(collector),
         parts.drops(collector),
@@ -113,7 +116,7 @@ def _header(flown: Flown, numbers: Numbers, about: About) -> str:
     listed = "".join(element("div", element("dt", name) + element("dd", value)) for name, value in facts.items())
     command = element("dt", "The same run again") + element("dd", element("code", escaped(about.command)))
     warnings = "".join(element("p", escaped(text), class_="banner bad", role="note") for text in about.warnings)
-    title = element("h1", escaped(results.mission)) + warnings + parts.problems(results)
+    title = element("h1", escaped(results.mission)) + warnings + verdicts.problems(results)
     return element("header", title + element("dl", listed + element("div", command, class_="wide"), class_="facts"))
 
 

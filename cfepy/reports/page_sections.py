@@ -1,9 +1,9 @@
-"""The parts of a page about a run, each a table or two; `cfepy.reports.page` puts them together."""
+"""The parts of a page that tell what there was: messages, applications, pipes, memory, events, the console.
+
+Each is a table or two; `cfepy.reports.page` puts them together.
+"""
 
 from __future__ import annotations
-
-from collections.abc import Iterator
-from typing import Any
 
 from cfepy.mission.deadlines import time_text
 from cfepy.mission.results import Results
@@ -114,35 +114,6 @@ def applications(results: Results, numbers: Numbers) -> str:
     return section("Applications", "applications", inside, about)
 
 
-def deadlines(results: Results, numbers: Numbers) -> str:
-    """What the mission file asks for; nothing without it."""
-    rows = []
-    for index, each in enumerate(results.deadlines):
-        path = f"deadlines.{index}"
-        jitter = ""
-        if each.kind == "period":
-            jitter = " &plusmn; " + numbers.show(f"{path}.jitter_s", time_text(round(each.jitter_s * NS_PER_S)))
-        worst = "" if each.worst_s is None else time_text(round(each.worst_s * NS_PER_S))
-        first = "" if each.first_at_s is None else f"{each.first_at_s:.6f} s"
-        verdict = "missed" if each.overruns else "kept" if each.checked else "never measured"
-        rows.append(
-            [
-                escaped(each.owner),
-                escaped(each.kind.replace("_", " ")),
-                numbers.show(f"{path}.limit_s", time_text(round(each.limit_s * NS_PER_S))) + jitter,
-                element("span", verdict, class_=f"verdict {verdict.split()[0]}"),
-                numbers.show(f"{path}.checked"),
-                numbers.show(f"{path}.overruns"),
-                numbers.show(f"{path}.worst_s", worst),
-                numbers.show(f"{path}.first_at_s", first),
-            ]
-        )
-    if not rows:
-        return ""
-    heads = ("Of", "What", "Limit", "Verdict", "Measured", "Missed", "Worst", "First at")
-    return section("Deadlines", "deadlines", table("Deadlines of the mission file", heads, rows, (2, 4, 5, 6, 7)))
-
-
 def pipes(results: Results, numbers: Numbers) -> str:
     """How full they ever were."""
     rows = []
@@ -153,7 +124,7 @@ def pipes(results: Results, numbers: Numbers) -> str:
             [
                 escaped(pipe.name),
                 escaped(pipe.app),
-                Cell(meter(share, numbers.show(f"{path}.peak")), pipe.peak),
+                Cell(meter(share, numbers.show(f"{path}.peak"), pipe.dropped > 0), pipe.peak),
                 Cell(numbers.show(f"{path}.depth"), pipe.depth),
                 Cell(f"{share:.0%}", share),
                 Cell(numbers.show(f"{path}.dropped"), pipe.dropped),
@@ -181,9 +152,9 @@ def budget(results: Results, numbers: Numbers, collector: Collector) -> str:
     stacks = {owner: size for (owner, kind), size in collector.memory.items() if kind == STACK}
     rows = []
     for owner, size in memory.by_owner.items():
-        share = size / memory.limit if memory.limit else size / max(memory.used, 1)
+        share = size / (memory.limit or max(memory.used, 1))
         stack = stacks.get(owner, 0)
-        booked = Cell(meter(share, numbers.show(f"memory.by_owner.{owner}")), size)
+        booked = Cell(meter(share, numbers.show(f"memory.by_owner.{owner}"), memory.limit is not None), size)
         rows.append([escaped(owner), booked, Cell(f"{stack:,}", stack), Cell(f"{share:.1%}", share)])
     whole = "of the board" if memory.limit else "of what is used"
     parts = table("RAM by owner", ("Owner", "Bytes", "of them stacks", whole), rows, (1, 2, 3), class_="sortable")
@@ -191,31 +162,9 @@ def budget(results: Results, numbers: Numbers, collector: Collector) -> str:
     if memory.limit:
         of = f"{meter(memory.peak / memory.limit, '')} at most {peak} of {numbers.show('memory.limit')} bytes"
     else:
-        of = f"at most {peak} bytes, on a board without a limit"
+        of = f"At most {peak} bytes, on a board without a limit"
     about = f"{of}; {used} at the end, {sum(stacks.values()):,} of them stacks."
     return section("Board budget", "budget", parts, about)
-
-
-def marks(results: Results, numbers: Numbers, collector: Collector) -> str:
-    """Resets, faults, deadlines that were missed, invariants that did not hold."""
-    rows: list[tuple[Cell, str, str]] = [
-        (
-            Cell(numbers.show(f"resets.{index}.at_s", f"{reset.at_s:.6f}"), reset.at_s),
-            "reset",
-            escaped(f"{reset.type}: {reset.reason}" + (" (a failure)" if reset.fault else "")),
-        )
-        for index, reset in enumerate(results.resets)
-    ]
-    for mark in collector.marks:
-        if mark.kind != "reset":
-            at = Cell(f"{mark.at_ns / NS_PER_S:.6f}", mark.at_ns / NS_PER_S)
-            rows.append((at, escaped(mark.kind), escaped(mark.text)))
-    if not rows:
-        return ""
-    rows.sort(key=lambda row: row[0].order or 0)
-    inside = table("What stands out", ("At, s", "What", "Text"), rows, (0,), class_="log")
-    about = _kept(len(collector.marks), collector.mark_count)
-    return section("Resets, faults, overruns", "marks", inside, about)
 
 
 def events(results: Results, numbers: Numbers, collector: Collector) -> str:
@@ -235,7 +184,7 @@ def events(results: Results, numbers: Numbers, collector: Collector) -> str:
     inside = _filter("events", "Show events with") + table(
         "Events", heads, rows, (0, 3), class_="log", id="events-table"
     )
-    about = f"{counts}. {_kept(len(collector.events), collector.event_count)}"
+    about = f"{counts}. {kept(len(collector.events), collector.event_count)}"
     return section("Events", "events", inside, about)
 
 
@@ -244,10 +193,11 @@ def console(collector: Collector) -> str:
     rows = [[f"{line.at_ns / NS_PER_S:.6f}", escaped(line.text)] for line in collector.lines]
     inside = _filter("console", "Show lines with")
     inside += table("Console", ("At, s", "Line"), rows, (0,), class_="log console", id="console-table")
-    return section("Console", "console", inside, _kept(len(collector.lines), collector.line_count))
+    return section("Console", "console", inside, kept(len(collector.lines), collector.line_count))
 
 
-def _kept(shown: int, count: int) -> str:
+def kept(shown: int, count: int) -> str:
+    """What is said where not all can be shown."""
     return "" if count <= shown else f"The first {MOST:,} of {count:,} are shown."
 
 
@@ -258,43 +208,9 @@ def _filter(name: str, label: str) -> str:
     return element("p", element("label", escaped(label), for_=f"{name}-filter") + field + count, class_="filter")
 
 
-def script(outcome: Any, numbers: Numbers) -> str:
-    """The steps of the mission's script; nothing without one."""
-    if outcome is None:
-        return ""
-    rows = []
-    for index, step in enumerate(outcome.verdicts):
-        path = f"script.steps.{index}"
-        word = "ok" if step.ok else "FAILED"
-        rows.append(
-            [
-                numbers.show(f"{path}.line"),
-                element("span", word, class_=f"verdict {'kept' if step.ok else 'missed'}"),
-                numbers.show(f"{path}.at_s", f"{step.at_s:.6f}"),
-                escaped(step.step),
-                escaped(step.detail),
-            ]
-        )
-    heads = ("Line", "Verdict", "At, s", "Step", "Detail")
-    return section("Script", "script", table(f"Steps of {outcome.file}", heads, rows, (0, 2), class_="log"))
-
-
 def others(numbers: Numbers) -> str:
     """Every number that has no place of its own, so that none is missing."""
     rows = [[escaped(path), shown] for path, shown in numbers.rest()]
     if not rows:
         return ""
     return section("Other numbers", "others", table("Other numbers", ("What", "Value"), rows, (1,)))
-
-
-def problems(results: Results) -> str:
-    """Whether the run went well, in a word and a list."""
-    found = [*results.script_problems, *results.problems]
-    if not found:
-        return element("p", "No problems", class_="banner good")
-    title = element("p", f"{len(found)} problem{'s' if len(found) > 1 else ''}")
-    return element("div", title + element("ul", "".join(_items(found))), class_="banner bad", role="note")
-
-
-def _items(texts: list[str]) -> Iterator[str]:
-    return (element("li", escaped(text)) for text in texts)

@@ -13,6 +13,7 @@ from typing import Any
 from cfepy import trace as tr
 from cfepy.rtos.kernel import Kernel
 from cfepy.rtos.policy import Decision, Policy
+from cfepy.rtos.scheduler import SLICE_NS
 from cfepy.rtos.task import Task
 
 
@@ -53,7 +54,9 @@ class ExploringKernel(Kernel):
         self._hold_ns = policy.hold_ns
         self._decisions = 0
         self._going_on: Task | None = None  # the task that was put in front just now: it could go on
-        self._left: Task | None = None  # the task that gave up its turn just now
+        self._left: Task | None = None  # the task that gave up its turn, or ought to, just now
+        self._busy: Task | None = None  # the task that used the CPU last, and how much it may use in one go
+        self._busy_until = 0
 
     # -- scheduling points -----------------------------------------------------------------------------------------
 
@@ -84,10 +87,16 @@ class ExploringKernel(Kernel):
     def charge(self, duration_ns: int) -> None:
         """See `Scheduler.charge`."""
         task = self.current
-        if task is not self.host:
-            task.cpu_ns += duration_ns
-            self.now += duration_ns
-            self._catch_up(task, duration_ns)
+        if task is self.host:
+            return
+        task.cpu_ns += duration_ns
+        self.now += duration_ns
+        if task is not self._busy:
+            self._busy, self._busy_until = task, task.cpu_ns + SLICE_NS
+        elif task.cpu_ns >= self._busy_until:
+            self._left = task
+            self._busy_until += SLICE_NS
+        self._catch_up(task, duration_ns)
 
     def _catch_up(self, task: Task, duration_ns: int) -> None:
         """As the base class, but equals get their chance each time, not only when the time slice is used up."""

@@ -85,9 +85,11 @@ class ForkServer:
         self._template = _fork()
         if not self._template:
             self._be_template()
+        self._requests.stop_receiving()  # so that the end of the template is seen as the end of its pipes
+        self._answers.stop_sending()
 
     def run(self, schedule: Schedule) -> Any:
-        """What the body gives under a schedule.
+        """What the body gives under a schedule; a run that does not end keeps this waiting.
 
         Raises:
             ValueError: the schedule has other options.
@@ -96,8 +98,11 @@ class ForkServer:
         """
         if schedule.at({}) != self.options:
             raise ValueError(f"schedule {schedule} has other options than {self.options}")
-        self._requests.send(schedule)
-        answer = self._answers.receive()
+        try:
+            self._requests.send(schedule)
+            answer = self._answers.receive()
+        except BrokenPipeError:  # the template has ended
+            answer = None
         if answer is None:
             raise ChildProcessError(f"the run under schedule {schedule} ended without an answer")
         value, error = answer
@@ -107,9 +112,9 @@ class ForkServer:
 
     def close(self) -> None:
         """End the template; `run` must not be called any more."""
-        self._requests.close()
+        self._requests.stop_sending()
         os.waitpid(self._template, 0)
-        self._answers.close()
+        self._answers.stop_receiving()
 
     # -- in the template and its children --------------------------------------------------------------------------
 
@@ -178,9 +183,8 @@ class _Channel:
         """This process only receives."""
         os.close(self._writer)
 
-    def close(self) -> None:
-        """Neither sends nor receives any more."""
-        os.close(self._writer)
+    def stop_receiving(self) -> None:
+        """This process only sends."""
         os.close(self._reader)
 
 

@@ -28,7 +28,7 @@ class Decision:
         tasks: who could run, the one that fifo would take first.
         running: whether `tasks[0]` is the running task, which could go on: another answer than 0 preempts it.
         hold: whether there is one more answer, `len(tasks)`: the running task is held up until the next timer is due.
-        left: the task that gave up its turn just now, because it yields or used up its time slice, or None.
+        left: the task that gave up its turn just now, as it yields or used the CPU for a whole time slice, or None.
     """
 
     number: int
@@ -212,9 +212,7 @@ class Recorded(Policy):
         if choice:
             tasks = decision.tasks
             chosen = tasks[choice].name if choice < len(tasks) else HOLD
-            self.moments.append(
-                Moment(decision.number, choice, decision.now, tasks[0].name, chosen, decision.running)
-            )
+            self.moments.append(Moment(decision.number, choice, decision.now, tasks[0].name, chosen, decision.running))
         self.choices.append(choice)
         self.widths.append(decision.width)
         self.running.append(decision.running)

@@ -117,9 +117,7 @@ class Schedule:
         Args:
             deviations: choice by number of the decision, as `Recorded.deviations` has them.
         """
-        return replace(
-            self, kind="at", seed=0, depth=DEPTH, steps=STEPS, deviations=tuple(sorted(deviations.items()))
-        )
+        return replace(self, kind="at", seed=0, depth=DEPTH, steps=STEPS, deviations=tuple(sorted(deviations.items())))
 
     def with_seed(self, seed: int) -> Schedule:
         """The same with another seed."""

@@ -6,9 +6,10 @@ wall-clock time; it only tells, and changes nothing in the run.
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from cfepy.rtos.kernel import Kernel
 
@@ -36,6 +37,7 @@ class StallWatch:
         self._over = threading.Event()
         self._thread: threading.Thread | None = None
         self._host_ident = 0
+        self._is_paused = False
 
     def begin(self) -> None:
         """The calling thread is about to run the kernel. Cheap after the first time: a run may come in many pieces."""
@@ -50,12 +52,21 @@ class StallWatch:
         if self._thread is not None:
             self._thread.join()
 
+    @contextlib.contextmanager
+    def paused(self) -> Iterator[None]:
+        """Somebody looks at a task with a debugger, which takes its time."""
+        self._is_paused = True
+        try:
+            yield
+        finally:
+            self._is_paused = False
+
     def _look_on(self) -> None:
         interval = min(LOOK_S, self._limit_s / 4)
         seen, still = self._kernel.progress(), 0.0
         while not self._over.wait(interval):
             now = self._kernel.progress()
-            still = still + interval if now == seen else 0.0
+            still = still + interval if now == seen and not self._is_paused else 0.0
             seen = now
             if still >= self._limit_s and self._kernel.current is not self._kernel.host:
                 self._tell()

@@ -19,7 +19,7 @@ from cfepy.tbl.registry import Table
 REGISTRY_NAME = "CFE_TBL.CritReg"
 
 
-_REMEMBERED = 1024  # the registry is written whole whenever one of its records changes
+_REMEMBERED = 128  # the registry is written whole whenever one of its records changes
 
 
 @lru_cache(_REMEMBERED)

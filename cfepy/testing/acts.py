@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import importlib
 import io
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
 from typing import Any
 
 from cfepy.mission.host_acts import CALL, PARAM, PUBLISH, Call
@@ -21,6 +22,7 @@ from cfepy.testing.errors import ExpectationError
 __tracebackhide__ = True  # pytest shows the line of the test
 
 MISSING = object()
+LIKE_IT = 3  # names that are told in place of one that there is not
 
 
 class RosSide:
@@ -56,7 +58,7 @@ class RosSide:
         known = {} if self._ros is None else {topic.name: topic for topic in topics_of(self._mission)}
         full = name if name.startswith("/") else f"/{name}"
         if full not in known:
-            raise ExpectationError(f"there is no topic {full} yet; there are {', '.join(known) or 'none'}")
+            raise ExpectationError(f"there is no topic {full} yet; {near(full, known)}")
         return known[full]
 
     def _payload(self, topic: Topic, message: Any, fields: Mapping[str, Any]) -> bytes:
@@ -84,7 +86,7 @@ class RosSide:
             return found
         if default is not MISSING:
             return default
-        raise ExpectationError(f"there is no parameter {name}; there are {', '.join(tree.names()) or 'none'}")
+        raise ExpectationError(f"there is no parameter {name}; {near(name, tree.names())}")
 
     def set_param(self, name: str, value: Any) -> None:
         """Set a parameter; see `Flight.set_param`."""
@@ -98,14 +100,19 @@ class RosSide:
         services = self._ros.graph.services
         full = name if name.startswith("/") else f"/{name}"
         if full not in services:
-            raise ExpectationError(
-                f"nobody offers the service {full}; there are {', '.join(sorted(services)) or 'none'}"
-            )
+            raise ExpectationError(f"nobody offers the service {full}; {near(full, sorted(services))}")
         service = services[full].service
         if request is None:
             request = filled(service.node.library, service.request_class._type, fields)
         call: Call = self._mission.outside.act(CALL, full, serialized(request))
         return call
+
+
+def near(name: str, known: Iterable[str]) -> str:
+    """What there is instead of a name: those that are like it, or all."""
+    names = list(known)
+    found = get_close_matches(name, names, LIKE_IT)
+    return f"is {' or '.join(found)} meant?" if found else f"there are {', '.join(names) or 'none'}"
 
 
 def filled(library: Any, kind: str, fields: Mapping[str, Any]) -> Any:

@@ -43,6 +43,7 @@ def explore(
     steps: int = STEPS,
     any_priority: bool = False,
     hold: str = "",
+    start: str = "",
     shrink: int = MOST_PROBES,
 ) -> pytest.MarkDecorator:
     """Run a test under many schedules, until it fails under one.
@@ -58,6 +59,7 @@ def explore(
         steps: how many decisions pct expects of a run.
         any_priority: tasks of less urgent priority may go before more urgent ones.
         hold: how long the running task may be held up, such as "500us"; empty for not at all.
+        start: virtual time from the boot until which all is as with fifo, such as "600ms"; empty for none.
         shrink: how many runs it may take to shrink a schedule; 0 leaves it as it is.
 
     Raises:
@@ -70,7 +72,8 @@ def explore(
     if seeds < 1 or not policies:
         raise UsageError("there is nothing to run; give at least one", field="seeds" if policies else "policy")
     options = (":any" if any_priority else "") + (f":hold={hold}" if hold else "")
+    options += f":from={start}" if start else ""
     found = Exploration(seeds, policies, depth, steps, options, shrink)
-    list(found.schedules(min(seeds, 1 + len(policies))))  # a wrong `hold` or `depth` is told now
+    list(found.schedules(min(seeds, 1 + len(policies))))  # a wrong `hold`, `start` or `depth` is told now
     mark: pytest.MarkDecorator = getattr(pytest.mark, EXPLORE_MARK)
     return mark(found)

@@ -6,25 +6,27 @@ scope stay. pytest sees the reports of one run: the first that failed, shrunk, o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 import pytest
 from _pytest.runner import runtestprotocol
 
-from cfepy.explore.shrink import Shrinker
+from cfepy.explore.moves import Move
+from cfepy.explore.recording import TaskLook
+from cfepy.explore.shrink import Shrinker, Shrunk
+from cfepy.explore.timeline import drawn, tasks_of
 from cfepy.explore.verdict import Failure, Verdict
 from cfepy.mission.run_plan import RunPlan
-from cfepy.mission.script_conditions import seconds
-from cfepy.rtos.policy import Policy, Recorded
+from cfepy.rtos.policy import Policy
 from cfepy.rtos.schedule import Schedule
+from cfepy.status import UsageError
 from cfepy.testing.exploration import Exploration
 from cfepy.testing.missions import SECTION, UNDER_TEST, Conditions, Missions
 from cfepy.testing.plugin import EXPLORE_MARK
 
 FAILED = "test failed"
-MOST_MOMENTS = 20  # deviations that are told
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,11 +35,11 @@ class Run:
 
     Attributes:
         reports: of setup, call and teardown.
-        recorded: what the policies of its missions have decided.
+        conditions: what its missions were flown under.
     """
 
     reports: tuple[pytest.TestReport, ...]
-    recorded: tuple[Recorded, ...]
+    conditions: Conditions
 
     @property
     def is_done(self) -> bool:
@@ -91,9 +93,12 @@ class ExploredTest:
         count = self._item.config.getoption("--cfepy-schedules") or self._exploration.seeds
         for number, schedule in enumerate(self._exploration.schedules(count), 1):
             when = f"under the {number}. of {count} schedules"
-            self._last = self._once(schedule.text())
+            self._last = self._once(Conditions(schedule.text()))
             if self._last.is_done:
                 break
+            if not self._last.conditions.plans:
+                self._last = Run((*self._last.reports, self._report("call", _complain)), self._last.conditions)
+                return [*self._last.reports, *self._end_wider(nextitem)]
         reports = [*self._last.reports]
         failure = self._last.failure
         if failure is not None:
@@ -102,36 +107,46 @@ class ExploredTest:
 
     def _end_wider(self, nextitem: pytest.Item | None) -> list[pytest.TestReport]:
         """Tear down the fixtures of a wider scope that the next test does not need; a report if that fails."""
-        item = self._item
-        call = pytest.CallInfo.from_call(lambda: item.session._setupstate.teardown_exact(nextitem), "teardown")
-        return [] if call.excinfo is None else [item.ihook.pytest_runtest_makereport(item=item, call=call)]
+        setup_state = self._item.session._setupstate
+        report = self._report("teardown", lambda: setup_state.teardown_exact(nextitem))
+        return [report] if report.failed else []
+
+    def _report(self, when: Literal["call", "teardown"], act: Callable[[], None]) -> pytest.TestReport:
+        """What pytest reports of a piece of the test."""
+        call = pytest.CallInfo.from_call(act, when)
+        report: pytest.TestReport = self._item.ihook.pytest_runtest_makereport(item=self._item, call=call)
+        return report
 
     def _told(self, schedule: Schedule, when: str, group: str) -> list[pytest.TestReport]:
         """The reports of the failure, shrunk if that can be."""
         lines = [f"failed {when}, {schedule}"]
         shrunk = self._shrunk(schedule, group)
         if shrunk is not None:
-            lines.append(f"the shortest schedule that fails in this way, after {shrunk[1]} runs: {shrunk[0]}")
-        text = schedule.text() if shrunk is None else shrunk[0]
-        if shrunk is not None:
-            self._last = self._once(text)
-        lines += _moments(self._last.recorded)
-        missions = self._missions
-        if missions is not None:
-            lines.append(f"the same again: {missions.command(self._item, text)}")
+            schedule = Schedule.parse(shrunk.verdict.schedule)
+            lines.append(f"the shortest schedule that fails in this way, after {shrunk.probes} runs: {schedule}")
+            lines += ["", *self._timeline(schedule, shrunk.moves), ""]
+        if self._missions is not None:
+            lines.append(f"the same again: {self._missions.command(self._item, schedule.text())}")
         reports = list(self._last.reports)
         failed = next((each for each in reports if each.outcome != "passed"), reports[-1])
         failed.sections.append((f"{SECTION} explore", "\n".join(lines)))
         return reports
 
-    def _shrunk(self, schedule: Schedule, group: str) -> tuple[str, int] | None:
-        """The shortest schedule, and how many runs it took; None when there is none to look for."""
-        is_alone = len(self._last.recorded) == 1 and self._last.recorded[0].moments
+    def _shrunk(self, schedule: Schedule, group: str) -> Shrunk | None:
+        """The shortest schedule; None when there is none to look for."""
+        recorded = self._last.conditions.recorded
+        is_alone = len(recorded) == 1 and recorded[0].moments
         if not (self._exploration.shrink and is_alone) or self._item.config.getoption("usepdb"):
             return None
-        shrinker = Shrinker(cast(Any, self), schedule.text(), group, self._exploration.shrink)
-        found = shrinker.run()
-        return None if found is None else (found.verdict.schedule, found.probes)
+        return Shrinker(cast(Any, self), schedule.text(), group, self._exploration.shrink).run()
+
+    def _timeline(self, schedule: Schedule, moves: Sequence[Move]) -> list[str]:
+        """What happens under a schedule, a column for each task that matters; the test is run once more for it."""
+        tasks = tasks_of(moves)
+        look = TaskLook(self._last.conditions.plans[0].spec(), tasks)
+        policy = look.policy(schedule.policy() or Policy())
+        self._last = self._once(Conditions(schedule.text(), policy, (look,)))
+        return drawn(look.rows, tasks)
 
     # -- one run -------------------------------------------------------------------------------------------------------
 
@@ -141,41 +156,29 @@ class ExploredTest:
 
     def fly(self, schedule: Schedule, policy: Policy | None = None) -> tuple[Verdict, tuple[()]]:
         """As `cfepy.explore.trial.Trial.fly`: the verdict under a schedule, or a policy in its place."""
-        run = self._once(schedule.text(), policy)
-        failure = run.failure
-        deviations = tuple(sorted(run.recorded[0].deviations.items())) if run.recorded else ()
+        run = self._once(Conditions(schedule.text(), policy))
+        failure, recorded = run.failure, run.conditions.recorded
+        deviations = tuple(sorted(recorded[0].deviations.items())) if recorded else ()
         return Verdict(schedule.text(), () if failure is None else (failure,), deviations=deviations), ()
 
     @property
     def _missions(self) -> Missions | None:
         return cast("Missions | None", self._item.config.pluginmanager.get_plugin("cfepy-missions"))
 
-    def _once(self, schedule: str, policy: Policy | None = None) -> Run:
+    def _once(self, conditions: Conditions) -> Run:
         """The whole test, from its setup to its teardown; fixtures of a wider scope stay."""
         item = self._item
         item._report_sections.clear()  # of the run before
         del item.user_properties[self._properties :]
-        under_test = Conditions(schedule, policy)
-        item.config.stash[UNDER_TEST] = under_test
+        item.config.stash[UNDER_TEST] = conditions
         try:
             parent = cast("pytest.Item", item.parent)  # what is not the parent's is torn down
             reports = runtestprotocol(item, log=False, nextitem=parent)
         finally:
             del item.config.stash[UNDER_TEST]
-        return Run(tuple(reports), tuple(under_test.recorded))
+        return Run(tuple(reports), conditions)
 
 
-def _moments(recorded: Sequence[Recorded]) -> list[str]:
-    """What was not as fifo would have it, a line each."""
-    lines = []
-    for number, each in enumerate(recorded, 1):
-        which = f"mission {number}: " if len(recorded) > 1 else ""
-        for moment in each.moments[:MOST_MOMENTS]:
-            how = "could have gone on" if moment.preemption else "was first"
-            lines.append(
-                f"{which}at {seconds(moment.now)} s, decision {moment.decision}:"
-                f" {moment.instead_of} {how}, {moment.chosen} ran instead"
-            )
-        if len(each.moments) > MOST_MOMENTS:
-            lines.append(f"{which}... and {len(each.moments) - MOST_MOMENTS} more")
-    return lines
+def _complain() -> None:
+    text = "the test boots no mission under the schedules; it has to, or a function-scoped fixture of it"
+    raise UsageError(text, field="@explore")

@@ -120,6 +120,7 @@ class Flight(FlightRecord):
 
         Raises:
             UsageError: there is no such command or field.
+            CfeError: the bus refuses the packet, as when the length in its header is not its own.
             ExpectationError: nobody subscribes to a command that was given by name.
         """
         packet = command if isinstance(command, bytes | bytearray) else self._packet(command, values, fields)

@@ -63,8 +63,8 @@ class FlightRecord:
 
     @property
     def now(self) -> float:
-        """Virtual time in s since the boot."""
-        return self.mission.kernel.now / NS_PER_S
+        """Virtual time in s since the boot; when the results are there, that of the end without the nodes' shutdown."""
+        return self.mission.kernel.now / NS_PER_S if self._results is None else self._results.virtual_s
 
     @property
     def console(self) -> list[str]:
@@ -132,6 +132,14 @@ class FlightRecord:
         """A line for each application that has died of an exception."""
         return deaths(self.mission)
 
+    @property
+    def problems(self) -> list[str]:
+        """A line for all that is wrong until now: what a run's report tells, and tasks that wait for each other."""
+        if self._results is not None:
+            return self._results.problems
+        circles = [", ".join(map(str, circle)) for circle in self.mission.kernel.deadlocked()]
+        return [*Results.of(self.mission, mark(self.mission, 0), "").problems, *circles]
+
     def message_class(self, kind: str) -> Any:
         """The class of a ROS message type, such as "std_msgs/Float64", also of the mission's own packages.
 
@@ -167,9 +175,10 @@ class FlightRecord:
         return ExpectationError("\n".join([first, *self.state_lines(), f"the same again: {self.command()}"]))
 
     def state_lines(self) -> list[str]:
-        """The end of the console, as failures have it."""
+        """What is wrong, and the end of the console, as failures have it."""
         lines = [f"  {line}" for line in self.log.lines[-LAST_LINES:]]
-        return [f"console until {self.now:.3f}:", *lines]
+        problems = [f"problem: {each}" for each in self.problems]
+        return [*problems, f"console until {self.now:.3f}:", *lines]
 
     def command(self) -> str:
         """The command that does the same run again: `cfepy run`, or the test when it has had a hand in it."""

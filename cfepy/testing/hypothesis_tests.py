@@ -14,6 +14,8 @@ import pytest
 
 from cfepy.status import UsageError
 
+__tracebackhide__ = True  # pytest shows the line of the test
+
 _CODE = re.compile(r"@reproduce_failure\((['\"])(?P<version>[^'\"]+)\1, b(['\"])(?P<code>.*?)\3\)")
 
 

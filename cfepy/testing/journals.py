@@ -53,7 +53,9 @@ class Journal:
 
     def drop(self) -> None:
         """Nobody needs it."""
-        self.end()
+        if not self._ended:
+            self._ended = True
+            self.recorder.__exit__(None, None, None)
         self._path.unlink()
 
 
@@ -98,11 +100,11 @@ class Journals:
         self.kept = [each.keep(self._folder / f"{own}.cfepy") for each, own in zip(found, numbered, strict=True)]
         found.clear()
 
-    def drop(self) -> None:
-        """What is left is of missions that did well."""
-        for journal in self._open:
+    def drop(self, first: int = 0) -> None:
+        """What is left, from this number on, is of missions that did well."""
+        for journal in self._open[first:]:
             journal.drop()
-        self._open.clear()
+        del self._open[first:]
 
     def end_test(self) -> None:
         """The test is over."""

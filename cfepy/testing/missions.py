@@ -44,11 +44,15 @@ class Conditions:
     Attributes:
         schedule: of each, as `--cfepy-schedule` has it.
         policy: in place of the schedule's own; None for that.
+        attachments: what looks on at each.
+        plans: what was flown, a mission each.
         recorded: what the policies have decided, a mission each.
     """
 
     schedule: str
     policy: Policy | None = None
+    attachments: Sequence[Attachment] = ()
+    plans: list[RunPlan] = field(default_factory=list)
     recorded: list[Recorded] = field(default_factory=list)
 
 
@@ -68,6 +72,7 @@ class Missions:
         self._config = config
         self._current = current
         self._fixtures: list[pytest.FixtureRequest] = []  # that are being set up
+        self._fixed = 0  # how many of those flown fixtures have booted: the first ones
         folder = config.getoption("--cfepy-record")
         self._journals = None if folder is None else _journals(folder)
         self._examples = ExampleTests(config.getoption("--cfepy-example"), self._end_example)
@@ -113,11 +118,14 @@ class Missions:
         return self._fly(plan, fault_attachments(faults), attachments)
 
     def _fly(self, plan: RunPlan, faults: Sequence[Attachment], attachments: Sequence[Attachment]) -> Flight:
+        is_own = bool(attachments or faults)  # which the command line of a run cannot have
         policy: Policy | None = Schedule.parse(plan.schedule).policy()
         conditions = None if self._is_wide else self._conditions
         if conditions is not None:
             policy = Recorded(policy if conditions.policy is None else conditions.policy)
             conditions.recorded.append(policy)
+            conditions.plans.append(plan)
+            attachments = [*attachments, *conditions.attachments]
         journal = None if self._journals is None else self._journals.begin(plan, policy)
         flight = Flight(
             plan,
@@ -125,13 +133,14 @@ class Missions:
             attachments=[*attachments, *([] if journal is None else [journal.recorder]), *faults],
             again=None if self._item is None else self._again,
         )
-        flight.touched = bool(attachments or faults)
+        flight.touched = is_own or conditions is not None
         if journal is not None:
             journal.flight = flight
         if self._fixtures:
             self._fixtures[-1].addfinalizer(flight.close)
         if not self._is_wide:
             self.flown.append(flight)
+            self._fixed += bool(self._fixtures)
         return flight
 
     # -- where it is ---------------------------------------------------------------------------------------------------
@@ -236,7 +245,8 @@ class Missions:
         try:
             return (yield)
         finally:
-            self._end_all()
+            self._fixed = 0
+            self._end_from(0)
             if self._journals is not None:
                 self._journals.end_test()
 
@@ -245,7 +255,9 @@ class Missions:
         if not self.flown and not self._examples.concerns(item):
             return lines
         if not isinstance(error, ExpectationError):
-            lines += [line for flight in self.flown[-1:] for line in flight.state_lines()]
+            for number, flight in enumerate(self.flown, 1):
+                lines += [f"mission {number}, {flight.plan.words[0]}:"] if len(self.flown) > 1 else []
+                lines += flight.state_lines()
         if not isinstance(error, ExpectationError) or self._examples.concerns(item):
             example = self._examples.code_of(error)
             lines.append(f"the same again: {self.command(item, example=example)}")
@@ -255,14 +267,15 @@ class Missions:
         """An example of Hypothesis is over."""
         if failed and self._journals is not None:
             self._journals.set_aside()
-        self._end_all()
+        self._end_from(self._fixed)
 
-    def _end_all(self) -> None:
-        for flight in reversed(self.flown):
+    def _end_from(self, first: int) -> None:
+        """End the missions of the test, or those that its body has booted."""
+        for flight in reversed(self.flown[first:]):
             flight.close()
-        self.flown.clear()
+        del self.flown[first:]
         if self._journals is not None:
-            self._journals.drop()
+            self._journals.drop(first)
 
 
 def _journals(folder: str) -> Journals:

@@ -19,7 +19,8 @@ from cfepy.testing.table_types import table_type
 LONGEST_PAYLOAD = 64
 MOST_ROWS = 4  # that are not all zero; more would only make examples longer
 COMMAND_BIT = 0x1000
-LOWEST_MSG_ID = 1
+HAS_TIME_OR_CODE = 0x0800
+TELEMETRY_IDS, COMMAND_IDS = (0x0801, 0x0FFF), (0x1801, 0x1FFF)
 SIZE_BYTES = slice(4, 6)
 CODE_BYTE = 6
 UNKNOWN_CODE = 0x7F
@@ -83,8 +84,8 @@ def packets(
         name: a command or telemetry packet of the dictionary, such as "SAMPLE_APP_DISPLAY_PARAM", with valid fields;
             a declaration itself; a MsgId, with any payload; None for any MsgId.
         mission: whose dictionary it is; without one, that of the applications that cfepy brings along.
-        malformed: the packet has a mistake that its receiver has to find: too short, too long, a length in the header
-            that is not its own, a function code that nobody knows.
+        malformed: the packet has a mistake that its receiver has to find, since the bus takes it: it is too short or
+            too long for what it is, or has a function code that nobody knows.
         fields: strategies in place of those of single fields, by path.
 
     Raises:
@@ -98,8 +99,10 @@ def _packets(
     name: str | int | Command | Telemetry | None, mission: Mission, fields: Fields
 ) -> st.SearchStrategy[bytes]:
     if name is None:
-        return st.integers(LOWEST_MSG_ID, HIGHEST_VALID_MSG_ID).flatmap(_any_payload)
+        return (st.integers(*TELEMETRY_IDS) | st.integers(*COMMAND_IDS)).flatmap(_any_payload)
     if isinstance(name, int):
+        if not 0 < name <= HIGHEST_VALID_MSG_ID or not name & HAS_TIME_OR_CODE:
+            raise UsageError(f"0x{name:04X} is no MsgId of cFE's: these are 0x0801 to 0x0FFF and 0x1801 to 0x1FFF")
         return _any_payload(name)
     entry = name if isinstance(name, Command | Telemetry) else _entry(name, mission)
     values = fields_of(entry.payload, fields, entry.name)
@@ -137,7 +140,6 @@ def _with_mistake(packet: bytes) -> st.SearchStrategy[bytes]:
     mistakes = [
         st.integers(CMD_HEADER_SIZE - 1, len(packet) - 1).map(lambda size: _resized(packet[:size])),
         st.binary(min_size=1, max_size=LONGEST_PAYLOAD).map(lambda more: _resized(packet + more)),
-        st.integers(0, 0xFFFF).filter(lambda size: size != len(packet) - 7).map(lambda size: _sized(packet, size)),
     ]
     if packet[0] & COMMAND_BIT >> 8:
         mistakes.append(st.just(packet[:CODE_BYTE] + bytes([UNKNOWN_CODE]) + packet[CODE_BYTE + 1 :]))
@@ -146,11 +148,7 @@ def _with_mistake(packet: bytes) -> st.SearchStrategy[bytes]:
 
 def _resized(packet: bytes) -> bytes:
     """With the length in the header that its bytes have."""
-    return _sized(packet, len(packet) - 7)
-
-
-def _sized(packet: bytes, size: int) -> bytes:
-    return packet[: SIZE_BYTES.start] + size.to_bytes(2, "big") + packet[SIZE_BYTES.stop :]
+    return packet[: SIZE_BYTES.start] + (len(packet) - 7).to_bytes(2, "big") + packet[SIZE_BYTES.stop :]
 
 
 def tables(

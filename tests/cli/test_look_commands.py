@@ -46,13 +46,15 @@ def test_the_trace_is_filtered_by_time_task_and_topic(journal: Path, capsys: Cap
     assert {line.split()[1] for line in capsys.readouterr().out.splitlines()} == {"QUIET", "CFE_TIME"}
     assert main(["trace", str(journal), "--topic", "/nobody"]) == 0
     out, error = capsys.readouterr()
-    assert out == "" and "nothing of that kind happened" in error
+    assert out == ""
+    assert "nothing of that kind happened" in error
 
 
 def test_a_ros_topic_is_named(tmp_path: Path, capsys: Capture) -> None:
     assert main(["trace", busy_mission(tmp_path), "--for", "2", "--topic", "/ch*"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert len(lines) > 5 and all(" TALK send " in line and " /chat sequence " in line for line in lines)
+    assert len(lines) > 5
+    assert all(" TALK send " in line and " /chat sequence " in line for line in lines)
 
 
 def test_a_trace_for_perfetto(journal: Path, tmp_path: Path, capsys: Capture) -> None:
@@ -60,7 +62,8 @@ def test_a_trace_for_perfetto(journal: Path, tmp_path: Path, capsys: Capture) ->
     assert main(["trace", str(journal), "--perfetto", str(file)]) == 0
     assert "ui.perfetto.dev" in capsys.readouterr().out
     written = json.loads(file.read_text())
-    assert written["displayTimeUnit"] == "ns" and written["otherData"]["mission"] == "mission"
+    assert written["displayTimeUnit"] == "ns"
+    assert written["otherData"]["mission"] == "mission"
     assert {"B", "E", "X", "M", "i"} <= {event["ph"] for event in written["traceEvents"]}
 
 
@@ -134,4 +137,5 @@ def test_deadlines_that_are_missed_make_a_run_fail(make_mission: Write, tmp_path
     assert re.search(r"0x0890 +at_most_every +1 s +\d+ +\d+ +100 ms", out)
     assert "cfepy: 0x0890 missed its deadline at_most_every 1 s" in error
     (deadline,) = json.loads(numbers.read_text())["deadlines"]
-    assert deadline["owner"] == "0x0890" and deadline["overruns"] == deadline["checked"] > 5
+    assert deadline["owner"] == "0x0890"
+    assert deadline["overruns"] == deadline["checked"] > 5

@@ -221,6 +221,18 @@ def test_a_random_schedule_depends_on_the_seed_alone(make_mission: Write, capsys
     assert 1 < len(digests) <= 3
 
 
+@pytest.mark.parametrize("text", ["pct:1:3", "at:0=1,2=1", "random:4:any:hold=1ms:from=1ms"])
+def test_a_schedule_is_a_text(make_mission: Write, capsys: pytest.CaptureFixture[str], text: str) -> None:
+    folder = make_mission("Chatty", "Quiet")
+    digests = [digest(capsys, folder, "--schedule", text, "--tasks", tasks) for tasks in ("thread", "greenlet")]
+    assert digests[0] == digests[1]
+
+
+def test_a_text_that_is_no_schedule(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(make_mission("Chatty")), "--schedule", "randon:1"]) == 2
+    assert "--schedule: no schedule is called 'randon:1'; write fifo, random:SEED" in capsys.readouterr().err
+
+
 def on_terminal(*arguments: str) -> str:
     """What `cfepy` writes when its standard output is a terminal."""
     pty = pytest.importorskip("pty")

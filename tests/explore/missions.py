@@ -76,6 +76,35 @@ CHECK_THEN_ACT = """
 """
 
 
+LATE = """
+    def Listener(cfe):
+        cfe.evs.register()
+        pipe = cfe.sb.create_pipe(4, "LISTENER")
+        cfe.sb.subscribe(0x0890, pipe)
+        if cfe.sb.receive_buffer(pipe, 100) is None:
+            cfe.evs.send_err(1, "nothing came in %d ms" % 100)
+        while cfe.es.run_loop(1):
+            cfe.os.task_delay(1000)
+
+
+    def Talker(cfe):
+        cfe.sb.transmit_msg(cfe.msg.telemetry(0x0890, bytes(4)))
+        while cfe.es.run_loop(1):
+            cfe.os.task_delay(1000)
+"""
+"""Two applications; the listener may subscribe too late."""
+
+
+def write_late(folder: Path) -> Path:
+    """Write the mission of LATE."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "apps.py").write_text(textwrap.dedent(LATE).lstrip())
+    entries = ("Listener", "Talker")
+    lines = [f"CFE_APP, apps, {name}, {name.upper()}, 50, 8192, 0, 0;\n" for name in entries]
+    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    return folder
+
+
 def write(folder: Path, nodes: Mapping[str, str], yaml: str = "") -> Path:
     """Write a mission.
 

@@ -83,6 +83,7 @@ def test_nodes_of_a_package_run_elsewhere(
     plan = RunPlan(words, command, seconds=0.1)
     files = files_read(plan)
     assert str(package / "scripts/greeting.txt") in files
+    here = plan.fly().trace
     shipment = ship(plan, files)
     shutil.rmtree(package)
     inside = shipment.unpack(tmp_path / "elsewhere")
@@ -90,6 +91,7 @@ def test_nodes_of_a_package_run_elsewhere(
         monkeypatch.setenv(name, value)
     flown = shipment.plan_in(inside).fly()
     assert flown.mission.ros.ended["GREETER"].status == 0
+    assert flown.trace == here
 
 
 def test_a_verdict_names_files_as_they_are_here(mission: Path, tmp_path: Path) -> None:

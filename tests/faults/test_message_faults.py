@@ -19,7 +19,8 @@ def test_a_dropped_message_leaves_a_gap_in_the_sequence_counts(tmp_path: Path, n
     assert values(mission)[:4] == values(mission, "OTHER")[:4] == [0, 1, 3, 4]
     assert told(mission, "TAKER got") == ["TAKER got 4 after 2"]
     fault = row(mission, "drop-1")
-    assert fault["times"] == 1 and fault["never"] is None
+    assert fault["times"] == 1
+    assert fault["never"] is None
     assert fault["details"] == ["drops NUMBER_TLM #3 sent by SOURCE"]
     assert told(mission, "cfepy fault drop-1: drops NUMBER_TLM #3 sent by SOURCE")
 
@@ -76,7 +77,8 @@ def test_a_delay_may_have_a_range(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"delay": NUMBER, "by": [0.01, 0.05], "after": 1.2})
     texts = row(mission, "delay-1")["details"]
     delays = {float(text.split()[2]) for text in texts}
-    assert len(delays) > 5 and all(0.01 <= delay <= 0.05 for delay in delays)
+    assert len(delays) > 5
+    assert all(0.01 <= delay <= 0.05 for delay in delays)
     assert values(mission)[:5] == [0, 1, 2, 3, 4]
 
 
@@ -134,7 +136,7 @@ def test_a_field_is_set(tmp_path: Path) -> None:
 
 def test_a_field_that_is_not_there_is_told(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"corrupt": NUMBER, "number": 2, "fields": {"Valu": 1}})
-    why = "NUMBER_TLM has no field Valu that can be set"
+    why = "NUMBER_TLM has no field Valu that can be set so"
     assert told(mission, "cfepy fault") == [f"cfepy fault corrupt-1: did not happen: {why}"]
     assert row(mission, "corrupt-1")["never"] == why
     assert values(mission)[:3] == [0, 1, 2]
@@ -147,6 +149,12 @@ def test_faults_strike_one_after_the_other(tmp_path: Path) -> None:
         {"corrupt": NUMBER, "number": 2, "fields": {"Value": 99}},
     )
     assert values(mission)[:4] == [0, 99, 99, 2]
+
+
+def test_what_is_dropped_meets_no_other_fault(tmp_path: Path) -> None:
+    mission = fly(tmp_path, {"drop": NUMBER, "number": 2}, {"duplicate": NUMBER, "number": 2})
+    assert values(mission)[:3] == [0, 2, 3]
+    assert row(mission, "duplicate-1")["never"] == "drop-1 has dropped the message before"
 
 
 def test_windows_counts_and_instants(tmp_path: Path) -> None:

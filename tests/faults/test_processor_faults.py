@@ -6,9 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.console import Console
 from cfepy.es.records import STATE_NAMES
+from cfepy.faults import FaultInjector, FaultPlan
+from cfepy.mission import Mission
 from cfepy.osal.endpoints import Datagram, Place
+from cfepy.status import CfeError
 from tests.faults.worlds import fly, row, told, values
+from tests.mission.flights import write_mission
 
 NODE_STARTUP = "CFE_APP, clock.py, __main__, CLOCK, 100, 8192, 0x0, 0;\n!"
 CLOCK = """
@@ -25,10 +30,6 @@ CLOCK = """
         last, told = now, time.time()
 """
 STARTUP = "CFE_APP, worker, worker_main, WORKER, 50, 16384, 0x0, 0;\n!"
-
-
-def times(mission: object, app: str = "TAKER") -> list[int]:
-    return [int(line.split()[-1]) for line in told(mission, f"{app} takes ")]  # type: ignore[arg-type]
 
 
 # -- time --------------------------------------------------------------------------------------------------------------
@@ -48,7 +49,8 @@ def test_the_clock_of_cfe_jumps(tmp_path: Path, by: int) -> None:
 def test_ros_nodes_see_the_jump_and_go_on_at_their_rate(tmp_path: Path, by: int) -> None:
     mission = fly(tmp_path, {"jump_clock": by, "at": 1.95}, startup=NODE_STARTUP, clock=CLOCK, seconds=4)
     lines = [line for line in mission.console.lines if "jump of" in line]
-    assert lines[0].endswith(f"jump of {by:.1f} {by:.1f}") and len(lines) <= 2
+    assert lines[0].endswith(f"jump of {by:.1f} {by:.1f}")
+    assert len(lines) <= 2
 
 
 def test_only_one_of_the_clocks(tmp_path: Path) -> None:
@@ -67,10 +69,18 @@ def test_the_clock_drifts(tmp_path: Path) -> None:
     assert row(mission, "drift_clock-1")["times"] == 1
 
 
+def test_it_drifts_on_after_a_reset(tmp_path: Path) -> None:
+    reset = {"reset": "processor", "at": 2.5}
+    usual = fly(tmp_path, reset, seconds=6)
+    mission = fly(tmp_path, {"drift_clock": 1000, "after": 1, "until": 5.5}, reset, seconds=6)
+    assert mission.cfe.os.get_local_time() - usual.cfe.os.get_local_time() == 3 * 10_000  # at 3, 4 and 5 s
+
+
 def test_without_tones_the_clock_flies(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"lose_1hz": "tone", "after": 2, "until": 12}, seconds=15)
     events = [line for line in mission.console.lines if "FLYWHEEL" in line]
-    assert "Start FLYWHEEL" in events[-2] and "Stop FLYWHEEL" in events[-1]
+    assert "Start FLYWHEEL" in events[-2]
+    assert "Stop FLYWHEEL" in events[-1]
     assert row(mission, "lose_1hz-1")["times"] == 10
 
 
@@ -119,7 +129,8 @@ def test_a_table_image_changes_under_its_application(tmp_path: Path) -> None:
     fault = {"corrupt_table": "WORKER.Table", "at": 2, "bytes": {"7": 0xFF}}
     mission = fly(tmp_path, fault, startup=STARTUP, worker=TABLE)
     seen = told(mission, "WORKER sees")
-    assert seen[0].endswith("0001020304050607") and seen[-1].endswith("00010203040506ff")
+    assert seen[0].endswith("0001020304050607")
+    assert seen[-1].endswith("00010203040506ff")
 
 
 def test_a_file_is_damaged_before_it_is_loaded(tmp_path: Path) -> None:
@@ -149,9 +160,9 @@ def test_a_processor_reset_finds_the_cds_invalid(tmp_path: Path) -> None:
 def test_a_block_of_the_cds(tmp_path: Path) -> None:
     fault = {"corrupt_memory": "cds", "block": "WORKER.Block", "at": 2, "bits": 1}
     mission = fly(tmp_path, fault, startup=STARTUP, worker=TABLE)
-    block = mission.cfe.es.cds.named("WORKER.Block")
-    with pytest.raises(Exception, match="CRC"):
-        mission.cfe.es.cds.read(block.handle)
+    handle = mission.cfe.es.get_cds_block_id_by_name("WORKER.Block")
+    with pytest.raises(CfeError, match="CRC"):
+        mission.cfe.es.restore_from_cds(handle)
     nobody = fly(tmp_path, fault | {"block": "WORKER.Other"}, startup=STARTUP, worker=TABLE)
     assert "WORKER.Other" in row(nobody, "corrupt_memory-1")["never"]
 
@@ -195,16 +206,24 @@ def failures(folder: Path, *faults: dict[str, object]) -> list[str]:
 
 def test_the_nth_call_fails(tmp_path: Path) -> None:
     mine = {"app": "WORKER"}
-    assert failures(tmp_path, {"fail": "OS_QueuePut", "number": 3, **mine}) == ["os.queue_put(b'\\x02',): OS_QUEUE_FULL"]
+    assert failures(tmp_path, {"fail": "OS_QueuePut", "number": 3, **mine}) == [
+        "os.queue_put(b'\\x02',): OS_QUEUE_FULL"
+    ]
     assert failures(tmp_path, {"fail": "es.get_pool_buf", "number": 2, **mine}) == [
         "es.get_pool_buf(17,): CFE_ES_ERR_MEM_BLOCK_SIZE"
     ]
     assert failures(tmp_path, {"fail": "CFE_ES_GetPoolBuf", "number": 1, "status": "CFE_ES_BAD_ARGUMENT", **mine}) == [
         "es.get_pool_buf(16,): CFE_ES_BAD_ARGUMENT"
     ]
-    assert failures(tmp_path, {"fail": "OS_write", "number": 1, "object": "/ram/x"}) == ["os.write(b'\\x00',): OS_ERROR"]
-    assert failures(tmp_path, {"fail": "os.bin_sem_create", "object": "S1"}) == ["os.bin_sem_create(1,): OS_ERR_NO_FREE_IDS"]
-    assert failures(tmp_path, {"fail": "OS_MutSemCreate", "app": "WORKER", "number": 2})[0].endswith("OS_ERR_NO_FREE_IDS")
+    assert failures(tmp_path, {"fail": "OS_write", "number": 1, "object": "/ram/x"}) == [
+        "os.write(b'\\x00',): OS_ERROR"
+    ]
+    assert failures(tmp_path, {"fail": "os.bin_sem_create", "object": "S1"}) == [
+        "os.bin_sem_create(1,): OS_ERR_NO_FREE_IDS"
+    ]
+    assert failures(tmp_path, {"fail": "OS_MutSemCreate", "app": "WORKER", "number": 2})[0].endswith(
+        "OS_ERR_NO_FREE_IDS"
+    )
     assert failures(tmp_path, {"fail": "os.queue_put", "object": "OTHER_QUEUE"}) == []
     assert len(failures(tmp_path, {"fail": "os.queue_put", "object": "WORK_QUEUE"})) == 4
 
@@ -221,14 +240,7 @@ def test_every_processor_has_the_failing_call(tmp_path: Path) -> None:
 
 def datagrams(folder: Path, *faults: dict[str, object]) -> list[bytes]:
     """What a socket of an application gets of ten datagrams from outside."""
-    from cfepy.console import Console
-    from cfepy.faults import FaultInjector, FaultPlan
-    from cfepy.mission import Mission
-    from tests.mission.flights import write_mission
-
     worker = """
-        from cfepy.osal import SockAddr
-
         def worker_main(cfe):
             socket = cfe.os.socket_open(1, 1)
             address = cfe.os.socket_addr_init(1)
@@ -240,7 +252,7 @@ def datagrams(folder: Path, *faults: dict[str, object]) -> list[bytes]:
                     cfe.os.printf(f"WORKER gets {found[0].hex()}")
     """
     injector = FaultInjector(FaultPlan.from_dict({"faults": list(faults)}))
-    path = write_mission(folder, STARTUP, worker=worker.replace("        from cfepy.osal import SockAddr\n\n", ""))
+    path = write_mission(folder, STARTUP, worker=worker)
     with Mission(path, console=Console(quiet=True), attachments=[injector]) as mission:
         mission.run(1)
         for number in range(5):

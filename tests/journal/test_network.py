@@ -16,7 +16,7 @@ from cfepy.console import Console
 from cfepy.io.host_network import TCP, HostNetwork
 from cfepy.journal import JournalRecorder, read_journal, replay
 from cfepy.mission import Mission, outside
-from cfepy.mission.course import INTERRUPTED, Course
+from cfepy.mission.course import BROKEN_OFF, INTERRUPTED, Course
 from cfepy.mission.results import Results
 from cfepy.rtos.realtime import Pacer
 from cfepy.rtos.schedule import Schedule
@@ -197,3 +197,22 @@ def answer(run: Session, server: socket.socket) -> None:
     run.run_while(missing)
     found[0].sendall(b"nobody")
     found[0].close()
+
+
+def test_a_run_that_was_broken_off_is_replayed_up_to_there(tmp_path: Path) -> None:
+    (tmp_path / "startup.scr").write_text("CFE_APP, spin, __main__, SPIN, 100, 16384, 0, 0;!")
+    (tmp_path / "spin.py").write_text("import time\ntime.sleep(2)\n")
+    path = tmp_path.with_suffix(".cfepy")
+    plan = plan_for(str(tmp_path), 3)
+    with JournalRecorder(path, plan) as recorder:
+        mission = Mission(plan.spec(), console=Console(quiet=True), attachments=[recorder])
+        with mission:
+            course = Course(mission, 3)
+            mission.run_until(1_400_000_000)
+            course.end()
+            digest = mission.finish()
+        recorder.end(Results.of(mission, course.at, digest), None, BROKEN_OFF)
+    again = replay(read_journal(path))
+    assert again.verdict.same
+    assert not again.verdict.whole
+    assert again.flown.results.virtual_s == pytest.approx(1.4)

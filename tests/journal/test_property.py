@@ -22,10 +22,10 @@ schedules = st.one_of(
 )
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     mission=st.sampled_from(["lab", "capture", *SMALL]),
-    seconds=st.floats(0.05, 1.6),
+    seconds=st.floats(0.05, 1.0),
     seed=st.integers(0, 1000),
     board=st.sampled_from(["linux", "workstation", "rx64m"]),
     schedule=schedules,

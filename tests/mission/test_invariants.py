@@ -114,7 +114,8 @@ def test_an_answer_has_to_come_in_time(folder: Path) -> None:
     found = held(folder, text)
     assert (found["answered"].judged, found["answered"].violated) == (5, 1)
     assert first(found["answered"]) == "no answer within 0.15 s (msg.data == -cause.data) to /count"
-    assert found["answered"].first is not None and found["answered"].first.detail == "/count: data: 3"
+    assert found["answered"].first is not None
+    assert found["answered"].first.detail == "/count: data: 3"
 
 
 def test_what_still_has_time_at_the_end_is_not_judged(folder: Path) -> None:
@@ -134,24 +135,23 @@ def test_a_function_that_fails_is_told_once_and_asked_no_more(folder: Path) -> N
     )
     assert found["bad"].violated == 1
     assert first(found["bad"]).startswith("could not be judged: AttributeError")
-    assert found["good"].violated == 0 and found["good"].judged > 5
+    assert found["good"].violated == 0
+    assert found["good"].judged > 5
 
 
-def test_an_expression_that_fails_says_what_there_is(folder: Path) -> None:
+def test_an_expression_that_fails_says_why(folder: Path) -> None:
     found = held(folder, 'typo: {topic: /count, holds: "msg.daat > 0"}')
-    assert first(
-        found["typo"]
-    ) == "could not be judged: AttributeError: 'std_msgs/Int32' object has no attribute 'daat'" or (
-        "daat" in first(found["typo"])
-    )
+    assert first(found["typo"]).startswith("could not be judged: AttributeError")
+    assert "daat" in first(found["typo"])
 
 
 def test_packets_are_named_as_in_the_dictionary(folder: Path) -> None:
-    text = 'alive: {packet: CFE_ES_HK_TLM, holds: "msg.Payload.CommandCounter == 0"}'
-    with pytest.raises(UsageError, match="no telemetry packet is called CFE_ES_HK_TLM"):
+    text = 'alive: {packet: CFE_ES_HK_TML, holds: "msg.CommandCounter == 0"}'
+    with pytest.raises(UsageError, match="no telemetry packet is called CFE_ES_HK_TML; is CFE_ES_HK_TLM"):
         held(folder, text)
     found = held(folder, 'events: {packet: CFE_EVS_LONG_EVENT_MSG, holds: "msg.PacketID.EventType < 3"}')
-    assert found["events"].judged > 5 and found["events"].violated == 0
+    assert found["events"].judged > 5
+    assert found["events"].violated == 0
 
 
 def test_the_run_is_that_without_invariants_as_long_as_they_hold(folder: Path) -> None:
@@ -209,7 +209,7 @@ def test_a_processor_reset_begins_anew(tmp_path: Path) -> None:
 
             def __call__(self, message):
                 self.seen += 1
-                return self.seen < 4
+                return self.seen < 4 and message.msg.data == bytes([self.seen - 1])
     """)
     )
     (tmp_path / "startup.scr").write_text("CFE_APP, apps, Resets, RESETS, 50, 8192, 0, 0;\n!\n")

@@ -7,6 +7,7 @@ the median is larger than what each trial has tried.
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -19,9 +20,18 @@ from cfepy.rtos.schedule import Schedule
 TRIALS = 25
 LONGEST = 2000  # schedules of one trial
 MOST = 3000  # schedules of all trials together
+COLLECT_EVERY = 4  # schedules of a trial
 
-POLICIES = ("random", "pct 1", "pct 2", "pct 3", "dfs 2", "all")
-"""A policy of `cfepy explore --policy`, with its depth where it has one."""
+POLICIES = {
+    "random": ("random", None, 0),
+    "hold": ("random", None, 1_000_000),
+    "pct 1": ("pct", 1, 0),
+    "pct 2": ("pct", 2, 0),
+    "pct 3": ("pct", 3, 0),
+    "dfs 2": ("dfs", 2, 0),
+    "all": ("all", None, 0),
+}
+"""What `cfepy explore` is given for them: `--policy`, `--depth`, and `--hold` in ns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,19 +43,30 @@ class Median:
         found: whether it is the median.
         trials: how many there were; a systematic search has no seeds, so one is all.
         schedule: the first one that found the bug, as deviations from fifo; empty when none did.
+        exhausted: there are no more schedules for this policy.
     """
 
     schedules: int
     found: bool
     trials: int
     schedule: str = ""
+    exhausted: bool = False
 
     def __str__(self) -> str:
         return str(self.schedules) if self.found else f"> {self.schedules}"
 
+    def could_go_on(self, most: int) -> bool:
+        """Whether it is worth measuring again with so many schedules."""
+        return not (self.found or self.exhausted) and self.schedules < longest(most, self.trials)
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data."""
         return asdict(self)
+
+
+def longest(most: int, trials: int) -> int:
+    """Schedules of each trial, if there may be so many of all."""
+    return min(LONGEST, most // trials)
 
 
 class Hunt:
@@ -56,36 +77,39 @@ class Hunt:
         self._search = search
         self._count = 0
         self.over = False
+        self.exhausted = False
 
     def step(self) -> Verdict | None:
         """Fly one more schedule; its verdict, or None when there are no more."""
         schedule = self._search.next()
         if schedule is None:
+            self.exhausted = True
             return None
         verdict = self._trial.run(schedule)
         assert not verdict.trouble, verdict.trouble
         self._search.tell(self._count, verdict)
         self._count += 1
+        if self._count % COLLECT_EVERY == 0:
+            gc.collect()  # missions leave circles behind
         self.over = verdict.failed
         return verdict
 
 
-def search_for(trial: Trial, policy: str, first_seed: int) -> SeededSearch | SystematicSearch:
-    """The search of `cfepy explore` by a policy.
+def hunts(trial: Trial, policy: str, count: int) -> list[Hunt]:
+    """Trials of a policy whose seeds have nothing in common.
 
     Args:
-        trial: how many decisions its runs have is found by flying one.
+        trial: of the bug's mission.
         policy: one of POLICIES.
-        first_seed: of the first schedule.
+        count: how many.
     """
-    name, _, depth = policy.partition(" ")
-    steps = trial.run("at:").decisions
-    return make_search(name, int(depth) if depth else None, steps, Schedule(), first_seed)
-
-
-def hunts(trial: Trial, policy: str, count: int) -> list[Hunt]:
-    """Trials of a policy whose seeds have nothing in common."""
-    return [Hunt(trial, search_for(trial, policy, number * LONGEST)) for number in range(count)]
+    name, depth, hold_ns = POLICIES[policy]
+    options = Schedule("at", hold_ns=hold_ns)
+    steps = trial.run(options).decisions
+    return [
+        Hunt(trial, make_search(name, depth, steps, options, first_seed))
+        for first_seed in range(0, count * LONGEST, LONGEST)
+    ]
 
 
 def median(trial: Trial, policy: str, trials: int = TRIALS, most: int = MOST) -> Median:
@@ -98,15 +122,23 @@ def median(trial: Trial, policy: str, trials: int = TRIALS, most: int = MOST) ->
         most: schedules of all trials together, from which on it is given up.
     """
     count = 1 if policy.startswith("dfs") else trials
-    longest = min(LONGEST, most // count)
     running = hunts(trial, policy, count)
     first = ""
-    for schedules in range(1, longest + 1):
+    schedules = 0
+    while schedules < longest(most, count):
         for verdict in _round(running):
-            first = first or Schedule("at", deviations=verdict.deviations).text()
+            first = first or as_deviations(verdict)
+        if any(hunt.exhausted for hunt in running):
+            return Median(schedules, False, count, first, exhausted=True)
+        schedules += 1
         if sum(hunt.over for hunt in running) > count // 2:
             return Median(schedules, True, count, first)
-    return Median(longest, False, count, first)
+    return Median(schedules, False, count, first)
+
+
+def as_deviations(verdict: Verdict) -> str:
+    """A schedule that gives the same run by what it does otherwise than fifo."""
+    return Schedule.parse(verdict.schedule).at(dict(verdict.deviations)).text()
 
 
 def _round(running: list[Hunt]) -> Iterator[Verdict]:

@@ -21,7 +21,15 @@ PAGE = Path(__file__).parents[2] / "docs" / "planted_bugs.md"
 SHRUNK = "shrunk"
 DEFAULT = "all"
 
-HEADINGS = {"random": "random", "pct 1": "PCT 1", "pct 2": "PCT 2", "pct 3": "PCT 3", "dfs 2": "DFS", "all": "default"}
+HEADINGS = {
+    "random": "random",
+    "pct 1": "PCT 1",
+    "pct 2": "PCT 2",
+    "pct 3": "PCT 3",
+    "hold": "hold",
+    "dfs 2": "DFS",
+    "all": "default",
+}
 
 Measured = dict[str, dict[str, dict[str, Any]]]
 """By bug and by policy, or SHRUNK, what `Median` and `Shrunk` are made of."""
@@ -53,36 +61,45 @@ def measure(names: list[str], jobs: int, most: int) -> None:
         most: schedules for one cell of the table.
     """
     measured = load()
-    cells = list(_missing(measured, names))
     with multiprocessing.get_context("spawn").Pool(jobs) as pool:
-        for name, column, found in pool.imap_unordered(_cell, [(*cell, most) for cell in cells]):
-            measured.setdefault(name, {})[column] = found
-            save(measured)
-            print(f"{name}: {column}: {_text(column, found)}", flush=True)
-    for name in sorted({name for name, _ in _missing_shrinks(measured, names)}):
-        measured[name][SHRUNK] = shrunk(by_name(name), first_schedule(measured, name)).to_dict()
-        save(measured)
-        print(f"{name}: {_text(SHRUNK, measured[name][SHRUNK])}", flush=True)
+        _keep(measured, pool.imap_unordered(_cell, [(*cell, most) for cell in _missing(measured, names, most)]))
+        _keep(measured, pool.imap_unordered(_shrink, list(_missing_shrinks(measured, names))))
     if complete(measured):
         PAGE.write_text(page(measured))
 
 
-def _missing(measured: Measured, names: list[str]) -> Iterator[tuple[str, str]]:
+def _keep(measured: Measured, cells: Iterator[tuple[str, str, dict[str, Any]]]) -> None:
+    """Take cells as they come."""
+    for name, column, found in cells:
+        measured.setdefault(name, {})[column] = found
+        save(measured)
+        print(f"{name}: {column}: {_text(column, found)}", flush=True)
+
+
+def _missing(measured: Measured, names: list[str], most: int) -> Iterator[tuple[str, str]]:
+    """Cells without a number, or with one that was given up where more schedules are allowed now."""
     for policy in sorted(POLICIES, key=lambda policy: policy != DEFAULT):
         for bug in BUGS:
-            if (not names or bug.name in names) and policy not in measured.get(bug.name, {}):
+            found = measured.get(bug.name, {}).get(policy)
+            if (not names or bug.name in names) and (found is None or Median(**found).could_go_on(most)):
                 yield bug.name, policy
 
 
 def _missing_shrinks(measured: Measured, names: list[str]) -> Iterator[tuple[str, str]]:
+    """Bugs whose schedules are to be shrunk, each with one under which it shows."""
     for name, columns in measured.items():
         if (not names or name in names) and SHRUNK not in columns and first_schedule(measured, name):
-            yield name, SHRUNK
+            yield name, first_schedule(measured, name)
 
 
 def _cell(job: tuple[str, str, int]) -> tuple[str, str, dict[str, Any]]:
     name, policy, most = job
     return name, policy, median(reference_trial(by_name(name).folder), policy, most=most).to_dict()
+
+
+def _shrink(job: tuple[str, str]) -> tuple[str, str, dict[str, Any]]:
+    name, schedule = job
+    return name, SHRUNK, shrunk(by_name(name), schedule).to_dict()
 
 
 def _text(column: str, found: dict[str, Any]) -> str:
@@ -109,8 +126,7 @@ def best(measured: Measured, name: str) -> tuple[str, Median]:
 
 def first_schedule(measured: Measured, name: str) -> str:
     """A schedule under which the bug shows, from the policy that finds it first."""
-    _, found = best(measured, name)
-    return found.schedule
+    return best(measured, name)[1].schedule
 
 
 def median_of_default(measured: Measured) -> float:
@@ -121,7 +137,7 @@ def median_of_default(measured: Measured) -> float:
 
 def page(measured: Measured) -> str:
     """The page of documentation."""
-    heads = ["bug", "in", "shows as", *HEADINGS.values(), "preemptions"]
+    heads = ["bug", "in", "shows as", *(HEADINGS.get(each, each) for each in POLICIES), "preemptions"]
     lines = ["|".join(["", *heads, ""]), "|".join(["", *["---"] * len(heads), ""])]
     lines += [_row(measured, bug) for bug in BUGS]
     return _INTRODUCTION.format(
@@ -158,8 +174,9 @@ The numbers are schedules until the bug shows: the median of {trials} trials wit
 more than half of the trials had found nothing after N schedules each, when the time for that cell was up (no trial is
 longer than {longest}). PCT and DFS
 stand with the depth they look for; DFS tries one and two preemptions systematically and has no seeds, so there is one
-trial. "default" is `cfepy explore` without `--policy`: random and PCT of the depths 1 to 3 take turns. Over all bugs
-its median is {median} schedules. The best of each row is bold.
+trial. "hold" is random with tasks that are held up until the next timer, if that is due within 1 ms. "default" is
+`cfepy explore` without `--policy`: random, hold and PCT of the depths 1 to 3 take turns. Over all bugs its median is
+{median} schedules. The best of each row is bold.
 
 "preemptions" is what shrinking leaves: how often a task that could have gone on loses the processor, and behind the
 plus sign how often another than the first of the waiting tasks goes on.

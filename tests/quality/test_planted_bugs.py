@@ -9,7 +9,7 @@ import pytest
 from cfepy.explore.trial import Trial
 from cfepy.explore.verdict import Verdict
 from tests.quality.bugs import BUGS, MISSIONS, Bug, by_name, reference_trial
-from tests.quality.measure import LONGEST, Hunt, hunts
+from tests.quality.measure import LONGEST, Hunt, as_deviations, hunts
 from tests.quality.report import best, load
 from tests.quality.shrinking import shrunk
 
@@ -49,9 +49,9 @@ def test_first_come_first_served_shows_nothing(bug: Bug) -> None:
 def test_the_best_policy_finds_it_and_the_schedule_shows_it_again_on_threads(bug: Bug) -> None:
     verdict = found_by(bug, best(load(), bug.name)[0])
     assert verdict.failures[0].kind in bug.kinds
-    deviations = ",".join(f"{decision}={choice}" for decision, choice in verdict.deviations)
+    schedule = as_deviations(verdict)
     for tasks in ("greenlet", "thread"):
-        again = reference_trial(bug.folder, tasks).run(f"at:{deviations}")
+        again = reference_trial(bug.folder, tasks).run(schedule)
         assert again.failures == verdict.failures
         assert again.trace == verdict.trace
 
@@ -70,7 +70,7 @@ def test_mended_it_does_not_fail(bug: Bug, tmp_path: Path) -> None:
 @EACH
 @pytest.mark.parametrize("policy", ["all", "dfs 2"])
 def test_mended_it_never_fails(bug: Bug, policy: str, tmp_path: Path) -> None:
-    never_fails(reference_trial(bug.write_fixed(tmp_path)), policy, 200)
+    never_fails(reference_trial(bug.write_fixed(tmp_path)), policy, 30)
 
 
 def shrinks(bug: Bug) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import statistics
 
 from tests.quality.bugs import BUGS, CFE
-from tests.quality.measure import LONGEST, POLICIES, TRIALS
+from tests.quality.measure import LONGEST, TRIALS
 from tests.quality.report import PAGE, SHRUNK, best, complete, load, medians, page
 from tests.quality.shrinking import Shrunk
 
@@ -40,4 +40,3 @@ def test_the_bugs_are_of_all_kinds() -> None:
     assert len(BUGS) >= 25
     assert worlds.count(CFE) >= 5
     assert len({kind for bug in BUGS for kind in bug.kinds}) >= 6
-    assert len(POLICIES) == 6

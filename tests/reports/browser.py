@@ -10,6 +10,7 @@ import fcntl
 import itertools
 import json
 import os
+import select
 import shutil
 import subprocess
 from pathlib import Path
@@ -29,7 +30,7 @@ FLAGS = (
     "--remote-debugging-pipe",
     "--hide-scrollbars",
 )
-PATIENCE_S = 20  # for its end
+PATIENCE_S = 60  # for an answer, and for its end
 FIRST_FREE = 10  # descriptors below are for the browser's end of the pipes, which must be 3 and 4
 
 
@@ -110,6 +111,7 @@ class Browser:
 
     def _next(self) -> dict[str, Any]:
         while b"\0" not in self._rest:
+            assert select.select([self._in], [], [], PATIENCE_S)[0], "the browser does not answer"
             more = os.read(self._in, 1 << 20)
             assert more, "the browser has ended"
             self._rest += more

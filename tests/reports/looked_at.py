@@ -1,4 +1,4 @@
-"""A small mission with much to see: latencies, overruns, a full pipe, events, and a node that prints what it should not."""
+"""A small mission with much to see: latencies, overruns, a full pipe, events, a node that prints a script."""
 
 from __future__ import annotations
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from pathlib import Path
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from cfepy.reports import bins
 from cfepy.reports.bins import Bins, Histogram
+from cfepy.reports.collector import MOST_OF_A_KIND, Collector
 from cfepy.reports.text_marks import mark_of
+from tests.mission.flights import write_mission
+from tests.reports import looked_at
 from tests.reports.conftest import Shown
 
 TIMES = st.lists(st.integers(0, 10**12), min_size=1, max_size=200)
@@ -60,7 +66,8 @@ def test_percentiles_are_nearly_those_of_the_sorted_times(times: list[int], shar
     exact = sorted(times)[rank - 1]
     (percentile,) = found.percentiles([share])
     assert exact * (1 - 1 / 64) <= percentile <= exact
-    assert found.most_ns == max(times) and found.count == len(times)
+    assert found.most_ns == max(times)
+    assert found.count == len(times)
     assert sum(found.octaves().values()) == len(times)
 
 
@@ -111,6 +118,27 @@ def test_events_and_console_are_all_there(shown: Shown) -> None:
 def test_overruns_are_marks(shown: Shown) -> None:
     missed = [mark for mark in shown.collector.marks if mark.kind == "deadline"]
     assert len(missed) == sum(each.overruns for each in shown.flown.results.deadlines)
+
+
+def test_many_marks_of_a_kind_leave_room_for_others(tmp_path: Path) -> None:
+    """Thousands of overruns, and then a reset."""
+    app = """\
+    def WORKER_AppMain(cfe):
+        cfe.es.wait_for_startup_sync(1000)
+        for _ in range(MOST):
+            cfe.os.task_delay(1)
+        if cfe.es.get_reset_type()[0] == 2:
+            cfe.es.reset_cfe(1)
+        while cfe.es.run_loop():
+            cfe.os.task_delay(100)
+    """.replace("MOST", str(2 * MOST_OF_A_KIND))
+    yaml = "deadlines: {apps: {WORKER: {period: 1 s, jitter: 1 ms}}}\n"
+    startup = "CFE_APP, /cf/worker.so, WORKER_AppMain, WORKER, 50, 8192, 0x0, 0;\n"
+    collector = Collector()
+    looked_at.fly(write_mission(tmp_path, startup, worker=app, mission_yaml=yaml), collector)
+    assert collector.mark_counts["deadline"] > 2 * MOST_OF_A_KIND
+    kinds = Counter(mark.kind for mark in collector.marks)
+    assert kinds == {"deadline": MOST_OF_A_KIND, "reset": 1}
 
 
 @pytest.mark.parametrize(

@@ -72,15 +72,32 @@ def test_a_script_and_its_numbers_are_on_it(tmp_path: Path) -> None:
     assert flown.outcome is not None
     found = Reader(page_of(flown, collector, About("", "fifo", mission))).numbers
     wanted = dict(numbers_in({"script": flown.outcome.to_dict()}))
-    assert wanted and wanted.items() <= found.items()
+    assert wanted
+    assert wanted.items() <= found.items()
+
+
+def test_faults_and_invariants_are_on_it(tmp_path: Path) -> None:
+    more = "invariants: {never hello: {topic: /chat, holds: msg.data != 'hello'}}\n"
+    mission = looked_at.busy_mission(tmp_path, looked_at.DEADLINES + more)
+    plan = tmp_path / "faults.yaml"
+    plan.write_text("faults:\n  - {drop: /chat, number: 3}\n  - {drop: /nobody}\n")
+    collector = Collector()
+    flown = looked_at.fly(mission, collector, faults=str(plan))
+    page = page_of(flown, collector, About("", "fifo", mission))
+    assert Reader(page).numbers == dict(numbers_in(flown.results.to_dict()))
+    assert 'data-path="faults.0.at_s.0"' in page
+    assert 'data-path="invariants.0.violated"' in page
+    assert {"fault", "invariant", "deadline"} <= {mark.kind for mark in collector.marks}
 
 
 def test_it_is_well_formed_and_has_one_script_and_no_handlers(shown: Shown) -> None:
     reader = Reader(shown.page)
-    assert reader.open == [] and reader.handlers == []
+    assert reader.open == []
+    assert reader.handlers == []
     assert reader.tags.count("script") == 3  # two of them are JSON
     assert "img" not in reader.tags
-    assert reader.tags.count("h1") == 1 and reader.tags.count("caption") == reader.tags.count("table") > 5
+    assert reader.tags.count("h1") == 1
+    assert reader.tags.count("caption") == reader.tags.count("table") > 5
 
 
 def test_nothing_on_it_leads_elsewhere(shown: Shown) -> None:
@@ -104,13 +121,15 @@ def test_what_somebody_calls_things_is_text(tmp_path: Path) -> None:
     page = page_of(flown, collector, About(looked_at.NASTY, looked_at.NASTY, looked_at.NASTY, (looked_at.NASTY,)))
     reader = Reader(page)
     assert looked_at.NASTY not in page
-    assert reader.open == [] and "img" not in reader.tags
+    assert reader.open == []
+    assert "img" not in reader.tags
 
 
 @given(st.text())
 def test_any_text_stays_text(text: str) -> None:
     for form in (escaped(text), json_text({"text": text})):
-        assert "<" not in form and ">" not in form
+        assert "<" not in form
+        assert ">" not in form
         assert not re.search(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]", form)
     assert json.loads(json_text({"text": text})) == {"text": text}
 
@@ -127,7 +146,8 @@ def test_it_says_what_it_is_about(shown: Shown) -> None:
     ["Timeline", "Deadlines", "Messages", "Latency", "Dropped messages", "Applications", "Pipes", "Board budget"],
 )
 def test_its_parts_can_be_found(shown: Shown, title: str) -> None:
-    assert f">{title}</h2>" in shown.page and f">{title}</a>" in shown.page
+    assert f">{title}</h2>" in shown.page
+    assert f">{title}</a>" in shown.page
 
 
 def test_the_same_run_gives_the_same_page(shown: Shown) -> None:

@@ -8,6 +8,9 @@ from collections import Counter, defaultdict
 from pathlib import Path
 from typing import Any
 
+import pytest
+
+from cfepy.reports.collector import Collector
 from cfepy.reports.perfetto import STEP_NS, PerfettoTrace
 from tests.mission.flights import write_mission
 from tests.reports import looked_at
@@ -31,6 +34,16 @@ def names(events: list[Event], what: str) -> dict[tuple[int, int], str]:
 def test_looking_on_changes_nothing(shown: Shown) -> None:
     assert shown.flown.trace == looked_at.fly(shown.mission).trace
     assert looked_at.perfetto(shown.mission)[0].trace == shown.flown.trace
+
+
+@pytest.mark.parametrize("schedule", ["random:3", "pct:5:3", "random:1:any"])
+def test_nor_does_it_under_other_schedules(shown: Shown, schedule: str) -> None:
+    file = io.StringIO()
+    plain = looked_at.fly(shown.mission, seconds=1.5, schedule=schedule)
+    seen = looked_at.fly(shown.mission, PerfettoTrace(file), Collector(), seconds=1.5, schedule=schedule)
+    assert plain.trace == seen.trace
+    for events in tracks(json.loads(file.getvalue())["traceEvents"], "BE").values():
+        assert [event["ph"] for event in events] == ["B", "E"] * (len(events) // 2)
 
 
 def test_both_task_contexts_give_the_same_file(shown: Shown) -> None:
@@ -75,7 +88,9 @@ def test_every_arrow_has_two_ends_on_messages(shown: Shown) -> None:
         end = ends[number]
         sent = slices[start["pid"], start["tid"], start["ts"]]
         received = slices[end["pid"], end["tid"], end["ts"]]
-        assert end["bp"] == "e" and start["cat"] == end["cat"] and start["name"] == end["name"]
+        assert end["bp"] == "e"
+        assert start["cat"] == end["cat"]
+        assert start["name"] == end["name"]
         assert sent["name"].replace("send", "receive") == received["name"]
         assert sent["args"]["sequence"] == received["args"]["sequence"]
         assert sent["args"]["virtual_ns"] <= received["args"]["virtual_ns"]
@@ -91,7 +106,8 @@ def test_tracks_are_named_after_applications_and_tasks(shown: Shown) -> None:
     threads = names(shown.events, "thread_name")
     assert {"mission", "SLOW", "FLOOD", "TALK", "HEAR", "CFE_ES"} <= set(processes.values())
     for pid, tid in tracks(shown.events, "BEXi"):
-        assert pid in processes and (pid, tid) in threads
+        assert pid in processes
+        assert (pid, tid) in threads
     of_slow = [name for (pid, _), name in threads.items() if processes[pid] == "SLOW"]
     assert of_slow == ["SLOW"]
 
@@ -132,7 +148,8 @@ def test_markers_of_the_performance_log_are_paired(shown: Shown) -> None:
         if event["ph"] in "be":
             depth[event["pid"], event["id"]] += 1 if event["ph"] == "b" else -1
             assert depth[event["pid"], event["id"]] in (0, 1)
-    assert depth and not any(depth.values())
+    assert depth
+    assert not any(depth.values())
 
 
 def test_a_reset_is_seen_and_the_run_goes_on(tmp_path: Path) -> None:
@@ -149,7 +166,8 @@ def test_a_reset_is_seen_and_the_run_goes_on(tmp_path: Path) -> None:
     flown, events = looked_at.perfetto(mission)
     assert len(flown.results.resets) == 1
     (reset,) = [event for event in events if event.get("cat") == "resets"]
-    assert reset["s"] == "g" and reset["args"]["virtual_ns"] == round(flown.results.resets[0].at_s * 1e9)
+    assert reset["s"] == "g"
+    assert reset["args"]["virtual_ns"] == round(flown.results.resets[0].at_s * 1e9)
     pids = {pid for (pid, _), name in names(events, "process_name").items() if name == "AGAIN"}
     assert len(pids) == 1
     for slices in tracks(events, "BE").values():

@@ -167,8 +167,17 @@ def test_a_search_may_be_given_results_in_any_order() -> None:
     assert search.exhausted
 
 
-@pytest.mark.parametrize("text", ["fifo", "random:3", "pct:3:1", "pct:4:3", "random:3:any", "at:5=1:hold=100us"])
-def test_a_task_that_polls_lets_the_one_it_polls_for_run(text: str, context: str) -> None:
+POLLED = [
+    "fifo",
+    "random:3",
+    "at:5=1:hold=100us",
+    *(f"pct:{seed}:2:20{each}" for seed in range(5) for each in ("", ":any")),
+]
+
+
+@pytest.mark.parametrize("text", POLLED)
+@pytest.mark.parametrize("setter", [80, 100])
+def test_a_task_that_polls_lets_the_one_it_polls_for_run(text: str, setter: int, context: str) -> None:
     def poll(kernel: Kernel) -> Callable[[], object]:
         box: list[int] = []
 
@@ -178,7 +187,7 @@ def test_a_task_that_polls_lets_the_one_it_polls_for_run(text: str, context: str
 
         for _ in range(3):
             kernel.spawn("poller", poller)
-        kernel.spawn("setter", lambda: box.append(kernel.now))
+        kernel.spawn("setter", lambda: box.append(kernel.now), setter)
         return lambda: box and not kernel.tasks
 
     assert fly(poll, Schedule.parse(text), context)[0] is True

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.journal import read_journal, replay
 from cfepy.status import UsageError
 from cfepy.testing import explore
 from tests.testing.conftest import Suite, given_verbatim, told_command
@@ -20,31 +21,43 @@ def test_total(mission):
 """
 
 
-def test_a_race_is_found_and_shrunk(suite: Suite) -> None:
-    result = suite(RACE.format(policy="random", shrink=100))
+@pytest.mark.parametrize("tasks", [pytest.param("thread", marks=pytest.mark.slow), "greenlet"])
+def test_a_race_is_found_and_shrunk_and_found_again(suite: Suite, missions: Path, tasks: str) -> None:
+    result = suite(RACE.format(policy="random", shrink=200), "--cfepy-tasks", tasks, "--cfepy-record", "kept")
     result.assert_outcomes(failed=1)
     text = result.stdout.str()
     assert re.search(r"failed under the \d+\. of 60 schedules, random:\d+", text)
     shortest = re.search(r"the shortest schedule that fails in this way, after \d+ runs: at:(\S+)", text)
     assert shortest is not None
     assert shortest[1].count("=") <= 3
-    assert text.count("ran instead") == shortest[1].count("=")
+    assert 1 <= len(re.findall("=== (?:PREEMPTED|NOT FIRST|AFTER)", text)) <= shortest[1].count("=")
+    assert re.search(r"time, s +.*RACY", text)
+    check_command(text, told_command(result), missions)
+    check_journal(missions / "kept", shortest[1])
 
 
+def check_command(text: str, command: str, folder: Path) -> None:
+    """The command that was told fails in the same way."""
+    again = given_verbatim(command, folder)
+    assert again.returncode == 1
+    instead = [re.findall(r"E +instead: (.*)", each) for each in (text, again.stdout)]
+    assert instead[0] == instead[1] != []
+
+
+def check_journal(folder: Path, deviations: str) -> None:
+    """One journal is kept, that of the shrunk run, and replays."""
+    (path,) = folder.iterdir()
+    journal = read_journal(path)
+    assert journal.plan.schedule == f"at:{deviations}"
+    assert replay(journal).verdict.same
+
+
+@pytest.mark.slow
 def test_pct_finds_it_too_and_need_not_be_shrunk(suite: Suite) -> None:
     result = suite(RACE.format(policy="pct", shrink=0))
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["failed under the *. of 60 schedules, pct:*", "*--cfepy-schedule pct:*"])
     result.stdout.no_fnmatch_line("*the shortest schedule*")
-
-
-@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_the_command_fails_in_the_same_way(suite: Suite, missions: Path, tasks: str) -> None:
-    result = suite(RACE.format(policy="random", shrink=10), "--cfepy-tasks", tasks)
-    again = given_verbatim(told_command(result), missions)
-    assert again.returncode == 1
-    instead = [re.findall(r"E +instead: (.*)", text) for text in (result.stdout.str(), again.stdout)]
-    assert instead[0] == instead[1] != []
 
 
 def test_fifo_is_the_first_schedule_and_finds_nothing(suite: Suite) -> None:
@@ -119,10 +132,30 @@ def test_failures_other_than_of_the_call(suite: Suite) -> None:
         def test_xfail(mission): assert False
 
         @explore(seeds=3)
-        def test_teardown(untidy): ...
+        def test_teardown(untidy, mission):
+            mission("talk")
         """
     )
     result.assert_outcomes(errors=2, skipped=1, xfailed=1, passed=1)
+
+
+def test_a_test_that_explores_nothing_is_told(suite: Suite) -> None:
+    result = suite(
+        """
+        import pytest
+        from cfepy.testing import explore
+
+        @pytest.fixture(scope="module")
+        def wide(mission):
+            return mission("talk")
+
+        @explore(seeds=3)
+        def test_it(wide):
+            wide.run(0.1)
+        """
+    )
+    result.assert_outcomes(failed=1, passed=1)
+    result.stdout.fnmatch_lines(["*@explore: the test boots no mission under the schedules*"])
 
 
 def test_several_missions_have_the_schedule_all(suite: Suite) -> None:
@@ -144,5 +177,17 @@ def test_wrong_arguments() -> None:
         explore(policy="fancy")
     with pytest.raises(UsageError, match="seeds"):
         explore(seeds=0)
-    with pytest.raises(UsageError):
-        explore(hold="soon")
+    for wrong in ({"hold": "soon"}, {"start": "later"}, {"policy": "pct", "depth": 0}):
+        with pytest.raises(UsageError):
+            explore(**wrong)
+
+
+def test_options_of_schedules() -> None:
+    found = explore(seeds=4, policy=["random", "pct"], depth=2, any_priority=True, hold="500us", start="600ms").args[0]
+    options = "any:hold=500us:from=600ms"
+    assert [each.text() for each in found.schedules()] == [
+        "fifo",
+        f"random:1:{options}",
+        f"pct:2:2:{options}",
+        f"random:3:{options}",
+    ]

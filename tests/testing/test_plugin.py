@@ -5,14 +5,16 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+import textwrap
 import threading
+import tomllib
 from pathlib import Path
 
 import pytest
 
 from cfepy.cli.main import main
 from cfepy.journal import read_journal, replay
-from tests.testing.conftest import ROOT, Suite, given_verbatim, told_command
+from tests.testing.conftest import ROOT, Suite, given_verbatim, told_command, write_mission
 
 WAITS = """
 def test_it(mission):
@@ -171,3 +173,45 @@ def test_a_suite_without_missions_loads_nothing_more(pytester: pytest.Pytester) 
         [sys.executable, "-c", code], cwd=pytester.path, env={"PYTHONPATH": str(ROOT)}, capture_output=True, text=True
     )
     assert "cfepy.testing cfepy.testing.plugin\n" in done.stdout
+
+
+def test_problems_are_told_with_every_failure(suite: Suite, missions: Path) -> None:
+    stuck = """
+    import threading
+    import rospy
+
+    def take(first, second):
+        with first:
+            rospy.sleep(0.1)
+            with second:
+                pass
+
+    rospy.init_node("stuck")
+    one, other = threading.RLock(), threading.RLock()
+    threading.Thread(target=take, args=(one, other)).start()
+    take(other, one)
+    """
+    write_mission(missions / "deadly", stuck=textwrap.dedent(stuck), dying="import rospy\n1 / 0\n")
+    result = suite(
+        """
+        def test_it(mission):
+            flight = mission("deadly")
+            flight.run(2)
+            assert len(flight.problems) == 2
+            flight.expect_event("DYING", within=0.1)
+        """
+    )
+    result.stdout.fnmatch_lines(["*problem: *DYING*", "*problem: STUCK* waits for *, held by STUCK*"])
+
+
+def test_pytest_finds_it_by_itself_where_it_is_installed(pytester: pytest.Pytester) -> None:
+    points = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]["pytest11"]
+    installed = pytester.mkdir("cfepy-0.dist-info")
+    (installed / "METADATA").write_text("Metadata-Version: 2.1\nName: cfepy\nVersion: 0\n")
+    lines = [f"{name} = {place}" for name, place in points.items()]
+    (installed / "entry_points.txt").write_text("\n".join(["[pytest11]", *lines, ""]))
+    pytester.makeconftest("pytest_plugins = ['cfepy.testing.plugin']")  # which must not be one too many
+    env = {"PYTHONPATH": f"{pytester.path}:{ROOT}"}
+    words = [sys.executable, "-m", "pytest", "--fixtures"]
+    done = subprocess.run(words, cwd=pytester.path, env=env, capture_output=True, text=True, check=False)
+    assert "mission [session scope] -- " in done.stdout, done.stdout + done.stderr

@@ -28,6 +28,7 @@ class Heater:
         image, _ = self.cfe.tbl.get_address(self.table)
         low = int.from_bytes(image[:2], "little")
         self.cfe.tbl.release_address(self.table)
+        self.cfe.evs.send_dbg(2, f"heating from {low} degrees")
         high = int.from_bytes(image[2:], "little")
         if high != low + 10:
             self.cfe.evs.send_err(1, f"from {low} to {high} degrees")

@@ -1,0 +1,137 @@
+"""What a run may be stopped at: an event, messages of one MsgId, or messages of which a predicate holds.
+
+May import cfepy.mission.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from cfepy.attachment import Attachment
+from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
+from cfepy.mission.dictionary import Dictionary, dictionary_of
+from cfepy.mission.message_watch import Heard, MessageWatch
+from cfepy.mission.mission import Mission
+from cfepy.mission.predicate import Predicate, short, shortened
+from cfepy.mission.script_packets import EVENT_IDS, Event
+from cfepy.mission.spec import MissionSpec
+from cfepy.mission.watch import PacketWatch, Seen
+from cfepy.psp.marked_yaml import Marked
+from cfepy.sb import SoftwareBus
+from cfepy.status import UsageError
+
+NAMES = ("msg", "topic", "sender", "t")
+"""What a predicate may name: the message, its topic or packet name, who sent it, the virtual time in s."""
+FORMS = "APP:ID or APP:ERROR for an event, a MsgId or the name of a packet or topic, or a Python expression about msg"
+_TYPES = {"DEBUG": DEBUG, "INFORMATION": INFORMATION, "ERROR": ERROR, "CRITICAL": CRITICAL}
+_EVENT = re.compile(r"([A-Za-z_]\w*|\*):(\d+|\*|[A-Z]+)")
+_NAME = re.compile(r"(0[xX])?\w+", re.ASCII)
+_TOPIC = re.compile(r"/[\w/*?\[\]~-]*")
+
+Hit = Callable[[str], object]
+"""Is told what there is to stop at, in the task that sends it and before anybody gets it."""
+
+
+def breakpoint_of(text: str, spec: MissionSpec, hit: Hit) -> Attachment:
+    """What a user means by a text.
+
+    Args:
+        text: see `FORMS`.
+        spec: the mission.
+        hit: is called at each occasion.
+
+    Raises:
+        UsageError: it means nothing of the kind.
+    """
+    event = _EVENT.fullmatch(text)
+    if event is not None:
+        return _at_event(text, event[1], event[2], hit)
+    if _TOPIC.fullmatch(text):
+        return MessageWatch(spec, lambda heard: hit(_told(heard)), topics=(text,))
+    if _NAME.fullmatch(text):
+        return _at_packet(text, dictionary_of(spec), hit)
+    return _AtPredicate(text, spec, hit)
+
+
+def _at_event(text: str, app: str, which: str, hit: Hit) -> Attachment:
+    if which.isalpha() and which not in _TYPES:
+        raise UsageError(f"{text!r}: {which} is no type of event; there are {', '.join(_TYPES)}", field="--break")
+
+    def take(seen: Seen) -> None:
+        event = Event.of(seen)
+        wanted = which in ("*", str(event.event_id)) or _TYPES.get(which) == event.event_type
+        if wanted and app in ("*", event.app):
+            hit(f"event {event}")
+
+    return PacketWatch(take, EVENT_IDS.__contains__)
+
+
+def _at_packet(name: str, dictionary: Dictionary, hit: Hit) -> Attachment:
+    command = dictionary.commands.get(name)
+    try:
+        msg_id = dictionary.telemetry_of(name).msg_id if command is None else command.msg_id
+    except UsageError:
+        near = get_close_matches(name, [*dictionary.commands, *dictionary.telemetry], 1)
+        hint = f"is {near[0]} meant?" if near else f"write {FORMS}"
+        raise UsageError(f"{name!r} is no packet of this mission; {hint}", field="--break") from None
+
+    def take(seen: Seen) -> None:
+        decoded = dictionary.decode(seen.packet)
+        if command is None or decoded.name == name:
+            values = f": {short(decoded.values)}" if decoded.values else ""
+            hit(f"{decoded.name} (0x{msg_id:04X}) of {seen.sender}, {len(seen.packet)} bytes{values}")
+
+    return PacketWatch(take, msg_id.__eq__)
+
+
+class _AtPredicate(Attachment):
+    """Stops where a predicate holds of a message; where it does not apply, as for want of a field, it does not hold."""
+
+    def __init__(self, text: str, spec: MissionSpec, hit: Hit) -> None:
+        try:
+            self._predicate = Predicate.read(Marked(text, Path("--break"), 1, ""), NAMES)
+        except UsageError as error:
+            raise UsageError(f"{error.text}; write {FORMS}", field="--break") from None
+        dictionary = dictionary_of(spec)
+        packets = tuple(dict.fromkeys([*dictionary.telemetry, *dictionary.commands]))
+        self._watch = MessageWatch(spec, self._take, topics=("*",), packets=packets)
+        self._hit = hit
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        return self._watch.bus(base)
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._watch.begin(mission)
+
+    def _take(self, heard: Heard) -> None:
+        try:
+            names = {"msg": heard.msg, "topic": heard.topic, "sender": heard.sender, "t": heard.t}
+            holds = self._predicate.holds(names)
+        except Exception:
+            return
+        if holds:
+            self._hit(f"{self._predicate.source}: {_told(heard)}")
+
+
+def _told(heard: Heard) -> str:
+    return f"{heard.topic} of {heard.sender}: {_shown(heard)}"
+
+
+def _shown(heard: Heard) -> str:
+    """A message on one line."""
+    try:
+        message: Any = heard.msg
+    except UsageError as error:
+        return f"({error.text})"
+    return short(message) if isinstance(message, dict) else shortened(" ".join(str(message).split()))
+
+
+def breakpoints(texts: Sequence[str], spec: MissionSpec, hit: Hit) -> list[Attachment]:
+    """What stops a run at several things; see `breakpoint_of`."""
+    return [breakpoint_of(text, spec, hit) for text in texts]

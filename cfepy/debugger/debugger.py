@@ -1,0 +1,274 @@
+"""`Debugger`: stops a run, says where it is, and does what its user wants: go on, step, look around, look into an app.
+
+The user is asked inside the simulation, in the task in which the run stops, so everything stands still meanwhile. What
+is asked and answered changes nothing in the run. May import cfepy.mission.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TextIO
+
+from cfepy.attachment import Attachment
+from cfepy.debugger.app_debugger import AppDebugger, look_at_end, look_into, own_frame
+from cfepy.debugger.breakpoints import breakpoints
+from cfepy.mission.determinism_look import stack_of
+from cfepy.mission.live_names import LiveNames
+from cfepy.mission.mission import Mission
+from cfepy.mission.observer import Observer, Sent, app_of
+from cfepy.mission.spec import MissionSpec
+from cfepy.rtos.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from cfepy.rtos import Task
+    from cfepy.sb.pipe import Pipe
+
+TRACEBACK = "Traceback (most recent call last)"
+HELP = """\
+  c, continue    go on to the next breakpoint
+  s, step        go on to the next thing that happens; so does an empty line
+  w, where       the lines of the application that are being executed
+  tasks          all tasks, and what they wait for
+  pipes          all pipes, and how many messages wait in them
+  pdb            Python's debugger in the task that runs
+  q, quit        end the run here"""
+
+
+class Debugger(Observer):
+    """Stops the run that it is attached to.
+
+    Args:
+        spec: the mission.
+        stops: what to stop at; see `cfepy.debugger.breakpoints`.
+        step: stop at everything that happens, from the beginning or from `from_ns` on.
+        app: open Python's debugger in the tasks of this application: at once, or at the first stop when there are
+            `stops` or `from_ns`; and where an exception came from whose traceback is written to the console.
+        from_ns: virtual time of the first stop; None for none.
+        on_quit: ends the run.
+        commands, stream: where the user writes and reads; None for this process's own.
+
+    Raises:
+        UsageError: a breakpoint that cannot be.
+
+    Attributes:
+        count: stops so far.
+    """
+
+    def __init__(
+        self,
+        spec: MissionSpec,
+        *,
+        stops: Sequence[str] = (),
+        step: bool = False,
+        app: str | None = None,
+        from_ns: int | None = None,
+        on_quit: Callable[[], object] = lambda: None,
+        commands: TextIO | None = None,
+        stream: TextIO | None = None,
+    ) -> None:
+        super().__init__()
+        self.count = 0
+        self._breakpoints: list[Attachment] = breakpoints(stops, spec, self._stop)
+        self._stepping = step and from_ns is None
+        self._steps_from = from_ns
+        self._then_steps = step
+        self._app = app
+        self._looks = app is not None and not stops and from_ns is None
+        self._error: BaseException | None = None  # the last one that was looked at
+        self._debuggers: dict[Task, AppDebugger] = {}
+        self._on_quit = on_quit
+        self._commands = sys.stdin if commands is None else commands
+        self._stream = sys.stdout if stream is None else stream
+        self._is_over = False
+        self._names: LiveNames
+        self._mission: Mission
+
+    # -- the attachment ----------------------------------------------------------------------------------------------
+
+    def bus(self, base: Any) -> Any:
+        """See `Attachment.bus`."""
+        for each in self._breakpoints:
+            base = each.bus(base)
+        return super().bus(base)
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        super().begin(mission)
+        self._mission = mission
+        self._names = LiveNames(mission)
+        for each in self._breakpoints:
+            each.begin(mission)
+        kernel: Any = mission.kernel
+        kernel.block = self._returning(kernel.block)
+        kernel.spawn = self._starting(kernel.spawn)
+
+    def _returning(self, block: Callable[[], Any]) -> Callable[[], Any]:
+        """The kernel's `block`: a task that comes out of it goes on with what it was doing."""
+
+        def wait() -> Any:
+            value = block()
+            self._look_around("goes on")
+            return value
+
+        return wait
+
+    def _starting(self, spawn: Callable[..., Task]) -> Callable[..., Task]:
+        """The kernel's `spawn`: a task begins."""
+
+        def start(name: str, entry: Callable[[], object], *args: Any, **options: Any) -> Task:
+            def begin() -> object:
+                self._look_around("begins")
+                return entry()
+
+            return spawn(name, begin, *args, **options)
+
+        return start
+
+    # -- what happens ------------------------------------------------------------------------------------------------
+
+    def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
+        """See `Observer.on_send`."""
+        self._look_around(f"sends {self._names[sent.msg_id]} (0x{sent.msg_id:04X}), {sent.size} bytes")
+
+    def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
+        """See `Observer.on_receive`."""
+        what = "a message" if sent is None else self._names[sent.msg_id]
+        self._look_around(f"takes {what} out of pipe {pipe.name}")
+
+    def on_drop(self, msg_id: int, pipe: Pipe, why: str, at_ns: int) -> None:
+        """See `Observer.on_drop`."""
+        self._look_around(f"{self._names[msg_id]} is dropped at pipe {pipe.name}: {why}")
+
+    def on_note(self, text: str, at_ns: int) -> None:
+        """See `Observer.on_note`."""
+        self._look_around(text)
+
+    def on_console(self, line: str, at_ns: int) -> None:
+        """See `Observer.on_console`; who writes a traceback there has just caught the exception."""
+        self._look_around(f"console: {line}")
+        error = sys.exc_info()[1]
+        if TRACEBACK in line and error is not None and error is not self._error:
+            self._error = error
+            self._look_at(error)
+
+    def _look_at(self, error: BaseException) -> None:
+        """An exception that its application did not expect."""
+        task = self._kernel.current
+        if app_of(task) == self._app and not self._is_over:
+            self._say(f"{self._place(task)}: {type(error).__name__}: {error}")
+            look_at_end(self._debugger_of(task), error)
+
+    def _look_around(self, what: str) -> None:
+        """Something happens in the task that runs."""
+        kernel = self._kernel
+        if self._is_over or kernel.current is kernel.host:
+            return
+        if self._looks and app_of(kernel.current) == self._app:
+            self._looks = False
+            self._look_into(kernel.current)
+        if self._steps_from is not None and kernel.now >= self._steps_from:
+            self._steps_from = None
+            self._stop(what)
+        elif self._stepping:
+            self._stop(what)
+
+    def _stop(self, what: str) -> None:
+        """The run stops here: say where that is, and ask."""
+        if self._is_over:
+            return
+        self.count += 1
+        task = self._kernel.current
+        self._say(f"{self._place(task)}: {what}")
+        own = own_frame()
+        if own is not None and not self._stepping:
+            self._where()
+        self._stepping = False
+        if self._app is None:
+            with self._mission.stall_watch.paused():
+                self._ask()
+        elif app_of(task) == self._app:
+            self._look_into(task)
+        else:
+            self._looks = True  # as soon as it is its turn
+
+    # -- the user ----------------------------------------------------------------------------------------------------
+
+    def _ask(self) -> None:
+        """Do what the user wants until the run may go on."""
+        answers: dict[str, Callable[[], bool]] = {
+            "c": lambda: True,
+            "s": self._step,
+            "w": self._where,
+            "tasks": self._tasks,
+            "pipes": self._pipes,
+            "pdb": self._pdb,
+            "q": self._quit,
+        }
+        while True:
+            word = self._read()
+            if word is None:
+                self._stepping = self._then_steps  # nobody asks: the stops are shown, and the run goes on
+                return
+            short = {"continue": "c", "step": "s", "": "s", "where": "w", "quit": "q"}.get(word, word)
+            if short not in answers:
+                self._say(HELP)
+            elif answers[short]():
+                return
+
+    def _read(self) -> str | None:
+        if self._commands.isatty():
+            self._stream.write("(cfepy) ")
+            self._stream.flush()
+        line = self._commands.readline()
+        return line.strip() if line else None
+
+    def _step(self) -> bool:
+        self._stepping = True
+        return True
+
+    def _quit(self) -> bool:
+        self._is_over = True
+        self._on_quit()
+        return True
+
+    def _pdb(self) -> bool:
+        self._look_into(self._kernel.current)
+        return True
+
+    def _where(self) -> bool:
+        stack = stack_of(sys._getframe())
+        if not stack:
+            self._say("    in code of cfepy itself")
+        for line in stack:
+            self._say(f"    {line.file}:{line.number} in {line.function}: {line.source}")
+        return False
+
+    def _tasks(self) -> bool:
+        self._say(self._kernel.waiting())
+        return False
+
+    def _pipes(self) -> bool:
+        for pipe in self._mission.cfe.sb.pipes:
+            self._say(f"    {pipe.app_name:<20} {pipe.name:<24} {len(pipe.items):>4} of {pipe.depth}")
+        return False
+
+    # -- Python's debugger -------------------------------------------------------------------------------------------
+
+    def _look_into(self, task: Task) -> None:
+        self._say(f"{self._place(task)}: Python's debugger")
+        look_into(self._debugger_of(task), own_frame())
+
+    def _debugger_of(self, task: Task) -> AppDebugger:
+        if task not in self._debuggers:
+            self._debuggers[task] = AppDebugger(
+                self._quit, self._mission.stall_watch.paused, self._commands, self._stream
+            )
+        return self._debuggers[task]
+
+    def _place(self, task: Task) -> str:
+        app = app_of(task)
+        return f"{self._kernel.now / NS_PER_S:.9f} {task.name if task.name == app else f'{app}/{task.name}'}"
+
+    def _say(self, text: str) -> None:
+        print(text, file=self._stream, flush=True)

@@ -1,0 +1,129 @@
+"""`cfepy explore`: what it finds, how it tells it, and that it is the same whoever runs it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED, main
+from cfepy.explore.shrink import Shrinker
+from tests.explore import missions
+
+EVENT = "event: LISTENER: ERROR event 1: nothing came in 100 ms"
+
+
+@pytest.fixture(scope="module")
+def late(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return missions.write_late(tmp_path_factory.mktemp("late"))
+
+
+def explore(*words: object) -> int:
+    return main(["explore", *map(str, words), "--tasks", "greenlet", "--quiet"])
+
+
+def test_a_failure_is_told_once_with_its_command_and_timeline(
+    late: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    numbers = tmp_path / "found.json"
+    words = (late, "--for", 0.7, "--policy", "random", "--seeds", 6, "--jobs", 1)
+    assert explore(*words, "--json", numbers, "--shrink", 60) == FOUND_PROBLEMS
+    out = capsys.readouterr().out
+    assert f"failure 1: {EVENT}" in out
+    assert "failure 2" not in out
+    assert f"FAILURE {EVENT}" in out
+    found = json.loads(numbers.read_text())
+    assert found["schedules"] == 6
+    (failure,) = found["failures"]
+    assert failure["command"].startswith("cfepy run --for 0.7 --tasks greenlet --schedule random:")
+    assert f"replay: {failure['command']}" in out
+    assert f"shrunk: {failure['shrunk']['command']}" in out
+    assert failure["shrunk"]["preemptions"] <= 1
+    assert main([*failure["shrunk"]["command"].split()[1:], "--quiet"]) == FOUND_PROBLEMS
+    assert "LISTENER sent 1 ERROR or CRITICAL event" in capsys.readouterr().err
+
+
+def test_a_mission_that_always_goes_well(late: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert explore(late, "--for", 0.7, "--seeds", 4, "--jobs", 1, "--events", "none") == ENDED_WELL
+    assert capsys.readouterr().out == "4 schedules, 0 failed: no failure\n"
+
+
+def test_a_failure_of_the_default_schedule_is_told_as_such(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = missions.write(tmp_path, {"BAD": "raise ValueError('at once')"})
+    assert explore(folder, "--for", 0.7, "--seeds", 2, "--jobs", 1, "--until-failure") == FOUND_PROBLEMS
+    out = capsys.readouterr().out
+    assert "failure 1: unhandled exception: BAD: ValueError: at once (bad.py:1)" in out
+    assert "under the default schedule, fifo, already" in out
+    assert "--schedule" not in out
+
+
+def test_the_report_does_not_depend_on_the_number_of_processes(late: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = (late, "--for", 0.7, "--seeds", 10, "--shrink", 20)
+    explore(*words, "--jobs", 1)
+    alone = capsys.readouterr().out
+    explore(*words, "--jobs", 2)
+    assert capsys.readouterr().out == alone
+    assert "failure 1" in alone
+
+
+def test_it_stops_with_the_first_failure_when_asked(late: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = (late, "--for", 0.7, "--policy", "dfs", "--depth", 1, "--seeds", 100, "--shrink", 0, "--jobs", 1)
+    assert explore(*words, "--until-failure") == FOUND_PROBLEMS
+    out = capsys.readouterr().out
+    assert "1 failed: 1 distinct failure" in out
+    assert "--schedule at:" in out
+
+
+def test_results_are_kept_in_a_file_and_not_run_again(
+    late: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = (late, "--for", 0.7, "--jobs", 1, "--shrink", 0, "--events", "none", "--results", tmp_path / "found.jsonl")
+    explore(*words, "--seeds", 3)
+    explore(*words, "--seeds", 5)
+    out = capsys.readouterr().out
+    assert "5 schedules, 0 failed, 3 from the results file: no failure" in out
+
+
+def test_a_node_is_explored_by_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "lone.py").write_text("import sys\nraise ValueError(sys.argv[1])\n")
+    words = (tmp_path / "lone.py", "today", "--for", 0.2, "--seeds", 1, "--jobs", 1)
+    assert explore(*words, "--until-failure") == FOUND_PROBLEMS
+    out = capsys.readouterr().out
+    assert "ValueError: today (lone.py:2)" in out
+    assert f"replay: cfepy node --for 0.2 --tasks greenlet {tmp_path / 'lone.py'} today" in out
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (["/no/such/mission"], "no startup script"),
+        (["{late}", "lab"], "one mission at a time; 'lab' is one too many"),
+        (["{late}", "--hold", "soon"], "--hold: 'hold=soon' wants a time"),
+        (["{late}", "--script", "/no/script"], "/no/script"),
+        (["{late}", "--for", "0.7", "--jobs", "2", "--cluster", "tcp://127.0.0.1:1"], "--jobs"),
+    ],
+)
+def test_bad_usage(late: Path, words: list[str], error: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert explore(*(word.format(late=late) for word in words)) == BAD_USAGE
+    assert error in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", ["--seeds=0", "--seeds=many", "--depth=0", "--first-seed=-1", "--jobs=0"])
+def test_numbers_that_cannot_be(late: Path, option: str) -> None:
+    with pytest.raises(SystemExit) as caught:
+        explore(late, option)
+    assert caught.value.code == BAD_USAGE
+
+
+def test_ctrl_c_while_shrinking_leaves_the_report(
+    late: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(_: Shrinker) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Shrinker, "run", interrupted)
+    assert explore(late, "--for", 0.7, "--policy", "random", "--seeds", 3, "--jobs", 1) == INTERRUPTED
+    out = capsys.readouterr().out
+    assert f"failure 1: {EVENT}" in out
+    assert "ended by Ctrl-C" in out

@@ -1,0 +1,223 @@
+"""`--record`, `cfepy replay` and `cfepy diff` from the command line."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from cfepy.journal.frames import FrameWriter, read_frames
+from cfepy.resources import import_path
+from tests.journal.missions import paths, race
+from tests.mission.flights import write_mission
+
+ADDER = """
+    import rospy
+    from std_msgs.msg import Int32
+
+    rospy.init_node("adder")
+    total = rospy.Publisher("total", Int32, queue_size=5)
+    rospy.Subscriber("total", Int32, lambda message: None)
+    rospy.sleep(0.5)
+    for number in range(5):
+        total.publish(STEP * number)
+        rospy.sleep(0.1)
+"""
+STARTUP = "CFE_APP, adder.py, __main__, ADDER, 100, 16384, 0x0, 0;\n!"
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def adder(folder: Path, step: int) -> str:
+    folder.mkdir(exist_ok=True)
+    return write_mission(folder, STARTUP, adder=ADDER.replace("STEP", str(step)))
+
+
+def trace_of(text: str) -> str:
+    found = re.search(r"^trace: (\w+)$", text, re.MULTILINE)
+    assert found
+    return found[1]
+
+
+@pytest.mark.parametrize("tasks", [[], ["--tasks", "greenlet"]])
+def test_a_run_is_replayed_with_its_console_and_report(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], tasks: list[str]
+) -> None:
+    mission = race(tmp_path)
+    assert main(["run", mission, "--for", "2", "--seed", "3", "--schedule", "random", "--record", "a.cfepy"]) == 0
+    first = capsys.readouterr().out
+    assert main(["replay", "a.cfepy", "--json", "a.json", "--trace", "a.txt", *tasks]) == 0
+    again = capsys.readouterr()
+    speed = re.compile(r"virtual s in .*")
+    assert speed.sub("", again.out) == speed.sub("", first)
+    assert again.err == "cfepy: the same run as a.cfepy\n"
+    assert trace_of(first) in Path("a.json").read_text()
+    assert "dispatch" in Path("a.txt").read_text()
+
+
+def test_until_ends_earlier(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run", "capture", "--for", "3", "--quiet", "--record", "a.cfepy"])
+    assert main(["replay", "a.cfepy", "--until", "1.5", "--quiet"]) == 0
+    said = capsys.readouterr()
+    assert "1.500 virtual s" in said.out
+    assert "where it was compared for the last time" in said.err
+
+
+def test_other_files_on_disk_are_told_and_not_used(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mission = adder(tmp_path / "mission", 1)
+    main(["run", mission, "--for", "2", "--quiet", "--record", "a.cfepy"])
+    adder(tmp_path / "mission", 2)
+    capsys.readouterr()
+    assert main(["replay", "a.cfepy", "--quiet"]) == 0
+    assert f"on this computer others are now: {tmp_path}/mission/adder.py" in capsys.readouterr().err
+    assert main(["replay", "a.cfepy", "--quiet", "--from-disk"]) == 1
+    said = capsys.readouterr().err
+    assert re.search(r"not the run of a\.cfepy: the same up to record \d+ at \d", said)
+    assert "this is what the replay did next" in said
+    assert f"other files than then: {tmp_path}/mission/adder.py" in said
+
+
+def test_a_node_is_replayed_with_its_own_exit_of_the_command(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    paths(tmp_path)
+    assert main(["node", "paths.py", "--record", "../node.cfepy", "--", "x"]) == 1
+    first = capsys.readouterr().out
+    assert "as asked" in first
+    assert main(["replay", "../node.cfepy"]) == 0
+    assert capsys.readouterr().out == first
+
+
+def test_a_paced_run_that_ctrl_c_ended_is_replayed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["run", "lab", "--realtime", "5", "--port", "1234=0", "--record", "a.cfepy"]
+    environment = {**os.environ, "PYTHONPATH": import_path(), "PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(
+        [sys.executable, "-m", "cfepy", *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment
+    ) as process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            opened = re.search(rb"is open at 127\.0\.0\.1:(\d+)", line)
+            if opened:
+                with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
+                    ground.sendto(bytes.fromhex("1884c000000100a2"), ("127.0.0.1", int(opened[1])))
+            if b"CI: NOOP command" in line:
+                process.send_signal(signal.SIGINT)
+                break
+        rest = process.stdout.read().decode()
+    assert process.returncode == 130
+    assert main(["replay", "a.cfepy"]) == 0
+    said = capsys.readouterr()
+    assert "CI: NOOP command" in said.out
+    assert "is open at" not in said.out
+    assert trace_of(said.out) == trace_of(rest)
+    assert "the same run as a.cfepy" in said.err
+
+
+def test_another_version_is_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run", race(tmp_path), "--for", "1", "--quiet", "--record", "a.cfepy"])
+    writer = FrameWriter("b.cfepy")
+    for kind, body in read_frames("a.cfepy"):
+        if kind == "header":
+            body["versions"].update(cfepy="0.0.7", python="3.99.1")
+        writer.write(kind, body)
+    writer.close()
+    capsys.readouterr()
+    assert main(["replay", "b.cfepy", "--quiet"]) == 0
+    said = capsys.readouterr().err
+    assert "recorded with cfepy 0.0.7, this is" in said
+    assert "recorded with Python 3.99.1, this is" in said
+
+
+def test_a_journal_without_an_end_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run", "capture", "--for", "2", "--quiet", "--record", "a.cfepy"])
+    data = Path("a.cfepy").read_bytes()
+    Path("a.cfepy").write_bytes(data[:-300])
+    assert main(["replay", "a.cfepy", "--quiet"]) == 0
+    assert "the journal has no end" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", [["replay", "x"], ["diff", "x", "x"], ["replay", "startup.scr"]])
+def test_what_is_no_journal(command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    race(tmp_path)
+    assert main(command) == 2
+    assert capsys.readouterr().err.startswith(f"cfepy: {command[1]}: ")
+
+
+def test_a_full_disk_is_told_at_the_end(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", race(tmp_path), "--for", "1", "--quiet", "--record", "/dev/full"]) == 2
+    assert "/dev/full: --record: cannot be written" in capsys.readouterr().err
+
+
+def test_diff_of_a_change_in_the_code(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for step in (1, 2):
+        main(["run", adder(tmp_path / "mission", step), "--for", "2", "--quiet", "--record", f"{step}.cfepy"])
+    capsys.readouterr()
+    assert main(["diff", "1.cfepy", "2.cfepy", "--lines", "3"]) == 1
+    said = capsys.readouterr().out
+    assert re.search(r"^file adder\.py: not the same, from line 10 on$", said, re.MULTILINE)
+    assert re.search(r"the first \d+ records are alike; record \d+ differs", said)
+    assert said.count("send 0x") >= 2
+    assert "/total" in said
+    assert f"{tmp_path}/mission/adder.py:10" in said
+    assert "total.publish(1 * number)" in said
+    assert "total.publish(2 * number)" in said
+    assert "\nfields that differ:\n" in said
+    assert "  data: 1, 2\n" in said
+
+
+def test_diff_of_the_same_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, tasks in (("a", "thread"), ("b", "greenlet")):
+        main(["run", race(tmp_path), "--for", "1", "--quiet", "--tasks", tasks, "--record", f"{name}.cfepy"])
+    capsys.readouterr()
+    assert main(["diff", "a.cfepy", "b.cfepy"]) == 0
+    said = capsys.readouterr().out
+    assert "tasks: thread, greenlet" in said
+    assert "the same run: all" in said
+
+
+def test_diff_of_seeds_boards_and_schedules(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run", race(tmp_path), "--for", "1", "--quiet", "--record", "a.cfepy"])
+    main(["run", str(tmp_path), "--for", "1", "--quiet", "--seed", "2", "--schedule", "pct", "--record", "b.cfepy"])
+    capsys.readouterr()
+    assert main(["diff", "a.cfepy", "b.cfepy"]) == 1
+    said = capsys.readouterr().out
+    assert "seed: 0, 2" in said
+    assert "schedule: fifo, pct:2:3" in said
+
+
+def test_diff_of_traces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for step in (1, 2):
+        mission = adder(tmp_path / str(step), 1)
+        main(["run", mission, "--for", str(step), "--quiet", "--trace", f"{step}.txt", "--record", f"{step}.cfepy"])
+    capsys.readouterr()
+    assert main(["diff", "1.txt", "1.txt"]) == 0
+    assert main(["diff", "1.txt", "2.txt", "--lines", "1"]) == 1
+    said = capsys.readouterr().out
+    assert re.search(r"the first [\d,]+ lines are alike; line [\d,]+ differs", said)
+    assert main(["diff", "1.txt", "1.cfepy"]) == 2
+    assert "one is a journal and the other is not" in capsys.readouterr().err
+
+
+def test_info_runs_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run", race(tmp_path), "--for", "1", "--quiet", "--seed", "4", "--schedule", "random", "--record", "a.cfepy"])
+    trace = trace_of(capsys.readouterr().out)
+    assert main(["replay", "a.cfepy", "--info"]) == 0
+    said = capsys.readouterr().out
+    assert f"cfepy run --for 1 --seed 4 --schedule random:4 {tmp_path}" in said
+    assert re.search(rf"^trace: +{trace}$", said, re.MULTILINE)
+    assert "OPERATIONAL" not in said
+
+
+def test_runs_that_are_compared_are_not_recorded(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", race(tmp_path), "--check-determinism", "--record", "a.cfepy"]) == 2
+    assert "--record: does not go with --check-determinism" in capsys.readouterr().err

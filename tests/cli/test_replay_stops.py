@@ -1,0 +1,79 @@
+"""`cfepy replay` with --break, --step and --pdb: what a user types and sees."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+
+NODE = """
+import rospy
+from std_msgs.msg import Int32
+rospy.init_node("counter")
+publisher = rospy.Publisher("/numbers", Int32, queue_size=10)
+for number in range(4):
+    rospy.sleep(0.1)
+    publisher.publish(number)
+"""
+
+
+@pytest.fixture
+def journal(tmp_path: Path) -> str:
+    """The journal of a node that counts."""
+    script, file = tmp_path / "counter.py", tmp_path / "run.cfepy"
+    script.write_text(NODE)
+    assert main(["node", "--for", "2", "--record", str(file), str(script)]) == 0
+    return str(file)
+
+
+def replayed(journal: str, *options: str, typed: str, monkeypatch: pytest.MonkeyPatch) -> int:
+    """The exit status of a replay whose user types this."""
+    monkeypatch.setattr("sys.stdin", io.StringIO(typed))
+    return main(["replay", journal, *options])
+
+
+def test_a_run_that_stops_is_still_the_same(
+    journal: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert replayed(journal, "--break", "/numbers", typed="w\nc\n", monkeypatch=monkeypatch) == 0
+    said = capsys.readouterr()
+    assert said.out.count("/numbers of /counter: data: ") == 4
+    assert "the same run as" in said.err
+
+
+def test_a_user_who_has_seen_enough(
+    journal: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert replayed(journal, "--break", "msg.data == 2", typed="q\n", monkeypatch=monkeypatch) == 0
+    said = capsys.readouterr()
+    assert said.out.count("/numbers of /counter: data: ") == 1
+    assert "where it was compared for the last time" in said.err
+
+
+def test_steps_from_a_time_on(
+    journal: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert replayed(journal, "--step", "--until", "0.8", typed="s\ns\nq\n", monkeypatch=monkeypatch) == 0
+    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("0.")]
+    assert len(lines) == 3
+    assert all(float(line.split()[0]) >= 0.8 for line in lines)
+
+
+@pytest.mark.parametrize("name", ["counter", "/counter", "COUNTER"])
+def test_the_debugger_of_python(
+    journal: str, name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    typed = "p number\nc\n"
+    options = ["--pdb", name, "--break", "msg.data == 3"]
+    assert replayed(journal, *options, typed=typed, monkeypatch=monkeypatch) == 0
+    assert "(Pdb) 3\n" in capsys.readouterr().out
+
+
+def test_an_application_that_there_is_not(
+    journal: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert replayed(journal, "--pdb", "countre", typed="", monkeypatch=monkeypatch) == 2
+    assert "--pdb: the mission has no application 'countre'; is COUNTER meant?" in capsys.readouterr().err

@@ -1,0 +1,1 @@
+"""Stopping a run to look at it."""

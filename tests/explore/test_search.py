@@ -1,0 +1,39 @@
+"""Which schedules a search gives, in which order."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+from cfepy.explore.search import make_search
+from cfepy.explore.verdict import Verdict
+from cfepy.rtos.schedule import Schedule
+
+
+def first(policy: str, count: int, depth: int | None = None, options: str = "at", seed: int = 0) -> list[str]:
+    search = make_search(policy, depth, 50, Schedule.parse(options), seed)
+    return [text for text in islice(iter(search.next, None), count) if text is not None]
+
+
+def test_seeds_of_one_policy() -> None:
+    assert first("random", 3) == ["random:0", "random:1", "random:2"]
+    assert first("pct", 2, seed=7) == ["pct:7:3:50", "pct:8:3:50"]
+    assert first("pct", 1, depth=5) == ["pct:0:5:50"]
+
+
+def test_all_is_a_mixture_without_doubles() -> None:
+    found = first("all", 40)
+    assert len(set(found)) == 40
+    assert {text.split(":")[0] for text in found} == {"random", "pct"}
+    assert {text.split(":")[2] for text in found if text.startswith("pct")} >= {"1", "2", "3"}
+
+
+def test_options_go_into_every_schedule() -> None:
+    assert all(text.endswith(":any:hold=500us") for text in first("all", 8, options="at:any:hold=500us"))
+
+
+def test_the_systematic_search_learns_from_verdicts() -> None:
+    search = make_search("dfs", 1, 50, Schedule.parse("at"))
+    assert search.next() == "at"
+    assert search.next() is None
+    search.tell(0, Verdict("at", widths=(-2, 3)))
+    assert [search.next() for _ in range(4)] == ["at:0=1", "at:1=1", "at:1=2", None]

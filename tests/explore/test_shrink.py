@@ -1,0 +1,86 @@
+"""Shrinking ends at a schedule with few preemptions that fails in the same way."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.explore.moves import Move, MovePolicy
+from cfepy.explore.shrink import Shrinker
+from cfepy.explore.timeline import timeline
+from cfepy.explore.trial import Trial
+from cfepy.explore.verdict import INVARIANT
+from cfepy.mission.run_plan import RunPlan
+from tests.explore import missions
+
+PAID = 'invariants: {all paid: {topic: /total, holds: "msg.data == 6"}}\n'
+
+
+@pytest.fixture(scope="module")
+def bank(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return missions.write(tmp_path_factory.mktemp("bank"), {"BANK": missions.LOST_UPDATE}, PAID)
+
+
+def first_failing(trial: Trial, form: str) -> str:
+    """The first seed under which a trial fails."""
+    return next(text for text in (form.format(seed) for seed in range(500)) if trial.run(text).failed)
+
+
+def test_it_ends_with_few_preemptions_and_the_same_failure(tmp_path: Path) -> None:
+    trial = Trial(RunPlan((str(missions.write_late(tmp_path)),), seconds=1.5, tasks="greenlet"))
+    schedule = first_failing(trial, "random:{}")
+    verdict = trial.run(schedule)
+    shrunk = Shrinker(trial, schedule, verdict.groups[0]).run()
+    assert shrunk is not None
+    assert len(verdict.deviations) > 3
+    assert len(shrunk.verdict.deviations) == len(shrunk.moves) == 1
+    assert shrunk.verdict.schedule.startswith("at:")
+    assert shrunk.verdict.groups[0] == verdict.groups[0]
+    assert shrunk.trial.plan.seconds == 0.7
+    assert shrunk.trial.run(shrunk.verdict.schedule) == shrunk.verdict
+    assert Shrinker(trial, schedule, verdict.groups[0]).run() == shrunk
+
+
+def test_a_schedule_that_does_not_fail_is_not_shrunk(bank: Path) -> None:
+    trial = Trial(RunPlan((str(bank),), seconds=0.7))
+    assert Shrinker(trial, "fifo", f"{INVARIANT}|all paid|x").run() is None
+
+
+def test_it_keeps_to_its_number_of_runs(bank: Path) -> None:
+    trial = Trial(RunPlan((str(bank),), seconds=0.7))
+    schedule = "at:5=1,16=1,24=2"
+    (group,) = trial.run(schedule).groups
+    shrunk = Shrinker(trial, schedule, group, most_probes=10).run()
+    assert shrunk is not None
+    assert shrunk.probes <= 10 + 2  # and the two that make sure of the result
+
+
+def test_the_timeline_shows_both_tasks_up_to_the_failure(bank: Path) -> None:
+    trial = Trial(RunPlan((str(bank),), seconds=0.7))
+    schedule = "at:16=1,25=2"
+    (group,) = trial.run(schedule).groups
+    shrunk = Shrinker(trial, schedule, group, most_probes=0).run()
+    assert shrunk is not None
+    failure = shrunk.verdict.failure(group)
+    assert failure is not None
+    lines = timeline(shrunk.trial, shrunk.verdict, failure, shrunk.moves)
+    golden = Path(__file__).with_name("golden_timeline.txt").read_text().splitlines()
+    assert lines == golden
+    assert max(map(len, lines)) <= 100
+
+
+def test_a_move_that_is_not_possible_is_left_out(bank: Path) -> None:
+    trial = Trial(RunPlan((str(bank),), seconds=0.7))
+    verdict, _ = trial.fly("at", policy=MovePolicy([Move("NOBODY", 0, "BANK"), Move("BANK", 1, "NOBODY")]))
+    assert not verdict.failed
+    assert verdict.preemptions == 0
+
+
+def test_options_of_the_schedule_stay(tmp_path: Path) -> None:
+    trial = Trial(RunPlan((str(missions.write_late(tmp_path)),), seconds=0.7, tasks="greenlet"))
+    schedule = first_failing(trial, "random:{}:from=500ms")
+    shrunk = Shrinker(trial, schedule, trial.run(schedule).groups[0]).run()
+    assert shrunk is not None
+    assert shrunk.verdict.schedule.endswith(":from=500ms")
+    assert len(shrunk.verdict.deviations) == 1

@@ -1,0 +1,168 @@
+"""A trial flies a mission under a schedule and says what failed."""
+
+from __future__ import annotations
+
+import pickle
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from cfepy.explore.trial import Trial
+from cfepy.explore.verdict import (
+    DEADLOCK,
+    DIED,
+    ENDED,
+    EVENT,
+    EXPECTATION,
+    INVARIANT,
+    RAISED,
+    RESET,
+    RESULTS,
+    Verdict,
+)
+from cfepy.mission.run_plan import RunPlan
+from cfepy.status import UsageError
+from tests.explore import missions
+
+PAID = """
+    invariants: {all paid: {topic: /total, holds: "msg.data == 6"}}
+    results: {/total: last}
+"""
+LOST = "at:16=1,25=2"
+
+
+def trial(folder: Path, seconds: float = 0.7, **plan: object) -> Trial:
+    return Trial(replace(RunPlan((str(folder),), seconds=seconds), **plan))  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def bank(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return missions.write(tmp_path_factory.mktemp("bank"), {"BANK": missions.LOST_UPDATE}, PAID)
+
+
+def test_the_default_schedule_goes_well_and_counts_decisions(bank: Path) -> None:
+    verdict, results = trial(bank).fly("fifo")
+    assert not verdict.failed
+    assert not verdict.trouble
+    assert verdict.decisions > 20
+    assert verdict.deviations == ()
+    assert [(each.name, each.text) for each in results] == [("/total (last)", "data: 6")]
+
+
+def test_what_fails_under_a_schedule_fails_again_on_both_contexts(bank: Path) -> None:
+    _, results = trial(bank).fly("fifo")
+    verdict = trial(bank).against(results).run(LOST)
+    assert [failure.kind for failure in verdict.failures] == [INVARIANT, RESULTS]
+    assert verdict.failures[0].text == "msg.data == 6 does not hold; msg.data is 3"
+    assert verdict.failures[0].who == "all paid"
+    assert verdict.failures[1].text == "data: 3; under fifo data: 6"
+    assert verdict.preemptions == 2
+    assert verdict.deviations == ((16, 1), (25, 2))
+    assert trial(bank).against(results).run(LOST) == verdict
+    assert trial(bank, tasks="greenlet").against(results).run(LOST) == verdict
+
+
+def test_trials_and_verdicts_go_to_other_processes(bank: Path) -> None:
+    _, results = trial(bank).fly("fifo")
+    sent = pickle.loads(pickle.dumps(trial(bank).against(results)))
+    verdict = sent.run(LOST)
+    assert Verdict.from_dict(verdict.to_dict()) == verdict
+    assert pickle.loads(pickle.dumps(verdict)) == verdict
+
+
+def test_the_command_replays_it(bank: Path) -> None:
+    assert trial(bank).command(LOST) == f"cfepy run --for 0.7 --schedule {LOST} {bank}"
+
+
+def test_a_deadlock_is_a_failure(tmp_path: Path) -> None:
+    locks = missions.write(tmp_path, {"LOCKS": missions.LOCK_ORDER})
+    assert not trial(locks).run("fifo").failed
+    failures = trial(locks).run("at:11=1,33=1").failures
+    assert [(failure.kind, failure.who) for failure in failures] == [(DEADLOCK, "LOCKS")]
+    assert "held by LOCKS.locks.2.2" in failures[0].text
+
+
+def test_an_exception_in_a_thread_is_a_failure_with_its_traceback(tmp_path: Path) -> None:
+    stock = missions.write(tmp_path, {"STOCK": missions.CHECK_THEN_ACT})
+    assert not trial(stock).run("fifo").failed
+    (failure,) = trial(stock).run("at:14=1,23=2").failures
+    assert (failure.kind, failure.who) == (RAISED, "stock")
+    assert failure.text == "IndexError: pop from empty list (stock.py:11)"
+    assert failure.detail.startswith("Traceback (most recent call last):")
+    assert "items.pop()" in failure.detail
+
+
+APPS = """
+def Dies(cfe):
+    cfe.evs.register()
+    raise ValueError("number 17")
+
+
+def GivesUp(cfe):
+    cfe.es.exit_app(3)
+
+
+def Complains(cfe):
+    cfe.evs.register()
+    cfe.evs.send_err(5, "something is wrong")
+    while cfe.es.run_loop(1):
+        cfe.os.task_delay(100)
+"""
+
+
+def app(tmp_path: Path, name: str, action: int = 0) -> Trial:
+    (tmp_path / "apps.py").write_text(APPS)
+    (tmp_path / "startup.scr").write_text(f"CFE_APP, apps, {name}, {name.upper()}, 50, 8192, 0, {action};\n!\n")
+    return trial(tmp_path, 1.0)
+
+
+def test_an_app_that_dies(tmp_path: Path) -> None:
+    failure, reset = app(tmp_path, "Dies", action=1).run("fifo").failures
+    assert (failure.kind, failure.who, failure.text) == (DIED, "DIES", "ValueError: number 17 (apps.py:4)")
+    assert failure.at_ns == 550_000_000
+    assert 'raise ValueError("number 17")' in failure.detail
+    assert (reset.kind, reset.text) == (RESET, "DIES: ValueError: number 17 (apps.py:4)")
+
+
+def test_an_app_that_ends_with_an_error(tmp_path: Path) -> None:
+    (failure,) = app(tmp_path, "GivesUp").run("fifo").failures
+    assert (failure.kind, failure.who) == (ENDED, "GIVESUP")
+
+
+@pytest.mark.parametrize(("level", "count"), [("error", 1), ("critical", 0), ("none", 0)])
+def test_which_events_count_can_be_chosen(tmp_path: Path, level: str, count: int) -> None:
+    failures = replace(app(tmp_path, "Complains"), events=level).run("fifo").failures
+    assert len(failures) == count
+    for failure in failures:
+        assert (failure.kind, failure.text) == (EVENT, "ERROR event 5: something is wrong")
+
+
+def test_a_step_of_the_script_that_fails(tmp_path: Path) -> None:
+    script = tmp_path / "checks.txt"
+    script.write_text("expect app COMPLAINS RUNNING within 1\nexpect event COMPLAINS 6 within 1\n")
+    found = app(tmp_path, "Complains")
+    found = replace(found, plan=replace(found.plan, script=str(script), seconds=None), events="none")
+    (failure,) = found.run("fifo").failures
+    assert (failure.kind, failure.who) == (EXPECTATION, "checks.txt:2")
+
+
+def test_a_mission_that_cannot_be_read_is_no_verdict(tmp_path: Path) -> None:
+    with pytest.raises(UsageError):
+        trial(tmp_path / "nothing").run("fifo")
+
+
+def test_errors_of_cfepy_itself_are_told_apart(bank: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object, **__: object) -> object:
+        raise AssertionError("a bug in cfepy")
+
+    monkeypatch.setattr(RunPlan, "fly", broken)
+    verdict = trial(bank).run("fifo")
+    assert not verdict.failed
+    assert "a bug in cfepy" in verdict.trouble
+
+
+def test_a_systematic_search_gets_the_widths(bank: Path) -> None:
+    verdict = replace(trial(bank), keep_widths=True).run("at")
+    assert len(verdict.widths) == verdict.decisions
+    assert all(abs(width) > 1 for width in verdict.widths)

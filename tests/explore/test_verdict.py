@@ -1,0 +1,55 @@
+"""Failures are grouped by what they have in common."""
+
+from __future__ import annotations
+
+from cfepy.explore.findings import Findings
+from cfepy.explore.verdict import DIED, INVARIANT, RESULTS, Failure, Verdict
+
+
+def died(text: str) -> Failure:
+    return Failure(DIED, "ARM", text, 1)
+
+
+def test_numbers_make_no_other_failure() -> None:
+    assert (
+        died("ValueError: 17 of 20.5 at 0x1F (arm.py:12)").group
+        == died("ValueError: 3 of 1e-9 at 0x2 (arm.py:12)").group
+    )
+
+
+def test_lines_of_source_do() -> None:
+    assert died("KeyError: 1 (arm.py:12)").group != died("KeyError: 1 (arm.py:13)").group
+
+
+def test_kind_and_who_do() -> None:
+    groups = {Failure(kind, who, "x").group for kind in (DIED, INVARIANT) for who in ("A", "B")}
+    assert len(groups) == 4
+
+
+def test_each_failure_is_found_once_with_its_first_schedule() -> None:
+    findings = Findings(Verdict("fifo"))
+    bad = Verdict("random:2", (died("x"), Failure(RESULTS, "/total", "other")))
+    assert not findings.take(0, Verdict("random:0"))
+    assert findings.take(2, bad)
+    assert findings.take(7, bad)
+    (finding,) = findings.all()
+    assert (finding.number, finding.numbers, finding.median_schedules) == (2, [2, 7], 4)
+    assert finding.others == ("results differ: /total: other",)
+
+
+def test_what_fails_by_default_does_not_hide_the_rest() -> None:
+    known, new = died("always"), died("sometimes")
+    findings = Findings(Verdict("fifo", (known,)))
+    assert not findings.take(0, Verdict("random:0", (known,)))
+    assert findings.take(1, Verdict("random:1", (known, new)))
+    assert [(each.failure.text, each.in_reference) for each in findings.all()] == [
+        ("always", True),
+        ("sometimes", False),
+    ]
+
+
+def test_errors_of_cfepy_are_kept_apart() -> None:
+    findings = Findings(Verdict("fifo"))
+    findings.take(0, Verdict("random:0", trouble="Traceback"))
+    assert findings.all() == []
+    assert [each.schedule for each in findings.troubles] == ["random:0"]

@@ -1,0 +1,92 @@
+"""Random faults on the missions that cfepy brings along: nothing breaks, and everything happens again the same way."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.faults import FaultInjector, FaultPlan, random_plan
+from cfepy.mission import Mission, read_mission
+from cfepy.mission.fault_check import check_plan
+from cfepy.mission.fault_plans import look_at, plan_of
+from cfepy.mission.results import Results, mark
+from cfepy.mission.run_plan import RunPlan
+from cfepy.rtos.errors import InjectedCrash
+from cfepy.status import CfeError, UsageError
+
+
+def flown(name: str, plan: FaultPlan, seconds: float, tasks: str = "thread") -> Results:
+    """A mission with faults; what its applications died of must be the faults' doing."""
+    with Mission(name, console=Console(quiet=True), tasks=tasks, attachments=[FaultInjector(plan)]) as mission:
+        mission.run(seconds)
+        at = mark(mission, 0)
+        mission.shut_down_nodes()
+        digest = mission.trace.digest()
+    for history in mission.record.history.values():
+        error = history.last_error
+        assert (
+            error is None or isinstance(error, InjectedCrash) or (isinstance(error, CfeError) and "fault" in str(error))
+        )
+    return Results.of(mission, at, digest)
+
+
+def check(name: str, seeds: range, seconds: float, intensity: str = "high") -> None:
+    found = look_at(read_mission(name))
+    for seed in seeds:
+        plan = random_plan(seed, found.targets, intensity)
+        assert check_plan(plan, read_mission(name), found) == []
+        first = flown(name, plan, seconds)
+        again = flown(name, FaultPlan.from_dict(plan.to_dict()), seconds, "greenlet")
+        assert first.trace == again.trace, f"seed {seed}"
+        assert first.faults == again.faults
+        assert sum(row["times"] > 0 for row in first.faults) > 0
+
+
+@pytest.mark.parametrize("name", ["lab", "sched", "rx64m_pubsub"])
+def test_random_faults_repeat(name: str) -> None:
+    check(name, range(2), 11)
+
+
+def test_random_faults_repeat_on_capture() -> None:
+    check("capture", range(1), 3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "count", "seconds"), [("lab", 100, 12), ("sched", 50, 12), ("rx64m_pubsub", 50, 12), ("capture", 10, 6)]
+)
+def test_many_random_faults_repeat(name: str, count: int, seconds: float) -> None:
+    check(name, range(100, 100 + count), seconds)
+
+
+def test_a_plan_by_its_seed_by_its_text_and_as_a_run_plan() -> None:
+    spec = read_mission("lab")
+    plan = plan_of("seed:3:low", spec)
+    assert len(plan.faults) == 2
+    assert plan_of(plan.to_yaml(), spec) == plan
+    by_seed = RunPlan(("lab",), seconds=4, faults="seed:3:low")
+    assert by_seed.fly().trace == RunPlan(("lab",), seconds=4, faults=plan.to_yaml()).fly().trace
+    assert "--faults seed:3:low" in by_seed.command_line()
+    assert by_seed.fly().trace != RunPlan(("lab",), seconds=4).fly().trace
+
+
+def test_an_injector_serves_one_mission_after_the_other() -> None:
+    injector = FaultInjector(plan_of("seed:5:high", read_mission("lab")))
+    traces = []
+    for _ in range(2):
+        with Mission("lab", console=Console(quiet=True), attachments=[injector]) as mission:
+            mission.run(11)
+            traces.append(mission.trace.digest())
+    assert traces[0] == traces[1]
+
+
+@pytest.mark.parametrize("text", ["seed:", "seed:x", "seed:3:much", "seed:-1"])
+def test_seeds_that_are_none(text: str) -> None:
+    with pytest.raises(UsageError, match="seed:7"):
+        plan_of(text, read_mission("lab"))
+
+
+def test_another_seed_of_the_run_draws_other_numbers() -> None:
+    plan = FaultPlan.from_dict({"faults": [{"drop": "CFE_TIME_*", "probability": 0.5}]}).to_yaml()
+    traces = {RunPlan(("lab",), seconds=10, seed=seed, faults=plan).fly().trace for seed in (1, 1, 2)}
+    assert len(traces) == 2
