@@ -43,10 +43,9 @@ HOST_MODULES = {"time", "random", "threading", "_thread", "socket", "select", "d
 MAY_TOUCH_THE_HOST = {
     "rtos": "task contexts, pacing and the stall watch are made of the host's threads and clock",
     "io": "joins the virtual network of a paced run to real sockets on the loopback interface",
-    "explore": "spreads trials over processes and computers, and tells how far it has come",
+    "explore": "spreads trials over processes and computers, sees when one of them ends, and tells how far it has come",
     "faults": "draws from random streams that follow from the seed of the run",
     "nodes": "puts virtual modules in the place of these, and takes constants and types from the real ones",
-    "explore": "a thread of each worker process sees when whoever started it ends",
 }
 
 

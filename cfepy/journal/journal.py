@@ -161,8 +161,7 @@ class Journal:
         elif kind == FOLDER:
             self.folders[body["path"]] = body["names"]
         elif kind == PAUSE:
-            events = [Event(name, tuple(values)) for name, values in body["events"]]
-            self.pauses.append(Pause(body["until_ns"], body["visits"], events))
+            self._take_pause(Pause(body["until_ns"], body["visits"]), body["events"])
         elif kind == ANSWER:
             self.answers.append(Event(kind, tuple(body["values"])))
         elif kind == CHECK:
@@ -170,6 +169,12 @@ class Journal:
             self._take_decisions(body["decisions"], body["decided"])
         elif kind == END:
             self.end = End(**body)
+
+    def _take_pause(self, pause: Pause, events: list[list[Any]]) -> None:
+        last = self.pauses[-1] if self.pauses else None
+        if last is None or (last.until_ns, last.visits) != (pause.until_ns, pause.visits):
+            self.pauses.append(last := pause)
+        last.events.extend(Event(name, tuple(values)) for name, values in events)
 
     def _take_decisions(self, gaps_and_choices: list[int], decided: int) -> None:
         number = self.decided - 1

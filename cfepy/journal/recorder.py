@@ -72,8 +72,6 @@ class JournalRecorder(Attachment):
         self._checked_ns = 0
         self._digest = ""
         self._mission: Mission | None = None
-        self._pause: tuple[int, int] | None = None
-        self._events: list[list[Any]] = []
         try:
             self._writer = FrameWriter(path)
         except OSError as error:
@@ -107,7 +105,6 @@ class JournalRecorder(Attachment):
         """The run stands still: write down how far it has come, unless that was done a short time ago."""
         mission = self._mission
         if mission is not None:
-            self._write_pause()
             if mission.kernel.now - self._checked_ns >= CHECK_NS:
                 mission.trace.flush()
 
@@ -115,7 +112,6 @@ class JournalRecorder(Attachment):
         """See `Attachment.finish`; the digest of the run was taken."""
         mission = self._mission
         assert mission is not None
-        self._write_pause()
         self._check(mission.kernel.now)
         mission.outside.listener = None
         self._finished = True
@@ -182,23 +178,15 @@ class JournalRecorder(Attachment):
         self._write(FOLDER, {"path": path, "names": kinds})
 
     def _from_outside(self, event: outside.Event) -> None:
+        """Something comes in; it is written at once, since the run may crash of it."""
         mission = self._mission
         assert mission is not None
         if event.kind == outside.ANSWER:
-            self._write_pause()
             self._write(ANSWER, {"values": event.values})
-            return
-        pause = (mission.outside.until_ns, mission.outside.visits)
-        if pause != self._pause:
-            self._write_pause()
-            self._pause = pause
-        self._events.append([event.kind, event.values])
-
-    def _write_pause(self) -> None:
-        if self._pause is not None:
-            until_ns, visits = self._pause
-            self._write(PAUSE, {"until_ns": until_ns, "visits": visits, "events": self._events})
-            self._pause, self._events = None, []
+        else:
+            door = mission.outside
+            body = {"until_ns": door.until_ns, "visits": door.visits, "events": [[event.kind, event.values]]}
+            self._write(PAUSE, body)
 
     def _hashed(self, records: Sequence[bytes]) -> None:
         """A batch of records was hashed."""

@@ -76,18 +76,16 @@ class Invariant:
         return tuple(each for each in (self.when, self.holds, of_answer) if each is not None)
 
 
-def read_invariants(section: Marked | None, folder: Path) -> tuple[Invariant, ...]:
+def read_invariants(section: Marked, folder: Path) -> tuple[Invariant, ...]:
     """The section `invariants:`.
 
     Args:
-        section: its value; None when there is none.
+        section: its value.
         folder: the mission's, where files of functions are looked for.
 
     Raises:
         UsageError: something is wrong with one of them.
     """
-    if section is None:
-        return ()
     return tuple(read_invariant(name, entry, folder) for name, entry in section.mapping().items())
 
 

@@ -33,17 +33,15 @@ class SelectedResult:
     ignore: tuple[str, ...] = TIMES
 
 
-def read_selected_results(section: Marked | None) -> tuple[SelectedResult, ...]:
+def read_selected_results(section: Marked) -> tuple[SelectedResult, ...]:
     """The section `results:`.
 
     Args:
-        section: its value; None when there is none.
+        section: its value.
 
     Raises:
         UsageError: an unknown field or comparison.
     """
-    if section is None:
-        return ()
     return tuple(read_selected_result(name, entry) for name, entry in section.mapping().items())
 
 

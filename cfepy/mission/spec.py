@@ -10,21 +10,23 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cfepy.es.startup_script import entries
 from cfepy.mission.deadlines import Deadlines, read_deadlines
-from cfepy.mission.invariants import Invariant, read_invariants
 from cfepy.mission.launch import LAUNCH_FILES, read_launch, with_launch_files
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.parameter_files import read_parameters
-from cfepy.mission.selected_results import SelectedResult, read_selected_results
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes.config import ROSCORE_PARAMS, NodeConfig, RosConfig, TopicConfig
 from cfepy.psp.marked_yaml import Marked, load
 from cfepy.resources import shipped
 from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from cfepy.mission.invariants import Invariant
+    from cfepy.mission.selected_results import SelectedResult
 
 STARTUP_SCRIPT = "startup.scr"
 MISSION_FILE = "mission.yaml"
@@ -161,11 +163,29 @@ def _read_file(name: str, folder: Path, script: Path, mission_file: Path) -> Mis
         board,
         ros,
         read_limits(sections.get("limits")),
-        invariants=read_invariants(sections.get("invariants"), folder),
-        results=read_selected_results(sections.get("results")),
+        invariants=_invariants(sections.get("invariants"), folder),
+        results=_results(sections.get("results")),
         deadlines=read_deadlines(sections.get("deadlines")),
     )
     return with_launch_files(spec, read_launches(sections["launch"], folder)) if "launch" in sections else spec
+
+
+def _invariants(section: Marked | None, folder: Path) -> tuple[Invariant, ...]:
+    """The section `invariants:`; only a mission that has one imports what reads it."""
+    if section is None:
+        return ()
+    from cfepy.mission.invariants import read_invariants
+
+    return read_invariants(section, folder)
+
+
+def _results(section: Marked | None) -> tuple[SelectedResult, ...]:
+    """The section `results:`, in the same way."""
+    if section is None:
+        return ()
+    from cfepy.mission.selected_results import read_selected_results
+
+    return read_selected_results(section)
 
 
 def read_launches(section: Marked, folder: Path) -> list[tuple[Path, Mapping[str, str]]]:
