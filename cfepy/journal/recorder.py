@@ -104,9 +104,8 @@ class JournalRecorder(Attachment):
     def mark(self) -> None:
         """The run stands still: write down how far it has come, unless that was done a short time ago."""
         mission = self._mission
-        if mission is not None:
-            if mission.kernel.now - self._checked_ns >= CHECK_NS:
-                mission.trace.flush()
+        if mission is not None and mission.kernel.now - self._checked_ns >= CHECK_NS:
+            mission.trace.flush()
 
     def finish(self) -> None:
         """See `Attachment.finish`; the digest of the run was taken."""

@@ -15,6 +15,8 @@ from cfepy.attachment import Attachment
 from cfepy.console import Console
 from cfepy.journal import JournalRecorder, read_journal, record, replay
 from cfepy.journal.frames import MARK, FrameWriter, JournalError, read_frames
+from cfepy.mission import Mission
+from cfepy.mission.ground import GroundLink
 from cfepy.mission.results import Results
 from cfepy.resources import import_path
 from cfepy.status import UsageError
@@ -179,6 +181,21 @@ def test_a_killed_process_leaves_a_journal(tmp_path: Path) -> None:
     journal = read_journal(tmp_path / "run.cfepy")
     assert journal.end is None
     assert 1_000_000_000 < journal.known_until_ns < 2_000_000_000
+
+
+def test_what_comes_in_is_in_the_file_before_the_run_goes_on(tmp_path: Path) -> None:
+    plan = plan_for("lab", 3)
+    with (
+        JournalRecorder(tmp_path / "run.cfepy", plan) as recorder,
+        Mission(plan.spec(), console=Console(quiet=True), attachments=[recorder]) as mission,
+    ):
+        mission.run(2)
+        with GroundLink(mission) as ground:
+            assert ground.send(b"first")
+            assert ground.send(b"second")
+        journal = read_journal(tmp_path / "run.cfepy")
+    (pause,) = journal.pauses
+    assert (pause.until_ns, [event.values[-1] for event in pause.events]) == (2_000_000_000, [b"first", b"second"])
 
 
 def test_a_journal_that_cannot_be_written_is_told_before_the_run(tmp_path: Path) -> None:
