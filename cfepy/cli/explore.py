@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from cfepy.explore.results_file import ResultsFile
 from cfepy.explore.search import SeededSearch, SystematicSearch, make_search
 from cfepy.explore.shipment import ship
 from cfepy.explore.shrink import Shrinker, Shrunk
+from cfepy.explore.stuck import waits_of
 from cfepy.explore.timeline import timeline
 from cfepy.explore.trial import Trial
 from cfepy.explore.verdict import Verdict
@@ -47,6 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
     bare = Trial(plan, arguments.events, keep_widths=arguments.policy == "dfs")
     reference, results = bare.fly(options.text())
     trial = bare.against(results)
+    if not arguments.no_stuck and reference.end_ns:
+        trial = replace(trial, waits=waits_of(plan, reference.end_ns, options.policy()))
     findings = Findings(reference)
     search = make_search(arguments.policy, arguments.depth, reference.decisions, options, arguments.first_seed)
     tally = _fly(arguments, trial, search, findings, reference)
@@ -116,7 +120,7 @@ def _fly(
 
 
 def _identity(arguments: argparse.Namespace, trial: Trial, files: list[str]) -> dict[str, Any]:
-    names = ("policy", "depth", "first_seed", "any_priority", "hold", "from", "events")
+    names = ("policy", "depth", "first_seed", "any_priority", "hold", "from", "events", "no_stuck")
     return identity_of(trial.plan, files, {name: getattr(arguments, name) for name in names})
 
 

@@ -94,6 +94,9 @@ def _add_run(explore: argparse.ArgumentParser) -> None:
         default="error",
         help="events of the mission's applications that are failures: ERROR and CRITICAL (default), CRITICAL, or none",
     )
+    explore.add_argument(
+        "--no-stuck", action="store_true", help="a task that waits for ever, and does not by default, is no failure"
+    )
 
 
 def _add_crew(explore: argparse.ArgumentParser) -> None:

@@ -7,7 +7,7 @@ import contextlib
 import os
 import sys
 from collections.abc import Iterator, Sequence
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from cfepy.attachment import Attachment
 from cfepy.cli.journal_info import show_info
@@ -24,6 +24,9 @@ from cfepy.mission import Mission
 from cfepy.mission.course import BROKEN_OFF
 from cfepy.mission.run_plan import LAUNCH, NODE
 from cfepy.rtos.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from cfepy.debugger.debugger import Debugger
 
 MOST_LINES = 12
 _FILES = ("json", "save_files", "bag", "trace")  # what a replay leaves behind
@@ -104,15 +107,21 @@ def fly_again(arguments: argparse.Namespace, replay: Replay) -> int:
     plan = replay.plan
     again = arguments_of(plan, **{name: getattr(arguments, name) for name in (*_FILES, *_OPTIONS)})
     spec = replay.stage.spec()
-    is_stopped = arguments.stops or arguments.step or arguments.pdb is not None
-    if is_stopped:
+    debugger: Debugger | None = None
+    view = RosView() if plan.command == LAUNCH and not arguments.console else View()
+    if arguments.stops or arguments.step or arguments.pdb is not None:
         from cfepy.cli.debugging import DebugView, debugger_of
 
-        replay.attachments.append(debugger_of(arguments, spec, replay))
+        debugger, view = debugger_of(arguments, spec, replay), DebugView(view)
+        replay.attachments.append(debugger)
     if plan.command == NODE:
-        return run_node(again, spec, replay=replay)
-    view = RosView() if plan.command == LAUNCH and not arguments.console else View()
-    return run_spec(again, spec, DebugView(view) if is_stopped else view, replay=replay)
+        status = run_node(again, spec, replay=replay)
+    else:
+        status = run_spec(again, spec, view, replay=replay)
+    sys.stdout.flush()
+    for line in debugger.missed if debugger is not None else ():
+        print(f"cfepy: {line}", file=sys.stderr)
+    return status
 
 
 def _tell(replay: Replay, stream: TextIO) -> None:

@@ -27,6 +27,7 @@ from cfepy.status import UsageError
 NAMES = ("msg", "topic", "sender", "t")
 """What a predicate may name: the message, its topic or packet name, who sent it, the virtual time in s."""
 FORMS = "APP:ID or APP:ERROR for an event, a MsgId or the name of a packet or topic, or a Python expression about msg"
+MOST_REASONS = 3
 _TYPES = {"DEBUG": DEBUG, "INFORMATION": INFORMATION, "ERROR": ERROR, "CRITICAL": CRITICAL}
 _EVENT = re.compile(r"([A-Za-z_]\w*|\*):(\d+|\*|[A-Z]+)")
 _NAME = re.compile(r"(0[xX])?\w+", re.ASCII)
@@ -36,8 +37,8 @@ Hit = Callable[[str], object]
 """Is told what there is to stop at, in the task that sends it and before anybody gets it."""
 
 
-def breakpoint_of(text: str, spec: MissionSpec, hit: Hit) -> Attachment:
-    """What a user means by a text.
+class Breakpoint(Attachment):
+    """What stops a run, by the text of a user.
 
     Args:
         text: see `FORMS`.
@@ -45,8 +46,37 @@ def breakpoint_of(text: str, spec: MissionSpec, hit: Hit) -> Attachment:
         hit: is called at each occasion.
 
     Raises:
-        UsageError: it means nothing of the kind.
+        UsageError: the text means nothing of the kind.
     """
+
+    def __init__(self, text: str, spec: MissionSpec, hit: Hit) -> None:
+        self._text = text
+        self._hit = hit
+        self._has_hit = False
+        self._watch = _meant(text, spec, self._stop)
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        return self._watch.bus(base)
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._watch.begin(mission)
+
+    @property
+    def missed(self) -> str | None:
+        """That it has stopped nothing, and why if that is known; None when it has."""
+        if self._has_hit:
+            return None
+        why = self._watch.why_not() if isinstance(self._watch, _AtPredicate) else ""
+        return f"--break {self._text!r} stopped nowhere{why}"
+
+    def _stop(self, what: str) -> None:
+        self._has_hit = True
+        self._hit(what)
+
+
+def _meant(text: str, spec: MissionSpec, hit: Hit) -> Attachment:
     event = _EVENT.fullmatch(text)
     if event is not None:
         return _at_event(text, event[1], event[2], hit)
@@ -100,6 +130,8 @@ class _AtPredicate(Attachment):
         packets = tuple(dict.fromkeys([*dictionary.telemetry, *dictionary.commands]))
         self._watch = MessageWatch(spec, self._take, topics=("*",), packets=packets)
         self._hit = hit
+        self._errors: dict[str, str] = {}  # why it did not apply, by topic or packet
+        self._applies = False
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """See `Attachment.bus`."""
@@ -113,10 +145,19 @@ class _AtPredicate(Attachment):
         try:
             names = {"msg": heard.msg, "topic": heard.topic, "sender": heard.sender, "t": heard.t}
             holds = self._predicate.holds(names)
-        except Exception:
+        except Exception as error:
+            self._errors[heard.topic] = f"{type(error).__name__}: {error}"
             return
+        self._applies = True
         if holds:
             self._hit(f"{self._predicate.source}: {_told(heard)}")
+
+    def why_not(self) -> str:
+        """What hindered it from ever holding: a misspelt field, rather than messages that are not so."""
+        if self._applies or not self._errors:
+            return ""
+        topics = sorted(self._errors, key=lambda topic: not topic.startswith("/"))[:MOST_REASONS]
+        return "; it applies to no message: " + "; ".join(f"{topic}: {self._errors[topic]}" for topic in topics)
 
 
 def _told(heard: Heard) -> str:
@@ -132,6 +173,6 @@ def _shown(heard: Heard) -> str:
     return short(message) if isinstance(message, dict) else shortened(" ".join(str(message).split()))
 
 
-def breakpoints(texts: Sequence[str], spec: MissionSpec, hit: Hit) -> list[Attachment]:
-    """What stops a run at several things; see `breakpoint_of`."""
-    return [breakpoint_of(text, spec, hit) for text in texts]
+def breakpoints(texts: Sequence[str], spec: MissionSpec, hit: Hit) -> list[Breakpoint]:
+    """What stops a run at several things; see `Breakpoint`."""
+    return [Breakpoint(text, spec, hit) for text in texts]

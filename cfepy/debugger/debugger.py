@@ -69,7 +69,7 @@ class Debugger(Observer):
     ) -> None:
         super().__init__()
         self.count = 0
-        self._breakpoints: list[Attachment] = breakpoints(stops, spec, self._stop)
+        self._breakpoints = breakpoints(stops, spec, self._stop)
         self._stepping = step and from_ns is None
         self._steps_from = from_ns
         self._then_steps = step
@@ -124,6 +124,11 @@ class Debugger(Observer):
             return spawn(name, begin, *args, **options)
 
         return start
+
+    @property
+    def missed(self) -> list[str]:
+        """A line for each breakpoint that has stopped nothing, although the run went to its end."""
+        return [] if self._is_over else [each.missed for each in self._breakpoints if each.missed is not None]
 
     # -- what happens ------------------------------------------------------------------------------------------------
 

@@ -23,6 +23,9 @@ seen only when code takes time. More would break what a mission rightly expects 
 class SeededSearch:
     """Schedules from seeds, each with one of its own: of one kind, or of several by turns.
 
+    PCT has to know about how many decisions a run has, and fifo, which interrupts nobody, has far fewer of them than
+    other schedules. So it waits for the verdict on the first schedule, and reckons with as many as that one had.
+
     Args:
         kinds: schedules whose seed is replaced.
         first_seed: of the first one.
@@ -32,14 +35,22 @@ class SeededSearch:
         self._kinds = kinds
         self._number = 0
         self._first_seed = first_seed
+        self._is_measured = False
 
     def next(self) -> str | None:
-        """See `cfepy.explore.campaign.Search`: without end."""
-        number, self._number = self._number, self._number + 1
-        return self._kinds[number % len(self._kinds)].with_seed(self._first_seed + number).text()
+        """See `cfepy.explore.campaign.Search`: without end, but for the one wait."""
+        number = self._number
+        kind = self._kinds[number % len(self._kinds)]
+        if number and kind.kind == "pct" and not self._is_measured:
+            return None
+        self._number += 1
+        return kind.with_seed(self._first_seed + number).text()
 
     def tell(self, number: int, verdict: Verdict) -> None:
-        """See `cfepy.explore.campaign.Search`: nothing is learned."""
+        """See `cfepy.explore.campaign.Search`: from the first one it learns how long a run is."""
+        if number == 0:
+            self._is_measured = True
+            self._kinds = tuple(replace(each, steps=max(each.steps, verdict.decisions)) for each in self._kinds)
 
 
 class SystematicSearch:
@@ -73,7 +84,7 @@ def make_search(
         policy: one of POLICIES.
         depth: of the bugs that PCT looks for, and the most preemptions of a systematic search; None takes 3 and 2,
             and for `all` PCT of depths 1 to 3.
-        steps: decisions of a run, about, as the reference run had them.
+        steps: decisions of a run, at least, as the reference run had them.
         options: a schedule whose options all have.
         first_seed: of the first schedule.
     """

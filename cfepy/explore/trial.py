@@ -7,18 +7,21 @@ cfepy.explore.
 from __future__ import annotations
 
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from cfepy.attachment import Attachment
 from cfepy.explore import verdict
 from cfepy.explore.failures import FailureWatch
 from cfepy.explore.results import Result, ResultWatch, differences, digest_of
+from cfepy.explore.stuck import Waits, WaitWatch, stuck_for_good
 from cfepy.explore.verdict import Failure, Verdict
 from cfepy.mission.run_plan import RunPlan
 from cfepy.rtos.policy import Policy, Recorded
 from cfepy.rtos.schedule import Schedule
 from cfepy.status import CfeError, UsageError
+
+_LEAVES_OTHERS_WAITING = (verdict.DIED, verdict.RAISED, verdict.ENDED, verdict.RESET, verdict.DEADLOCK)
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,14 +31,17 @@ class Trial:
     Attributes:
         plan: the run; its own schedule does not matter.
         events: which events are failures: "error" (ERROR and CRITICAL), "critical" or "none".
-        keep_widths: verdicts have the widths of decisions, which a systematic search needs.
         reference: the results of the run that others are held against; None holds them against nothing.
+        keep_widths: verdicts have the widths of decisions, which a systematic search needs.
+        waits: of the default schedule (`cfepy.explore.stuck`), against which tasks that wait for ever are found; None
+            lets them wait.
     """
 
     plan: RunPlan
     events: str = "error"
     reference: tuple[Result, ...] | None = None
     keep_widths: bool = False
+    waits: Waits | None = None
 
     def run(self, schedule: Schedule | str, attachments: Sequence[Attachment] = ()) -> Verdict:
         """Fly the mission in this process.
@@ -68,9 +74,10 @@ class Trial:
         watch = FailureWatch(self.events)
         spec = self.plan.spec()
         results = ResultWatch(spec)
+        waits = [WaitWatch()] if self.waits is not None else []
         failed: tuple[Failure, ...]
         try:
-            flown = self.plan.fly([*attachments, watch, results], spec=spec, policy=recorded)
+            flown = self.plan.fly([*attachments, watch, results, *waits], spec=spec, policy=recorded)
         except (UsageError, KeyboardInterrupt):
             raise
         except CfeError as error:
@@ -80,10 +87,17 @@ class Trial:
             return replace(self._verdict(chosen, recorded, ()), trouble=traceback.format_exc()), ()
         found = results.results()
         failed = (*watch.failures(flown.outcome), *self._differences(found))
+        if waits and not any(failure.kind in _LEAVES_OTHERS_WAITING for failure in failed):
+            failed += tuple(self._stuck(waits[0].waits, chosen, recorded, watch.end_ns))
         told = self._verdict(chosen, recorded, failed)
         trouble = "\n".join(watch.trouble)
         told = replace(told, results=digest_of(found), trace=flown.trace, end_ns=watch.end_ns, trouble=trouble)
         return told, found
+
+    def _stuck(self, found: Waits, chosen: Schedule, policy: Recorded, end_ns: int) -> Iterator[Failure]:
+        assert self.waits is not None
+        again = Schedule.parse(chosen.text()).at(policy.deviations)
+        return stuck_for_good(found, self.waits, self.plan, end_ns, again.policy)
 
     def against(self, reference: tuple[Result, ...]) -> Trial:
         """The same trial, in which results that differ from these are failures."""

@@ -16,26 +16,27 @@ from cfepy.rtos import ExploringKernel, Kernel
 
 
 class _Pointed:
-    """A service, with a scheduling point before each call of a method."""
-
-    __slots__ = ("_kernel", "_service")
+    """A service, with a scheduling point before each call of a method. What was called once is kept."""
 
     def __init__(self, service: Any, kernel: ExploringKernel) -> None:
-        object.__setattr__(self, "_service", service)
-        object.__setattr__(self, "_kernel", kernel)
+        vars(self).update(_service=service, _kernel=kernel)
 
     def __getattr__(self, name: str) -> Any:
         value = getattr(self._service, name)
-        return _pointed(value, self._kernel.point) if isinstance(value, MethodType) else value
+        if not isinstance(value, MethodType):
+            return value
+        call = vars(self)[name] = _pointed(self._service, name, self._kernel.point)
+        return call
 
     def __setattr__(self, name: str, value: Any) -> None:
+        vars(self).pop(name, None)
         setattr(self._service, name, value)
 
 
-def _pointed(method: Callable[..., Any], point: Callable[[], None]) -> Callable[..., Any]:
+def _pointed(service: Any, name: str, point: Callable[[], None]) -> Callable[..., Any]:
     def call(*args: Any, **options: Any) -> Any:
         point()
-        return method(*args, **options)
+        return getattr(service, name)(*args, **options)
 
     return call
 

@@ -7,7 +7,7 @@ of `Kernel`, which pays nothing for this module.
 
 from __future__ import annotations
 
-from heapq import heappop
+from heapq import heappop, heappush
 from typing import Any
 
 from cfepy import trace as tr
@@ -63,8 +63,13 @@ class ExploringKernel(Kernel):
     def point(self) -> None:
         """The current task calls something: others may get in before that."""
         task = self.current
-        if task is self.host or task.dying or not self._has_choice(task):
-            return
+        if self._hold_ns:
+            if task is self.host or task.dying or not self._has_choice(task):
+                return
+        else:  # most calls find nobody who could get in: they end here
+            ready = self.ready
+            if not ready or not (self._any or ready[0][0] <= task.priority) or task.dying or task is self.host:
+                return
         self._push_front(task)
         following = self._take()
         if following is not task:
@@ -89,14 +94,21 @@ class ExploringKernel(Kernel):
         task = self.current
         if task is self.host:
             return
-        task.cpu_ns += duration_ns
-        self.now += duration_ns
+        task.cpu_ns = used = task.cpu_ns + duration_ns
+        self.now = now = self.now + duration_ns
         if task is not self._busy:
-            self._busy, self._busy_until = task, task.cpu_ns + SLICE_NS
-        elif task.cpu_ns >= self._busy_until:
+            self._busy, self._busy_until = task, used + SLICE_NS
+        elif used >= self._busy_until:
             self._left = task
             self._busy_until += SLICE_NS
-        self._catch_up(task, duration_ns)
+        timers = self.timers
+        ready = self.ready
+        if (
+            (ready and (self._any or ready[0][0] <= task.priority))
+            or (timers and timers[0][0] - self._hold_ns <= now)
+            or now > self._until
+        ):
+            self._catch_up(task, duration_ns)
 
     def _catch_up(self, task: Task, duration_ns: int) -> None:
         """As the base class, but equals get their chance each time, not only when the time slice is used up."""
@@ -133,7 +145,8 @@ class ExploringKernel(Kernel):
     # -- choosing --------------------------------------------------------------------------------------------------
 
     def _push_front(self, task: Task) -> None:
-        super()._push_front(task)
+        self._front = front = self._front - 1
+        heappush(self.ready, (task.priority, front, task))
         self._going_on = task
 
     def _push_back(self, task: Task) -> None:
@@ -141,20 +154,25 @@ class ExploringKernel(Kernel):
         self._left = task
 
     def _take(self) -> Task:
-        """Ask the policy; a pause of the run does not make it a second decision."""
+        """Ask the policy if there is a choice; a pause of the run does not make it a second decision."""
         ready = self.ready
         while True:
-            ready.sort()  # a sorted list is a heap, and stays one without any of its items
-            first = ready[0]
-            if first[2] is self.host:
+            if len(ready) > 1:
+                ready.sort()  # a sorted list is a heap, and stays one without any of its items
+            first = ready[0][2]
+            if first is self.host:
                 return heappop(ready)[2]
-            choice = self._choose(first[2], self._width())
-            if choice >= 0:
+            width = 1 if len(ready) == 1 else self._width()
+            timer = self._next_timer() if self._hold_ns and first is self._going_on else None
+            choice = 0 if width == 1 and timer is None else self._ask(width, timer)
+            if choice < width:
                 self._going_on = self._left = None
                 return ready.pop(choice)[2]
+            assert timer is not None
+            self.now = timer
             self._fire_due()
             if self.now > self._until:
-                self._last = first[2]
+                self._last = first
                 return self.host
 
     def _width(self) -> int:
@@ -162,27 +180,20 @@ class ExploringKernel(Kernel):
         ready = self.ready
         if self._any:
             return len(ready)
+        priority = ready[0][0]
         width = 1
-        while width < len(ready) and ready[width][0] == ready[0][0]:
+        while width < len(ready) and ready[width][0] == priority:
             width += 1
         return width
 
-    def _choose(self, first: Task, width: int) -> int:
-        """Which of the first `width` ready tasks runs; -1 when none does, and it is later now."""
-        running = first is self._going_on
-        timer = self._next_timer() if running and self._hold_ns else None
-        if width == 1 and timer is None:
-            return 0
+    def _ask(self, width: int, timer: int | None) -> int:
+        """Which of the first `width` ready tasks runs; `width` when none does before a timer that is due soon."""
         tasks = [entry[2] for entry in self.ready[:width]]
-        decision = Decision(self._decisions, self.now, tasks, running, timer is not None, self._left)
-        self._decisions += 1
+        number = self._decisions
+        self._decisions = number + 1
         assert self.policy is not None
-        choice = self.policy.choose(decision)
-        if choice < width:
-            return choice
-        assert timer is not None
-        self.now = timer
-        return -1
+        running = tasks[0] is self._going_on
+        return self.policy.choose(Decision(number, self.now, tasks, running, timer is not None, self._left))
 
     def _next_timer(self) -> int | None:
         """When the next timer is due, if that is soon enough for a task to be held up until then."""

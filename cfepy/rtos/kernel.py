@@ -20,6 +20,8 @@ from cfepy.rtos.scheduler import Scheduler
 from cfepy.rtos.task import Task, TaskExit
 
 ENDLESS = 1 << 62
+LEAST_LOOKS = 16  # every so many simulations, all garbage is looked for at the end
+OBJECTS_A_LOOK = 10_000  # and less often where there are more objects than this for each of them
 COLLECT_NS = 10_000_000_000  # garbage is collected at multiples of this: finalizers always run at the same place
 
 
@@ -252,11 +254,24 @@ class Kernel(Scheduler):
         self._last = None
 
     def shutdown(self) -> None:
-        """Unwind every task and let their threads go. The host calls it at the end."""
+        """Unwind every task and let their threads go, and what they leave behind. The host calls it at the end.
+
+        What is left is full of circles, above all classes, which only the garbage collector finds; and it hardly ever
+        looks by itself, as it is off while tasks run. So it looks here, through what this run has made alone; from
+        time to time, so that it costs little, through everything, for then others have dropped their simulations.
+        """
         self.unwind()
-        if self._frozen:
+        if not self._frozen:
+            return
+        self._frozen = False
+        if not gc.isenabled():  # somebody knows better
             gc.unfreeze()
-            self._frozen = False
+            return
+        looks = gc.get_stats()[-1]["collections"]
+        if looks % max(LEAST_LOOKS, gc.get_freeze_count() // OBJECTS_A_LOOK) == 0:
+            gc.unfreeze()
+        gc.collect()
+        gc.unfreeze()
 
     def waiting(self) -> str:
         """Who waits for what, held by whom: the deadlock report."""

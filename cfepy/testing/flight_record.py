@@ -91,14 +91,21 @@ class FlightRecord:
             UsageError: there is no such packet in the dictionary.
             ExpectationError: none was sent.
         """
-        entry = self.dictionary.telemetry_of(name)
-        seen = self.log.packets.get(entry.msg_id)
-        if not seen:
+        found = self.packets(name)
+        if not found:
             names = self.log.telemetry_names()
-            raise self._failure(
-                f"telemetry {entry.name} until now", f"only {', '.join(names)}" if names else "no telemetry"
-            )
-        return self.log.packet(seen[-1])
+            instead = f"only {', '.join(names)}" if names else "no telemetry"
+            raise self._failure(f"telemetry {self.dictionary.telemetry_of(name).name} until now", instead)
+        return found[-1]
+
+    def packets(self, name: str) -> list[Packet]:
+        """All packets of a kind, by the name of the telemetry or its MsgId, whether or not anybody subscribed.
+
+        Raises:
+            UsageError: there is no such packet in the dictionary.
+        """
+        msg_id = self.dictionary.telemetry_of(name).msg_id
+        return [self.log.packet(seen) for seen in self.log.packets.get(msg_id, ())]
 
     def stdout(self, node: str) -> list[str]:
         """The lines that a node has printed and logged, by the node's name, without the name in front.

@@ -76,12 +76,12 @@ class ExampleTests:
         return example
 
     def code_of(self, error: BaseException) -> str | None:
-        """The code of the example that has failed; None when Hypothesis told none."""
+        """The code of the example that has failed; None when there is none, as for an error of the strategies."""
         for note in _notes(error):
             found = _CODE.search(note)
             if found is not None:
                 return f"{found['version']}:{found['code']}"
-        return None
+        return self._code  # Hypothesis does not tell the one that it was given
 
 
 def _notes(error: BaseException) -> Iterator[str]:

@@ -53,6 +53,15 @@ def test_a_user_who_has_seen_enough(
     assert "where it was compared for the last time" in said.err
 
 
+def test_a_breakpoint_that_was_not_met(
+    journal: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert replayed(journal, "--break", "/number", "--break", "/numbers", typed="", monkeypatch=monkeypatch) == 0
+    err = capsys.readouterr().err
+    assert "cfepy: --break '/number' stopped nowhere\n" in err
+    assert "'/numbers'" not in err
+
+
 def test_steps_from_a_time_on(
     journal: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

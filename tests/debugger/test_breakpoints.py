@@ -41,6 +41,30 @@ def hits(plan: RunPlan, *texts: str) -> list[str]:
     return found
 
 
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("/nombers", "--break '/nombers' stopped nowhere"),
+        ("CFE_TIME:99", "--break 'CFE_TIME:99' stopped nowhere"),
+        ("msg.data == 77", "--break 'msg.data == 77' stopped nowhere"),
+        ("/words", None),
+    ],
+)
+def test_one_that_stops_nowhere_says_so(plan: RunPlan, text: str, why: str | None) -> None:
+    spec = plan.spec()
+    (point,) = breakpoints([text], spec, lambda what: None)
+    plan.fly([point], spec=spec)
+    assert point.missed == why
+
+
+def test_a_field_that_no_message_has_is_told(plan: RunPlan) -> None:
+    spec = plan.spec()
+    (point,) = breakpoints(["msg.dat > 2"], spec, lambda what: None)
+    plan.fly([point], spec=spec)
+    assert "applies to no message: /" in str(point.missed)
+    assert "'dat'" in str(point.missed)
+
+
 def test_a_topic(plan: RunPlan) -> None:
     assert hits(plan, "/numbers") == [f"/numbers of /talker: data: {number}" for number in range(5)]
 

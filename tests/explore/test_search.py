@@ -11,7 +11,10 @@ from cfepy.rtos.schedule import Schedule
 
 def first(policy: str, count: int, depth: int | None = None, options: str = "at", seed: int = 0) -> list[str]:
     search = make_search(policy, depth, 50, Schedule.parse(options), seed)
-    return [text for text in islice(iter(search.next, None), count) if text is not None]
+    found = search.next()
+    assert found is not None
+    search.tell(0, Verdict(found))
+    return [found, *(text for text in islice(iter(search.next, None), count - 1) if text is not None)]
 
 
 def test_seeds_of_one_policy() -> None:
@@ -29,6 +32,22 @@ def test_all_is_a_mixture_without_doubles() -> None:
 
 def test_options_go_into_every_schedule() -> None:
     assert all(text.endswith(":any:hold=500us") for text in first("all", 8, options="at:any:hold=500us"))
+
+
+def test_pct_reckons_with_the_decisions_that_the_first_schedule_had() -> None:
+    search = make_search("pct", None, 50, Schedule.parse("at"))
+    assert [search.next(), search.next()] == ["pct:0:3:50", None]
+    search.tell(0, Verdict("pct:0:3:50", decisions=120))
+    assert [search.next(), search.next()] == ["pct:1:3:120", "pct:2:3:120"]
+    search.tell(1, Verdict("pct:1:3:120", decisions=300))
+    assert search.next() == "pct:3:3:120"
+
+
+def test_fifo_may_have_the_most_decisions() -> None:
+    search = make_search("all", None, 50, Schedule.parse("at"))
+    assert [search.next(), search.next()] == ["random:0", None]
+    search.tell(0, Verdict("random:0", decisions=20))
+    assert search.next() == "pct:1:2:50"
 
 
 def test_the_systematic_search_learns_from_verdicts() -> None:

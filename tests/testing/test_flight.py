@@ -80,6 +80,8 @@ def test_telemetry_is_told_by_its_values(flight: Flight) -> None:
     packet = flight.expect_telemetry("CFE_ES_HK_TLM", lambda hk: hk["SysLogEntries"] > 3, RegisteredExternalApps=3)
     assert packet.sender == "CFE_ES"
     assert flight.telemetry("0x0800").data == packet.data
+    assert [each.data for each in flight.packets("CFE_ES_HK_TLM")][-1] == packet.data
+    assert flight.packets("CFE_TBL_HK_TLM") == []
     with pytest.raises(ExpectationError, match=r"CommandCounter was 0 in the last of 1 packet, at 0\.\d+"):
         flight.expect_telemetry("CFE_ES_HK_TLM", CommandCounter=7, within=0.1)
     with pytest.raises(ExpectationError, match="expected telemetry CFE_TBL_HK_TLM until now"):

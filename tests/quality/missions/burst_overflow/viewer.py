@@ -1,4 +1,4 @@
-"""Looks at the images; two may wait, since the relay never has more than that."""
+"""Looks at the images; one may wait, since the relay needs longer for each than this."""
 
 import sys
 
@@ -9,7 +9,7 @@ IMAGES = 6
 
 rospy.init_node("viewer")
 seen = []
-rospy.Subscriber("stamped", Int32, lambda message: seen.append(message.data), queue_size=2)
+rospy.Subscriber("stamped", Int32, lambda message: seen.append(message.data), queue_size=1)
 image = rospy.Publisher("image", Int32, queue_size=10)
 rospy.sleep(0.15)
 for number in range(IMAGES):

@@ -12,7 +12,7 @@ class Recorder:
         self.samples = queue.Queue()
         self.file = io.StringIO()
         rospy.Subscriber("sample", Float32, lambda message: self.samples.put(message.data))
-        rospy.Timer(rospy.Duration(0.2), self.finish, oneshot=True)
+        rospy.Timer(rospy.Duration(0.13), self.finish, oneshot=True)
 
     def finish(self, _event: object) -> None:
         self.file.close()

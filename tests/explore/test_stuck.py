@@ -1,0 +1,183 @@
+"""A task that waits for ever, and does not under fifo, is stuck; one that idles is not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from cfepy.explore.stuck import SHORTEST_NS, Left, Waits, stuck, waits_of
+from cfepy.explore.trial import Trial
+from cfepy.explore.verdict import DEADLOCK, STUCK, Verdict
+from cfepy.mission.run_plan import RunPlan
+from cfepy.rtos.units import NS_PER_S
+from tests.explore import missions
+
+HALF = """
+    import threading
+    import rospy
+
+    rospy.init_node("pair")
+    something = threading.Condition()
+    ready = False
+
+
+    def look_at_the_clock():
+        for _ in range(20):
+            rospy.get_time()
+
+
+    def consume():
+        if not ready:
+            look_at_the_clock()
+            with something:
+                something.wait()
+
+
+    def produce():
+        global ready
+        rospy.get_time()
+        ready = True
+        with something:
+            something.notify()
+
+
+    for each in ORDER:
+        threading.Thread(target=each).start()
+    rospy.spin()
+"""
+CHECKED = ("if not ready:", "while not ready:"), ("look_at_the_clock()\n            with something:", "with something:")
+POOL = """
+    from concurrent.futures import ThreadPoolExecutor
+    import rospy
+
+    rospy.init_node("pool")
+    with ThreadPoolExecutor(3) as pool:
+        for number in range(8):
+            pool.submit(rospy.sleep, 0.01 * (number % 3))
+            rospy.get_time()
+        rospy.spin()
+"""
+EITHER = """
+    import queue
+    import threading
+    import rospy
+
+    rospy.init_node("either")
+    things = queue.Queue()
+
+
+    def take_one():
+        rospy.get_time()
+        things.get()
+
+
+    for _ in range(3):
+        threading.Thread(target=take_one).start()
+    things.put(1)
+    things.put(2)
+    rospy.spin()
+"""
+LATER = """
+    import threading
+    import rospy
+
+    rospy.init_node("later")
+    told = threading.Event()
+
+
+    def wait():
+        rospy.get_time()
+        told.wait()
+
+
+    threading.Thread(target=wait).start()
+    if not told.is_set():
+        rospy.sleep(0.9)
+    told.set()
+    rospy.spin()
+"""
+
+
+def trial(folder: Path, source: str, tasks: str = "thread", seconds: float = 1.0) -> Trial:
+    plan = RunPlan((str(missions.write(folder, {"PAIR": source})),), seconds=seconds, tasks=tasks)
+    return replace(Trial(plan), waits=waits_of(plan, round(seconds * NS_PER_S), None))
+
+
+def first_failed(found: Trial) -> Verdict:
+    return next(verdict for seed in range(80) if (verdict := found.run(f"pct:{seed}:2:60")).failed)
+
+
+def kinds(found: Trial, schedules: int = 20) -> set[str]:
+    verdicts = [found.run(f"{kind}:{seed}") for seed in range(schedules) for kind in ("random", "pct")]
+    assert not any(verdict.trouble for verdict in verdicts)
+    return {failure.kind for verdict in verdicts for failure in verdict.failures}
+
+
+@pytest.mark.parametrize("order", ["(consume, produce)", "(produce, consume)"])
+def test_a_lost_wake_up_is_found(order: str, tmp_path: Path) -> None:
+    found = trial(tmp_path, HALF.replace("ORDER", order))
+    assert not found.run("at").failed
+    failed = first_failed(found)
+    (failure,) = failed.failures
+    assert (failure.kind, failure.who, failure.at_ns) == (STUCK, "PAIR", None)
+    assert "waits for ever for lock at pair.py:18, since 0.55" in failure.text
+    deviations = ",".join(f"{at}={choice}" for at, choice in failed.deviations)
+    for tasks in ("thread", "greenlet"):
+        again = replace(found, plan=replace(found.plan, tasks=tasks)).run(f"at:{deviations}")
+        assert again.failures == failed.failures
+        assert again.trace == failed.trace
+
+
+def test_it_says_how_long_others_wait(tmp_path: Path) -> None:
+    found = trial(tmp_path, HALF.replace("ORDER", "(consume, produce)"))
+    (failure,) = first_failed(found).failures
+    assert failure.text.endswith("; under fifo nobody waits there for longer than 0.000002 s")
+    found = trial(tmp_path, HALF.replace("ORDER", "(produce, consume)"))
+    (failure,) = first_failed(found).failures
+    assert failure.text.endswith("; under fifo it never waits there")
+
+
+def test_without_waits_of_the_default_schedule_nothing_is_stuck(tmp_path: Path) -> None:
+    assert kinds(replace(trial(tmp_path, HALF.replace("ORDER", "(consume, produce)")), waits=None)) == set()
+
+
+@pytest.mark.parametrize("order", ["(consume, produce)", "(produce, consume)"])
+def test_one_that_checks_under_the_lock_is_not(order: str, tmp_path: Path) -> None:
+    source = HALF.replace("ORDER", order)
+    for old, new in CHECKED:
+        assert source.count(old) == 1
+        source = source.replace(old, new)
+    assert kinds(trial(tmp_path, source)) == set()
+
+
+@pytest.mark.parametrize("source", [POOL, EITHER, LATER], ids=["idle workers", "one of equals", "just later"])
+def test_who_waits_by_right_is_not(source: str, tmp_path: Path) -> None:
+    assert kinds(trial(tmp_path, source)) == set()
+
+
+def test_a_deadlock_is_told_as_one(tmp_path: Path) -> None:
+    assert kinds(trial(tmp_path, missions.LOCK_ORDER)) == {DEADLOCK}
+
+
+PLACE = ("ARM", "lock at arm.py:1")
+
+
+def waits(longest_ns: int | None, *idle_ns: int) -> Waits:
+    left = tuple(Left(PLACE, f"ARM.{number}", 0, each) for number, each in enumerate(idle_ns))
+    return Waits({} if longest_ns is None else {PLACE: longest_ns}, left)
+
+
+@pytest.mark.parametrize(
+    ("idle_ns", "longest_ns", "usual", "count"),
+    [
+        (SHORTEST_NS, None, 0, 1),
+        (SHORTEST_NS - 1, None, 0, 0),
+        (10 * SHORTEST_NS, SHORTEST_NS, 0, 0),
+        (10 * SHORTEST_NS + 1, SHORTEST_NS, 0, 1),
+        (SHORTEST_NS, None, 1, 0),
+    ],
+)
+def test_when_it_is_long_enough(idle_ns: int, longest_ns: int | None, usual: int, count: int) -> None:
+    assert len(stuck(waits(longest_ns, idle_ns), waits(longest_ns, *[idle_ns] * usual))) == count
