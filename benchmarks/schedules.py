@@ -5,7 +5,6 @@ CPU time and not wall time, because exploring keeps every CPU busy: so much is r
 
 from __future__ import annotations
 
-import gc
 import os
 from contextlib import closing
 
@@ -18,7 +17,6 @@ from cfepy.rtos.fork_server import ForkServer, LateSchedule
 COUNT = 100
 SHORT_S = 0.2  # of virtual time
 BOOTED = Schedule.parse("at:from=600ms")  # when the mission is OPERATIONAL, and its nodes have begun
-TIDY = 8  # garbage is looked for after so many flights
 
 
 def from_power_on(context: str, seconds: float) -> float:
@@ -28,8 +26,6 @@ def from_power_on(context: str, seconds: float) -> float:
     for seed in range(COUNT):
         with Mission(spec, console=_quiet(), tasks=context, policy=Schedule("random", seed).policy()) as flight:
             flight.run(seconds)
-        if seed % TIDY == 0:
-            gc.collect()
     return COUNT / (_cpu_s() - begin)
 
 

@@ -112,7 +112,10 @@ def pack(row: Row) -> bytes:
 
 def unpack(image: bytes | memoryview) -> list[Row]:
     """The rows of an image; bytes that are no ASCII show as themselves and make no parameter."""
-    return [(_text(name), _text(value)) for name, value in _ROW.iter_unpack(image)]
+    data = bytes(image)
+    if data == bytes(len(data)):  # as most tables are that a mission boots with
+        return [FREE] * (len(data) // ROW_BYTES)
+    return [(_text(name), _text(value)) for name, value in _ROW.iter_unpack(data)]
 
 
 def records(rows: Iterable[Row]) -> Iterator[Record]:

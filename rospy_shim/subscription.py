@@ -7,6 +7,7 @@ it loses the newest, and the bus reports it. May import cfepy.nodes, cfepy.rtos 
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes.report import traceback_text
@@ -28,6 +29,7 @@ WHOLE = 0xC0
 NO_PIPE = -1
 NO_LIMIT = 0xFFFF
 POLL = 0
+_ADDRESS = re.compile(r"0x[0-9a-f]+")
 
 
 class Subscription(TopicSide):
@@ -305,4 +307,5 @@ class Subscription(TopicSide):
         """An exception in a callback is logged, and the next message comes all the same."""
         where = error.__traceback__
         text = traceback_text(error.with_traceback(where.tb_next if where is not None else None))
-        self.node.logs.logerr("bad callback: %s\n%s", callback, text)
+        name = _ADDRESS.sub("0x0", str(callback))  # an address would be another one in each run
+        self.node.logs.logerr("bad callback: %s\n%s", name, text)

@@ -48,16 +48,21 @@ class NodeTasks:
         return f"{self._app[: 19 - len(tail) - len(str(number)) - 2]}.{tail}.{number}"
 
     def child(self, node: Node, name: str, body: Callable[[], None]) -> None:
-        """Start a task for a pipe; both have the same name."""
+        """Start a task for a pipe; both have the same name.
+
+        On ROS the first message may come as soon as the subscriber is made: ES's delay is no promise to the node.
+        """
         entry = _in_universe(node.universe, body)
         if self._kernel.current is not self._main:
             self._cfe.os.task_create(name, entry, self._stack_size, self.priority)
             return
 
         def child_entry() -> None:
+            self._kernel.has_started()
             entry()
             self._cfe.es.exit_child_task()
 
+        self._kernel.may_start_early(name)
         self._cfe.es.create_child_task(name, child_entry, self._stack_size, self.priority)
 
     def thread(self, label: str, entry: Callable[[], object], priority: int) -> Task:

@@ -72,21 +72,20 @@ class Flight:
     def go(self) -> None:
         """Run, let the nodes shut down, and take down what there is to know before the tasks end."""
         watch = Stopwatch()
-        with _no_collection_between_pieces():
-            try:
+        try:
+            stop_ns = self._course.next_stop()
+            while self._course.goes_on and not self.interrupts.asked:
+                self._step(stop_ns)
+                self._pause()
+                self._display.update(self.mission)
                 stop_ns = self._course.next_stop()
-                while self._course.goes_on and not self.interrupts.asked:
-                    self._step(stop_ns)
-                    self._pause()
-                    self._display.update(self.mission)
-                    stop_ns = self._course.next_stop()
-                self._course.end(watch.elapsed_ns())
-                self.mission.shut_down_nodes()
-            except KeyboardInterrupt:
-                self.broken_off = self.interrupts.asked = (
-                    True  # also when an app raised it: what it looks like is what it is
-                )
-                self._course.end(watch.elapsed_ns())
+            self._course.end(watch.elapsed_ns())
+            self.mission.shut_down_nodes()
+        except KeyboardInterrupt:
+            self.broken_off = self.interrupts.asked = (
+                True  # also when an app raised it: what it looks like is what it is
+            )
+            self._course.end(watch.elapsed_ns())
         self.trace = self.mission.finish()
 
     @property
@@ -164,8 +163,11 @@ class Interrupts:
 
 
 @contextlib.contextmanager
-def _no_collection_between_pieces() -> Iterator[None]:
-    """The kernel collects garbage at fixed virtual times; in the host it would run finalizers at the clock's whim."""
+def no_collection() -> Iterator[None]:
+    """The kernel collects garbage at fixed virtual times; in the host it would run finalizers at the clock's whim.
+
+    Around the whole life of a mission it saves a process that has only one the look for what is left at its end.
+    """
     enabled = gc.isenabled()
     gc.disable()
     try:

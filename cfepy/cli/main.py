@@ -78,10 +78,13 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _command(module: str) -> Any:
     """The module of a command. What is imported stays, so that garbage is not looked for in it, which takes as long."""
+    name = f"cfepy.cli.{module}"
+    if name in sys.modules:
+        return sys.modules[name]
     enabled = gc.isenabled()
     gc.disable()
     try:
-        return importlib.import_module(f"cfepy.cli.{module}")
+        return importlib.import_module(name)
     finally:
         gc.freeze()
         if enabled:

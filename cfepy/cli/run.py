@@ -14,7 +14,7 @@ from cfepy.cli import report
 from cfepy.cli.arguments import LONGEST_S
 from cfepy.cli.display import Display, make_display
 from cfepy.cli.failures import booting, writing
-from cfepy.cli.flight import Flight, Interrupts
+from cfepy.cli.flight import Flight, Interrupts, no_collection
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.recording import plan_of, recording
 from cfepy.cli.saved_files import save_files, saving_to
@@ -197,6 +197,7 @@ def fly(
     flight: Flight | None = None
     try:
         with contextlib.ExitStack() as stack:
+            stack.enter_context(no_collection())
             if recorder is not None:
                 stack.enter_context(recorder)
             if bag is not None:

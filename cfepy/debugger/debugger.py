@@ -10,7 +10,6 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TextIO
 
-from cfepy.attachment import Attachment
 from cfepy.debugger.app_debugger import AppDebugger, look_at_end, look_into, own_frame
 from cfepy.debugger.breakpoints import breakpoints
 from cfepy.mission.determinism_look import stack_of

@@ -8,7 +8,6 @@ only verdicts that wait for their turn, so its memory does not grow with the num
 from __future__ import annotations
 
 import contextlib
-import gc
 import traceback
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
@@ -74,7 +73,6 @@ class Inline:
         """See `Crew.run`."""
         while jobs := take(16):
             yield from ((number, judge(trial, schedule)) for number, schedule in jobs)
-            gc.collect()  # missions are full of circles, and with collections off while one runs they would pile up
 
     def close(self) -> None:
         """See `Crew.close`."""

@@ -37,8 +37,8 @@ class TracebackReader:
         self.found: list[Failure] = []
         self._reading: dict[str, _Reading] = {}
 
-    def take(self, line: str, now_ns: int) -> None:
-        """Take a line of the console, and the virtual time at which it was written."""
+    def take(self, line: str, now_ns: int, task: str = "") -> None:
+        """Take a line of the console, the virtual time at which it was written, and the task that wrote it."""
         match = _LINE.fullmatch(line)
         if match is None:
             return
@@ -46,11 +46,11 @@ class TracebackReader:
         if text.endswith(_BEGIN):
             self._reading[node] = _Reading()
         elif node in self._reading:
-            self._go_on(node, text, now_ns)
+            self._go_on(node, text, now_ns, task)
         elif text.startswith(_CHAINED):
             self._forget_last(node)
 
-    def _go_on(self, node: str, text: str, now_ns: int) -> None:
+    def _go_on(self, node: str, text: str, now_ns: int, task: str) -> None:
         reading = self._reading[node]
         reading.lines.append(text)
         frame = _FRAME.match(text)
@@ -61,7 +61,7 @@ class TracebackReader:
         elif not text.startswith(" "):
             del self._reading[node]
             what = f"{text} ({reading.place})" if reading.place else text
-            self.found.append(Failure(RAISED, node, what, now_ns, "\n".join(reading.lines)))
+            self.found.append(Failure(RAISED, node, what, now_ns, "\n".join(reading.lines), task))
 
     def _forget_last(self, node: str) -> None:
         """What was raised last was handled, or so somebody meant: what follows is the error."""

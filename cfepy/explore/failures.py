@@ -5,7 +5,7 @@ May import cfepy.mission and everything to its left.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from cfepy.attachment import Attachment
 from cfepy.evs.events import CRITICAL, ERROR
@@ -19,7 +19,8 @@ from cfepy.mission.script_packets import EVENT_IDS, Event
 from cfepy.mission.script_verdicts import OVER, Outcome
 from cfepy.mission.tracebacks import app_traceback, reason
 from cfepy.mission.watch import PacketWatch, Seen
-from cfepy.rtos import Task
+from cfepy.rtos import DeadlockError, Task
+from cfepy.rtos.report import Wait
 from cfepy.rtos.units import NS_PER_S
 from cfepy.sb import SoftwareBus
 
@@ -64,6 +65,12 @@ class FailureWatch(Attachment):
         self.end_ns = self._mission.kernel.now
         self._circles = list(_deadlocks(self._mission))
 
+    def saw(self, group: str) -> bool:
+        """Whether there has been a failure of this group so far, of those that show while the mission runs."""
+        assert self._mission is not None
+        so_far = (*self._found, *self._tracebacks.found, *_violations(self._mission))
+        return any(failure.group == group for failure in so_far)
+
     def failures(self, outcome: Outcome | None) -> tuple[Failure, ...]:
         """All that there is to say, by time, of each group the first; what is true at the end comes last.
 
@@ -88,7 +95,7 @@ class FailureWatch(Attachment):
             if record is not None:
                 record(line)
             assert self._mission is not None
-            self._tracebacks.take(line, self._mission.kernel.now)
+            self._tracebacks.take(line, self._mission.kernel.now, self._mission.kernel.current.name)
 
         return take
 
@@ -104,17 +111,22 @@ class FailureWatch(Attachment):
 
     def _take_death(self, task: Task, error: BaseException) -> None:
         assert self._mission is not None
+        detail, now_ns = app_traceback(error), self._mission.kernel.now
         if task.owner.name in CORE_APPS:
-            self.trouble.append(app_traceback(error))
+            self.trouble.append(detail)
+        elif isinstance(error, DeadlockError) and error.circle:
+            where = detail.partition(f"\n{type(error).__module__}")[0]
+            self._found.append(_deadlock(error.circle, now_ns, where, task.name))
         else:
-            now_ns = self._mission.kernel.now
-            self._found.append(Failure(verdict.DIED, task.owner.name, reason(error), now_ns, app_traceback(error)))
+            self._found.append(Failure(verdict.DIED, task.owner.name, reason(error), now_ns, detail, task.name))
 
     def _take_event(self, seen: Seen) -> None:
         event = Event.of(seen)
         if event.event_type in self._levels and event.app not in CORE_APPS:
+            assert self._mission is not None
             text = f"{event.type_name} event {event.event_id}: {event.text}"
-            self._found.append(Failure(verdict.EVENT, event.app, text, seen.at_ns))
+            task = self._mission.kernel.current.name
+            self._found.append(Failure(verdict.EVENT, event.app, text, seen.at_ns, task=task))
 
 
 def _resets(mission: Mission) -> Iterator[Failure]:
@@ -142,9 +154,13 @@ def _missed(outcome: Outcome | None) -> Iterator[Failure]:
 
 def _deadlocks(mission: Mission) -> Iterator[Failure]:
     """Tasks that wait for each other, or for one that has ended."""
-    for circle in mission.kernel.deadlocked():
-        owners = dict.fromkeys(wait.task.owner.name for wait in circle if wait.task.owner is not None)
-        yield Failure(verdict.DEADLOCK, " and ".join(owners), "; ".join(map(str, circle)))
+    return map(_deadlock, mission.kernel.deadlocked())
+
+
+def _deadlock(circle: Sequence[Wait], at_ns: int | None = None, detail: str = "", task: str = "") -> Failure:
+    owners = dict.fromkeys(wait.task.owner.name for wait in circle if wait.task.owner is not None)
+    text = "; ".join(map(str, circle))
+    return Failure(verdict.DEADLOCK, " and ".join(owners), text, at_ns, detail, task or circle[-1].task.name)
 
 
 def _overruns(mission: Mission) -> Iterator[Failure]:

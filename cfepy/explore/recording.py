@@ -6,19 +6,22 @@ It looks on: the run is that of the schedule. May import everything to the left 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import PurePath
 from types import FrameType
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.mission.determinism_look import Line, is_library, stack_of
+from cfepy.mission.determinism_look import Line, is_library, is_standard, stack_of
+from cfepy.mission.dictionary import dictionary_of
 from cfepy.mission.message_watch import Heard, MessageWatch
 from cfepy.mission.mission import Mission
+from cfepy.mission.processor import CORE_APPS
 from cfepy.mission.spec import MissionSpec
 from cfepy.mission.topics import plain
 from cfepy.mission.values import line_of
+from cfepy.rtos import Task
 from cfepy.rtos.policy import HOLD, Decision, Policy
 from cfepy.sb import SoftwareBus
 
@@ -44,20 +47,26 @@ class Row:
 
 
 class TaskLook(Attachment):
-    """Keeps what some tasks do.
+    """Keeps what the tasks of a mission's applications do, up to a failure.
 
     Args:
         spec: the mission.
-        tasks: their names.
+        first: from this decision on.
+        is_over: whether the failure has been seen, and nothing is kept any more.
 
     Attributes:
         rows: in the order in which it happened.
     """
 
-    def __init__(self, spec: MissionSpec, tasks: Collection[str]) -> None:
+    def __init__(self, spec: MissionSpec, first: int = 0, is_over: Callable[[], bool] = lambda: False) -> None:
         self.rows: list[Row] = []
-        self._tasks = frozenset(tasks)
-        self._messages = MessageWatch(spec, self._take_message, ("*",))
+        self.is_on = first <= 0
+        self._first = first
+        self._is_over = is_over
+        self._closed = False
+        packets = dictionary_of(spec)
+        names = (*packets.commands, *(name for name in packets.telemetry if not name.startswith("/")))
+        self._messages = MessageWatch(spec, self._take_message, ("*",), names)
         self._mission: Mission | None = None
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
@@ -74,25 +83,47 @@ class TaskLook(Attachment):
         """A policy that decides as another does, and looks at who is where when it is asked."""
         return _LookingPolicy(inner, self)
 
+    def reached(self, decision: int) -> None:
+        """So many decisions are behind."""
+        self.is_on = self.is_on or decision >= self._first
+
     def add(self, task: str, kind: str, text: str) -> None:
-        """Keep something, if the task is one of those."""
-        if task in self._tasks and self._mission is not None:
-            row = Row(self._mission.kernel.now, task, kind, text)
-            if not self.rows or (self.rows[-1].task, self.rows[-1].kind, self.rows[-1].text) != (task, kind, text):
-                self.rows.append(row)
+        """Keep something, until the failure has been seen."""
+        if self._goes_on():
+            self._keep(task, kind, text)
 
     def look(self, frame: FrameType | None) -> None:
         """Keep where the running task is."""
-        if self._mission is not None and self._mission.kernel.current.name in self._tasks:
-            text = place_text(frame)
-            if text:
-                self.add(self._mission.kernel.current.name, AT, text)
+        task = self._watched()
+        if task is not None and self._goes_on():
+            self._keep_place(task, frame)
+
+    def _goes_on(self) -> bool:
+        self._closed = self._closed or self._is_over()
+        return not self._closed
+
+    def _watched(self) -> Task | None:
+        """The running task, if it is one of the mission's applications, and its deeds are kept by now."""
+        if not self.is_on or self._mission is None:
+            return None
+        task = self._mission.kernel.current
+        return None if task.owner is None or task.owner.name in CORE_APPS else task
+
+    def _keep_place(self, task: Task, frame: FrameType | None) -> None:
+        text = place_text(frame)
+        if text:
+            self._keep(task.name, AT, text)
+
+    def _keep(self, task: str, kind: str, text: str) -> None:
+        assert self._mission is not None
+        row = Row(self._mission.kernel.now, task, kind, text)
+        if not self.rows or (self.rows[-1].task, self.rows[-1].kind, self.rows[-1].text) != (task, kind, text):
+            self.rows.append(row)
 
     def _blocking(self, block: Callable[[], Any]) -> Callable[[], Any]:
         def wait() -> Any:
-            assert self._mission is not None
-            task = self._mission.kernel.current
-            if task.name in self._tasks:
+            task = self._watched()
+            if task is not None:
                 self.look(sys._getframe(1))
                 what = "sleeps" if task.waits is None else f"waits for {task.waits.what}"
                 self.add(task.name, WAITS, what)
@@ -101,14 +132,16 @@ class TaskLook(Attachment):
         return wait
 
     def _take_message(self, heard: Heard) -> None:
-        assert self._mission is not None
+        """The message may be the failure itself, so it is kept when that has just been seen."""
+        task = self._watched()
+        if task is None or self._closed:
+            return
         try:
             values = plain(heard.msg)
         except Exception as error:  # the type of its messages is not known
             values = {"?": str(error)}
-        task = self._mission.kernel.current.name
-        self.look(sys._getframe(1))
-        self.add(task, SENDS, f"sends {heard.topic}: {line_of(values) if isinstance(values, dict) else values}")
+        self._keep_place(task, sys._getframe(1))
+        self._keep(task.name, SENDS, f"sends {heard.topic}: {line_of(values) if isinstance(values, dict) else values}")
 
 
 class _LookingPolicy(Policy):
@@ -120,6 +153,7 @@ class _LookingPolicy(Policy):
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`. It is asked in the task that gives the processor away."""
         choice = self._inner.choose(decision)
+        self._look.reached(decision.number)
         self._look.look(sys._getframe(1))
         if choice:
             first = decision.tasks[0].name
@@ -129,9 +163,13 @@ class _LookingPolicy(Policy):
 
 
 def place_text(frame: FrameType | None) -> str:
-    """The innermost line of the mission's own code in a stack: `arm.py:12 self.count += 1`; empty without one."""
-    lines: list[Line] = [line for line in stack_of(frame) if not is_library(line.file)]
+    """The innermost line of the mission's own code in a stack: `arm.py:12: self.count += 1`.
+
+    In a thread that a library has for itself it is that library's, and where only Python's own code runs, empty.
+    """
+    shown: list[Line] = [line for line in stack_of(frame) if not is_standard(line.file)]
+    lines = [line for line in shown if not is_library(line.file)] or shown
     if not lines:
         return ""
     source = " ".join(lines[-1].source.partition("  #")[0].split())
-    return f"{PurePath(lines[-1].file).name}:{lines[-1].number} {source}"
+    return f"{PurePath(lines[-1].file).name}:{lines[-1].number}: {source}"

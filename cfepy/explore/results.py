@@ -57,9 +57,12 @@ class ResultWatch(Attachment):
         self._found: list[Result] = []
         self._mission: Mission | None = None
         names = [each.name for each in self._selected if each.compare in OF_MESSAGES]
-        topics = tuple(name for name in names if name.startswith(("/", "*")))
-        packets = tuple(name for name in names if not name.startswith(("/", "*")))
-        self._watch = MessageWatch(spec, self._take, topics, packets)
+        packets = tuple(each.name for each in self._selected if each.is_of_packet)
+        topics = tuple(name for name in names if name not in packets)
+        try:
+            self._watch = MessageWatch(spec, self._take, topics, packets)
+        except UsageError as error:
+            raise UsageError(error.text, file=spec.mission_file, field="results") from None
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """See `Attachment.bus`."""

@@ -7,7 +7,6 @@ import everything to the left of cfepy.explore.
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -24,7 +23,6 @@ REACH = 64  # how many decisions a move is tried later
 SINGLES = 200  # how many single moves are tried
 AROUND = 30  # how many decisions before and after two moves one is tried in their place
 TENTH_NS = NS_PER_S // 10
-COLLECT_EVERY = 16  # probes
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,8 +192,6 @@ class Shrinker:
         self.probes += 1
         recorder = MoveRecorder(policy)
         verdict, _ = self._trial.fly(self._schedule, policy=recorder)
-        if self.probes % COLLECT_EVERY == 0:
-            gc.collect()  # missions are full of circles, and with collections off while one runs they would pile up
         fails = verdict.failure(self._group) is not None
         return _Flight(fails, verdict, tuple(recorder.moves), tuple(recorder.choices))
 

@@ -207,7 +207,7 @@ def _failure(left: Left, usual_ns: int | None) -> Failure:
     app, what = left.place
     under_fifo = "it never waits there" if usual_ns is None else f"nobody waits there for longer than {_s(usual_ns)} s"
     text = f"{left.task} waits for ever for {what}, since {_s(left.since_ns)} s; under fifo {under_fifo}"
-    return Failure(STUCK, app, text)
+    return Failure(STUCK, app, text, task=left.task)
 
 
 def _s(time_ns: int) -> str:

@@ -35,6 +35,7 @@ class Failure:
         text: what was wrong, one line.
         at_ns: virtual time at which it was; None when it is the state at the end.
         detail: more lines, such as a traceback; may be empty.
+        task: the task in which it showed; empty when that is not known.
     """
 
     kind: str
@@ -42,6 +43,7 @@ class Failure:
     text: str
     at_ns: int | None = None
     detail: str = ""
+    task: str = ""
 
     @property
     def group(self) -> str:

@@ -48,7 +48,6 @@ def _serve(connection: Connection[Any, Any], inbox: SimpleQueue[bytes]) -> None:
             connection.send([(number, pilot.judge(schedule)) for number, schedule in jobs])
         except UsageError as error:
             connection.send(error)
-        gc.collect()  # missions are full of circles, and with collections off while one runs they would pile up
 
 
 def _read(connection: Connection[Any, Any], inbox: SimpleQueue[bytes]) -> None:

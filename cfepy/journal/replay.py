@@ -56,6 +56,8 @@ class ReplayCourse(Course):
         self._visits = end.visits if end is not None and has_end else 1
         if until_ns is not None and (until_ns < known or not has_end):
             known, self._visits = until_ns, 1  # nobody knows what came after a sudden end, but the run may go on
+        if not has_end and (seconds is not None or journal.header.paced is None):
+            known = min(known, self.until_ns)  # the sudden end came later, while the nodes shut down
         self.until_ns = known
         self._pauses = [pause for pause in reversed(journal.pauses) if pause.until_ns <= known]
 

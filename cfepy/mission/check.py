@@ -16,9 +16,10 @@ from cfepy.es import startup_script
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, Entry
 from cfepy.mission import sources
 from cfepy.mission.check_file import CheckedFile, check_file
+from cfepy.mission.dictionary import dictionary_of
 from cfepy.mission.launch import LAUNCH_FILES, read_launch
 from cfepy.mission.loader import NODE_SYMBOL, find_code, find_node
-from cfepy.mission.spec import LOCK_FILE, MISSION_FILE, find_script, read_lock
+from cfepy.mission.spec import LOCK_FILE, MISSION_FILE, find_script, read_lock, read_mission
 from cfepy.nodes.config import RosConfig
 from cfepy.osal.limits import OS_MAX_FILE_NAME
 from cfepy.psp.marked_yaml import Marked
@@ -68,6 +69,7 @@ def check_mission(mission: str, board: str | None = None, args: Mapping[str, str
     found += [Finding(Path(error.file or script), error.line or 0, _with_field(error)) for error in said.errors]
     found += _check_nodes(said, entries)
     found += _check_deadlines(said, entries)
+    found += _check_packets(said, script)
     found += _check_lock(folder / LOCK_FILE, said)
     found += _check_board(script, entries, said, board, folder)
     return sorted(dict.fromkeys(found), key=lambda finding: (str(finding.file), finding.line))
@@ -186,6 +188,19 @@ def _check_deadlines(said: CheckedFile, entries: list[Entry]) -> Iterator[Findin
     for app, place in said.deadline_places.items():
         if app not in apps and not said.launches:
             yield _unknown_app(f"deadlines.apps.{app}", app, place, apps)
+
+
+def _check_packets(said: CheckedFile, script: Path) -> Iterator[Finding]:
+    """Packets that invariants and results name, and that the mission does not have."""
+    if not said.packet_places or said.errors:
+        return  # what the mission has is known when the rest of its file is right
+    dictionary = dictionary_of(read_mission(str(script)))
+    for name, place in said.packet_places:
+        try:
+            if name not in dictionary.commands:
+                dictionary.telemetry_of(name)
+        except UsageError as error:
+            yield Finding(place.file, place.line, f"{place.field}: {error.text}")
 
 
 def _unknown_app(field: str, app: str, place: Marked, apps: Collection[str]) -> Finding:

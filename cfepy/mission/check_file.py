@@ -28,7 +28,8 @@ class CheckedFile:
     """What a mission file says, as far as it could be read, and what is wrong with it.
 
     `node_places` has every entry under `nodes:`, also those that are wrong and so missing in `nodes`;
-    `deadline_places` those of applications under `deadlines:`. `launches` says that launch files add more nodes.
+    `deadline_places` those of applications under `deadlines:`, `packet_places` the packets that invariants and results
+    name. `launches` says that launch files add more nodes.
     """
 
     errors: list[UsageError] = field(default_factory=list)
@@ -37,6 +38,7 @@ class CheckedFile:
     topics: dict[str, TopicConfig] = field(default_factory=dict)
     limits: MissionLimits = field(default_factory=MissionLimits)
     deadline_places: dict[str, Marked] = field(default_factory=dict)
+    packet_places: list[tuple[str, Marked]] = field(default_factory=list)
     launches: bool = False
     board: str | None = None
     board_place: Marked | None = None
@@ -66,10 +68,12 @@ def check_file(path: Path) -> CheckedFile:
             _check_launch(said, value)
         elif key == "invariants":
             for name, entry in (_attempt(said, value.mapping) or {}).items():
-                _attempt(said, partial(read_invariant, name, entry, path.parent))
+                invariant = _attempt(said, partial(read_invariant, name, entry, path.parent))
+                said.packet_places += [(packet, entry) for packet in (invariant.packets if invariant else ())]
         elif key == "results":
             for name, entry in (_attempt(said, value.mapping) or {}).items():
-                _attempt(said, partial(read_selected_result, name, entry))
+                result = _attempt(said, partial(read_selected_result, name, entry))
+                said.packet_places += [(name, entry)] if result and result.is_of_packet else []
         elif key == "deadlines":
             _check_deadlines(said, value)
         elif key == "ordered_sets":

@@ -13,13 +13,16 @@ from cfepy.mission.deadline_checks import Check, Overrun
 from cfepy.mission.deadlines import AppDeadline, Deadlines, TopicDeadline, limits_of, time_text
 from cfepy.mission.live_names import LiveNames
 from cfepy.mission.observer import Observer, Sent
+from cfepy.mission.watch import hearing
 from cfepy.rtos import Task
 from cfepy.rtos.units import NS_PER_S
+from cfepy.sb import SoftwareBus
 from cfepy.sb.pipe import Pipe
 
 SHOWN = 10  # overruns of one deadline that the console shows; all are in the trace
 KEPT = 1000  # overruns of one deadline that are kept for tools, the first ones
 FIRST_SEGMENT = 0x40  # of the sequence flags in byte 2: a message begins, whole or in segments
+BETWEEN_MESSAGES = ("at_least_every", "at_most_every")
 PREFIX = "DEADLINE "
 """How the line of an overrun begins."""
 
@@ -78,6 +81,12 @@ class DeadlineMonitor(Observer):
         for kind, limit_ns in limits_of(deadline).items():
             found[kind] = Check(owner, kind, limit_ns, jitter if kind == "period" else 0)
         return found
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`; a message that nobody hears is never sent, and has come all the same."""
+        base = super().bus(base)
+        is_paced = any(state.checks.keys() & set(BETWEEN_MESSAGES) for _, state in self._topics)
+        return hearing(base, self._take_unheard) if is_paced else base
 
     def begin(self, mission: Any) -> None:
         """See `Observer.begin`."""
@@ -170,21 +179,30 @@ class DeadlineMonitor(Observer):
     # -- topics ------------------------------------------------------------------------------------------------------
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
-        """A message begins: how long after the one before?"""
+        """A message begins."""
         self._find_late(sent.at_ns)
-        if not self._measures or not packet[2] & FIRST_SEGMENT:
-            return
-        for state in self._states_of(sent.msg_id):
+        if self._measures and packet[2] & FIRST_SEGMENT:
+            self._comes(sent.msg_id, sent.at_ns)
+
+    def _take_unheard(self, link: Any, message: bytes) -> None:
+        now_ns = self._kernel.now
+        self._find_late(now_ns)
+        if self._measures:
+            self._comes(link.msg_id, now_ns)
+
+    def _comes(self, msg_id: int, at_ns: int) -> None:
+        """A message: how long after the one before?"""
+        for state in self._states_of(msg_id):
             before, was_late = state.last_ns, state.is_late
-            state.last_ns, state.is_late, self._next_due = sent.at_ns, False, None
+            state.last_ns, state.is_late, self._next_due = at_ns, False, None
             if before is None:
                 continue
-            for kind in ("at_least_every", "at_most_every"):
+            for kind in BETWEEN_MESSAGES:
                 check = state.checks.get(kind)
                 if check is not None and was_late and kind == "at_least_every":
-                    check.saw(sent.at_ns - before)  # it was told when it was due
+                    check.saw(at_ns - before)  # it was told when it was due
                 elif check is not None:
-                    self._measure(check, sent.at_ns - before, sent.at_ns, "from one message to the next")
+                    self._measure(check, at_ns - before, at_ns, "from one message to the next")
 
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
         """A message arrives."""

@@ -151,3 +151,8 @@ def is_library(file: str) -> bool:
     """Whether a source file is the standard library's or that of an installed package."""
     parts = Path(file).parts
     return file.startswith((_STANDARD_LIBRARY, _LIBRARIES)) or any(name in parts for name in _INSTALLED)
+
+
+def is_standard(file: str) -> bool:
+    """Whether a source file is the standard library's."""
+    return file.startswith(_STANDARD_LIBRARY) and not any(name in Path(file).parts for name in _INSTALLED)

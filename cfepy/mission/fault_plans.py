@@ -7,12 +7,15 @@ with Mission(spec, attachments=[injector]) as mission: ...
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import lru_cache
 
 from cfepy.console import Console
 from cfepy.faults import FaultInjector, FaultPlan, Targets, random_plan, read_plan
 from cfepy.faults.random_plan import INTENSITIES, MEDIUM
 from cfepy.mission.fault_names import MissionNames
+from cfepy.mission.launch import scripts_of
 from cfepy.mission.mission import Mission
 from cfepy.mission.msg_names import ROS
 from cfepy.mission.processor import CORE_APPS
@@ -23,6 +26,7 @@ from cfepy.status import UsageError
 
 SEED_WORD = "seed:"
 LOOK_S = 3.0
+KEPT = 8  # missions whose targets are kept
 _SEED = re.compile(r"seed:(\d+)(?::(\w+))?")
 
 
@@ -83,8 +87,31 @@ class Found:
 
 
 def targets_of(spec: MissionSpec) -> Targets:
-    """What random faults strike in a mission; see `look_at`."""
-    return look_at(spec).targets
+    """What random faults strike in a mission; see `look_at`. It is looked at again when its files have changed."""
+    return _targets_of(_Version(spec, tuple(_stamps(spec))))
+
+
+@dataclass(frozen=True, slots=True)
+class _Version:
+    """A mission as its files are now: path, time stamp and size of each."""
+
+    spec: MissionSpec = field(hash=False)
+    stamps: tuple[tuple[str, int, int], ...]
+
+
+@lru_cache(maxsize=KEPT)
+def _targets_of(version: _Version) -> Targets:
+    return look_at(version.spec).targets
+
+
+def _stamps(spec: MissionSpec) -> Iterator[tuple[str, int, int]]:
+    """Of the files in its folder, and of those that it is made of and that are somewhere else."""
+    named = (spec.script, spec.mission_file, *scripts_of(spec).values())
+    inside = spec.folder.iterdir() if spec.folder.is_dir() else ()
+    for path in sorted({*inside, *filter(None, named)}):
+        if path.is_file():
+            stat = path.stat()
+            yield str(path), stat.st_mtime_ns, stat.st_size
 
 
 def look_at(spec: MissionSpec, look_s: float = LOOK_S) -> Found:

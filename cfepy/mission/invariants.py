@@ -75,6 +75,11 @@ class Invariant:
         of_answer = None if self.answer is None else self.answer.holds
         return tuple(each for each in (self.when, self.holds, of_answer) if each is not None)
 
+    @property
+    def packets(self) -> tuple[str, ...]:
+        """The names of all packets that it is about."""
+        return self.selection.packets + (() if self.answer is None else self.answer.selection.packets)
+
 
 def read_invariants(section: Marked, folder: Path) -> tuple[Invariant, ...]:
     """The section `invariants:`.
@@ -204,7 +209,7 @@ def _function(entry: Marked, fields: Mapping[str, Marked], folder: Path) -> tupl
     if broken is not None:
         raise UsageError(f"is not Python: {broken[1]}", file=file, line=broken[0])
     if not sources.defines(file, name):
-        functions = ", ".join(sources.functions_of(file)) or "none"
+        functions = ", ".join(sources.functions_and_classes_of(file)) or "none"
         raise fields["function"].fail(f"is {name!r}; {file.name} has no such function or class, it has {functions}")
     return file, name
 

@@ -223,7 +223,7 @@ class Mission:
     def close(self) -> None:
         """End every task; the numbers stay readable."""
         self.processor.end()
-        self.kernel.shutdown()
+        self.kernel.shutdown(tidy=True)
         self.stall_watch.end()
         for each in self._attachments:
             each.close()

@@ -32,6 +32,11 @@ class SelectedResult:
     compare: str
     ignore: tuple[str, ...] = TIMES
 
+    @property
+    def is_of_packet(self) -> bool:
+        """Whether its messages are packets of the dictionary, not those of a topic."""
+        return self.compare in OF_MESSAGES and not self.name.startswith(("/", "*"))
+
 
 def read_selected_results(section: Marked) -> tuple[SelectedResult, ...]:
     """The section `results:`.

@@ -43,6 +43,11 @@ def functions_of(source: Path) -> list[str]:
     return [node.name for node in _tree(source).body if isinstance(node, ast.FunctionDef)]
 
 
+def functions_and_classes_of(source: Path) -> list[str]:
+    """Functions and classes that a module defines itself, for suggestions."""
+    return [node.name for node in _tree(source).body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+
+
 def defines(source: Path, name: str) -> bool:
     """Whether a module that can be parsed has a name at its top level, or may have it."""
     return any(_binds(statement, source, name) for statement in _statements(_tree(source).body))

@@ -23,10 +23,13 @@ def app_traceback(error: BaseException) -> str:
 
 
 def reason(error: BaseException) -> str:
-    """The last line of a traceback, with the place: `ValueError: no such joint (arm.py:12)`."""
+    """The last line of a traceback, with the place: `ValueError: no such joint (arm.py:12)`.
+
+    Of a text of several lines, it is the first.
+    """
     frames = traceback.extract_tb(error.__traceback__, limit=-INNERMOST)
     own = [frame for frame in frames if not _is_ours(frame.filename)] or frames
-    what = traceback.format_exception_only(error)[-1].strip()
+    what = traceback.format_exception_only(error)[-1].strip().partition("\n")[0].rstrip(":")
     return f"{what} ({Path(own[-1].filename).name}:{own[-1].lineno})" if own else what
 
 

@@ -10,7 +10,7 @@ from collections.abc import Collection
 from types import FunctionType, ModuleType
 from typing import Any
 
-_OWN = frozenset({"__builtins__", "__loader__", "__spec__"})
+_OWN = ("__builtins__", "__loader__", "__spec__")
 
 
 def made(name: str, **names: Any) -> ModuleType:
@@ -23,7 +23,10 @@ def made(name: str, **names: Any) -> ModuleType:
 def proxy(real: ModuleType, **names: Any) -> ModuleType:
     """A copy of `real` in which some names stand for something else."""
     module = ModuleType(real.__name__, real.__doc__)
-    vars(module).update({name: value for name, value in vars(real).items() if name not in _OWN})
+    copied = vars(real).copy()
+    for name in _OWN:
+        copied.pop(name, None)
+    vars(module).update(copied)
     vars(module).update(names)
     return module
 

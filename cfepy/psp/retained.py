@@ -46,6 +46,8 @@ class Retained:
     def clear(self) -> None:
         """A power-on reset: all but the EEPROM is gone, also for those who hold the areas."""
         for area in (self.reset_area, self.cds, self.user_reserved):
-            area[:] = bytes(len(area))
+            blank = bytes(len(area))
+            if area != blank:  # what nobody has written to since it was made costs the host no memory, and stays so
+                area[:] = blank
         self.exceptions.clear()
         self.kept.clear()

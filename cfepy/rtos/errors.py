@@ -2,9 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class DeadlockError(RuntimeError):
-    """No task can ever go on: nobody is ready and no deadline is left. The text says who waits for what."""
+    """No task can ever go on: nobody is ready and no deadline is left. The text says who waits for what.
+
+    Args:
+        text: that.
+        circle: the tasks that wait for each other, each a `Wait`, where the error comes out of a call that would have
+            closed their circle.
+    """
+
+    def __init__(self, text: str, circle: tuple[Any, ...] = ()) -> None:
+        super().__init__(text)
+        self.circle = circle
 
 
 class InjectedCrash(BaseException):

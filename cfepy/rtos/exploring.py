@@ -55,6 +55,7 @@ class ExploringKernel(Kernel):
         self._decisions = 0
         self._going_on: Task | None = None  # the task that was put in front just now: it could go on
         self._left: Task | None = None  # the task that gave up its turn, or ought to, just now
+        self._early: dict[str, None] = {}  # names of tasks that may start before their time
         self._busy: Task | None = None  # the task that used the CPU last, and how much it may use in one go
         self._busy_until = 0
 
@@ -63,7 +64,7 @@ class ExploringKernel(Kernel):
     def point(self) -> None:
         """The current task calls something: others may get in before that."""
         task = self.current
-        if self._hold_ns:
+        if self._hold_ns or self._early:
             if task is self.host or task.dying or not self._has_choice(task):
                 return
         else:  # most calls find nobody who could get in: they end here
@@ -107,6 +108,7 @@ class ExploringKernel(Kernel):
             (ready and (self._any or ready[0][0] <= task.priority))
             or (timers and timers[0][0] - self._hold_ns <= now)
             or now > self._until
+            or self._early
         ):
             self._catch_up(task, duration_ns)
 
@@ -138,9 +140,26 @@ class ExploringKernel(Kernel):
     def _has_choice(self, task: Task) -> bool:
         """Whether anybody but the running task might go on from here."""
         ready = self.ready
-        return bool(ready and (self._any or ready[0][0] <= task.priority)) or bool(
-            self._hold_ns and self._next_timer() is not None
+        return (
+            bool(ready and (self._any or ready[0][0] <= task.priority))
+            or bool(self._hold_ns and self._next_timer() is not None)
+            or bool(self._early and self._starters(task))
         )
+
+    # -- tasks that may start early ----------------------------------------------------------------------------------
+
+    def may_start_early(self, name: str) -> None:
+        """See `Scheduler.may_start_early`."""
+        self._early[name] = None
+
+    def has_started(self) -> None:
+        """See `Scheduler.has_started`."""
+        self._early.pop(self.current.name, None)
+
+    def _starters(self, task: Task) -> list[Task]:
+        """The tasks of the same application that could start now instead of later."""
+        owner = task.owner
+        return [each for each in self.tasks if each.timer and each.owner is owner and each.name in self._early]
 
     # -- choosing --------------------------------------------------------------------------------------------------
 
@@ -164,10 +183,15 @@ class ExploringKernel(Kernel):
                 return heappop(ready)[2]
             width = 1 if len(ready) == 1 else self._width()
             timer = self._next_timer() if self._hold_ns and first is self._going_on else None
-            choice = 0 if width == 1 and timer is None else self._ask(width, timer)
-            if choice < width:
+            starters = self._starters(first) if self._early else []
+            choice = 0 if width == 1 and timer is None and not starters else self._ask(width, starters, timer)
+            if choice < width + len(starters):
                 self._going_on = self._left = None
-                return ready.pop(choice)[2]
+                if choice < width:
+                    return ready.pop(choice)[2]
+                starter = starters[choice - width]
+                self._time_out(starter)
+                return starter
             assert timer is not None
             self.now = timer
             self._fire_due()
@@ -186,9 +210,9 @@ class ExploringKernel(Kernel):
             width += 1
         return width
 
-    def _ask(self, width: int, timer: int | None) -> int:
-        """Which of the first `width` ready tasks runs; `width` when none does before a timer that is due soon."""
-        tasks = [entry[2] for entry in self.ready[:width]]
+    def _ask(self, width: int, starters: list[Task], timer: int | None) -> int:
+        """Which of the first `width` ready tasks and of those that may start runs; none before the timer is the last."""
+        tasks = [*(entry[2] for entry in self.ready[:width]), *starters]
         number = self._decisions
         self._decisions = number + 1
         assert self.policy is not None

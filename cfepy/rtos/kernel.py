@@ -20,8 +20,9 @@ from cfepy.rtos.scheduler import Scheduler
 from cfepy.rtos.task import Task, TaskExit
 
 ENDLESS = 1 << 62
-LEAST_LOOKS = 16  # every so many simulations, all garbage is looked for at the end
-OBJECTS_A_LOOK = 10_000  # and less often where there are more objects than this for each of them
+LEAST_LOOKS = 64  # of so many looks for garbage at the end of a run one goes through everything
+OBJECTS_A_LOOK = 2000  # fewer when there are many objects: one of as many as they are, by this
+MOST_OBJECTS = 30_000  # when more than these are gone through, what is left is frozen
 COLLECT_NS = 10_000_000_000  # garbage is collected at multiples of this: finalizers always run at the same place
 
 
@@ -209,7 +210,7 @@ class Kernel(Scheduler):
             raise RuntimeError("run() was called from inside the simulation")
         end = ENDLESS if until_ns is None else until_ns
         self._stopped = self._exhausted = False
-        if not self._frozen:
+        if not gc.get_freeze_count():
             gc.freeze()
             self._frozen = True
         enabled = gc.isenabled()
@@ -253,25 +254,19 @@ class Kernel(Scheduler):
         self.timers.clear()
         self._last = None
 
-    def shutdown(self) -> None:
-        """Unwind every task and let their threads go, and what they leave behind. The host calls it at the end.
+    def shutdown(self, tidy: bool = False) -> None:
+        """Unwind every task and let their threads go. The host calls it at the end.
 
-        What is left is full of circles, above all classes, which only the garbage collector finds; and it hardly ever
-        looks by itself, as it is off while tasks run. So it looks here, through what this run has made alone; from
-        time to time, so that it costs little, through everything, for then others have dropped their simulations.
+        Args:
+            tidy: what the run leaves is worth looking for garbage, which is hardly ever done by itself: it is off
+                while tasks run.
         """
         self.unwind()
-        if not self._frozen:
-            return
+        if tidy and gc.isenabled():
+            _tidy()
+        elif self._frozen:
+            gc.unfreeze()
         self._frozen = False
-        if not gc.isenabled():  # somebody knows better
-            gc.unfreeze()
-            return
-        looks = gc.get_stats()[-1]["collections"]
-        if looks % max(LEAST_LOOKS, gc.get_freeze_count() // OBJECTS_A_LOOK) == 0:
-            gc.unfreeze()
-        gc.collect()
-        gc.unfreeze()
 
     def waiting(self) -> str:
         """Who waits for what, held by whom: the deadlock report."""
@@ -356,3 +351,18 @@ class Kernel(Scheduler):
                 except KeyboardInterrupt:
                     continue  # Ctrl-C once more; there is nothing more to do about it
         raise error
+
+
+def _tidy() -> None:
+    """Look for garbage in what was made since objects were frozen; every so many times in everything.
+
+    A run leaves classes, whose circles reference counting cannot free; the simulation itself is still in somebody's
+    hands, and is found the next time. What was there before the first run stays frozen: to go through it takes longer
+    than all the rest.
+    """
+    looks = gc.get_stats()[-1]["collections"] + 1
+    if looks % max(LEAST_LOOKS, gc.get_freeze_count() // OBJECTS_A_LOOK) == 0:
+        gc.unfreeze()
+    gc.collect()
+    if len(gc.get_objects()) > MOST_OBJECTS:
+        gc.freeze()

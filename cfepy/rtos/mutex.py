@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cfepy.rtos.errors import DeadlockError
 from cfepy.rtos.kernel import Kernel
+from cfepy.rtos.report import Wait
 from cfepy.rtos.task import Task, WaitList
 
 
@@ -74,10 +75,10 @@ class Mutex:
 
     def _wait(self, task: Task) -> None:
         kernel = self.kernel
-        if self._leads_to(task):
-            raise DeadlockError(
-                f"{task.name} takes mutex {self.name}, whose owner waits for {task.name}:\n{kernel.waiting()}"
-            )
+        circle = self._circle(task)
+        if circle:
+            text = f"{task.name} takes mutex {self.name}, whose owner waits for {task.name}:\n{kernel.waiting()}"
+            raise DeadlockError(text, circle)
         task.mutex = self
         owner, priority = self.owner, task.priority
         while owner is not None and owner.priority > priority:
@@ -90,10 +91,15 @@ class Mutex:
             if self.owner is not None and self.owner is not task:
                 kernel.inherit(self.owner)  # we were killed while waiting: our urgency goes with us
 
-    def _leads_to(self, task: Task) -> bool:
-        owner = self.owner
-        while owner is not None and owner.mutex is not None:
-            owner = owner.mutex.owner
-            if owner is task:
-                return True
-        return False
+    def _circle(self, task: Task) -> tuple[Wait, ...]:
+        """Who would wait for each other if this task waited here, the oldest one in front; empty for no circle."""
+        waits: list[Wait] = []
+        waiter = task
+        mutex: Mutex | None = self
+        while mutex is not None and mutex.owner is not None:
+            waits.append(Wait(waiter, mutex.waits.what, mutex.owner))
+            waiter, mutex = mutex.owner, mutex.owner.mutex
+            if waiter is task:
+                oldest = waits.index(min(waits, key=lambda wait: wait.task.ident))
+                return (*waits[oldest:], *waits[:oldest])
+        return ()

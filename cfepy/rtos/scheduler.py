@@ -79,6 +79,12 @@ class Scheduler:
         heappush(self.timers, (when, sequence, task))
         self.block()
 
+    def may_start_early(self, name: str) -> None:
+        """The delay with which the task of this name will begin is none that its application can count on."""
+
+    def has_started(self) -> None:
+        """That delay of the current task is over."""
+
     def wait_on(self, waits: WaitList, timeout_ns: int = FOREVER) -> Any:
         """Wait in a list until `wake_first` or `wake_all`.
 

@@ -16,7 +16,7 @@ from _pytest.runner import runtestprotocol
 from cfepy.explore.moves import Move
 from cfepy.explore.recording import TaskLook
 from cfepy.explore.shrink import Shrinker, Shrunk
-from cfepy.explore.timeline import drawn, tasks_of
+from cfepy.explore.timeline import columns, drawn
 from cfepy.explore.verdict import Failure, Verdict
 from cfepy.mission.run_plan import RunPlan
 from cfepy.rtos.policy import Policy
@@ -142,11 +142,10 @@ class ExploredTest:
 
     def _timeline(self, schedule: Schedule, moves: Sequence[Move]) -> list[str]:
         """What happens under a schedule, a column for each task that matters; the test is run once more for it."""
-        tasks = tasks_of(moves)
-        look = TaskLook(self._last.conditions.plans[0].spec(), tasks)
+        look = TaskLook(self._last.conditions.plans[0].spec())
         policy = look.policy(schedule.policy() or Policy())
         self._last = self._once(Conditions(schedule.text(), policy, (look,)))
-        return drawn(look.rows, tasks)
+        return drawn(look.rows, columns(look.rows, moves))
 
     # -- one run -------------------------------------------------------------------------------------------------------
 

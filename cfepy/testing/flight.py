@@ -11,6 +11,7 @@ something to the mission, so after one command several may stand in any order.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from types import TracebackType
 from typing import Any
 
@@ -188,12 +189,14 @@ class Flight(FlightRecord):
         self._act()
         self._checked(lambda: self._ros.set_param(name, value))
 
-    def load_table(self, name: str, rows: Any, *, within: float = WITHIN_S) -> None:
+    def load_table(self, name: str, rows: Any, *, wake: str | None = None, within: float = WITHIN_S) -> None:
         """Load a table, validate it and activate it, as the ground does.
 
         Args:
             name: full name, such as "HK.CopyTable".
             rows: as `cfepy.tbl.TableType.pack` takes them, or the table's bytes.
+            wake: a command that lets the table's owner look after its tables, such as "SAMPLE_APP_SEND_HK", for an
+                application that does so only when it is asked for housekeeping.
             within: virtual seconds for each of the three steps.
 
         Raises:
@@ -207,9 +210,24 @@ class Flight(FlightRecord):
         self.send("CFE_TBL_LOAD", LoadFilename=TABLE_FILE)
         self.expect_event("CFE_TBL", text="Successful load", within=within)
         self.send("CFE_TBL_VALIDATE", ActiveTableFlag=0, TableName=kind.name)
-        self.expect_event("CFE_TBL", text="validation succ", within=within)
+        self._await_owner("validation succ", wake, within)
         self.send("CFE_TBL_ACTIVATE", TableName=kind.name)
-        self.expect_event("CFE_TBL", text="Update", within=within)
+        self._await_owner("Update", wake, within)
+
+    def _await_owner(self, text: str, wake: str | None, within: float) -> None:
+        """Wait for an event of CFE_TBL about what a table's owner does in CFE_TBL_Manage."""
+        wanted = expectations.event(self.log, self._here, "CFE_TBL", None, text, None)
+        first = self._here.events
+        if wake is not None:
+            self._run_until_ns(self.mission.kernel.now + LOOK_NS)  # CFE_TBL has to have got its command before
+            self.send(wake)
+
+        def instead() -> str:
+            is_idle = wake is None and not any(event.app == "CFE_TBL" for event in self.log.events[first:])
+            hint = "; its owner has not called CFE_TBL_Manage: wake= names the command that lets it" if is_idle else ""
+            return wanted.instead() + hint
+
+        self._await(replace(wanted, instead=instead), within)
 
     def _act(self) -> None:
         """The test does something: from here on, expectations look."""

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from cfepy.es.records import STATE_NAMES
+from cfepy.explore.console_errors import TracebackReader
 from cfepy.mission.dictionary import Dictionary, dictionary_of
 from cfepy.mission.message_watch import Heard
 from cfepy.mission.mission import Mission
@@ -141,11 +142,21 @@ class FlightRecord:
 
     @property
     def problems(self) -> list[str]:
-        """A line for all that is wrong until now: what a run's report tells, and tasks that wait for each other."""
+        """A line for all that is wrong until now: what a run's report tells, exceptions in nodes, deadlocks.
+
+        An exception that ends only a thread, or that rospy catches behind a callback, is not in a run's report.
+        """
         if self._results is not None:
-            return self._results.problems
+            return [*self._results.problems, *self._raised()]
         circles = [", ".join(map(str, circle)) for circle in self.mission.kernel.deadlocked()]
-        return [*Results.of(self.mission, mark(self.mission, 0), "").problems, *circles]
+        return [*Results.of(self.mission, mark(self.mission, 0), "").problems, *self._raised(), *circles]
+
+    def _raised(self) -> list[str]:
+        """The exceptions whose tracebacks nodes have printed."""
+        reader = TracebackReader()
+        for line in self.log.lines:
+            reader.take(line, 0)
+        return list(dict.fromkeys(failure.title for failure in reader.found))
 
     def message_class(self, kind: str) -> Any:
         """The class of a ROS message type, such as "std_msgs/Float64", also of the mission's own packages.

@@ -2,6 +2,8 @@
 
 A suite that has nothing to do with cfepy pays for some options and a look at its collected tests. Imports pytest, and
 nothing of cfepy before a test asks for a mission.
+
+PYTEST_DONT_REWRITE: it is loaded by its entry point or by name, and pytest warns of one that was loaded in both ways.
 """
 
 from __future__ import annotations

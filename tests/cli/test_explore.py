@@ -32,7 +32,7 @@ def test_a_failure_is_told_once_with_its_command_and_timeline(
     out = capsys.readouterr().out
     assert f"failure 1: {EVENT}" in out
     assert "failure 2" not in out
-    assert f"FAILURE {EVENT}" in out
+    assert f"FAILURE in LISTENER: {EVENT}" in out
     found = json.loads(numbers.read_text())
     assert found["schedules"] == 6
     (failure,) = found["failures"]
@@ -83,6 +83,16 @@ def test_results_are_kept_in_a_file_and_not_run_again(
     explore(*words, "--seeds", 5)
     out = capsys.readouterr().out
     assert "5 schedules, 0 failed, 3 from the results file: no failure" in out
+
+
+def test_a_task_that_waits_for_ever_may_be_let(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = missions.write(tmp_path / "pair", {"PAIR": missions.LOST_WAKE_UP})
+    words = (folder, "--for", 1, "--seeds", 10, "--jobs", 1, "--shrink", 0, "--results", tmp_path / "results")
+    assert explore(*words) == FOUND_PROBLEMS
+    assert "failure 1: stuck: PAIR: PAIR.pair.1.1 waits for ever for lock at pair.py:" in capsys.readouterr().out
+    assert explore(*words, "--no-stuck") == BAD_USAGE
+    assert "no_stuck was false, is true" in capsys.readouterr().err
+    assert explore(*words[:-2], "--no-stuck") == ENDED_WELL
 
 
 def test_a_node_is_explored_by_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -72,6 +72,7 @@ def test_steps_go_from_one_thing_to_the_next(plan: RunPlan) -> None:
     assert steps[1] == "COUNTER/COUNTER.numbers.1: goes on"
     assert steps[2].startswith("COUNTER/COUNTER.numbers.1: takes /numbers out of pipe COUNTER.numbers")
     assert steps[3].startswith("COUNTER/COUNTER.numbers.1: console: [counter] [INFO]")
+    assert len(steps) == 4
 
 
 def test_tasks_pipes_where_and_help(plan: RunPlan) -> None:

@@ -75,6 +75,40 @@ CHECK_THEN_ACT = """
     rospy.spin()
 """
 
+LOST_WAKE_UP = """
+    import threading
+    import rospy
+
+    rospy.init_node("pair")
+    something = threading.Condition()
+    ready = False
+
+
+    def look_at_the_clock():
+        for _ in range(20):
+            rospy.get_time()
+
+
+    def consume():
+        if not ready:
+            look_at_the_clock()
+            with something:
+                something.wait()
+
+
+    def produce():
+        global ready
+        rospy.get_time()
+        ready = True
+        with something:
+            something.notify()
+
+
+    for each in (consume, produce):
+        threading.Thread(target=each).start()
+    rospy.spin()
+"""
+"""Whether something is ready is looked at without the lock."""
 
 LATE = """
     def Listener(cfe):

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
+from pathlib import Path
+
 import pytest
 
 from cfepy.explore.campaign import Campaign
@@ -13,6 +17,7 @@ from cfepy.explore.workers import Processes
 from cfepy.mission.run_plan import RunPlan
 from cfepy.rtos.schedule import Schedule
 from cfepy.status import UsageError
+from tests.explore import missions
 
 
 @pytest.mark.parametrize(
@@ -38,3 +43,29 @@ def test_worker_processes_find_what_this_process_finds() -> None:
     Campaign(trial, search, 6, crew).run(lambda _, verdict: told.append(verdict))
     assert told == [trial.run(verdict.schedule) for verdict in told]
     assert len({verdict.schedule for verdict in told}) == 6
+
+
+@pytest.mark.parametrize("schedule", ["random:3", "pct:3:3:60:hold=1ms", "random:4:from=600ms"])
+def test_a_schedule_is_one_run_in_any_process_on_any_context_under_any_hash_seed(schedule: str, tmp_path: Path) -> None:
+    bank = missions.write(tmp_path, {"BANK": missions.LOST_UPDATE})
+    found: list[Verdict] = []
+    for tasks in ("thread", "greenlet"):
+        trial = Trial(RunPlan((str(bank),), seconds=1.1, tasks=tasks))
+        found.append(trial.run(schedule))
+        for hash_seed in ("1", "77") if tasks == "greenlet" else ("2",):
+            crew = Processes(1, environ={**os.environ, "PYTHONHASHSEED": hash_seed})  # forks, on greenlets from=...
+            Campaign(trial, Same(schedule), 2, crew).run(lambda _, verdict: found.append(verdict))
+    assert len(found) == 8
+    assert all(verdict == found[0] for verdict in found)
+    assert found[0].trace
+    assert not found[0].trouble
+
+
+class Same:
+    """One schedule again and again."""
+
+    def __init__(self, schedule: str) -> None:
+        self.next: Callable[[], str] = lambda: schedule
+
+    def tell(self, number: int, verdict: Verdict) -> None:
+        """Nothing to learn."""

@@ -7,46 +7,15 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.explore.pilot import Pilot
+from cfepy.explore.shrink import Shrinker
 from cfepy.explore.stuck import SHORTEST_NS, Left, Waits, stuck, waits_of
 from cfepy.explore.trial import Trial
 from cfepy.explore.verdict import DEADLOCK, STUCK, Verdict
-from cfepy.mission.run_plan import RunPlan
+from cfepy.mission.run_plan import NODE, RUN, RunPlan
 from cfepy.rtos.units import NS_PER_S
 from tests.explore import missions
 
-HALF = """
-    import threading
-    import rospy
-
-    rospy.init_node("pair")
-    something = threading.Condition()
-    ready = False
-
-
-    def look_at_the_clock():
-        for _ in range(20):
-            rospy.get_time()
-
-
-    def consume():
-        if not ready:
-            look_at_the_clock()
-            with something:
-                something.wait()
-
-
-    def produce():
-        global ready
-        rospy.get_time()
-        ready = True
-        with something:
-            something.notify()
-
-
-    for each in ORDER:
-        threading.Thread(target=each).start()
-    rospy.spin()
-"""
 CHECKED = ("if not ready:", "while not ready:"), ("look_at_the_clock()\n            with something:", "with something:")
 POOL = """
     from concurrent.futures import ThreadPoolExecutor
@@ -100,7 +69,7 @@ LATER = """
 """
 
 
-def trial(folder: Path, source: str, tasks: str = "thread", seconds: float = 1.0) -> Trial:
+def trial(folder: Path, source: str, tasks: str = "greenlet", seconds: float = 1.0) -> Trial:
     plan = RunPlan((str(missions.write(folder, {"PAIR": source})),), seconds=seconds, tasks=tasks)
     return replace(Trial(plan), waits=waits_of(plan, round(seconds * NS_PER_S), None))
 
@@ -109,7 +78,7 @@ def first_failed(found: Trial) -> Verdict:
     return next(verdict for seed in range(80) if (verdict := found.run(f"pct:{seed}:2:60")).failed)
 
 
-def kinds(found: Trial, schedules: int = 20) -> set[str]:
+def kinds(found: Trial, schedules: int = 8) -> set[str]:
     verdicts = [found.run(f"{kind}:{seed}") for seed in range(schedules) for kind in ("random", "pct")]
     assert not any(verdict.trouble for verdict in verdicts)
     return {failure.kind for verdict in verdicts for failure in verdict.failures}
@@ -117,7 +86,7 @@ def kinds(found: Trial, schedules: int = 20) -> set[str]:
 
 @pytest.mark.parametrize("order", ["(consume, produce)", "(produce, consume)"])
 def test_a_lost_wake_up_is_found(order: str, tmp_path: Path) -> None:
-    found = trial(tmp_path, HALF.replace("ORDER", order))
+    found = trial(tmp_path, missions.LOST_WAKE_UP.replace("(consume, produce)", order))
     assert not found.run("at").failed
     failed = first_failed(found)
     (failure,) = failed.failures
@@ -130,22 +99,41 @@ def test_a_lost_wake_up_is_found(order: str, tmp_path: Path) -> None:
         assert again.trace == failed.trace
 
 
+def test_a_forked_flight_finds_it_as_well(tmp_path: Path) -> None:
+    found = trial(tmp_path, missions.LOST_WAKE_UP)
+    schedules = [f"pct:{seed}:2:60:from=540ms" for seed in range(40)]
+    failing = next(schedule for schedule in schedules if found.run(schedule).failed)
+    pilot = Pilot(found)
+    assert pilot.judge(failing) == found.run(failing)
+    pilot.close()
+
+
+def test_it_shrinks_to_one_preemption(tmp_path: Path) -> None:
+    found = trial(tmp_path, missions.LOST_WAKE_UP)
+    failure = found.run("random:0").failures[0]
+    shrunk = Shrinker(found, "random:0", failure.group, 80).run()
+    assert shrunk is not None
+    assert [move.chosen for move in shrunk.moves] == ["PAIR.pair.2.2"]
+    assert shrunk.verdict.failures[0].kind == failure.kind == STUCK
+    assert shrunk.trial.plan == found.plan
+
+
 def test_it_says_how_long_others_wait(tmp_path: Path) -> None:
-    found = trial(tmp_path, HALF.replace("ORDER", "(consume, produce)"))
+    found = trial(tmp_path, missions.LOST_WAKE_UP)
     (failure,) = first_failed(found).failures
     assert failure.text.endswith("; under fifo nobody waits there for longer than 0.000002 s")
-    found = trial(tmp_path, HALF.replace("ORDER", "(produce, consume)"))
+    found = trial(tmp_path, missions.LOST_WAKE_UP.replace("(consume, produce)", "(produce, consume)"))
     (failure,) = first_failed(found).failures
     assert failure.text.endswith("; under fifo it never waits there")
 
 
 def test_without_waits_of_the_default_schedule_nothing_is_stuck(tmp_path: Path) -> None:
-    assert kinds(replace(trial(tmp_path, HALF.replace("ORDER", "(consume, produce)")), waits=None)) == set()
+    assert kinds(replace(trial(tmp_path, missions.LOST_WAKE_UP), waits=None)) == set()
 
 
 @pytest.mark.parametrize("order", ["(consume, produce)", "(produce, consume)"])
 def test_one_that_checks_under_the_lock_is_not(order: str, tmp_path: Path) -> None:
-    source = HALF.replace("ORDER", order)
+    source = missions.LOST_WAKE_UP.replace("(consume, produce)", order)
     for old, new in CHECKED:
         assert source.count(old) == 1
         source = source.replace(old, new)
@@ -159,6 +147,15 @@ def test_who_waits_by_right_is_not(source: str, tmp_path: Path) -> None:
 
 def test_a_deadlock_is_told_as_one(tmp_path: Path) -> None:
     assert kinds(trial(tmp_path, missions.LOCK_ORDER)) == {DEADLOCK}
+
+
+@pytest.mark.parametrize("command", [RUN, NODE])
+def test_the_run_that_tells_what_is_usual_takes_twice_the_time(command: str, tmp_path: Path) -> None:
+    folder = missions.write(tmp_path, {"IDLE": "import threading\nthreading.Event().wait()\n"})
+    plan = RunPlan((str(folder if command == RUN else folder / "idle.py"),), command, seconds=0.2)
+    (left,) = waits_of(plan, 900_000_000, None).left
+    assert left.place == ("IDLE", "lock at idle.py:2")
+    assert left.since_ns + left.idle_ns == 1_800_000_000
 
 
 PLACE = ("ARM", "lock at arm.py:1")

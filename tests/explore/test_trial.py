@@ -111,6 +111,33 @@ def Complains(cfe):
 """
 
 
+MUTEXES = """
+def Ring(cfe):
+    power, bus = (cfe.os.mut_sem_create(name) for name in ("power", "bus"))
+
+    def child(first, second):
+        cfe.os.mut_sem_take(first)
+        cfe.os.mut_sem_take(second)
+
+    cfe.es.create_child_task("radio", lambda: child(power, bus), 4096, 50)
+    cfe.es.create_child_task("heater", lambda: child(bus, power), 4096, 50)
+    while cfe.es.run_loop(1):
+        cfe.os.task_delay(100)
+"""
+
+
+def test_mutexes_in_a_circle_are_one_deadlock_whoever_closes_it(tmp_path: Path) -> None:
+    (tmp_path / "apps.py").write_text(MUTEXES)
+    (tmp_path / "startup.scr").write_text("CFE_APP, apps, Ring, RING, 50, 8192, 0, 0;\n!\n")
+    verdicts = [trial(tmp_path, 1.0).run(f"random:{seed}") for seed in range(30)]
+    found = [verdict.failures[0] for verdict in verdicts if verdict.failed]
+    assert {(failure.kind, failure.who, failure.text) for failure in found} == {
+        (DEADLOCK, "RING", "radio waits for mutex bus, held by heater; heater waits for mutex power, held by radio")
+    }
+    assert {failure.task for failure in found} == {"radio", "heater"}
+    assert all(failure.detail.endswith("cfe.os.mut_sem_take(second)") for failure in found)
+
+
 def app(tmp_path: Path, name: str, action: int = 0) -> Trial:
     (tmp_path / "apps.py").write_text(APPS)
     (tmp_path / "startup.scr").write_text(f"CFE_APP, apps, {name}, {name.upper()}, 50, 8192, 0, {action};\n!\n")

@@ -73,6 +73,13 @@ def test_a_delayed_message_comes_between_later_ones(tmp_path: Path, to: dict[str
     assert "delays by 0.25 s" in row(mission, "delay-1")["details"][0]
 
 
+def test_a_short_delay_that_begins_during_a_long_one_ends_first(tmp_path: Path) -> None:
+    long, short = {"delay": NUMBER, "by": 0.25, "number": 2}, {"delay": NUMBER, "by": 0.02, "number": 3}
+    mission = fly(tmp_path, long | {"name": "long"}, short | {"name": "short"})
+    assert values(mission)[:6] == [0, 2, 3, 1, 4, 5]
+    assert [row(mission, name)["times"] for name in ("long", "short")] == [1, 1]
+
+
 def test_a_delay_may_have_a_range(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"delay": NUMBER, "by": [0.01, 0.05], "after": 1.2})
     texts = row(mission, "delay-1")["details"]

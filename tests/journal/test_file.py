@@ -94,6 +94,19 @@ def test_one_that_is_cut_off_anywhere_is_replayed_as_far_as_it_goes(run: Path) -
         assert not verdict.whole
 
 
+def test_one_that_was_killed_while_nodes_shut_down_ends_where_its_time_is_over(run: Path) -> None:
+    whole = run.read_bytes()
+    end_ns = read_journal(run).known_until_ns
+    run.write_bytes(whole[:-40])
+    cut = read_journal(run)
+    assert cut.end is None
+    assert cut.known_until_ns > end_ns
+    for until_ns in (None, 3 * end_ns):
+        replayed = replay(cut, until_ns=until_ns)
+        assert replayed.verdict.same
+        assert replayed.flown.results.virtual_s == 1
+
+
 def test_a_damaged_one_is_told_with_its_place(run: Path) -> None:
     data = bytearray(run.read_bytes())
     data[len(data) // 2] ^= 1

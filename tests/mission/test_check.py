@@ -55,6 +55,33 @@ def test_a_bad_line(tmp_path: Path, line: str, said: str) -> None:
     assert said in text
 
 
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        (
+            "invariants:\n  a: {packet: HK_TML, holds: 'True'}",
+            "invariants.a: no telemetry packet is called HK_TML",
+        ),
+        (
+            "invariants:\n  a: {topic: /a, within: 1, then: {packet: [HK_NOOP, HKK]}}",
+            "invariants.a: no telemetry packet is called HKK",
+        ),
+        ("results:\n  HK: count", "results.HK: no telemetry packet is called HK"),
+        (
+            "invariants:\n  a: {topic: /a, file: checks.py, function: Count}",
+            "checks.py has no such function or class, it has seen, Counts",
+        ),
+    ],
+)
+def test_packets_and_functions_that_are_not_there(tmp_path: Path, entry: str, said: str) -> None:
+    (tmp_path / "checks.py").write_text("def seen(event): ...\n\n\nclass Counts: ...\n")
+    ((file, line, text),) = check(tmp_path, HK + "!", entry)
+    assert (file, line) == ("mission.yaml", 2)
+    assert said in text
+    good = "invariants: {a: {packet: [HK_HK_TLM, HK_NOOP, 0x0808], holds: 'True'}}\nresults: {/x: last, HK_NOOP: last}"
+    assert check(tmp_path, HK + "!", good) == []
+
+
 def test_the_same_name_for_an_app_and_a_library_is_fine(tmp_path: Path) -> None:
     assert check(tmp_path, HK + "CFE_LIB, hk, NULL, HK, 0, 0, 0, 0;\n!") == []
 

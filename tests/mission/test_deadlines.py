@@ -8,7 +8,7 @@ import pytest
 
 from cfepy.console import Console
 from cfepy.mission.check import check_mission
-from cfepy.mission.deadline_checks import DeadlineResult
+from cfepy.mission.deadline_checks import Check, DeadlineResult
 from cfepy.mission.deadlines import AppDeadline, TopicDeadline, time_text
 from cfepy.mission.run_plan import Flown, RunPlan
 from cfepy.mission.spec import read_mission
@@ -143,6 +143,16 @@ def test_times_are_told_as_people_write_them(time: int, text: str) -> None:
 
 
 # -- applications ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("kind", "kept", "missed"),
+    [("latency", 10, 11), ("at_least_every", 10, 11), ("at_most_every", 10, 9), ("period", 12, 13), ("period", 8, 7)],
+)
+def test_a_limit_that_is_just_kept_is_kept(kind: str, kept: int, missed: int) -> None:
+    check = Check("WORKER", kind, 10, 2)
+    assert check.measure(kept)
+    assert not check.measure(missed)
 
 
 def test_a_period_that_jumps_once_is_missed_once(tmp_path: Path) -> None:
@@ -281,6 +291,10 @@ def test_a_ros_topic_has_deadlines_by_name_and_the_shutdown_does_not_count(tmp_p
     flown = fly(tmp_path, text, startup, talk=talk, hear=hear)
     assert [each.overruns for each in flown.results.deadlines] == [0, 0, 0]
     assert all(each.checked > 40 for each in flown.results.deadlines)
+    unheard = fly(tmp_path, text, startup.splitlines()[0] + "\n", talk=talk)
+    latency, *others = unheard.results.deadlines
+    assert latency.checked == 0
+    assert all(each.checked > 40 and each.overruns == 0 for each in others)  # it is published, whoever hears it
 
 
 # -- where they are told -----------------------------------------------------------------------------------------------

@@ -177,7 +177,7 @@ def test_the_run_is_that_without_invariants_as_long_as_they_hold(folder: Path) -
         ("{x: {topic: /count, within: soon, then: {topic: /a}}}", "is 'soon', it must be a time such as"),
         ('{x: {topic: /count, holds: "True", then: {topic: /a}}}', "says what has to come, but not how soon"),
         ("{x: {file: no.py, function: f}}", "which is no file"),
-        ("{x: {file: checks.py, function: nobody}}", "no such function or class, it has fine, broken"),
+        ("{x: {file: checks.py, function: nobody}}", "no such function or class, it has Twice, fine, broken"),
         ("{x: {function: fine}}", "names a function but not the file"),
         ('{x: {topic: /count, holds: "True", whne: "True"}}', "is not known here; known are"),
     ],

@@ -85,7 +85,7 @@ BUGS = (
     Bug("parameter_update", ROS, "two nodes count a parameter up"),
     Bug("burst_overflow", ROS, "a short queue overflows under a burst"),
     Bug("starvation", ROS, "a long callback is over before a short one begins"),
-    Bug("depth_three", ROS, "three events in one order"),
+    Bug("depth_three", ROS, "three events in one order", (verdict.RAISED,)),
     Bug("frame_counter", CFE, "main task and child task share a sequence counter", (verdict.EVENT,)),
     Bug("mutex_order", CFE, "two mutexes, taken in opposite orders", (verdict.DIED, verdict.DEADLOCK)),
     Bug("pipe_deleted", CFE, "a child task receives from a pipe that was deleted", (verdict.DIED,)),

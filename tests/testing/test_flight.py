@@ -148,6 +148,32 @@ def test_a_service_that_fails_or_does_not_answer(flight: Flight, tmp_path: Path)
             other.call_service("/reset")
 
 
+def test_an_exception_in_a_callback_is_a_problem(tmp_path: Path) -> None:
+    raising = BIG.replace("lambda message: print(len(message.data))", "lambda message: 1 // len(message.data)")
+    folder = write_mission(tmp_path / "raising", big=raising)
+    with Flight(RunPlan((str(folder),))) as flight:
+        flight.run_until_operational()
+        assert flight.problems == []
+        for _ in range(2):
+            flight.publish("/long", data="")
+            flight.run(0.1)
+        assert len(flight.problems) == 1
+        assert re.fullmatch(r"unhandled exception: big: ZeroDivisionError: .* \(big\.py:5\)", flight.problems[0])
+
+
+SAMPLE = "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
+
+
+def test_a_table_of_an_application_that_waits_for_housekeeping_requests(tmp_path: Path) -> None:
+    (tmp_path / "startup.scr").write_text(SAMPLE)
+    rows = {"Int1": 3, "Int2": 4}
+    with Flight(RunPlan((str(tmp_path),))) as flight:
+        flight.run_until_operational()
+        flight.load_table("SAMPLE_APP.ExampleTable", rows, wake="SAMPLE_APP_SEND_HK", within=0.1)
+        with pytest.raises(ExpectationError, match="its owner has not called CFE_TBL_Manage: wake= names"):
+            flight.load_table("SAMPLE_APP.ExampleTable", rows)
+
+
 def test_before_there_are_nodes_and_after_the_end(folder: Path) -> None:
     with Flight(RunPlan((str(folder),))) as flight:
         with pytest.raises(ExpectationError, match="no ROS node has started yet"):

@@ -1,7 +1,6 @@
-"""Records samples; a timer ends the recording after its time."""
+"""Records the latest sample at a fixed rate; a timer ends the recording when its time is up."""
 
 import io
-import queue
 
 import rospy
 from std_msgs.msg import Float32
@@ -9,23 +8,26 @@ from std_msgs.msg import Float32
 
 class Recorder:
     def __init__(self) -> None:
-        self.samples = queue.Queue()
+        self.latest = 0.0
+        self.left = 12
         self.file = io.StringIO()
-        rospy.Subscriber("sample", Float32, lambda message: self.samples.put(message.data))
-        rospy.Timer(rospy.Duration(0.13), self.finish, oneshot=True)
+        rospy.Subscriber("sample", Float32, self.on_sample)
+        rospy.Timer(rospy.Duration(0.01), self.watch)
 
-    def finish(self, _event: object) -> None:
-        self.file.close()
+    def on_sample(self, message: Float32) -> None:
+        self.latest = message.data
+
+    def watch(self, _event: object) -> None:
+        self.left -= 1
+        if self.left == 0:
+            self.file.close()
 
     def run(self) -> None:
+        rate = rospy.Rate(100)
         while not self.file.closed:
-            try:
-                sample = self.samples.get(timeout=0.05)
-            except queue.Empty:
-                continue
-            if not self.file.closed:
-                rospy.loginfo("sample %f", sample)
-                self.file.write(f"{sample}\n")
+            rospy.loginfo("sample %f", self.latest)
+            self.file.write(f"{self.latest}\n")
+            rate.sleep()
 
 
 rospy.init_node("recorder")

@@ -1,0 +1,73 @@
+"""What a mission leaves in its process when it is over: nothing, and nobody has to call the garbage collector."""
+
+from __future__ import annotations
+
+import gc
+from collections import Counter
+from collections.abc import Iterator
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.mission import Mission
+from cfepy.mission.spec import read_mission
+from cfepy.nodes import Universe
+from cfepy.rtos import Kernel
+
+FLIGHTS = 6
+SECONDS = 0.65  # capture's nodes have begun
+PARTS = (Mission, Kernel, Universe)
+
+
+@pytest.fixture(autouse=True)
+def nothing_else() -> Iterator[None]:
+    """What other tests left is not looked at, and garbage is not found by chance."""
+    gc.collect()
+    gc.freeze()
+    before = gc.get_threshold()
+    gc.set_threshold(0)
+    yield
+    gc.set_threshold(*before)
+    gc.unfreeze()
+
+
+def parts() -> Counter[str]:
+    """How many parts of missions there are, without those that were there before the test."""
+    return Counter(kind.__name__ for each in gc.get_objects() for kind in PARTS if isinstance(each, kind))
+
+
+def fly(seconds: float = SECONDS, tasks: str = "thread") -> Mission:
+    with Mission(read_mission("capture"), console=Console(quiet=True), tasks=tasks) as mission:
+        mission.run(seconds)
+    return mission
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_missions_do_not_pile_up(tasks: str) -> None:
+    for _ in range(FLIGHTS):
+        fly(tasks=tasks)
+    found = parts()
+    assert found["Mission"] <= 1 and found["Kernel"] <= 1  # of the last one, which nobody has looked at since
+    assert found["Universe"] <= 4  # of which each flight makes four
+
+
+def test_a_mission_that_is_over_can_be_looked_at() -> None:
+    first = fly()
+    fly(0.1)  # at its end garbage is looked for
+    assert first.booted is not None
+    assert first.console.lines
+    assert first.record.history
+    assert first.cfe.sb.routes
+    assert first.files.list_dir("/cf")
+    assert first.ros.topics()
+
+
+def test_who_has_turned_the_collector_off_keeps_it_off() -> None:
+    gc.disable()
+    try:
+        looks = gc.get_stats()[-1]["collections"]
+        fly(0.1)
+        assert not gc.isenabled()
+        assert gc.get_stats()[-1]["collections"] == looks
+    finally:
+        gc.enable()

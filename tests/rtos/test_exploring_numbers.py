@@ -1,0 +1,266 @@
+"""What is promised in numbers: the odds of random and PCT, and what the systematic search leaves out: nothing.
+
+The seeds are fixed, so a test either always holds or never; bounds leave room of four standard deviations.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from itertools import combinations, groupby, permutations
+from math import sqrt
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cfepy.rtos import (
+    Decision,
+    DepthFirst,
+    Deviations,
+    Kernel,
+    Mutex,
+    Policy,
+    Queue,
+    Recorded,
+    Schedule,
+    Semaphore,
+    make_kernel,
+)
+from cfepy.trace import Trace
+
+Program = Callable[[Kernel, list[str]], None]
+SEEDS = 800
+
+
+def fly(program: Program, policy: Policy | None, context: str = "greenlet") -> tuple[str, Recorded, str]:
+    """What the tasks wrote, the decisions, and the digest of the trace."""
+    recorded, trace, written = Recorded(policy), Trace(), list[str]()
+    with make_kernel(context, trace, recorded) as kernel:
+        program(kernel, written)
+        kernel.run(1_000_000)
+    return "".join(written), recorded, trace.digest()
+
+
+def walkers(*steps: int) -> Program:
+    """Tasks a, b, ... that write their names so many times, with a scheduling point between two of them."""
+
+    def program(kernel: Kernel, written: list[str]) -> None:
+        def walk(name: str, count: int) -> None:
+            for step in range(count):
+                if step:
+                    kernel.charge(0)
+                written.append(name)
+
+        for name, count in zip("abcd", steps, strict=False):
+            kernel.spawn(name, lambda name=name, count=count: walk(name, count))  # type: ignore[misc]
+
+    return program
+
+
+def words(*steps: int) -> set[str]:
+    """Everything that these tasks can write."""
+    letters = "".join(name * count for name, count in zip("abcd", steps, strict=False))
+    if len(steps) == 2:
+        total = sum(steps)
+        places = combinations(range(total), steps[0])
+        return {"".join("a" if at in chosen else "b" for at in range(total)) for chosen in places}
+    return {"".join(each) for each in permutations(letters)}
+
+
+def preemptions(word: str, steps: dict[str, int]) -> int:
+    """How many times a task was taken off that had something left to write."""
+    left, count = dict(steps), 0
+    runs = [(name, len(list(run))) for name, run in groupby(word)]
+    for name, length in runs:
+        left[name] -= length
+        count += left[name] > 0
+    return count
+
+
+def enough(found: int, odds: float, runs: int = SEEDS) -> bool:
+    """Whether something of at least these odds could have come so rarely."""
+    return found >= runs * odds - 4 * sqrt(runs * odds * (1 - odds))
+
+
+def about(found: int, odds: float, runs: int = SEEDS) -> bool:
+    return abs(found - runs * odds) <= 4 * sqrt(runs * odds * (1 - odds))
+
+
+def test_random_takes_each_order_as_often() -> None:
+    found = Counter(fly(walkers(1, 1, 1), Schedule.parse(f"random:{seed}").policy())[0] for seed in range(SEEDS))
+    assert set(found) == words(1, 1, 1)
+    assert all(about(count, 1 / 6) for count in found.values()), found
+
+
+def test_random_takes_each_choice_as_often() -> None:
+    found: Counter[tuple[int, int]] = Counter()
+    for seed in range(100):
+        recorded = fly(walkers(3, 3, 3), Schedule.parse(f"random:{seed}").policy())[1]
+        found.update(zip(recorded.widths, recorded.choices, strict=True))
+    for width in (2, 3):
+        runs = sum(found[width, choice] for choice in range(width))
+        assert runs > 200
+        assert all(about(found[width, choice], 1 / width, runs) for choice in range(width)), found
+
+
+def test_random_holds_a_task_up_once_in_sixteen_times() -> None:
+    def program(kernel: Kernel, written: list[str]) -> None:
+        def work() -> None:
+            for _ in range(100):
+                kernel.charge(0)
+
+        def tick() -> None:
+            for _ in range(1000):
+                kernel.delay(10)
+
+        kernel.spawn("ticks", tick, 50)
+        kernel.spawn("work", work)
+
+    held = runs = 0
+    for seed in range(20):
+        recorded = fly(program, Schedule.parse(f"random:{seed}:hold=10ns").policy())[1]
+        runs += len(recorded.choices)
+        held += sum(recorded.choices)
+        assert set(recorded.widths) == {2}
+    assert runs >= 2000
+    assert about(held, 1 / 16, runs)
+
+
+@pytest.mark.parametrize("depth", [1, 2, 3])
+def test_pct_finds_a_bug_of_its_depth_as_often_as_promised(depth: int) -> None:
+    """Two tasks, 5 + 5 steps: what needs `depth` ordered events has odds of at least 1 / (n k^(d-1))."""
+    program, steps = walkers(5, 5), {"a": 5, "b": 5}
+    decisions = len(fly(program, None)[1].choices)
+    longest = max(len(fly(program, Schedule.parse(f"random:{seed}").policy())[1].choices) for seed in range(50))
+    assert 5 <= decisions <= longest <= 10
+    found = Counter(fly(program, Schedule.parse(f"pct:{seed}:{depth}:{longest}").policy())[0] for seed in range(SEEDS))
+    wanted = [word for word in words(5, 5) if preemptions(word, steps) == depth - 1 and word[0] == "a"]
+    wanted = [word for word in wanted if len(list(groupby(word))) == depth + 1]
+    assert len(wanted) == {1: 1, 2: 4, 3: 16}[depth]
+    for word in wanted:
+        assert enough(found[word], 1 / (2 * longest ** (depth - 1))), (word, found[word])
+    assert max(preemptions(word, steps) for word in found) == depth - 1
+
+
+def all_words(steps: tuple[int, ...], most_preemptions: int, most_reorderings: int) -> list[str]:
+    search, found, seen = DepthFirst(most_preemptions, most_reorderings), list[str](), set[tuple[int, ...]]()
+    while (schedule := search.next()) is not None:
+        word, recorded, _ = fly(walkers(*steps), schedule.policy())
+        assert tuple(recorded.choices) not in seen, "a schedule came twice"
+        assert recorded.deviations == dict(schedule.deviations), "a deviation was not possible"
+        seen.add(tuple(recorded.choices))
+        found.append(word)
+        search.learn(schedule, recorded.widths, recorded.running)
+    assert search.exhausted
+    return found
+
+
+@pytest.mark.parametrize("steps", [(1, 1), (3, 3), (2, 5), (1, 1, 1), (2, 2, 2)])
+def test_the_search_without_bounds_gives_every_order_once(steps: tuple[int, ...]) -> None:
+    found = all_words(steps, 99, 99)
+    assert set(found) == words(*steps)
+    assert len(found) == len(set(found))
+
+
+@pytest.mark.parametrize("steps", [(4, 4), (2, 1, 1), (2, 2, 1)])
+@pytest.mark.parametrize("most", [0, 1, 2])
+def test_the_search_gives_every_order_within_its_bound(steps: tuple[int, ...], most: int) -> None:
+    found = all_words(steps, most, 99)
+    counts = dict(zip("abcd", steps, strict=False))
+    wanted = {word for word in words(*steps) if preemptions(word, counts) <= most}
+    assert set(found) == wanted
+    assert len(found) == len(wanted)
+
+
+def test_who_gave_up_its_turn_is_told_once() -> None:
+    told: list[str | None] = []
+
+    class Listening(Policy):
+        def choose(self, decision: Decision) -> int:
+            told.append(None if decision.left is None else decision.left.name)
+            return 0
+
+    def program(kernel: Kernel, written: list[str]) -> None:
+        def polite() -> None:
+            kernel.yield_cpu()
+            kernel.charge(0)
+
+        for name in "abc":
+            kernel.spawn(name, polite)
+
+    fly(program, Listening())
+    assert told == [None, "a", "b", "c", None, None, None]
+
+
+ACTIONS = st.sampled_from(
+    ["charge", "slice", "delay", "put", "get", "lock", "give", "take", "yield", "spawn", "urgent"]
+)
+PROGRAMS = st.lists(
+    st.tuples(st.sampled_from([90, 100, 100, 100]), st.lists(ACTIONS, min_size=1, max_size=6)), min_size=2, max_size=4
+)
+
+
+def made_of(tasks: list[tuple[int, list[str]]]) -> Program:
+    """A program of kernel calls of all sorts."""
+
+    def program(kernel: Kernel, written: list[str]) -> None:
+        queue, mutex, semaphore = Queue(kernel, 2), Mutex(kernel), Semaphore(kernel, 0, 1)
+
+        def locked() -> None:
+            mutex.take()
+            kernel.charge(1000)
+            mutex.give()
+
+        acts: dict[str, Callable[[], object]] = {
+            "charge": lambda: kernel.charge(1000),
+            "slice": lambda: kernel.charge(30_000),
+            "delay": lambda: kernel.delay(1500),
+            "put": lambda: queue.put("x"),
+            "get": lambda: queue.get(5000),
+            "lock": locked,
+            "give": semaphore.give,
+            "take": lambda: semaphore.take(3000),
+            "yield": kernel.yield_cpu,
+            "spawn": lambda: kernel.spawn("child", lambda: written.append("c")),
+            "urgent": lambda: kernel.spawn("urgent", lambda: written.append("u"), 50),
+        }
+
+        def work(name: str, todo: list[str]) -> None:
+            for each in todo:
+                acts[each]()
+                written.append(name)
+
+        for name, (priority, todo) in zip("wxyz", tasks, strict=False):
+            kernel.spawn(name, lambda name=name, todo=todo: work(name, todo), priority)  # type: ignore[misc]
+
+    return program
+
+
+def plain(program: Program) -> tuple[str, str]:
+    trace, written = Trace(), list[str]()
+    with make_kernel("greenlet", trace) as kernel:
+        program(kernel, written)
+        kernel.run(1_000_000)
+    return "".join(written), trace.digest()
+
+
+@given(PROGRAMS, st.integers(0, 1000), st.sampled_from(["", ":any", ":hold=2us", ":from=2us"]))
+def test_any_program_is_fifos_without_deviations_and_any_run_can_be_given_again(
+    tasks: list[tuple[int, list[str]]], seed: int, options: str
+) -> None:
+    program = made_of(tasks)
+    assert fly(program, Schedule.parse("at").policy())[::2] == plain(program)
+    for text in (f"random:{seed}{options}", f"pct:{seed}:3:20{options}"):
+        schedule = Schedule.parse(text)
+        written, recorded, digest = fly(program, schedule.policy())
+        again = schedule.at(recorded.deviations)
+        for context in ("thread", "greenlet"):
+            assert fly(program, again.policy(), context)[::2] == (written, digest)
+        assert fly(program, schedule.policy(), "thread")[::2] == (written, digest)
+
+
+def test_a_choice_that_is_not_there_becomes_the_last_that_is() -> None:
+    recorded = fly(walkers(1, 1, 1), Deviations({0: 9}))[1]
+    assert recorded.choices[0] == 2
+    assert recorded.deviations == {0: 2}
