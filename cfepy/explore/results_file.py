@@ -41,7 +41,7 @@ class ResultsFile:
             self._lock()
             self._read(json.loads(json.dumps(identity)))
         except BaseException:
-            self._file.close()
+            self.close()
             raise
 
     def __len__(self) -> int:
@@ -65,7 +65,7 @@ class ResultsFile:
             verdict: as plain data.
 
         Raises:
-            OSError: the disk is full.
+            UsageError: it cannot be written any more, since the disk is full.
         """
         start = self._end
         self._write({"number": number, "verdict": verdict})
@@ -73,7 +73,8 @@ class ResultsFile:
 
     def close(self) -> None:
         """Let others write the file."""
-        self._file.close()
+        with suppress(OSError):  # what could not be written was told then
+            self._file.close()
 
     def _open(self) -> Any:
         try:
@@ -115,9 +116,12 @@ class ResultsFile:
 
     def _write(self, record: Mapping[str, Any]) -> None:
         data = json.dumps(record, separators=(",", ":")).encode() + b"\n"
-        self._file.seek(self._end)
-        self._file.write(data)
-        self._file.flush()
+        try:
+            self._file.seek(self._end)
+            self._file.write(data)
+            self._file.flush()
+        except OSError as error:
+            raise UsageError(f"could not be written: {error.strerror}", file=self.path, field=OPTION) from None
         self._end += len(data)
 
 

@@ -40,7 +40,7 @@ class BagRecorder(TopicWatch):
         try:
             self._file = Path(file).open("w+b")  # noqa: SIM115  # closed by `__exit__`
         except OSError as error:
-            raise UsageError(f"could not be written: {error.strerror}", file=file, field="--bag") from None
+            raise _unwritable(file, error) from None
         self._bag = storage().BagFile(self._file)
         self._bag.create()
 
@@ -50,9 +50,16 @@ class BagRecorder(TopicWatch):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
     ) -> None:
-        """The run is over: write the index."""
-        with self._file:
-            self._bag.finish()
+        """The run is over: write the index, unless the disk is full.
+
+        Raises:
+            UsageError: it is.
+        """
+        try:
+            with self._file:
+                self._bag.finish()
+        except OSError as failed:
+            raise _unwritable(self._file.name, failed) from None
 
     def _write(self, message: Message) -> None:
         if message.stamp_ns is None:
@@ -64,6 +71,10 @@ class BagRecorder(TopicWatch):
         self.count += 1
         if self._bag.write(connection, message.stamp_ns, message.data) > CHUNK_BYTES:
             self._bag.flush()
+
+
+def _unwritable(file: str, error: OSError) -> UsageError:
+    return UsageError(f"could not be written: {error.strerror}", file=file, field="--bag")
 
 
 class BagReader:
