@@ -43,6 +43,7 @@ USUAL = {
     "os.queue_put": codes.OS_QUEUE_FULL,
 }
 """What a call fails with when the plan does not say."""
+OF_QUEUES = ("os.queue_put", "os.queue_get")
 
 
 def call_name(target: str) -> str:
@@ -103,6 +104,13 @@ def status_of(call: str, name: str | None) -> int:
     if not isinstance(found, int) or not name.startswith(("CFE_", "OS_")):
         raise UsageError(f"{name!r} is no status; write one such as OS_QUEUE_FULL or CFE_SB_BUF_ALOC_ERR")
     return codes.to_signed(found)
+
+
+def why_not_called(fault: Fault) -> str:
+    """Why a fault of a function that nobody called never happened."""
+    call = call_name(fault.target[0])
+    hint = "; pipes are no OSAL queues here: `fill` one, or `drop` a message `to` it" if call in OF_QUEUES else ""
+    return f"nobody that it is about called {call}{hint}"
 
 
 class CallFault:

@@ -17,7 +17,7 @@ from cfepy.attachment import Attachment
 from cfepy.faults import apps, memory
 from cfepy.faults.agenda import Agenda
 from cfepy.faults.bus import faulty
-from cfepy.faults.calls import CallFault
+from cfepy.faults.calls import CallFault, why_not_called
 from cfepy.faults.clocks import Drift, Jump, LostSignal
 from cfepy.faults.gate import Gate
 from cfepy.faults.kinds import APP, APP_OPTIONS, KINDS
@@ -177,9 +177,15 @@ class FaultInjector(Attachment):
         for name, gate in self._gates.items():
             record = self.report.records[name]
             if not record.times and not gate.fired and not _is_timed(record.fault):
-                unsent = _is_message(record.fault) and not gate.seen
-                record.why_not = "no such message was sent to anybody" if unsent else gate.why_not()
+                record.why_not = gate.why_not() if gate.seen else _without_occasion(record.fault, gate)
         return self.report.rows()
+
+
+def _without_occasion(fault: Fault, gate: Gate) -> str:
+    """Why a fault that waits for occasions had none."""
+    if _is_message(fault):
+        return "no such message was sent to anybody"
+    return why_not_called(fault) if fault.kind == "fail" else gate.why_not()
 
 
 def _by_app(fault: Fault, names: Names) -> Fault:

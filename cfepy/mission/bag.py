@@ -37,6 +37,7 @@ class BagRecorder(TopicWatch):
         super().__init__(self._write, patterns)
         self.count = 0
         self._connections: dict[tuple[str, str], Any] = {}
+        self._failed: OSError | None = None  # the run goes on without a bag; its sender is not to blame
         try:
             self._file = Path(file).open("w+b")  # noqa: SIM115  # closed by `__exit__`
         except OSError as error:
@@ -59,18 +60,23 @@ class BagRecorder(TopicWatch):
             with self._file:
                 self._bag.finish()
         except OSError as failed:
-            raise _unwritable(self._file.name, failed) from None
+            self._failed = failed
+        if self._failed is not None:
+            raise _unwritable(self._file.name, self._failed) from None
 
     def _write(self, message: Message) -> None:
-        if message.stamp_ns is None:
+        if message.stamp_ns is None or self._failed is not None:
             return  # rosbag, too, begins when there is a time
         key = (message.topic, message.header.get("callerid", ""))
         connection = self._connections.get(key)
         if connection is None or connection.md5sum != message.header["md5sum"]:
             connection = self._connections[key] = self._bag.connect(message.topic, message.header)
         self.count += 1
-        if self._bag.write(connection, message.stamp_ns, message.data) > CHUNK_BYTES:
-            self._bag.flush()
+        try:
+            if self._bag.write(connection, message.stamp_ns, message.data) > CHUNK_BYTES:
+                self._bag.flush()
+        except OSError as error:
+            self._failed = error
 
 
 def _unwritable(file: str, error: OSError) -> UsageError:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cfepy.es.records import AppHistory
-from cfepy.mission.deadline_checks import Check, Overrun
 from cfepy.sb import SoftwareBus
+
+if TYPE_CHECKING:
+    from cfepy.mission.deadline_checks import Check, Overrun
 
 
 @dataclass(frozen=True, slots=True)

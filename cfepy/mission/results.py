@@ -7,12 +7,11 @@ mission was closed, when every task has ended and its CPU time is known.
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cfepy.es.records import APP_ERROR, STATE_NAMES
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, entries, parse
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
-from cfepy.mission.deadline_checks import DeadlineResult
 from cfepy.mission.mission import Mission
 from cfepy.mission.msg_names import names_in
 from cfepy.mission.processor import CORE_APPS
@@ -20,6 +19,9 @@ from cfepy.mission.record import InvariantRecord, Reset, Traffic
 from cfepy.mission.tracebacks import described
 from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.rtos.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from cfepy.mission.deadline_checks import DeadlineResult
 
 EVENT_TYPES = {DEBUG: "DEBUG", INFORMATION: "INFORMATION", ERROR: "ERROR", CRITICAL: "CRITICAL"}
 RESET_TYPES = {RST_TYPE_PROCESSOR: "PROCESSOR", RST_TYPE_POWERON: "POWERON"}

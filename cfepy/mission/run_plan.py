@@ -6,7 +6,6 @@ each can say the command that does the same run again. Scripts and faults are im
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
@@ -178,7 +177,9 @@ class RunPlan:
                 options += [f"--{each}", str(getattr(plan, each))]
         if plan.stop_on_failure:
             options.append("--stop-on-failure")
-        return shlex.join(["cfepy", plan.command, *options, *plan.words])
+        from shlex import join
+
+        return join(["cfepy", plan.command, *options, *plan.words])
 
     def to_dict(self) -> dict[str, Any]:
         """Itself as plain values."""

@@ -211,7 +211,7 @@ class ExploringKernel(Kernel):
         return width
 
     def _ask(self, width: int, starters: list[Task], timer: int | None) -> int:
-        """Which of the first `width` ready tasks and of those that may start runs; none before the timer is the last."""
+        """Which of the first `width` ready tasks or the starters runs; one more answer is none before the timer."""
         tasks = [*(entry[2] for entry in self.ready[:width]), *starters]
         number = self._decisions
         self._decisions = number + 1

@@ -20,9 +20,9 @@ from cfepy.rtos.scheduler import Scheduler
 from cfepy.rtos.task import Task, TaskExit
 
 ENDLESS = 1 << 62
-LEAST_LOOKS = 64  # of so many looks for garbage at the end of a run one goes through everything
-OBJECTS_A_LOOK = 2000  # fewer when there are many objects: one of as many as they are, by this
-MOST_OBJECTS = 30_000  # when more than these are gone through, what is left is frozen
+MOST_OBJECTS = 20_000  # more objects are frozen: looking for garbage in them takes milliseconds
+LOOKS = 64  # of so many looks for garbage at the end of a run one goes through everything,
+OBJECTS = 100_000  # or of several times as many, when it has several times so many objects
 COLLECT_NS = 10_000_000_000  # garbage is collected at multiples of this: finalizers always run at the same place
 
 
@@ -53,6 +53,7 @@ class Kernel(Scheduler):
         self._failed: list[Task] = []
         self._interrupted: BaseException | None = None
         self._stopped = False
+        self._begun = False
         self._frozen = False
         self._collect_at = COLLECT_NS
 
@@ -210,9 +211,9 @@ class Kernel(Scheduler):
             raise RuntimeError("run() was called from inside the simulation")
         end = ENDLESS if until_ns is None else until_ns
         self._stopped = self._exhausted = False
-        if not gc.get_freeze_count():
-            gc.freeze()
-            self._frozen = True
+        if not self._begun:
+            self._begun = True
+            self._frozen = _freeze_many()
         enabled = gc.isenabled()
         gc.disable()
         try:
@@ -266,7 +267,7 @@ class Kernel(Scheduler):
             _tidy()
         elif self._frozen:
             gc.unfreeze()
-        self._frozen = False
+        self._begun = self._frozen = False
 
     def waiting(self) -> str:
         """Who waits for what, held by whom: the deadlock report."""
@@ -354,15 +355,22 @@ class Kernel(Scheduler):
 
 
 def _tidy() -> None:
-    """Look for garbage in what was made since objects were frozen; every so many times in everything.
+    """Look for garbage in what is not frozen; every so many times in everything.
 
     A run leaves classes, whose circles reference counting cannot free; the simulation itself is still in somebody's
     hands, and is found the next time. What was there before the first run stays frozen: to go through it takes longer
     than all the rest.
     """
     looks = gc.get_stats()[-1]["collections"] + 1
-    if looks % max(LEAST_LOOKS, gc.get_freeze_count() // OBJECTS_A_LOOK) == 0:
+    if looks % LOOKS == 0 and looks // LOOKS % max(1, gc.get_freeze_count() // OBJECTS) == 0:
         gc.unfreeze()
     gc.collect()
-    if len(gc.get_objects()) > MOST_OBJECTS:
+    _freeze_many()
+
+
+def _freeze_many() -> bool:
+    """Freeze all objects when there are so many that looking for garbage in them takes long; whether that was done."""
+    many = len(gc.get_objects()) > MOST_OBJECTS
+    if many:
         gc.freeze()
+    return many

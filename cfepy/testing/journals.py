@@ -11,6 +11,7 @@ import pytest
 from cfepy.journal.recorder import JournalRecorder
 from cfepy.mission.run_plan import RunPlan
 from cfepy.rtos.policy import Policy
+from cfepy.status import UsageError
 
 if TYPE_CHECKING:
     from cfepy.testing.flight import Flight
@@ -65,6 +66,9 @@ class Journals:
     Args:
         folder: where; it is made if it is not there.
 
+    Raises:
+        UsageError: it cannot be made.
+
     Attributes:
         kept: paths of the journals of the test that has failed last.
     """
@@ -72,7 +76,11 @@ class Journals:
     def __init__(self, folder: str) -> None:
         self.kept: list[Path] = []
         self._folder = Path(folder)
-        self._folder.mkdir(parents=True, exist_ok=True)
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            text = f"cannot be made: {error.strerror}; name a folder that you may write to"
+            raise UsageError(text, file=folder, field="--cfepy-record") from None
         self._open: list[Journal] = []
         self._failed: list[Journal] = []  # of the last example of Hypothesis that has failed
         self._count = 0

@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED, main
+from cfepy.explore.campaign import Inline
 from cfepy.explore.shrink import Shrinker
+from cfepy.explore.trial import Trial
 from tests.explore import missions
 
 EVENT = "event: LISTENER: ERROR event 1: nothing came in 100 ms"
@@ -83,6 +85,66 @@ def test_results_are_kept_in_a_file_and_not_run_again(
     explore(*words, "--seeds", 5)
     out = capsys.readouterr().out
     assert "5 schedules, 0 failed, 3 from the results file: no failure" in out
+
+
+RACE = """
+    import threading
+    import rospy
+    from std_msgs.msg import Int32
+
+    rospy.init_node("race")
+    winner = rospy.Publisher("winner", Int32, queue_size=10)
+    go = threading.Event()
+
+
+    def run(number):
+        go.wait()
+        winner.publish(number)
+
+
+    for number in range(3):
+        threading.Thread(target=run, args=(number,)).start()
+    go.set()
+    rospy.spin()
+"""
+
+
+def test_a_result_that_depends_on_who_goes_first(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = missions.write(tmp_path, {"RACE": RACE}, "results: {/winner: last}\n")
+    words = (folder, "--for", 0.7, "--seeds", 30, "--jobs", 1, "--until-failure", "--policy", "random")
+    assert explore(*words) == FOUND_PROBLEMS
+    out = capsys.readouterr().out
+    assert "failure 1: results differ: /winner (last): data: " in out
+    assert "; under fifo data: 2" in out
+
+
+OTHERS = ("--policy pct", "--depth 2", "--first-seed 5", "--any-priority", "--hold 1ms", "--from 600ms")
+
+
+def test_results_of_another_search_are_refused(late: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = (late, "--for", 0.7, "--jobs", 1, "--shrink", 0, "--results", tmp_path / "results", "--seeds")
+    explore(*words, 1)
+    for other in (*OTHERS, "--events none", "--seed 1", "--for 0.8"):
+        capsys.readouterr()
+        assert explore(*words, 1, *other.split()) == BAD_USAGE, other
+        name = {"--for": "seconds"}.get(other.split()[0], other.split()[0].strip("-").replace("-", "_"))
+        assert f"{name} was " in capsys.readouterr().err
+    explore(*words, 2)  # more seeds of the same search
+
+
+def test_an_error_of_cfepy_is_no_success(
+    late: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def broken(*_: object) -> object:
+        raise ZeroDivisionError("a bug in cfepy")
+
+    monkeypatch.setattr("cfepy.cli.explore.make_crew", lambda *_: Inline())
+    monkeypatch.setattr(Trial, "run", broken)
+    assert explore(late, "--for", 0.7, "--seeds", 3) == FOUND_PROBLEMS
+    out = capsys.readouterr().out
+    assert "an error in cfepy itself, under random:0; please report it:" in out
+    assert "ZeroDivisionError: a bug in cfepy" in out
+    assert "3 with an error in cfepy itself" in out
 
 
 def test_a_task_that_waits_for_ever_may_be_let(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -15,10 +15,10 @@ import pytest
 from cfepy.explore.campaign import AHEAD, Campaign, Crew, Inline, Result, Search, Take, Tally, Trial, judge
 from cfepy.explore.results_file import ResultsFile, read_results
 from cfepy.explore.verdict import Verdict
-from cfepy.explore.workers import PROCESS_DIED, Processes
+from cfepy.explore.workers import PROCESS_DIED, Processes, Worker
 from cfepy.resources import import_path
 from cfepy.status import UsageError
-from tests.explore.fake_trials import FakeTrial, Seeds, seed_of
+from tests.explore.fake_trials import Environment, FakeTrial, Seeds, seed_of
 
 IDENTITY = {"plan": {"words": ["a"], "seed": 0}, "search": "random"}
 
@@ -53,6 +53,21 @@ def test_verdicts_come_in_order_whoever_runs(crew: Crew) -> None:
     assert [number for number, verdict in told if verdict.failed] == [3, 40]
     assert "ZeroDivisionError: seed 5" in told[5][1].trouble
     assert tally == Tally(done=100, failed=2, troubled=1)
+
+
+def test_progress_hears_of_each_schedule_and_of_the_end() -> None:
+    heard: list[bool | None] = []
+
+    class Heard:
+        def arrived(self, failed: bool) -> None:
+            heard.append(failed)
+
+        def close(self) -> None:
+            heard.append(None)
+
+    trial = FakeTrial(fails=(1,), raises=(2,))
+    Campaign(trial, Seeds(), 4, Inline(), progress=Heard()).run(lambda *_: None)
+    assert heard == [False, True, True, False, None]
 
 
 def test_more_schedules_than_may_be_ahead() -> None:
@@ -115,6 +130,22 @@ def test_what_ends_its_process_every_time_is_a_failure() -> None:
     assert tally == Tally(done=40, failed=3)
 
 
+def test_a_schedule_is_blamed_for_two_deaths_alone_and_not_for_those_of_others() -> None:
+    crew = Processes(1)
+
+    def bury(*numbers: int) -> list[int]:
+        worker = Worker.__new__(Worker)
+        worker.jobs, worker.ready = [(number, f"random:{number}") for number in numbers], True
+        worker.last_words = worker.close = lambda: ""  # type: ignore[method-assign, assignment]
+        crew.workers.append(worker)
+        return [number for number, _ in crew._bury(worker, "killed")]
+
+    assert [bury(1, 2, 3), bury(1, 2), bury(1, 3), bury(2)] == [[]] * 4
+    assert bury(2) == [2]
+    assert bury(3) == []
+    assert bury(3) == [3]
+
+
 def test_what_ends_its_process_once_is_tried_again(tmp_path: Path) -> None:
     notes, log = tmp_path / "notes", tmp_path / "log"
     notes.mkdir()
@@ -156,6 +187,15 @@ def test_workers_that_do_not_start(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.executable", "/bin/false")
     with pytest.raises(UsageError, match="worker processes do not start: ended with exit status 1"):
         run(FakeTrial(), 3, Processes(1))
+
+
+@pytest.mark.parametrize("hash_seed", [None, "7"])
+def test_workers_have_a_hash_seed(hash_seed: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("PYTHONHASHSEED", raising=False)
+    if hash_seed is not None:
+        monkeypatch.setenv("PYTHONHASHSEED", hash_seed)
+    told, _ = run(Environment(), 1, Processes(1))
+    assert [verdict.trace for _, verdict in told] == [hash_seed or "0"]
 
 
 def test_workers_are_gone_afterwards() -> None:
@@ -219,7 +259,7 @@ PARENT = """
 import sys
 from cfepy.explore.campaign import Campaign
 from cfepy.explore.workers import Processes
-from tests.explore.fake_trials import FakeTrial, Seeds
+from tests.explore.fake_trials import Environment, FakeTrial, Seeds
 
 crew = Processes(1)
 def tell(number, verdict):

@@ -72,6 +72,45 @@ def test_times_do_not_count_unless_they_shall(tmp_path: Path) -> None:
     assert "x:" not in with_times.text
 
 
+def varied(folder: Path, compare: str, *changes: tuple[str, str]) -> tuple[Result, Result]:
+    """A result as it is, and with the node's source changed."""
+    source = NODE
+    for old, new in changes:
+        assert source.count(old) == 1
+        source = source.replace(old, new)
+    found: list[Result] = []
+    for name, each in (("one", NODE), ("other", source)):
+        missions.write(folder / name, {"POINTER": each}, f"results:\n  /point: {compare}\n")
+        found += Trial(RunPlan((str(folder / name),), seconds=0.7)).fly("fifo")[1]
+    return found[0], found[1]
+
+
+@pytest.mark.parametrize(
+    ("compare", "differs"),
+    [("last", True), ("sequence", True), ("any order", False), ("count", False)],
+)
+def test_another_order_is_a_difference_of_a_sequence(tmp_path: Path, compare: str, differs: bool) -> None:
+    one, other = varied(tmp_path, compare, ("(1.0, 2.0)", "(2.0, 1.0)"))
+    assert (one.digest != other.digest) == differs
+
+
+@pytest.mark.parametrize(
+    ("compare", "differs"),
+    [("last", False), ("sequence", True), ("any order", True), ("count", False)],
+)
+def test_another_message_is_a_difference_of_all(tmp_path: Path, compare: str, differs: bool) -> None:
+    one, other = varied(tmp_path, compare, ("(1.0, 2.0)", "(1.5, 2.0)"))
+    assert (one.digest != other.digest) == differs
+
+
+@pytest.mark.parametrize("ignored", ["point", "point.x", "x"])
+def test_a_field_is_left_out_by_its_path_or_the_end_of_it(tmp_path: Path, ignored: str) -> None:
+    one, other = varied(tmp_path, f"{{compare: last, ignore: [header.stamp, {ignored}]}}", ("2.0", "3.0"))
+    assert one.digest == other.digest
+    one, other = varied(tmp_path, "{compare: last, ignore: [header.stamp, oint.x]}", ("2.0", "3.0"))
+    assert one.digest != other.digest
+
+
 def test_a_difference_says_both() -> None:
     one, other = Result("/a (last)", "1", "data: 1"), Result("/a (last)", "2", "data: 2")
     assert list(differences([one], [one])) == []

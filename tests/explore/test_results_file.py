@@ -9,6 +9,7 @@ import pytest
 
 from cfepy.explore.results_file import ResultsFile, read_results
 from cfepy.status import UsageError
+from tests.disk import room_for
 
 IDENTITY = {"plan": {"words": ["capture"], "seed": 0}, "mission": "aa", "versions": {"cfepy": "0.1.0"}}
 
@@ -133,3 +134,15 @@ def test_lines_are_json(path: Path) -> None:
     head, line = map(json.loads, path.read_text().splitlines())
     assert head == {"format": "cfepy exploration 1", "campaign": IDENTITY}
     assert line == {"number": 5, "verdict": {"schedule": "random:5"}}
+
+
+def test_a_full_disk_is_told_and_what_there_is_can_be_read(path: Path) -> None:
+    file = ResultsFile(path, IDENTITY)
+    file.append(0, {"schedule": "fifo"})
+    with room_for(path.stat().st_size + 9):
+        with pytest.raises(UsageError, match="--results: could not be written: "):
+            file.append(1, {"schedule": "random:1"})
+        file.close()
+    again = ResultsFile(path, IDENTITY)
+    assert len(again) == 1
+    again.close()

@@ -47,6 +47,22 @@ def test_a_schedule_that_does_not_fail_is_not_shrunk(bank: Path) -> None:
     assert Shrinker(trial, "fifo", f"{INVARIANT}|all paid|x").run() is None
 
 
+def test_another_failure_that_is_always_there_does_not_end_it_early(tmp_path: Path) -> None:
+    folder = missions.write_late(tmp_path)
+    with (folder / "apps.py").open("a") as apps:
+        apps.write("\n\ndef Grumbler(cfe):\n    cfe.evs.register()\n    cfe.evs.send_err(9, 'as always')\n")
+    startup = (folder / "startup.scr").read_text()
+    (folder / "startup.scr").write_text(f"CFE_APP, apps, Grumbler, GRUMBLER, 40, 8192, 0, 0;\n{startup}")
+    late = Trial(RunPlan((str(folder),), seconds=0.7, tasks="greenlet"))
+    (always,) = late.run("fifo").failures
+    verdict = next(found for seed in range(30) if len((found := late.run(f"random:{seed}")).failures) > 1)
+    (other,) = (failure for failure in verdict.failures if failure.group != always.group)
+    shrunk = Shrinker(late, verdict.schedule, other.group).run()
+    assert shrunk is not None
+    assert shrunk.moves
+    assert other.group in late.run(shrunk.verdict.schedule).groups
+
+
 def test_it_keeps_to_its_number_of_runs(bank: Path) -> None:
     trial = Trial(RunPlan((str(bank),), seconds=0.7))
     schedule = "at:5=1,16=1,24=2"

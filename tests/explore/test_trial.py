@@ -10,6 +10,7 @@ import pytest
 
 from cfepy.explore.trial import Trial
 from cfepy.explore.verdict import (
+    DEADLINE,
     DEADLOCK,
     DIED,
     ENDED,
@@ -108,7 +109,48 @@ def Complains(cfe):
     cfe.evs.send_err(5, "something is wrong")
     while cfe.es.run_loop(1):
         cfe.os.task_delay(100)
+
+
+def Slips(cfe):
+    cfe.evs.register()
+    cfe.es.wait_for_startup_sync(1000)
+    cfe.sb.transmit_msg(cfe.msg.telemetry(0x0890, bytes(4)))
+    for number in range(3):
+        cfe.os.task_delay(100 + number)
+        cfe.evs.send_err(5, "late for the %d. time" % number)
+    while cfe.es.run_loop(1):
+        cfe.os.task_delay(1000)
 """
+
+
+HALF_MADE = """
+import rospy
+from std_msgs.msg import String
+
+
+class Echo:
+    def __init__(self):
+        rospy.Subscriber("/in", String, self.on_message)
+        self.prefix = rospy.get_param("~prefix", "echo ")
+
+    def on_message(self, message):
+        rospy.loginfo(self.prefix + message.data)
+
+
+rospy.init_node("echo")
+rospy.Publisher("/in", String, latch=True, queue_size=1).publish("a")
+Echo()
+rospy.sleep(0.2)
+"""
+
+
+def test_a_message_may_come_before_the_constructor_is_done(tmp_path: Path) -> None:
+    echo = missions.write(tmp_path, {"ECHO": HALF_MADE})
+    assert not trial(echo, 0.8).run("fifo").failed
+    found = [trial(echo, 0.8).run(f"random:{seed}").failures for seed in range(10)]
+    assert {failure.text for failures in found for failure in failures} == {
+        "AttributeError: 'Echo' object has no attribute 'prefix' (echo.py:11)"
+    }
 
 
 MUTEXES = """
@@ -138,7 +180,9 @@ def test_mutexes_in_a_circle_are_one_deadlock_whoever_closes_it(tmp_path: Path) 
     assert all(failure.detail.endswith("cfe.os.mut_sem_take(second)") for failure in found)
 
 
-def app(tmp_path: Path, name: str, action: int = 0) -> Trial:
+def app(tmp_path: Path, name: str, action: int = 0, yaml: str = "") -> Trial:
+    if yaml:
+        (tmp_path / "mission.yaml").write_text(yaml)
     (tmp_path / "apps.py").write_text(APPS)
     (tmp_path / "startup.scr").write_text(f"CFE_APP, apps, {name}, {name.upper()}, 50, 8192, 0, {action};\n!\n")
     return trial(tmp_path, 1.0)
@@ -155,6 +199,22 @@ def test_an_app_that_dies(tmp_path: Path) -> None:
 def test_an_app_that_ends_with_an_error(tmp_path: Path) -> None:
     (failure,) = app(tmp_path, "GivesUp").run("fifo").failures
     assert (failure.kind, failure.who) == (ENDED, "GIVESUP")
+
+
+def test_a_missed_deadline(tmp_path: Path) -> None:
+    yaml = "deadlines: {apps: {SLIPS: {period: 100 ms, jitter: 100 us}}}\n"
+    (failure,) = replace(app(tmp_path, "Slips", yaml=yaml), events="none").run("fifo").failures
+    assert (failure.kind, failure.who) == (DEADLINE, "SLIPS")
+    assert failure.text == "period 100 ms +- 100 us was missed"
+    assert failure.at_ns is not None
+    assert 700_000_000 < failure.at_ns < 900_000_000
+
+
+def test_failures_come_by_their_time_and_of_those_that_differ_in_numbers_the_first(tmp_path: Path) -> None:
+    yaml = 'invariants: {nothing: {packet: 0x0890, holds: "False"}}\n'
+    violated, event = app(tmp_path, "Slips", yaml=yaml).run("fifo").failures
+    assert (violated.kind, event.kind) == (INVARIANT, EVENT)
+    assert event.text == "ERROR event 5: late for the 0. time"
 
 
 @pytest.mark.parametrize(("level", "count"), [("error", 1), ("critical", 0), ("none", 0)])

@@ -194,6 +194,14 @@ def test_the_trace_is_the_same_on_both_contexts_and_each_time(tmp_path: Path) ->
     assert fly(tmp_path).trace.digest() not in digests
 
 
+def test_a_queue_that_nobody_has_says_what_to_take_for_a_pipe(tmp_path: Path) -> None:
+    plan = [{"fail": "OS_QueuePut", "number": 1}, {"fail": "OS_MutSemTake", "app": "TAKER"}]
+    mission = fly(tmp_path, *plan)
+    reasons = [each["never"] for each in mission.record.faults.rows()]
+    assert reasons[0].startswith("nobody that it is about called os.queue_put; pipes are no OSAL queues here: `fill`")
+    assert reasons[1] == "nobody that it is about called os.mut_sem_take"
+
+
 def test_what_never_happened_says_why(tmp_path: Path) -> None:
     mission = fly(
         tmp_path,

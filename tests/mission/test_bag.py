@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from cfepy.mission import Mission, MissionSpec
 from cfepy.mission.bag import BagReader, BagRecorder, is_bag
 from cfepy.nodes.config import RosConfig, TopicConfig
 from cfepy.status import UsageError
+from tests.disk import room_for
 
 TALKS = """
     import rospy
@@ -86,8 +87,9 @@ def fly(
     seconds: float = 2.0,
     topics: Mapping[str, TopicConfig] | None = None,
     params: Mapping[str, Any] | None = None,
+    ended: Callable[[str], object] = lambda digest: None,
 ) -> str:
-    """Fly a mission of nodes, and record it if there is a bag; the digest of the trace."""
+    """Fly a mission of nodes, and record it if there is a bag; the digest of the trace, which `ended` gets before."""
     lines = []
     for name, code in scripts.items():
         (folder / f"{name.lower()}.py").write_text(textwrap.dedent(code))
@@ -106,6 +108,7 @@ def fly(
         Mission(spec, tasks=tasks, console=console, attachments=[recorder]) as mission,
     ):
         mission.run(seconds)
+        ended(mission.trace.digest())
         return mission.trace.digest()
 
 
@@ -142,6 +145,18 @@ def test_the_run_is_the_same_and_so_are_the_bytes(tmp_path: Path) -> None:
     ]
     assert {*digests, fly(tmp_path, scripts, None)} == {digests[0]}
     assert len({bag.read_bytes() for bag in bags}) == 1
+
+
+@pytest.mark.parametrize("chunk", [1000, 1_000_000], ids=["on the way", "at the end"])
+def test_a_full_disk_is_told_at_the_end_and_the_run_is_the_same(
+    chunk: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("cfepy.mission.bag.CHUNK_BYTES", chunk)
+    without = fly(tmp_path, {"HEARS": HEARS, "TALKS": TALKS}, None)
+    bag, flown = tmp_path / "run.bag", []
+    with room_for(20_000), pytest.raises(UsageError, match="--bag: could not be written: "):
+        fly(tmp_path, {"HEARS": HEARS, "TALKS": TALKS}, str(bag), ended=flown.append)
+    assert flown == [without]
 
 
 def test_only_some_topics(tmp_path: Path) -> None:

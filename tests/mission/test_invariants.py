@@ -48,6 +48,18 @@ def fine(message):
 
 def broken(message):
     return message.msg.no_such_field
+
+
+def asserts(message):
+    assert message.msg.data < 3, "%d is too much" % message.msg.data
+
+
+def bare(message):
+    assert message.msg.data < 3
+
+
+def denies(message):
+    return message.msg.data < 3
 """
 
 
@@ -129,6 +141,20 @@ def test_a_class_judges_with_a_memory_and_has_the_last_word(folder: Path) -> Non
     assert first(found["total"]).startswith("too much: 11 at 0.8")
 
 
+@pytest.mark.parametrize(
+    ("function", "text"),
+    [("asserts", "3 is too much"), ("bare", "an assertion failed"), ("denies", "denies says no")],
+)
+def test_a_function_says_no_in_three_ways(folder: Path, function: str, text: str) -> None:
+    found = held(folder, f"small: {{topic: /count, file: checks.py, function: {function}}}")["small"]
+    assert found.violated == 3
+    assert found.judged == 5
+    assert first(found) == text
+    assert found.first is not None
+    assert found.first.detail.startswith("/count: data: 3")
+    assert ("Traceback" in found.first.detail) == (function != "denies")
+
+
 def test_a_function_that_fails_is_told_once_and_asked_no_more(folder: Path) -> None:
     found = held(
         folder, "{bad: {topic: /count, file: checks.py, function: broken}, good: {file: checks.py, function: fine}}"
@@ -177,7 +203,10 @@ def test_the_run_is_that_without_invariants_as_long_as_they_hold(folder: Path) -
         ("{x: {topic: /count, within: soon, then: {topic: /a}}}", "is 'soon', it must be a time such as"),
         ('{x: {topic: /count, holds: "True", then: {topic: /a}}}', "says what has to come, but not how soon"),
         ("{x: {file: no.py, function: f}}", "which is no file"),
-        ("{x: {file: checks.py, function: nobody}}", "no such function or class, it has Twice, fine, broken"),
+        (
+            "{x: {file: checks.py, function: nobody}}",
+            "no such function or class, it has Twice, fine, broken, asserts, bare, denies",
+        ),
         ("{x: {function: fine}}", "names a function but not the file"),
         ('{x: {topic: /count, holds: "True", whne: "True"}}', "is not known here; known are"),
     ],

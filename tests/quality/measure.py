@@ -8,7 +8,6 @@ the median is larger than what each trial has tried.
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -42,14 +41,12 @@ class Median:
         schedules: the median, or what each trial has tried in vain.
         found: whether it is the median.
         trials: how many there were; a systematic search has no seeds, so one is all.
-        schedule: the first one that found the bug, as deviations from fifo; empty when none did.
         exhausted: there are no more schedules for this policy.
     """
 
     schedules: int
     found: bool
     trials: int
-    schedule: str = ""
     exhausted: bool = False
 
     def __str__(self) -> str:
@@ -123,27 +120,35 @@ def median(trial: Trial, policy: str, trials: int = TRIALS, most: int = MOST) ->
     """
     count = 1 if policy.startswith("dfs") else trials
     running = hunts(trial, policy, count)
-    first = ""
     schedules = 0
     while schedules < longest(most, count):
-        for verdict in _round(running):
-            first = first or as_deviations(verdict)
+        for hunt in running:
+            if not hunt.over:
+                hunt.step()
         if any(hunt.exhausted for hunt in running):
-            return Median(schedules, False, count, first, exhausted=True)
+            return Median(schedules, False, count, exhausted=True)
         schedules += 1
         if sum(hunt.over for hunt in running) > count // 2:
-            return Median(schedules, True, count, first)
-    return Median(schedules, False, count, first)
+            return Median(schedules, True, count)
+    return Median(schedules, False, count)
+
+
+def find(trial: Trial, policy: str, most: int = LONGEST) -> Verdict | None:
+    """The first verdict of a policy that shows a failure; None when so many schedules show none.
+
+    Args:
+        trial: of a mission.
+        policy: one of POLICIES.
+        most: schedules.
+    """
+    (hunt,) = hunts(trial, policy, 1)
+    for _ in range(most):
+        verdict = hunt.step()
+        if verdict is None or verdict.failed:
+            return verdict
+    return None
 
 
 def as_deviations(verdict: Verdict) -> str:
     """A schedule that gives the same run by what it does otherwise than fifo."""
     return Schedule.parse(verdict.schedule).at(dict(verdict.deviations)).text()
-
-
-def _round(running: list[Hunt]) -> Iterator[Verdict]:
-    """One schedule for each trial that is not over; the verdicts of those that now are."""
-    for hunt in running:
-        verdict = None if hunt.over else hunt.step()
-        if verdict is not None and verdict.failed:
-            yield verdict

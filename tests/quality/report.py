@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.quality.bugs import BUGS, Bug, by_name, reference_trial
-from tests.quality.measure import LONGEST, POLICIES, TRIALS, Median, median
+from tests.quality.measure import LONGEST, POLICIES, TRIALS, Median, find, median
 from tests.quality.shrinking import Shrunk, shrunk
 
 MEASURED = Path(__file__).parent / "measured.json"
@@ -86,10 +86,10 @@ def _missing(measured: Measured, names: list[str], most: int) -> Iterator[tuple[
 
 
 def _missing_shrinks(measured: Measured, names: list[str]) -> Iterator[tuple[str, str]]:
-    """Bugs whose schedules are to be shrunk, each with one under which it shows."""
+    """Bugs whose schedules are to be shrunk, each with the policy that finds one first."""
     for name, columns in measured.items():
-        if (not names or name in names) and SHRUNK not in columns and first_schedule(measured, name):
-            yield name, first_schedule(measured, name)
+        if (not names or name in names) and SHRUNK not in columns:
+            yield name, best(measured, name)[0]
 
 
 def _cell(job: tuple[str, str, int]) -> tuple[str, str, dict[str, Any]]:
@@ -98,8 +98,11 @@ def _cell(job: tuple[str, str, int]) -> tuple[str, str, dict[str, Any]]:
 
 
 def _shrink(job: tuple[str, str]) -> tuple[str, str, dict[str, Any]]:
-    name, schedule = job
-    return name, SHRUNK, shrunk(by_name(name), schedule).to_dict()
+    name, policy = job
+    bug = by_name(name)
+    verdict = find(reference_trial(bug.folder), policy)
+    assert verdict is not None, f"{policy} does not find {name}"
+    return name, SHRUNK, shrunk(bug, verdict).to_dict()
 
 
 def _text(column: str, found: dict[str, Any]) -> str:
@@ -122,11 +125,6 @@ def medians(measured: Measured, name: str) -> dict[str, Median]:
 def best(measured: Measured, name: str) -> tuple[str, Median]:
     """The policy that finds a bug first, and how soon."""
     return min(medians(measured, name).items(), key=lambda each: (not each[1].found, each[1].schedules))
-
-
-def first_schedule(measured: Measured, name: str) -> str:
-    """A schedule under which the bug shows, from the policy that finds it first."""
-    return best(measured, name)[1].schedule
 
 
 def median_of_default(measured: Measured) -> float:

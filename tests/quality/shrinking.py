@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from cfepy.explore.shrink import Shrinker
+from cfepy.explore.verdict import Verdict
 from tests.quality.bugs import Bug, reference_trial
 
 
@@ -33,16 +34,15 @@ class Shrunk:
         return asdict(self)
 
 
-def shrunk(bug: Bug, schedule: str) -> Shrunk:
+def shrunk(bug: Bug, verdict: Verdict) -> Shrunk:
     """Shrink a schedule.
 
     Args:
         bug: that it shows.
-        schedule: under which the mission fails.
+        verdict: on this schedule.
     """
     trial = reference_trial(bug.folder)
-    group = trial.run(schedule).groups[0]
-    found = Shrinker(trial, schedule, group).run()
-    assert found is not None, f"{schedule} does not show {bug.name} again"
+    found = Shrinker(trial, verdict.schedule, verdict.groups[0]).run()
+    assert found is not None, f"{verdict.schedule} does not show {bug.name} again"
     preemptions = sum(move.preempts for move in found.moves)
     return Shrunk(preemptions, len(found.moves) - preemptions, found.probes, found.verdict.schedule)

@@ -12,7 +12,7 @@ from cfepy.explore.trial import Trial
 from cfepy.explore.verdict import Verdict
 from cfepy.rtos.units import NS_PER_S
 from tests.quality.bugs import BUGS, MISSIONS, SECONDS, Bug, by_name, reference_trial
-from tests.quality.measure import LONGEST, Hunt, as_deviations, hunts
+from tests.quality.measure import as_deviations, find
 from tests.quality.report import best, load
 from tests.quality.shrinking import shrunk
 
@@ -20,17 +20,8 @@ EACH = pytest.mark.parametrize("bug", BUGS, ids=[bug.name for bug in BUGS])
 SHRUNK_HERE = ("frame_counter", "late_subscription")
 
 
-def first_failure(hunt: Hunt, longest: int) -> Verdict | None:
-    """What a search finds within so many schedules."""
-    for _ in range(longest):
-        verdict = hunt.step()
-        if verdict is None or verdict.failed:
-            return verdict
-    return None
-
-
 def found_by(bug: Bug, policy: str) -> Verdict:
-    verdict = first_failure(hunts(reference_trial(bug.folder), policy, 1)[0], LONGEST)
+    verdict = find(reference_trial(bug.folder), policy)
     assert verdict is not None, f"{policy} does not find {bug.name}"
     return verdict
 
@@ -61,7 +52,7 @@ def test_the_best_policy_finds_it_and_the_schedule_shows_it_again_on_threads(bug
 
 
 def never_fails(trial: Trial, policy: str, schedules: int) -> None:
-    failed = first_failure(hunts(trial, policy, 1)[0], schedules)
+    failed = find(trial, policy, schedules)
     assert failed is None, failed
 
 
@@ -86,7 +77,7 @@ def test_mended_it_never_fails(bug: Bug, policy: str, tmp_path: Path) -> None:
 def shrinks(bug: Bug) -> None:
     """What shrinking leaves of a schedule at random fails in the same way, on both contexts."""
     verdict = found_by(bug, best(load(), bug.name)[0])
-    small = shrunk(bug, verdict.schedule)
+    small = shrunk(bug, verdict)
     assert small.preemptions <= 3
     for tasks in ("greenlet", "thread"):
         assert verdict.groups[0] in reference_trial(bug.folder, tasks).run(small.schedule).groups

@@ -221,3 +221,50 @@ def test_a_moment_tells_who_was_preempted_by_whom() -> None:
     assert recorded.choices[:2] == [0, 1]
     assert recorded.preemptions == 1
     assert len(recorded.choices) == len(recorded.widths) == len(recorded.running)
+
+
+def test_a_task_that_may_start_early_is_a_candidate_until_it_has_started() -> None:
+    log: list[str] = []
+    recorded = Recorded(Schedule.parse("at:0=1,2=1").policy())
+    kernel = make_kernel(policy=recorded)
+
+    def child() -> None:
+        kernel.delay(50)
+        kernel.has_started()
+        log.append(f"child at {kernel.now}")
+        kernel.delay(50)
+        log.append(f"child at {kernel.now}")
+
+    def main() -> None:
+        kernel.may_start_early("child")
+        kernel.spawn("child", child)
+        kernel.charge(1)
+        kernel.charge(1)
+        log.append(f"main at {kernel.now}")
+
+    kernel.spawn("main", main)
+    kernel.run()
+    assert log == ["child at 0", "main at 2", "child at 50"]
+    assert recorded.deviations == {0: 1, 2: 1}
+
+
+def test_under_fifo_a_task_that_may_start_early_starts_at_its_time() -> None:
+    log: list[int] = []
+    recorded = Recorded()
+    kernel = make_kernel(policy=recorded)
+
+    def child() -> None:
+        kernel.delay(50)
+        log.append(kernel.now)
+
+    def main() -> None:
+        kernel.may_start_early("child")
+        kernel.spawn("child", child)
+        kernel.delay(10)
+        kernel.charge(1)
+
+    kernel.spawn("main", main)
+    kernel.run()
+    assert log == [50]
+    assert recorded.widths
+    assert not recorded.deviations

@@ -57,6 +57,13 @@ def test_a_journal_of_the_failing_example_is_kept(suite: Suite, missions: Path) 
     assert [each.name for each in (missions / "kept").iterdir()] == ["test_it.py-test_it.cfepy"]
 
 
+def test_a_folder_for_journals_that_cannot_be(suite: Suite, missions: Path) -> None:
+    (missions / "kept").write_text("")
+    result = suite("def test_it(mission):\n    mission('talk')\n", "--cfepy-record", "kept")
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines(["*UsageError: kept: --cfepy-record: cannot be made: File exists; name a folder*"])
+
+
 def test_each_example_has_its_own_missions(suite: Suite) -> None:
     result = suite(
         """

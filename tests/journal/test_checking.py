@@ -1,0 +1,63 @@
+"""Where a replay parts is told for the first checkpoint that does not agree, however records come in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from hashlib import blake2b
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+
+from cfepy.journal.checking import Checker
+from cfepy.journal.journal import Checkpoint
+from cfepy.trace import UNSENT, Trace
+
+RECORDS = [bytes([number + 1]) * 5 for number in range(12)]
+
+
+def checkpoint(count: int) -> Checkpoint:
+    return Checkpoint(count * 10, count, blake2b(b"".join(RECORDS[:count]), digest_size=16).hexdigest())
+
+
+def checked(records: Sequence[bytes], batches: Sequence[int]) -> Checker:
+    """A checker with checkpoints after 3, 6, 9 and 12 records that got these, cut into batches."""
+
+    def describe(records: Sequence[bytes], at_ns: int) -> list[str]:
+        return [f"{record[0]} after {at_ns}" for record in records]
+
+    checker, trace = Checker([checkpoint(count) for count in (3, 6, 9, 12)], None, describe), Trace()
+    checker.begin(cast(Any, SimpleNamespace(trace=trace)))
+    left = list(records)
+    for size in (*batches, len(left)):
+        for record in left[:size]:
+            trace.append(record)
+        del left[:size]
+        trace.flush()
+    return checker
+
+
+BATCHES = pytest.mark.parametrize("batches", [(), (3, 3, 3), (1,) * 11, (4, 5), (10,)])
+
+
+@BATCHES
+def test_the_same_records_agree_to_the_last_checkpoint(batches: tuple[int, ...]) -> None:
+    checker = checked(RECORDS, batches)
+    assert checker.difference is None
+    assert checker.agreed == checkpoint(12)
+
+
+@BATCHES
+@pytest.mark.parametrize("wrong", range(12))
+def test_one_other_record_is_told_between_its_checkpoints(wrong: int, batches: tuple[int, ...]) -> None:
+    checker = checked([*RECORDS[:wrong], b"\xff", *RECORDS[wrong + 1 :]], batches)
+    least = wrong // 3 * 3
+    assert checker.difference is not None
+    assert checker.difference.after.records == least
+    assert checker.difference.before == checkpoint(least + 3)
+    assert f"255 after {least * 10}" in checker.difference.lines
+    assert len(checker.difference.lines) == 3
+
+
+def test_messages_that_nobody_gets_do_not_count() -> None:
+    assert checked([RECORDS[0], UNSENT + b"/t\0x", b"", *RECORDS[1:]], ()).agreed == checkpoint(12)
