@@ -10,6 +10,7 @@ import argparse
 import dataclasses
 import json
 import os
+import shutil
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -77,10 +78,18 @@ class RecordPipe(Recorder):
 
 
 class Lookout(Recorder):
-    """The recorder of a run that looks at one record, and ends the process then and there."""
+    """The recorder of a run that looks at one record, and ends the process then and there.
 
-    def __init__(self, writer: RecordWriter, index: int, lines: int) -> None:
+    Args:
+        writer: gets what was seen.
+        index: number of the record.
+        lines: how many records before it are shown.
+        root: folder in which the files of a journal were unpacked for this run, if they were.
+    """
+
+    def __init__(self, writer: RecordWriter, index: int, lines: int, root: str = "") -> None:
         self._before = lines
+        self._root = root
         self.trace = self._looking = LookingTrace(index, self._lines, self._seen)
         self._writer = writer
         self._text = TraceText()
@@ -105,7 +114,9 @@ class Lookout(Recorder):
     def _seen(self, look: Look) -> NoReturn:
         """It is called from deep inside the simulation, where a run cannot be given up in an orderly way."""
         fields = {} if self._mission is None else fields_of(look.record, self._mission)
-        self._writer.end({**look.to_dict(), "fields": fields})
+        self._writer.end({**look.without_root(self._root).to_dict(), "fields": fields})
+        if self._root:
+            shutil.rmtree(self._root, ignore_errors=True)
         os._exit(ENDED_WELL)
 
 
@@ -136,12 +147,12 @@ def run_again(plan: Plan, path: str) -> None:
     with staged(journal) as stage, Interrupts() as interrupts, booting(Path(path)):
         spec, replay = stage.spec(), Replay(journal, stage)
         arguments = arguments_of(replay.plan, quiet=True)
-        fly(arguments, spec, interrupts, script_of(arguments, spec), _recorder(plan), replay=replay)
+        fly(arguments, spec, interrupts, script_of(arguments, spec), _recorder(plan, stage.root), replay=replay)
 
 
-def _recorder(plan: Plan) -> RecordPipe | Lookout:
+def _recorder(plan: Plan, root: str = "") -> RecordPipe | Lookout:
     writer = RecordWriter(open(plan.pipe, "wb"))  # noqa: SIM115  # as long as the process
-    return RecordPipe(writer) if plan.look_at is None else Lookout(writer, plan.look_at, plan.lines)
+    return RecordPipe(writer) if plan.look_at is None else Lookout(writer, plan.look_at, plan.lines, root)
 
 
 def _with_ordered_sets(spec: MissionSpec) -> MissionSpec:

@@ -10,7 +10,7 @@ import re
 from pathlib import PurePath
 
 from cfepy.explore.verdict import RAISED, Failure
-from cfepy.mission.determinism_look import is_library
+from cfepy.mission.determinism_look import is_library, is_shown
 
 _LINE = re.compile(r"\[(?P<node>[^\]\s]+)\] ?(?P<text>.*)")
 _FRAME = re.compile(r'\s+File "(?P<file>.+)", line (?P<line>\d+)')
@@ -54,7 +54,7 @@ class TracebackReader:
         reading = self._reading[node]
         reading.lines.append(text)
         frame = _FRAME.match(text)
-        if frame is not None and reading.place and is_library(frame["file"]):
+        if frame is not None and reading.place and (is_library(frame["file"]) or not is_shown(frame["file"])):
             return
         if frame is not None:
             reading.place = f"{PurePath(frame['file']).name}:{frame['line']}"

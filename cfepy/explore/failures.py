@@ -20,6 +20,7 @@ from cfepy.mission.script_verdicts import OVER, Outcome
 from cfepy.mission.tracebacks import app_traceback, reason
 from cfepy.mission.watch import PacketWatch, Seen
 from cfepy.rtos import DeadlockError, Task
+from cfepy.rtos.errors import InjectedCrash
 from cfepy.rtos.report import Wait
 from cfepy.rtos.units import NS_PER_S
 from cfepy.sb import SoftwareBus
@@ -44,6 +45,7 @@ class FailureWatch(Attachment):
         self.end_ns = 0
         self._levels = EVENT_LEVELS[events]
         self._found: list[Failure] = []
+        self._crashed: set[str] = set()  # applications that a fault lets crash: that is no failure, what follows may be
         self._circles: list[Failure] = []
         self._tracebacks = TracebackReader()
         self._events = PacketWatch(self._take_event, EVENT_IDS.__contains__)
@@ -57,6 +59,7 @@ class FailureWatch(Attachment):
         """See `Attachment.begin`."""
         self._mission = mission
         mission.kernel.on_task_error = self._watched(mission.kernel.on_task_error)
+        mission.kernel.interrupt = self._noting(mission.kernel.interrupt)  # type: ignore[method-assign]
         mission.console.record = self._reading(mission.console.record)
 
     def conclude(self) -> None:
@@ -82,11 +85,21 @@ class FailureWatch(Attachment):
         found = [*self._found, *self._tracebacks.found, *_resets(mission), *_violations(mission), *_missed(outcome)]
         found += _overruns(mission)
         found.sort(key=lambda failure: failure.at_ns or 0)
-        found += [*self._circles, *_bad_ends(mission, found)]
+        found += [*self._circles, *_bad_ends(mission, found, self._crashed)]
         first: dict[str, Failure] = {}
         for failure in found:
             first.setdefault(failure.group, failure)
         return tuple(first.values())
+
+    def _noting(self, interrupt: Callable[[Task, BaseException], None]) -> Callable[[Task, BaseException], None]:
+        """What the fault plan calls to let an application crash, with a note of it."""
+
+        def crash(task: Task, error: BaseException) -> None:
+            if isinstance(error, InjectedCrash) and task.owner is not None:
+                self._crashed.add(task.owner.name)
+            interrupt(task, error)
+
+        return crash
 
     def _reading(self, record: Callable[[str], object] | None) -> Callable[[str], None]:
         """What the console gives its lines to, with a look at them."""
@@ -103,7 +116,7 @@ class FailureWatch(Attachment):
         """What the kernel calls for an exception that comes out of a task, with a look at it."""
 
         def on_task_error(task: Task, error: BaseException) -> bool:
-            if task.owner is not None:
+            if task.owner is not None and not isinstance(error, InjectedCrash):
                 self._take_death(task, error)
             return handle(task, error)
 
@@ -131,7 +144,7 @@ class FailureWatch(Attachment):
 
 def _resets(mission: Mission) -> Iterator[Failure]:
     for reset in mission.record.resets:
-        if reset.fault:
+        if reset.fault and InjectedCrash.__name__ not in reset.reason:
             yield Failure(verdict.RESET, "", reset.reason, reset.at_ns)
 
 
@@ -173,9 +186,9 @@ def _overruns(mission: Mission) -> Iterator[Failure]:
             )
 
 
-def _bad_ends(mission: Mission, found: list[Failure]) -> Iterator[Failure]:
+def _bad_ends(mission: Mission, found: list[Failure], crashed: set[str]) -> Iterator[Failure]:
     """Applications and nodes that ended themselves with an error, and did not die of an exception before."""
-    dead = {failure.who for failure in found if failure.kind in (verdict.DIED, verdict.RAISED)}
+    dead = crashed | {failure.who for failure in found if failure.kind in (verdict.DIED, verdict.RAISED)}
     for name in ended_badly(mission):
         end = None if mission.ros is None else mission.ros.ended.get(name)
         if name not in dead and (end is None or end.name not in dead):

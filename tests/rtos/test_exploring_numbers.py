@@ -18,6 +18,7 @@ from cfepy.rtos import (
     Decision,
     DepthFirst,
     Deviations,
+    ExploringKernel,
     Kernel,
     Mutex,
     Policy,
@@ -191,6 +192,35 @@ def test_who_gave_up_its_turn_is_told_once() -> None:
 
     fly(program, Listening())
     assert told == [None, "a", "b", "c", None, None, None]
+
+
+@pytest.mark.parametrize("options", ["", ":hold=1us"])
+def test_nobody_gets_in_while_a_task_ends(options: str, context: str) -> None:
+    schedule = Schedule.parse("at:" + ",".join(f"{number}=1" for number in range(20)) + options)
+
+    def program(kernel: Kernel, written: list[str]) -> None:
+        def victim() -> None:
+            try:
+                kernel.delay(500)
+            finally:
+                written.append("(")
+                assert isinstance(kernel, ExploringKernel)
+                kernel.point()
+                kernel.charge(0)
+                written.append(")")
+
+        def killer() -> None:
+            kernel.delay(100)
+            kernel.kill(doomed)
+            written.append("k")
+
+        doomed = kernel.spawn("victim", victim)
+        kernel.spawn("killer", killer)
+        kernel.spawn("other", lambda: (kernel.delay(100), written.append("o")))  # type: ignore[func-returns-value]
+
+    word = fly(program, schedule.policy(), context)[0]
+    assert "()" in word
+    assert sorted(word) == sorted("()ko")
 
 
 ACTIONS = st.sampled_from(
