@@ -10,7 +10,6 @@ import argparse
 import dataclasses
 import json
 import os
-import shutil
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -115,8 +114,6 @@ class Lookout(Recorder):
         """It is called from deep inside the simulation, where a run cannot be given up in an orderly way."""
         fields = {} if self._mission is None else fields_of(look.record, self._mission)
         self._writer.end({**look.without_root(self._root).to_dict(), "fields": fields})
-        if self._root:
-            shutil.rmtree(self._root, ignore_errors=True)
         os._exit(ENDED_WELL)
 
 

@@ -36,11 +36,13 @@ def started(plan: Plan, hash_seed: int | None = None) -> Iterator[RunInProcess]:
         hash_seed: PYTHONHASHSEED of the process; None for that of this one.
     """
     out, into = os.pipe()
-    environment = {**os.environ, "PYTHONPATH": import_path()}
-    if hash_seed is not None:
-        environment["PYTHONHASHSEED"] = str(hash_seed)
     command = [sys.executable, "-m", "cfepy.cli.recorded_run", dataclasses.replace(plan, pipe=into).to_json()]
-    with tempfile.TemporaryFile() as said, open(out, "rb") as pipe:
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as said, open(out, "rb") as pipe:
+        environment = {**os.environ, "PYTHONPATH": import_path()}
+        if plan.journal is not None:  # it is killed in the end: what it unpacks goes with the folder
+            environment["TMPDIR"] = folder
+        if hash_seed is not None:
+            environment["PYTHONHASHSEED"] = str(hash_seed)
         process = subprocess.Popen(command, pass_fds=[into], env=environment, stdout=said, stderr=said)
         os.close(into)
         try:

@@ -59,7 +59,7 @@ class FailureWatch(Attachment):
         """See `Attachment.begin`."""
         self._mission = mission
         mission.kernel.on_task_error = self._watched(mission.kernel.on_task_error)
-        mission.kernel.interrupt = self._noting(mission.kernel.interrupt)  # type: ignore[method-assign]
+        mission.kernel.interrupt = self._noting(mission.kernel.interrupt)  # type: ignore[method-assign,assignment]
         mission.console.record = self._reading(mission.console.record)
 
     def conclude(self) -> None:

@@ -1,4 +1,7 @@
-"""The handle that apps get while schedules are explored: others may get in at every call of a service.
+"""The handle that apps get while schedules are explored: others may get in before every call of a service.
+
+Behind a call that gives something away they may get in too, before the app goes on with what it does next: it may look
+at what is not its own any more.
 
 Only calls that come in through the handle are scheduling points, not those that services make among themselves: what a
 service does is one step, as in NASA's code, which guards its tables with locks.
@@ -15,8 +18,29 @@ from cfepy.app import Cfe
 from cfepy.rtos import ExploringKernel, Kernel
 
 
+GIVING = frozenset(
+    {
+        "bin_sem_flush",
+        "bin_sem_give",
+        "cond_var_broadcast",
+        "cond_var_signal",
+        "cond_var_unlock",
+        "count_sem_give",
+        "mut_sem_give",
+        "queue_put",
+        "release_address",
+        "release_addresses",
+        "rw_lock_read_give",
+        "rw_lock_write_give",
+        "transmit_buffer",
+        "transmit_msg",
+    }
+)
+"""Calls that let go of a lock, a table or a message."""
+
+
 class _Pointed:
-    """A service, with a scheduling point before each call of a method. What was called once is kept."""
+    """A service, with scheduling points around its methods. What was called once is kept."""
 
     def __init__(self, service: Any, kernel: ExploringKernel) -> None:
         vars(self).update(_service=service, _kernel=kernel)
@@ -25,7 +49,8 @@ class _Pointed:
         value = getattr(self._service, name)
         if not isinstance(value, MethodType):
             return value
-        call = vars(self)[name] = _pointed(self._service, name, self._kernel.point)
+        wrap = _giving if name in GIVING else _pointed
+        call = vars(self)[name] = wrap(self._service, name, self._kernel.point)
         return call
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -39,6 +64,17 @@ def _pointed(service: Any, name: str, point: Callable[[], None]) -> Callable[...
         return getattr(service, name)(*args, **options)
 
     return call
+
+
+def _giving(service: Any, name: str, point: Callable[[], None]) -> Callable[..., Any]:
+    call = _pointed(service, name, point)
+
+    def give(*args: Any, **options: Any) -> Any:
+        result = call(*args, **options)
+        point()
+        return result
+
+    return give
 
 
 def handle_for_apps(cfe: Cfe, kernel: Kernel) -> Cfe:

@@ -175,6 +175,31 @@ def test_diff_of_a_change_in_the_code(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "  data: 1, 2\n" in said
 
 
+RAISER = """
+def Main(cfe):
+    while cfe.es.run_loop():
+        cfe.os.task_delay(100)
+        cfe.es.write_to_sys_log("step STEP")
+"""
+
+
+def test_diff_shows_where_files_were_and_leaves_nothing_behind(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mission, temporary = tmp_path / "app", tmp_path / "temporary"
+    mission.mkdir()
+    temporary.mkdir()
+    (mission / "startup.scr").write_text("CFE_APP, steps, Main, STEPS, 60, 8192, 0, 0;\n!\n")
+    for step in ("1", "2"):
+        (mission / "steps.py").write_text(RAISER.replace("STEP", step))
+        main(["run", str(mission), "--for", "1", "--quiet", "--record", f"{step}.cfepy"])
+    capsys.readouterr()
+    monkeypatch.setenv("TMPDIR", str(temporary))
+    assert main(["diff", "1.cfepy", "2.cfepy"]) == 1
+    assert f"made at {mission}/steps.py:5 in Main" in capsys.readouterr().out
+    assert list(temporary.iterdir()) == []
+
+
 def test_diff_of_the_same_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, tasks in (("a", "thread"), ("b", "greenlet")):
         main(["run", race(tmp_path), "--for", "1", "--quiet", "--tasks", tasks, "--record", f"{name}.cfepy"])

@@ -196,6 +196,11 @@ def test_the_run_that_tells_what_is_usual_takes_twice_the_time(command: str, tmp
     assert left.since_ns + left.idle_ns == 1_800_000_000
 
 
+def test_who_waits_for_a_pipe_is_idle(tmp_path: Path) -> None:
+    plan = RunPlan((str(missions.write(tmp_path, {"IDLE": "import rospy\nrospy.init_node('a')\nrospy.spin()\n"})),))
+    assert waits_of(plan, 500_000_000, None).left == ()
+
+
 PLACE = ("ARM", "lock at arm.py:1")
 
 

@@ -5,8 +5,9 @@ The seeds are fixed, so a test either always holds or never; bounds leave room o
 
 from __future__ import annotations
 
+import gc
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import combinations, groupby, permutations
 from math import sqrt
 
@@ -29,6 +30,15 @@ from cfepy.rtos import (
     make_kernel,
 )
 from cfepy.trace import Trace
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _few_objects() -> Iterator[None]:
+    """Each kernel looks how many objects there are: those of other tests shall not be among them."""
+    gc.freeze()
+    yield
+    gc.unfreeze()
+
 
 Program = Callable[[Kernel, list[str]], None]
 SEEDS = 800

@@ -1,0 +1,44 @@
+"""Where others may get in while schedules are explored: before each call of an app, and behind those that let go."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.mission.call_points import GIVING
+from cfepy.mission.run_plan import RunPlan
+from cfepy.osal import Osal
+from cfepy.sb import SoftwareBus
+from cfepy.tbl import TableServices
+
+LETS_GO_TOO_EARLY = """
+NUMBER = [0]
+
+def worker(cfe, mutex):
+    cfe.os.mut_sem_take(mutex)
+    NUMBER[0] += 1
+    mine = NUMBER[0]
+    cfe.os.mut_sem_give(mutex)
+    assert NUMBER[0] == mine, "somebody else counts on"
+
+def main(cfe):
+    mutex = cfe.os.mut_sem_create("NUMBER")
+    for name in ("ONE", "TWO"):
+        cfe.es.create_child_task(name, lambda: worker(cfe, mutex), 4096, 50)
+    cfe.os.task_delay(100)
+"""
+
+
+@pytest.mark.parametrize("policy", ["random:{}", "pct:{}:2:60"])
+def test_what_comes_right_after_letting_go_is_found(tmp_path: Path, policy: str) -> None:
+    (tmp_path / "counting.py").write_text(LETS_GO_TOO_EARLY)
+    (tmp_path / "startup.scr").write_text("CFE_APP, counting, main, COUNTING, 50, 16384, 0x0, 0;\n!\n")
+    found = [RunPlan((str(tmp_path),), seconds=0.8, schedule=policy.format(seed)).fly().results for seed in range(20)]
+    assert any("somebody else counts on" in problem for results in found for problem in results.problems)
+    assert not RunPlan((str(tmp_path),), seconds=0.8).fly().results.problems
+
+
+def test_there_are_such_calls() -> None:
+    known = {name for service in (Osal, SoftwareBus, TableServices) for name in dir(service)}
+    assert known >= GIVING
