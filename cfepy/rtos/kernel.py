@@ -54,7 +54,6 @@ class Kernel(Scheduler):
         self._interrupted: BaseException | None = None
         self._stopped = False
         self._begun = False
-        self._frozen = False
         self._collect_at = COLLECT_NS
 
     def __enter__(self) -> Kernel:
@@ -213,7 +212,7 @@ class Kernel(Scheduler):
         self._stopped = self._exhausted = False
         if not self._begun:
             self._begun = True
-            self._frozen = _freeze_many()
+            _freeze_many()
         enabled = gc.isenabled()
         gc.disable()
         try:
@@ -265,9 +264,7 @@ class Kernel(Scheduler):
         self.unwind()
         if tidy and gc.isenabled():
             _tidy()
-        elif self._frozen:
-            gc.unfreeze()
-        self._begun = self._frozen = False
+        self._begun = False
 
     def waiting(self) -> str:
         """Who waits for what, held by whom: the deadlock report."""
@@ -368,9 +365,10 @@ def _tidy() -> None:
     _freeze_many()
 
 
-def _freeze_many() -> bool:
-    """Freeze all objects when there are so many that looking for garbage in them takes long; whether that was done."""
-    many = len(gc.get_objects()) > MOST_OBJECTS
-    if many:
+def _freeze_many() -> None:
+    """Freeze all objects when there are so many that looking for garbage in them takes long.
+
+    They stay frozen, for to count many objects at each run takes as long.
+    """
+    if len(gc.get_objects()) > MOST_OBJECTS:
         gc.freeze()
-    return many

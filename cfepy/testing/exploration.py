@@ -65,6 +65,8 @@ def explore(
     Raises:
         UsageError: an argument that cannot be.
     """
+    if not isinstance(seeds, int):
+        raise UsageError("needs parentheses: write @explore(), or @explore(seeds=20)", field="@explore")
     policies = (policy,) if isinstance(policy, str) else tuple(policy)
     for each in policies:
         if each not in POLICIES:

@@ -182,6 +182,12 @@ def test_wrong_arguments() -> None:
             explore(**wrong)
 
 
+def test_a_decorator_without_parentheses_is_told() -> None:
+    bare: Any = explore
+    with pytest.raises(UsageError, match=r"@explore: needs parentheses: write @explore\(\)"):
+        bare(lambda mission: None)
+
+
 def test_options_of_schedules() -> None:
     found = explore(seeds=4, policy=["random", "pct"], depth=2, any_priority=True, hold="500us", start="600ms").args[0]
     options = "any:hold=500us:from=600ms"
