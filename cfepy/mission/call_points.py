@@ -17,7 +17,6 @@ from typing import Any
 from cfepy.app import Cfe
 from cfepy.rtos import ExploringKernel, Kernel
 
-
 GIVING = frozenset(
     {
         "bin_sem_flush",
