@@ -33,7 +33,15 @@ def debugger_of(arguments: argparse.Namespace, spec: MissionSpec, replay: Replay
     """
     app = None if arguments.pdb is None else _application(arguments.pdb, spec)
     from_ns = None if arguments.until is None or arguments.stops else round(arguments.until * NS_PER_S)
-    return Debugger(spec, stops=arguments.stops, step=arguments.step, app=app, from_ns=from_ns, on_quit=replay.end_here)
+    return Debugger(
+        spec,
+        stops=arguments.stops,
+        step=arguments.step,
+        app=app,
+        from_ns=from_ns,
+        on_quit=replay.end_here,
+        root=replay.stage.root,
+    )
 
 
 def _application(name: str, spec: MissionSpec) -> str:

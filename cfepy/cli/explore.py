@@ -146,7 +146,7 @@ def _shrunk(arguments: argparse.Namespace, trial: Trial, finding: Finding) -> Sh
         return None
     if not arguments.quiet and sys.stderr.isatty():
         print("cfepy: shrinking", finding.failure.title, file=sys.stderr, flush=True)
-    return Shrinker(trial, finding.verdict.schedule, finding.failure.group, arguments.shrink).run()
+    return Shrinker(trial, finding.simplest.schedule, finding.failure.group, arguments.shrink).run()
 
 
 def _timeline(shrunk: Shrunk, finding: Finding) -> list[str]:

@@ -12,8 +12,8 @@ from pathlib import Path
 from cfepy.attachment import Attachment
 from cfepy.cli.failures import booting
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
-from cfepy.mission.run_plan import Flown, RunPlan
-from cfepy.rtos.schedule import Schedule
+from cfepy.cli.recording import plan_of
+from cfepy.mission.run_plan import Flown
 from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
 
@@ -66,27 +66,16 @@ def look_at(arguments: argparse.Namespace, attachments: Sequence[Attachment]) ->
 
 
 def _is_journal(source: str) -> bool:
-    from cfepy.journal.frames import MARK
+    from cfepy.journal.frames import is_journal
 
     try:
-        with Path(source).open("rb") as file:
-            return file.read(len(MARK)) == MARK
+        return is_journal(source)
     except OSError:
         return False
 
 
 def _fly(arguments: argparse.Namespace, attachments: Sequence[Attachment]) -> LookedAt:
-    plan = RunPlan(
-        words=(arguments.source,),
-        launch_args=tuple(arguments.launch_args),
-        seconds=arguments.seconds,
-        seed=arguments.seed,
-        board=arguments.board,
-        tasks=arguments.tasks,
-        schedule=Schedule.parse(arguments.schedule, arguments.seed).text(),
-        script=arguments.script,
-        faults=arguments.faults,
-    )
+    plan = plan_of(arguments, [arguments.source])
     spec = plan.spec()
     with booting(spec.script):
         flown = plan.fly(attachments, spec=spec)

@@ -100,10 +100,11 @@ def run_node(
     unwritten = None if numbers is None else write_numbers(numbers, results, None)
     if unwritten is not None:
         raise unwritten
-    return INTERRUPTED if interrupts.asked else _status(flight.mission, results)
+    longer = "--for runs longer" if replay is None else replay.why_over
+    return INTERRUPTED if interrupts.asked else _status(flight.mission, results, longer)
 
 
-def _status(mission: Mission, results: Results) -> int:
+def _status(mission: Mission, results: Results, longer: str) -> int:
     """The node's exit status; what went wrong beside it is told."""
     (app,) = mission.spec.ros.nodes
     statuses = {} if mission.ros is None else mission.ros.monitor.statuses
@@ -114,5 +115,5 @@ def _status(mission: Mission, results: Results) -> int:
     if results.script_problems or results.problems:
         return FOUND_PROBLEMS
     seconds = results.virtual_s - BOOT_S
-    print(f"cfepy: the node still runs after {seconds:g} virtual seconds; --for runs longer", file=sys.stderr)
+    print(f"cfepy: the node still runs after {seconds:g} virtual seconds; {longer}", file=sys.stderr)
     return ENDED_WELL

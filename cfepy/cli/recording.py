@@ -32,7 +32,7 @@ def plan_of(arguments: argparse.Namespace, words: Sequence[str], command: str = 
         tasks=arguments.tasks,
         schedule=Schedule.parse(arguments.schedule, arguments.seed).text(),
         script=arguments.script,
-        stop_on_failure=arguments.stop_on_failure,
+        stop_on_failure=getattr(arguments, "stop_on_failure", False),
         faults=getattr(arguments, "faults", None),
         play=getattr(arguments, "play", None),
     )

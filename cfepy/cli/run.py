@@ -121,7 +121,8 @@ def _run(
     view.report(results, flight.mission, sys.stdout)
     if flight.outcome is not None:
         print(f"\n{flight.outcome.text()}")
-    _explain(results, flight.mission, interrupts.asked)
+    longer = "run it for longer (--for)" if replay is None else replay.why_over
+    _explain(results, flight.mission, interrupts.asked, longer)
     if folder is not None:
         save_files(flight.mission.files, folder)
     print(f"trace: {results.trace}", flush=True)
@@ -134,11 +135,9 @@ def script_of(arguments: argparse.Namespace, spec: MissionSpec) -> ScriptRun | N
     """The script that the command line names; only a run with one imports what it needs."""
     if arguments.script is None:
         return None
-    from cfepy.mission.dictionary import dictionary_of
     from cfepy.mission.script import ScriptRun
-    from cfepy.mission.script_text import read_script
 
-    return ScriptRun(read_script(arguments.script, spec, dictionary_of(spec)), arguments.stop_on_failure)
+    return ScriptRun.read(arguments.script, spec, arguments.stop_on_failure)
 
 
 def _bag(arguments: argparse.Namespace) -> BagRecorder | None:
@@ -310,7 +309,7 @@ def tell_faults(results: Results) -> None:
             print(f"cfepy: fault {row['name']} ({row['what']}) never happened: {row['never']}", file=sys.stderr)
 
 
-def _explain(results: Results, mission: Mission, interrupted: bool) -> None:
+def _explain(results: Results, mission: Mission, interrupted: bool, longer: str) -> None:
     sys.stdout.flush()
     for problem in (*results.script_problems, *results.problems):
         print(f"cfepy: {problem}", file=sys.stderr)
@@ -321,7 +320,7 @@ def _explain(results: Results, mission: Mission, interrupted: bool) -> None:
     if interrupted:
         print(f"cfepy: ended by Ctrl-C or SIGTERM after {results.virtual_s:g} virtual seconds", file=sys.stderr)
     elif results.booted_s is None and not mission.over:
-        text = f"not OPERATIONAL after {results.virtual_s:g} virtual seconds; run it for longer (--for)"
+        text = f"not OPERATIONAL after {results.virtual_s:g} virtual seconds; {longer}"
         print(f"cfepy: {text}", file=sys.stderr)
 
 

@@ -6,6 +6,7 @@ others do happens within the line that waits for them. May import cfepy.mission.
 
 from __future__ import annotations
 
+import linecache
 import pdb
 import sys
 from collections.abc import Callable
@@ -23,6 +24,7 @@ class AppDebugger(pdb.Pdb):
         on_quit: ends the run; the application itself is not disturbed.
         waiting: a context around each time that it waits for its user.
         commands, stream: where the user writes and reads.
+        root: folder that source files lie below, and that their paths are shown without.
     """
 
     def __init__(
@@ -31,13 +33,23 @@ class AppDebugger(pdb.Pdb):
         waiting: Callable[[], AbstractContextManager[None]],
         commands: TextIO,
         stream: TextIO,
+        root: str = "",
     ) -> None:
+        self._root = root
         if commands.isatty():
             super().__init__(nosigint=True, readrc=False)  # with the line editing of a terminal
         else:
             super().__init__(stdin=commands, stdout=stream, nosigint=True, readrc=False)
         self._on_quit = on_quit
         self._waiting = waiting
+
+    def canonic(self, filename: str) -> str:
+        """As of `bdb.Bdb`: by this path a file is shown, and has its breakpoints."""
+        return super().canonic(filename).removeprefix(self._root)
+
+    def lookupmodule(self, filename: str) -> str | None:
+        """As of `pdb.Pdb`; a file whose lines are known need not be on this computer."""
+        return filename if filename in linecache.cache else super().lookupmodule(filename)
 
     def cmdloop(self, intro: Any = None) -> None:
         """See `cmd.Cmd.cmdloop`."""

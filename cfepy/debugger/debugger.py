@@ -46,6 +46,7 @@ class Debugger(Observer):
         from_ns: virtual time of the first stop; None for none.
         on_quit: ends the run.
         commands, stream: where the user writes and reads; None for this process's own.
+        root: folder that the mission's files lie below, and that their paths are shown without.
 
     Raises:
         UsageError: a breakpoint that cannot be.
@@ -65,8 +66,10 @@ class Debugger(Observer):
         on_quit: Callable[[], object] = lambda: None,
         commands: TextIO | None = None,
         stream: TextIO | None = None,
+        root: str = "",
     ) -> None:
         super().__init__()
+        self._root = root
         self.count = 0
         self._breakpoints = breakpoints(stops, spec, self._stop)
         self._stepping = step and from_ns is None
@@ -245,7 +248,8 @@ class Debugger(Observer):
         if not stack:
             self._say("    in code of cfepy itself")
         for line in stack:
-            self._say(f"    {line.file}:{line.number} in {line.function}: {line.source}")
+            file = line.file.removeprefix(self._root)
+            self._say(f"    {file}:{line.number} in {line.function}: {line.source}")
         return False
 
     def _tasks(self) -> bool:
@@ -266,7 +270,7 @@ class Debugger(Observer):
     def _debugger_of(self, task: Task) -> AppDebugger:
         if task not in self._debuggers:
             self._debuggers[task] = AppDebugger(
-                self._quit, self._mission.stall_watch.paused, self._commands, self._stream
+                self._quit, self._mission.stall_watch.paused, self._commands, self._stream, self._root
             )
         return self._debuggers[task]
 

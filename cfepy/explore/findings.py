@@ -24,6 +24,7 @@ class Finding:
         verdict: on that.
         numbers: of all schedules that showed it.
         others: titles of the other failures in the first run.
+        simplest: the verdict of the run that showed it with the fewest preemptions: the best one to shrink.
     """
 
     failure: Failure
@@ -31,6 +32,15 @@ class Finding:
     verdict: Verdict
     numbers: list[int] = field(default_factory=list)
     others: tuple[str, ...] = ()
+    simplest: Verdict = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.simplest = self.verdict
+
+    def again(self, number: int, verdict: Verdict) -> None:
+        """Another run showed it."""
+        self.numbers.append(number)
+        self.simplest = min(self.simplest, verdict, key=_moves)
 
     @property
     def in_reference(self) -> bool:
@@ -60,6 +70,11 @@ class Finding:
         }
 
 
+def _moves(verdict: Verdict) -> tuple[int, int]:
+    """How much a schedule differs from the default one."""
+    return verdict.preemptions, len(verdict.deviations)
+
+
 class Findings:
     """Collects findings.
 
@@ -87,7 +102,7 @@ class Findings:
         failure = (new or verdict.failures)[0]
         others = tuple(dict.fromkeys(each.title for each in new if each.group != failure.group))
         finding = self._found.setdefault(failure.group, Finding(failure, number, verdict, others=others))
-        finding.numbers.append(number)
+        finding.again(number, verdict)
         return bool(new)
 
     def all(self) -> list[Finding]:

@@ -1,8 +1,8 @@
 """Shrinking: the shortest schedule that still gives the same failure, found by flying shorter ones.
 
 First moves are left out, in halves, quarters, and one by one (Zeller's delta debugging). Then one preemption is tried
-in the place of several, and those that are left are moved towards the failure. The result is an `at:` schedule. May
-import everything to the left of cfepy.explore.
+in the place of several, also one to another task, and those that are left are moved towards the failure. The result is
+an `at:` schedule. May import everything to the left of cfepy.explore.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ class Shrinker:
         best = self._without_tail(best)
         best = self._with_less(best, self._most // 2)
         best = self._with_one(best)
-        best = self._later(self._merged(best))
+        best = self._later(self._redirected(self._merged(best)))
         return self._finish(best)
 
     # -- steps -------------------------------------------------------------------------------------------------------
@@ -135,6 +135,26 @@ class Shrinker:
             found = without if without.fails else next(self._tries(candidates, best), None)
             if found is not None:
                 return self._merged(self._with_less(found))
+        return best
+
+    def _redirected(self, best: _Flight) -> _Flight:
+        """A move to another task in the place of one and its neighbours, which got there by a detour.
+
+        Without these the same place in the task's own work may be a decision earlier or later.
+        """
+        names = sorted(_names(best))
+        for at, move in enumerate(best.moves):
+            targets = [name for name in names if name not in (move.task, move.chosen)]
+            candidates = (
+                (*best.moves[: at - before], move._replace(chosen=name, number=number), *best.moves[at + 1 + behind :])
+                for before, behind in ((1, 1), (1, 0), (0, 1))
+                for name in targets
+                for number in (move.number, move.number + 1, move.number - 1, move.number + 2)
+                if before <= at
+            )
+            found = next(self._tries(candidates, best), None)
+            if found is not None:
+                return self._redirected(self._with_less(found))
         return best
 
     def _later(self, best: _Flight) -> _Flight:

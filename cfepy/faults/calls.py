@@ -21,6 +21,7 @@ from cfepy.fs.services import FileServices
 from cfepy.ids import OS_STREAM_BASE
 from cfepy.osal import Osal
 from cfepy.psp import Psp
+from cfepy.rtos import Task
 from cfepy.sb import SoftwareBus
 from cfepy.status import CfeError, OsalError, UsageError
 from cfepy.tbl import TableServices
@@ -43,7 +44,7 @@ USUAL = {
     "os.queue_put": codes.OS_QUEUE_FULL,
 }
 """What a call fails with when the plan does not say."""
-OF_QUEUES = ("os.queue_put", "os.queue_get")
+QUEUE_PUT, QUEUE_GET = "os.queue_put", "os.queue_get"
 
 
 def call_name(target: str) -> str:
@@ -109,8 +110,13 @@ def status_of(call: str, name: str | None) -> int:
 def why_not_called(fault: Fault) -> str:
     """Why a fault of a function that nobody called never happened."""
     call = call_name(fault.target[0])
-    hint = "; pipes are no OSAL queues here: `fill` one, or `drop` a message `to` it" if call in OF_QUEUES else ""
+    hint = "; pipes are not read by it here: let CFE_SB_ReceiveBuffer fail" if call == QUEUE_GET else ""
     return f"nobody that it is about called {call}{hint}"
+
+
+def caller_of(task: Task) -> str:
+    """The application that a task belongs to, in words."""
+    return "the system" if task.owner is None else str(task.owner.name)
 
 
 class CallFault:
@@ -141,8 +147,7 @@ class CallFault:
 
     def _wrapped(self, original: Callable[..., Any], processor: Any) -> Callable[..., Any]:
         def call(*args: Any, **named: Any) -> Any:
-            owner = self._kernel.current.owner
-            caller = "the system" if owner is None else owner.name
+            caller = caller_of(self._kernel.current)
             if self._is_meant(caller, args, processor) and self._gate.opens(self._kernel.now):
                 error = self._error()
                 self._report.happened(self._fault, f"lets {self._call} of {caller} fail with {error.name}")
@@ -150,6 +155,21 @@ class CallFault:
             return original(*args, **named)
 
         return call
+
+    def put_status(self, caller: str, pipe: str) -> int | None:
+        """What the Software Bus's put into a pipe fails with, as one of these calls; None when it does not.
+
+        Args:
+            caller: who sends the message.
+            pipe: its name.
+        """
+        if self._app not in (None, caller) or self._object not in (None, pipe):
+            return None
+        if not self._gate.opens(self._kernel.now):
+            return None
+        text = f"lets {self._call} of {caller} into pipe {pipe} fail with {self._error().name}"
+        self._report.happened(self._fault, text)
+        return self._status
 
     def _is_meant(self, caller: str, args: tuple[Any, ...], processor: Any) -> bool:
         if self._app not in (None, caller):

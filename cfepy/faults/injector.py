@@ -17,7 +17,7 @@ from cfepy.attachment import Attachment
 from cfepy.faults import apps, memory
 from cfepy.faults.agenda import Agenda
 from cfepy.faults.bus import faulty
-from cfepy.faults.calls import CallFault, why_not_called
+from cfepy.faults.calls import QUEUE_PUT, CallFault, call_name, why_not_called
 from cfepy.faults.clocks import Drift, Jump, LostSignal
 from cfepy.faults.gate import Gate
 from cfepy.faults.kinds import APP, APP_OPTIONS, KINDS
@@ -27,6 +27,7 @@ from cfepy.faults.network import strike_datagrams
 from cfepy.faults.pipes import Fill
 from cfepy.faults.plan import Fault, FaultPlan
 from cfepy.faults.plan_text import DATAGRAMS
+from cfepy.faults.puts import Puts, refusing
 from cfepy.faults.report import FaultReport
 from cfepy.faults.resets import ProcessorFault
 from cfepy.faults.strain import Strain
@@ -59,6 +60,7 @@ class FaultInjector(Attachment):
         self.report: FaultReport
         self._names = names
         self._board = MessageSwitchboard()
+        self._puts = Puts()
         self._power_ups: list[Strike] = []
         self._first: list[Strike] = []
         self._strain: Strain | None = None
@@ -68,6 +70,8 @@ class FaultInjector(Attachment):
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """See `Attachment.bus`."""
+        if any(_is_put(fault) for fault in self.plan.faults):
+            base = refusing(base, self._puts)
         return faulty(base, self._board) if any(_needs_bus(fault) for fault in self.plan.faults) else base
 
     def begin(self, mission: Any) -> None:
@@ -89,8 +93,10 @@ class FaultInjector(Attachment):
         datagrams = [self._message(f, DATAGRAM_CLASSES, setting) for f in self._faults if _is_datagram(f)]
         if datagrams:
             strike_datagrams(mission.network, datagrams)
+        calls = {fault.name: self._call(fault) for fault in self._faults if fault.kind == "fail"}
+        self._puts.begin([calls[fault.name] for fault in self._faults if _is_put(fault)])
         for fault in self._faults:
-            if not _is_message(fault) and not _is_datagram(fault):
+            if not _is_message(fault) and not _is_datagram(fault) and fault.name not in calls:
                 self._prepare(fault)
 
     def power_up(self, processor: Any) -> None:
@@ -106,12 +112,16 @@ class FaultInjector(Attachment):
     def _message(self, fault: Fault, classes: dict[str, type[MessageFault]], setting: Setting) -> MessageFault:
         return classes[fault.kind](fault, self._gates[fault.name], setting)
 
+    def _call(self, fault: Fault) -> CallFault:
+        """A call that fails, on each processor."""
+        call = CallFault(fault, self._gates[fault.name], self.report, self._kernel)
+        self._power_ups.append(call.power_up)
+        return call
+
     def _prepare(self, fault: Fault) -> None:
         """Have a fault that is none of a message happen at its times."""
         gate, report, kernel = self._gates[fault.name], self.report, self._kernel
-        if fault.kind == "fail":
-            self._power_ups.append(CallFault(fault, gate, report, kernel).power_up)
-        elif fault.kind == "lose_1hz":
+        if fault.kind == "lose_1hz":
             self._power_ups.append(LostSignal(fault, gate, report, kernel).power_up)
         elif fault.kind == "drift_clock":
             self._at(fault.when.after_ns, Drift(fault, gate, report, self._at).strike)
@@ -201,6 +211,11 @@ def _is_datagram(fault: Fault) -> bool:
 
 def _is_message(fault: Fault) -> bool:
     return fault.kind in CLASSES and not _is_datagram(fault)
+
+
+def _is_put(fault: Fault) -> bool:
+    """Whether it also lets the Software Bus's puts into pipes fail."""
+    return fault.kind == "fail" and call_name(fault.target[0]) == QUEUE_PUT
 
 
 def _counts_messages(fault: Fault) -> bool:

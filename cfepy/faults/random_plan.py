@@ -146,6 +146,8 @@ class _Maker:
     def _call(self) -> Fault:
         call = self._random.choice(("os.queue_put", "os.write", "sb.transmit_msg", "es.get_pool_buf", "os.open_create"))
         options = {"app": self._random.choice(self._targets.apps)}
+        if call == "os.queue_put" and self._targets.pipes:  # applications seldom have queues, but all send messages
+            options = {"object": self._random.choice(self._targets.pipes)}
         return Fault("fail", (call,), when=replace(self._window(), count=self._random.randint(1, 3)), options=options)
 
     def _memory(self) -> Fault:

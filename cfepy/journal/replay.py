@@ -212,6 +212,13 @@ class Replay:
             return False
         return self.until_ns is None or self.until_ns >= end.until_ns
 
+    @property
+    def why_over(self) -> str:
+        """Why it does not go on, for a user who wonders."""
+        if self.is_whole:
+            return "there the recorded run ended"
+        return "there the journal ends, --until SECONDS goes on" if self.until_ns is None else "the replay ended there"
+
 
 @dataclass(frozen=True, slots=True)
 class Verdict:

@@ -97,11 +97,9 @@ class RunPlan:
         """
         if self.script is None:
             return None
-        from cfepy.mission.dictionary import dictionary_of
         from cfepy.mission.script import ScriptRun
-        from cfepy.mission.script_text import read_script
 
-        return ScriptRun(read_script(self.script, spec, dictionary_of(spec)), self.stop_on_failure)
+        return ScriptRun.read(self.script, spec, self.stop_on_failure)
 
     def fault_injectors(self, spec: MissionSpec) -> list[Attachment]:
         """What lets its faults happen, ready to be attached as the last ones.

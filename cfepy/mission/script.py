@@ -52,6 +52,20 @@ class ScriptRun(PacketWatch):
         wanted = {each for step in script.steps if step.condition is not None for each in step.condition.msg_ids}
         super().__init__(self._packets.append, wanted.__contains__)
 
+    @classmethod
+    def read(cls, path: str | Path, spec: MissionSpec, stop_on_failure: bool = False) -> ScriptRun:
+        """The run of a script's file.
+
+        Args:
+            path: the file.
+            spec: the mission whose packets and applications it names.
+            stop_on_failure: the script ends with the first step that fails.
+
+        Raises:
+            UsageError: a mistake in it, with file and line.
+        """
+        return cls(read_script(path, spec, dictionary_of(spec)), stop_on_failure)
+
     def begin(self, mission: Mission) -> None:
         """See `Attachment.begin`."""
         self._scene = Scene(mission, self.script.dictionary, self._packets)
@@ -181,7 +195,7 @@ def run_script(
         CfeError: the mission cannot boot.
     """
     spec = mission if isinstance(mission, MissionSpec) else read_mission(mission)
-    script = ScriptRun(read_script(path, spec, dictionary_of(spec)), stop_on_failure)
+    script = ScriptRun.read(path, spec, stop_on_failure)
     with Mission(spec, attachments=[script], **options) as flown:
         wake_ns = script.advance()
         while not script.finished:

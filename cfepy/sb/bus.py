@@ -249,8 +249,12 @@ class SoftwareBus(PipeServices, SubscriptionServices):
             pipe.overflows += 1
             self.report_once(event_id, ev.ERROR, f"Pipe Overflow,{where}")
         else:
-            self.counters.internal_error += 1
-            self.report_once(ev.Q_WR_ERR_EID, ev.ERROR, f"Pipe Write Err,{where},stat {OS_ERR_INVALID_ID}")
+            self._report_write_error(msg_id, pipe, OS_ERR_INVALID_ID)
+
+    def _report_write_error(self, msg_id: int, pipe: Pipe, status: int) -> None:
+        self.counters.internal_error += 1
+        where = f"MsgId 0x{msg_id:x},pipe {pipe.name},sender {self.caller_name()}"
+        self.report_once(ev.Q_WR_ERR_EID, ev.ERROR, f"Pipe Write Err,{where},stat {status}")
 
     def _receive_error(self, pipe_id: int, timeout_ms: int) -> CfeError:
         self.counters.msg_receive_error += 1

@@ -116,7 +116,8 @@ class Flight(FlightRecord):
         """Put a command on the Software Bus at once.
 
         Args:
-            command: its name in the mission's dictionary, such as "CFE_ES_NOOP"; or the bytes of any packet.
+            command: its name in the mission's dictionary, such as "CFE_ES_NOOP"; or the bytes of any packet, which
+                nobody has to subscribe to.
             values, fields: of its fields; those that are not given are zero.
 
         Raises:

@@ -61,7 +61,7 @@ def test_a_failure_of_the_default_schedule_is_told_as_such(tmp_path: Path, capsy
 
 
 def test_the_report_does_not_depend_on_the_number_of_processes(late: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = (late, "--for", 0.7, "--seeds", 10, "--shrink", 20)
+    words = (late, "--for", 0.7, "--seeds", 6, "--shrink", 8)
     explore(*words, "--jobs", 1)
     alone = capsys.readouterr().out
     explore(*words, "--jobs", 2)
@@ -111,7 +111,7 @@ RACE = """
 
 def test_a_result_that_depends_on_who_goes_first(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = missions.write(tmp_path, {"RACE": RACE}, "results: {/winner: last}\n")
-    words = (folder, "--for", 0.7, "--seeds", 30, "--jobs", 1, "--until-failure", "--policy", "random")
+    words = (folder, "--for", 0.7, "--seeds", 30, "--jobs", 1, "--until-failure", "--policy", "random", "--shrink", 5)
     assert explore(*words) == FOUND_PROBLEMS
     out = capsys.readouterr().out
     assert "failure 1: results differ: /winner (last): data: " in out
@@ -122,9 +122,9 @@ OTHERS = ("--policy pct", "--depth 2", "--first-seed 5", "--any-priority", "--ho
 
 
 def test_results_of_another_search_are_refused(late: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = (late, "--for", 0.7, "--jobs", 1, "--shrink", 0, "--results", tmp_path / "results", "--seeds")
+    words = (late, "--for", 0.1, "--jobs", 1, "--shrink", 0, "--results", tmp_path / "results", "--seeds")
     explore(*words, 1)
-    for other in (*OTHERS, "--events none", "--seed 1", "--for 0.8"):
+    for other in (*OTHERS, "--events none", "--seed 1", "--for 0.2"):
         capsys.readouterr()
         assert explore(*words, 1, *other.split()) == BAD_USAGE, other
         name = {"--for": "seconds"}.get(other.split()[0], other.split()[0].strip("-").replace("-", "_"))
@@ -149,7 +149,7 @@ def test_an_error_of_cfepy_is_no_success(
 
 def test_a_task_that_waits_for_ever_may_be_let(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = missions.write(tmp_path / "pair", {"PAIR": missions.LOST_WAKE_UP})
-    words = (folder, "--for", 1, "--seeds", 10, "--jobs", 1, "--shrink", 0, "--results", tmp_path / "results")
+    words = (folder, "--for", 0.8, "--seeds", 6, "--jobs", 1, "--shrink", 0, "--results", tmp_path / "results")
     assert explore(*words) == FOUND_PROBLEMS
     assert "failure 1: stuck: PAIR: PAIR.pair.1.1 waits for ever for lock at pair.py:" in capsys.readouterr().out
     assert explore(*words, "--no-stuck") == BAD_USAGE

@@ -246,3 +246,29 @@ def test_info_runs_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
 def test_runs_that_are_compared_are_not_recorded(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", race(tmp_path), "--check-determinism", "--record", "a.cfepy"]) == 2
     assert "--record: does not go with --check-determinism" in capsys.readouterr().err
+
+
+def test_a_replay_that_ends_before_the_boot_does_says_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def said_of(*command: str) -> str:
+        main(["replay", *command, "--quiet"])
+        (line,) = [line for line in capsys.readouterr().err.splitlines() if "OPERATIONAL" in line]
+        return line.removeprefix("cfepy: not OPERATIONAL after ")
+
+    main(["run", "capture", "--for", "0.1", "--quiet", "--record", "a.cfepy"])
+    assert "run it for longer (--for)" in capsys.readouterr().err
+    writer = FrameWriter("cut.cfepy")
+    for kind, body in read_frames("a.cfepy"):
+        if kind in ("header", "file"):
+            writer.write(kind, body)
+    writer.close()
+    assert said_of("a.cfepy") == "0.1 virtual seconds; there the recorded run ended"
+    assert said_of("a.cfepy", "--until", "0.05") == "0.05 virtual seconds; the replay ended there"
+    assert said_of("cut.cfepy") == "0 virtual seconds; there the journal ends, --until SECONDS goes on"
+
+
+def test_a_replay_of_a_node_that_still_runs_says_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "spin.py").write_text("import rospy\nrospy.init_node('spin')\nrospy.spin()\n")
+    main(["node", "--for", "1", "--record", "a.cfepy", "spin.py"])
+    assert "the node still runs after 1 virtual seconds; --for runs longer" in capsys.readouterr().err
+    main(["replay", "a.cfepy"])
+    assert "the node still runs after 1 virtual seconds; there the recorded run ended" in capsys.readouterr().err

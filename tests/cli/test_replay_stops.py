@@ -8,7 +8,18 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
+from tests.mission.flights import write_mission
 
+APP = """
+def counter_main(cfe):
+    cfe.evs.register()
+    number = 0
+    while cfe.es.run_loop():
+        cfe.os.task_delay(100)
+        number += 1
+        cfe.evs.send_event(1, 2, f"number {number}")
+        total = number
+"""
 NODE = """
 import rospy
 from std_msgs.msg import Int32
@@ -86,3 +97,37 @@ def test_an_application_that_there_is_not(
 ) -> None:
     assert replayed(journal, "--pdb", "countre", typed="", monkeypatch=monkeypatch) == 2
     assert "--pdb: the mission has no application 'countre'; is COUNTER meant?" in capsys.readouterr().err
+
+
+@pytest.fixture
+def app_journal(tmp_path: Path) -> str:
+    """The journal of an application that counts; the application is not there any more."""
+    path = write_mission(tmp_path, "CFE_APP, counter, counter_main, COUNTER, 50, 16384, 0x0, 0;\n!", counter=APP)
+    file = tmp_path / "app.cfepy"
+    assert main(["run", "--for", "2", "--quiet", "--record", str(file), str(path)]) == 0
+    (tmp_path / "counter.py").unlink()
+    return str(file)
+
+
+def test_an_application_has_the_path_that_it_had(
+    app_journal: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place, stop = f"{tmp_path / 'counter.py'}", ["--break", "COUNTER:1"]
+    assert replayed(app_journal, *stop, typed="w\nq\n", monkeypatch=monkeypatch) == 0
+    out = capsys.readouterr().out
+    assert f"    {place}:8 in counter_main: cfe.evs.send_event(1, 2, " in out
+    assert "cfepy-replay-" not in out
+
+
+def test_breakpoints_of_python_take_the_path_that_it_had(
+    app_journal: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place, options = f"{tmp_path / 'counter.py'}", ["--pdb", "COUNTER", "--break", "COUNTER:1"]
+    typed = f"w\nb {place}:7\nc\np 'total', number\nb\nq\n"
+    assert replayed(app_journal, *options, typed=typed, monkeypatch=monkeypatch) == 0
+    out = capsys.readouterr().out
+    assert f"> {place}(" in out
+    assert f"Breakpoint 1 at {place}:7" in out
+    assert "breakpoint already hit 1 time" in out
+    assert "('total', 1)" in out
+    assert "cfepy-replay-" not in out

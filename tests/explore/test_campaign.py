@@ -44,7 +44,7 @@ class Backwards:
         """Nothing to end."""
 
 
-@pytest.mark.parametrize("crew", [Inline(), Backwards(), Processes(1), Processes(3)], ids=["inline", "back", "1", "3"])
+@pytest.mark.parametrize("crew", [Inline(), Backwards(), Processes(2)], ids=["inline", "back", "2"])
 def test_verdicts_come_in_order_whoever_runs(crew: Crew) -> None:
     trial = FakeTrial(fails=(3, 40), raises=(5,))
     told, tally = run(trial, 100, crew)
@@ -75,7 +75,7 @@ def test_more_schedules_than_may_be_ahead() -> None:
     assert tally.done == len(told) == AHEAD + 10
 
 
-@pytest.mark.parametrize("crew", [Inline(), Backwards(), Processes(3)], ids=["inline", "back", "3"])
+@pytest.mark.parametrize("crew", [Inline(), Backwards(), Processes(2)], ids=["inline", "back", "2"])
 def test_the_first_failure_in_order_ends_it(crew: Crew) -> None:
     trial = FakeTrial(fails=(29, 30, 31, 5000))
     told: list[int] = []
@@ -149,8 +149,8 @@ def test_a_schedule_is_blamed_for_two_deaths_alone_and_not_for_those_of_others()
 def test_what_ends_its_process_once_is_tried_again(tmp_path: Path) -> None:
     notes, log = tmp_path / "notes", tmp_path / "log"
     notes.mkdir()
-    told, tally = run(FakeTrial(exits=(0, 7), killed=(20, 21), once=notes, log=log), 40, Processes(2))
-    assert sorted(path.name for path in notes.iterdir()) == ["0", "20", "21", "7"]
+    told, tally = run(FakeTrial(exits=(0,), killed=(20,), once=notes, log=log), 40, Processes(2))
+    assert sorted(path.name for path in notes.iterdir()) == ["0", "20"]
     assert [number for number, _ in told] == list(range(40))
     assert tally == Tally(done=40)
 
@@ -172,13 +172,13 @@ def test_a_worker_that_is_killed_costs_nothing() -> None:
 
     def kill_workers(number: int, verdict: Verdict) -> bool:
         told.append(number)
-        if number >= drawn[-1] and len(drawn) < 6:
+        if number >= drawn[-1] and len(drawn) < 4:
             os.kill(next(worker for worker in crew.workers if worker.ready).pid, signal.SIGKILL)
             drawn.append(search.given)
         return number >= drawn[-1]
 
     tally = Campaign(FakeTrial(), search, 1_000_000, crew).run(kill_workers)
-    assert len(drawn) == 6
+    assert len(drawn) == 4
     assert told == list(range(drawn[-1] + 1))
     assert tally == Tally(done=drawn[-1] + 1)
 
@@ -213,7 +213,7 @@ def test_workers_are_gone_afterwards() -> None:
             os.kill(pid, 0)
 
 
-@pytest.mark.parametrize("jobs", [0, 2])
+@pytest.mark.parametrize("jobs", [0, 1])
 def test_a_second_run_does_only_what_is_missing(tmp_path: Path, jobs: int) -> None:
     def crew() -> Crew:
         return Processes(jobs) if jobs else Inline()

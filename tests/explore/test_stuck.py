@@ -107,7 +107,7 @@ def first_failed(found: Trial) -> Verdict:
     return next(verdict for seed in range(80) if (verdict := found.run(f"pct:{seed}:2:60")).failed)
 
 
-def kinds(found: Trial, schedules: int = 8) -> set[str]:
+def kinds(found: Trial, schedules: int = 5) -> set[str]:
     verdicts = [found.run(f"{kind}:{seed}") for seed in range(schedules) for kind in ("random", "pct")]
     assert not any(verdict.trouble for verdict in verdicts)
     return {failure.kind for verdict in verdicts for failure in verdict.failures}
@@ -199,6 +199,23 @@ def test_the_run_that_tells_what_is_usual_takes_twice_the_time(command: str, tmp
 def test_who_waits_for_a_pipe_is_idle(tmp_path: Path) -> None:
     plan = RunPlan((str(missions.write(tmp_path, {"IDLE": "import rospy\nrospy.init_node('a')\nrospy.spin()\n"})),))
     assert waits_of(plan, 500_000_000, None).left == ()
+
+
+def test_an_application_that_waits_for_a_pipe_is_idle_and_one_that_waits_for_a_semaphore_is_not(tmp_path: Path) -> None:
+    app = "def Pipe(cfe):\n    cfe.sb.receive_buffer(cfe.sb.create_pipe(4, 'WORK'))\n"
+    app += "def Semaphore(cfe):\n    cfe.os.bin_sem_take(cfe.os.bin_sem_create('WORK', 0))\n"
+    (tmp_path / "idle.py").write_text(app)
+    lines = [f"CFE_APP, idle, {name}, {name.upper()}, 50, 8192, 0, 0;\n" for name in ("Pipe", "Semaphore")]
+    (tmp_path / "startup.scr").write_text("".join(lines) + "!\n")
+    (left,) = waits_of(RunPlan((str(tmp_path),)), 500_000_000, None).left
+    assert left.place[0] == "SEMAPHORE"
+
+
+def test_who_waits_for_a_message_that_it_asked_for_is_not_idle(tmp_path: Path) -> None:
+    source = "import rospy\nfrom std_msgs.msg import Int32\nrospy.init_node('a')\nrospy.wait_for_message('b', Int32)\n"
+    plan = RunPlan((str(missions.write(tmp_path, {"ASKS": source})),))
+    (left,) = waits_of(plan, 500_000_000, None).left
+    assert left.place == ("ASKS", "a message on b at asks.py:4")
 
 
 PLACE = ("ARM", "lock at arm.py:1")

@@ -37,6 +37,14 @@ def test_each_failure_is_found_once_with_its_first_schedule() -> None:
     assert finding.others == ("results differ: /total: other",)
 
 
+def test_the_run_with_the_fewest_preemptions_is_the_one_to_shrink() -> None:
+    findings = Findings(Verdict("fifo"))
+    for number, preemptions in enumerate((5, 2, 3)):
+        findings.take(number, Verdict(f"random:{number}", (died("x"),), preemptions=preemptions))
+    (finding,) = findings.all()
+    assert (finding.verdict.schedule, finding.simplest.schedule) == ("random:0", "random:1")
+
+
 def test_what_fails_by_default_does_not_hide_the_rest() -> None:
     known, new = died("always"), died("sometimes")
     findings = Findings(Verdict("fifo", (known,)))

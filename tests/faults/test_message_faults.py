@@ -195,10 +195,10 @@ def test_the_trace_is_the_same_on_both_contexts_and_each_time(tmp_path: Path) ->
 
 
 def test_a_queue_that_nobody_has_says_what_to_take_for_a_pipe(tmp_path: Path) -> None:
-    plan = [{"fail": "OS_QueuePut", "number": 1}, {"fail": "OS_MutSemTake", "app": "TAKER"}]
-    mission = fly(tmp_path, *plan)
+    mission = fly(tmp_path, {"fail": "OS_QueueGet", "number": 1}, {"fail": "OS_MutSemTake", "app": "TAKER"})
     reasons = [each["never"] for each in mission.record.faults.rows()]
-    assert reasons[0].startswith("nobody that it is about called os.queue_put; pipes are no OSAL queues here: `fill`")
+    text = "pipes are not read by it here: let CFE_SB_ReceiveBuffer fail"
+    assert reasons[0] == f"nobody that it is about called os.queue_get; {text}"
     assert reasons[1] == "nobody that it is about called os.mut_sem_take"
 
 

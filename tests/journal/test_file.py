@@ -19,6 +19,7 @@ from cfepy.mission import Mission
 from cfepy.mission.ground import GroundLink
 from cfepy.mission.results import Results
 from cfepy.resources import import_path
+from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
 from tests.journal.missions import paths, race
 from tests.journal.replays import plan_for
@@ -107,12 +108,38 @@ def test_one_that_was_killed_while_nodes_shut_down_ends_where_its_time_is_over(r
         assert replayed.flown.results.virtual_s == 1
 
 
+def test_without_a_time_that_is_where_every_run_ends(tmp_path: Path) -> None:
+    path = tmp_path / "run.cfepy"
+    record(plan_for(race(tmp_path)), path)
+    path.write_bytes(path.read_bytes()[:-40])
+    cut = read_journal(path)
+    assert cut.end is None
+    assert replay(cut, until_ns=30 * NS_PER_S).flown.results.virtual_s == 10
+
+
 def test_a_damaged_one_is_told_with_its_place(run: Path) -> None:
     data = bytearray(run.read_bytes())
     data[len(data) // 2] ^= 1
     run.write_bytes(data)
     with pytest.raises(JournalError, match=r"run\.cfepy: is damaged at byte \d+"):
         read_journal(run)
+
+
+def test_a_length_that_no_frame_has_is_damage_and_not_a_cut_off_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    writer = FrameWriter(tmp_path / "frames")
+    writer.write("a", {"b": 1})
+    writer.close()
+    size = (tmp_path / "frames").stat().st_size - len(MARK) - 8
+    for largest, cut, frames in ((size, 0, [("a", {"b": 1})]), (size, 1, []), (size - 1, 1, None)):
+        monkeypatch.setattr("cfepy.journal.frames.LARGEST", largest)
+        (tmp_path / "cut").write_bytes((tmp_path / "frames").read_bytes()[: len(MARK) + 8 + size - cut])
+        if frames is not None:
+            assert list(read_frames(tmp_path / "cut")) == frames
+            continue
+        with pytest.raises(JournalError, match="is damaged at byte"):
+            list(read_frames(tmp_path / "cut"))
 
 
 def test_other_files_and_other_formats_are_told(run: Path, tmp_path: Path) -> None:

@@ -50,8 +50,8 @@ def test_faults_happen_again(tmp_path: Path) -> None:
 
 
 def test_the_seed_counts(tmp_path: Path) -> None:
-    plan = plan_for(SMALL["race"](tmp_path), 2)
-    one, other = (record(plan_for(*plan.words, 2, seed=seed), tmp_path / f"{seed}.cfepy") for seed in (1, 2))
+    mission = SMALL["race"](tmp_path)
+    one, other = (record(plan_for(mission, 2, seed=seed), tmp_path / f"{seed}.cfepy") for seed in (1, 2))
     assert one.trace != other.trace
     assert [replay(read_journal(tmp_path / f"{seed}.cfepy")).flown.trace for seed in (1, 2)] == [one.trace, other.trace]
 

@@ -14,10 +14,11 @@ import pytest
 
 from cfepy.console import Console
 from cfepy.io.host_network import TCP, HostNetwork
-from cfepy.journal import JournalRecorder, read_journal, replay
+from cfepy.journal import Journal, JournalRecorder, read_journal, replay
 from cfepy.mission import Mission, outside
 from cfepy.mission.course import BROKEN_OFF, INTERRUPTED, Course
 from cfepy.mission.results import Results
+from cfepy.mission.run_plan import RunPlan
 from cfepy.rtos.realtime import Pacer
 from cfepy.rtos.schedule import Schedule
 from cfepy.rtos.units import NS_PER_S
@@ -199,20 +200,31 @@ def answer(run: Session, server: socket.socket) -> None:
     found[0].close()
 
 
-def test_a_run_that_was_broken_off_is_replayed_up_to_there(tmp_path: Path) -> None:
-    (tmp_path / "startup.scr").write_text("CFE_APP, spin, __main__, SPIN, 100, 16384, 0, 0;!")
-    (tmp_path / "spin.py").write_text("import time\ntime.sleep(2)\n")
-    path = tmp_path.with_suffix(".cfepy")
-    plan = plan_for(str(tmp_path), 3)
-    with JournalRecorder(path, plan) as recorder:
+def broken_off(folder: Path, plan: RunPlan, at_ns: int, paced: float | None = None) -> Journal:
+    """The journal of a run that ends with Ctrl-C in the middle of a task."""
+    (folder / "startup.scr").write_text("CFE_APP, spin, __main__, SPIN, 100, 16384, 0, 0;!")
+    (folder / "spin.py").write_text("import time\ntime.sleep(20)\n")
+    path = folder.with_suffix(".cfepy")
+    with JournalRecorder(path, plan, paced=paced) as recorder:
         mission = Mission(plan.spec(), console=Console(quiet=True), attachments=[recorder])
         with mission:
-            course = Course(mission, 3)
-            mission.run_until(1_400_000_000)
+            course = Course(mission, plan.seconds)
+            mission.run_until(at_ns)
             course.end()
             digest = mission.finish()
         recorder.end(Results.of(mission, course.at, digest), None, BROKEN_OFF)
-    again = replay(read_journal(path))
+    return read_journal(path)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "paced", "at_ns"),
+    [(3, None, 1_400_000_000), (None, FAST, 1_400_000_000), (None, FAST, 12_000_000_000)],
+    ids=["alone", "joined", "joined for longer than a run that has no time takes alone"],
+)
+def test_a_run_that_was_broken_off_is_replayed_up_to_there(
+    tmp_path: Path, seconds: float | None, paced: float | None, at_ns: int
+) -> None:
+    again = replay(broken_off(tmp_path, plan_for(str(tmp_path), seconds), at_ns, paced))
     assert again.verdict.same
     assert not again.verdict.whole
-    assert again.flown.results.virtual_s == pytest.approx(1.4)
+    assert again.flown.results.virtual_s == pytest.approx(at_ns / NS_PER_S)

@@ -242,9 +242,47 @@ def test_a_processor_reset_begins_anew(tmp_path: Path) -> None:
     """)
     )
     (tmp_path / "startup.scr").write_text("CFE_APP, apps, Resets, RESETS, 50, 8192, 0, 0;\n!\n")
-    (tmp_path / "mission.yaml").write_text("invariants: {few: {packet: 0x0890, file: checks.py, function: Grows}}\n")
+    (tmp_path / "mission.yaml").write_text(
+        textwrap.dedent("""
+        invariants:
+          few: {packet: 0x0890, file: checks.py, function: Grows}
+          fresh: {packet: 0x0890, when: "msg.data == bytes(1)", holds: "latest['0x0890'] is None"}
+    """)
+    )
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
         mission.run(2.0)
     assert mission.record.resets
     assert mission.record.invariants["few"].judged >= 6
     assert mission.record.invariants["few"].violated == 0
+    assert mission.record.invariants["fresh"].judged >= 2
+    assert mission.record.invariants["fresh"].violated == 0
+
+
+ASKS = """
+def Asks(cfe):
+    for _ in range(2):
+        cfe.sb.transmit_msg(cfe.msg.telemetry(0x0890, bytes(4)))
+        cfe.os.task_delay(100)
+        cfe.sb.transmit_msg(cfe.msg.telemetry(0x0891, bytes(4)))
+        cfe.os.task_delay(400)
+"""
+
+
+def test_times_are_meant_to_the_nanosecond(tmp_path: Path) -> None:
+    (tmp_path / "asks.py").write_text(ASKS)
+    (tmp_path / "startup.scr").write_text("CFE_APP, asks, Asks, ASKS, 50, 8192, 0, 0;\n!\n")
+    text = "never: {packet: 0x0890, holds: 'False'}"
+    asked = held(tmp_path, text)["never"].first
+    answered = held(tmp_path, text.replace("0x0890", "0x0891"))["never"].first
+    assert asked is not None
+    assert answered is not None
+    after_ns, within_ns = asked.at_ns, answered.at_ns - asked.at_ns
+    holds, then = "holds: 'False'", "then: {packet: 0x0891}"
+    text = f"""
+        both: {{packet: 0x0890, after: {after_ns} ns, {holds}}}
+        one: {{packet: 0x0890, after: {after_ns + 1} ns, {holds}}}
+        in time: {{packet: 0x0890, after: {after_ns} ns, within: {within_ns} ns, {then}}}
+        too late: {{packet: 0x0890, after: {after_ns + 1} ns, within: {within_ns - 1} ns, {then}}}
+    """
+    found = {name: (each.judged, each.violated) for name, each in held(tmp_path, text, 2.0).items()}
+    assert found == {"both": (2, 2), "one": (1, 1), "in time": (2, 0), "too late": (1, 1)}

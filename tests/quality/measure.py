@@ -7,10 +7,10 @@ the median is larger than what each trial has tried.
 
 from __future__ import annotations
 
-import gc
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from cfepy.explore.findings import Findings
 from cfepy.explore.search import SeededSearch, SystematicSearch, make_search
 from cfepy.explore.trial import Trial
 from cfepy.explore.verdict import Verdict
@@ -18,8 +18,8 @@ from cfepy.rtos.schedule import Schedule
 
 TRIALS = 25
 LONGEST = 2000  # schedules of one trial
+SHOWN = 50  # schedules after which somebody who has a failure looks at it
 MOST = 3000  # schedules of all trials together
-COLLECT_EVERY = 4  # schedules of a trial
 
 POLICIES = {
     "random": ("random", None, 0),
@@ -86,8 +86,6 @@ class Hunt:
         assert not verdict.trouble, verdict.trouble
         self._search.tell(self._count, verdict)
         self._count += 1
-        if self._count % COLLECT_EVERY == 0:
-            gc.collect()  # missions leave circles behind
         self.over = verdict.failed
         return verdict
 
@@ -147,6 +145,20 @@ def find(trial: Trial, policy: str, most: int = LONGEST) -> Verdict | None:
         if verdict is None or verdict.failed:
             return verdict
     return None
+
+
+def simplest(trial: Trial, policy: str) -> Verdict | None:
+    """Of the runs that `cfepy explore` would have made, the failure with the fewest preemptions."""
+    (hunt,) = hunts(trial, policy, 1)
+    findings = Findings(trial.run("fifo"))
+    for number in range(LONGEST):
+        verdict = hunt.step()
+        if verdict is None:
+            break
+        findings.take(number, verdict)
+        if findings.all() and number >= SHOWN:
+            break
+    return findings.all()[0].simplest if findings.all() else None
 
 
 def as_deviations(verdict: Verdict) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.quality.bugs import BUGS, Bug, by_name, reference_trial
-from tests.quality.measure import LONGEST, POLICIES, TRIALS, Median, find, median
+from tests.quality.measure import LONGEST, POLICIES, TRIALS, Median, median, simplest
 from tests.quality.shrinking import Shrunk, shrunk
 
 MEASURED = Path(__file__).parent / "measured.json"
@@ -86,10 +86,10 @@ def _missing(measured: Measured, names: list[str], most: int) -> Iterator[tuple[
 
 
 def _missing_shrinks(measured: Measured, names: list[str]) -> Iterator[tuple[str, str]]:
-    """Bugs whose schedules are to be shrunk, each with the policy that finds one first."""
+    """Bugs whose schedules are to be shrunk, each with the default policy, or else the one that finds one first."""
     for name, columns in measured.items():
         if (not names or name in names) and SHRUNK not in columns:
-            yield name, best(measured, name)[0]
+            yield name, DEFAULT if Median(**columns[DEFAULT]).found else best(measured, name)[0]
 
 
 def _cell(job: tuple[str, str, int]) -> tuple[str, str, dict[str, Any]]:
@@ -100,7 +100,7 @@ def _cell(job: tuple[str, str, int]) -> tuple[str, str, dict[str, Any]]:
 def _shrink(job: tuple[str, str]) -> tuple[str, str, dict[str, Any]]:
     name, policy = job
     bug = by_name(name)
-    verdict = find(reference_trial(bug.folder), policy)
+    verdict = simplest(reference_trial(bug.folder), policy)
     assert verdict is not None, f"{policy} does not find {name}"
     return name, SHRUNK, shrunk(bug, verdict).to_dict()
 

@@ -6,9 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cfepy.rtos import PCT, Deviations, Schedule, SeededRandom
+from cfepy.rtos import PCT, Decision, Deviations, Kernel, Schedule, SeededRandom
 from cfepy.status import UsageError
 
+TASKS = [Kernel().host, Kernel().host]
 NUMBERS = st.integers(0, 10**9)
 OPTIONS = {"any_priority": st.booleans(), "hold_ns": NUMBERS, "from_ns": NUMBERS}
 SCHEDULES = st.one_of(
@@ -80,3 +81,17 @@ def test_each_kind_has_its_policy() -> None:
 
 def test_deviations_keep_the_options_of_the_schedule_they_come_from() -> None:
     assert Schedule.parse("random:7:any:hold=1us").at({5: 1, 2: 3}).text() == "at:2=3,5=1:any:hold=1us"
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_pct_changes_at_its_decisions_and_at_no_other(seed: int) -> None:
+    def answers(depth: int, steps: int) -> list[int]:
+        policy = PCT(seed, depth, steps)
+        return [policy.choose(Decision(number, 0, TASKS, False, False, None)) for number in range(4)]
+
+    without = answers(1, 1)
+    assert without == [without[0]] * 4
+    at_the_first = answers(2, 1)
+    assert at_the_first == [at_the_first[0]] * 4
+    first, *others = answers(3, 2)
+    assert others == [1 - first] * 3

@@ -33,6 +33,7 @@ def test_a_race_is_found_and_shrunk_and_found_again(suite: Suite, missions: Path
     assert shortest[1].count("=") <= 3
     assert 1 <= len(re.findall("=== (?:PREEMPTED|NOT FIRST|AFTER)", text)) <= shortest[1].count("=")
     assert re.search(r"time, s +.*RACY", text)
+    assert re.findall("the same again: (.*)", text) == [told_command(result)] * 2  # with the error and at the end
     check_command(text, told_command(result), missions)
     check_journal(missions / "kept", shortest[1])
 
