@@ -1,7 +1,8 @@
-"""A hundred thousand schedules of the capture mission: no error of cfepy, and no memory that is not given back.
+"""Thousands of schedules of the capture mission: no error of cfepy, and no memory that is not given back.
 
 The mission needs 0.6 s of virtual time to boot, so 0.2 s of it are in the core applications' start, 0.8 s end 0.2 s
-after all nodes are up; of the latter there are fewer, since each takes some twenty times as long.
+after all nodes are up; of the latter there are fewer, since each takes some twenty times as long. All 100,000 take
+10 to 12 minutes: `cfepy explore capture --for 0.2 --seeds 100000 --results FILE`.
 """
 
 from __future__ import annotations
@@ -31,14 +32,12 @@ def resident_kb(pid: int | str) -> int:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("seconds", "first_seed", "count"), [*((0.2, quarter * 25_000, 25_000) for quarter in range(4)), (0.8, 0, 1000)]
-)
-def test_many_schedules_of_capture(tmp_path: Path, seconds: float, first_seed: int, count: int) -> None:
+@pytest.mark.parametrize(("seconds", "count"), [(0.2, 10_000), (0.8, 500)])
+def test_many_schedules_of_capture(tmp_path: Path, seconds: float, count: int) -> None:
     crew = make_crew(count)
     assert isinstance(crew, Processes)
     trial = Trial(RunPlan(("capture",), seconds=seconds))
-    search = make_search("all", None, trial.run("random:0").decisions, Schedule(), first_seed)
+    search = make_search("all", None, trial.run("random:0").decisions, Schedule())
     settled: dict[int | str, int] = {}
     grown: dict[int | str, int] = {}
 
