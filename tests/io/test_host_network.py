@@ -22,30 +22,16 @@ from cfepy.rtos.realtime import Pacer, Stopwatch
 from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
 from cfepy.trace import Trace
+from tests.io.echo import ECHO, FAST, LOOPBACK, PATIENCE_NS
 
-LOOPBACK = "127.0.0.1"
-FAST = 500.0  # virtual seconds for a real one
-PATIENCE_NS = 3_000 * NS_PER_S
 LAB = """\
 CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;
 CFE_APP, to_lab, TO_LAB_AppMain, TO_LAB, 70, 16384, 0x0, 0;
 !
 """
-APPS = '''
-def Echo(cfe):
-    """Sends back what comes to TCP port 7, in capitals, until the other side has no more."""
-    server = cfe.os.socket_open(1, 2)
-    address = cfe.os.socket_addr_init(1)
-    cfe.os.socket_addr_set_port(address, 7)
-    cfe.os.socket_bind(server, address)
-    while True:
-        connection, _ = cfe.os.socket_accept(server)
-        while data := cfe.os.read(connection, 5000):
-            at = 0
-            while at < len(data):
-                at += cfe.os.write(connection, data[at:].upper())
-        cfe.os.close(connection)
-
+APPS = (
+    ECHO
+    + '''
 
 def Stranger(cfe):
     """Sends a datagram to a host that is not here, twice, then one to a port of this one."""
@@ -57,6 +43,7 @@ def Stranger(cfe):
         cfe.os.socket_send_to(sender, host.encode(), address)
     cfe.os.task_delay(1 << 30)
 '''
+)
 
 
 class Session:

@@ -22,32 +22,15 @@ from cfepy.mission.run_plan import RunPlan
 from cfepy.rtos.realtime import Pacer
 from cfepy.rtos.schedule import Schedule
 from cfepy.rtos.units import NS_PER_S
+from tests.io.echo import ECHO, FAST, LOOPBACK, PATIENCE_NS
 from tests.journal.replays import assert_same_again, plan_for
 
-LOOPBACK = "127.0.0.1"
-FAST = 500.0  # virtual seconds for a real one
-PATIENCE_NS = 3_000 * NS_PER_S
 STARTUP = """\
 CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;
 CFE_APP, apps, Echo, ECHO, 80, 16384, 0x0, 0;
 CFE_APP, caller, __main__, CALLER, 90, 16384, 0x0, 0;
 !
 """
-APPS = '''
-def Echo(cfe):
-    """Sends back what comes to TCP port 7, in capitals, until the other side has no more."""
-    server = cfe.os.socket_open(1, 2)
-    address = cfe.os.socket_addr_init(1)
-    cfe.os.socket_addr_set_port(address, 7)
-    cfe.os.socket_bind(server, address)
-    while True:
-        connection, _ = cfe.os.socket_accept(server)
-        while data := cfe.os.read(connection, 5000):
-            at = 0
-            while at < len(data):
-                at += cfe.os.write(connection, data[at:].upper())
-        cfe.os.close(connection)
-'''
 CALLER = """
 import socket, time
 for _ in range(2000):
@@ -91,7 +74,7 @@ class Session:
 @contextmanager
 def session(folder: Path, schedule: str = "fifo", board: str = "linux", port: int = 0) -> Iterator[Session]:
     """A mission that is recorded into run.cfepy, and then interrupted."""
-    for name, text in (("startup.scr", STARTUP), ("apps.py", APPS), ("caller.py", CALLER)):
+    for name, text in (("startup.scr", STARTUP), ("apps.py", ECHO), ("caller.py", CALLER)):
         (folder / name).write_text(text)
     plan = plan_for(str(folder), schedule=schedule, board=board)
     policy = Schedule.parse(schedule).policy()
