@@ -2,7 +2,7 @@
 
 The mission needs 0.6 s of virtual time to boot, so 0.2 s of it are in the core applications' start, 0.8 s end 0.2 s
 after all nodes are up; of the latter there are fewer, since each takes some twenty times as long. All 100,000 take
-10 to 12 minutes: `cfepy explore capture --for 0.2 --seeds 100000 --results FILE`.
+11 to 12 minutes: `cfepy explore capture --for 0.2 --seeds 100000 --results FILE`.
 """
 
 from __future__ import annotations
