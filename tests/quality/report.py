@@ -89,7 +89,12 @@ def _missing_shrinks(measured: Measured, names: list[str]) -> Iterator[tuple[str
     """Bugs whose schedules are to be shrunk, each with the default policy, or else the one that finds one first."""
     for name, columns in measured.items():
         if (not names or name in names) and SHRUNK not in columns:
-            yield name, DEFAULT if Median(**columns[DEFAULT]).found else best(measured, name)[0]
+            yield name, shown_by(measured, name)
+
+
+def shown_by(measured: Measured, name: str) -> str:
+    """The policy whose schedules are to be shrunk."""
+    return DEFAULT if Median(**measured[name][DEFAULT]).found else best(measured, name)[0]
 
 
 def _cell(job: tuple[str, str, int]) -> tuple[str, str, dict[str, Any]]:

@@ -12,8 +12,8 @@ from cfepy.explore.trial import Trial
 from cfepy.explore.verdict import Verdict
 from cfepy.rtos.units import NS_PER_S
 from tests.quality.bugs import BUGS, MISSIONS, SECONDS, Bug, by_name, reference_trial
-from tests.quality.measure import as_deviations, find
-from tests.quality.report import best, load
+from tests.quality.measure import as_deviations, find, simplest
+from tests.quality.report import best, load, shown_by
 from tests.quality.shrinking import shrunk
 
 EACH = pytest.mark.parametrize("bug", BUGS, ids=[bug.name for bug in BUGS])
@@ -75,8 +75,9 @@ def test_mended_it_never_fails(bug: Bug, policy: str, tmp_path: Path) -> None:
 
 
 def shrinks(bug: Bug) -> None:
-    """What shrinking leaves of a schedule at random fails in the same way, on both contexts."""
-    verdict = found_by(bug, best(load(), bug.name)[0])
+    """What shrinking leaves fails in the same way, on both contexts."""
+    verdict = simplest(reference_trial(bug.folder), shown_by(load(), bug.name))
+    assert verdict is not None
     small = shrunk(bug, verdict)
     assert small.preemptions <= bug.preemptions
     for tasks in ("greenlet", "thread"):
