@@ -5,6 +5,7 @@ Imports its neighbours; applications are those of Executive Services, found by n
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any
 
 from cfepy.faults.gate import Gate
@@ -15,7 +16,7 @@ from cfepy.rtos.errors import InjectedCrash
 from cfepy.status import CfeError
 
 
-class AppFault:
+class AppFault(ABC):
     """A fault on one application.
 
     Args:
@@ -43,8 +44,9 @@ class AppFault:
         except CfeError as error:
             self.report.missed(self.fault, str(error))
 
+    @abstractmethod
     def _do(self, processor: Any, app: Any) -> None:
-        raise NotImplementedError
+        """Do it to an application of the processor."""
 
     def _happened(self, text: str) -> None:
         self.report.happened(self.fault, text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from random import Random
 from typing import Any
 
@@ -13,7 +14,7 @@ from cfepy.status import CfeError
 DEFAULT_SIGNATURE = {"bytes": {0: 0}}
 
 
-class MemoryFault:
+class MemoryFault(ABC):
     """A fault on some bytes.
 
     Args:
@@ -43,13 +44,13 @@ class MemoryFault:
     def _options(self) -> Any:
         return self._fault.options
 
+    @abstractmethod
     def _find(self, processor: Any) -> tuple[Any, str]:
         """The bytes, which can be written in place, and what they are.
 
         Raises:
             CfeError, LookupError: there are none; the latter with a text.
         """
-        raise NotImplementedError
 
 
 class FileFault(MemoryFault):

@@ -8,6 +8,7 @@ and cfepy.msg.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from random import Random
 from typing import Any
@@ -36,7 +37,7 @@ class Setting:
         self.names = names
 
 
-class MessageFault:
+class MessageFault(ABC):
     """A fault on messages while it runs.
 
     Args:
@@ -87,11 +88,11 @@ class MessageFault:
         """What it does, for the report."""
         return f"{self.fault.kind}s"
 
+    @abstractmethod
     def act(self, data: bytes, flags: int, send: Send) -> None:
         """Do it to a message that it strikes."""
-        raise NotImplementedError
 
-    def passed(self, flags: int) -> None:
+    def passed(self, flags: int) -> None:  # noqa: B027  # most kinds have nothing to do then
         """A message that it is about went on, struck or not."""
 
 
@@ -262,7 +263,7 @@ CLASSES: dict[str, type[MessageFault]] = {
     "reorder": Reorder,
     "corrupt": Corrupt,
 }
-DATAGRAM_CLASSES = {**CLASSES, "corrupt": CorruptDatagram}
+DATAGRAM_CLASSES: dict[str, type[MessageFault]] = {**CLASSES, "corrupt": CorruptDatagram}
 
 
 def pass_through(
