@@ -10,8 +10,7 @@ from benchmarks.measure import rate
 from cfepy.config import PlatformConfig
 from cfepy.msg import telemetry
 from cfepy.ports import Ports
-from cfepy.psp.memory import MemoryBudget
-from cfepy.psp.profile import BoardProfile
+from cfepy.psp import BoardProfile, MemoryBudget
 from cfepy.rtos import Kernel
 from cfepy.sb import POLL, SoftwareBus
 from cfepy.time import TimeServices

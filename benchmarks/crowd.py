@@ -12,7 +12,7 @@ from time import perf_counter
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
 from cfepy.mission.limits import MissionLimits
-from cfepy.nodes.config import NodeConfig, RosConfig
+from cfepy.nodes import NodeConfig, RosConfig
 
 SCRIPT = Path(__file__).parent / "nodes" / "member.py"
 NODES = 500
@@ -58,8 +58,9 @@ def boot(folder: Path, nodes: int, context: str, talks: bool) -> float:
     spec = MissionSpec("crowd", folder, script, None, "linux", ros, limits=limits)
     begin = perf_counter()
     with Mission(spec, tasks=context, console=Console(quiet=True)) as flight:
-        flight.run(BOOT_S)
+        flight.run_for(BOOT_S)
         seconds = perf_counter() - begin
+        assert flight.ros is not None
         sent = [row for row in flight.ros.topics() if row.name.startswith("/ring") and row.publishers]
         if len(flight.ros.graph.nodes) != nodes or len(sent) != nodes:
             raise RuntimeError(f"of {nodes} nodes {len(flight.ros.graph.nodes)} are there, {len(sent)} publish")

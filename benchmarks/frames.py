@@ -18,15 +18,15 @@ LOOKING_S = 0.0002  # virtual; looking up takes none, but asking whether to go o
 def lookup_us(context: str) -> float:
     """Wall time of a lookup in us."""
     with Mission(str(NODES), tasks=context, console=Console(quiet=True)) as flight:
-        flight.run(START_S)
+        flight.run_for(START_S)
         while not _looked(flight):
-            flight.run(LOOKING_S)
+            flight.run_for(LOOKING_S)
         return min(_once(flight) for _ in range(REPEATS))
 
 
 def _once(flight: Mission) -> float:
     before, begin = _looked(flight), perf_counter()
-    flight.run(LOOKING_S)
+    flight.run_for(LOOKING_S)
     return (perf_counter() - begin) / (_looked(flight) - before) / LINE * 1e6
 
 

@@ -24,7 +24,7 @@ def capture_speed(context: str) -> float:
 def _whole(mission: str, context: str, seconds: float) -> float:
     begin = perf_counter()
     with Mission(mission, tasks=context, console=Console(quiet=True)) as flight:
-        flight.run(seconds)
+        flight.run_for(seconds)
         return perf_counter() - begin
 
 
@@ -35,9 +35,9 @@ def publish_to_callback(context: str) -> float:
 
 def _messages_per_second(context: str) -> float:
     with Mission(str(NODES), tasks=context, console=Console(quiet=True)) as flight:
-        flight.run(1)
+        flight.run_for(1)
         (before, lost_before), begin = _counts(flight), perf_counter()
-        flight.run(1)
+        flight.run_for(1)
         seconds = perf_counter() - begin
         delivered, lost = _counts(flight)
         if lost > lost_before:
@@ -47,7 +47,8 @@ def _messages_per_second(context: str) -> float:
 
 def _counts(flight: Mission) -> tuple[int, int]:
     """Messages delivered so far, and lost; as the nodes start, the publisher may be quicker than the subscriber."""
-    msg_id: int = next(row.msg_id for row in flight.ros.topics() if row.name == "/joints")
+    assert flight.ros is not None
+    msg_id = next(row.msg_id for row in flight.ros.topics() if row.name == "/joints")
     delivered, _, limited, overflown = flight.cfe.sb.routes[msg_id].totals()
     return delivered, limited + overflown
 

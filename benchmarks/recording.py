@@ -7,7 +7,7 @@ from pathlib import Path
 from time import process_time
 
 from cfepy.journal import record
-from cfepy.mission.run_plan import RunPlan
+from cfepy.pilot import RunPlan, fly
 
 CAPTURE_S = 30
 REPEATS = 5
@@ -32,7 +32,7 @@ def recording(contexts: tuple[str, ...]) -> dict[str, float]:
 def _seconds(plan: RunPlan, path: Path | None) -> float:
     begin = process_time()
     if path is None:
-        plan.fly()
+        fly(plan)
     else:
         record(plan, path)
     return process_time() - begin

@@ -9,10 +9,9 @@ import os
 from contextlib import closing
 
 from cfepy.console import Console
-from cfepy.mission import Mission
-from cfepy.mission.spec import read_mission
+from cfepy.exploration.fork_server import ForkServer, LateSchedule
+from cfepy.mission import Mission, read_mission
 from cfepy.rtos import Schedule
-from cfepy.rtos.fork_server import ForkServer, LateSchedule
 
 COUNT = 100
 SHORT_S = 0.2  # of virtual time
@@ -25,7 +24,7 @@ def from_power_on(context: str, seconds: float) -> float:
     begin = _cpu_s()
     for seed in range(COUNT):
         with Mission(spec, console=_quiet(), tasks=context, policy=Schedule("random", seed).policy()) as flight:
-            flight.run(seconds)
+            flight.run_for(seconds)
     return COUNT / (_cpu_s() - begin)
 
 
@@ -35,7 +34,7 @@ def forked() -> float:
 
     def fly(schedule: LateSchedule) -> str:
         with Mission(spec, console=_quiet(), tasks="greenlet", policy=schedule.policy()) as flight:
-            flight.run(BOOTED.from_ns / 1e9 + SHORT_S)
+            flight.run_for(BOOTED.from_ns / 1e9 + SHORT_S)
             return flight.trace.digest()
 
     begin = _cpu_s()

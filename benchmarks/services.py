@@ -8,7 +8,7 @@ from time import perf_counter
 
 from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
-from cfepy.nodes.config import NodeConfig
+from cfepy.nodes import NodeConfig
 
 NODES = Path(__file__).parent / "nodes" / "services"
 REPEATS = 5
@@ -25,15 +25,16 @@ def _once(context: str, arguments: tuple[str, ...]) -> float:
     caller = NodeConfig("caller", args=arguments)
     spec = replace(spec, ros=replace(spec.ros, nodes={**spec.ros.nodes, "CALLER": caller}))
     with Mission(spec, tasks=context, console=Console(quiet=True)) as flight:
-        flight.run(1)
+        flight.run_for(1)
         while not _calls(flight):
-            flight.run(CALLING_S)
+            flight.run_for(CALLING_S)
         before, begin = _calls(flight), perf_counter()
-        flight.run(CALLING_S)
+        flight.run_for(CALLING_S)
         return (perf_counter() - begin) / (_calls(flight) - before) * 1e6
 
 
 def _calls(flight: Mission) -> int:
+    assert flight.ros is not None
     route = flight.cfe.sb.routes.get(flight.ros.graph.services["/add"].answer_id)
     return route.sent if route is not None else 0
 

@@ -16,7 +16,7 @@ from cfepy import msg
 from cfepy.config_api import ConfigServices
 from cfepy.es import ExecutiveServices
 from cfepy.evs import EventServices
-from cfepy.fs.services import FileServices
+from cfepy.fs import FileServices
 from cfepy.osal import Osal
 from cfepy.psp import Psp
 from cfepy.sb import SoftwareBus

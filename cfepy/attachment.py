@@ -1,7 +1,6 @@
-"""What looks on at a mission or meddles with it: a script, a bag, faults, invariants, a trace file.
+"""Attachments: objects that watch a mission or change its course, such as a bag, invariants, or faults.
 
 `Mission` takes any number of attachments. None of its parts knows of them, and a run without any pays nothing for them.
-May import cfepy.sb and cfepy.trace.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from cfepy.trace import Trace
 
 
 class Attachment:
-    """Does nothing; those who do something say what."""
+    """Does nothing; derived classes override what they need."""
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """The class of Software Bus that it needs, made of another one; every processor gets a bus of it.

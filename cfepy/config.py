@@ -1,6 +1,6 @@
 """Platform configuration: the CFE_PLATFORM_* and CFE_MISSION_* values that services read, with cFE v7.0.0's defaults.
 
-A board profile and a mission file may change them (`PlatformConfig.with_limits`). Imports nothing of cfepy.
+A board profile and a mission file may change them (`PlatformConfig.with_limits`).
 """
 
 from __future__ import annotations

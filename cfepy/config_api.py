@@ -1,8 +1,7 @@
 """`ConfigServices`: what an application finds as `cfe.config` (cFE's configuration registry, CFE_Config_*).
 
 NASA's keys come first, in NASA's order and so with NASA's ids but for the applications of a C build, which have keys
-there and none here. The platform configuration follows, as a mission's own keys would. Imports only cfepy.config, ids
-and versions.
+there and none here. The platform configuration follows, as a mission's own keys would.
 """
 
 from __future__ import annotations

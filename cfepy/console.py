@@ -1,7 +1,6 @@
 """The console of a mission: where OS_printf, the system log and the event port write their lines.
 
-It keeps every line for tests and tools, and shows it on a stream or hands it to a live display. Imports
-nothing of cfepy.
+It keeps every line for tests and tools, and shows it on a stream or hands it to a live display.
 """
 
 from __future__ import annotations

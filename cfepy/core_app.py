@@ -1,7 +1,4 @@
-"""What the five core applications have in common: the loop of their main tasks, and answers to commands.
-
-Imports only cfepy.config and cfepy.ports.
-"""
+"""What the five core applications have in common: the loop of their main tasks, and answers to commands."""
 
 from __future__ import annotations
 

@@ -3,7 +3,6 @@
 An id is `base << 16 | serial`; the base tells the kind, the serial counts up with every creation, so that the id of
 something deleted does not soon mean something else. A record sits in slot `serial % capacity` of its table. Here a base
 is the small number (app 0x11); C's CFE_ES_APPID_BASE and CFE_ResourceId_GetBase have it already shifted (0x110000).
-Imports only cfepy.status.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The seams between the core services: what each of them may ask of the others, as Protocols.
 
 ES, SB, EVS, TIME and TBL need one another (SB reports through EVS, EVS sends through SB), yet none imports another.
-A mission makes one `Ports`, hands it to all of them, and fills it in once they exist. Beside the types stand the few
-numbers that a service gives to another. Imports nothing of cfepy.
+A mission makes one `Ports`, hands it to all of them, and fills it in once they exist. Here are also the few
+numbers that a service gives to another.
 """
 
 from __future__ import annotations

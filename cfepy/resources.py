@@ -1,6 +1,6 @@
-"""Where the files are that cfepy brings along: boards, ready missions, apps; and where it is itself.
+"""Paths of the files that cfepy brings along (boards, ready missions, apps) and of cfepy itself.
 
-In a source checkout they lie beside the package, in an installed wheel under cfepy/share. Imports only cfepy.status.
+In a source checkout they lie next to the package, in an installed wheel under cfepy/share.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 The numbers are those of cfe_error.h, cfe_psp_error.h and osapi-error.h, as the signed 32-bit integers that NASA's code
 prints. A call that fails in C by returning one of them raises `CfeError` here. Event ids are not status codes: each
-service keeps its own. Imports nothing of cfepy.
+service keeps its own.
 """
 
 from __future__ import annotations
@@ -332,3 +332,37 @@ class UsageError(ValueError):
     def __str__(self) -> str:
         place = ":".join(str(part) for part in (self.file, self.line) if part is not None)
         return ": ".join(part for part in (place, self.field, self.text) if part)
+
+
+class StallError(RuntimeError):
+    """A task did not give up the CPU, and the run was ended for that. The text has the user's own lines.
+
+    Args:
+        summary: which task, since when, how long: one line.
+        lines: where it was, the innermost of the user's own lines first.
+        app: the application of the task; empty when it is none of one.
+        task: its name.
+        place: where it spins, such as "spin.py:4"; empty when that is not known.
+        at_ns: virtual time at which it had the CPU.
+    """
+
+    def __init__(
+        self,
+        summary: str,
+        lines: tuple[str, ...] = (),
+        *,
+        app: str = "",
+        task: str = "",
+        place: str = "",
+        at_ns: int = 0,
+    ) -> None:
+        super().__init__(summary)
+        self.summary = summary
+        self.lines = lines
+        self.app = app
+        self.task = task
+        self.place = place
+        self.at_ns = at_ns
+
+    def __str__(self) -> str:
+        return "\n".join([self.summary, *(f"  {line}" for line in self.lines)])

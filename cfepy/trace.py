@@ -1,8 +1,7 @@
 """The trace of a run: everything that happened, in order, and the digest that says whether two runs were the same.
 
 A record is a bytes object whose first byte tells its kind; packets are records as they are (their first byte is below
-0x20). Appending one costs some ten nanoseconds, because records are kept by reference and hashed in batches. This
-module imports nothing of cfepy.
+0x20). Appending one costs some ten nanoseconds, because records are kept by reference and hashed in batches.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ GET = b"G"  # followed by the queue
 RECEIVE = b"R"  # followed by the pipe
 DROP = b"D"  # followed by the pipe
 NOTE = b"N"  # followed by a text, UTF-8
-UNSENT = b"U"  # followed by a topic, a zero byte, and a message that nobody gets; only runs that are compared have it
+UNSENT = b"U"  # followed by a topic, a zero byte, and a message without a subscriber; only in runs that are compared
 
 BATCH = 4096
 
@@ -49,7 +48,7 @@ class Trace:
         self._sink = sink
 
     def also(self, sink: Callable[[list[bytes]], None]) -> None:
-        """Have somebody else called with each batch of records as well, after the sink that there is."""
+        """Add a second sink, which gets each batch of records after the present one."""
         first = self._sink
 
         def both(records: list[bytes]) -> None:

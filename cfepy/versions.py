@@ -1,4 +1,4 @@
-"""The versions that cFE, OSAL and PSP show, in one place. Imports nothing of cfepy."""
+"""The versions that cFE, OSAL and PSP show, in one place."""
 
 from __future__ import annotations
 

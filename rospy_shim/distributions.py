@@ -1,7 +1,7 @@
 """The distributions of ROS that a node finds installed: rospy, genpy and the libraries, with their versions.
 
-A node asks `importlib.metadata` or `pkg_resources` for them; all else there is the host's. Versions are those of ROS
-Noetic (index.ros.org). May import cfepy.nodes.
+A node asks `importlib.metadata` or `pkg_resources` for them; every other answer is the host's. Versions are those of
+ROS Noetic (index.ros.org).
 """
 
 from __future__ import annotations

@@ -1,15 +1,17 @@
-"""Parts of libraries that only a node's owner can make: where packages lie, which message definitions there are, what
-is installed.
+"""The libraries that nodes import besides rospy (tf, tf2_ros, ...), and parts of them that only their owner can make.
 
-A library such as rospkg is code of nodes and knows nothing of this package; what it needs to be told is a module in it
-that is made here. Whoever brings the library's original source never asks for it. Imports nothing of cfepy.
+A library is a folder in `rospy_shim/libraries`, ordinary code of nodes that knows nothing of this package. It is on the
+import path of every node, behind the node's own folders, so a node that brings a library's original source gets that.
+Packages of other projects that such a source imports and rarely uses have stand-ins, found when the real ones are not
+installed. Made here are modules that tell a library where packages lie, which definitions there are and what is
+installed, and `<package>.cfg.<Name>Config`, which ROS generates from cfg/<Name>.cfg at build time and
+`rospy_shim/libraries/dynamic_reconfigure` makes inside the node.
 """
 
 from __future__ import annotations
 
-import importlib
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from collections.abc import Mapping, Sequence
+from functools import cache, partial
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -17,9 +19,19 @@ from typing import TYPE_CHECKING, Any
 from rospy_shim.msgs.packages import Packages, crawl, name_of
 
 if TYPE_CHECKING:
-    from rospy_shim.node import Node
+    from cfepy.nodes import Factory, Universe
+    from rospy_shim.client.node import Node
 
-Factory = Callable[[Any], ModuleType]
+FOLDER = Path(__file__).parent / "libraries"
+STAND_INS = Path(__file__).parent / "stand_ins"
+_LIBRARY = "dynamic_reconfigure"
+_GENERATORS = ("parameter_generator", "parameter_generator_catkin")
+
+
+@cache
+def library_names() -> frozenset[str]:
+    """Names of the libraries."""
+    return frozenset(path.parent.name for path in FOLDER.glob("*/__init__.py"))
 
 
 def library_parts(node: Node) -> dict[str, Factory]:
@@ -36,22 +48,27 @@ def library_parts(node: Node) -> dict[str, Factory]:
         "text": library.text,
     }
     return {
-        "importlib.metadata": partial(_installed, "metadata_module"),
-        "pkg_resources": partial(_installed, "pkg_resources_module"),
+        "importlib.metadata": _metadata,
+        "pkg_resources": _pkg_resources,
         "rosmsg._definitions": _factory(definitions),
         "rospkg._places": _factory(places),
     }
 
 
-def _installed(maker: str, universe: Any) -> ModuleType:
-    """A module that tells which distributions are installed; few nodes ask, and it takes much to import."""
-    distributions = importlib.import_module("rospy_shim.distributions")
-    module: ModuleType = getattr(distributions, maker)()
-    return module
+def _metadata(universe: Universe) -> ModuleType:
+    from rospy_shim.distributions import metadata_module  # takes much to import, and few nodes ask
+
+    return metadata_module()
+
+
+def _pkg_resources(universe: Universe) -> ModuleType:
+    from rospy_shim.distributions import pkg_resources_module
+
+    return pkg_resources_module()
 
 
 def _factory(contents: Mapping[str, Any]) -> Factory:
-    def make(universe: Any) -> ModuleType:
+    def make(universe: Universe) -> ModuleType:
         module = ModuleType("part")
         vars(module).update(contents)
         return module
@@ -70,3 +87,50 @@ def _folders(node: Node, paths: Sequence[str] | None) -> dict[str, str]:
         for folder in crawl(Path(universe.resolve(path))):
             found.setdefault(name_of(folder), str(folder))
     return found
+
+
+class ConfigModules:
+    """Finds the configurations of the packages that a node can see.
+
+    Args:
+        packages: the packages.
+    """
+
+    def __init__(self, packages: Packages) -> None:
+        self._packages = packages
+
+    def find(self, name: str) -> Factory | None:
+        """What makes a module, by its full name; None: it is not a configuration."""
+        package, *rest = name.split(".")
+        if package == _LIBRARY and len(rest) == 1 and rest[0] in _GENERATORS:
+            return lambda universe: _own_generator(universe, name, rest[0])
+        if rest[:1] not in ([], ["cfg"]) or len(rest) > 2:
+            return None
+        if len(rest) < 2:
+            return (lambda universe: _package(name)) if self._file(package, "*") is not None else None
+        file = self._file(package, rest[1].removesuffix("Config")) if rest[1].endswith("Config") else None
+        return None if file is None else lambda universe: _config(universe, name, file)
+
+    def _file(self, package: str, name: str) -> Path | None:
+        found = (file for folder in self._packages.folders(package) for file in sorted(folder.glob(f"cfg/{name}.cfg")))
+        return next(found, None)
+
+
+def _package(name: str) -> ModuleType:
+    module = ModuleType(name)
+    module.__path__ = []
+    return module
+
+
+def _own_generator(universe: Universe, name: str, part: str) -> ModuleType:
+    """The generator is always cfepy's: the original writes source files, for which there is no build here."""
+    module: ModuleType = universe.importer.load_file(name, str(FOLDER / _LIBRARY / f"{part}.py"))
+    return module
+
+
+def _config(universe: Universe, name: str, file: Path) -> ModuleType:
+    script = universe.importer.load(f"{_LIBRARY}.cfg_script")
+    module = ModuleType(name)
+    module.__file__ = str(file)
+    vars(module).update(script.contents_of(str(file), file.stem))
+    return module

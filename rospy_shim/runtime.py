@@ -1,7 +1,7 @@
 """`RosRuntime`: ROS on one mission. It runs the scripts of nodes inside their cFE applications.
 
-The mission loads this module by name when the first node starts. May import cfepy.nodes, cfepy.rtos and rospy_shim,
-never cfepy.mission.
+A mission imports this module when the first node starts. The `ProcessMonitor` (roslaunch.pmon) decides
+whether a node that ended is started again, left alone, or ends the whole run.
 """
 
 from __future__ import annotations
@@ -13,30 +13,27 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.es.records import StartParams
-from cfepy.nodes import Universe
-from cfepy.nodes.config import NodeConfig, RosConfig
-from cfepy.rtos.errors import InjectedCrash
-from cfepy.rtos.units import NS_PER_S
-from rospy_shim import library_path
-from rospy_shim.graph import Graph, Topic, TopicRow
-from rospy_shim.library_parts import Factory, library_parts
+from cfepy.es import StartParams
+from cfepy.nodes import NodeConfig, RosConfig, Universe
+from cfepy.rtos import InjectedCrash
+from cfepy.units import NS_PER_S
+from rospy_shim.client.modules import RosModules
+from rospy_shim.client.node import Node
+from rospy_shim.client.tasks import NodeTasks
+from rospy_shim.graph.graph import Graph, TopicEntry, TopicRow
+from rospy_shim.library_parts import FOLDER, STAND_INS, ConfigModules, library_names, library_parts
 from rospy_shim.master import MASTER_PORT, Switchboard, xmlrpc_client
-from rospy_shim.modules import RosModules
 from rospy_shim.msgs import make_module
-from rospy_shim.msgs.configs import ConfigModules
 from rospy_shim.msgs.modules import MessageModule
-from rospy_shim.node import Node
-from rospy_shim.parameter_app import ParameterApp
-from rospy_shim.process_monitor import ProcessMonitor
-from rospy_shim.tasks import NodeTasks
+from rospy_shim.parameters.app import ParameterApp
 
 if TYPE_CHECKING:
     from types import ModuleType
 
     from cfepy.app import Cfe
     from cfepy.console import Console
-    from cfepy.osal.network import Network
+    from cfepy.nodes import Factory
+    from cfepy.osal import Network
     from cfepy.rtos import Kernel
 
 CRASHED = 139  # 128 + SIGSEGV, as a shell tells it
@@ -55,6 +52,64 @@ ENVIRONMENT = {
 """What a login and the set-up file of an installed ROS tell a node, the same on every host."""
 STACK_BYTES, PRIORITY = 16384, 100  # of nodes that nodes start, as in a startup script
 SHORTEST_RESPAWN_NS = 100_000_000  # how often roslaunch looks after its processes
+
+
+class ProcessMonitor:
+    """Looks after the nodes of one mission.
+
+    Args:
+        config: what was said about them.
+        console: gets its messages.
+        stop: ends the run where it is.
+
+    Attributes:
+        statuses: the exit status of each node that has ended by itself, by cFE name.
+        restarts: how often a node was started again, by cFE name.
+        over: whether the run has come to its end.
+        closing: whether the nodes were asked to end, so that how they do it is not their failure.
+    """
+
+    def __init__(self, config: RosConfig, console: Console, stop: Callable[[], object]) -> None:
+        self.statuses: dict[str, int] = {}
+        self.restarts: dict[str, int] = {}
+        self.over = False
+        self._config = config
+        self._console = console
+        self._stop = stop
+        self.closing = False
+
+    def close(self) -> None:
+        """The run is about to end: no node is started again, and the end of none is remarkable."""
+        self.closing = True
+
+    def starts_again(self, node: NodeConfig, status: int) -> bool:
+        """A node has ended: whether it is to be started again.
+
+        Args:
+            node: which one.
+            status: its exit status.
+        """
+        if self.closing:
+            return False
+        self.statuses[node.app] = status
+        name = node.name or node.app  # one that no launch file names
+        if node.respawn:
+            self.restarts[node.app] = self.restarts.get(node.app, 0) + 1
+            self._say(f"{name} has ended with exit status {status} and is started again")
+            return True
+        if node.required:
+            self._say(f"{name} has ended with exit status {status}; it is required, so the run is over")
+            self._end()
+        elif self._config.ends_with_nodes and all(app in self.statuses for app in self._config.nodes):
+            self._end()
+        return False
+
+    def _end(self) -> None:
+        self.over = True
+        self._stop()
+
+    def _say(self, text: str) -> None:
+        self._console.write(f"launch: {text}")
 
 
 class NodeEnd(NamedTuple):
@@ -170,8 +225,8 @@ class RosRuntime:
             argv=_command_line(config),
             env={**ENVIRONMENT, "HOME": home, "PWD": home, **config.env},
             cwd=cwd,
-            library_paths=[library_path.FOLDER],
-            fallback_paths=[library_path.STAND_INS],
+            library_paths=[FOLDER],
+            fallback_paths=[STAND_INS],
             seed=self._seed,
             epoch_ns=self._epoch_ns,
             call_cost_ns=self._call_ns,
@@ -262,7 +317,7 @@ class RosRuntime:
         """A row for each topic there ever was, by name."""
         return [self._row(topic) for _, topic in sorted(self.graph.topics.items())]
 
-    def _row(self, topic: Topic) -> TopicRow:
+    def _row(self, topic: TopicEntry) -> TopicRow:
         return TopicRow(
             topic.name,
             topic.msg_id,
@@ -305,7 +360,7 @@ def _finder(node: Node, made: dict[str, Factory]) -> Callable[[str], Factory | N
             return factory
         if name == "logging":
             return None if node.universe.importer.has_own(name) else lambda universe: node.logs.load_logging()
-        if name in library_path.names():
+        if name in library_names():
             return None  # a package with code; its messages are made here all the same
         config = configs.find(name)
         if config is not None and ("." in name or not node.universe.importer.has_own(name)):

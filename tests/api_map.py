@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 from cfepy.console import Console
-from cfepy.mission.mission import Mission
+from cfepy.mission import Mission
 from tests.api_names import python_name
 from tests.mission.flights import write_mission
 
@@ -139,7 +139,7 @@ def booted() -> Mission:
     """A mission of core services alone, after its boot."""
     with TemporaryDirectory() as folder:
         mission = Mission(write_mission(Path(folder), "! nothing\n"), console=Console(quiet=True))
-        mission.run(1)
+        mission.run_for(1)
     return mission
 
 

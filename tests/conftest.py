@@ -1,10 +1,53 @@
-"""What all tests share: Hypothesis without a deadline in wall-clock time, so that a busy machine fails nothing."""
+"""What all tests share: both cores, the quick loop, and no clock that could fail a test on a busy machine."""
 
 from __future__ import annotations
 
+import os
+import signal
+import sys
+from pathlib import Path
+
+import pytest
 from hypothesis import settings
+
+from tests import quick
 
 pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # the latter has this name when it is installed, too
 
 settings.register_profile("cfepy", settings.default, deadline=None)
 settings.load_profile("cfepy")
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell gives it ignored to what it runs in the background
+
+if sys.dont_write_bytecode:  # each process that a test starts would compile all of cfepy, and each run all tests
+    CACHE = Path(__file__).parents[1] / ".pytest_cache" / "bytecode"
+    sys.dont_write_bytecode, sys.pycache_prefix = False, str(CACHE)
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    os.environ["PYTHONPYCACHEPREFIX"] = str(CACHE)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """Runs of the whole suite use all cores, where pytest-xdist is at hand and nobody wants to look on."""
+    option = config.option
+    whole = all(Path(config.invocation_params.dir, arg).resolve() == Path(__file__).parent for arg in config.args)
+    looked_at = option.usepdb or option.trace or option.capture == "no" or option.collectonly
+    if not config.pluginmanager.has_plugin("xdist") or hasattr(config, "workerinput") or not whole or looked_at:
+        return
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if option.numprocesses is None and option.dist == "no" and not option.tx and cores > 1:
+        option.numprocesses, option.dist = cores, "loadgroup" if option.markexpr == "slow" else "worksteal"
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Files that the quick loop leaves out are not even read."""
+    asked = config.getoption("markexpr") == quick.MARK
+    return True if asked and quick.is_long(collection_path.relative_to(Path(__file__).parent)) else None
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the tests of the quick loop."""
+    functions = [item for item in items if isinstance(item, pytest.Function) and not item.get_closest_marker("slow")]
+    for item in quick.quick_ones(functions):
+        item.add_marker(quick.MARK)

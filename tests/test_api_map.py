@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from cfepy.mission.mission import Mission
+from cfepy.mission import Mission
 from tests import api_map
 from tests.api_names import snake
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from cfepy.app import Cfe
 from cfepy.es import APP_ERROR
-from cfepy.msg import CommandTable
-from cfepy.msg.dispatch import BAD_LENGTH, BAD_MSG_ID
+from cfepy.msg import BAD_LENGTH, BAD_MSG_ID, CommandTable
 from cfepy.status import CfeError
 from cfepy.versions import version_string
 

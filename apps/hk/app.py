@@ -7,8 +7,7 @@ from contextlib import contextmanager
 
 from cfepy.app import Cfe
 from cfepy.es import APP_ERROR, APP_EXIT, APP_RUN
-from cfepy.msg import CommandTable
-from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, Dispatch
+from cfepy.msg import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, CommandTable, Dispatch
 from cfepy.status import (
     CFE_SUCCESS,
     CFE_TBL_INFO_DUMP_PENDING,

@@ -12,8 +12,7 @@ from contextlib import contextmanager
 
 from cfepy.app import Cfe
 from cfepy.es import APP_ERROR
-from cfepy.msg import CommandTable
-from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID
+from cfepy.msg import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, CommandTable
 from cfepy.sb import PEND_FOREVER
 from cfepy.status import CfeError
 from cfepy.versions import version_string

@@ -1,4 +1,7 @@
-"""How SAMPLE_APP reaches the sample library: by the name of its function, as the dynamic linker does in C."""
+"""How SAMPLE_APP reaches the sample library: by the name of its function, as the dynamic linker does in C.
+
+Apart from the app, since an application that `cfepy new` makes from it has no library.
+"""
 
 from __future__ import annotations
 

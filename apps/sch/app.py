@@ -14,10 +14,10 @@ from cfepy.status import CFE_SUCCESS, CfeError, OsalError
 
 from . import events as ev
 from . import packets as pk
-from .commands import Commands
+from .commands import SchCommands
 from .frames import LAST_SLOT, NOT_SYNCHRONIZED, WORST_ACCURACY_US, Frames
 from .slots import due, is_due
-from .state import VERSION, Counters, Tables
+from .state import VERSION, SchCounters, Tables
 
 PIPE_NAME = "SCH_CMD_PIPE"
 PIPE_DEPTH = 12
@@ -29,7 +29,7 @@ LIBRARY_STATE = "SCH_GetProcessingState"
 def SCH_AppMain(cfe: Cfe) -> None:
     """The entry point that the startup script names."""
     cfe.es.perf_log_entry(PERF_ID)
-    app = Scheduler(cfe)
+    app = SchSlots(cfe)
     run_status, status = APP_RUN, CFE_SUCCESS
     try:
         app.start()
@@ -50,15 +50,15 @@ def SCH_AppMain(cfe: Cfe) -> None:
     cfe.es.exit_app(APP_EXIT if run_status == APP_RUN else run_status)
 
 
-class Scheduler:
+class SchSlots:
     """The schedule in the making: which slot comes next, and what is sent in it."""
 
     def __init__(self, cfe: Cfe) -> None:
         self._cfe = cfe
-        self._counters = Counters()
+        self._counters = SchCounters()
         self._frames = Frames(cfe)
         self._tables = Tables(cfe, self._counters)
-        self._commands = Commands(cfe, self._counters, self._frames, self._tables)
+        self._commands = SchCommands(cfe, self._counters, self._frames, self._tables)
         self._behind = 0
         self._noise_reported = False
         self._goes_on: Callable[[Any], bool] | None = None

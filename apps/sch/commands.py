@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from cfepy.app import Cfe
-from cfepy.msg import Command, CommandTable, telemetry
-from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, Dispatch
+from cfepy.msg import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, Command, CommandTable, Dispatch, telemetry
 
 from . import events as ev
 from . import packets as pk
 from .frames import Frames
-from .state import VERSION, Counters, Tables
+from .state import VERSION, SchCounters, Tables
 
 
-class Commands:
+class SchCommands:
     """Does what the ground wants.
 
     Args:
@@ -20,7 +19,7 @@ class Commands:
         counters, frames, tables: what commands change and telemetry tells of.
     """
 
-    def __init__(self, cfe: Cfe, counters: Counters, frames: Frames, tables: Tables) -> None:
+    def __init__(self, cfe: Cfe, counters: SchCounters, frames: Frames, tables: Tables) -> None:
         self._cfe = cfe
         self._counters = counters
         self._frames = frames

@@ -27,7 +27,7 @@ PERF_ID = 36
 def SCH_LAB_AppMain(cfe: Cfe) -> None:
     """The entry point that the startup script names."""
     cfe.es.perf_log_entry(PERF_ID)
-    app = Scheduler(cfe)
+    app = SchLab(cfe)
     try:
         app.start()
     except CfeError as error:
@@ -39,7 +39,7 @@ def SCH_LAB_AppMain(cfe: Cfe) -> None:
     cfe.es.exit_app()
 
 
-class Scheduler:
+class SchLab:
     """The ticking and the entries of the table."""
 
     def __init__(self, cfe: Cfe) -> None:

@@ -30,7 +30,7 @@ SCHEDULE_TABLE = TableType(
 TABLES = (SCHEDULE_TABLE,)
 
 
-class Entry:
+class ScheduleEntry:
     """One command and when it is due.
 
     Args:
@@ -54,7 +54,7 @@ class Entry:
         return True
 
 
-def read(table: bytes | memoryview) -> tuple[int, list[Entry]]:
+def read(table: bytes | memoryview) -> tuple[int, list[ScheduleEntry]]:
     """The tick rate of a schedule table and its entries that are in use, in table order.
 
     Raises:
@@ -66,7 +66,7 @@ def read(table: bytes | memoryview) -> tuple[int, list[Entry]]:
         if row["PacketRate"]:
             payload = bytes(row["MessageBuffer"][: row["PayloadLength"]])
             packet = command(row["MessageID"], row["FcnCode"], payload)
-            entries.append(Entry(bytes(packet), row["PacketRate"]))
+            entries.append(ScheduleEntry(bytes(packet), row["PacketRate"]))
     return values["TickRate"], entries
 
 

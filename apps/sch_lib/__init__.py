@@ -7,7 +7,7 @@ the value of a counting semaphore, which is all that the library keeps.
 from __future__ import annotations
 
 from cfepy.app import Cfe
-from cfepy.osal.limits import OS_CHECK
+from cfepy.osal import OS_CHECK
 from cfepy.status import CFE_SUCCESS
 
 SEMAPHORE = "SCH_LIB"

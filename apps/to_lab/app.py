@@ -13,7 +13,7 @@ from cfepy.versions import version_string
 
 from . import events as ev
 from . import packets as pk
-from .commands import Commands, qos_of
+from .commands import ToLabCommands, qos_of
 from .downlink import Downlink
 
 VERSION = version_string("TO Lab", "equuleus-rc1+dev62", "Equuleus", "v2.3.0")
@@ -90,7 +90,7 @@ class TelemetryOutput:
         sb.subscribe(pk.SEND_HK_MID, self._commands_pipe)
         with self._reporting(ev.TLMPIPE_ERR_EID, ev.TELEMETRY_PIPE_LINE, "create Tlm pipe"):
             self._telemetry = sb.create_pipe(TELEMETRY_PIPE_DEPTH, TELEMETRY_PIPE)
-        self._commands = Commands(self._cfe, self._downlink, self._telemetry, self._table, VERSION)
+        self._commands = ToLabCommands(self._cfe, self._downlink, self._telemetry, self._table, VERSION)
 
     def _subscribe(self) -> bool:
         """Subscribe to the packets of the table, up to the first row without one; whether the last was refused."""

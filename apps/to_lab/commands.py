@@ -8,8 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from cfepy.app import Cfe
-from cfepy.msg import Command, CommandTable
-from cfepy.msg.dispatch import BAD_CODE, BAD_MSG_ID
+from cfepy.msg import BAD_CODE, BAD_MSG_ID, Command, CommandTable
 from cfepy.status import CfeError
 
 from . import events as ev
@@ -36,7 +35,7 @@ SAMPLE = {
 """What the packet of all data types holds."""
 
 
-class Commands:
+class ToLabCommands:
     """What the ground can ask of TO_LAB.
 
     Args:

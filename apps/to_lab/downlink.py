@@ -17,7 +17,7 @@ SOCKET_SEND_PERF_ID = 35
 
 
 class Downlink:
-    """The socket at which packets leave; nothing leaves before somebody enabled it."""
+    """The socket at which packets leave; nothing leaves before it is enabled."""
 
     def __init__(self, cfe: Cfe) -> None:
         self._cfe = cfe

@@ -9,9 +9,9 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Protocol, TextIO
 
-from cfepy.cli.arguments import LONGEST_S
-from cfepy.rtos.realtime import Stopwatch
-from cfepy.rtos.units import NS_PER_S
+from cfepy.cli.options import LONGEST_S
+from cfepy.rtos import Stopwatch
+from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -59,7 +59,7 @@ class PlainDisplay:
         """See `Display.update`.
 
         Raises:
-            OSError: nobody reads any more, or the disk is full.
+            OSError: the reader of the output is gone, or the disk is full.
         """
         if self._broken is not None:
             raise self._broken

@@ -1,28 +1,13 @@
-"""What several commands say alike when a mission does not boot, or a file cannot be written."""
+"""Messages that several commands share: a file cannot be written, or a run did not do what was asked."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import sys
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from cfepy.status import CfeError, UsageError
-
-
-@contextmanager
-def booting(script: Path) -> Iterator[None]:
-    """Around what boots a mission.
-
-    Args:
-        script: its startup script.
-
-    Raises:
-        UsageError: in place of the CfeError that says why it does not boot.
-    """
-    try:
-        yield
-    except CfeError as error:
-        raise UsageError(f"the mission cannot boot: {error}", file=script) from error
+from cfepy.status import UsageError
 
 
 @contextmanager
@@ -40,3 +25,10 @@ def writing(file: str | Path, option: str) -> Iterator[None]:
         yield
     except OSError as error:
         raise UsageError(f"cannot be written: {error.strerror}", file=file, field=option) from None
+
+
+def tell(texts: Iterable[object]) -> None:
+    """Write lines to standard error, after all that went to standard output."""
+    sys.stdout.flush()
+    for text in texts:
+        print(f"cfepy: {text}", file=sys.stderr, flush=True)

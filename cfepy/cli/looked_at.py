@@ -1,24 +1,33 @@
-"""What `cfepy trace` and `cfepy report` look at: a journal's run, replayed, or a mission that is flown for them."""
+"""What a command looks at: the run of a journal, which is replayed, or of a mission, launch file or node, which is
+flown; for values over time also a bag.
+"""
 
 from __future__ import annotations
 
 import argparse
 import shlex
-import sys
-from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 from cfepy.attachment import Attachment
-from cfepy.cli.failures import booting
+from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
-from cfepy.cli.recording import plan_of
-from cfepy.mission.run_plan import Flown
-from cfepy.rtos.units import NS_PER_S
+from cfepy.cli.options import LONGEST_S, plan_of, refuse_run_options
+from cfepy.ground import SeriesRecorder, SeriesSet, bag_series, is_bag
+from cfepy.pilot import DEFAULT_S, Flown, RunPlan, fly
+from cfepy.rtos import Policy
 from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
 
-_OF_A_MISSION = ("seconds", "seed", "board", "tasks", "schedule", "script", "faults", "launch_args")
-_USUAL = {"seed": 0, "tasks": "thread", "schedule": "fifo"}  # of these options; that of others is nothing
+
+def flight_plan(arguments: argparse.Namespace) -> RunPlan:
+    """The run that a command line means, 10 s by default, also of a node.
+
+    Raises:
+        UsageError: the schedule is none.
+    """
+    plan = plan_of(arguments, [arguments.source])
+    return replace(plan, seconds=DEFAULT_S) if plan.seconds is None and plan.script is None else plan
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +37,7 @@ class LookedAt:
     Attributes:
         flown: the run.
         command: does it again.
-        schedule: who went first.
+        schedule: the schedule of the run.
         notes: what is good to know.
         warnings: why it is not the run that is meant; none when it is.
     """
@@ -41,32 +50,58 @@ class LookedAt:
 
     def status(self) -> int:
         """The exit status of the command; notes and warnings go to standard error."""
-        sys.stdout.flush()
-        for text in (*self.notes, *self.warnings):
-            print(f"cfepy: {text}", file=sys.stderr)
-        return FOUND_PROBLEMS if self.warnings else ENDED_WELL
+        stall = self.flown.stall
+        tell((*self.flown.notes, *self.notes, *self.warnings, *([] if stall is None else [stall])))
+        return FOUND_PROBLEMS if self.warnings or stall is not None else ENDED_WELL
 
 
-def look_at(arguments: argparse.Namespace, attachments: Sequence[Attachment]) -> LookedAt:
+def look_at(
+    arguments: argparse.Namespace,
+    attachments: Sequence[Attachment],
+    watched: Callable[[Policy], Policy] = lambda policy: policy,
+) -> LookedAt:
     """Do the run that the command line names.
 
     Args:
         arguments: of the command line.
-        attachments: what looks on.
+        attachments: what watches the run.
+        watched: makes the policy that is asked of the one that decides, of a schedule with some deviations from fifo.
 
     Raises:
         UsageError: there is no such run, or an option is for the other kind of source.
     """
     if _is_journal(arguments.source):
-        return _replay(arguments, attachments)
-    for name, option in (("until", "--until"), ("from_disk", "--from-disk")):
-        if getattr(arguments, name):
-            raise UsageError(f"is for the replay of a journal, and {arguments.source} is none", field=option)
-    return _fly(arguments, attachments)
+        return _replay(arguments, attachments, watched)
+    _refuse_from_disk(arguments)
+    return _fly(arguments, attachments, watched)
+
+
+def _refuse_from_disk(arguments: argparse.Namespace) -> None:
+    if arguments.from_disk:
+        raise UsageError(f"is for the replay of a journal, and {arguments.source} is none", field="--from-disk")
+
+
+def look_at_series(arguments: argparse.Namespace, words: Sequence[str]) -> tuple[SeriesSet, int]:
+    """The values over time of the run or the bag that the command line names, and the exit status of the command.
+
+    Args:
+        arguments: of the command line.
+        words: what is wanted of it, as `SeriesRecorder` takes them.
+
+    Raises:
+        UsageError: there is no such run, bag or packet, or an option is for another kind of source.
+    """
+    if is_bag(arguments.source):
+        refuse_run_options(arguments, f"{arguments.source} is a bag, which is not flown; leave it out", but=["seconds"])
+        _refuse_from_disk(arguments)
+        ends = [each for each in (arguments.seconds, arguments.until) if each is not None]
+        return bag_series(arguments.source, words, min(ends, default=None)), ENDED_WELL
+    recorder = SeriesRecorder(words)
+    return recorder, look_at(arguments, [recorder]).status()
 
 
 def _is_journal(source: str) -> bool:
-    from cfepy.journal.frames import is_journal
+    from cfepy.journal import is_journal
 
     try:
         return is_journal(source)
@@ -74,33 +109,35 @@ def _is_journal(source: str) -> bool:
         return False
 
 
-def _fly(arguments: argparse.Namespace, attachments: Sequence[Attachment]) -> LookedAt:
-    plan = plan_of(arguments, [arguments.source])
-    spec = plan.spec()
-    with booting(spec.script):
-        flown = plan.fly(attachments, spec=spec)
-    return LookedAt(flown, plan.command_line(), plan.schedule)
+def _fly(
+    arguments: argparse.Namespace, attachments: Sequence[Attachment], watched: Callable[[Policy], Policy]
+) -> LookedAt:
+    plan = flight_plan(arguments)
+    if arguments.until is not None:
+        plan = replace(plan, seconds=min(arguments.until, plan.seconds or LONGEST_S))
+    policy = plan.schedule.policy()
+    if policy is not None and plan.schedule.deviations:
+        policy = watched(policy)
+    return LookedAt(fly(plan, attachments=attachments, policy=policy), plan.command_line(), plan.schedule.text())
 
 
-def _replay(arguments: argparse.Namespace, attachments: Sequence[Attachment]) -> LookedAt:
-    from cfepy.journal.journal import read_journal
-    from cfepy.journal.replay import Replay
-    from cfepy.journal.stage import staged
+def _replay(
+    arguments: argparse.Namespace, attachments: Sequence[Attachment], watched: Callable[[Policy], Policy]
+) -> LookedAt:
+    from cfepy.journal import Replay, read_journal, staged
 
-    for name in _OF_A_MISSION:
-        if getattr(arguments, name) not in (_USUAL.get(name), None, []):
-            option = {"seconds": "--for", "launch_args": "--arg"}.get(name, f"--{name}")
-            raise UsageError(f"{arguments.source} is a journal, which says that itself; leave it out", field=option)
+    refuse_run_options(arguments, f"{arguments.source} is a journal, which says that itself; leave it out")
     journal = read_journal(arguments.source)
     until_ns = None if arguments.until is None else round(arguments.until * NS_PER_S)
     with staged(journal, arguments.from_disk) as stage:
         again = Replay(journal, stage, until_ns=until_ns)
-        with booting(Path(journal.header.startup)):
-            flown = again.fly(attachments)
+        if again.policy is not None and journal.plan.schedule.deviations:
+            again.policy = watched(again.policy)
+        flown = again.fly(attachments)
     verdict = again.verdict
     warnings: tuple[str, ...] = ()
     if not verdict.same:
         warnings = (f"this is not the run of {arguments.source}: the replay differs", *stage.reasons)
     until = [] if arguments.until is None else ["--until", f"{arguments.until:g}"]
     command = shlex.join(["cfepy", "replay", arguments.source, *until])
-    return LookedAt(flown, command, journal.plan.schedule, stage.notes, warnings)
+    return LookedAt(flown, command, journal.plan.schedule.text(), stage.notes, warnings)

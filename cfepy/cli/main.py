@@ -1,4 +1,4 @@
-"""The entry point of the command: what it understands, and which module does it.
+"""The entry point of the command: its subcommands, and the module that carries out each.
 
 Only argparse is imported for that; a subcommand imports its module when it is chosen, so that `cfepy --help` is quick.
 """
@@ -16,25 +16,40 @@ from collections.abc import Sequence
 from typing import Any
 
 from cfepy import __version__
-from cfepy.status import UsageError
+from cfepy.cli.json_output import standard_output
+from cfepy.cli.options import MISSION_HELP
+from cfepy.cli.parser import CommandParser, RootParser
+from cfepy.garbage import no_collection
+from cfepy.status import StallError, UsageError
 
 ENDED_WELL = 0
 FOUND_PROBLEMS = 1
 BAD_USAGE = 2
 INTERRUPTED = 130  # 128 + SIGINT, what shells expect
-COMMANDS = {
-    "arguments": ("run", "check", "mids", "new", "boards"),
-    "ground_arguments": ("cmd", "tlm", "export"),
-    "file_arguments": ("tbl", "log"),
-    "ros_arguments": ("param",),
-    "topic_arguments": ("topic", "service"),
-    "launch_arguments": ("launch", "node", "rostest"),
-    "fault_arguments": ("faults",),
-    "explore_arguments": ("explore",),
-    "journal_arguments": ("replay", "diff"),
-    "look_arguments": ("trace", "report"),
+ROOMS = {
+    "run": ("run", "check", "new", "boards"),
+    "ros": ("launch", "node", "rostest", "topic", "service", "param"),
+    "ros_tools": ("rosbag", "rosmsg", "rossrv", "rosnode", "tf"),
+    "explore": ("explore", "faults"),
+    "journal": ("replay", "diff"),
+    "look": ("trace", "report", "plot"),
+    "ground": ("cmd", "tlm", "console", "mids", "graph", "export"),
+    "files": ("tbl", "log"),
+    "shell": ("completion",),
 }
-"""What each module adds to the parser; only the one in question is asked, since setting up all of them takes 10 ms."""
+"""The commands of each room of this package; only the room in question is asked, since setting up all takes 10 ms."""
+TITLES = {
+    "run": "Fly a mission",
+    "ros": "ROS",
+    "ros_tools": "ROS's own tools",
+    "explore": "Find races and faults",
+    "journal": "Do a run again",
+    "look": "Look at a run",
+    "ground": "Ground",
+    "files": "Files of cFE",
+    "shell": "The shell",
+}
+"""Under which the commands of a room stand in the help."""
 
 
 def process() -> int:
@@ -56,18 +71,24 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     _prepare_streams()
     words = sys.argv[1:] if argv is None else argv
-    chosen = _parser(words).parse_args(words)
+    if "_ARGCOMPLETE" in os.environ:
+        _command("shell.completion").complete(parser_for)
+    chosen = parser_for(words).parse_args(words)
     try:
-        status: int = _command(chosen.module).run(chosen)
+        with standard_output(chosen):
+            status: int = _command(chosen.module).run(chosen)
         sys.stdout.flush()
         return status
     except UsageError as error:
         print(f"cfepy: {error}", file=sys.stderr)
         return BAD_USAGE
+    except StallError as error:
+        print(f"cfepy: {error}", file=sys.stderr)
+        return FOUND_PROBLEMS
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
-        # Whoever read the output has enough of it; the interpreter must not try to write the rest when it ends.
+        # The reader of the output has closed it; the interpreter must not try to write the rest when it ends.
         with contextlib.suppress(ValueError):  # an app closed it
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return ENDED_WELL
@@ -81,51 +102,32 @@ def _command(module: str) -> Any:
     name = f"cfepy.cli.{module}"
     if name in sys.modules:
         return sys.modules[name]
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        return importlib.import_module(name)
-    finally:
-        gc.freeze()
-        if enabled:
-            gc.enable()
+    with no_collection:
+        try:
+            return importlib.import_module(name)
+        finally:
+            gc.freeze()
 
 
-def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
+def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
     """A parser for these words: with the command that they begin with, or with all when they begin with none."""
-    parser = argparse.ArgumentParser(
-        prog="cfepy", description="NASA's core Flight Executive and ROS 1 nodes on one simulated processor."
+    parser = RootParser(
+        {TITLES[room]: names for room, names in ROOMS.items()},
+        prog="cfepy",
+        description="NASA's core Flight Executive and ROS 1 nodes on one simulated processor.",
+        epilog="`cfepy COMMAND --help` explains a command. A MISSION is " + MISSION_HELP + ".",
     )
     parser.add_argument("--version", action="version", version=f"cfepy {__version__}")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=_MixedParser)
-    for part in [part for part, names in COMMANDS.items() if words[:1] and words[0] in names] or COMMANDS:
+    commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=CommandParser)
+    for part in [part for part, names in ROOMS.items() if words[:1] and words[0] in names] or ROOMS:
         importlib.import_module(f"cfepy.cli.{part}").add(commands)
     return parser
-
-
-class _MixedParser(argparse.ArgumentParser):
-    """The parser of a command: options may stand between its words, which argparse by itself does not understand."""
-
-    _is_mixing = False
-
-    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """See `ArgumentParser.parse_known_args`; a command with actions of its own leaves the mixing to them."""
-        if self._is_mixing or self._subparsers is not None:
-            return super().parse_known_args(args, namespace)
-        self._is_mixing = True
-        try:
-            found, left = self.parse_known_intermixed_args(args, namespace)
-        finally:
-            self._is_mixing = False
-        if left:  # told here, so that the usage shown is that of the command
-            self.error(f"unrecognized arguments: {' '.join(left)}{self.get_default('hint') or ''}")
-        return found, left
 
 
 def _prepare_streams() -> None:
     """A process that was started without standard output or error gets ones that go nowhere.
 
-    A text may hold bytes of a packet or a file that the encoding lacks: that must not stop who says it.
+    A text may hold bytes of a packet or a file that the encoding lacks: that must not stop the caller.
     """
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:

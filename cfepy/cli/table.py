@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from typing import TextIO
+
+USUAL_WIDTH = 80
+NARROW_TEXT = 14  # columns of text are folded into lines of so many characters before one is left out
+GAP = 3  # between two columns
 
 
 class Table:
@@ -13,15 +18,19 @@ class Table:
         title: above it.
         columns: their heads.
         right: indices of the columns of numbers.
+        least: indices of the columns that a narrow terminal does without, the least important one first.
 
     Attributes:
         note: a line below it.
     """
 
-    def __init__(self, title: str, columns: Sequence[str], right: Sequence[int] = ()) -> None:
+    def __init__(
+        self, title: str, columns: Sequence[str], right: Sequence[int] = (), least: Sequence[int] = ()
+    ) -> None:
         self.title = title
         self.columns = tuple(columns)
         self.right = frozenset(right)
+        self.least = tuple(least)
         self.rows: list[tuple[str, ...]] = []
         self.note = ""
 
@@ -51,18 +60,61 @@ def _write(table: Table, stream: TextIO) -> None:
         stream.write(f"  {table.note}\n")
 
 
+def show_paragraph(text: str, stream: TextIO) -> None:
+    """Print a text that is no table, on a terminal with lines that end between words."""
+    if stream.isatty():
+        import textwrap
+
+        lines = (textwrap.fill(line, _width(stream), break_on_hyphens=False) for line in text.split("\n"))
+        text = "\n".join(lines)
+    stream.write(f"{text}\n")
+
+
+def _width(stream: TextIO) -> int:
+    """Columns of a terminal; COLUMNS of the environment counts more."""
+    said = os.environ.get("COLUMNS", "")
+    if said.isdecimal() and int(said):
+        return int(said)
+    try:
+        return os.get_terminal_size(stream.fileno()).columns or USUAL_WIDTH
+    except (ValueError, OSError):
+        return USUAL_WIDTH
+
+
+def fitting(table: Table, width: int) -> list[int]:
+    """The columns that there is room for: without empty ones, and then without the least important, if need be."""
+    widest = [max(len(row[at]) for row in (table.columns, *table.rows)) for at in range(len(table.columns))]
+    empty = [at for at in range(len(table.columns)) if table.rows and not any(row[at] for row in table.rows)]
+    shown = list(range(len(table.columns)))
+    for at in (*empty, *table.least):
+        narrowest = (widest[each] if each in table.right else min(widest[each], NARROW_TEXT) for each in shown)
+        if sum(narrowest) + GAP * len(shown) <= width:
+            break
+        shown = [each for each in shown if each != at]
+    return shown
+
+
 def _draw(table: Table, stream: TextIO) -> None:
     from rich import box
     from rich.console import Console
     from rich.table import Table as RichTable
     from rich.text import Text
 
+    width = _width(stream)
     drawn = RichTable(
-        title=table.title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False, caption=table.note or None
+        title=table.title,
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        pad_edge=False,
+        caption=table.note or None,
+        caption_justify="left",
     )
-    for at, column in enumerate(table.columns):
-        is_last = at == len(table.columns) - 1
-        drawn.add_column(column, justify="right" if at in table.right else "left", no_wrap=not is_last)
+    shown = fitting(table, width)
+    for at in shown:
+        is_number = at in table.right
+        drawn.add_column(
+            table.columns[at], justify="right" if is_number else "left", no_wrap=is_number, overflow="fold"
+        )
     for row in table.rows:
-        drawn.add_row(*(Text(cell) for cell in row))
-    Console(file=stream).print(drawn)
+        drawn.add_row(*(Text(row[at]) for at in shown))
+    Console(file=stream, width=width).print(drawn)

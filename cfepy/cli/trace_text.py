@@ -9,10 +9,9 @@ import struct
 from collections.abc import Iterator, Sequence
 
 from cfepy import trace as tr
-from cfepy.mission import Mission
-from cfepy.mission.msg_names import names_of
-from cfepy.mission.watch import HOST
-from cfepy.rtos.units import NS_PER_S
+from cfepy.ground import names_of
+from cfepy.mission import HOST, Mission
+from cfepy.units import NS_PER_S
 
 _FIRST_MARK = 0x20  # smaller first bytes begin packets
 _number = struct.Struct("<xH").unpack

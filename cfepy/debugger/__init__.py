@@ -1,1 +1,11 @@
-"""Stopping a run to look at it: breakpoints, steps, and Python's debugger in the task of an application."""
+"""The debugger: it stops a run at breakpoints, goes on in steps, and opens Python's debugger in an application's task.
+
+What belongs here stops a run and asks its user (`debugger`), or says where a run may be stopped (`breakpoints`). What
+watches a run without stopping it belongs to `cfepy.monitors`, what draws a run afterwards to `cfepy.reports`.
+"""
+
+from __future__ import annotations
+
+from cfepy.debugger.debugger import Debugger
+
+__all__ = ["Debugger"]

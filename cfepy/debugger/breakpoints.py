@@ -1,40 +1,31 @@
-"""What a run may be stopped at: an event, messages of one MsgId, or messages of which a predicate holds.
-
-May import cfepy.mission.
-"""
+"""What a run may be stopped at: an event, messages of one MsgId, or messages of which a predicate holds."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION
-from cfepy.mission.dictionary import Dictionary, dictionary_of
-from cfepy.mission.message_watch import Heard, MessageWatch
-from cfepy.mission.mission import Mission
-from cfepy.mission.predicate import Predicate, short, shortened
-from cfepy.mission.script_packets import EVENT_IDS, Event
-from cfepy.mission.spec import MissionSpec
-from cfepy.mission.watch import PacketWatch, Seen
-from cfepy.psp.marked_yaml import Marked
+from cfepy.ground import EVENT_IDS, EVENT_TYPES, DecodedEvent, Dictionary, dictionary_of
+from cfepy.marked_yaml import Marked
+from cfepy.mission import Mission, MissionSpec, PacketWatch, Seen
+from cfepy.monitors import Heard, MessageWatch, Predicate, short, shortened
 from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
+from cfepy.suggestions import did_you_mean
 
 NAMES = ("msg", "topic", "sender", "t")
-"""What a predicate may name: the message, its topic or packet name, who sent it, the virtual time in s."""
+"""What a predicate may name: the message, its topic or packet name, its sender, the virtual time in s."""
 FORMS = "APP:ID or APP:ERROR for an event, a MsgId or the name of a packet or topic, or a Python expression about msg"
 MOST_REASONS = 3
-_TYPES = {"DEBUG": DEBUG, "INFORMATION": INFORMATION, "ERROR": ERROR, "CRITICAL": CRITICAL}
 _EVENT = re.compile(r"([A-Za-z_]\w*|\*):(\d+|\*|[A-Z]+)")
 _NAME = re.compile(r"(0[xX])?\w+", re.ASCII)
 _TOPIC = re.compile(r"/[\w/*?\[\]~-]*")
 
 Hit = Callable[[str], object]
-"""Is told what there is to stop at, in the task that sends it and before anybody gets it."""
+"""Is called with each event or message, in the task that sends it and before any receiver gets it."""
 
 
 class Breakpoint(Attachment):
@@ -88,12 +79,12 @@ def _meant(text: str, spec: MissionSpec, hit: Hit) -> Attachment:
 
 
 def _at_event(text: str, app: str, which: str, hit: Hit) -> Attachment:
-    if which.isalpha() and which not in _TYPES:
-        raise UsageError(f"{text!r}: {which} is no type of event; there are {', '.join(_TYPES)}", field="--break")
+    if which.isalpha() and which not in EVENT_TYPES:
+        raise UsageError(f"{text!r}: {which} is no type of event; there are {', '.join(EVENT_TYPES)}", field="--break")
 
     def take(seen: Seen) -> None:
-        event = Event.of(seen)
-        wanted = which in ("*", str(event.event_id)) or _TYPES.get(which) == event.event_type
+        event = DecodedEvent.of(seen)
+        wanted = which in ("*", str(event.event_id)) or EVENT_TYPES.get(which) == event.event_type
         if wanted and app in ("*", event.app):
             hit(f"event {event}")
 
@@ -105,8 +96,7 @@ def _at_packet(name: str, dictionary: Dictionary, hit: Hit) -> Attachment:
     try:
         msg_id = dictionary.telemetry_of(name).msg_id if command is None else command.msg_id
     except UsageError:
-        near = get_close_matches(name, [*dictionary.commands, *dictionary.telemetry], 1)
-        hint = f"is {near[0]} meant?" if near else f"write {FORMS}"
+        hint = did_you_mean(name, [*dictionary.commands, *dictionary.telemetry], f"write {FORMS}")
         raise UsageError(f"{name!r} is no packet of this mission; {hint}", field="--break") from None
 
     def take(seen: Seen) -> None:

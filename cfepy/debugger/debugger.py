@@ -1,27 +1,31 @@
 """`Debugger`: stops a run, says where it is, and does what its user wants: go on, step, look around, look into an app.
 
 The user is asked inside the simulation, in the task in which the run stops, so everything stands still meanwhile. What
-is asked and answered changes nothing in the run. May import cfepy.mission.
+is asked and answered changes nothing in the run. To look into an application, Python's debugger (`AppDebugger`) is
+opened in its task: it stops in the application's own lines, never in those of cfepy, and follows that one task; what
+other tasks do happens within the line that waits for them.
 """
 
 from __future__ import annotations
 
+import linecache
+import pdb
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, TextIO
 
-from cfepy.debugger.app_debugger import AppDebugger, look_at_end, look_into, own_frame
 from cfepy.debugger.breakpoints import breakpoints
-from cfepy.mission.determinism_look import stack_of
-from cfepy.mission.live_names import LiveNames
-from cfepy.mission.mission import Mission
-from cfepy.mission.observer import Observer, Sent, app_of
-from cfepy.mission.spec import MissionSpec
-from cfepy.rtos.units import NS_PER_S
+from cfepy.ground import LiveNames
+from cfepy.mission import Mission, MissionSpec, is_own_code, is_shown
+from cfepy.monitors import Observer, Sent, app_of
+from cfepy.pilot.determinism_look import stack_of
+from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
     from cfepy.rtos import Task
-    from cfepy.sb.pipe import Pipe
+    from cfepy.sb import Pipe
 
 TRACEBACK = "Traceback (most recent call last)"
 HELP = """\
@@ -152,7 +156,7 @@ class Debugger(Observer):
         self._look_around(text)
 
     def on_console(self, line: str, at_ns: int) -> None:
-        """See `Observer.on_console`; who writes a traceback there has just caught the exception."""
+        """See `Observer.on_console`; a task that writes a traceback there has just caught the exception."""
         self._look_around(f"console: {line}")
         error = sys.exc_info()[1]
         if TRACEBACK in line and error is not None and error is not self._error:
@@ -215,7 +219,7 @@ class Debugger(Observer):
         while True:
             word = self._read()
             if word is None:
-                self._stepping = self._then_steps  # nobody asks: the stops are shown, and the run goes on
+                self._stepping = self._then_steps  # the input has ended: the stops are shown, and the run goes on
                 return
             short = {"continue": "c", "step": "s", "": "s", "where": "w", "quit": "q"}.get(word, word)
             if short not in answers:
@@ -280,3 +284,98 @@ class Debugger(Observer):
 
     def _say(self, text: str) -> None:
         print(text, file=self._stream, flush=True)
+
+
+class AppDebugger(pdb.Pdb):
+    """One for each task that is looked into.
+
+    Args:
+        on_quit: ends the run; the application itself is not disturbed.
+        waiting: a context around each time that it waits for its user.
+        commands, stream: where the user writes and reads.
+        root: folder that source files lie below, and that their paths are shown without.
+    """
+
+    def __init__(
+        self,
+        on_quit: Callable[[], object],
+        waiting: Callable[[], AbstractContextManager[None]],
+        commands: TextIO,
+        stream: TextIO,
+        root: str = "",
+    ) -> None:
+        self._root = root
+        if commands.isatty():
+            super().__init__(nosigint=True, readrc=False)  # with the line editing of a terminal
+        else:
+            super().__init__(stdin=commands, stdout=stream, nosigint=True, readrc=False)
+        self._on_quit = on_quit
+        self._waiting = waiting
+
+    def canonic(self, filename: str) -> str:
+        """As of `bdb.Bdb`: by this path a file is shown, and has its breakpoints."""
+        return super().canonic(filename).removeprefix(self._root)
+
+    def lookupmodule(self, filename: str) -> str | None:
+        """As of `pdb.Pdb`; a file whose lines are known need not be on this computer."""
+        return filename if filename in linecache.cache else super().lookupmodule(filename)
+
+    def cmdloop(self, intro: Any = None) -> None:
+        """See `cmd.Cmd.cmdloop`."""
+        with self._waiting():
+            super().cmdloop(intro)
+
+    def stop_here(self, frame: FrameType) -> bool:
+        """As of `bdb.Bdb`, in code of the mission only."""
+        return is_own(frame) and bool(super().stop_here(frame))
+
+    def get_stack(self, f: FrameType | None, t: TracebackType | None) -> tuple[list[tuple[FrameType, int]], int]:
+        """As of `bdb.Bdb`, without the frames of cfepy."""
+        stack, at = super().get_stack(f, t)
+        shown = [entry for entry in stack if is_shown(entry[0].f_code.co_filename)]
+        current = stack[at] if stack else None
+        return (shown, shown.index(current)) if current in shown else (stack, at)
+
+    def do_quit(self, arg: str) -> bool:
+        """End the run here."""
+        self._on_quit()
+        return bool(self.do_continue(arg))
+
+    do_q = do_exit = do_quit
+
+    def do_EOF(self, arg: str) -> bool:
+        """The input has ended: go on."""
+        return bool(self.do_continue(arg))
+
+
+def is_own(frame: FrameType) -> bool:
+    """Whether a frame is code of this mission, not of a library or of cfepy."""
+    return is_own_code(frame.f_code.co_filename)
+
+
+def own_frame() -> FrameType | None:
+    """The innermost frame of the mission's own code in the task that runs; None when there is none."""
+    frame: FrameType | None = sys._getframe(1)
+    while frame is not None and not is_own(frame):
+        frame = frame.f_back
+    return frame
+
+
+def look_into(debugger: AppDebugger, frame: FrameType | None) -> None:
+    """Open the debugger at the next line of the application that the current task executes.
+
+    Args:
+        debugger: for this task.
+        frame: where the application is; None when it has not begun.
+    """
+    debugger.set_trace(sys._getframe() if frame is None else frame)
+
+
+def look_at_end(debugger: AppDebugger, error: BaseException) -> None:
+    """Open the debugger where an uncaught exception came from."""
+    trace: TracebackType | None = error.__traceback__
+    while trace is not None and not is_own(trace.tb_frame):
+        trace = trace.tb_next  # the kernel's frames, above the application's
+    debugger.reset()
+    interaction: Any = debugger.interaction
+    interaction(None, error if sys.version_info >= (3, 13) else trace or error.__traceback__)

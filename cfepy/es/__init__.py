@@ -1,6 +1,7 @@
 """Executive Services: boot, resets, applications, tasks, logs, critical data, memory pools, counters (cFE ES).
 
-The five services do not import each other; what ES needs of them it finds in its `Ports`.
+What belongs here is NASA's ES: what applications ask of it, what the ground commands, and what it does by itself. The
+five services do not import each other; what ES needs of the others it finds in its `Ports`.
 """
 
 from __future__ import annotations
@@ -13,15 +14,19 @@ from cfepy.es.records import (
     APP_ERROR,
     APP_EXIT,
     APP_RUN,
+    STATE_NAMES,
     SYSTEM_APPS_INIT,
     SYSTEM_CORE_STARTUP,
     SYSTEM_EARLY_INIT,
     SYSTEM_OPERATIONAL,
     SYSTEM_SHUTDOWN,
+    AppHistory,
     AppRecord,
     Loader,
+    StartParams,
 )
 from cfepy.es.service import ExecutiveServices
+from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, StartupEntry, entries, parse
 from cfepy.es.task import EsTask
 from cfepy.ports import SYSTEM_CORE_READY
 
@@ -29,7 +34,10 @@ __all__ = [
     "APP_ERROR",
     "APP_EXIT",
     "APP_RUN",
+    "CFE_APP",
+    "CFE_LIB",
     "COMMANDS",
+    "STATE_NAMES",
     "SYSTEM_APPS_INIT",
     "SYSTEM_CORE_READY",
     "SYSTEM_CORE_STARTUP",
@@ -37,7 +45,9 @@ __all__ = [
     "SYSTEM_OPERATIONAL",
     "SYSTEM_SHUTDOWN",
     "TELEMETRY",
+    "AppHistory",
     "AppRecord",
+    "BadLine",
     "Boot",
     "CoreApp",
     "EsTask",
@@ -45,5 +55,9 @@ __all__ = [
     "Loader",
     "ObjectTable",
     "PoolBlock",
+    "StartParams",
+    "StartupEntry",
     "SymbolError",
+    "entries",
+    "parse",
 ]

@@ -1,12 +1,17 @@
-"""The background task of Executive Services (cfe_es_backgroundtask.c): jobs that take turns at low priority."""
+"""The background task of Executive Services (cfe_es_backgroundtask.c): jobs that take turns at low priority.
+
+One of the jobs is here too: the scan for applications that end or were asked to (CFE_ES_RunAppTableScan).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from cfepy.es.apps import AppEnd
 from cfepy.es.info import InfoApi
-from cfepy.rtos.units import NS_PER_MS
+from cfepy.es.records import APP_RUN, RUNNING, WAITING, AppRecord
+from cfepy.units import NS_PER_MS
 
 TASK_NAME = "ES_BG_TASK"
 STACK_SIZE = 4096
@@ -47,3 +52,43 @@ class BackgroundTask:
             last = es.kernel.now
             pauses = [job.active_ms if job.run(elapsed) else job.idle_ms for job in self._jobs]
             es.background_wait(min(pauses, default=MAX_IDLE_DELAY_MS))
+
+
+class AppScan:
+    """Looks once in a scan period, at once after a command, and at every call while something ends.
+
+    Args:
+        es: the applications.
+        command_count: counts the commands that were accepted.
+    """
+
+    def __init__(self, es: AppEnd, command_count: Callable[[], int]) -> None:
+        self._es = es
+        self._command_count = command_count
+        self._last_count = 0
+        self._timer_ms = 0
+        self._pending = False
+
+    def run(self, elapsed_ms: int) -> bool:
+        """One call of the background task; whether an application is about to end."""
+        config, count = self._es.config, self._command_count()
+        if not self._pending and count == self._last_count and self._timer_ms > elapsed_ms:
+            self._timer_ms -= elapsed_ms
+            return False
+        self._timer_ms, self._last_count = config.es_app_scan_rate_ms, count
+        external = [app for app in self._es.apps if not app.is_core]
+        ending = [app for app in external if app.state > RUNNING]
+        self._pending = bool(ending)
+        for app in external:
+            if app.state == RUNNING and app.control_request != APP_RUN:
+                app.state = WAITING
+                app.timer_ms = config.es_app_kill_timeout * config.es_app_scan_rate_ms
+        for app in [app for app in ending if _is_over(app, elapsed_ms)]:
+            self._es.process_control_request(app)
+        return self._pending
+
+
+def _is_over(app: AppRecord, elapsed_ms: int) -> bool:
+    """Whether the time that an application had for its end has passed."""
+    app.timer_ms = max(0, app.timer_ms - elapsed_ms)
+    return app.timer_ms == 0

@@ -1,4 +1,4 @@
-"""The boot of the executive (CFE_ES_Main, cfe_es_start.c): core services, then the startup script, state by state."""
+"""The boot of the executive (CFE_ES_Main, cfe_es_start.c): RAM disk, core services, startup script, state by state."""
 
 from __future__ import annotations
 
@@ -16,18 +16,41 @@ from cfepy.es.records import (
     StartParams,
 )
 from cfepy.es.service import ExecutiveServices
-from cfepy.es.startup_script import CFE_LIB, EXCEPTION_PROC_RESTART, BadLine, parse
-from cfepy.es.startup_script import Entry as ScriptEntry
-from cfepy.es.volatile_disk import initialize_file_systems
+from cfepy.es.startup_script import CFE_LIB, EXCEPTION_PROC_RESTART, BadLine, StartupEntry, parse
+from cfepy.es.tables import EsCore
 from cfepy.ports import SYSTEM_CORE_READY
-from cfepy.psp.psp import RST_TYPE_PROCESSOR
+from cfepy.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.status import CFE_ES_OPERATION_TIMED_OUT, CfeError, OsalError
 
+MOUNT_POINT = "/ram"
 NONVOL_STARTUP_FILE = "/cf/cfe_es_startup.scr"
 VOLATILE_STARTUP_FILE = "/ram/cfe_es_startup.scr"
 PANIC_CORE_APP = 6  # CFE_PSP_PANIC_CORE_APP
 PANIC_DELAY_MS = 500
 BOOT_SOURCE = 1  # what NASA's Linux PSP hands to CFE_ES_Main
+
+
+def initialize_file_systems(es: EsCore, start_type: int) -> None:
+    """Make the RAM disk ready.
+
+    Args:
+        es: whose board and limits.
+        start_type: RST_TYPE_*.
+    """
+    if start_type == RST_TYPE_POWERON:
+        _format(es)
+        return
+    stat = es.osal.file_sys_stat_volume(MOUNT_POINT)
+    percent = stat.blocks_free * 100 // stat.total_blocks
+    log = "CFE_ES_InitializeFileSystems: "
+    es.write_to_sys_log(f"{log}Volatile Disk has {percent} Percent free space.")
+    if percent < es.config.es_ram_disk_percent_reserved:
+        es.write_to_sys_log(f"{log}Insufficient Free Space on Volatile Disk, Reformatting.")
+        _format(es)
+
+
+def _format(es: EsCore) -> None:
+    es.osal.files.volume(MOUNT_POINT).clear()
 
 
 class CoreApp(NamedTuple):
@@ -146,7 +169,7 @@ class Boot:
             )
             return None
 
-    def _start(self, entry: ScriptEntry) -> None:
+    def _start(self, entry: StartupEntry) -> None:
         self.log(entry.log_text)
         try:
             if entry.kind == CFE_LIB:

@@ -2,39 +2,97 @@
 
 All of it is bytes in the PSP's CDS memory: a signature, the registry, a pool with the blocks, another signature. What a
 reset leaves is used again as far as it is whole: without the signatures nothing is, a damaged record or descriptor
-costs its block, damaged data show when their owner reads them. Imports only cfepy.fs, cfepy.ids, cfepy.psp,
-cfepy.status and its neighbours here.
+costs its block, damaged data show when their owner reads them.
+
+The registry has one record of 72 bytes for each block. The layout is C's (CFE_ES_CDS_RegRec_t), with one addition: the
+four bytes that are padding there hold a check value, so that a damaged record is recognised after a reset. A free
+record is all zeros.
 """
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable, Container, Iterator
+from dataclasses import dataclass
 
-from cfepy.es.cds_registry import BLOCK_HEADER, FREE_RECORD, RECORD, CdsBlock, is_sound, pack, unpack
+from cfepy.es import events as ev
 from cfepy.es.pools import BUCKETS, MIN_ALIGNMENT, GenericPool, min_size
-from cfepy.fs import calculate_crc
-from cfepy.ids import ES_CDSBLOCKID_BASE, UNDEFINED, find_next, make, to_index
-from cfepy.psp import Psp
-from cfepy.psp.psp import RST_TYPE_PROCESSOR
+from cfepy.es.tables import EsCore
+from cfepy.fs import calculate_crc, crc16
+from cfepy.ids import ES_CDSBLOCKID_BASE, UNDEFINED, find_next, make, name_size, to_index
+from cfepy.psp import RST_TYPE_PROCESSOR, Psp
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_ES_CDS_ALREADY_EXISTS,
     CFE_ES_CDS_BLOCK_CRC_ERR,
+    CFE_ES_CDS_INVALID_NAME,
     CFE_ES_CDS_INVALID_SIZE,
+    CFE_ES_CDS_OWNER_ACTIVE_ERR,
+    CFE_ES_CDS_WRONG_TYPE_ERR,
     CFE_ES_ERR_NAME_NOT_FOUND,
     CFE_ES_ERR_RESOURCEID_NOT_VALID,
     CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
+    CFE_ES_NOT_IMPLEMENTED,
     CFE_SUCCESS,
     CfeError,
 )
 
+RECORD = struct.Struct("<IIQQ40s?7x")
+FULL_NAME_SIZE = 40
+"""Bytes of a block's full name, the NUL included (CFE_MISSION_ES_CDS_MAX_FULL_NAME_LEN)."""
+
+BLOCK_HEADER = struct.Struct("<I")
+"""In front of a block's data: their CRC (CFE_ES_CDS_BlockHeader_t)."""
+
+FREE_RECORD = bytes(RECORD.size)
+_CHECK_AT = 4
 SIGNATURE_BEGIN = b"_CDSBeg_"
 SIGNATURE_END = b"_CDSEnd_"
 MAX_BLOCK_SIZE = (1 << 30) - BLOCK_HEADER.size
-
 _SIGNATURE_BYTES = 8
 _COUNT_BYTES = 4
 _REGISTRY_AT = _SIGNATURE_BYTES + _COUNT_BYTES
+MAX_NAME_LENGTH = 16
+"""Characters of a block's own name (CFE_MISSION_ES_CDS_MAX_NAME_LENGTH)."""
+
+
+@dataclass(slots=True, eq=False)
+class CdsBlock:
+    """A block: its handle, where it is, its bytes with the header, its full name, whether it is a critical table."""
+
+    handle: int
+    offset: int
+    size: int
+    name: str
+    is_table: bool
+
+    @property
+    def user_size(self) -> int:
+        """Bytes that its owner sees."""
+        return self.size - BLOCK_HEADER.size
+
+
+def pack(block: CdsBlock) -> bytes:
+    """The record of a block."""
+    name = block.name.encode("utf-8", "surrogateescape")[: FULL_NAME_SIZE - 1]
+    record = RECORD.pack(block.handle, 0, block.offset, block.size, name, block.is_table)
+    return _with_check(record, crc16(record))
+
+
+def is_sound(record: bytes) -> bool:
+    """Whether a record is as it was written."""
+    found = int.from_bytes(record[_CHECK_AT : _CHECK_AT + 4], "little")
+    return found == crc16(_with_check(record, 0))
+
+
+def unpack(record: bytes) -> CdsBlock:
+    """The block that a record tells of."""
+    handle, _, offset, size, name, is_table = RECORD.unpack(record)
+    return CdsBlock(handle, offset, size, name.partition(b"\0")[0].decode("utf-8", "surrogateescape"), is_table)
+
+
+def _with_check(record: bytes, check: int) -> bytes:
+    return record[:_CHECK_AT] + check.to_bytes(4, "little") + record[_CHECK_AT + 4 :]
 
 
 class CriticalDataStore:
@@ -127,7 +185,7 @@ class CriticalDataStore:
             self._free(offset)
 
     def _is_whole(self, slot: int, block: CdsBlock, unclaimed: Container[int]) -> bool:
-        """Whether a record belongs into its slot, and the pool has a block like that, which nobody claimed yet."""
+        """Whether a record belongs into its slot, and the pool has a block like that, which is still unclaimed."""
         try:
             found = self._pool.size_of(block.offset)
             return found == block.size and block.offset in unclaimed and self._slot(block.handle) == slot
@@ -256,3 +314,145 @@ class CriticalDataStore:
     def _save(self, slot: int, block: CdsBlock | None) -> None:
         record = FREE_RECORD if block is None else pack(block)
         self._psp.write_to_cds(record, _REGISTRY_AT + slot * RECORD.size)
+
+
+class CdsHandle(int):
+    """A CDS handle; an int with what CFE_ES_RegisterCDS had to say.
+
+    Attributes:
+        status: CFE_SUCCESS for a new block, CFE_ES_CDS_ALREADY_EXISTS for one that may hold data from before.
+    """
+
+    status: int = CFE_SUCCESS
+
+    @classmethod
+    def with_status(cls, handle: int, status: int) -> CdsHandle:
+        """A handle and its status in one."""
+        made = cls(handle)
+        made.status = status
+        return made
+
+
+class CdsApi(EsCore):
+    """The CDS part of Executive Services."""
+
+    cds: CriticalDataStore | None = None
+
+    def cds_early_init(self) -> None:
+        """Find or make the CDS, before any task runs (CFE_ES_CDS_EarlyInit)."""
+        self.cds = CriticalDataStore(self.psp, self.config.es_cds_max_num_entries, self.write_to_sys_log)
+        self.cds.early_init()
+
+    def register_cds(self, block_size: int, name: str) -> CdsHandle:
+        """Reserve a block for the calling application, or find it as it was before a reset (CFE_ES_RegisterCDS).
+
+        Args:
+            block_size: bytes. Another size than before makes a new block.
+            name: at most 16 characters; the full name is "APP.name".
+
+        Returns:
+            The handle; `handle.status` is CFE_SUCCESS or CFE_ES_CDS_ALREADY_EXISTS.
+
+        Raises:
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID (the caller is no application), CFE_ES_NOT_IMPLEMENTED (there is
+                no CDS), CFE_ES_CDS_INVALID_NAME, CFE_ES_CDS_INVALID_SIZE, CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
+                CFE_ES_ERR_MEM_BLOCK_SIZE; an event tells the ground too.
+        """
+        app = self.app_of_caller()
+        if app is None:
+            self.write_to_sys_log("CFE_ES_RegisterCDS: Bad AppId context")
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, "CDS blocks belong to applications")
+        try:
+            return self._register(block_size, name, app.name)
+        except CfeError as error:
+            text = f"{app.name} Failed to Register CDS '{name}', Status={error.hex}"
+            self.ports.evs.send_event_with_app_id(ev.CDS_REGISTER_ERR_EID, ev.ERROR, app.app_id, text)
+            raise
+
+    def _register(self, block_size: int, name: str, app_name: str) -> CdsHandle:
+        if self.cds is None or not self.cds.is_available:
+            self.write_to_sys_log("CFE_ES_RegisterCDS: CDS not available")
+        elif not 0 < name_size(name) <= MAX_NAME_LENGTH:
+            self.write_to_sys_log(f"CFE_ES_RegisterCDS: CDS Name ({name}) is either too long, or an empty string")
+            raise CfeError(CFE_ES_CDS_INVALID_NAME, f"CDS name {name!r}: 1 to {MAX_NAME_LENGTH} characters")
+        try:
+            handle, status = self.register_cds_ex(block_size, f"{app_name}.{name}", critical_table=False)
+            return CdsHandle.with_status(handle, status)
+        except CfeError as error:
+            if error.status == CFE_ES_CDS_INVALID_SIZE:
+                self.write_to_sys_log(f"CFE_ES_RegisterCDS: CDS {name} has invalid size ({block_size})")
+            raise
+
+    def register_cds_ex(self, block_size: int, full_name: str, critical_table: bool) -> tuple[int, int]:
+        """Reserve or find a block under its full name (CFE_ES_RegisterCDSEx).
+
+        Args:
+            block_size: bytes.
+            full_name: "APP.Name".
+            critical_table: whether Table Services keep a table in it.
+
+        Returns:
+            The handle, and CFE_SUCCESS or CFE_ES_CDS_ALREADY_EXISTS.
+
+        Raises:
+            CfeError: as `register_cds`.
+        """
+        return self._store().register(block_size, full_name, critical_table)
+
+    def copy_to_cds(self, handle: int, data: bytes | bytearray | memoryview) -> None:
+        """Save a block's data (CFE_ES_CopyToCDS).
+
+        Args:
+            handle: of the block.
+            data: as many bytes as the block has.
+
+        Raises:
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_BAD_ARGUMENT (another number of bytes),
+                CFE_ES_POOL_BLOCK_INVALID, CFE_ES_CDS_INVALID_SIZE (the block is damaged).
+        """
+        self._store().write(handle, data)
+
+    def restore_from_cds(self, handle: int) -> bytes:
+        """A block's data as they were saved (CFE_ES_RestoreFromCDS).
+
+        Raises:
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_CDS_BLOCK_CRC_ERR (the data are damaged),
+                CFE_ES_POOL_BLOCK_INVALID, CFE_ES_CDS_INVALID_SIZE (the block is).
+        """
+        return self._store().read(handle)
+
+    def get_cds_block_id_by_name(self, full_name: str) -> int:
+        """Handle of a block, by its full name, or CFE_ES_ERR_NAME_NOT_FOUND (CFE_ES_GetCDSBlockIDByName)."""
+        return self._store().named(full_name).handle
+
+    def get_cds_block_name(self, handle: int) -> str:
+        """Full name of a block, or CFE_ES_ERR_RESOURCEID_NOT_VALID (CFE_ES_GetCDSBlockName)."""
+        return self._store().get(handle).name
+
+    def delete_cds(self, full_name: str, called_by_tbl_services: bool = False) -> None:
+        """Delete a block whose owner is gone (CFE_ES_DeleteCDS).
+
+        Args:
+            full_name: "APP.Name".
+            called_by_tbl_services: whether TBL deletes; it owns critical tables and nothing else.
+
+        Raises:
+            CfeError: CFE_ES_ERR_NAME_NOT_FOUND, CFE_ES_CDS_WRONG_TYPE_ERR, CFE_ES_CDS_OWNER_ACTIVE_ERR.
+        """
+        store = self._store()
+        block = store.named(full_name)
+        if block.is_table != called_by_tbl_services:
+            raise CfeError(CFE_ES_CDS_WRONG_TYPE_ERR, f"{full_name!r} is {'' if block.is_table else 'not '}a table's")
+        owner = full_name.partition(".")[0]
+        if self.app_named(owner) is not None:
+            raise CfeError(CFE_ES_CDS_OWNER_ACTIVE_ERR, f"{owner} still runs")
+        store.delete(full_name)
+
+    def cds_blocks(self) -> list[CdsBlock]:
+        """What is in the CDS, in the order of its registry; nothing when there is no CDS."""
+        return [] if self.cds is None else list(self.cds)
+
+    def _store(self) -> CriticalDataStore:
+        if self.cds is None or not self.cds.is_available:
+            raise CfeError(CFE_ES_NOT_IMPLEMENTED, "this processor has no Critical Data Store")
+        return self.cds

@@ -10,11 +10,11 @@ from cfepy.es import events as ev
 from cfepy.es.tables import EsCore
 from cfepy.fs import HEADER_SIZE, dump_file_name, init_header
 from cfepy.fs import header as subtypes
-from cfepy.osal.limits import OS_FILE_FLAG_CREATE, OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY
+from cfepy.osal import OS_FILE_FLAG_CREATE, OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY
 from cfepy.status import CfeError
 
 
-class Report(NamedTuple):
+class FileEvent(NamedTuple):
     """An event about a file.
 
     Its text may name `path`, `size` and `entries` (of the whole file, or of the block that failed), `status`, and
@@ -25,66 +25,66 @@ class Report(NamedTuple):
     text: str
 
 
-class DumpFile(NamedTuple):
+class EsFile(NamedTuple):
     """A kind of file, and what is said when it is written, or cannot be: name, file, header or a record."""
 
     description: str
     subtype: int
     default_name: str
-    written: Report
-    bad_name: Report
-    no_file: Report
-    no_header: Report
-    no_record: Report
+    written: FileEvent
+    bad_name: FileEvent
+    no_file: FileEvent
+    no_header: FileEvent
+    no_record: FileEvent
 
 
 _APP_INFO = "Failed to write App Info file, "
 _TASK_INFO = "Failed to write Task Info file, "
-_COUNT_ERROR = Report(ev.FILEWRITE_ERR_EID, "File write,byte cnt err,file {path},request={size},status=0x{code:08x}")
+_COUNT_ERROR = FileEvent(ev.FILEWRITE_ERR_EID, "File write,byte cnt err,file {path},request={size},status=0x{code:08x}")
 
-APP_INFO_FILE = DumpFile(
+APP_INFO_FILE = EsFile(
     "ES Application Info file",
     subtypes.SUBTYPE_ES_QUERYALL,
     "/ram/cfe_es_app_info.log",
-    Report(ev.ALL_APPS_EID, "App Info file written to {path}, Entries={entries}, FileSize={size}"),
-    Report(ev.OSCREATE_ERR_EID, _APP_INFO + "CFE_FS_ParseInputFileNameEx RC = {code:08x}"),
-    Report(ev.OSCREATE_ERR_EID, _APP_INFO + "OS_OpenCreate RC = {status}"),
-    Report(ev.WRHDR_ERR_EID, _APP_INFO + "WriteHdr RC = 0x{code:08X}, exp {size}"),
-    Report(ev.TASKWR_ERR_EID, _APP_INFO + "Task write RC = {status}, exp {size}"),
+    FileEvent(ev.ALL_APPS_EID, "App Info file written to {path}, Entries={entries}, FileSize={size}"),
+    FileEvent(ev.OSCREATE_ERR_EID, _APP_INFO + "CFE_FS_ParseInputFileNameEx RC = {code:08x}"),
+    FileEvent(ev.OSCREATE_ERR_EID, _APP_INFO + "OS_OpenCreate RC = {status}"),
+    FileEvent(ev.WRHDR_ERR_EID, _APP_INFO + "WriteHdr RC = 0x{code:08X}, exp {size}"),
+    FileEvent(ev.TASKWR_ERR_EID, _APP_INFO + "Task write RC = {status}, exp {size}"),
 )
-TASK_INFO_FILE = DumpFile(
+TASK_INFO_FILE = EsFile(
     "ES Task Info file",
     subtypes.SUBTYPE_ES_QUERYALLTASKS,
     "/ram/cfe_es_taskinfo.log",
-    Report(ev.TASKINFO_EID, "Task Info file written to {path}, Entries={entries}, FileSize={size}"),
-    Report(ev.TASKINFO_OSCREATE_ERR_EID, _TASK_INFO + "CFE_FS_ParseInputFileNameEx RC = {code:08x}"),
-    Report(ev.TASKINFO_OSCREATE_ERR_EID, _TASK_INFO + "OS_OpenCreate RC = {status}"),
-    Report(ev.TASKINFO_WRHDR_ERR_EID, _TASK_INFO + "WriteHdr RC = 0x{code:08X}, exp {size}"),
-    Report(ev.TASKINFO_WR_ERR_EID, _TASK_INFO + "Task write RC = {status}, exp {size}"),
+    FileEvent(ev.TASKINFO_EID, "Task Info file written to {path}, Entries={entries}, FileSize={size}"),
+    FileEvent(ev.TASKINFO_OSCREATE_ERR_EID, _TASK_INFO + "CFE_FS_ParseInputFileNameEx RC = {code:08x}"),
+    FileEvent(ev.TASKINFO_OSCREATE_ERR_EID, _TASK_INFO + "OS_OpenCreate RC = {status}"),
+    FileEvent(ev.TASKINFO_WRHDR_ERR_EID, _TASK_INFO + "WriteHdr RC = 0x{code:08X}, exp {size}"),
+    FileEvent(ev.TASKINFO_WR_ERR_EID, _TASK_INFO + "Task write RC = {status}, exp {size}"),
 )
-SYS_LOG_FILE = DumpFile(
+SYS_LOG_FILE = EsFile(
     "ES system log data file",
     subtypes.SUBTYPE_ES_SYSLOG,
     "/ram/cfe_es_syslog.log",
-    Report(ev.SYSLOG2_EID, "{path} written:Size={size},Entries={entries}"),
-    Report(ev.SYSLOG2_ERR_EID, "Error parsing file name RC = 0x{code:08X}"),
-    Report(ev.SYSLOG2_ERR_EID, "Error creating file {path}, RC = {status}"),
+    FileEvent(ev.SYSLOG2_EID, "{path} written:Size={size},Entries={entries}"),
+    FileEvent(ev.SYSLOG2_ERR_EID, "Error parsing file name RC = 0x{code:08X}"),
+    FileEvent(ev.SYSLOG2_ERR_EID, "Error creating file {path}, RC = {status}"),
     _COUNT_ERROR,
     _COUNT_ERROR,
 )
-CDS_REGISTRY_FILE = DumpFile(
+CDS_REGISTRY_FILE = EsFile(
     "CDS_Registry",
     subtypes.SUBTYPE_ES_CDS_REG,
     "/ram/cfe_cds_reg.log",
-    Report(ev.CDS_REG_DUMP_INF_EID, "Successfully dumped CDS Registry to '{path}':Size={size},Entries={entries}"),
-    Report(ev.CREATING_CDS_DUMP_ERR_EID, "Error parsing CDS dump filename, Status=0x{code:08X}"),
-    Report(ev.CREATING_CDS_DUMP_ERR_EID, "Error creating CDS dump file '{path}', Status={status}"),
-    Report(ev.WRITE_CFE_HDR_ERR_EID, "Error writing cFE File Header to '{path}', Status=0x{code:08X}"),
-    Report(ev.CDS_DUMP_ERR_EID, "Error writing CDS Registry to '{path}', Status={status}"),
+    FileEvent(ev.CDS_REG_DUMP_INF_EID, "Successfully dumped CDS Registry to '{path}':Size={size},Entries={entries}"),
+    FileEvent(ev.CREATING_CDS_DUMP_ERR_EID, "Error parsing CDS dump filename, Status=0x{code:08X}"),
+    FileEvent(ev.CREATING_CDS_DUMP_ERR_EID, "Error creating CDS dump file '{path}', Status={status}"),
+    FileEvent(ev.WRITE_CFE_HDR_ERR_EID, "Error writing cFE File Header to '{path}', Status=0x{code:08X}"),
+    FileEvent(ev.CDS_DUMP_ERR_EID, "Error writing CDS Registry to '{path}', Status={status}"),
 )
 
 
-def write_dump(es: EsCore, replies: Replies, kind: DumpFile, name: str, records: Iterable[bytes]) -> None:
+def write_dump(es: EsCore, replies: Replies, kind: EsFile, name: str, records: Iterable[bytes]) -> None:
     """Write a file for a command, and answer the command.
 
     Args:
@@ -109,7 +109,7 @@ def write_dump(es: EsCore, replies: Replies, kind: DumpFile, name: str, records:
 class _Dump:
     """The writing of one file; `trouble` is what a failure at this moment would be."""
 
-    def __init__(self, es: EsCore, kind: DumpFile) -> None:
+    def __init__(self, es: EsCore, kind: EsFile) -> None:
         self._es = es
         self._kind = kind
         self.trouble = kind.bad_name

@@ -1,4 +1,4 @@
-"""Who is who: ids and names of applications, libraries and tasks, and what is known of them (CFE_ES_Get*)."""
+"""Lookups: ids and names of applications, libraries and tasks, and what is known of them (CFE_ES_Get*)."""
 
 from __future__ import annotations
 

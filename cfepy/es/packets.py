@@ -1,17 +1,37 @@
 """The packets and files of Executive Services: commands, telemetry, records (default_cfe_es_msgstruct.h).
 
-Payload layouts come first, then the declarations of commands and telemetry. Imports only cfepy.msg.
+Payload layouts come first, then the declarations of commands and telemetry.
 """
 
 from __future__ import annotations
 
-from cfepy.msg import NO_PAYLOAD, SYS_TIME, Command, Layout, Telemetry
+from cfepy.msg import NO_PAYLOAD, SYS_TIME, Command, Layout, Telemetry, ValueNames
 
 CMD_MID = 0x1806
 SEND_HK_MID = 0x1808
 HK_TLM_MID = 0x0800
 APP_TLM_MID = 0x080B
 MEMSTATS_TLM_MID = 0x0810
+
+LOG_MODES = ValueNames("u32", OVERWRITE=0, DISCARD=1)
+RESET_TYPES = ValueNames("u32", PROCESSOR=1, POWERON=2)
+RESET_SUBTYPES = ValueNames(
+    "u32",
+    POWER_CYCLE=1,
+    PUSH_BUTTON=2,
+    HW_SPECIAL_COMMAND=3,
+    HW_WATCHDOG=4,
+    RESET_COMMAND=5,
+    EXCEPTION=6,
+    UNDEFINED_RESET=7,
+    HWDEBUG_RESET=8,
+    BANKSWITCH_RESET=9,
+)
+PERF_STATES = ValueNames("u32", IDLE=0, WAITING_FOR_TRIGGER=1, TRIGGERED=2)
+PERF_MODES = ValueNames("u32", START=0, CENTER=1, END=2)
+APP_TYPES = ValueNames("u32", CORE=1, EXTERNAL=2, LIBRARY=3)
+EXCEPTION_ACTIONS = ValueNames("u8", RESTART_APP=0, PROC_RESTART=1)
+"""The names of values (default_cfe_es_extern_typedefs.h, cfe_psp.h, cfe_es_perf.h)."""
 
 HOUSEKEEPING = Layout(
     "CFE_ES_HousekeepingTlm_Payload_t",
@@ -34,20 +54,20 @@ HOUSEKEEPING = Layout(
         ("SysLogBytesUsed", "u64"),
         ("SysLogSize", "u64"),
         ("SysLogEntries", "u32"),
-        ("SysLogMode", "u32"),
+        ("SysLogMode", LOG_MODES),
         ("ERLogIndex", "u32"),
         ("ERLogEntries", "u32"),
         ("RegisteredCoreApps", "u32"),
         ("RegisteredExternalApps", "u32"),
         ("RegisteredTasks", "u32"),
         ("RegisteredLibs", "u32"),
-        ("ResetType", "u32"),
-        ("ResetSubtype", "u32"),
+        ("ResetType", RESET_TYPES),
+        ("ResetSubtype", RESET_SUBTYPES),
         ("ProcessorResets", "u32"),
         ("MaxProcessorResets", "u32"),
         ("BootSource", "u32"),
-        ("PerfState", "u32"),
-        ("PerfMode", "u32"),
+        ("PerfState", PERF_STATES),
+        ("PerfMode", PERF_MODES),
         ("PerfTriggerCount", "u32"),
         ("PerfFilterMask", "u32[4]"),
         ("PerfTriggerMask", "u32[4]"),
@@ -65,7 +85,7 @@ APP_INFO = Layout(
     "CFE_ES_AppInfo_t",
     [
         ("ResourceId", "u32"),
-        ("Type", "u32"),
+        ("Type", APP_TYPES),
         ("Name", "char[20]"),
         ("EntryPoint", "char[20]"),
         ("FileName", "char[64]"),
@@ -78,7 +98,7 @@ APP_INFO = Layout(
         ("BSSAddress", "u64"),
         ("BSSSize", "u64"),
         ("StartAddress", "u64"),
-        ("ExceptionAction", "u8"),
+        ("ExceptionAction", EXCEPTION_ACTIONS),
         ("Priority", "u16"),
         ("MainTaskId", "u32"),
         ("ExecutionCounter", "u32"),
@@ -162,7 +182,7 @@ PERF_METADATA = Layout(
 )
 PERF_ENTRY = Layout("CFE_ES_PerfDataEntry_t", [("Data", "u32"), ("TimerUpper32", "u32"), ("TimerLower32", "u32")])
 
-_RESTART = Layout("CFE_ES_RestartCmd_Payload_t", [("RestartType", "u16")])
+_RESTART = Layout("CFE_ES_RestartCmd_Payload_t", [("RestartType", ValueNames("u16", PROCESSOR=1, POWERON=2))])
 _START_APP = Layout(
     "CFE_ES_StartAppCmd_Payload_t",
     [
@@ -170,15 +190,15 @@ _START_APP = Layout(
         ("AppEntryPoint", "char[20]"),
         ("AppFileName", "char[64]"),
         ("StackSize", "u64"),
-        ("ExceptionAction", "u8"),
+        ("ExceptionAction", EXCEPTION_ACTIONS),
         ("Priority", "u16"),
     ],
 )
 _APP_NAME = Layout("CFE_ES_AppNameCmd_Payload_t", [("Application", "char[20]")])
 _APP_RELOAD = Layout("CFE_ES_AppReloadCmd_Payload_t", [("Application", "char[20]"), ("AppFileName", "char[64]")])
 _FILE_NAME = Layout("CFE_ES_FileNameCmd_Payload_t", [("FileName", "char[64]")])
-_LOG_MODE = Layout("CFE_ES_OverWriteSysLogCmd_Payload_t", [("Mode", "u32")])
-_START_PERF = Layout("CFE_ES_StartPerfCmd_Payload_t", [("TriggerMode", "u32")])
+_LOG_MODE = Layout("CFE_ES_OverWriteSysLogCmd_Payload_t", [("Mode", LOG_MODES)])
+_START_PERF = Layout("CFE_ES_StartPerfCmd_Payload_t", [("TriggerMode", PERF_MODES)])
 _STOP_PERF = Layout("CFE_ES_StopPerfCmd_Payload_t", [("DataFileName", "char[64]")])
 _FILTER_MASK = Layout("CFE_ES_SetPerfFilterMaskCmd_Payload_t", [("FilterMaskNum", "u32"), ("FilterMask", "u32")])
 _TRIGGER_MASK = Layout("CFE_ES_SetPerfTrigMaskCmd_Payload_t", [("TriggerMaskNum", "u32"), ("TriggerMask", "u32")])

@@ -1,7 +1,6 @@
 """Memory pools as applications use them (cfe_es_mempool.c, CFE_ES_Pool*).
 
-A pool brings its memory along, where C is given the address of some; the bytes are booked on the board. Imports only
-cfepy.status and its neighbours here.
+A pool makes its bytes, which are booked on the board; or they are those of a buffer that the caller brings, as in C.
 """
 
 from __future__ import annotations
@@ -9,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from cfepy.es.pools import ALIGNMENT, BUCKETS, MAX_BUCKETS, MemPool, PoolBlock, min_size
+from cfepy.es.pools import ALIGNMENT, BUCKETS, MAX_BUCKETS, MemPool, PoolBlock, PoolMemory, min_size
 from cfepy.es.tables import EsCore
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -21,18 +20,22 @@ from cfepy.status import (
     OsalError,
 )
 
+NO_CLAIM = 0
+"""The token of nothing: the board's books give none of this number."""
+
 _Result = TypeVar("_Result")
 
 
 class PoolApi(EsCore):
     """The CFE_ES_Pool* part of Executive Services."""
 
-    def pool_create(self, size: int, owner: str = "") -> int:
+    def pool_create(self, size: int, owner: str = "", memory: PoolMemory | None = None) -> int:
         """Make a memory pool of the usual block sizes, protected by a mutex (CFE_ES_PoolCreate).
 
         Args:
             size: bytes.
             owner: for the board's books, when no application calls.
+            memory: as in `pool_create_ex_with_alignment`.
 
         Returns:
             The pool's handle.
@@ -40,15 +43,21 @@ class PoolApi(EsCore):
         Raises:
             CfeError: as `pool_create_ex_with_alignment`.
         """
-        return self.pool_create_ex_with_alignment(size, owner=owner)
+        return self.pool_create_ex_with_alignment(size, owner=owner, memory=memory)
 
-    def pool_create_no_sem(self, size: int) -> int:
+    def pool_create_no_sem(self, size: int, memory: PoolMemory | None = None) -> int:
         """As `pool_create` without the mutex (CFE_ES_PoolCreateNoSem)."""
-        return self.pool_create_ex_with_alignment(size, use_mutex=False)
+        return self.pool_create_ex_with_alignment(size, use_mutex=False, memory=memory)
 
-    def pool_create_ex(self, size: int, block_sizes: Sequence[int] | None = None, use_mutex: bool = True) -> int:
+    def pool_create_ex(
+        self,
+        size: int,
+        block_sizes: Sequence[int] | None = None,
+        use_mutex: bool = True,
+        memory: PoolMemory | None = None,
+    ) -> int:
         """Make a memory pool of given block sizes (CFE_ES_PoolCreateEx); see `pool_create_ex_with_alignment`."""
-        return self.pool_create_ex_with_alignment(size, block_sizes, use_mutex)
+        return self.pool_create_ex_with_alignment(size, block_sizes, use_mutex, memory=memory)
 
     def pool_create_ex_with_alignment(
         self,
@@ -57,6 +66,7 @@ class PoolApi(EsCore):
         use_mutex: bool = True,
         alignment: int = ALIGNMENT,
         owner: str = "",
+        memory: PoolMemory | None = None,
     ) -> int:
         """Make a memory pool for the calling application (CFE_ES_PoolCreateEx_WithAlignment).
 
@@ -66,13 +76,16 @@ class PoolApi(EsCore):
             use_mutex: whether a mutex keeps its users apart.
             alignment: of blocks in bytes, a power of 2; 4 at least.
             owner: for the board's books, when no application calls.
+            memory: the bytes of the pool, as C's callers bring them: the first `size` bytes of something writable. They
+                are not booked on the board, since their owner has them already. None makes new ones, and books them.
 
         Returns:
             The pool's handle.
 
         Raises:
-            CfeError: CFE_ES_BAD_ARGUMENT (size, number of block sizes, alignment), CFE_ES_ERR_MEM_BLOCK_SIZE (a block
-                size of 0), CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CFE_STATUS_EXTERNAL_RESOURCE_FAIL (no memory, no mutex).
+            CfeError: CFE_ES_BAD_ARGUMENT (size, number of block sizes, alignment, memory), CFE_ES_ERR_MEM_BLOCK_SIZE (a
+                block size of 0), CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CFE_STATUS_EXTERNAL_RESOURCE_FAIL (no room on the
+                board, no mutex).
         """
         sizes = block_sizes or BUCKETS
         self._check_sizes(size, sizes)
@@ -81,9 +94,9 @@ class PoolApi(EsCore):
         if len(self.pools) >= self.pools.capacity:
             self.write_to_sys_log("CFE_ES_PoolCreateEx_WithAlignment: No free MemPool slots available")
             raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"there are {self.pools.capacity} memory pools already")
-        claim = self.ports.memory.claim(name, "memory pool", size)
+        claim = self.ports.memory.claim(name, "memory pool", size) if memory is None else NO_CLAIM
         try:
-            pool = MemPool(name, size, sizes, alignment, self.write_to_sys_log)
+            pool = MemPool(name, size, sizes, alignment, self.write_to_sys_log, memory)
             pool_id = self.pools.create(pool)
             self._add_mutex(pool_id, pool, use_mutex)
         except CfeError:
@@ -114,7 +127,7 @@ class PoolApi(EsCore):
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
 
     def pool_delete(self, pool_id: int) -> None:
-        """Delete a pool, whoever has blocks of it (CFE_ES_PoolDelete).
+        """Delete a pool, also while blocks of it are in use (CFE_ES_PoolDelete).
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID.

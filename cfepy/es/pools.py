@@ -1,8 +1,7 @@
 """Pools (cfe_es_generic_pool.c): blocks of a few sizes out of one stretch of memory, for memory pools and for the CDS.
 
-In front of each block stands a descriptor of 24 bytes, with C's layout, in the same memory: a block that somebody wrote
-past is found when the next one is given back. Blocks given back are kept for reuse, never split or joined. Imports only
-cfepy.status.
+In front of each block stands a descriptor of 24 bytes, with C's layout, in the same memory: a block that was written
+past is found when the next one is given back. Blocks given back are kept for reuse, never split or joined.
 """
 
 from __future__ import annotations
@@ -36,6 +35,8 @@ _FREE = 0xDDDD
 Read = Callable[[int, int], bytes]
 Write = Callable[[int, bytes], object]
 Log = Callable[[str], object]
+PoolMemory = bytearray | memoryview | mmap
+"""What a caller may bring as the bytes of a pool: anything writable."""
 
 
 class Bucket:
@@ -218,6 +219,22 @@ def min_size(sizes: Sequence[int], blocks: int) -> int:
     return blocks * (min(sizes, default=0) + DESCRIPTOR.size)
 
 
+def _fresh(size: int) -> memoryview:
+    """Zeros that take no room in the computer's memory before they are written: a pool may be 256 MiB."""
+    return memoryview(mmap(-1, size, access=ACCESS_COPY))
+
+
+def _writable(memory: PoolMemory, size: int) -> memoryview:
+    try:
+        view = memoryview(memory).cast("B")
+    except TypeError as error:  # no buffer, or one with gaps
+        raise CfeError(CFE_ES_BAD_ARGUMENT, f"the memory of a pool: {error}") from error
+    if view.readonly or len(view) < size:
+        text = f"a pool of {size} bytes cannot be in {len(view)} {'read-only ' if view.readonly else ''}bytes"
+        raise CfeError(CFE_ES_BAD_ARGUMENT, text)
+    return view[:size]
+
+
 @dataclass(slots=True, eq=False)
 class PoolBlock:
     """A block of a memory pool: `memory` is its bytes, as many as were asked for; `offset` is where they are."""
@@ -236,9 +253,11 @@ class MemPool:
         sizes: of blocks.
         alignment: of blocks, in bytes.
         log: the system log.
+        memory: the bytes of the pool, which the caller keeps and may look at, as in C; the first `size` of them are
+            used, as they are. None makes new ones.
 
     Raises:
-        CfeError: as `GenericPool`.
+        CfeError: as `GenericPool`; CFE_ES_BAD_ARGUMENT for memory that cannot be written or is too small.
     """
 
     def __init__(
@@ -248,11 +267,11 @@ class MemPool:
         sizes: Sequence[int] = BUCKETS,
         alignment: int = ALIGNMENT,
         log: Log = lambda text: None,
+        memory: PoolMemory | None = None,
     ) -> None:
         self.name = name
         self.mutex_id = 0
-        # Zeros that take no room in the computer's memory before they are written: a pool may be 256 MiB.
-        self._data = memoryview(mmap(-1, size, access=ACCESS_COPY))
+        self._data = _fresh(size) if memory is None else _writable(memory, size)
         self.blocks = GenericPool(
             self._read, self._write, log, start=0, size=size, alignment=max(alignment, MIN_ALIGNMENT), sizes=sizes
         )

@@ -67,6 +67,14 @@ class TaskRecord:
     execution_counter: int = 0
 
 
+class FailedTask(NamedTuple):
+    """A task that an exception ended: the TaskId that the board stored, its name and its application, if any."""
+
+    task_id: int
+    name: str
+    app: AppRecord | None
+
+
 @dataclass(slots=True, eq=False)
 class AppRecord:
     """An application; it is the owner of its tasks, so that a service finds the caller there."""
@@ -86,7 +94,10 @@ class AppRecord:
 
 @dataclass(slots=True)
 class AppHistory:
-    """What outlives an application that is restarted under the same name, for the end of a run."""
+    """What outlives an application that is restarted under the same name, for the end of a run.
+
+    `failed_ns` is the virtual time at which it died, or ended itself because of an error, for the last time.
+    """
 
     name: str
     restarts: int = 0
@@ -94,6 +105,7 @@ class AppHistory:
     error_exits: int = 0
     cpu_ns: int = 0
     last_error: BaseException | None = None
+    failed_ns: int | None = None
 
 
 @dataclass(slots=True, eq=False)

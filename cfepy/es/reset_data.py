@@ -1,6 +1,6 @@
 """What of Executive Services outlives a processor reset: reset variables and the three logs (CFE_ES_ResetData_t).
 
-Plain data; the logs' own modules know what to do with them. Imports only cfepy.config.
+Plain data; the logs' own modules know what to do with them.
 """
 
 from __future__ import annotations

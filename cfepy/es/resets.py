@@ -5,14 +5,14 @@ from __future__ import annotations
 from cfepy.es import erlog
 from cfepy.es.reset_data import ResetData
 from cfepy.es.tables import EsCore
-from cfepy.psp import RestartType
-from cfepy.psp.psp import (
+from cfepy.psp import (
     RST_SUBTYPE_HW_SPECIAL_COMMAND,
     RST_SUBTYPE_HW_WATCHDOG,
     RST_SUBTYPE_POWER_CYCLE,
     RST_SUBTYPE_RESET_COMMAND,
     RST_TYPE_POWERON,
     RST_TYPE_PROCESSOR,
+    RestartType,
 )
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CfeError
 
@@ -95,7 +95,7 @@ class ResetApi(EsCore):
         variables.max_processor_reset_count = self.config.es_max_processor_resets
 
     def _reset_by_hardware(self, start_subtype: int) -> None:
-        """Nobody asked for this processor reset: a watchdog, or a special command to the hardware."""
+        """Note a processor reset that no software asked for: a watchdog's, or a special command's to the hardware."""
         variables = self.reset.variables
         variables.reset_type = RST_TYPE_PROCESSOR
         variables.processor_reset_count += 1

@@ -1,11 +1,17 @@
-"""Executive Services: what an application asks of it (cfe_es_api.c); the parts are put together here."""
+"""Executive Services: what an application asks of it (cfe_es_api.c); the parts are put together here.
+
+Child tasks (CFE_ES_*ChildTask) and generic counters (CFE_ES_*GenCount*: numbers of 32 bits that any application may
+make, find by name and count up) are in this module; the other parts have one each.
+"""
 
 from __future__ import annotations
 
-from cfepy.es.cds_api import CdsApi
-from cfepy.es.child_tasks import ChildTaskApi
-from cfepy.es.counters import CounterApi
-from cfepy.es.faults import FaultApi
+from collections.abc import Callable
+
+from cfepy.es.apps import AppEnd
+from cfepy.es.cds import CdsApi
+from cfepy.es.exceptions import TaskExceptionApi
+from cfepy.es.info import InfoApi
 from cfepy.es.pool_api import PoolApi
 from cfepy.es.records import (
     APP_RUN,
@@ -17,13 +23,179 @@ from cfepy.es.records import (
     SYSTEM_OPERATIONAL,
     SYSTEM_SHUTDOWN,
     AppRecord,
+    GenCounter,
 )
+from cfepy.es.tables import EsCore
 from cfepy.fs import CRC_16, calculate_crc
+from cfepy.ids import ES_COUNTID_BASE, name_size, to_index
+from cfepy.osal import OS_MAX_API_NAME
 from cfepy.ports import SYSTEM_CORE_READY
-from cfepy.status import CFE_ES_OPERATION_TIMED_OUT, CfeError, status_to_string
+from cfepy.status import (
+    CFE_ES_BAD_ARGUMENT,
+    CFE_ES_ERR_CHILD_TASK_CREATE,
+    CFE_ES_ERR_CHILD_TASK_DELETE_MAIN_TASK,
+    CFE_ES_ERR_DUPLICATE_NAME,
+    CFE_ES_ERR_NAME_NOT_FOUND,
+    CFE_ES_ERR_RESOURCEID_NOT_VALID,
+    CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
+    CFE_ES_OPERATION_TIMED_OUT,
+    CfeError,
+    status_to_string,
+)
+
+_WORD = 0xFFFFFFFF
 
 
-class ExecutiveServices(ChildTaskApi, FaultApi, CdsApi, CounterApi, PoolApi):
+class ChildTaskApi(InfoApi, AppEnd):
+    """The life of child tasks."""
+
+    def create_child_task(
+        self, name: str, entry: Callable[[], object], stack_size: int, priority: int, flags: int = 0
+    ) -> int:
+        """Start a task that belongs to the calling application (CFE_ES_CreateChildTask).
+
+        Args:
+            name: unique, 1 to 19 characters.
+            entry: called without arguments, at least 50 ms later.
+            stack_size: bytes.
+            priority: 0 (most urgent) to 255.
+            flags: not used.
+
+        Returns:
+            The TaskId.
+
+        Raises:
+            CfeError: CFE_ES_BAD_ARGUMENT (no name, no function), CFE_ES_ERR_RESOURCEID_NOT_VALID (the caller belongs
+                to no application), CFE_ES_ERR_CHILD_TASK_CREATE (called by a child task),
+                CFE_STATUS_EXTERNAL_RESOURCE_FAIL (OSAL cannot create it).
+        """
+        self._check_child(name, entry)
+        app = self.app_of_caller()
+        if app is None:
+            self.write_to_sys_log(f"CFE_ES_CreateChildTask: Invalid calling context when creating Task '{name}'")
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"child task {name!r} needs an application")
+        if self.osal.task_get_id() != app.main_task_id:
+            self.write_to_sys_log(f"CFE_ES_CreateChildTask: Error: Cannot call from a Child Task (for Task '{name}').")
+            raise CfeError(CFE_ES_ERR_CHILD_TASK_CREATE, "only the main task of an application creates child tasks")
+        return self.start_task(app, name, entry, stack_size, priority)
+
+    def _check_child(self, name: str, entry: Callable[[], object]) -> None:
+        if not name:
+            text = "TaskName Parameter is NULL"
+        elif not callable(entry):
+            text = f"Function Pointer Parameter is NULL for Task '{name}'"
+        else:
+            return
+        self.write_to_sys_log(f"CFE_ES_CreateChildTask: {text}")
+        raise CfeError(CFE_ES_BAD_ARGUMENT, f"a child task needs a name and a function, not {name!r} and {entry!r}")
+
+    def delete_child_task(self, task_id: int) -> None:
+        """End a child task (CFE_ES_DeleteChildTask).
+
+        Raises:
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_ERR_CHILD_TASK_DELETE_MAIN_TASK.
+        """
+        log = self.write_to_sys_log
+        try:
+            self.task_id_to_index(task_id)
+        except CfeError:
+            log(f"CFE_ES_DeleteChildTask: Error: Invalid Task ID: {task_id}")
+            raise
+        try:
+            app, _ = self.find_task(task_id)
+        except CfeError:
+            log(f"CFE_ES_DeleteChildTask: Error: Task ID is not active: {task_id}")
+            raise
+        if task_id == app.main_task_id:
+            log(f"CFE_ES_DeleteChildTask: Error: Task {task_id} is a cFE Main Task.")
+            raise CfeError(CFE_ES_ERR_CHILD_TASK_DELETE_MAIN_TASK, f"task {task_id} is the main task of {app.name}")
+        self.end_task(app, task_id)
+        log(f"CFE_ES_DeleteChildTask: Task {task_id} Deleted")
+
+    def exit_child_task(self) -> None:
+        """End the calling child task; does not return (CFE_ES_ExitChildTask). A main task goes on, with a log entry."""
+        app = self.app_of_caller()
+        task_id = self.osal.task_get_id()
+        if app is None:
+            self.write_to_sys_log("CFE_ES_ExitChildTask: Called from invalid task context")
+            return
+        if task_id == app.main_task_id:
+            self.write_to_sys_log(f"CFE_ES_ExitChildTask: Error: Cannot Call from a cFE App Main Task. ID = {task_id}")
+            return
+        record = app.tasks.pop(task_id, None)
+        if record is not None and record.task is not None:
+            self.history_of(app.name).cpu_ns += record.task.cpu_ns
+        self.osal.task_exit()
+
+
+class CounterApi(EsCore):
+    """The generic counters of Executive Services; no application owns them, and they stay until they are deleted."""
+
+    def register_gen_counter(self, name: str) -> int:
+        """Make a counter that stands at 0 (CFE_ES_RegisterGenCounter).
+
+        Args:
+            name: unique, at most 19 characters.
+
+        Returns:
+            The CounterId.
+
+        Raises:
+            CfeError: CFE_ES_BAD_ARGUMENT, CFE_ES_ERR_DUPLICATE_NAME, CFE_ES_NO_RESOURCE_IDS_AVAILABLE.
+        """
+        if name_size(name) >= OS_MAX_API_NAME:
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"counter name {name!r} has more than {OS_MAX_API_NAME - 1} characters")
+        if any(counter.name == name for counter in self.counters):
+            self.write_to_sys_log(f"CFE_ES_RegisterGenCounter: Duplicate Counter name '{name}'")
+            raise CfeError(CFE_ES_ERR_DUPLICATE_NAME, f"there is a counter {name!r} already")
+        if len(self.counters) >= self.counters.capacity:
+            self.write_to_sys_log("CFE_ES_RegisterGenCounter: No free Counter slots available")
+            text = f"there are {self.counters.capacity} counters already"
+            raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, text)
+        return self.counters.create(GenCounter(name))
+
+    def delete_gen_counter(self, counter_id: int) -> None:
+        """Delete a counter, or CFE_ES_BAD_ARGUMENT (CFE_ES_DeleteGenCounter)."""
+        self._counter(counter_id)
+        self.counters.delete(counter_id)
+
+    def increment_gen_counter(self, counter_id: int) -> None:
+        """Count up by one, or CFE_ES_BAD_ARGUMENT (CFE_ES_IncrementGenCounter)."""
+        counter = self._counter(counter_id)
+        counter.count = counter.count + 1 & _WORD
+
+    def set_gen_count(self, counter_id: int, count: int) -> None:
+        """Set a counter to a number of 32 bits, or CFE_ES_BAD_ARGUMENT (CFE_ES_SetGenCount)."""
+        self._counter(counter_id).count = count & _WORD
+
+    def get_gen_count(self, counter_id: int) -> int:
+        """What a counter stands at, or CFE_ES_BAD_ARGUMENT (CFE_ES_GetGenCount)."""
+        return self._counter(counter_id).count
+
+    def get_gen_counter_id_by_name(self, name: str) -> int:
+        """CounterId of a named counter, or CFE_ES_ERR_NAME_NOT_FOUND (CFE_ES_GetGenCounterIDByName)."""
+        for counter_id, counter in self.counters.items():
+            if counter.name == name:
+                return counter_id
+        raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"no counter is called {name!r}")
+
+    def get_gen_counter_name(self, counter_id: int) -> str:
+        """Name of a counter, or CFE_ES_ERR_RESOURCEID_NOT_VALID (CFE_ES_GetGenCounterName)."""
+        return self.counters.get(counter_id).name
+
+    def counter_id_to_index(self, counter_id: int) -> int:
+        """The slot of a CounterId, or CFE_ES_ERR_RESOURCEID_NOT_VALID (CFE_ES_CounterID_ToIndex)."""
+        return to_index(counter_id, ES_COUNTID_BASE, self.counters.capacity)
+
+    def _counter(self, counter_id: int) -> GenCounter:
+        """A counter; for an id that is none cFE has another status here than elsewhere."""
+        counter = self.counters.find(counter_id)
+        if counter is None:
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"no counter has the id 0x{counter_id:x}")
+        return counter
+
+
+class ExecutiveServices(ChildTaskApi, TaskExceptionApi, CdsApi, CounterApi, PoolApi):
     """One processor's ES; the arguments are those of `EsCore`."""
 
     status_to_string = staticmethod(status_to_string)

@@ -3,7 +3,7 @@
 Stands for the reading half of CFE_ES_StartApplications and CFE_ES_ParseFileEntry. To cFE the file is a stream: blanks
 and newlines vanish, "," ends a field, ";" an entry, the first "!" the file, and there is no comment before that. So an
 entry that says something else than its author meant is the rule; every one carries the line of text it began on and an
-explanation, beside the words of cFE's own system log. Imports only cfepy.status and cfepy.fs.
+explanation, in addition to the words of cFE's own system log.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _START = "CFE_ES_StartApplications: "
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class StartupEntry:
     """A library or an app to start.
 
     Attributes:
@@ -91,10 +91,17 @@ class BadLine:
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """Something in a script that is hardly meant so; `line` is the line of text, from 1."""
+    """Something in a script that is hardly meant so.
+
+    Attributes:
+        line: the line of text, from 1.
+        explanation: what it is and what to do.
+        is_warning: the entry starts something all the same.
+    """
 
     line: int
     explanation: str
+    is_warning: bool = False
 
 
 class _Raw(NamedTuple):
@@ -105,7 +112,7 @@ class _Raw(NamedTuple):
     dropped: bool
 
 
-def parse(data: bytes) -> Iterator[Entry | BadLine]:
+def parse(data: bytes) -> Iterator[StartupEntry | BadLine]:
     """The entries of a startup script in order, one result for each ";"; no bytes make it fail.
 
     Args:
@@ -116,13 +123,13 @@ def parse(data: bytes) -> Iterator[Entry | BadLine]:
             yield _parse_entry(raw)
 
 
-def entries(data: bytes) -> list[Entry]:
+def entries(data: bytes) -> list[StartupEntry]:
     """The entries of a startup script that start something, in order.
 
     Args:
         data: the file.
     """
-    return [entry for entry in parse(data) if isinstance(entry, Entry)]
+    return [entry for entry in parse(data) if isinstance(entry, StartupEntry)]
 
 
 def check(data: bytes) -> list[Note]:
@@ -133,7 +140,9 @@ def check(data: bytes) -> list[Note]:
     """
     found: list[Note] = []
     for raw in _split(data):
-        found += [Note(raw.line, text) for text in _remarks(raw)]
+        error = _error_in(raw)
+        found += [] if error is None else [Note(raw.line, error)]
+        found += [Note(raw.line, text, is_warning=True) for text in _remarks(raw)]
     return found
 
 
@@ -168,7 +177,7 @@ def _split(data: bytes) -> Iterator[_Raw]:
         line += chunk.count(b"\n")
 
 
-def _parse_entry(raw: _Raw) -> Entry | BadLine:
+def _parse_entry(raw: _Raw) -> StartupEntry | BadLine:
     tokens = raw.text.split(",")
     if len(tokens) > MAX_TOKENS or len(raw.text) > BUFFER_SIZE:
         return _malformed(raw, len(tokens))
@@ -187,7 +196,7 @@ def _parse_entry(raw: _Raw) -> Entry | BadLine:
     if len(name) >= MAX_NAME_LEN:
         reason = f"the name {name!r} has {len(name)} characters, at most {MAX_NAME_LEN - 1} fit; cFE says nothing of it"
         return _bad(raw, reason, log_text, CFE_ES_BAD_ARGUMENT)
-    return Entry(
+    return StartupEntry(
         kind=kind,
         file=file,
         path=path,
@@ -229,21 +238,28 @@ def _too_few(raw: _Raw, tokens: int) -> BadLine:
     return _bad(raw, reason, text)
 
 
+def _error_in(raw: _Raw) -> str | None:
+    """Why an entry starts nothing; None when it does."""
+    if not raw.ended:
+        return f"the last entry has no ';' and is lost: {raw.text}"
+    entry = _parse_entry(raw)
+    return entry.explanation if isinstance(entry, BadLine) else None
+
+
 def _remarks(raw: _Raw) -> Iterator[str]:
+    """What cFE takes otherwise than it is written."""
     if raw.dropped:
         yield "bytes that are not ASCII are left out of the entry"
-    if not raw.ended:
-        yield f"the last entry has no ';' and is lost: {raw.text}"
-        return
-    entry = _parse_entry(raw)
-    if isinstance(entry, BadLine):
-        yield entry.explanation
+    entry = _parse_entry(raw) if raw.ended else None
+    if not isinstance(entry, StartupEntry):
         return
     fields = raw.text.split(",")
     if len(fields[2]) >= MAX_NAME_LEN:
         yield f"the symbol {fields[2]!r} is cut to {entry.symbol!r}"
     for what, field in (("priority", fields[4]), ("stack size", fields[5]), ("exception action", fields[7])):
         if not _PLAIN_NUMBER.fullmatch(field):
-            yield f"the {what} {field!r} is read as {strtoul(field)}"
+            yield f"the {what} {field!r} is read as {strtoul(field)}; write a number, such as 60 or 0x3C"
     if strtoul(fields[4]) > MAX_TASK_PRIORITY:
         yield f"the priority {fields[4]} is cut to {MAX_TASK_PRIORITY}"
+    if strtoul(fields[7]) > EXCEPTION_PROC_RESTART:
+        yield f"the exception action {fields[7]} is taken as {EXCEPTION_PROC_RESTART}, a reset of the processor"

@@ -7,7 +7,16 @@ from cfepy.console import Console
 from cfepy.es.erlog import MAX_CONTEXT, ExceptionResetLog
 from cfepy.es.perf import PerformanceLog
 from cfepy.es.pools import MemPool
-from cfepy.es.records import SYSTEM_EARLY_INIT, AppHistory, AppRecord, GenCounter, LibRecord, Loader, TaskRecord
+from cfepy.es.records import (
+    SYSTEM_EARLY_INIT,
+    AppHistory,
+    AppRecord,
+    FailedTask,
+    GenCounter,
+    LibRecord,
+    Loader,
+    TaskRecord,
+)
 from cfepy.es.reset_data import ResetData
 from cfepy.es.syslog import SystemLog
 from cfepy.ids import ES_APPID_BASE, ES_COUNTID_BASE, ES_LIBID_BASE, ES_POOLID_BASE, IdTable
@@ -15,8 +24,8 @@ from cfepy.osal import Osal
 from cfepy.ports import Ports
 from cfepy.psp import Psp
 from cfepy.rtos import Kernel, Semaphore
-from cfepy.rtos.units import NS_PER_MS
 from cfepy.status import CFE_ES_ERR_NAME_NOT_FOUND, CFE_ES_ERR_RESOURCEID_NOT_VALID, CfeError, OsalError
+from cfepy.units import NS_PER_MS
 
 
 class EsCore:
@@ -49,7 +58,7 @@ class EsCore:
         self.psp = psp
         self.console = console
         self.loader = loader
-        self.faulty_apps: list[tuple[int, AppRecord]] = []  # with the TaskId that the board stored
+        self.failed_tasks: list[FailedTask] = []  # until the exception scan has dealt with them
         self.reset = ResetData(config, psp.get_timer_ticks_per_second(), psp.get_timer_low32_rollover())
         self.syslog = SystemLog(ports, console, config)
         self.er_log = ExceptionResetLog(ports, self.reset, self._context_of)

@@ -5,26 +5,102 @@ from __future__ import annotations
 from cfepy.core_app import Replies, serve
 from cfepy.es import events as ev
 from cfepy.es import packets as pk
-from cfepy.es.app_commands import AppCommands
-from cfepy.es.app_scan import AppScan
-from cfepy.es.background import PRIORITY, STACK_SIZE, TASK_NAME, BackgroundTask, Job
-from cfepy.es.cds_commands import CdsCommands
+from cfepy.es.background import PRIORITY, STACK_SIZE, TASK_NAME, AppScan, BackgroundTask, Job
+from cfepy.es.commands import AppControlCommands, CdsCommands, LogCommands, PerfCommands, QueryCommands, ResetCommands
 from cfepy.es.exceptions import ExceptionScan
-from cfepy.es.housekeeping import housekeeping
-from cfepy.es.log_commands import LogCommands
-from cfepy.es.perf_commands import PerfCommands
-from cfepy.es.perf_dump import DELAY_MS, PerfDump
-from cfepy.es.query_commands import QueryCommands
-from cfepy.es.reset_commands import ResetCommands
+from cfepy.es.perf import DELAY_MS, PerfDump
 from cfepy.es.service import ExecutiveServices
-from cfepy.msg import CommandTable
-from cfepy.msg.dispatch import BAD_CODE, BAD_MSG_ID, DONE
-from cfepy.psp.psp import RST_TYPE_POWERON
-from cfepy.versions import CFE_VERSION, MODULES, OFFICIAL, OSAL_VERSION, PSP_VERSION, version_string
+from cfepy.msg import BAD_CODE, BAD_MSG_ID, DONE, CommandTable
+from cfepy.psp import RST_TYPE_POWERON
+from cfepy.status import CfeError
+from cfepy.versions import CFE_VERSION, MODULES, OFFICIAL, OSAL_VERSION, PSP_VERSION, VERSION_NUMBER, version_string
 
+_VERSION_PARTS = ("MajorVersion", "MinorVersion", "Revision", "MissionRevision")
 PIPE_NAME = "ES_CMD_PIPE"
 PIPE_DEPTH = 12
 MAIN_PERF_ID = 1
+
+
+def housekeeping(es: ExecutiveServices, replies: Replies, dump: PerfDump, checksum: int) -> dict[str, object]:
+    """The fields of the packet.
+
+    Args:
+        es: the service.
+        replies: the command counters.
+        dump: for how much of the performance log is still to be written.
+        checksum: of the executive's code, 16 bits.
+    """
+    return {
+        "CommandCounter": replies.command_counter & 0xFF,
+        "CommandErrorCounter": replies.error_counter & 0xFF,
+        "CFECoreChecksum": checksum,
+        **_versions("CFE", VERSION_NUMBER),
+        **_versions("OSAL", es.osal.get_version_number()),
+        **_versions("PSP", es.psp.get_version_number()),
+        **_logs(es),
+        "RegisteredCoreApps": sum(app.is_core for app in es.apps),
+        "RegisteredExternalApps": sum(not app.is_core for app in es.apps),
+        "RegisteredTasks": sum(len(app.tasks) for app in es.apps),
+        "RegisteredLibs": len(es.libs),
+        **_resets(es),
+        **_performance(es, dump),
+        **_heap(es),
+    }
+
+
+def _versions(name: str, version: tuple[int, int, int, int]) -> dict[str, int]:
+    return {f"{name}{part}": number for part, number in zip(_VERSION_PARTS, version, strict=True)}
+
+
+def _logs(es: ExecutiveServices) -> dict[str, int]:
+    syslog, er_log = es.syslog.data, es.reset.er_log
+    return {
+        "SysLogBytesUsed": syslog.end_index,
+        "SysLogSize": len(syslog.memory),
+        "SysLogEntries": syslog.entries,
+        "SysLogMode": syslog.mode,
+        "ERLogIndex": er_log.index,
+        "ERLogEntries": er_log.entries,
+    }
+
+
+def _resets(es: ExecutiveServices) -> dict[str, int]:
+    variables = es.reset.variables
+    return {
+        "ResetType": variables.reset_type,
+        "ResetSubtype": variables.reset_subtype,
+        "ProcessorResets": variables.processor_reset_count,
+        "MaxProcessorResets": variables.max_processor_reset_count,
+        "BootSource": variables.boot_source,
+    }
+
+
+def _performance(es: ExecutiveServices, dump: PerfDump) -> dict[str, object]:
+    data = es.reset.perf
+    return {
+        "PerfState": data.state,
+        "PerfMode": data.mode,
+        "PerfTriggerCount": data.trigger_count,
+        "PerfFilterMask": data.filter_mask,
+        "PerfTriggerMask": data.trigger_mask,
+        "PerfDataStart": data.start,
+        "PerfDataEnd": data.end,
+        "PerfDataCount": data.count,
+        "PerfDataToWrite": dump.remaining,
+    }
+
+
+def _heap(es: ExecutiveServices) -> dict[str, int]:
+    """What is left of the board's memory; zeros where that is not known."""
+    try:
+        heap = es.osal.heap_get_info()
+    except CfeError:
+        return {}
+    return {
+        "HeapBytesFree": heap.free_bytes,
+        "HeapBlocksFree": heap.free_blocks,
+        "HeapMaxBlockSize": heap.largest_free_block,
+    }
 
 
 class EsTask:
@@ -51,7 +127,7 @@ class EsTask:
             (pk.RESET_COUNTERS, self._reset_counters),
             (pk.SEND_HK, self._send_housekeeping),
             *ResetCommands(es, self.replies).handlers(),
-            *AppCommands(es, self.replies).handlers(),
+            *AppControlCommands(es, self.replies).handlers(),
             *QueryCommands(es, self.replies).handlers(),
             *LogCommands(es, self.replies).handlers(),
             *PerfCommands(es, self.replies, self.perf_dump).handlers(),

@@ -1,6 +1,8 @@
 """Event Services: what applications report, filtered, logged and sent on (cFE EVS).
 
-The five services do not import each other; what EVS needs of them it finds in its `Ports`.
+What belongs here filters, logs or sends events, or changes how that is done. The ids and texts of particular events do
+not: each service and application has its own. The five services do not import each other; what EVS needs of the others
+it finds in its `Ports`.
 """
 
 from __future__ import annotations

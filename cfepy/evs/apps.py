@@ -1,7 +1,6 @@
 """What Event Services keeps of one application: its filters, enabled event types, counters and flood brake.
 
-Stands for EVS_AppData_t, EVS_IsFiltered and EVS_CheckAndIncrementSquelchTokens. Sends nothing itself, and imports no
-other service.
+Stands for EVS_AppData_t, EVS_IsFiltered and EVS_CheckAndIncrementSquelchTokens. Sends nothing itself.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from cfepy.config import PlatformConfig
-from cfepy.rtos.units import NS_PER_MS
+from cfepy.units import NS_PER_MS
 
 ALL_TYPES = 0x0F
 """A bit for each event type: DEBUG 1, INFORMATION 2, ERROR 4, CRITICAL 8."""

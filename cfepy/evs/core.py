@@ -1,6 +1,6 @@
 """The making of an event: filters, flood brake, packets, event log and output ports (cfe_evs_utils.c).
 
-`EventServices` adds the calls that applications make, `EvsCommands` those of the ground. Imports no other service.
+`EventServices` adds the calls that applications make, `EvsCommands` those of the ground.
 """
 
 from __future__ import annotations

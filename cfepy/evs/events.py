@@ -1,7 +1,4 @@
-"""Event types and the event ids of Event Services, with NASA's names and numbers (cfe_evs_eventids.h).
-
-Imports only cfepy.ports.
-"""
+"""Event types and the event ids of Event Services, with NASA's names and numbers (cfe_evs_eventids.h)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The event log: the last events, or the first ones, kept until somebody writes them to a file (EVS_Log_t)."""
+"""The event log: the last events, or the first ones, kept until a command writes them to a file (EVS_Log_t)."""
 
 from __future__ import annotations
 

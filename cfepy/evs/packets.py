@@ -1,11 +1,8 @@
-"""Commands and telemetry of Event Services: message ids, function codes, layouts (default_cfe_evs_msgstruct.h).
-
-Imports cfepy.msg.
-"""
+"""Commands and telemetry of Event Services: message ids, function codes, layouts (default_cfe_evs_msgstruct.h)."""
 
 from __future__ import annotations
 
-from cfepy.msg import Command, Layout, Telemetry
+from cfepy.msg import Command, Layout, Telemetry, ValueNames
 
 CMD_MID = 0x1801
 SEND_HK_MID = 0x1809
@@ -38,6 +35,27 @@ CLEAR_LOG_CC = 20
 FORMAT_SHORT, FORMAT_LONG = 0, 1
 """CFE_EVS_MsgFormat_Enum_t."""
 
+FORMATS = ValueNames("u8", SHORT=FORMAT_SHORT, LONG=FORMAT_LONG)
+LOG_MODES = ValueNames("u8", OVERWRITE=0, DISCARD=1)
+EVENT_TYPES = ValueNames("u16", DEBUG=1, INFORMATION=2, ERROR=3, CRITICAL=4)
+TYPE_MASK = ValueNames("u8", flags=True, DEBUG=1, INFORMATION=2, ERROR=4, CRITICAL=8)
+PORT_MASK = ValueNames("u8", flags=True, PORT1=1, PORT2=2, PORT3=4, PORT4=8)
+FILTER_MASKS = ValueNames(
+    "u16",
+    NO_FILTER=0x0000,
+    FIRST_ONE_STOP=0xFFFF,
+    FIRST_TWO_STOP=0xFFFE,
+    FIRST_4_STOP=0xFFFC,
+    FIRST_8_STOP=0xFFF8,
+    FIRST_16_STOP=0xFFF0,
+    FIRST_32_STOP=0xFFE0,
+    FIRST_64_STOP=0xFFC0,
+    EVERY_OTHER_ONE=0x0001,
+    EVERY_OTHER_TWO=0x0002,
+    EVERY_FOURTH_ONE=0x0003,
+)
+"""The names of values (default_cfe_evs_extern_typedefs.h, cfe_evs_api_typedefs.h)."""
+
 APPS_IN_HOUSEKEEPING = 16
 """CFE_MISSION_ES_MAX_APPLICATIONS."""
 
@@ -46,7 +64,7 @@ PACKET_ID = Layout(
     [
         ("AppName", "char[20]"),
         ("EventID", "u16"),
-        ("EventType", "u16"),
+        ("EventType", EVENT_TYPES),
         ("SpacecraftID", "u32"),
         ("ProcessorID", "u32"),
     ],
@@ -74,12 +92,12 @@ HOUSEKEEPING = Layout(
     [
         ("CommandCounter", "u8"),
         ("CommandErrorCounter", "u8"),
-        ("MessageFormatMode", "u8"),
+        ("MessageFormatMode", FORMATS),
         ("MessageTruncCounter", "u8"),
         ("UnregisteredAppCounter", "u8"),
-        ("OutputPort", "u8"),
+        ("OutputPort", PORT_MASK),
         ("LogFullFlag", "u8"),
-        ("LogMode", "u8"),
+        ("LogMode", LOG_MODES),
         ("MessageSendCounter", "u16"),
         ("LogOverflowCounter", "u16"),
         ("LogEnabled", "u8"),
@@ -105,16 +123,17 @@ APP_DATA_RECORD = Layout(
     ],
 )
 
-BIT_MASK_COMMAND = Layout("CFE_EVS_BitMaskCmd_Payload_t", [("BitMask", "u8"), ("Spare", "u8")])
-FORMAT_COMMAND = Layout("CFE_EVS_SetEventFormatMode_Payload_t", [("MsgFormat", "u8"), ("Spare", "u8")])
-LOG_MODE_COMMAND = Layout("CFE_EVS_SetLogMode_Payload_t", [("LogMode", "u8"), ("Spare", "u8")])
+TYPES_COMMAND = Layout("CFE_EVS_BitMaskCmd_Payload_t", [("BitMask", TYPE_MASK), ("Spare", "u8")])
+PORTS_COMMAND = Layout("CFE_EVS_BitMaskCmd_Payload_t", [("BitMask", PORT_MASK), ("Spare", "u8")])
+FORMAT_COMMAND = Layout("CFE_EVS_SetEventFormatMode_Payload_t", [("MsgFormat", FORMATS), ("Spare", "u8")])
+LOG_MODE_COMMAND = Layout("CFE_EVS_SetLogMode_Payload_t", [("LogMode", LOG_MODES), ("Spare", "u8")])
 APP_COMMAND = Layout("CFE_EVS_AppNameCmd_Payload_t", [("AppName", "char[20]")])
 APP_MASK_COMMAND = Layout(
-    "CFE_EVS_AppNameBitMaskCmd_Payload_t", [("AppName", "char[20]"), ("BitMask", "u8"), ("Spare", "u8")]
+    "CFE_EVS_AppNameBitMaskCmd_Payload_t", [("AppName", "char[20]"), ("BitMask", TYPE_MASK), ("Spare", "u8")]
 )
 APP_EVENT_COMMAND = Layout("CFE_EVS_AppNameEventIDCmd_Payload_t", [("AppName", "char[20]"), ("EventID", "u16")])
 APP_FILTER_COMMAND = Layout(
-    "CFE_EVS_AppNameEventIDMaskCmd_Payload_t", [("AppName", "char[20]"), ("EventID", "u16"), ("Mask", "u16")]
+    "CFE_EVS_AppNameEventIDMaskCmd_Payload_t", [("AppName", "char[20]"), ("EventID", "u16"), ("Mask", FILTER_MASKS)]
 )
 LOG_FILE_COMMAND = Layout("CFE_EVS_LogFileCmd_Payload_t", [("LogFilename", "char[64]")])
 APP_DATA_COMMAND = Layout("CFE_EVS_AppDataCmd_Payload_t", [("AppDataFilename", "char[64]")])
@@ -125,14 +144,14 @@ ENABLE_EVENT_TYPE = Command(
     "CFE_EVS_ENABLE_EVENT_TYPE",
     CMD_MID,
     ENABLE_EVENT_TYPE_CC,
-    BIT_MASK_COMMAND,
+    TYPES_COMMAND,
     "Let all applications send events of some types.",
 )
 DISABLE_EVENT_TYPE = Command(
     "CFE_EVS_DISABLE_EVENT_TYPE",
     CMD_MID,
     DISABLE_EVENT_TYPE_CC,
-    BIT_MASK_COMMAND,
+    TYPES_COMMAND,
     "Hold back events of some types of all applications.",
 )
 SET_EVENT_FORMAT_MODE = Command(
@@ -173,10 +192,10 @@ SET_FILTER = Command(
     "CFE_EVS_SET_FILTER", CMD_MID, SET_FILTER_CC, APP_FILTER_COMMAND, "Change the mask of an event's filter."
 )
 ENABLE_PORTS = Command(
-    "CFE_EVS_ENABLE_PORTS", CMD_MID, ENABLE_PORTS_CC, BIT_MASK_COMMAND, "Write events to some output ports."
+    "CFE_EVS_ENABLE_PORTS", CMD_MID, ENABLE_PORTS_CC, PORTS_COMMAND, "Write events to some output ports."
 )
 DISABLE_PORTS = Command(
-    "CFE_EVS_DISABLE_PORTS", CMD_MID, DISABLE_PORTS_CC, BIT_MASK_COMMAND, "Write no events to some output ports."
+    "CFE_EVS_DISABLE_PORTS", CMD_MID, DISABLE_PORTS_CC, PORTS_COMMAND, "Write no events to some output ports."
 )
 RESET_FILTER = Command(
     "CFE_EVS_RESET_FILTER", CMD_MID, RESET_FILTER_CC, APP_EVENT_COMMAND, "Let the filter of an event count from 0."

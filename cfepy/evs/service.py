@@ -1,6 +1,6 @@
 """Event Services as applications and the other services call them (cfe_evs.h), and the task CFE_EVS.
 
-How an event is made and where it goes is in `cfepy.evs.core`. Imports no other service.
+How an event is made and where it goes is in `cfepy.evs.core`.
 """
 
 from __future__ import annotations
@@ -13,10 +13,9 @@ from cfepy.console import Console
 from cfepy.core_app import serve
 from cfepy.evs import packets as pk
 from cfepy.evs.apps import AppEvents
-from cfepy.evs.commands import EvsCommands
+from cfepy.evs.commands import EventFiles, EvsCommands
 from cfepy.evs.core import U16_MAX, EventCore
 from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION, STARTUP_EID
-from cfepy.evs.files import EventFiles
 from cfepy.evs.log import DISCARD, OVERWRITE, EventLog
 from cfepy.ids import ES_APPID_BASE, get_base
 from cfepy.osal import Osal

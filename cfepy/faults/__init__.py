@@ -1,11 +1,29 @@
 """Faults: what goes wrong in a run, from a plan or from a seed, at the same instants every time.
 
-It stands below missions, which it meets as an attachment.
+What belongs here says what a plan may hold, reads and checks it, and lets its faults happen: a `FaultInjector` is an
+attachment, so the mission and its parts know nothing of it. What judges a run, with faults or without, belongs to
+`cfepy.monitors`.
 """
 
-from cfepy.faults.gate import When
+from cfepy.faults.check import Prepared, check_plan, plan_of, prepare
 from cfepy.faults.injector import FaultInjector
 from cfepy.faults.plan import Fault, FaultPlan, read_plan
-from cfepy.faults.random_plan import Targets, random_plan
+from cfepy.faults.targets import Found, Targets, look_at, random_plan, targets_of
+from cfepy.faults.timing import When
 
-__all__ = ["Fault", "FaultInjector", "FaultPlan", "Targets", "When", "random_plan", "read_plan"]
+__all__ = [
+    "Fault",
+    "FaultInjector",
+    "FaultPlan",
+    "Found",
+    "Prepared",
+    "Targets",
+    "When",
+    "check_plan",
+    "look_at",
+    "plan_of",
+    "prepare",
+    "random_plan",
+    "read_plan",
+    "targets_of",
+]

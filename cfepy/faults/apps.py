@@ -1,19 +1,23 @@
 """Faults on applications: crash, hang, slow, stop, restart.
 
-Imports its neighbours; applications are those of Executive Services, found by name when the fault happens.
+Applications are those of Executive Services, found by name when the fault happens. For those that hang or are slow, the
+methods of the kernel object are wrapped, as tasks call them; only a run whose plan asks for it has them wrapped.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Any
 
-from cfepy.faults.gate import Gate
 from cfepy.faults.plan import Fault
 from cfepy.faults.report import FaultReport
-from cfepy.faults.strain import Strain
-from cfepy.rtos.errors import InjectedCrash
+from cfepy.faults.timing import Gate
+from cfepy.mission import Processor
+from cfepy.rtos import FOREVER, InjectedCrash, Kernel, WaitList
 from cfepy.status import CfeError
+
+CALLS = ("wait_on", "delay", "yield_cpu", "charge")
 
 
 class AppFault(ABC):
@@ -30,7 +34,7 @@ class AppFault(ABC):
         self.app_name = app_name
         self.report = report
 
-    def strike(self, processor: Any) -> None:
+    def strike(self, processor: Processor) -> None:
         """Do it now, from the task of the faults."""
         es = processor.cfe.es
         app = next((each for each in es.apps if each.name == self.app_name), None)
@@ -45,7 +49,7 @@ class AppFault(ABC):
             self.report.missed(self.fault, str(error))
 
     @abstractmethod
-    def _do(self, processor: Any, app: Any) -> None:
+    def _do(self, processor: Processor, app: Any) -> None:
         """Do it to an application of the processor."""
 
     def _happened(self, text: str) -> None:
@@ -55,7 +59,7 @@ class AppFault(ABC):
 class Crash(AppFault):
     """An exception comes out of the call that its main task waits in, or out of its next one."""
 
-    def _do(self, processor: Any, app: Any) -> None:
+    def _do(self, processor: Processor, app: Any) -> None:
         record = app.tasks.get(app.main_task_id)
         if record is None or record.task is None or not record.task.started or record.task.done:
             self.report.missed(self.fault, f"the main task of {self.app_name} does not run")
@@ -78,7 +82,7 @@ class Hang(AppFault):
         super().__init__(fault, app_name, report)
         self._strain = strain
 
-    def _do(self, processor: Any, app: Any) -> None:
+    def _do(self, processor: Processor, app: Any) -> None:
         duration_ns = self.fault.options.get("for")
         self._happened(f"lets {self.app_name} hang" + (f" for {duration_ns / 1e9:g} s" if duration_ns else ""))
         self._strain.hang(app, None if duration_ns is None else processor.machine.kernel.now + duration_ns)
@@ -87,7 +91,7 @@ class Hang(AppFault):
 class Stop(AppFault):
     """Executive Services end it, as a command would."""
 
-    def _do(self, processor: Any, app: Any) -> None:
+    def _do(self, processor: Processor, app: Any) -> None:
         processor.cfe.es.delete_app(app.app_id)
         self._happened(f"stops {self.app_name}")
 
@@ -95,7 +99,7 @@ class Stop(AppFault):
 class Restart(AppFault):
     """Executive Services end it and start it anew, as a command would."""
 
-    def _do(self, processor: Any, app: Any) -> None:
+    def _do(self, processor: Processor, app: Any) -> None:
         processor.cfe.es.restart_app(app.app_id)
         self._happened(f"restarts {self.app_name}")
 
@@ -110,7 +114,7 @@ class Slow:
         kernel: for the time.
     """
 
-    def __init__(self, fault: Fault, gate: Gate, report: FaultReport, kernel: Any) -> None:
+    def __init__(self, fault: Fault, gate: Gate, report: FaultReport, kernel: Kernel) -> None:
         self._fault = fault
         self._gate = gate
         self._report = report
@@ -133,4 +137,55 @@ class Slow:
         return more
 
 
-CLASSES: dict[str, type[AppFault]] = {"crash": Crash, "stop": Stop, "restart": Restart}
+APP_FAULTS: dict[str, type[AppFault]] = {"crash": Crash, "stop": Stop, "restart": Restart}
+
+
+class Strain:
+    """What the kernel's calls do to some applications.
+
+    Args:
+        kernel: whose calls are wrapped.
+    """
+
+    def __init__(self, kernel: Kernel) -> None:
+        self._kernel = kernel
+        self._wait_on: Callable[..., Any] = kernel.wait_on
+        self._charge: Callable[[int], None] = kernel.charge
+        self._hanging: dict[int, tuple[Any, int | None]] = {}  # by identity: the application, and when it goes on
+        self.burdens: list[Callable[[str, int], int]] = []
+        for name in CALLS:
+            setattr(kernel, name, self._wrapped(getattr(kernel, name), name == "charge"))
+
+    def hang(self, app: Any, until_ns: int | None) -> None:
+        """No task of an application comes back from its next call before a time; None is never."""
+        self._hanging[id(app)] = app, until_ns
+
+    def _wrapped(self, original: Callable[..., Any], is_charge: bool) -> Callable[..., Any]:
+        """One of the kernel's methods, with what it costs before and whether it returns after."""
+
+        def call(*args: Any) -> Any:
+            kernel = self._kernel
+            task = kernel.current
+            owner = task.owner
+            if owner is None or task.dying:
+                return original(*args)
+            more_ns = sum(burden(owner.name, args[0] if is_charge else 0) for burden in self.burdens)
+            if more_ns:
+                self._charge(more_ns)
+            result = original(*args)
+            if self._hanging and not task.dying:
+                self._hold(task)
+            return result
+
+        return call
+
+    def _hold(self, task: Any) -> None:
+        """Keep the calling task as long as its application hangs."""
+        held = self._hanging.get(id(task.owner))
+        if held is None:
+            return
+        until_ns = held[1]
+        if until_ns is None:
+            self._wait_on(WaitList("the end of a fault: its application hangs"), FOREVER)
+        elif until_ns > self._kernel.now:
+            self._wait_on(WaitList("the end of a fault: its application hangs"), until_ns - self._kernel.now)

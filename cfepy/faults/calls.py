@@ -1,29 +1,18 @@
-"""Calls of cFE, OSAL or PSP that fail though nothing is wrong: the N-th allocation, queue put, file write, ...
-
-The method of one processor's service is wrapped, under the name that applications call it by. Imports the services,
-for the names of their functions, and its neighbours.
-"""
+"""The calls of cFE, OSAL and PSP that a fault plan can let fail: their names, and what each usually fails with."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from difflib import get_close_matches
-from typing import Any
 
 from cfepy import status as codes
 from cfepy.es import ExecutiveServices
 from cfepy.evs import EventServices
-from cfepy.faults.gate import Gate
-from cfepy.faults.plan import Fault
-from cfepy.faults.report import FaultReport
-from cfepy.fs.services import FileServices
-from cfepy.ids import OS_STREAM_BASE
+from cfepy.fs import FileServices
 from cfepy.osal import Osal
 from cfepy.psp import Psp
-from cfepy.rtos import Task
 from cfepy.sb import SoftwareBus
-from cfepy.status import CfeError, OsalError, UsageError
+from cfepy.status import UsageError
+from cfepy.suggestions import did_you_mean
 from cfepy.tbl import TableServices
 from cfepy.time import TimeServices
 
@@ -57,8 +46,7 @@ def call_name(target: str) -> str:
     service, _, method = found.partition(".")
     functions = [name for name in dir(_classes()[service]) if not name.startswith("_")]
     if method not in functions:
-        near = get_close_matches(method, functions, 1)
-        hint = f"; is {service}.{near[0]} meant?" if near else ""
+        hint = did_you_mean(method, functions, before="; ", form=f"{service}.{{}}")
         raise UsageError(f"{target!r} is no function of {service}{hint}")
     return found
 
@@ -105,101 +93,3 @@ def status_of(call: str, name: str | None) -> int:
     if not isinstance(found, int) or not name.startswith(("CFE_", "OS_")):
         raise UsageError(f"{name!r} is no status; write one such as OS_QUEUE_FULL or CFE_SB_BUF_ALOC_ERR")
     return codes.to_signed(found)
-
-
-def why_not_called(fault: Fault) -> str:
-    """Why a fault of a function that nobody called never happened."""
-    call = call_name(fault.target[0])
-    hint = "; pipes are not read by it here: let CFE_SB_ReceiveBuffer fail" if call == QUEUE_GET else ""
-    return f"nobody that it is about called {call}{hint}"
-
-
-def caller_of(task: Task) -> str:
-    """The application that a task belongs to, in words."""
-    return "the system" if task.owner is None else str(task.owner.name)
-
-
-class CallFault:
-    """Lets calls of one function fail.
-
-    Args:
-        fault: what the plan says.
-        gate: which calls.
-        report: takes what happens.
-        kernel: who calls, and when.
-    """
-
-    def __init__(self, fault: Fault, gate: Gate, report: FaultReport, kernel: Any) -> None:
-        self._fault = fault
-        self._gate = gate
-        self._report = report
-        self._kernel = kernel
-        self._call = call_name(fault.target[0])
-        self._status = status_of(self._call, fault.options.get("status"))
-        self._app: str | None = fault.options.get("app")
-        self._object: str | None = fault.options.get("object")
-
-    def power_up(self, processor: Any) -> None:
-        """Stand before the function of a new processor."""
-        service_name, _, method = self._call.partition(".")
-        service = getattr(processor.cfe, service_name)
-        setattr(service, method, self._wrapped(getattr(service, method), processor))
-
-    def _wrapped(self, original: Callable[..., Any], processor: Any) -> Callable[..., Any]:
-        def call(*args: Any, **named: Any) -> Any:
-            caller = caller_of(self._kernel.current)
-            if self._is_meant(caller, args, processor) and self._gate.opens(self._kernel.now):
-                error = self._error()
-                self._report.happened(self._fault, f"lets {self._call} of {caller} fail with {error.name}")
-                raise error
-            return original(*args, **named)
-
-        return call
-
-    def put_status(self, caller: str, pipe: str) -> int | None:
-        """What the Software Bus's put into a pipe fails with, as one of these calls; None when it does not.
-
-        Args:
-            caller: who sends the message.
-            pipe: its name.
-        """
-        if self._app not in (None, caller) or self._object not in (None, pipe):
-            return None
-        if not self._gate.opens(self._kernel.now):
-            return None
-        text = f"lets {self._call} of {caller} into pipe {pipe} fail with {self._error().name}"
-        self._report.happened(self._fault, text)
-        return self._status
-
-    def _is_meant(self, caller: str, args: tuple[Any, ...], processor: Any) -> bool:
-        if self._app not in (None, caller):
-            return False
-        return self._object is None or any(self._object == name for name in _names(args, processor))
-
-    def _error(self) -> CfeError:
-        kind = OsalError if self._call.startswith(("os.", "psp.")) else CfeError
-        return kind(self._status, f"fault {self._fault.name}")
-
-
-def _names(args: tuple[Any, ...], processor: Any) -> list[str]:
-    """What the arguments of a call name: texts, and the objects whose ids they are."""
-    found = []
-    for each in args:
-        if isinstance(each, str):
-            found.append(each)
-        elif isinstance(each, int):
-            found += _name_of(each, processor)
-    return found
-
-
-def _name_of(number: int, processor: Any) -> list[str]:
-    """Names of the object that an id is: of a pipe, of an OSAL object, the path of an open file."""
-    pipe = processor.cfe.sb.find_pipe(number)
-    if pipe is not None:
-        return [pipe.name]
-    os = processor.cfe.os
-    try:
-        found = [os.get_resource_name(number)]
-        return [*found, os.fd_get_info(number).path] if os.identify_object(number) == OS_STREAM_BASE else found
-    except OsalError:
-        return []

@@ -1,12 +1,11 @@
 """`FaultInjector`: a plan at work on a mission. An attachment: the mission and its parts know nothing of it.
 
 A run without a plan has no injector and pays nothing. With one, only what its faults strike is wrapped: the bus for
-messages, the kernel's calls for applications that hang, one function for calls that fail. Imports its neighbours.
+messages, the kernel's calls for applications that hang, one function for calls that fail.
 """
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -14,31 +13,21 @@ from random import Random
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.faults import apps, memory
-from cfepy.faults.agenda import Agenda
-from cfepy.faults.bus import faulty
-from cfepy.faults.calls import QUEUE_PUT, CallFault, call_name, why_not_called
-from cfepy.faults.clocks import Drift, Jump, LostSignal
-from cfepy.faults.gate import Gate
+from cfepy.faults.apps import APP_FAULTS, AppFault, Hang, Slow, Strain
+from cfepy.faults.bus import MessageSwitchboard, faulty
+from cfepy.faults.calls import QUEUE_PUT, call_name
+from cfepy.faults.failures import CallFault, Fill, Puts, refusing, why_not_called
 from cfepy.faults.kinds import APP, APP_OPTIONS, KINDS
-from cfepy.faults.messages import CLASSES, DATAGRAM_CLASSES, MessageFault, Setting
-from cfepy.faults.names import Names
-from cfepy.faults.network import strike_datagrams
-from cfepy.faults.pipes import Fill
-from cfepy.faults.plan import Fault, FaultPlan
-from cfepy.faults.plan_text import DATAGRAMS
-from cfepy.faults.puts import Puts, refusing
+from cfepy.faults.messages import DATAGRAM_FAULTS, MESSAGE_FAULTS, MessageFault, Setting, strike_datagrams
+from cfepy.faults.names import MissionNames
+from cfepy.faults.plan import DATAGRAMS, Fault, FaultPlan
+from cfepy.faults.processor import MEMORY_FAULTS, Drift, Jump, LostSignal, ProcessorFault
 from cfepy.faults.report import FaultReport
-from cfepy.faults.resets import ProcessorFault
-from cfepy.faults.strain import Strain
-from cfepy.faults.switchboard import MessageSwitchboard
-from cfepy.sb import SoftwareBus
-from cfepy.sb.pipe import Pipe
+from cfepy.faults.timing import Agenda, Gate
+from cfepy.mission import Mission, Processor
+from cfepy.sb import Pipe, SoftwareBus
 
-NAMES = "cfepy.mission.fault_names"
-"""What knows the names in a mission; loaded by name, since it stands above this package."""
-
-Strike = Callable[[Any], object]
+Strike = Callable[[Processor], object]
 
 
 class FaultInjector(Attachment):
@@ -49,16 +38,14 @@ class FaultInjector(Attachment):
 
     Args:
         plan: the faults.
-        names: what the mission calls its messages; None finds it by itself.
 
     Attributes:
-        report: what became of the faults; there is one when the mission has begun.
+        report: the report on the faults; there is one when the mission has begun.
     """
 
-    def __init__(self, plan: FaultPlan, names: Names | None = None) -> None:
+    def __init__(self, plan: FaultPlan) -> None:
         self.plan = plan
         self.report: FaultReport
-        self._names = names
         self._board = MessageSwitchboard()
         self._puts = Puts()
         self._power_ups: list[Strike] = []
@@ -66,7 +53,7 @@ class FaultInjector(Attachment):
         self._strain: Strain | None = None
         self._gates: dict[str, Gate] = {}
         self._faults: list[Fault] = []  # of the plan, with applications by their cFE names
-        self._processor: Any = None
+        self._processor: Processor
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """See `Attachment.bus`."""
@@ -74,23 +61,23 @@ class FaultInjector(Attachment):
             base = refusing(base, self._puts)
         return faulty(base, self._board) if any(_needs_bus(fault) for fault in self.plan.faults) else base
 
-    def begin(self, mission: Any) -> None:
+    def begin(self, mission: Mission) -> None:
         """See `Attachment.begin`."""
         kernel = self._kernel = mission.kernel
         self.report = FaultReport(self.plan.faults, lambda: kernel.now, mission.console.write, mission.trace.note)
-        mission.record.faults = self
+        mission.record.tables["faults"] = self.rows
         self._agenda = Agenda(kernel)
         self._power_ups, self._first, self._strain = [], [], None
         self._gates = {
             fault.name: Gate(fault.when, Random(f"{mission.seed}:{fault.name}")) for fault in self.plan.faults
         }
-        names = self._names if self._names is not None else importlib.import_module(NAMES).MissionNames()
+        names = MissionNames()
         names.begin(mission)
         setting = Setting(kernel, self._agenda, self.report, names)
         self._faults = [_by_app(fault, names) for fault in self.plan.faults]
-        on_bus = [self._message(fault, CLASSES, setting) for fault in self._faults if _is_message(fault)]
+        on_bus = [self._message(fault, MESSAGE_FAULTS, setting) for fault in self._faults if _is_message(fault)]
         self._board.begin(on_bus, names)
-        datagrams = [self._message(f, DATAGRAM_CLASSES, setting) for f in self._faults if _is_datagram(f)]
+        datagrams = [self._message(f, DATAGRAM_FAULTS, setting) for f in self._faults if _is_datagram(f)]
         if datagrams:
             strike_datagrams(mission.network, datagrams)
         calls = {fault.name: self._call(fault) for fault in self._faults if fault.kind == "fail"}
@@ -99,7 +86,7 @@ class FaultInjector(Attachment):
             if not _is_message(fault) and not _is_datagram(fault) and fault.name not in calls:
                 self._prepare(fault)
 
-    def power_up(self, processor: Any) -> None:
+    def power_up(self, processor: Processor) -> None:
         """See `Attachment.power_up`."""
         self._processor = processor
         for strike in self._power_ups:
@@ -126,9 +113,9 @@ class FaultInjector(Attachment):
         elif fault.kind == "drift_clock":
             self._at(fault.when.after_ns, Drift(fault, gate, report, self._at).strike)
         elif fault.kind == "slow":
-            self._kernel_strain().burdens.append(apps.Slow(fault, gate, report, kernel).burden)
-        elif fault.kind in memory.CLASSES:
-            self._at_times(fault, memory.CLASSES[fault.kind](fault, gate.random, report).strike)
+            self._kernel_strain().burdens.append(Slow(fault, gate, report, kernel).burden)
+        elif fault.kind in MEMORY_FAULTS:
+            self._at_times(fault, MEMORY_FAULTS[fault.kind](fault, gate.random, report).strike)
         elif fault.kind in ("crash", "hang", "stop", "restart"):
             self._prepare_app(fault)
         else:
@@ -149,10 +136,10 @@ class FaultInjector(Attachment):
             else:
                 self._board.on_take.append(partial(self._on_take, fault, name, strike))
 
-    def _app_fault(self, fault: Fault, name: str) -> apps.AppFault:
+    def _app_fault(self, fault: Fault, name: str) -> AppFault:
         if fault.kind == "hang":
-            return apps.Hang(fault, name, self.report, self._kernel_strain())
-        return apps.CLASSES[fault.kind](fault, name, self.report)
+            return Hang(fault, name, self.report, self._kernel_strain())
+        return APP_FAULTS[fault.kind](fault, name, self.report)
 
     def _on_take(self, fault: Fault, app_name: str, strike: Strike, packet: bytes, pipe: Pipe) -> None:
         """An application takes a message: have the fault happen at this instant, if that is what it waits for."""
@@ -172,7 +159,7 @@ class FaultInjector(Attachment):
     def _at_times(self, fault: Fault, strike: Strike) -> None:
         """At its instants; what has none happens before the boot, and so does a change of memory at 0."""
         for when_ns in fault.when.at_ns or (0,):
-            if when_ns == 0 and fault.kind in memory.CLASSES:
+            if when_ns == 0 and fault.kind in MEMORY_FAULTS:
                 self._first.append(strike)
             else:
                 self._at(when_ns, strike)
@@ -198,7 +185,7 @@ def _without_occasion(fault: Fault, gate: Gate) -> str:
     return why_not_called(fault) if fault.kind == "fail" else gate.why_not()
 
 
-def _by_app(fault: Fault, names: Names) -> Fault:
+def _by_app(fault: Fault, names: MissionNames) -> Fault:
     """A fault that calls applications by their cFE names, where its plan has names of nodes."""
     options = {key: names.app(value) if key in APP_OPTIONS else value for key, value in fault.options.items()}
     is_app = KINDS[fault.kind].strikes == APP
@@ -206,11 +193,11 @@ def _by_app(fault: Fault, names: Names) -> Fault:
 
 
 def _is_datagram(fault: Fault) -> bool:
-    return fault.kind in CLASSES and fault.target[0].startswith(DATAGRAMS)
+    return fault.kind in MESSAGE_FAULTS and fault.target[0].startswith(DATAGRAMS)
 
 
 def _is_message(fault: Fault) -> bool:
-    return fault.kind in CLASSES and not _is_datagram(fault)
+    return fault.kind in MESSAGE_FAULTS and not _is_datagram(fault)
 
 
 def _is_put(fault: Fault) -> bool:
@@ -231,4 +218,4 @@ def _is_timed(fault: Fault) -> bool:
     """Whether it happens at a time, whatever goes on then."""
     if fault.kind in ("crash", "hang", "stop", "restart"):
         return not _counts_messages(fault)
-    return fault.kind in ("fill", "jump_clock", "reset", "drift_clock", *memory.CLASSES)
+    return fault.kind in ("fill", "jump_clock", "reset", "drift_clock", *MEMORY_FAULTS)

@@ -1,9 +1,8 @@
 """What can happen to one message on its way: lost, doubled, late, out of order, changed.
 
 A fault gets the bytes and a function that sends them on, which it calls as often and as late as it likes. So faults of
-several kinds can strike the same message, and it does not matter whether it is on the bus or on the network. A long ROS
-message goes out in segments; a fault strikes all of them alike, unless its unit is the segment. Imports its neighbours
-and cfepy.msg.
+several kinds can strike the same message, and it does not matter whether it is on the bus or a datagram on the network.
+A long ROS message goes out in segments; a fault strikes all of them alike, unless its unit is the segment.
 """
 
 from __future__ import annotations
@@ -13,24 +12,24 @@ from collections.abc import Callable, Sequence
 from random import Random
 from typing import Any
 
-from cfepy.faults.agenda import Agenda
-from cfepy.faults.gate import Gate
-from cfepy.faults.names import Names
+from cfepy.faults.names import MissionNames, matches
 from cfepy.faults.plan import Fault
 from cfepy.faults.report import FaultReport
+from cfepy.faults.timing import Agenda, Gate
 from cfepy.msg import CMD_HEADER_SIZE, PRIMARY_HEADER_SIZE, generate_checksum, get_header_size
+from cfepy.rtos import Kernel
 from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
 
 Send = Callable[[bytes], object]
-
 WHOLE, FIRST, LAST = 0xC0, 0x40, 0x80  # sequence flags in byte 2 of a packet
-DEFAULT_WITHIN_NS = 1_000_000_000
+DEFAULT_WITHIN_NS = NS_PER_S
 
 
 class Setting:
     """What all faults on messages need of the run: time, agenda, report, names."""
 
-    def __init__(self, kernel: Any, agenda: Agenda, report: FaultReport, names: Names) -> None:
+    def __init__(self, kernel: Kernel, agenda: Agenda, report: FaultReport, names: MissionNames) -> None:
         self.kernel = kernel
         self.agenda = agenda
         self.report = report
@@ -96,14 +95,14 @@ class MessageFault(ABC):
         """A message that it is about went on, struck or not."""
 
 
-class Drop(MessageFault):
+class DropMessage(MessageFault):
     """It gets lost."""
 
     def act(self, data: bytes, flags: int, send: Send) -> None:
         """Nothing is sent."""
 
 
-class Duplicate(MessageFault):
+class DuplicateMessage(MessageFault):
     """It comes more than once: of a long message, the whole of it again after its last segment."""
 
     def __init__(self, fault: Fault, gate: Gate, setting: Setting) -> None:
@@ -124,7 +123,7 @@ class Duplicate(MessageFault):
                 send(part)
 
 
-class Delay(MessageFault):
+class DelayMessage(MessageFault):
     """It comes later; the segments of a message all by the same time."""
 
     def __init__(self, fault: Fault, gate: Gate, setting: Setting) -> None:
@@ -147,7 +146,7 @@ class Delay(MessageFault):
         self.setting.agenda.add(self.setting.kernel.now + self._by, lambda: send(data))
 
 
-class Reorder(MessageFault):
+class ReorderMessage(MessageFault):
     """It comes after later ones, or after a time when none come."""
 
     def __init__(self, fault: Fault, gate: Gate, setting: Setting) -> None:
@@ -176,7 +175,7 @@ class Reorder(MessageFault):
             held[1]()
 
 
-class Corrupt(MessageFault):
+class CorruptMessage(MessageFault):
     """It comes changed: bits, bytes or fields of it; of a long message, its first segment."""
 
     def is_possible(self, data: bytes) -> bool:
@@ -215,7 +214,7 @@ class Corrupt(MessageFault):
         return size if size < len(data) else PRIMARY_HEADER_SIZE
 
 
-class CorruptDatagram(Corrupt):
+class CorruptDatagram(CorruptMessage):
     """The same of a datagram, all of which is data."""
 
     def _header(self, data: bytes) -> int:
@@ -256,14 +255,16 @@ def _with_checksum(packet: bytes) -> bytes:
     return bytes(command)
 
 
-CLASSES: dict[str, type[MessageFault]] = {
-    "drop": Drop,
-    "duplicate": Duplicate,
-    "delay": Delay,
-    "reorder": Reorder,
-    "corrupt": Corrupt,
+MESSAGE_FAULTS: dict[str, type[MessageFault]] = {
+    "drop": DropMessage,
+    "duplicate": DuplicateMessage,
+    "delay": DelayMessage,
+    "reorder": ReorderMessage,
+    "corrupt": CorruptMessage,
 }
-DATAGRAM_CLASSES: dict[str, type[MessageFault]] = {**CLASSES, "corrupt": CorruptDatagram}
+
+
+DATAGRAM_FAULTS: dict[str, type[MessageFault]] = {**MESSAGE_FAULTS, "corrupt": CorruptDatagram}
 
 
 def pass_through(
@@ -282,7 +283,7 @@ def pass_through(
     struck = [fault for fault in faults if fault.strikes(data, flags, stream)]  # each is asked, whatever others do
     for number, fault in enumerate(struck):
         fault.tell(flags, where)
-        if isinstance(fault, Drop):
+        if isinstance(fault, DropMessage):
             for other in struck[number + 1 :]:
                 other.setting.report.missed(other.fault, f"{fault.fault.name} has dropped the message before")
             struck = struck[: number + 1]
@@ -296,3 +297,22 @@ def pass_through(
 
 def _through(fault: MessageFault, flags: int, send: Send) -> Send:
     return lambda data: fault.act(data, flags, send)
+
+
+def strike_datagrams(network: Any, faults: Sequence[MessageFault]) -> None:
+    """Let every datagram of a mission's network meet faults; a target "udp:1234" is those to that port."""
+    original = network.send
+
+    def send(datagram: Any) -> bool:
+        name = f"udp:{datagram.target.port}"
+        about = [fault for fault in faults if matches((name,), fault.fault.target)]
+        if not about:
+            return bool(original(datagram))
+        taken: list[bool] = []
+        where = f"a datagram of {len(datagram.data)} bytes to {name}"
+        pass_through(
+            about, datagram.data, WHOLE, name, where, lambda data: taken.append(original(datagram._replace(data=data)))
+        )
+        return all(taken)
+
+    network.send = send

@@ -1,33 +1,26 @@
-"""By which names a plan calls the messages on the bus, and which faults a name strikes. Imports nothing of cfepy."""
+"""The names by which a fault plan calls the messages and applications of a mission, and the fields of its messages.
+
+ROS topics go by their names, commands and telemetry by those of the dictionary, all of them by MsgId; an application
+with a node in it goes by its cFE name or by the node's name.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
+from cfepy import msg
+from cfepy.ground import Dictionary, Topic, dictionary_of, library_of, names_of, topics_of
+from cfepy.mission import Mission, MissionSpec
+from cfepy.msg import Command, Telemetry
+from cfepy.status import CfeError, UsageError
 
-class Names(Protocol):
-    """What a mission knows of its messages; `cfepy.mission.fault_names.MissionNames` is one."""
+if TYPE_CHECKING:
+    from rospy_shim.graph.graph import TopicEntry
 
-    def begin(self, mission: Any) -> None:
-        """The mission was made, and nothing of it has run."""
-
-    def version(self) -> object:
-        """Something that changes when names come up that were not known before."""
-
-    def of(self, packet: bytes | bytearray) -> Sequence[str]:
-        """All names of a packet, the one to show first; its MsgId as "0x0801" is one."""
-
-    def app(self, name: str) -> str:
-        """The cFE name of a node's application, by the node's name, such as "/arm_control"; any other name as it is."""
-
-    def edit(self, packet: bytes, values: Mapping[str, Any]) -> bytes:
-        """A packet with some fields set.
-
-        Raises:
-            UsageError: it has no such fields, or they cannot have such values.
-        """
+_STEP = re.compile(r"[^.\[\]]+")
 
 
 def matches(names: Sequence[str], targets: Sequence[str]) -> bool:
@@ -41,3 +34,128 @@ def number_as_name(target: str) -> str:
         return f"0x{int(target, 0):04X}"
     except ValueError:
         return target
+
+
+def apps_of_nodes(spec: MissionSpec) -> dict[str, str]:
+    """cFE names of applications by the names of the nodes in them, as far as the mission file gives these."""
+    named = ((node.app, node.namespace, node.name) for node in spec.ros.nodes.values() if node.name is not None)
+    return {f"{namespace.rstrip('/')}/{name}": app for app, namespace, name in named}
+
+
+class MissionNames:
+    """What one mission calls its messages; what it executes to find out is what `cfepy cmd` executes, too."""
+
+    def __init__(self) -> None:
+        self._mission: Mission | None = None
+        self._dictionary = Dictionary()
+        self._constants: dict[int, str] = {}
+
+    def begin(self, mission: Mission) -> None:
+        """The mission was made, and nothing of it has run."""
+        self._mission = mission
+        self._dictionary = dictionary_of(mission.spec)
+        self._constants = names_of(mission.spec)
+
+    def version(self) -> object:
+        """Something that changes when names come up that were not known before."""
+        ros = None if self._mission is None else self._mission.ros
+        return None if ros is None else (id(ros), len(ros.graph.topics))
+
+    def of(self, packet: bytes | bytearray) -> Sequence[str]:
+        """All names of a packet, the one to show first; its MsgId as "0x0801" is one."""
+        msg_id = packet[0] << 8 | packet[1]
+        topic, entry = self._topic(msg_id), self._entry(packet)
+        names = [each.name for each in (topic, entry) if each is not None]
+        return (*names, *filter(None, [self._constants.get(msg_id)]), f"0x{msg_id:04X}")
+
+    def known(self) -> list[str]:
+        """All names that there are at this time, sent or not."""
+        topics = topics_of(self._mission) if self._mission is not None else []
+        numbers = [f"0x{msg_id:04X}" for msg_id in self._constants]
+        declared = (*self._dictionary.telemetry, *self._dictionary.commands, *self._constants.values())
+        return [*(topic.name for topic in topics), *declared, *numbers]
+
+    def _topic(self, msg_id: int) -> TopicEntry | None:
+        ros = None if self._mission is None else self._mission.ros
+        topics = () if ros is None else ros.graph.topics.values()
+        return next((topic for topic in topics if topic.msg_id == msg_id), None)
+
+    def _entry(self, packet: bytes | bytearray) -> Command | Telemetry | Topic | None:
+        """The declaration of a packet that an application has."""
+        msg_id = packet[0] << 8 | packet[1]
+        if not msg_id & 0x1000:
+            return next((each for each in self._dictionary.telemetry.values() if each.msg_id == msg_id), None)
+        code = packet[6] & 0x7F if len(packet) > 6 else 0
+        commands = [each for each in self._dictionary.commands.values() if each.msg_id == msg_id]
+        return next((each for each in commands if (each.code or 0) == code), None)
+
+    def app(self, name: str) -> str:
+        """The cFE name of a node's application, by the node's name, such as "/arm_control"; any other name as it is."""
+        return name if self._mission is None else apps_of_nodes(self._mission.spec).get(name, name)
+
+    def edit(self, packet: bytes, values: Mapping[str, Any]) -> bytes:
+        """A packet with some fields set.
+
+        Raises:
+            UsageError: it has no such fields, or they cannot have such values.
+        """
+        topic = self._topic(packet[0] << 8 | packet[1])
+        if topic is not None and not topic.raw:
+            return self._edit_message(packet, topic.name, values)
+        entry = self._entry(packet)
+        if not isinstance(entry, Command | Telemetry):
+            raise UsageError(f"the layout of {self.of(packet)[0]} is not known, so no field of it can be set")
+        header = msg.get_header_size(packet)
+        try:
+            fields = entry.read(packet)
+            for path, value in values.items():
+                _set(fields, path, value, entry.name)
+            return packet[:header] + entry.payload.pack(fields)
+        except CfeError as error:
+            raise UsageError(str(error)) from None
+
+    def _edit_message(self, packet: bytes, name: str, values: Mapping[str, Any]) -> bytes:
+        assert self._mission is not None
+        topic = next(each for each in topics_of(self._mission) if each.name == name)
+        if msg.get_segmentation_flag(packet) != msg.SegmentationFlag.UNSEGMENTED:
+            raise UsageError(f"a message on {name} is sent in segments; no field of one can be set")
+        try:
+            message = library_of(topic).message_class(topic.type)().deserialize(packet[msg.TLM_HEADER_SIZE :])
+            for path, value in values.items():
+                _set(message, path, value, name)
+            payload = message._pack()
+        except UsageError:
+            raise
+        except Exception as error:  # whatever the generated code raises for values that do not fit
+            raise UsageError(f"{name}: {error}") from None
+        changed = bytearray(packet[: msg.TLM_HEADER_SIZE] + payload)
+        msg.set_size(changed, len(changed))
+        return bytes(changed)
+
+
+def _set(whole: Any, path: str, value: Any, owner: str) -> None:
+    """Set a field by its path, such as "pose.position.x" or "ranges[3]".
+
+    Raises:
+        UsageError: there is no such field.
+    """
+    try:
+        _changed(whole, _STEP.findall(path), value)
+    except (AttributeError, LookupError, ValueError, TypeError):
+        raise UsageError(f"{owner} has no field {path} that can be set so") from None
+
+
+def _changed(whole: Any, steps: Sequence[str], value: Any) -> Any:
+    """A value in which the part that the steps lead to is another; what cannot be changed in place is made anew."""
+    if not steps:
+        return value
+    step = steps[0]
+    if isinstance(whole, dict):
+        whole[step] = _changed(whole[step], steps[1:], value)
+    elif isinstance(whole, list | tuple | bytes):
+        parts = list(whole)
+        parts[int(step)] = _changed(parts[int(step)], steps[1:], value)
+        return type(whole)(parts)
+    else:
+        setattr(whole, step, _changed(getattr(whole, step), steps[1:], value))
+    return whole

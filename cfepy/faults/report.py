@@ -1,7 +1,4 @@
-"""What became of each fault of a plan: how often it happened, when, and why it never did.
-
-Imports its neighbours only.
-"""
+"""The report on each fault of a plan: how often it happened and when, or why it never did."""
 
 from __future__ import annotations
 

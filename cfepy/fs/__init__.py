@@ -1,10 +1,12 @@
-"""File services (CFE_FS): on bytes and text, file and table headers, CRC, file names; in `services`, `cfe.fs`.
+"""File services (CFE_FS): file and table headers, CRC, file names; in `services`, `cfe.fs`.
 
-What is exported here is usable without a mission and imports only cfepy.status.
+What belongs here knows how cFE's files are laid out and named, or writes files in the background. What a particular
+file contains belongs to the service that writes it. All names below but `FileServices` are usable without a mission.
 """
 
 from __future__ import annotations
 
+from cfepy.fs.background import FileWriteEvent, FileWriteMetaData
 from cfepy.fs.crc import CRC_8, CRC_16, CRC_32, CRC_NONE, calculate_crc, crc16
 from cfepy.fs.filename import (
     MAX_PATH_LEN,
@@ -21,8 +23,19 @@ from cfepy.fs.filename import (
 )
 from cfepy.fs.header import (
     CONTENT_ID,
+    DESCRIPTION_SIZE,
     HEADER_SIZE,
+    SUBTYPE_ES_ERLOG,
+    SUBTYPE_ES_PERFDATA,
+    SUBTYPE_EVS_APPDATA,
+    SUBTYPE_EVS_EVENTLOG,
+    SUBTYPE_SB_MAPDATA,
+    SUBTYPE_SB_PIPEDATA,
+    SUBTYPE_SB_ROUTEDATA,
+    SUBTYPE_TBL_IMG,
+    SUBTYPE_TBL_REG,
     TABLE_HEADER_SIZE,
+    TABLE_NAME_SIZE,
     TIMESTAMP_OFFSET,
     FileHeader,
     TableHeader,
@@ -33,6 +46,7 @@ from cfepy.fs.header import (
     stamp_header,
     write_table_file,
 )
+from cfepy.fs.services import FileServices
 
 __all__ = [
     "CONTENT_ID",
@@ -40,15 +54,29 @@ __all__ = [
     "CRC_16",
     "CRC_32",
     "CRC_NONE",
+    "DESCRIPTION_SIZE",
     "HEADER_SIZE",
     "MAX_PATH_LEN",
     "MODULE_EXTENSION",
     "NONVOL_MOUNT_POINT",
     "RAM_MOUNT_POINT",
+    "SUBTYPE_ES_ERLOG",
+    "SUBTYPE_ES_PERFDATA",
+    "SUBTYPE_EVS_APPDATA",
+    "SUBTYPE_EVS_EVENTLOG",
+    "SUBTYPE_SB_MAPDATA",
+    "SUBTYPE_SB_PIPEDATA",
+    "SUBTYPE_SB_ROUTEDATA",
+    "SUBTYPE_TBL_IMG",
+    "SUBTYPE_TBL_REG",
     "TABLE_HEADER_SIZE",
+    "TABLE_NAME_SIZE",
     "TIMESTAMP_OFFSET",
     "FileCategory",
     "FileHeader",
+    "FileServices",
+    "FileWriteEvent",
+    "FileWriteMetaData",
     "TableHeader",
     "calculate_crc",
     "crc16",

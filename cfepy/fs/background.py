@@ -1,8 +1,7 @@
 """Files that are written bit by bit by a background task (CFE_FS_BackgroundFileDump*).
 
-Whoever has much to write describes it in a `FileWriteMetaData` and goes on; the background task of Executive Services
-asks for one record after the other, as many bytes a second as it may, and tells how it ended. Imports only
-cfepy.status, cfepy.osal and its neighbours here.
+Code that has much to write describes it in a `FileWriteMetaData` and goes on; the background task of Executive Services
+asks for one record after the other, as many bytes a second as it may, and reports how it ended.
 """
 
 from __future__ import annotations
@@ -12,8 +11,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 from cfepy.fs.header import HEADER_SIZE, FileHeader, init_header
-from cfepy.osal import Osal
-from cfepy.osal.limits import OS_FILE_FLAG_CREATE, OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY
+from cfepy.osal import OS_FILE_FLAG_CREATE, OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY, Osal
 from cfepy.status import (
     CFE_FS_BAD_ARGUMENT,
     CFE_FS_INVALID_PATH,

@@ -1,7 +1,6 @@
 """The cyclic redundancy checks of CFE_ES_CalculateCRC: table images, CDS blocks and code segments are guarded by them.
 
 cFE computes CRC-16/ARC alone; its CRC_8 and CRC_32 have been names without an algorithm from the start and give 0.
-Imports nothing of cfepy.
 """
 
 from __future__ import annotations

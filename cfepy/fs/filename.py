@@ -1,7 +1,6 @@
 """File names as people and commands give them, completed with the default directory and extension of their kind.
 
-Stands for CFE_FS_ParseInputFileName and its relatives. Works on text alone and opens nothing. Imports only
-cfepy.status.
+Stands for CFE_FS_ParseInputFileName and the like. Works on text alone and opens nothing.
 """
 
 from __future__ import annotations

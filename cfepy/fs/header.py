@@ -1,7 +1,7 @@
 """The headers at the front of cFE's files: the 64-byte cFE file header and the 52-byte table header after it.
 
 Both are big-endian whatever the processor (CFE_FS_Header_t, CFE_TBL_File_Hdr_t). Works on bytes; opening files is up to
-the caller. Imports only cfepy.status.
+the caller.
 """
 
 from __future__ import annotations

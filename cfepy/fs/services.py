@@ -1,7 +1,7 @@
 """`FileServices`: what an application finds as `cfe.fs` (cFE's File Services).
 
 The functions of cfe_fs.h: those on open files and the background writes are methods here, the others are the pure
-functions of this package. Imports only cfepy.config, ports, status, cfepy.osal and its neighbours here.
+functions of this package.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from cfepy.config import PlatformConfig
 from cfepy.fs import filename, header
 from cfepy.fs.background import BackgroundWriter, FileWriteMetaData
 from cfepy.fs.header import HEADER_SIZE, TIMESTAMP_OFFSET, FileHeader
-from cfepy.osal import Osal
-from cfepy.osal.limits import OS_SEEK_SET
+from cfepy.osal import OS_SEEK_SET, Osal
 from cfepy.ports import Ports
 from cfepy.status import CFE_FS_BAD_ARGUMENT, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError, UsageError
 

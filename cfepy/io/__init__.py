@@ -1,4 +1,42 @@
-"""The real world at the edge of a paced run: real sockets on the loopback interface. May import everything but the CLI.
+"""Real sockets of this computer, through which a run and a ground system reach the world outside.
 
-Nothing in the simulation knows of this package; whoever runs a mission puts it beside the pacer.
+What belongs here opens a real socket, or waits for somebody outside: the bridge of a paced run to the loopback
+interface (`host_network`), the datagrams that a ground system sends and receives (`udp`), and lines that are typed
+(`typed_lines`). The simulation does not know of this package; the command that runs a mission joins the bridge to it.
+When input from outside comes in is decided in `cfepy.mission`.
+
+The names below are loaded when they are first used.
 """
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.io.host_network import HostNetwork
+    from cfepy.io.typed_lines import TypedLines
+    from cfepy.io.udp import UdpListener, own_address, send
+
+__all__ = [
+    "HostNetwork",
+    "TypedLines",
+    "UdpListener",
+    "own_address",
+    "send",
+]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".host_network": ("HostNetwork",),
+            ".typed_lines": ("TypedLines",),
+            ".udp": (
+                "UdpListener",
+                "own_address",
+                "send",
+            ),
+        },
+    )

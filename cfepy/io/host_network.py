@@ -1,9 +1,9 @@
 """The bridge between a mission's virtual network and this computer's loopback interface.
 
 A port that an application binds opens on 127.0.0.1 too; what arrives there enters the mission at the virtual instant at
-which the run stands, with a note in the trace. A datagram that nobody in the mission is bound for goes out to
+which the run stands, with a note in the trace. A datagram for which no socket in the mission is bound goes out to
 127.0.0.1. No other interface is touched. The pacer sleeps in `wait`, which input ends; after every piece of the run
-`exchange` moves what there is. May import cfepy.mission and what is left of it.
+`exchange` moves all bytes that wait. Each TCP connection is a `HostConnection`: a real socket joined to a virtual one.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ import time
 from collections.abc import Callable, Mapping
 from types import TracebackType
 
-from cfepy.io.connection import Connection
-from cfepy.mission.ground import GroundLink
-from cfepy.mission.mission import Mission
-from cfepy.osal.endpoints import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Place, Stream
+from cfepy.ground import GroundLink
+from cfepy.mission import Mission, OutsideStream
+from cfepy.osal import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Place, Stream
 from cfepy.status import UsageError
 
 LOOPBACK = "127.0.0.1"
 DIAL_S = 1.0  # wall time; a program on the same computer answers at once
 MOST_AT_ONCE = 256  # datagrams of a port that are brought in between two pieces of a run
 UDP, TCP = "UDP", "TCP"
+CHUNK = 65_536
 
 
 class HostNetwork:
@@ -47,7 +47,7 @@ class HostNetwork:
         self._ports = dict(ports or {})
         self._tell = tell
         self._open: dict[tuple[str, int], socket.socket] = {}
-        self._connections: list[Connection] = []
+        self._connections: list[HostConnection] = []
         self._outbox: list[Datagram] = []
         self._anonymous = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._anonymous.setblocking(False)
@@ -160,7 +160,7 @@ class HostNetwork:
     def _for_replies(self, port: int) -> socket.socket:
         """What sends for a port that is not open on this computer: a socket to which the answers come, while it lives.
 
-        For a port that has been given back meanwhile it is one that nobody reads from.
+        For a port that has been given back meanwhile, the socket's answers are not read.
         """
         if (False, port) not in self._mission.network.datagrams.bound:
             return self._anonymous
@@ -179,7 +179,7 @@ class HostNetwork:
     # -- connections -------------------------------------------------------------------------------------------------
 
     def _dial(self, source: Place, target: Place) -> Stream | None:
-        """Connect somebody of the mission with a program on this computer; None when none listens there."""
+        """Connect a program of the mission with one on this computer; None when none listens there."""
         if target.is_ip6:
             return self._joined(source, target, None)
         host = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
@@ -192,28 +192,28 @@ class HostNetwork:
         return self._joined(source, target, host)
 
     def _joined(self, source: Place, target: Place, host: socket.socket | None) -> Stream | None:
-        """The mission's end of a connection with a real socket; without one, nobody has answered."""
+        """The mission's end of a connection with a real socket; without one, the connection is refused."""
         ends = self._mission.outside.answer(source, target, host is not None)
         if ends is None or host is None:
             return None
         near, far = ends
-        self._connections.append(Connection(host, far))
+        self._connections.append(HostConnection(host, far))
         return near
 
     def _accept(self, port: int, opened: socket.socket) -> None:
         while self._has_room(port):
             try:
                 host, (name, source) = opened.accept()
-            except OSError:  # nobody more there
+            except OSError:  # no more connections
                 return
             stream = self._mission.outside.call(port, Place(name, source))
             if stream is None:
                 host.close()
             else:
-                self._connections.append(Connection(host, stream))
+                self._connections.append(HostConnection(host, stream))
 
     def _listener(self, port: int) -> Listener | None:
-        """Who takes connections at a port of the mission; None when nobody does any more."""
+        """The listener at a port of the mission; None when it is gone."""
         listener = self._mission.network.streams.find(Place(LOOPBACK, port))
         return listener if listener is not None and listener.listening else None
 
@@ -224,5 +224,76 @@ class HostNetwork:
 
 
 def _is_public(endpoint: Endpoint) -> bool:
-    """Whether somebody outside could want to reach an endpoint."""
+    """Whether a program outside could want to reach an endpoint."""
     return endpoint.listening if isinstance(endpoint, Listener) else not endpoint.anonymous
+
+
+class HostConnection:
+    """Moves bytes both ways; each side holds the other back when it does not read.
+
+    Args:
+        host: the real socket, connected.
+        stream: the end of the virtual connection that stands for it.
+
+    Attributes:
+        host: the real socket.
+    """
+
+    def __init__(self, host: socket.socket, stream: OutsideStream) -> None:
+        self.host = host
+        self._stream = stream
+        self._pending = b""  # left the virtual side, not yet taken by the real one
+        self._host_ended = self._stream_ended = False
+        host.setblocking(False)
+
+    @property
+    def wants_to_read(self) -> bool:
+        """Whether bytes of the real side would find room."""
+        return not self._host_ended and self._stream.room > 0
+
+    @property
+    def wants_to_write(self) -> bool:
+        """Whether there are bytes that the real side did not take yet."""
+        return bool(self._pending)
+
+    def move(self) -> bool:
+        """Move what can be moved; False when the connection is over and closed."""
+        try:
+            self._bring_in()
+            self._send_out()
+        except BlockingIOError:
+            return True
+        except OSError:  # the other program is gone
+            self.close()
+            return False
+        if self._stream_ended and (self._host_ended or self._stream.alone):
+            self.close()
+            return False
+        return True
+
+    def close(self) -> None:
+        """End both sides."""
+        self._stream.close()
+        self.host.close()
+
+    def _bring_in(self) -> None:
+        while self.wants_to_read:
+            try:
+                data = self.host.recv(min(CHUNK, self._stream.room))
+            except BlockingIOError:
+                return
+            if not data:
+                self._host_ended = True
+                self._stream.end()
+                return
+            self._stream.write(data)
+
+    def _send_out(self) -> None:
+        while self._pending or self._stream.readable:
+            self._pending = self._pending or self._stream.read(CHUNK)
+            if not self._pending:
+                break
+            self._pending = self._pending[self.host.send(self._pending) :]
+        if self._stream.ended and not self._stream_ended:
+            self._stream_ended = True
+            self.host.shutdown(socket.SHUT_WR)

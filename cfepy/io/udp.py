@@ -1,4 +1,4 @@
-"""UDP datagrams to and from a flight computer: what a ground system needs of the host's sockets."""
+"""UDP datagrams to and from a flight computer, through the host's sockets."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from types import TracebackType
 from cfepy.status import UsageError
 
 LARGEST = 65535
-REFUSAL_S = 0.02  # in which a computer at hand says that nobody listens
+REFUSAL_S = 0.02  # in which a computer nearby answers that no program listens
 
 
 def send(host: str, port: int, data: bytes) -> bool:
@@ -20,7 +20,7 @@ def send(host: str, port: int, data: bytes) -> bool:
         data: its bytes.
 
     Returns:
-        False when the host answers that nobody listens at the port. True does not say that it arrived.
+        False when the host answers that no program listens at the port. True does not say that it arrived.
 
     Raises:
         UsageError: there is no such host, or no way to it.
@@ -55,7 +55,7 @@ def own_address(host: str) -> str:
         return address
 
 
-class Listener:
+class UdpListener:
     """A port that datagrams arrive at; use as a context manager.
 
     Args:
@@ -91,7 +91,7 @@ class Listener:
         except TimeoutError:
             return None
 
-    def __enter__(self) -> Listener:
+    def __enter__(self) -> UdpListener:
         return self
 
     def __exit__(

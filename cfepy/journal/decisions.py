@@ -1,23 +1,23 @@
-"""The decisions of a run's policy: noted while it runs, given again when it is replayed. May import cfepy.rtos."""
+"""The decisions of a run's policy: noted while it runs, given again when it is replayed."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from cfepy.rtos.policy import Decision, Policy
+from cfepy.rtos import Decision, Policy
 
 
 def settings_of(policy: Policy) -> dict[str, Any]:
-    """What a policy tells the kernel beside its answers, such as `any_priority`."""
+    """The settings of a policy that the kernel reads besides its answers, such as `any_priority`."""
     return {name: value for name, value in vars(policy).items() if not name.startswith("_")}
 
 
-class NotedPolicy(Policy):
+class JournalPolicy(Policy):
     """Asks another policy, and keeps what is not fifo's answer.
 
     Args:
-        inner: who decides.
+        inner: the policy that decides.
 
     Attributes:
         count: how many decisions there were.

@@ -1,7 +1,4 @@
-"""What a mission can find out about the computer and the user: versions, environment, operating system.
-
-May import cfepy.mission.
-"""
+"""What a mission can find out about the computer and the user: versions, environment, operating system."""
 
 from __future__ import annotations
 
@@ -13,9 +10,8 @@ from functools import cache
 from hashlib import blake2b
 from pathlib import Path
 
-import cfepy
-from cfepy.mission.launch import KEPT_ENVIRONMENT
-from cfepy.mission.spec import MissionSpec
+from cfepy import __version__
+from cfepy.mission import KEPT_ENVIRONMENT, MissionSpec
 from cfepy.resources import shipped
 from cfepy.versions import CFE_VERSION
 
@@ -25,12 +21,12 @@ _SECRET = re.compile(r"TOKEN|SECRET|PASSW|PASSPHRASE|CREDENTIAL|API_?KEY|PRIVATE
 def versions() -> dict[str, str]:
     """Of cfepy, cFE and Python; `source` stands for cfepy's own files, which may change between two versions."""
     python = platform.python_version()
-    return {"cfepy": cfepy.__version__, "cfe": CFE_VERSION, "python": python, "source": _source()}
+    return {"cfepy": __version__, "cfe": CFE_VERSION, "python": python, "source": _source()}
 
 
 def own_places() -> tuple[str, ...]:
     """The folders of cfepy's own files, shipped applications and boards among them."""
-    package = Path(cfepy.__file__).resolve().parent
+    package = Path(__file__).resolve().parents[1]
     return tuple(map(str, (package, package.parent / "rospy_shim", shipped("apps"), shipped("boards"))))
 
 

@@ -1,7 +1,4 @@
-"""What two journals differ in beside their records: plan, board, schedule, versions, files. Lines for a person.
-
-May import its neighbours in cfepy.journal.
-"""
+"""How two journals differ apart from their records, as lines of text: plan, board, schedule, versions, files."""
 
 from __future__ import annotations
 
@@ -10,9 +7,9 @@ from itertools import zip_longest
 from typing import Any
 
 from cfepy.journal.journal import Journal
-from cfepy.journal.mission_files import FileRecord
+from cfepy.journal.mission_files import MissionFile
 
-_INNOCENT = ("words", "launch_args")  # how somebody named the mission; what it is, its files say
+_INNOCENT = ("words", "launch_args")  # how the user named the mission; its files say what it is
 
 
 def differences(one: Journal, other: Journal) -> Iterator[str]:
@@ -47,13 +44,13 @@ def _changes(
             yield f"{what}{name}: {mine}, {theirs}"
 
 
-def _by_name(journal: Journal) -> dict[str, FileRecord]:
+def _by_name(journal: Journal) -> dict[str, MissionFile]:
     """Files of the mission's folder by their path in it, others by their whole path."""
     folder = f"{journal.header.folder}/"
     return {path.removeprefix(folder): each for path, each in journal.files.items()}
 
 
-def _files(one: Mapping[str, FileRecord], other: Mapping[str, FileRecord]) -> Iterator[str]:
+def _files(one: Mapping[str, MissionFile], other: Mapping[str, MissionFile]) -> Iterator[str]:
     for name in sorted({*one, *other}):
         mine, theirs = one.get(name), other.get(name)
         if mine is None or theirs is None:
@@ -62,7 +59,7 @@ def _files(one: Mapping[str, FileRecord], other: Mapping[str, FileRecord]) -> It
             yield f"file {name}: not the same{_place(mine, theirs)}"
 
 
-def _place(one: FileRecord, other: FileRecord) -> str:
+def _place(one: MissionFile, other: MissionFile) -> str:
     """The first line that differs, if both are text and the journals carry them."""
     if one.data is None or other.data is None:
         return ""

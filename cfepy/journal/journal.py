@@ -1,23 +1,32 @@
-"""`Journal`: everything that decided a run, and what it came to, as plain values; and how to read one from its file.
+"""`Journal`: everything that decided a run, and its results, as plain values; and the file that it is kept in.
 
-May import cfepy.mission and its neighbours in cfepy.journal.
+The file is a mark, then frames, each with its length and checksum, so that a broken file is recognised. A frame is
+written in one go and handed to the operating system at once: a process that is killed leaves all frames but at most the
+last one. A frame is `<II` (bytes that follow, their CRC-32) and a msgpack array: its kind, and a mapping.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+import struct
+import zlib
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
+from hashlib import blake2b
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cfepy.journal.frames import JournalError, read_frames
-from cfepy.journal.mission_files import FileRecord, hash_of
-from cfepy.mission.course import BROKEN_OFF
-from cfepy.mission.outside import Event
-from cfepy.mission.run_plan import RunPlan
+from cfepy.journal.mission_files import MissionFile, hash_of
+from cfepy.mission import Arrival
+from cfepy.pilot import STALLED, SUDDEN, Results, RunPlan
+from cfepy.status import UsageError
 
 FORMAT = 1
 HEADER, FILE, FOLDER, PAUSE, ANSWER, CHECK, END = "header", "file", "folder", "pause", "answer", "check", "end"
+MARK = b"cfepy journal\r\n\x1a"
+LARGEST = 1 << 30  # bytes of a frame; a length beyond is no length
+_head = struct.Struct("<II")
+_NOT_OF_THE_RUN = ("wall_s", "speed", "tasks", "trace")
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +36,7 @@ class Header:
     Attributes:
         plan: what was run, and on what.
         paced: times real time, when it was joined to the network of its computer; None for one that was not.
-        policy: what the policy told the kernel beside its answers (`cfepy.rtos.policy`); None for plain fifo.
+        policy: the settings of the policy, besides its answers (`cfepy.rtos.policy`); None for plain fifo.
         mission: its name; `folder` is what shows as /cf, `startup` what it was read from, as paths of the computer.
         cwd: the working directory.
         environ: environment variables that the mission could see.
@@ -72,7 +81,7 @@ class Pause:
 
     until_ns: int
     visits: int
-    events: list[Event] = field(default_factory=list)
+    events: list[Arrival] = field(default_factory=list)
 
 
 class Checkpoint(NamedTuple):
@@ -88,7 +97,7 @@ class End:
     """The end of a run.
 
     Attributes:
-        reason: OVER, INTERRUPTED or BROKEN_OFF (`cfepy.mission.course`).
+        reason: OVER, INTERRUPTED, BROKEN_OFF or STALLED (`cfepy.pilot.course`).
         until_ns: the virtual time until which it was let go on at last.
         visits: the how manyeth time in a row that was until this very time, from 1.
         now_ns: virtual time at the end, after the nodes have shut down.
@@ -127,10 +136,10 @@ class Journal:
 
     path: str
     header: Header
-    files: dict[str, FileRecord] = field(default_factory=dict)
+    files: dict[str, MissionFile] = field(default_factory=dict)
     folders: dict[str, dict[str, bool]] = field(default_factory=dict)
     pauses: list[Pause] = field(default_factory=list)
-    answers: list[Event] = field(default_factory=list)
+    answers: list[Arrival] = field(default_factory=list)
     decisions: dict[int, int] = field(default_factory=dict)
     decided: int = 0
     checkpoints: list[Checkpoint] = field(default_factory=list)
@@ -150,20 +159,22 @@ class Journal:
     def known_until_ns(self) -> int:
         """The virtual time until which the journal knows the run."""
         if self.end is not None:
-            is_broken = self.end.reason == BROKEN_OFF  # in the middle of what happened at its last instant
+            if self.end.reason == STALLED:
+                return self.end.now_ns  # where the task spins again
+            is_broken = self.end.reason in SUDDEN  # in the middle of what happened at its last instant
             return self.end.now_ns - 1 if is_broken else self.end.until_ns
         return max((0, *(each.until_ns for each in self.pauses[-1:]), *(each.now_ns for each in self.checkpoints[-1:])))
 
     def _take(self, kind: str, body: dict[str, Any]) -> None:
         """What a frame says; frames of an unknown kind are a later version's."""
         if kind == FILE:
-            self.files[body["path"]] = FileRecord(**body)
+            self.files[body["path"]] = MissionFile(**body)
         elif kind == FOLDER:
             self.folders[body["path"]] = body["names"]
         elif kind == PAUSE:
             self._take_pause(Pause(body["until_ns"], body["visits"]), body["events"])
         elif kind == ANSWER:
-            self.answers.append(Event(kind, tuple(body["values"])))
+            self.answers.append(Arrival(kind, tuple(body["values"])))
         elif kind == CHECK:
             self.checkpoints.append(Checkpoint(*body["at"]))
             self._take_decisions(body["decisions"], body["decided"])
@@ -174,7 +185,7 @@ class Journal:
         last = self.pauses[-1] if self.pauses else None
         if last is None or (last.until_ns, last.visits) != (pause.until_ns, pause.visits):
             self.pauses.append(last := pause)
-        last.events.extend(Event(name, tuple(values)) for name, values in events)
+        last.events.extend(Arrival(name, tuple(values)) for name, values in events)
 
     def _take_decisions(self, gaps_and_choices: list[int], decided: int) -> None:
         number = self.decided - 1
@@ -214,3 +225,88 @@ def _read(path: str) -> Journal:
     for kind, body in frames:
         journal._take(kind, body)
     return journal
+
+
+def is_journal(path: str | Path) -> bool:
+    """Whether a file begins as a journal does.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    with open(path, "rb") as file:
+        return file.read(len(MARK)) == MARK
+
+
+class JournalError(UsageError):
+    """A file that is no journal, is broken, or is of a kind that cannot be read here."""
+
+
+class FrameWriter:
+    """Writes a journal's frames.
+
+    Args:
+        path: the file; what was in it is lost.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        import msgpack
+
+        self._pack = msgpack.Packer().pack
+        self._file = open(path, "wb", buffering=0)  # noqa: SIM115  # closed in `close`
+        self._file.write(MARK)
+
+    def write(self, kind: str, body: Mapping[str, Any]) -> None:
+        """Write a frame.
+
+        Raises:
+            OSError: the disk is full.
+        """
+        data = self._pack([kind, body])
+        frame = memoryview(_head.pack(len(data), zlib.crc32(data)) + data)
+        while frame:
+            frame = frame[self._file.write(frame) :]
+
+    def close(self) -> None:
+        """No more frames."""
+        self._file.close()
+
+
+def read_frames(path: str | Path) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The frames of a journal, kind and body; a last one that was cut off is left out.
+
+    Raises:
+        JournalError: it is no journal, or it is damaged.
+        OSError: it cannot be read.
+    """
+    import msgpack
+
+    with open(path, "rb") as file:
+        if file.read(len(MARK)) != MARK:
+            raise JournalError("is no journal; give a file that `cfepy run --record FILE` wrote", file=path)
+        while len(head := file.read(_head.size)) == _head.size:
+            size, checksum = _head.unpack(head)
+            at = file.tell()
+            data = file.read(min(size, LARGEST))
+            if len(data) < size <= LARGEST:
+                return
+            if size > LARGEST or zlib.crc32(data) != checksum:
+                raise JournalError(f"is damaged at byte {at}: the checksum is wrong; copy it again", file=path)
+            kind, body = msgpack.unpackb(data, strict_map_key=False)
+            yield kind, body
+
+
+def digest_of(results: Results, root: str = "") -> str:
+    """32 hexadecimal digits that stand for the numbers of a report, wall-clock time aside.
+
+    Args:
+        results: the numbers.
+        root: folder that paths begin with, and that does not count.
+    """
+    plain = results.to_dict()
+    for name in _NOT_OF_THE_RUN:
+        del plain[name]
+    text = json.dumps(plain, sort_keys=True)
+    return blake2b((text.replace(root, "") if root else text).encode(), digest_size=16).hexdigest()

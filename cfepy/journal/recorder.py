@@ -1,7 +1,7 @@
 """`JournalRecorder`: writes down a run while it goes on.
 
 A message costs nothing: what is written are files, what comes from outside, and how far the run has come, each time
-that some thousands of records were hashed anyway. May import cfepy.mission and its neighbours in cfepy.journal.
+that some thousands of records were hashed anyway.
 """
 
 from __future__ import annotations
@@ -13,21 +13,25 @@ from types import TracebackType
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.journal.decisions import NotedPolicy, settings_of
+from cfepy.journal.decisions import JournalPolicy, settings_of
 from cfepy.journal.facts import environ_of, host_facts, versions
-from cfepy.journal.frames import FrameWriter, is_journal
-from cfepy.journal.journal import ANSWER, CHECK, END, FILE, FOLDER, HEADER, PAUSE, Header
-from cfepy.journal.mission_files import CARRIED, MOST_FILES, Carrier, files_of
-from cfepy.journal.reading import ReadFiles
-from cfepy.journal.result_digest import digest_of
-from cfepy.mission import outside
-from cfepy.mission.course import OVER
-from cfepy.mission.mission import Mission
-from cfepy.mission.results import Results
-from cfepy.mission.run_plan import Flown, RunPlan
-from cfepy.mission.script_verdicts import Outcome
-from cfepy.rtos.policy import Policy
-from cfepy.rtos.schedule import Schedule
+from cfepy.journal.journal import (
+    ANSWER,
+    CHECK,
+    END,
+    FILE,
+    FOLDER,
+    HEADER,
+    PAUSE,
+    FrameWriter,
+    Header,
+    digest_of,
+    is_journal,
+)
+from cfepy.journal.mission_files import CARRIED, MOST_FILES, Carrier, ReadFiles, files_of
+from cfepy.mission import Mission, outside
+from cfepy.pilot import Flown, RunPlan, fly
+from cfepy.rtos import Policy
 from cfepy.status import UsageError
 
 CHECK_NS = 100_000_000  # virtual time between two marks of how far a run has come, when it stops more often
@@ -41,7 +45,10 @@ class JournalRecorder(Attachment):
         plan: what is run.
         carried: bytes of the mission's files that the journal carries; 0 for none.
         paced: times real time, for a run that is joined to the computer's network.
-        policy: who goes first in the run, None for fifo; take `policy` of the recorder for the mission.
+        policy: decides which task goes first, in place of the plan's schedule.
+
+    Attributes:
+        policy: for the mission: it decides as the given one does, and its decisions are written down; None for fifo.
 
     Raises:
         UsageError: the file cannot be written.
@@ -56,7 +63,8 @@ class JournalRecorder(Attachment):
         paced: float | None = None,
         policy: Policy | None = None,
     ) -> None:
-        self.policy = None if policy is None else NotedPolicy(policy)
+        policy = plan.schedule.policy() if policy is None else policy
+        self.policy = None if policy is None else JournalPolicy(policy)
         self._settings = None if policy is None else settings_of(policy)
         self._path = path
         self._plan = plan
@@ -115,26 +123,20 @@ class JournalRecorder(Attachment):
         mission.outside.listener = None
         self._finished = True
 
-    def end(self, results: Results, outcome: Outcome | None = None, reason: str = OVER) -> None:
-        """Write down what the run came to, after all.
-
-        Args:
-            results: its numbers.
-            outcome: of its script.
-            reason: why it is over (`cfepy.mission.course`).
-        """
+    def end(self, flown: Flown) -> None:
+        """Write down what the run came to, after all."""
         mission = self._mission
         if mission is None or not self._finished:
             return
         body = {
-            "reason": reason,
+            "reason": flown.reason,
             "until_ns": mission.outside.until_ns,
             "visits": mission.outside.visits,
             "now_ns": self._checked_ns,
             "records": self._count,
-            "trace": results.trace,
-            "results": digest_of(results),
-            "outcome": {} if outcome is None else outcome.to_dict(),
+            "trace": flown.trace,
+            "results": digest_of(flown.results),
+            "outcome": {} if flown.outcome is None else flown.outcome.to_dict(),
         }
         self._write(END, body)
 
@@ -161,11 +163,11 @@ class JournalRecorder(Attachment):
             self._files.append(path)
         elif path not in self._known and not self._is_left_out(path):
             self._known.add(path)
-            record = self._carrier.record(path)
-            self._write(FILE, {name: getattr(record, name) for name in ("path", "size", "sha256", "packed")})
+            file = self._carrier.take(path)
+            self._write(FILE, {name: getattr(file, name) for name in ("path", "size", "sha256", "packed")})
 
     def _is_left_out(self, path: str) -> bool:
-        """Whether a file that lies beside a mission is a journal, or what this run has written."""
+        """Whether a file in the folder of a mission is a journal, or what this run has written."""
         try:
             return self._reading.is_product(path) or is_journal(path)
         except OSError:
@@ -176,7 +178,7 @@ class JournalRecorder(Attachment):
         kinds = {name: os.path.isdir(os.path.join(path, name)) for name in names[:MOST_FILES]}
         self._write(FOLDER, {"path": path, "names": kinds})
 
-    def _from_outside(self, event: outside.Event) -> None:
+    def _from_outside(self, event: outside.Arrival) -> None:
         """Something comes in; it is written at once, since the run may crash of it."""
         mission = self._mission
         assert mission is not None
@@ -222,14 +224,14 @@ def record(plan: RunPlan, path: str | Path, attachments: Sequence[Attachment] = 
     Args:
         plan: what to run.
         path: of the journal.
-        attachments: what looks on.
-        options: of `RunPlan.fly`, such as console and trace.
+        attachments: what watches the run.
+        options: of `cfepy.pilot.pilot.fly`, such as console and trace.
 
     Raises:
         UsageError: something in the plan is wrong, or the journal cannot be written.
-        CfeError: the mission cannot boot.
+        BootError: the mission cannot boot.
     """
-    with JournalRecorder(path, plan, policy=Schedule.parse(plan.schedule, plan.seed).policy()) as recorder:
-        flown = plan.fly([*attachments, recorder], policy=recorder.policy, **options)
-        recorder.end(flown.results, flown.outcome)
+    with JournalRecorder(path, plan) as recorder:
+        flown = fly(plan, attachments=[*attachments, recorder], policy=recorder.policy, **options)
+        recorder.end(flown)
     return flown

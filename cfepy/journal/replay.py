@@ -1,33 +1,31 @@
 """Doing a journal's run again: what came from outside comes at the same instants, and the records are compared.
 
-`Replay` has what makes a run a replay, for whoever flies the mission piece by piece; `replay` flies it in one go. May
-import cfepy.mission and its neighbours in cfepy.journal.
+`Replay` has what makes a run a replay, for a caller that flies the mission piece by piece; `replay` flies it in one go.
+A `Checker` compares the records with the checkpoints of the journal while the replay goes on.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from hashlib import blake2b
 
 from cfepy.attachment import Attachment
 from cfepy.console import Console
-from cfepy.journal.checking import Checker, Describe, Difference
 from cfepy.journal.decisions import RetoldPolicy
-from cfepy.journal.journal import Checkpoint, Journal
-from cfepy.journal.moved import HiddenRoot
-from cfepy.journal.result_digest import digest_of
-from cfepy.journal.stage import Stage, staged
-from cfepy.mission.course import BROKEN_OFF, Course
-from cfepy.mission.mission import Mission
-from cfepy.mission.outside import Event
-from cfepy.mission.results import Results
-from cfepy.mission.run_plan import Flown
-from cfepy.mission.script import ScriptRun
-from cfepy.osal.endpoints import Place, Stream
-from cfepy.rtos.policy import Policy
-from cfepy.rtos.schedule import Schedule
-from cfepy.trace import Trace
+from cfepy.journal.journal import Checkpoint, End, Journal, digest_of
+from cfepy.journal.stage import HiddenRoot, Stage, staged
+from cfepy.mission import Arrival, Mission
+from cfepy.osal import Place, Stream
+from cfepy.pilot import SUDDEN, Course, Flown, Host, Results, fly
+from cfepy.rtos import Policy
+from cfepy.script import ScriptRun
+from cfepy.status import StallError
+from cfepy.trace import UNSENT, Trace
+
+Describe = Callable[[Sequence[bytes], int], list[str]]
+"""Makes lines of text of records that begin at a virtual time in ns."""
 
 
 class ReplayCourse(Course):
@@ -52,10 +50,10 @@ class ReplayCourse(Course):
         super().__init__(mission, seconds, script)
         end = journal.end
         known = journal.known_until_ns
-        has_end = end is not None and end.reason != BROKEN_OFF
+        has_end = end is not None and end.reason not in SUDDEN
         self._visits = end.visits if end is not None and has_end else 1
         if until_ns is not None and (until_ns < known or not has_end):
-            known, self._visits = until_ns, 1  # nobody knows what came after a sudden end, but the run may go on
+            known, self._visits = until_ns, 1  # the journal has nothing after a sudden end, but the run may go on
         if not has_end and (seconds is not None or journal.header.paced is None):
             known = min(known, self.until_ns)  # the sudden end came later, while the nodes shut down
         self.until_ns = known
@@ -88,7 +86,7 @@ class ReplayCourse(Course):
 class _Answers(Attachment):
     """Lets the mission's own calls to the outside be answered as they were."""
 
-    def __init__(self, answers: Sequence[Event]) -> None:
+    def __init__(self, answers: Sequence[Arrival]) -> None:
         self._answers = list(reversed(answers))
 
     def begin(self, mission: Mission) -> None:
@@ -115,13 +113,15 @@ class Replay:
     Attributes:
         journal, stage: as given.
         plan: what to run.
-        policy: who goes first; None for fifo.
+        policy: decides which task goes first; None for fifo.
         checker: compares the records.
         attachments: what a mission needs to be a replay.
         verdict: whether it was the same run; set by `compare`.
+        stall: the task that did not give up the CPU; None when each did.
     """
 
-    verdict: Verdict
+    verdict: ReplayVerdict
+    stall: StallError | None = None
 
     def __init__(
         self,
@@ -144,7 +144,7 @@ class Replay:
         self._course: ReplayCourse
 
     def _policy(self) -> Policy | None:
-        own = Schedule.parse(self.plan.schedule, self.plan.seed).policy()
+        own = self.plan.schedule.policy()
         recorded = self.journal.header.policy
         if recorded is None:
             return own
@@ -154,27 +154,36 @@ class Replay:
         return RetoldPolicy(self.journal.decisions, self.journal.decided, own)
 
     def fly(
-        self, attachments: Sequence[Attachment] = (), *, console: Console | None = None, trace: Trace | None = None
+        self,
+        attachments: Sequence[Attachment] = (),
+        *,
+        console: Console | None = None,
+        trace: Trace | None = None,
+        host: Host | None = None,
     ) -> Flown:
-        """Fly to the end in one go, and compare.
+        """Fly to the end, and compare.
 
         Args:
-            attachments: what looks on.
+            attachments: what watches the run.
             console: takes the lines; None drops them.
             trace: takes the records.
+            host: the host's side; None lets it go on by itself.
 
         Raises:
             UsageError: something in the mission is wrong.
-            CfeError: it cannot boot.
+            BootError: it cannot boot.
         """
-        flown = self.plan.fly(
-            [*self.attachments, *attachments],
+        flown = fly(
+            self.plan,
             spec=self.stage.spec(),
+            attachments=[*attachments, *self.attachments],
             console=console,
             policy=self.policy,
             trace=trace,
             make_course=self.make_course,
+            host=host,
         )
+        self.stall = flown.stall
         self.compare(flown.results)
         return flown
 
@@ -184,44 +193,44 @@ class Replay:
         return self._course
 
     def end_here(self) -> None:
-        """Somebody has seen enough: the run ends as soon as the task that runs waits."""
+        """End the run as soon as the task that runs waits."""
         kernel = self._course.mission.kernel
         self.until_ns = kernel.now
         self.checker.end_early()
         self._course.end_here()
         kernel.stop()
 
-    def compare(self, results: Results) -> Verdict:
+    def compare(self, results: Results) -> ReplayVerdict:
         """Whether it was the same run, now that it is over.
 
         Args:
-            results: what it came to.
+            results: those of the replay.
         """
         end, difference = self.journal.end, self.checker.difference
         is_other = False
         if self.is_whole and difference is None and end is not None:
             is_other = digest_of(results, self.stage.root) != end.results
-        self.verdict = Verdict(difference, self.checker.agreed, self.is_whole, is_other)
+        self.verdict = ReplayVerdict(difference, self.checker.agreed, self.is_whole, is_other)
         return self.verdict
 
     @property
     def is_whole(self) -> bool:
         """Whether it goes to the end of the run, and that is known."""
         end = self.journal.end
-        if end is None or end.reason == BROKEN_OFF:
+        if end is None or end.reason in SUDDEN:
             return False
         return self.until_ns is None or self.until_ns >= end.until_ns
 
     @property
     def why_over(self) -> str:
-        """Why it does not go on, for a user who wonders."""
+        """Why the run does not go on, for the user."""
         if self.is_whole:
             return "there the recorded run ended"
         return "there the journal ends, --until SECONDS goes on" if self.until_ns is None else "the replay ended there"
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class ReplayVerdict:
     """Whether a replay was the run of its journal.
 
     Attributes:
@@ -247,7 +256,7 @@ class Replayed:
     """A replay that is over: the run, and how it compares."""
 
     flown: Flown
-    verdict: Verdict
+    verdict: ReplayVerdict
 
 
 def replay(
@@ -264,7 +273,7 @@ def replay(
 
     Args:
         journal: the run.
-        attachments: what looks on, beside the comparison.
+        attachments: what else watches the run, besides the comparison.
         tasks: what tasks run on; None as in the journal.
         until_ns: virtual time at which to end; None for the end of the run.
         from_disk: take the mission's files as they are on this computer, not those of the journal.
@@ -273,8 +282,102 @@ def replay(
 
     Raises:
         UsageError: something in it is wrong.
-        CfeError: the mission cannot boot.
+        BootError: the mission cannot boot.
     """
     with staged(journal, from_disk) as stage:
         again = Replay(journal, stage, tasks=tasks, until_ns=until_ns)
         return Replayed(again.fly(attachments, console=console, trace=trace), again.verdict)
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """Where a replay parts from its journal.
+
+    Attributes:
+        after: until there the records agree.
+        before: there they do not agree any more; its numbers are those of the journal.
+        lines: what the replay did between the two, as text.
+    """
+
+    after: Checkpoint
+    before: Checkpoint
+    lines: tuple[str, ...]
+
+
+class Checker(Attachment):
+    """Compares while the replay goes on.
+
+    Args:
+        checkpoints: of the journal.
+        end: of the journal; None when the replay does not go that far.
+        describe: makes text of what differs.
+
+    Attributes:
+        agreed: how far the records are known to agree.
+        difference: where they part; None as long as they do not.
+    """
+
+    def __init__(self, checkpoints: Sequence[Checkpoint], end: End | None, describe: Describe) -> None:
+        self.agreed = Checkpoint(0, 0, "")
+        self.difference: Difference | None = None
+        self._end = end
+        self._describe = describe
+        self._coming = list(reversed(checkpoints))
+        self._hash = blake2b(digest_size=16)
+        self._count = 0
+        self._since: list[bytes] = []
+        self._finished = False
+        self._trace: Trace
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._trace = mission.trace
+        self._trace.also(self._take)
+
+    def end_early(self) -> None:
+        """The replay does not go to the end of the journal after all."""
+        self._end = None
+
+    def conclude(self) -> None:
+        """See `Attachment.conclude`: how the nodes shut down is the run's own only at the run's own end."""
+        if self._end is None:
+            self._trace.flush()
+            self._finished = True
+
+    def finish(self) -> None:
+        """See `Attachment.finish`: two runs may agree at all checkpoints, and yet not end alike."""
+        self._finished = True
+        end = self._end
+        if end is not None and self.difference is None and self._hash.hexdigest() != end.trace:
+            self._part(Checkpoint(end.now_ns, end.records, end.trace))
+
+    def _take(self, records: list[bytes]) -> None:
+        is_over = not self._coming and self._end is None  # the replay goes on where the journal has ended
+        if self._finished or is_over or self.difference is not None:
+            return
+        rest = [record for record in records if record and record[:1] != UNSENT]
+        while self._coming and self.difference is None:
+            missing = self._coming[-1].records - self._count
+            if missing > len(rest):
+                break
+            self._add(rest[:missing])
+            del rest[:missing]
+            self._compare(self._coming.pop())
+        self._add(rest)
+
+    def _add(self, records: list[bytes]) -> None:
+        self._hash.update(b"".join(records))
+        self._count += len(records)
+        self._since += records
+
+    def _compare(self, recorded: Checkpoint) -> None:
+        if self._hash.hexdigest() == recorded.digest:
+            self.agreed = recorded
+            self._since.clear()
+        else:
+            self._part(recorded)
+
+    def _part(self, recorded: Checkpoint) -> None:
+        lines = self._describe(self._since, self.agreed.now_ns)
+        self.difference = Difference(self.agreed, recorded, tuple(lines))
+        self._since.clear()

@@ -1,8 +1,8 @@
-"""Where a replay finds the files of its mission, and what is not as it was when the run was recorded.
+"""Where a replay finds the files of its mission, and what has changed since the run was recorded.
 
 Files come from the journal, if it carries them: they are unpacked into a folder that stands for the root of the
-computer, so the mission sees them at the paths that they had, and what it writes there harms nobody. May import
-cfepy.mission and its neighbours in cfepy.journal.
+computer, so the mission sees them at the paths that they had, and what it writes there is harmless. The mission must
+not see that folder, so its parameters, arguments and environment have the paths of the recorded computer.
 """
 
 from __future__ import annotations
@@ -12,16 +12,17 @@ import linecache
 import os
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
+from cfepy.attachment import Attachment
 from cfepy.journal.facts import host_facts, versions
 from cfepy.journal.journal import Header, Journal
-from cfepy.journal.mission_files import FileRecord
-from cfepy.journal.moved import moved_environ, moved_plan, settled
-from cfepy.mission.launch import LAUNCH_FILES
-from cfepy.mission.run_plan import RUN, RunPlan
-from cfepy.mission.spec import MissionSpec
+from cfepy.journal.mission_files import MissionFile
+from cfepy.mission import LAUNCH_FILES, Mission, MissionSpec
+from cfepy.nodes import NodeConfig
+from cfepy.pilot import LAUNCH, NODE, RUN, RunPlan
 
 MOST_NAMED = 8
 
@@ -75,7 +76,7 @@ def staged(journal: Journal, from_disk: bool = False) -> Iterator[Stage]:
         yield stage
 
 
-def _note(changed: Sequence[FileRecord], from_disk: bool, left_out: Sequence[FileRecord]) -> str:
+def _note(changed: Sequence[MissionFile], from_disk: bool, left_out: Sequence[MissionFile]) -> str:
     """What to know about a replay with the files on this computer."""
     if not changed:
         return "with the files on this computer, which are those of the run"
@@ -102,7 +103,7 @@ def _unpacked(journal: Journal) -> Iterator[str]:
                 linecache.cache.pop(name, None)
 
 
-def _unpack(file: FileRecord, path: Path) -> None:
+def _unpack(file: MissionFile, path: Path) -> None:
     """Put a file where it is expected; what the journal does not carry is on this computer, as it was."""
     path.parent.mkdir(parents=True, exist_ok=True)
     data = file.data
@@ -114,7 +115,7 @@ def _unpack(file: FileRecord, path: Path) -> None:
 
 
 def _fill(folder: Path, names: Mapping[str, bool]) -> None:
-    """Have a folder look as it did: nobody has opened what is missing, so it may be empty."""
+    """Give a folder the names that it had; a file that is missing here was never opened, so it may be empty."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, is_folder in names.items():
         path = folder / name
@@ -124,7 +125,7 @@ def _fill(folder: Path, names: Mapping[str, bool]) -> None:
             path.touch()
 
 
-def _show_lines(files: Iterable[FileRecord]) -> list[str]:
+def _show_lines(files: Iterable[MissionFile]) -> list[str]:
     """Have tracebacks show the lines of these files; their paths."""
     shown = []
     for each in files:
@@ -171,7 +172,7 @@ def _minor(version: str) -> str:
     return ".".join(version.split(".")[:2])
 
 
-def _named(files: Sequence[FileRecord]) -> str:
+def _named(files: Sequence[MissionFile]) -> str:
     names = ", ".join(each.path for each in files[:MOST_NAMED])
     return f"{names} and {len(files) - MOST_NAMED} more" if len(files) > MOST_NAMED else names
 
@@ -181,3 +182,84 @@ def _host_changes(journal: Journal) -> Iterator[str]:
     for name, value in journal.header.host.items():
         if now.get(name, value) != value:
             yield f"another computer: {name} was {value}, is {now[name]}"
+
+
+def moved_plan(header: Header, root: str) -> RunPlan:
+    """The plan of a run, with the paths that its files have below a root."""
+    plan = header.plan
+    files: dict[str, Any] = {
+        name: _moved(getattr(plan, name), header.cwd, root) for name in ("script", "faults", "play", "board")
+    }
+    return replace(plan, words=(root + header.startup, *_arguments(header)), **files)
+
+
+def _arguments(header: Header) -> tuple[str, ...]:
+    """What follows the mission, launch file or script on the command line."""
+    words = header.plan.words
+    if header.plan.command == LAUNCH:
+        return tuple(word for word in words if ":=" in word)
+    if header.plan.command == NODE:
+        is_file = Path(words[0]).name == Path(header.startup).name
+        return words[1:] if is_file else words[2:]
+    return ()
+
+
+def _moved(path: str | None, cwd: str, root: str) -> str | None:
+    """Where a file is now that a command line names; what is no file stays."""
+    if path is None:
+        return None
+    whole = os.path.normpath(os.path.join(cwd, path))
+    return next((place for place in (root + whole, whole) if os.path.isfile(place)), path)
+
+
+def moved_environ(environ: Mapping[str, str], root: str) -> dict[str, str]:
+    """Environment variables in which folders that are below the root are those."""
+    return {name: os.pathsep.join(map(_folder_in(root), value.split(os.pathsep))) for name, value in environ.items()}
+
+
+def _folder_in(root: str) -> Any:
+    return lambda word: root + word if root and word.startswith(os.sep) and os.path.isdir(root + word) else word
+
+
+def settled(spec: MissionSpec, root: str) -> MissionSpec:
+    """A mission that was read below a root, and does not see it."""
+    if not root:
+        return spec
+    nodes = {app: _settled_node(node, root) for app, node in spec.ros.nodes.items()}
+    return replace(spec, ros=replace(spec.ros, nodes=nodes, params=_without(spec.ros.params, root), root=root))
+
+
+def _settled_node(node: NodeConfig, root: str) -> NodeConfig:
+    return replace(
+        node, args=_without(node.args, root), env=_without(node.env, root), params=_without(node.params, root)
+    )
+
+
+def _without(value: Any, root: str) -> Any:
+    """A value in which no text has the root."""
+    if isinstance(value, str):
+        return value.replace(root, "")
+    if isinstance(value, Mapping):
+        return {name: _without(each, root) for name, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return type(value)(_without(each, root) for each in value)
+    return value
+
+
+class HiddenRoot(Attachment):
+    """Takes the root out of what the console shows, such as tracebacks.
+
+    Args:
+        root: the folder.
+    """
+
+    def __init__(self, root: str) -> None:
+        self._root = root
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        console, root = mission.console, self._root
+        for name in ("record", "sink"):
+            show = getattr(console, name)
+            if show is not None:
+                setattr(console, name, lambda line, show=show: show(line.replace(root, "")))

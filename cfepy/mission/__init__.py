@@ -1,8 +1,98 @@
-"""A mission: reading, checking, wiring and running it, and its numbers at the end."""
+"""One mission on one simulated computer: reading what it is made of, wiring it, running and resetting it.
+
+What belongs here is the computer through all its resets, the loader of its applications, the one door through which
+anything comes in from outside, and the record of what happened. What the ground knows of a mission is in
+`cfepy.ground`, what must hold of a run in `cfepy.monitors`, and how a run is flown in `cfepy.pilot`.
+"""
 
 from __future__ import annotations
 
+from cfepy.mission.acts import CALL, FILE, PACKET, PARAM, PUBLISH, HostCall
+from cfepy.mission.finding import (
+    LOCK_FILE,
+    STARTUP_SCRIPT,
+    find_script,
+    is_node,
+    mission_file_of,
+    read_lock,
+    read_mission,
+    shipped_missions,
+)
+from cfepy.mission.launch import (
+    KEPT_ENVIRONMENT,
+    LAUNCH_FILES,
+    launch_file,
+    lines_for,
+    mission_environment,
+    node_script,
+    read_launch,
+    scripts_of,
+    spec_of,
+    spec_of_script,
+)
+from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.mission import Mission
-from cfepy.mission.spec import MissionSpec, read_mission, shipped_missions
+from cfepy.mission.mission_file import MissionSections, read_mission_file
+from cfepy.mission.outside import Arrival, OutsideStream
+from cfepy.mission.packet_watch import HOST, PacketWatch, Seen, hearing, receivers
+from cfepy.mission.processor import CORE_APPS, Processor
+from cfepy.mission.python_code import find_code, find_node
+from cfepy.mission.record import Reset, Traffic
+from cfepy.mission.spec import MissionSpec
+from cfepy.mission.topic_watch import TopicMessage, TopicWatch, matches
+from cfepy.mission.tracebacks import app_traceback, described, is_library, is_own_code, is_shown, is_standard, reason
 
-__all__ = ["Mission", "MissionSpec", "read_mission", "shipped_missions"]
+__all__ = [
+    "CALL",
+    "CORE_APPS",
+    "FILE",
+    "HOST",
+    "KEPT_ENVIRONMENT",
+    "LAUNCH_FILES",
+    "LOCK_FILE",
+    "NODE_SYMBOL",
+    "PACKET",
+    "PARAM",
+    "PUBLISH",
+    "STARTUP_SCRIPT",
+    "Arrival",
+    "HostCall",
+    "Mission",
+    "MissionSections",
+    "MissionSpec",
+    "OutsideStream",
+    "PacketWatch",
+    "Processor",
+    "Reset",
+    "Seen",
+    "TopicMessage",
+    "TopicWatch",
+    "Traffic",
+    "app_traceback",
+    "described",
+    "find_code",
+    "find_node",
+    "find_script",
+    "hearing",
+    "is_library",
+    "is_node",
+    "is_own_code",
+    "is_shown",
+    "is_standard",
+    "launch_file",
+    "lines_for",
+    "matches",
+    "mission_environment",
+    "mission_file_of",
+    "node_script",
+    "read_launch",
+    "read_lock",
+    "read_mission",
+    "read_mission_file",
+    "reason",
+    "receivers",
+    "scripts_of",
+    "shipped_missions",
+    "spec_of",
+    "spec_of_script",
+]

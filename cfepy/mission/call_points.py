@@ -1,7 +1,7 @@
-"""The handle that apps get while schedules are explored: others may get in before every call of a service.
+"""The handle that apps get while schedules are explored: other tasks may run before every call of a service.
 
-Behind a call that gives something away they may get in too, before the app goes on with what it does next: it may look
-at what is not its own any more.
+They may also run after a call that gives something away, before the app goes on: so an app is found out that still uses
+what it gave away.
 
 Only calls that come in through the handle are scheduling points, not those that services make among themselves: what a
 service does is one step, as in NASA's code, which guards its tables with locks.

@@ -1,20 +1,21 @@
 """How many of everything a mission may have: cFE's defaults, what the board can hold, and the mission file's `limits:`.
 
-The board is hardware, so its numbers are the most that there is: a mission file lowers them and never raises them. What
-no board has spoken of, a mission raises as it likes. Where RAM has no limit, a mission with ROS nodes gets room for
-their parameters and their long messages besides.
+The board is hardware, so its numbers are the upper limits: a mission file lowers them and never raises them. A limit
+that the board does not give, a mission raises as it likes. Where RAM has no limit, a mission with ROS nodes gets room
+for their parameters and their long messages besides.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 from cfepy.config import PlatformConfig
 from cfepy.ids import SERIAL_MAX
+from cfepy.marked_yaml import Marked, Mistakes
 from cfepy.msg import HIGHEST_VALID_MSG_ID
-from cfepy.psp.marked_yaml import Marked
-from cfepy.psp.profile import LIMIT_NAMES, BoardProfile, Limit, read_limit
+from cfepy.psp import LIMIT_NAMES, BoardProfile, Limit, read_limit
 from cfepy.status import UsageError
 
 NODES = "nodes"
@@ -39,7 +40,7 @@ _PER_NODE: Mapping[str, int] = {
 """What a ROS node takes when it is no small one: threads, topics on both sides, services, messages under way."""
 
 _WORKSTATION: Mapping[str, int] = {"os_queue_max_depth": 10_000, "sb_buf_memory_bytes": 1 << 28}
-"""What a ROS node finds on a PC, where messages that nobody has taken yet wait in sockets and in lists."""
+"""What a ROS node finds on a PC, where messages that are not taken yet wait in sockets and in lists."""
 
 _MOST: Mapping[str, int] = {"sb_max_msg_ids": HIGHEST_VALID_MSG_ID, "sb_buf_memory_bytes": (1 << 31) - 1}
 
@@ -51,8 +52,8 @@ class MissionLimits:
     Attributes:
         values: fields of `PlatformConfig`, under their names.
         nodes: room for so many ROS nodes; 0 for no more than cFE has by itself.
-        yields: nobody wrote `nodes` down: a board's own limits hold, whether they are enough or not; where RAM
-            has no limit, nodes get what a PC has.
+        yields: `nodes` was counted, and not written down by the user: a board's own limits hold, whether they are
+            enough or not; where RAM has no limit, nodes get what a PC has.
         places: where each of them was said, for errors.
     """
 
@@ -96,15 +97,25 @@ class MissionLimits:
         return UsageError(text, field=f"limits.{name}") if place is None else place.fail(text)
 
 
-def read_limits(section: Marked | None) -> MissionLimits:
+def read_limits(section: Marked, mistakes: Mistakes) -> MissionLimits:
     """The section `limits:`.
 
-    Raises:
-        UsageError: an unknown name, or a value that cannot be.
+    Args:
+        section: its value.
+        mistakes: takes an unknown name, or a value that cannot be.
     """
-    places = section.mapping([NODES, *LIMIT_NAMES]) if section is not None else {}
-    values = {name: read_limit(name, entry) for name, entry in places.items() if name != NODES}
-    nodes = places[NODES].integer(1, MOST_NODES) if NODES in places else 0
+    values: dict[str, Limit] = {}
+    places: dict[str, Marked] = {}
+    nodes = 0
+    for name, entry in mistakes.fields(section, (NODES, *LIMIT_NAMES)):
+        if name == NODES:
+            nodes = mistakes.attempt(partial(entry.integer, 1, MOST_NODES)) or 0
+        else:
+            value = mistakes.attempt(partial(read_limit, name, entry))
+            if value is None:
+                continue
+            values[name] = value
+        places[name] = entry
     return MissionLimits(values, nodes, places=places)
 
 

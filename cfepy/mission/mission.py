@@ -1,4 +1,4 @@
-"""`Mission`: a mission on one simulated computer, through all its resets, for whoever runs it.
+"""`Mission`: a mission on one simulated computer, through all its resets.
 
 It makes what outlives a reset (kernel, clock, trace, console, files, network, retained memory) and lets a `Processor`
 boot on it. Nothing in the parts knows of this module.
@@ -9,32 +9,30 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING
 
 from cfepy.app import Cfe
 from cfepy.attachment import Attachment
 from cfepy.console import Console
-from cfepy.es.startup_script import entries
-from cfepy.mission.host_acts import HostActs
-from cfepy.mission.loader import NODE_SYMBOL, find_code
+from cfepy.mission.acts import HostActs
+from cfepy.mission.finding import read_mission
+from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.outside import Outside
 from cfepy.mission.processor import Machine, Processor
+from cfepy.mission.python_code import find_code
 from cfepy.mission.record import Reset, RunRecord
-from cfepy.mission.spec import MissionSpec, read_mission
-from cfepy.mission.tracebacks import app_traceback, reason
-from cfepy.osal import FileSystem
-from cfepy.osal.network import Network
-from cfepy.psp.cpu import CpuCosts
-from cfepy.psp.memory import MemoryBudget
-from cfepy.psp.profile import BoardProfile, load_profile
-from cfepy.psp.psp import PanicError
-from cfepy.psp.retained import EEPROM_BYTES, Retained
-from cfepy.rtos import Task, make_kernel
-from cfepy.rtos.policy import Policy
-from cfepy.rtos.units import NS_PER_MS, NS_PER_S
-from cfepy.rtos.watchdog import StallWatch
+from cfepy.mission.spec import MissionSpec
+from cfepy.mission.tracebacks import app_traceback, is_own_code, reason
+from cfepy.osal import FileSystem, Network
+from cfepy.psp import EEPROM_BYTES, BoardProfile, MemoryBudget, PanicError, Retained, load_profile
+from cfepy.rtos import Policy, StallWatch, Task, make_kernel
 from cfepy.sb import SoftwareBus
+from cfepy.status import StallError
 from cfepy.trace import Trace
+from cfepy.units import NS_PER_MS, NS_PER_S
+
+if TYPE_CHECKING:
+    from rospy_shim.runtime import RosRuntime
 
 SHUTDOWN_NS = 2_000_000_000  # virtual time that nodes get at the end of a run for their shutdown hooks
 RESTART_NS = 10 * NS_PER_MS  # from a reset until the board comes up; also keeps time going when every boot fails
@@ -49,16 +47,17 @@ class Mission:
         board: name or file of a board profile; None takes the mission's own.
         tasks: "thread" or "greenlet".
         console: where lines go; None prints them.
-        policy: who runs next where there is a choice (`cfepy.rtos.policy`); None is first come, first served.
+        policy: decides which task runs next where there is a choice (`cfepy.rtos.policy`); None is first come, first
+            served.
         trace: takes the records; None makes one that only keeps the digest.
-        attachments: what looks on or meddles, in the order in which they are told.
+        attachments: what watches the mission or changes it, in the order in which they are called.
 
     Attributes:
         spec, seed, tasks, board, config, console: as given, or as found.
         kernel, trace, files, network: the parts that outlive a reset.
         outside: the door through which anything comes in while it runs.
         record: what the report tells; `record.resets` are the resets so far.
-        stall_watch: tells of a task that computes for ever.
+        stall_watch: ends the run when a task does not give up the CPU.
         processor: what runs between two resets; a reset puts another one here.
         booted: virtual ns at which the mission became OPERATIONAL for the first time, None before.
     """
@@ -86,32 +85,21 @@ class Mission:
         self.record = RunRecord()
         self.files = FileSystem(self.spec.folder)
         self.network = Network()
-        switch_ns = CpuCosts.of_board(self.board).switch_ns
+        switch_ns = self.board.cpu_costs().switch_ns
         self.kernel = make_kernel(tasks, self.trace, policy, self.board.tick_ns, switch_ns, seed)
         self.outside = Outside(self.kernel, self.network, self.trace)
         self.outside.do = HostActs(self).do
         self.kernel.on_task_error = self._task_failed
-        self.stall_watch = StallWatch(self.kernel)
+        self.stall_watch = StallWatch(self.kernel, is_own=is_own_code)
         self._first_boot: int | None = None
         self._resetting = False
-        self._attachments = (*self._own_attachments(), *attachments)
+        self._attachments = tuple(attachments)
         self._provide_tables()
         self._machine = self._make_machine()
         self.processor = Processor(self._machine)
         for each in self._attachments:
             each.begin(self)
         self._power_up()
-
-    def _own_attachments(self) -> Iterator[Attachment]:
-        """What the mission file asks for; only a mission that does imports it."""
-        if self.spec.invariants:
-            from cfepy.mission.invariant_watch import InvariantWatch
-
-            yield InvariantWatch(self.spec)
-        if self.spec.deadlines:
-            from cfepy.mission.deadline_monitor import DeadlineMonitor
-
-            yield DeadlineMonitor(self.spec.deadlines)
 
     def _power_up(self) -> None:
         for each in self._attachments:
@@ -146,7 +134,7 @@ class Mission:
 
     def _packages(self) -> Iterator[Path]:
         """The folders of apps and libraries that are packages, in the order of the startup script."""
-        for entry in entries(self.spec.startup_script):
+        for entry in self.spec.entries:
             code = None if entry.symbol == NODE_SYMBOL else find_code(entry.path, self.spec.folder)
             if isinstance(code, Path) and code.name == "__init__.py":
                 yield code.parent
@@ -164,8 +152,8 @@ class Mission:
         return self.processor.memory
 
     @property
-    def ros(self) -> Any:
-        """The ROS side (`rospy_shim.runtime.RosRuntime`); None before the first node started."""
+    def ros(self) -> RosRuntime | None:
+        """The ROS side; None before the first node started."""
         return self.processor.ros
 
     @property
@@ -178,18 +166,25 @@ class Mission:
         """Whether the run has come to its end by itself: a node ended that the others cannot do without, or all did."""
         return self.ros is not None and bool(self.ros.monitor.over)
 
+    @property
+    def stall(self) -> StallError | None:
+        """What the run was broken off for; None as long as each task has given up the CPU."""
+        broken = self.kernel.broken
+        return broken if isinstance(broken, StallError) else None
+
     # -- running ---------------------------------------------------------------------------------------------------
 
-    def run(self, seconds: float) -> None:
+    def run_for(self, seconds: float) -> None:
         """Run for some virtual seconds more.
 
         Raises:
+            StallError: a task does not give up the CPU.
             KeyboardInterrupt: and what a task outside any app raised.
         """
         self.run_until(self.kernel.now + round(seconds * NS_PER_S))
 
     def run_until(self, until_ns: int) -> None:
-        """Run until a virtual time in ns; on the way the processor is reset as often as somebody wants it."""
+        """Run until a virtual time in ns, through every reset that is asked for on the way."""
         self.stall_watch.begin()
         self.outside.begin_piece(until_ns)
         self._reset_if_asked()
@@ -206,7 +201,7 @@ class Mission:
     def shut_down_nodes(self) -> None:
         """Ask all ROS nodes to end, and give them a little virtual time for their shutdown hooks."""
         ros = self.ros
-        if ros is None or self._resetting:
+        if ros is None or self._resetting or self.kernel.broken is not None:
             return
         ros.begin_shutdown("the run is over")
         end = self.kernel.now + SHUTDOWN_NS
@@ -221,7 +216,12 @@ class Mission:
         return digest
 
     def close(self) -> None:
-        """End every task; the numbers stay readable."""
+        """End every task; the numbers stay readable.
+
+        Raises:
+            RuntimeError: the caller is in another process than the tasks, or for greenlets in another thread.
+        """
+        self.kernel.check_caller()
         self.processor.end()
         self.kernel.shutdown(tidy=True)
         self.stall_watch.end()

@@ -1,9 +1,8 @@
 """The one door through which anything from outside enters a running mission: datagrams, connections and their bytes.
 
-Whoever brings something in (the ground link, the bridge to real sockets, a replay) does it here, while the run stands
-still between two pieces of it; only a call of the mission's own to somebody outside is answered within a piece. A
-listener is told of each event, so that a journal can have all of them and a replay can do them again. May import
-cfepy.osal.
+The ground link, the bridge to real sockets and a replay bring things in here, while the run stands still between two
+pieces of it; only a call of the mission's own to the outside is answered within a piece. A listener gets each
+arrival, so that a journal has all of them and a replay can repeat them.
 """
 
 from __future__ import annotations
@@ -11,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from cfepy.osal.endpoints import Datagram, Place, Stream
-from cfepy.osal.network import Network
+from cfepy.osal import Datagram, Network, Place, Stream
 from cfepy.rtos import Kernel
 from cfepy.status import CfeError
 from cfepy.trace import Trace
@@ -22,13 +20,13 @@ DATAGRAM, CALL, ANSWER, BYTES, TAKEN, ENDED, CLOSED = "datagram", "call", "answe
 ACT = "act"
 
 
-class Event(NamedTuple):
+class Arrival(NamedTuple):
     """Something that came from outside: its kind, and what belongs to it, as plain values.
 
-    DATAGRAM: port of the mission, host and port of the sender, data. CALL: somebody outside connects: port, host and
-    port of the caller. ANSWER: somebody of the mission connects: host and port of both sides, whether it was answered.
+    DATAGRAM: port of the mission, host and port of the sender, data. CALL: the outside connects: port, host and port
+    of the caller. ANSWER: the mission connects: host and port of both sides, whether it was answered.
     Of a connection, by its number from 0: BYTES that came, how many the outside has TAKEN, that the outside ENDED what
-    it sends, that it CLOSED the connection. ACT: somebody has a hand in the mission itself (`cfepy.mission.host_acts`):
+    it sends, that it CLOSED the connection. ACT: an act on the mission itself (`cfepy.mission.acts`):
     name and values of the act.
     """
 
@@ -47,14 +45,14 @@ class Outside:
     Attributes:
         until_ns: the virtual time until which the present or last piece of the run goes.
         visits: which piece with that end it is, from 1.
-        listener: is told of each event; None for nobody.
+        listener: is told of each arrival; None without one.
         do: does acts; the mission puts it here.
     """
 
     def __init__(self, kernel: Kernel, network: Network, trace: Trace) -> None:
         self.until_ns = -1
         self.visits = 0
-        self.listener: Callable[[Event], object] | None = None
+        self.listener: Callable[[Arrival], object] | None = None
         self.do: Callable[..., Any]
         self._kernel = kernel
         self._network = network
@@ -67,14 +65,14 @@ class Outside:
         self.until_ns = until_ns
 
     def datagram(self, port: int, source: Place, data: bytes) -> bool:
-        """A datagram arrives at a port; whether anybody took it."""
+        """A datagram arrives at a port; whether a socket took it."""
         self._tell(DATAGRAM, port, source.host, source.port, data)
         self._trace.note(f"uplink to {port} at {self._kernel.now}: {data.hex()}")
         mailbox = self._network.datagrams.find(Place(LOOPBACK, port))
         return mailbox is not None and mailbox.offer(Datagram(source, Place(LOOPBACK, port), data))
 
     def call(self, port: int, source: Place) -> OutsideStream | None:
-        """Somebody connects to a port; None when nobody takes connections there."""
+        """The outside connects to a port; None when no socket takes connections there."""
         listener = self._network.streams.find(Place(LOOPBACK, port))
         if listener is None or not listener.listening or not listener.has_room:
             return None
@@ -82,7 +80,7 @@ class Outside:
         return self._keep(listener.connect(source, Place(LOOPBACK, port)))
 
     def answer(self, source: Place, target: Place, answered: bool) -> tuple[Stream, OutsideStream] | None:
-        """Somebody of the mission connects to the outside, where the call was answered or not.
+        """The mission connects to the outside, where the call was answered or not.
 
         Returns:
             The mission's end of the connection, and the outside's.
@@ -95,17 +93,17 @@ class Outside:
         return near, self._keep(far)
 
     def act(self, name: str, *values: Any) -> Any:
-        """Somebody has a hand in the mission itself; arguments, result and errors as `HostActs.do`."""
+        """Act on the mission itself; arguments, result and errors as `HostActs.do`."""
         self._tell(ACT, name, *values)
         return self.do(name, *values)
 
-    def repeat(self, event: Event) -> None:
+    def repeat(self, arrival: Arrival) -> None:
         """Do again what was told of, but for an ANSWER, which is given when it is asked for.
 
         Raises:
             LookupError: it is about a connection that there is not.
         """
-        kind, values = event
+        kind, values = arrival
         if kind == DATAGRAM:
             port, host, source, data = values
             self.datagram(port, Place(host, source), data)
@@ -143,7 +141,7 @@ class Outside:
 
     def _tell(self, kind: str, *values: Any) -> None:
         if self.listener is not None:
-            self.listener(Event(kind, values))
+            self.listener(Arrival(kind, values))
 
 
 class OutsideStream:

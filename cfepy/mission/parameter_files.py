@@ -6,32 +6,29 @@ not carry (nothing, a date, an integer of more than 32 bits) is an error with fi
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from cfepy.psp.marked_yaml import Marked, load
+from cfepy.marked_yaml import Marked, load
 from cfepy.status import UsageError
 
 _INT_MIN, _INT_MAX = -(1 << 31), (1 << 31) - 1
 
 
-def read_parameters(own: Marked | None, files: Marked | None) -> dict[str, Any]:
-    """A tree of parameters; a namespace is a dictionary.
+def read_files(section: Marked) -> dict[str, Any]:
+    """The section `params_from`: the parameters in the files that it names, as a tree; a namespace is a dictionary.
 
     Args:
-        own: the section `params`, or None.
-        files: the section `params_from`: a file, or a list of files, each as a path seen from the mission file or as
-            `{file: PATH, namespace: NAME}`; None for none.
+        section: a file, or a list of files, each as a path seen from the mission file or as
+            `{file: PATH, namespace: NAME}`.
 
     Raises:
         UsageError: a file cannot be read, is no mapping, or has a value that ROS cannot carry.
     """
     tree: dict[str, Any] = {}
-    for path, namespace in _files(files):
-        merge(_below(namespace, read_tree(load(path))), tree)
-    if own is not None:
-        merge(read_tree(own), tree)
+    for path, namespace in _files(section):
+        tree = merged(tree, _below(namespace, read_tree(load(path))))
     return tree
 
 
@@ -44,19 +41,17 @@ def read_tree(section: Marked) -> dict[str, Any]:
     return {name: _value(entry) for name, entry in section.mapping().items()}
 
 
-def merge(more: dict[str, Any], tree: dict[str, Any]) -> None:
-    """Put a tree over another one: namespaces are joined, values replaced."""
-    for name, value in more.items():
-        if isinstance(value, dict) and isinstance(tree.get(name), dict):
-            merge(value, tree[name])
-        else:
-            tree[name] = value
+def merged(tree: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Two trees as one: namespaces are joined, and of values those of `over` count."""
+    found = dict(tree)
+    for name, value in over.items():
+        below = found.get(name)
+        found[name] = merged(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
+    return found
 
 
-def _files(section: Marked | None) -> Iterator[tuple[Path, str]]:
+def _files(section: Marked) -> Iterator[tuple[Path, str]]:
     """(path, namespace) of each file."""
-    if section is None:
-        return
     entries = [section] if isinstance(section.value, str) else section.items()
     for entry in entries:
         said = {"file": entry} if isinstance(entry.value, str) else entry.mapping(["file", "namespace"])

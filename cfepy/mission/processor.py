@@ -5,12 +5,11 @@ A reset throws a processor away and makes a new one on the same machine, as a re
 
 from __future__ import annotations
 
-import importlib
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from cfepy import versions
 from cfepy.app import Cfe
@@ -19,31 +18,31 @@ from cfepy.config_api import ConfigServices
 from cfepy.console import Console
 from cfepy.es import Boot, CoreApp, EsTask, ExecutiveServices, ObjectTable
 from cfepy.evs import EventServices
-from cfepy.fs.services import FileServices
+from cfepy.fs import FileServices
 from cfepy.mission.call_points import handle_for_apps
 from cfepy.mission.launch import scripts_of
-from cfepy.mission.loader import ModuleLoader
+from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
+from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
 from cfepy.mission.record import RunRecord
 from cfepy.mission.spec import MissionSpec
-from cfepy.osal import FileSystem, Osal
-from cfepy.osal.network import Network
+from cfepy.osal import FileSystem, Network, Osal
 from cfepy.ports import Ports
-from cfepy.psp import Psp
-from cfepy.psp.cpu import CpuCosts
-from cfepy.psp.memory import MemoryBudget, object_sizes
-from cfepy.psp.profile import BoardProfile
-from cfepy.psp.retained import Retained
+from cfepy.psp import BoardProfile, MemoryBudget, Psp, Retained, object_sizes
 from cfepy.rtos import Kernel
-from cfepy.rtos.units import NS_PER_S
-from cfepy.sb import BusCosts, SbTask, SoftwareBus
+from cfepy.sb import SbTask, SoftwareBus
 from cfepy.tbl import TableServices
 from cfepy.time import TimeServices
+from cfepy.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from rospy_shim.graph.graph import TopicRow
+    from rospy_shim.runtime import RosRuntime
 
 BOOT_PRIORITY = 0
 EVS_PRIORITY, SB_PRIORITY, ES_PRIORITY, TIME_PRIORITY, TBL_PRIORITY = 61, 64, 68, 60, 70
 CORE_APPS = ("CFE_EVS", "CFE_SB", "CFE_ES", "CFE_TIME", "CFE_TBL")
 ROS_FILE = "/cf/roscore.so"
-"""What stands for the code of ROS's own application (`rospy_shim.parameter_app`)."""
+"""What stands for the code of ROS's own application (`rospy_shim.parameters.app`)."""
 UNIX_AT_CFE_EPOCH = 315_532_800  # 1980-01-01 in seconds since 1970-01-01
 
 
@@ -85,24 +84,25 @@ class Processor:
         cfe: the services.
         handle: the services as apps and nodes reach them.
         ports, osal, psp, memory, loader, es_task, sb_task: the parts.
-        ros: the ROS side (`rospy_shim.runtime.RosRuntime`), made when the first node starts; None before.
+        ros: the ROS side, made when the first node starts; None before.
         booted: virtual ns at which it became OPERATIONAL, None before.
     """
 
     def __init__(self, machine: Machine, start_ns: int = 0) -> None:
         self.machine = machine
-        self.ros: Any = None
+        self.ros: RosRuntime | None = None
         self.booted: int | None = None
         self._start_ns = start_ns
         self._scripts = scripts_of(machine.spec)
-        self._build(CpuCosts.of_board(machine.board))
+        self._costs = machine.board.cpu_costs()
+        self._build()
         machine.kernel.spawn("CFE_ES_Main", self._boot, BOOT_PRIORITY)
 
-    def _build(self, costs: CpuCosts) -> None:
+    def _build(self) -> None:
         machine = self.machine
         self.ports = Ports()
         self.memory = self.ports.memory = MemoryBudget(machine.board)
-        self.osal = self._make_osal(costs)
+        self.osal = self._make_osal()
         self.psp = Psp(
             machine.kernel,
             machine.board,
@@ -112,23 +112,25 @@ class Processor:
             retained=machine.retained,
             on_restart=machine.on_restart,
         )
-        self.loader = ModuleLoader(
-            machine.files,
-            machine.spec.folder,
-            machine.console,
-            lambda: self.handle,
-            self._node_main,
-            self._script_of,
-            {ROS_FILE: lambda: self.ros.parameters.main()},
-        )
+        self.loader = ModuleLoader(machine.console, self._finders())
         self.osal.modules = self.loader
-        self.cfe = self._make_services(costs)
+        self.cfe = self._make_services()
         self.handle = handle_for_apps(self.cfe, machine.kernel)
         self.sb_task = SbTask(self.cfe.sb)
         checksum = zlib.crc32(versions.CFE_VERSION.encode()) & 0xFFFF
         self.es_task = EsTask(self.cfe.es, machine.spec.name, self._build_text(), checksum)
 
-    def _make_osal(self, costs: CpuCosts) -> Osal:
+    def _finders(self) -> list[Finder]:
+        """What is asked for the code of applications, in this order."""
+        machine, folder = self.machine, self.machine.spec.folder
+        python = PythonLoader(machine.console, lambda: self.handle)
+        return [
+            BuiltInApps({ROS_FILE: self._ros_main}),
+            NodeScripts(machine.files, folder, self._script_of, self._node_main),
+            *python_finders(python, machine.files, folder),
+        ]
+
+    def _make_osal(self) -> Osal:
         machine = self.machine
         return Osal(
             machine.kernel,
@@ -138,19 +140,17 @@ class Processor:
             network=machine.network,
             memory=self.memory,
             sizes=object_sizes(machine.board),
-            call_ns=costs.call_ns,
-            byte_ps=costs.byte_ps,
+            costs=self._costs,
             epoch_ns=machine.epoch_ns,
         )
 
-    def _make_services(self, costs: CpuCosts) -> Cfe:
+    def _make_services(self) -> Cfe:
         """The services, tied together by their ports and to what outlives the processor."""
         machine, ports = self.machine, self.ports
         kernel, config, console = machine.kernel, machine.config, machine.console
-        sizes = object_sizes(machine.board)
         es = ExecutiveServices(kernel, ports, config, self.osal, self.psp, console, self.loader)
         fs = ports.fs = FileServices(self.osal, ports, config, es.background_wakeup)
-        sb = machine.bus(kernel, ports, config, BusCosts(costs.call_ns, costs.byte_ps, sizes.queue, sizes.queue_slot))
+        sb = machine.bus(kernel, ports, config, self._costs, object_sizes(machine.board))
         evs = EventServices(kernel, ports, config, console, self.osal)
         time = TimeServices(kernel, ports, config)
         tbl = TableServices(kernel, ports, config, machine.files)
@@ -198,33 +198,44 @@ class Processor:
     def _operational(self) -> None:
         self.booted = self.machine.kernel.now
 
+    def _ros_main(self) -> None:
+        """The main function of ROS's own application, which starts with the first node."""
+        assert self.ros is not None
+        self.ros.parameters.main()
+
     def _node_main(self, script: Path, app_name: str) -> Callable[[], object]:
         """The main function of a node; ROS itself starts before the first one."""
+        ros = self.ros
+        if ros is None:
+            ros = self.ros = self._make_ros()
+        ros.parameters.ensure()
+        return lambda: ros.run_node(script, app_name)
+
+    def _make_ros(self) -> RosRuntime:
+        """The ROS side; a mission without nodes does not import it."""
+        from rospy_shim.runtime import RosRuntime
+
         machine = self.machine
-        if self.ros is None:
-            runtime = importlib.import_module("rospy_shim.runtime")
-            self.ros = runtime.RosRuntime(
-                self.handle,
-                machine.kernel,
-                machine.spec.ros,
-                seed=machine.seed,
-                epoch_ns=machine.epoch_ns,
-                node_call_ns=machine.board.node_call_ns,
-                max_publish_hz=machine.board.max_publish_hz,
-                console=machine.console,
-                network=machine.network,
-            )
-        self.ros.parameters.ensure()
-        return lambda: self.ros.run_node(script, app_name)
+        return RosRuntime(
+            self.handle,
+            machine.kernel,
+            machine.spec.ros,
+            seed=machine.seed,
+            epoch_ns=machine.epoch_ns,
+            node_call_ns=self._costs.polling_ns,
+            max_publish_hz=machine.board.max_publish_hz,
+            console=machine.console,
+            network=machine.network,
+        )
 
     def _script_of(self, file: str) -> Path | None:
         """The script of a node that came with a launch file, or that another node has started."""
-        started: Path | None = None if self.ros is None else self.ros.script_of(file)
+        started = None if self.ros is None else self.ros.script_of(file)
         return self._scripts.get(file) or started
 
-    def topics(self) -> list[Any]:
-        """The rows of ROS's topics (`rospy_shim.graph.TopicRow`)."""
-        return [] if self.ros is None else list(self.ros.topics())
+    def topics(self) -> list[TopicRow]:
+        """The rows of ROS's topics."""
+        return [] if self.ros is None else self.ros.topics()
 
     def end(self) -> None:
         """End every task and object and let go of the applications' code; the numbers stay readable."""
@@ -239,6 +250,6 @@ class Processor:
         self.loader.forget()
 
 
-def _ignore(event: int, object_id: int, data: Any) -> int:
+def _ignore(event: int, object_id: int, data: object) -> int:
     """An event handler for OSAL that does nothing."""
     return 0

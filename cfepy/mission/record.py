@@ -1,16 +1,19 @@
-"""The record of a run: what its report tells, collected over all resets of the processor."""
+"""The record of a run: the facts of its report, collected over all resets of the processor."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from cfepy.es.records import AppHistory
+from cfepy.es import AppHistory
+from cfepy.mission.tracebacks import described
 from cfepy.sb import SoftwareBus
 
 if TYPE_CHECKING:
-    from cfepy.mission.deadline_checks import Check, Overrun
+    from rospy_shim.graph.graph import TopicRow
+
+P = TypeVar("P")
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,35 +23,14 @@ class Reset:
     Args:
         at_ns: virtual time.
         reset_type: RST_TYPE_PROCESSOR or RST_TYPE_POWERON.
-        reason: who wanted it, and why.
-        fault: it followed from a failure; otherwise somebody asked for it.
+        reason: why, and at whose request.
+        fault: it followed from a failure, and was not asked for.
     """
 
     at_ns: int
     reset_type: int
     reason: str
     fault: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Violation:
-    """An invariant did not hold: what was wrong, when in virtual ns, who sent the message, and the message."""
-
-    text: str
-    at_ns: int
-    sender: str
-    detail: str = ""
-
-
-@dataclass(slots=True)
-class InvariantRecord:
-    """What became of an invariant: `place` is `file:line`, `judged` and `violated` count messages."""
-
-    name: str
-    place: str
-    judged: int = 0
-    violated: int = 0
-    first: Violation | None = None
 
 
 @dataclass(slots=True)
@@ -74,31 +56,54 @@ class Traffic:
 class RunRecord:
     """Everything that outlives a reset for the sake of the report.
 
-    `history` is by application name, `event_counts` by event type, `errors_by_app` counts ERROR and CRITICAL events:
-    the services of each processor write into these three themselves. `topics` has rows of ROS topics by MsgId,
-    `invariants` are by name, `deadlines` as in the mission file, with the first `overruns` of each.
-    `faults` is the fault injector (`cfepy.faults.FaultInjector`), which has the rows of the report, None without one.
+    Attachments keep what they have to tell in a part of their own. `history` is by application name, `event_counts` by
+    event type, `errors_by_app` counts ERROR and CRITICAL events: the services of each processor write into these three
+    themselves. `topics` has rows of ROS topics by MsgId. `tables` gives further rows for the report, by their title
+    there; an attachment that has some puts a function here.
     """
 
     resets: list[Reset] = field(default_factory=list)
     history: dict[str, AppHistory] = field(default_factory=dict)
     event_counts: dict[int, int] = field(default_factory=dict)
     errors_by_app: dict[str, int] = field(default_factory=dict)
-    topics: dict[int, Any] = field(default_factory=dict)
-    invariants: dict[str, InvariantRecord] = field(default_factory=dict)
-    faults: Any = None
-    deadlines: list[Check] = field(default_factory=list)
-    overruns: list[Overrun] = field(default_factory=list)
+    topics: dict[int, TopicRow] = field(default_factory=dict)
+    tables: dict[str, Callable[[], list[dict[str, Any]]]] = field(default_factory=dict)
+    _parts: dict[type, object] = field(default_factory=dict)
     _traffic: dict[int, Traffic] = field(default_factory=dict)
 
-    def close_books(self, bus: SoftwareBus, topics: Iterable[Any]) -> None:
+    def part(self, kind: type[P]) -> P:
+        """The part of a kind, made without arguments when it is first asked for."""
+        found = self._parts.get(kind)
+        if not isinstance(found, kind):
+            found = self._parts[kind] = kind()
+        return found
+
+    def rows(self, title: str) -> list[dict[str, Any]]:
+        """The rows of a table; none when there is no such table."""
+        table = self.tables.get(title)
+        return [] if table is None else table()
+
+    def deaths(self) -> list[str]:
+        """A line for each application that died: how often, and of what at last."""
+        return list(self.deaths_by_app().values())
+
+    def deaths_by_app(self) -> dict[str, str]:
+        """The same by the application's name."""
+        found = {}
+        for app in self.history.values():
+            if app.last_error is not None:
+                times = "" if app.deaths == 1 else f" {app.deaths} times"
+                found[app.name] = f"{app.name} died{times}: {described(app.last_error)}"
+        return found
+
+    def close_books(self, bus: SoftwareBus, topics: Iterable[TopicRow]) -> None:
         """Take down the traffic of a processor that is about to be reset, and the rows of its ROS topics."""
         topics = list(topics)
         self.topics.update((row.msg_id, row) for row in topics)
         for msg_id, count in traffic_of(bus, topics).items():
             self._traffic.setdefault(msg_id, Traffic()).add(count)
 
-    def traffic(self, bus: SoftwareBus, topics: Iterable[Any]) -> dict[int, Traffic]:
+    def traffic(self, bus: SoftwareBus, topics: Iterable[TopicRow]) -> dict[int, Traffic]:
         """Traffic by MsgId, in order, with that of the processor that runs now."""
         total = traffic_of(bus, topics)
         for msg_id, count in self._traffic.items():
@@ -106,12 +111,12 @@ class RunRecord:
         return dict(sorted(total.items()))
 
 
-def traffic_of(bus: SoftwareBus, topics: Iterable[Any] = ()) -> dict[int, Traffic]:
+def traffic_of(bus: SoftwareBus, topics: Iterable[TopicRow] = ()) -> dict[int, Traffic]:
     """Traffic on one bus by MsgId.
 
     Args:
         bus: the Software Bus.
-        topics: the rows of the ROS side (`rospy_shim.graph.TopicRow`), for what only it knows.
+        topics: the rows of the ROS side (`rospy_shim.graph.graph.TopicRow`), for what only it knows.
     """
     found: dict[int, Traffic] = {}
     for route in bus.routes.values():

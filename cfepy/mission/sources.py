@@ -10,6 +10,8 @@ import importlib.util
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from cfepy.syntax_trees import parsed
+
 PACKAGE_FILE = "__init__.py"
 
 
@@ -30,7 +32,7 @@ def files_of(source: Path) -> list[Path]:
 def syntax_error(source: Path) -> tuple[int, str] | None:
     """(line, what is wrong) of a file that is not Python; None when it is."""
     try:
-        ast.parse(source.read_bytes(), filename=str(source))
+        parsed(source.read_bytes(), str(source))
     except SyntaxError as error:
         return error.lineno or 1, error.msg
     except (ValueError, OSError) as error:
@@ -40,22 +42,23 @@ def syntax_error(source: Path) -> tuple[int, str] | None:
 
 def functions_of(source: Path) -> list[str]:
     """Functions that a module defines itself, for suggestions."""
-    return [node.name for node in _tree(source).body if isinstance(node, ast.FunctionDef)]
+    return [node.name for node in tree_of(source).body if isinstance(node, ast.FunctionDef)]
 
 
 def functions_and_classes_of(source: Path) -> list[str]:
     """Functions and classes that a module defines itself, for suggestions."""
-    return [node.name for node in _tree(source).body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+    return [node.name for node in tree_of(source).body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
 
 
 def defines(source: Path, name: str) -> bool:
     """Whether a module that can be parsed has a name at its top level, or may have it."""
-    return any(_binds(statement, source, name) for statement in _statements(_tree(source).body))
+    return any(_binds(statement, source, name) for statement in _statements(tree_of(source).body))
 
 
-def _tree(source: Path) -> ast.Module:
+def tree_of(source: Path) -> ast.Module:
+    """The syntax of a file; an empty module when it is not Python, which `syntax_error` tells."""
     try:
-        return ast.parse(source.read_bytes())
+        return parsed(source.read_bytes())
     except (SyntaxError, ValueError, OSError):
         return ast.Module(body=[], type_ignores=[])
 

@@ -1,28 +1,30 @@
-"""Looking on at the ROS topics of a mission: every message, with who sent it and when.
+"""A watch on the ROS topics of a mission, which sees every message with its sender and time.
 
-It looks on at the Software Bus, so it changes nothing: the run has the trace of one that nobody watches. It sees
-packets that cFE applications send to a topic's MsgId as well, and messages that nobody gets. rospy_shim is loaded by
-name.
+It watches the Software Bus, so it changes nothing: the run has the trace of one that is not watched. It sees
+packets that cFE applications send to a topic's MsgId as well, and messages without a subscriber.
 """
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
-from typing import Any
+from typing import TYPE_CHECKING
 
-from cfepy.mission.mission import Mission
-from cfepy.mission.watch import PacketWatch, Seen, hearing
+from cfepy.mission.packet_watch import PacketWatch, Seen, hearing
 from cfepy.msg import TLM_HEADER_SIZE, SegmentationFlag, get_segmentation_flag
-from cfepy.rtos.units import NS_PER_S
 from cfepy.sb import SoftwareBus
+from cfepy.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from cfepy.mission.mission import Mission
+    from rospy_shim.client.link import Link
+    from rospy_shim.graph.graph import Graph, TopicEntry
 
 RAW_TYPE = "std_msgs/UInt8MultiArray"
 CLOCK_BYTES = 8
 
 
-class Message:
+class TopicMessage:
     """A message on a topic.
 
     Attributes:
@@ -42,26 +44,30 @@ class Message:
 
 
 class TopicWatch(PacketWatch):
-    """Looks on at the topics of a mission.
+    """Watches the topics of a mission.
 
     Args:
         take: gets each message when it is sent; called inside the simulation, so it must not wait.
         patterns: names of topics, such as "/odom" or "/arm/*"; all when there are none.
     """
 
-    def __init__(self, take: Callable[[Message], object], patterns: Sequence[str] = ()) -> None:
-        super().__init__(self._take_packet, self._is_wanted)
+    def __init__(self, take: Callable[[TopicMessage], object], patterns: Sequence[str] = ()) -> None:
+        super().__init__(self.take_packet, self._is_wanted)
         self._take_message = take
         self._patterns = tuple(patterns)
-        self._topics: dict[int, Any] = {}
-        self._known: tuple[Any, int] = (None, 0)
+        self._topics: dict[int, TopicEntry] = {}
+        self._known: tuple[Graph | None, int] = (None, 0)
         self._parts: dict[tuple[int, str], list[bytes]] = {}
         self._clock_ns: int | None = None
         self._mission: Mission | None = None
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """See `Attachment.bus`."""
-        return hearing(super().bus(base), self._take_unsent)
+        return self.hearing(super().bus(base))
+
+    def hearing(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """A class of bus that shows messages whose topic has no subscriber, but no packets."""
+        return hearing(base, self._take_unsent)
 
     def begin(self, mission: Mission) -> None:
         """See `Attachment.begin`."""
@@ -69,11 +75,11 @@ class TopicWatch(PacketWatch):
 
     # -- what is seen --------------------------------------------------------------------------------------------------
 
-    def _graph(self) -> Any:
+    def _graph(self) -> Graph | None:
         ros = None if self._mission is None else self._mission.ros
         return None if ros is None else ros.graph
 
-    def _topic(self, msg_id: int) -> Any:
+    def _topic(self, msg_id: int) -> TopicEntry | None:
         """The topic of a MsgId, None when it is no topic's."""
         graph = self._graph()
         if graph is None:
@@ -87,8 +93,11 @@ class TopicWatch(PacketWatch):
         topic = self._topic(msg_id)
         return topic is not None and (topic.name == "/clock" or matches(topic.name, self._patterns))
 
-    def _take_packet(self, seen: Seen) -> None:
+    def take_packet(self, seen: Seen) -> None:
+        """A packet was sent; for what watches all packets itself, and so does not let this watch do it too."""
         topic = self._topic(seen.msg_id)
+        if topic is None:
+            return
         data = seen.packet if topic.raw else self._whole(seen)
         if data is not None:
             header = next((link.header for link in topic.links if link.node.config.app == seen.sender), None)
@@ -106,17 +115,17 @@ class TopicWatch(PacketWatch):
         parts.append(payload)
         return b"".join(self._parts.pop(key)) if flag == SegmentationFlag.LAST else None
 
-    def _take_unsent(self, link: Any, data: bytes) -> None:
-        if self._is_wanted(link.msg_id):
+    def _take_unsent(self, link: Link, data: bytes) -> None:
+        if link.topic is not None and self._is_wanted(link.msg_id):
             self._show(link.topic, link.header, data, link.node.kernel.now)
 
-    def _show(self, topic: Any, header: dict[str, str], data: bytes, at_ns: int) -> None:
+    def _show(self, topic: TopicEntry, header: dict[str, str], data: bytes, at_ns: int) -> None:
         if topic.raw:
             header, data = _as_bytes_message(header, data)
         if topic.name == "/clock" and len(data) == CLOCK_BYTES:
             self._clock_ns = int.from_bytes(data[:4], "little") * NS_PER_S + int.from_bytes(data[4:], "little")
         if matches(topic.name, self._patterns) and "md5sum" in header:
-            self._take_message(Message(topic.name, dict(header), data, at_ns, self._stamp(at_ns)))
+            self._take_message(TopicMessage(topic.name, dict(header), data, at_ns, self._stamp(at_ns)))
 
     def _stamp(self, at_ns: int) -> int | None:
         assert self._mission is not None
@@ -130,8 +139,8 @@ def matches(topic: str, patterns: Sequence[str]) -> bool:
     return not patterns or any(fnmatchcase(topic, pattern) for pattern in patterns)
 
 
-def _header_of(topic: Any, sender: str) -> dict[str, str]:
-    """A connection header for a cFE application that sends to a topic; empty as long as nobody knows its type."""
+def _header_of(topic: TopicEntry, sender: str) -> dict[str, str]:
+    """A connection header for a cFE application that sends to a topic; empty as long as its type is not known."""
     if not topic.md5sum:
         return {}
     about = {"md5sum": topic.md5sum, "message_definition": topic.definition, "topic": topic.name, "type": topic.type}
@@ -140,6 +149,8 @@ def _header_of(topic: Any, sender: str) -> dict[str, str]:
 
 def _as_bytes_message(header: dict[str, str], packet: bytes) -> tuple[dict[str, str], bytes]:
     """A raw topic: nodes get the whole packet as the data of a message; so does the bag."""
-    kind = importlib.import_module("rospy_shim.msgs").message_class(RAW_TYPE)
+    from rospy_shim.msgs import message_class
+
+    kind = message_class(RAW_TYPE)
     about = {"type": RAW_TYPE, "md5sum": kind._md5sum, "message_definition": kind._full_text}
     return {**header, **about}, kind(data=packet)._pack()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import linecache
+import os
 import traceback
 from pathlib import Path
 
@@ -9,6 +11,11 @@ from cfepy.nodes.report import strip
 
 PACKAGE = str(Path(__file__).resolve().parents[1])
 SHARED = str(Path(PACKAGE) / "share")
+_CFEPY = os.path.join(PACKAGE, "")
+_ROSPY = os.path.join(os.path.dirname(PACKAGE), "rospy_shim", "")
+_LIBRARIES = os.path.join(_ROSPY, "libraries", "")
+_STANDARD_LIBRARY = os.path.join(os.path.dirname(linecache.__file__), "")
+_INSTALLED = ("site-packages", "dist-packages")
 INNERMOST = 50  # frames that are shown: how deep a runaway recursion gets differs between task contexts
 
 
@@ -39,6 +46,28 @@ def described(error: BaseException) -> str:
         return f"{type(error).__name__}: {error}"
     except Exception:
         return f"{type(error).__name__}: its text cannot be had"
+
+
+def is_shown(file: str) -> bool:
+    """Whether code is the mission's or a library's, not the simulator's."""
+    hidden = file.startswith((_CFEPY, "<")) or (file.startswith(_ROSPY) and not file.startswith(_LIBRARIES))
+    return not hidden
+
+
+def is_library(file: str) -> bool:
+    """Whether a source file is the standard library's or that of an installed package."""
+    parts = Path(file).parts
+    return file.startswith((_STANDARD_LIBRARY, _LIBRARIES)) or any(name in parts for name in _INSTALLED)
+
+
+def is_standard(file: str) -> bool:
+    """Whether a source file is the standard library's."""
+    return file.startswith(_STANDARD_LIBRARY) and not any(name in Path(file).parts for name in _INSTALLED)
+
+
+def is_own_code(file: str) -> bool:
+    """Whether a source file is the mission's own, neither the simulator's nor a library's."""
+    return is_shown(file) and not is_library(file)
 
 
 def _is_ours(file: str) -> bool:

@@ -1,24 +1,13 @@
 """CCSDS packets as cFE builds them (CFE_MSG): headers, payload layouts, command dispatch.
 
-Pure functions on bytes, usable without a mission. Imports only cfepy.status.
+What belongs here are pure functions on bytes, and declarations of commands and telemetry, usable without a mission.
+What sends or receives packets belongs to `cfepy.sb`, what only a ground system knows of them to `cfepy.ground`.
 """
 
 from __future__ import annotations
 
 from cfepy.msg.dictionary import NO_PAYLOAD, Command, Telemetry
-from cfepy.msg.dispatch import CommandTable, Dispatch, Handler
-from cfepy.msg.extended import (
-    get_eds_version,
-    get_endian,
-    get_playback_flag,
-    get_subsystem,
-    get_system,
-    set_eds_version,
-    set_endian,
-    set_playback_flag,
-    set_subsystem,
-    set_system,
-)
+from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, DONE, CommandTable, Dispatch, Handler
 from cfepy.msg.header import (
     CMD_HEADER_SIZE,
     HIGHEST_VALID_MSG_ID,
@@ -29,26 +18,36 @@ from cfepy.msg.header import (
     Packet,
     SegmentationFlag,
     get_ap_id,
+    get_eds_version,
+    get_endian,
     get_has_secondary_header,
     get_header_version,
     get_msg_id,
     get_next_sequence_count,
+    get_playback_flag,
     get_segmentation_flag,
     get_sequence_count,
     get_size,
+    get_subsystem,
+    get_system,
     get_type,
     init,
     is_valid_msg_id,
     set_ap_id,
+    set_eds_version,
+    set_endian,
     set_has_secondary_header,
     set_header_version,
     set_msg_id,
+    set_playback_flag,
     set_segmentation_flag,
     set_sequence_count,
     set_size,
+    set_subsystem,
+    set_system,
     set_type,
 )
-from cfepy.msg.layout import Layout
+from cfepy.msg.layout import SYS_TIME, Cell, Layout, ValueNames, message_string_get, message_string_set, sys_time_fields
 from cfepy.msg.secondary import (
     command,
     compute_checksum,
@@ -67,8 +66,6 @@ from cfepy.msg.secondary import (
     validate_checksum,
     verification_action,
 )
-from cfepy.msg.strings import message_string_get, message_string_set
-from cfepy.msg.sys_time import SYS_TIME, sys_time_fields
 from cfepy.msg.topics import (
     cmd_topic_id_to_msg_id,
     global_cmd_topic_id_to_msg_id,
@@ -82,13 +79,18 @@ from cfepy.msg.topics import (
 )
 
 __all__ = [
+    "BAD_CODE",
+    "BAD_LENGTH",
+    "BAD_MSG_ID",
     "CMD_HEADER_SIZE",
+    "DONE",
     "HIGHEST_VALID_MSG_ID",
     "MAX_SEQUENCE_COUNT",
     "NO_PAYLOAD",
     "PRIMARY_HEADER_SIZE",
     "SYS_TIME",
     "TLM_HEADER_SIZE",
+    "Cell",
     "Command",
     "CommandTable",
     "Dispatch",
@@ -98,6 +100,7 @@ __all__ = [
     "Packet",
     "SegmentationFlag",
     "Telemetry",
+    "ValueNames",
     "cmd_topic_id_to_msg_id",
     "command",
     "compute_checksum",

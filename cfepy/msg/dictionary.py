@@ -1,7 +1,7 @@
 """Commands and telemetry by name: what an app declares once, for its own dispatch and for every tool on the ground.
 
 A service or an app has its declarations in one module, gathered in `COMMANDS` and `TELEMETRY`; an app offers these two
-names beside its entry point, where tools find them. Imports only its neighbours in cfepy.msg.
+names next to its entry point, where tools find them.
 """
 
 from __future__ import annotations

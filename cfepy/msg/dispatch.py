@@ -1,7 +1,7 @@
 """Which handler a command packet goes to: message id, then function code, then length, each checked in that order.
 
 Every service and app dispatches like this and sends its own event when one of the checks fails; so the table calls the
-handler or says what was wrong, and sends nothing itself. Imports only the header functions.
+handler or says what was wrong, and sends nothing itself.
 """
 
 from __future__ import annotations

@@ -1,23 +1,25 @@
 """The CCSDS primary header of a packet (CFE_MSG, Space Packet Protocol CCSDS 133.0-B): six bytes, big-endian.
 
 Every function works on the packet's own bytes: getters on anything that reads like bytes, setters on a bytearray in
-place. Message ids are "version 1": the first 16 bits of the packet. Imports only cfepy.status.
+place. Message ids are "version 1": the first 16 bits of the packet.
+
+There are no extended headers ("version 2"), as in cFE's default configuration: the functions about their fields raise
+CFE_MSG_NOT_IMPLEMENTED.
 """
 
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import NoReturn
 
-from cfepy.status import CFE_MSG_BAD_ARGUMENT, CfeError
+from cfepy.status import CFE_MSG_BAD_ARGUMENT, CFE_MSG_NOT_IMPLEMENTED, CfeError
 
 Packet = bytes | bytearray | memoryview
-
 PRIMARY_HEADER_SIZE = 6
 CMD_HEADER_SIZE = 8
 TLM_HEADER_SIZE = 16
 HIGHEST_VALID_MSG_ID = 0x1FFF
 MAX_SEQUENCE_COUNT = 0x3FFF
-
 _LENGTH_OFFSET = 7
 """A packet's size is its length field plus this (CCSDS 133.0-B 4.1.3.5)."""
 
@@ -185,3 +187,57 @@ def get_size(packet: Packet) -> int:
 def set_size(packet: bytearray, size: int) -> None:
     """Set the header's size of the whole packet, 7..65542; the buffer stays as long as it is (CFE_MSG_SetSize)."""
     _put(packet, 4, 0xFFFF, check_range("packet size", size, 0xFFFF + _LENGTH_OFFSET, _LENGTH_OFFSET) - _LENGTH_OFFSET)
+
+
+def _absent(field: str) -> NoReturn:
+    raise CfeError(CFE_MSG_NOT_IMPLEMENTED, f"{field} is in the extended header, which this mission does not use")
+
+
+def get_eds_version(packet: Packet) -> NoReturn:
+    """CFE_MSG_GetEDSVersion: not with this header."""
+    _absent("the EDS version")
+
+
+def set_eds_version(packet: bytearray, version: int) -> NoReturn:
+    """CFE_MSG_SetEDSVersion: not with this header."""
+    _absent("the EDS version")
+
+
+def get_endian(packet: Packet) -> NoReturn:
+    """CFE_MSG_GetEndian: not with this header."""
+    _absent("the byte order")
+
+
+def set_endian(packet: bytearray, endian: int) -> NoReturn:
+    """CFE_MSG_SetEndian: not with this header."""
+    _absent("the byte order")
+
+
+def get_playback_flag(packet: Packet) -> NoReturn:
+    """CFE_MSG_GetPlaybackFlag: not with this header."""
+    _absent("the playback flag")
+
+
+def set_playback_flag(packet: bytearray, flag: int) -> NoReturn:
+    """CFE_MSG_SetPlaybackFlag: not with this header."""
+    _absent("the playback flag")
+
+
+def get_subsystem(packet: Packet) -> NoReturn:
+    """CFE_MSG_GetSubsystem: not with this header."""
+    _absent("the subsystem")
+
+
+def set_subsystem(packet: bytearray, subsystem: int) -> NoReturn:
+    """CFE_MSG_SetSubsystem: not with this header."""
+    _absent("the subsystem")
+
+
+def get_system(packet: Packet) -> NoReturn:
+    """CFE_MSG_GetSystem: not with this header."""
+    _absent("the system")
+
+
+def set_system(packet: bytearray, system: int) -> NoReturn:
+    """CFE_MSG_SetSystem: not with this header."""
+    _absent("the system")

@@ -1,11 +1,15 @@
 """Payload layouts: a C struct declared once, then packed and unpacked as NASA's x86-64 build has it in memory.
 
 Natural C alignment, little-endian. A layout compiles to one `struct.Struct` over all its leaves, nested structs and
-arrays included; packing lines the values up for it, unpacking builds them into a dict again. Imports only
-cfepy.status.
+arrays included; packing lines the values up for it, unpacking builds them into a dict again.
 
 A field's type is one of u8 i8 u16 i16 u32 i32 u64 i64 f32 f64 bool, `char[N]` (text of at most N bytes), another
-Layout, or an array of these: "u16[4]", "u8[2][3]", "char[4][20]" (4 texts of 20), `(Layout, 32)`.
+Layout, or an array of these: "u16[4]", "u8[2][3]", "char[4][20]" (4 texts of 20), `(Layout, 32)`. An integer whose
+values have names is `ValueNames("u8", SHORT=0, LONG=1)`: packing takes the names as well, unpacking gives the number.
+
+Two things that every service's payloads contain are here too: a spacecraft time (`SYS_TIME`), and text in a field of
+fixed size (CFE_SB_MessageStringSet, CFE_SB_MessageStringGet): filled with NULs, not ended by one when it fills its
+field.
 """
 
 from __future__ import annotations
@@ -15,7 +19,9 @@ import struct
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from cfepy.status import CFE_STATUS_WRONG_MSG_LENGTH, CfeError, UsageError
+from cfepy.msg.header import Packet
+from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_STATUS_WRONG_MSG_LENGTH, CfeError, UsageError
+from cfepy.suggestions import did_you_mean
 
 _SCALARS = {
     "u8": ("B", 1),
@@ -33,6 +39,48 @@ _SCALARS = {
 _TYPE = re.compile(r"(\w+)((?:\[\d+\])*)")
 
 
+class ValueNames:
+    """An integer whose values have names: an enumeration in C, or bits of a mask.
+
+    Args:
+        type: of the integer, such as "u8".
+        flags: whether each value is a bit, so that several may be given as ERROR+CRITICAL.
+        values: the names, without what they have in common in C.
+    """
+
+    __slots__ = ("_texts", "flags", "type", "values")
+
+    def __init__(self, type: str, /, *, flags: bool = False, **values: int) -> None:
+        self.type = type
+        self.flags = flags
+        self.values: Mapping[str, int] = values
+        self._texts = {number: name for name, number in values.items()}
+
+    def number(self, text: str) -> int:
+        """The value of a name, in capitals or not.
+
+        Raises:
+            UsageError: there is none such.
+        """
+        total = 0
+        for part in text.split("+") if self.flags else [text]:
+            if part.upper() not in self.values:
+                hint = did_you_mean(part, self.values, f"there are {self}")
+                raise UsageError(f"{part!r} is neither a number nor a name of a value; {hint}")
+            total |= self.values[part.upper()]
+        return total
+
+    def text(self, number: int) -> str:
+        """The name of a value, or the number when it has none."""
+        if not self.flags or not number:
+            return self._texts.get(number, str(number))
+        names = [name for name, value in self.values.items() if value & number]
+        return "+".join(names) if sum(self.values[name] for name in names) == number else str(number)
+
+    def __str__(self) -> str:
+        return ", ".join(f"{name} ({value})" for name, value in self.values.items())
+
+
 class Cell(NamedTuple):
     """One number or text of a struct: `path` is "PacketID.AppName" or "Counts[3]", `type` "u16" or "char[20]"."""
 
@@ -40,14 +88,16 @@ class Cell(NamedTuple):
     type: str
     offset: int
     size: int
+    names: ValueNames | None = None
 
 
 class _Scalar:
     """A number or a bool."""
 
-    __slots__ = ("align", "code", "leaves", "size")
+    __slots__ = ("align", "code", "leaves", "names", "size")
 
-    def __init__(self, code: str, size: int) -> None:
+    def __init__(self, code: str, size: int, names: ValueNames | None = None) -> None:
+        self.names: ValueNames | None = names
         self.code: str = code
         self.size: int = size
         self.align: int = size
@@ -55,7 +105,9 @@ class _Scalar:
 
     def flatten(self, value: Any, path: str) -> Iterator[Any]:
         if not isinstance(value, (int, float)):
-            raise UsageError(f"{value!r} is not a number", field=path)
+            if self.names is None or not isinstance(value, str):
+                raise UsageError(f"{value!r} is not a number", field=path)
+            value = _named(self.names, value, path)
         if self.code not in "fd" and not isinstance(value, int):
             raise UsageError(f"{value!r} is not an integer", field=path)
         yield value
@@ -64,7 +116,7 @@ class _Scalar:
         return next(leaves)
 
     def cells(self, path: str, at: int) -> Iterator[Cell]:
-        yield Cell(path, _name_of_code(self.code), at, self.size)
+        yield Cell(path, _name_of_code(self.code), at, self.size, self.names)
 
     def zero(self) -> Any:
         return 0
@@ -266,6 +318,8 @@ _Type = _Scalar | _Text | _Array | Layout
 def _parse_type(kind: Any, path: str) -> _Type:
     if isinstance(kind, Layout):
         return kind
+    if isinstance(kind, ValueNames):
+        return _Scalar(*_SCALARS[kind.type], kind)
     if isinstance(kind, tuple):
         return _Array(kind[0], kind[1])
     match = _TYPE.fullmatch(kind)
@@ -291,5 +345,50 @@ def _leaves(kind: _Type, value: Any, path: str) -> Iterator[tuple[str, str, Any]
         yield path, kind.code, next(kind.flatten(value, path))
 
 
+def _named(names: ValueNames, text: str, path: str) -> int:
+    try:
+        return names.number(text)
+    except UsageError as error:
+        raise UsageError(error.text, field=path) from None
+
+
 def _name_of_code(code: str) -> str:
     return next((name for name, (known, _) in _SCALARS.items() if known == code), f"char[{code[:-1]}]")
+
+
+SYS_TIME = Layout("CFE_TIME_SysTime_t", [("Seconds", "u32"), ("Subseconds", "u32")])
+
+
+def sys_time_fields(time: tuple[int, int]) -> dict[str, int]:
+    """A time (seconds, subseconds of 2**-32 s) as the fields of SYS_TIME."""
+    return {"Seconds": time[0], "Subseconds": time[1]}
+
+
+def message_string_set(text: str, size: int) -> bytes:
+    """The bytes of a text field: cut to `size`, or filled up with NULs (CFE_SB_MessageStringSet).
+
+    Raises:
+        CfeError: CFE_SB_BAD_ARGUMENT for a negative size.
+    """
+    if size < 0:
+        raise CfeError(CFE_SB_BAD_ARGUMENT, f"a text field of {size} bytes")
+    return text.encode("utf-8", "surrogateescape")[:size].ljust(size, b"\0")
+
+
+def message_string_get(field: Packet, size: int, default: str | None = None) -> str:
+    """The text of a field, short enough for a C buffer of `size` bytes (CFE_SB_MessageStringGet).
+
+    Args:
+        field: the bytes of the field; the text ends at the first NUL or where the field ends.
+        size: bytes of the buffer, the NUL at its end included.
+        default: taken when the field is empty.
+
+    Raises:
+        CfeError: CFE_SB_BAD_ARGUMENT for a size of 0.
+    """
+    if size <= 0:
+        raise CfeError(CFE_SB_BAD_ARGUMENT, "a buffer of no bytes holds no text")
+    data = bytes(field).partition(b"\0")[0]
+    if not data and default is not None:
+        data = default.encode("utf-8", "surrogateescape")
+    return data[: size - 1].decode("utf-8", "surrogateescape")

@@ -1,8 +1,7 @@
 """cFE's secondary headers: function code and checksum of a command, time of a telemetry packet (CFE_MSG).
 
 Asking a packet for a field that its kind does not have raises CFE_MSG_WRONG_MSG_TYPE. A time here is (seconds,
-subseconds of 2**-32 s); the packet keeps the upper 16 bits of the subseconds. Imports only cfepy.status and the primary
-header.
+subseconds of 2**-32 s); the packet keeps the upper 16 bits of the subseconds.
 """
 
 from __future__ import annotations

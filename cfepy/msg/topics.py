@@ -1,7 +1,7 @@
 """Message ids of topic ids (CFE_SB_*TopicIdToMsgId): the numbers that missions give to commands and telemetry.
 
 A topic belongs to one processor instance, or, as instance 0, to all of them ("global"). The default mapping ORs the
-topic into a base. Imports nothing of cfepy.
+topic into a base.
 """
 
 from __future__ import annotations

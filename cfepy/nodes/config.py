@@ -1,6 +1,6 @@
 """What a mission file says about its ROS nodes and topics, as plain records.
 
-The mission reads them, the ROS side of the house uses them; neither imports the other.
+The mission reads them and ROS's side uses them; neither imports the other.
 """
 
 from __future__ import annotations

@@ -3,7 +3,9 @@
 Names are looked up in this order: the node's table; modules that were given to the universe (rospy, message packages);
 modules made for it (`time`, `_thread`, `os`, ...); the node's own folders; the libraries that its owner provides; the
 standard library and the installed packages, executed afresh or shared as `cfepy.nodes.sharing` says. The host's
-`sys.modules` is never changed.
+`sys.modules` is never changed. A few modules are late: their code runs when a name in them is first looked for, as with
+`importlib.util.LazyLoader`. A thread that imports a module which another thread is still executing waits for it, as in
+Python itself.
 """
 
 from __future__ import annotations
@@ -13,7 +15,8 @@ import importlib
 import importlib.util
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from copy import copy
 from functools import cache
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
@@ -21,16 +24,112 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes import sharing
-from cfepy.nodes.import_locks import ImportLocks
-from cfepy.nodes.late import postpone
 from cfepy.nodes.sources import code_of_file, code_of_library
 from cfepy.nodes.synth import proxy
+from cfepy.rtos import WaitList
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
+    from cfepy.rtos import Kernel, Task
 
+_RUN = "__run__"
 Factory = Callable[["Universe"], ModuleType]
 _WHERE = "(put its source near the node or on ROS_PACKAGE_PATH, or install it into the Python that cfepy runs in)"
+
+
+class LateModule(ModuleType):
+    """A module before its code has run."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "__path__":  # asked of every module that something is imported from; a package is never late
+            raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
+        _wake(self)
+        return getattr(self, name)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        _wake(self)
+        setattr(self, name, value)
+
+    def __delattr__(self, name: str) -> None:
+        _wake(self)
+        delattr(self, name)
+
+    def __dir__(self) -> list[str]:
+        _wake(self)
+        return dir(self)
+
+
+def postpone(module: ModuleType, run: Callable[[], object]) -> ModuleType:
+    """Have the code of a module run later.
+
+    Args:
+        module: one that nothing has happened to yet.
+        run: executes its code.
+    """
+    vars(module)[_RUN] = run
+    module.__class__ = LateModule
+    return module
+
+
+def _wake(module: ModuleType) -> None:
+    """Run the module's code; while it runs, it is a module like any other."""
+    run = vars(module).pop(_RUN)
+    object.__setattr__(module, "__class__", ModuleType)
+    try:
+        run()
+    except BaseException:
+        postpone(module, run)
+        raise
+
+
+class ImportLocks:
+    """The modules that threads are executing.
+
+    Args:
+        kernel: whose tasks import.
+    """
+
+    def __init__(self, kernel: Kernel) -> None:
+        self._kernel = kernel
+        self._loading: dict[str, tuple[Task, WaitList]] = {}
+        self._waiting: dict[Task, str] = {}
+
+    @property
+    def busy(self) -> bool:
+        """Whether any module is being executed now."""
+        return bool(self._loading)
+
+    @contextmanager
+    def loading(self, name: str) -> Iterator[None]:
+        """The current task executes the module `name`."""
+        waits = WaitList(f"the import of {name}")
+        self._loading[name] = self._kernel.current, waits
+        try:
+            yield
+        finally:
+            del self._loading[name]
+            self._kernel.wake_all(waits)
+
+    def wait_for(self, name: str) -> None:
+        """Wait until no other task is executing the module `name`."""
+        current = self._kernel.current
+        entry = self._loading.get(name)
+        if entry is None or current is self._kernel.host or self._is_circular(entry[0]):
+            return
+        self._waiting[current] = name
+        try:
+            self._kernel.wait_on(entry[1])
+        finally:
+            del self._waiting[current]
+
+    def _is_circular(self, loader: Task) -> bool:
+        """Whether `loader` is, or waits for, the current task."""
+        current: Task | None = loader
+        while current is not None and current is not self._kernel.current:
+            name = self._waiting.get(current)
+            entry = self._loading.get(name) if name is not None else None
+            current = entry[0] if entry is not None else None
+        return current is not None
 
 
 class Importer:

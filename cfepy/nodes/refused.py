@@ -1,4 +1,4 @@
-"""What a node on the simulated computer cannot have: processes, and sockets in virtual time; refused by name.
+"""What a node on the simulated computer cannot use: processes, and sockets in virtual time; refused by name.
 
 The modules can be imported, because many programs import them without need; the first use says what to do instead.
 A flight computer under an RTOS has no processes either.
@@ -36,7 +36,7 @@ class RefusedError(OSError):
     Args:
         what: the function or class.
         advice: what to do instead.
-        node: who asked.
+        node: the caller.
     """
 
     def __init__(self, what: str, advice: str, node: str = "") -> None:
@@ -117,7 +117,7 @@ def multiprocessing_submodule(universe: Universe) -> ModuleType:
 def pool_module(universe: Universe) -> ModuleType:
     """`multiprocessing.pool`: threads can be had."""
     return universe.importer.load_file(
-        "multiprocessing.pool", os.path.join(os.path.dirname(__file__), "thread_pool.py")
+        "multiprocessing.pool", os.path.join(os.path.dirname(__file__), "stdlib", "thread_pool.py")
     )
 
 

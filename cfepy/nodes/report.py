@@ -1,4 +1,4 @@
-"""Tracebacks as the author of a node expects them: the node's lines and the libraries', nothing of the simulator."""
+"""Tracebacks as the author of a node expects them: the lines of the node and its libraries, none of the simulator."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Which module comes from where: made for the node, executed afresh for it, or shared with the host.
+"""The origin of each module of a node: made for the node, executed afresh for it, or shared with the host.
 
 Modules that see a clock, threads, entropy, the environment or a module-wide state are the node's own; the rest of the
-standard library (re, math, collections, ...) has nothing to tell nodes apart: its functions and classes are the host's,
+standard library (re, math, collections, ...) is the same for all nodes: its functions and classes are the host's,
 in a module of the node's own, so that a node may replace one for itself. An installed
 package is executed afresh if it is pure Python, because it may well import `time` or `threading`; one with extension
 modules (NumPy, PyYAML) can only exist once per process and is shared.

@@ -1,4 +1,4 @@
-"""From a file to a code object: compiled once per process, shared by all universes, since code objects are immutable.
+"""Code objects of files: compiled once per process, shared by all universes, since code objects are immutable.
 
 The key holds the size and time stamp of a node's file, so that an edited file is compiled anew. Modules of the
 standard library and installed packages come from Python's own byte code cache.
@@ -48,7 +48,7 @@ def own_files() -> list[str]:
 def _compile(source: bytes, path: str, ordered: bool) -> CodeType:
     if not ordered:
         return compile(source, path, "exec", dont_inherit=True)
-    from cfepy.nodes.ordered_code import compile_ordered
+    from cfepy.nodes.ordered_sets import compile_ordered
 
     return compile_ordered(source, path)
 

@@ -1,50 +1,38 @@
-"""What a process is to a Python program, made of one object: modules, threads, environment, streams, signals, entropy.
+"""`Universe`: what a Python program finds in its process: modules, threads, environment, streams, signals, entropy.
 
-A Universe belongs to one node of one simulated computer. The modules that it makes (see `cfepy.nodes.sharing`) call
-back into it; two universes share nothing that can change. It stands for the process that `rosrun` starts.
+A Universe belongs to one node of one simulated computer. The modules that it makes (`cfepy.nodes.stdlib`) call back
+into it; two universes share no mutable state. It stands for the process that `rosrun` starts, from `__main__` to
+its exit status.
 """
 
 from __future__ import annotations
 
 import errno
-import importlib
 import io
 import os
 import random
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from importlib.machinery import SourceFileLoader
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from cfepy.nodes import (
-    asyncio_module,
-    datetime_module,
-    importlib_module,
-    lookup,
-    os_module,
-    psutil_module,
-    random_module,
-    report,
-    serials,
-    signal_module,
-    sys_module,
-    thread_module,
-    time_module,
-)
 from cfepy.nodes.importer import Factory, Importer
-from cfepy.nodes.locks import make_lock_types
-from cfepy.nodes.open_files import OpenFiles
-from cfepy.nodes.script import EXIT_BITS, run_script
+from cfepy.nodes.report import traceback_text
 from cfepy.nodes.sharing import refused_modules
-from cfepy.nodes.signal_module import NodeInterrupt
-from cfepy.nodes.socket_table import SocketTable
-from cfepy.nodes.streams import ConsoleStream, NoInput, TypedInput
+from cfepy.nodes.sources import code_of_file
+from cfepy.nodes.stdlib import os_module, signal_module, sys_module, time_module
+from cfepy.nodes.stdlib.descriptors import OpenFiles, SocketTable
+from cfepy.nodes.stdlib.locks import make_lock_types
+from cfepy.nodes.stdlib.signal_module import NodeInterrupt
+from cfepy.nodes.stdlib.streams import ConsoleStream, NoInput, TypedInput
+from cfepy.nodes.stdlib.table import FIXES, MADE
 from cfepy.rtos import Task, TaskExit
 
 if TYPE_CHECKING:
-    from cfepy.nodes.terminal import Key, Terminal
-    from cfepy.osal.network import Network
+    from cfepy.nodes.stdlib.terminal import Key, Terminal
+    from cfepy.osal import Network
     from cfepy.rtos import Kernel
 
 __all__ = ["Factory", "StartThread", "Universe"]
@@ -56,6 +44,7 @@ _LOOKS = 100
 _LOOK_NS = 10_000
 _TERMINAL = "/dev/tty"
 _KEPT_ENVIRONMENT = ("HOME", "PATH")
+EXIT_BITS = 0xFF  # what of a program's exit status its parent gets to see
 
 
 class Universe:
@@ -80,7 +69,8 @@ class Universe:
         find_module: asked for a factory of any name that `modules` does not have; None is "not mine".
         priority: of its tasks, 0 to 255.
         ordered_sets: sets in the node's code iterate in insertion order.
-        keys: what is typed at its terminal (`cfepy.nodes.terminal`); None leaves it without one, its input at the end.
+        keys: what is typed at its terminal (`cfepy.nodes.stdlib.terminal`); None leaves it without one, and
+            its input at the end.
         network: what its sockets are plugged into; None refuses them.
         root: folder that stands for the computer's root: what is there is taken from there, and the program believes
             that it is where it was ("" for none).
@@ -158,24 +148,33 @@ class Universe:
             libraries=[os.fspath(folder) for folder in library_paths],
             fallbacks=[os.fspath(folder) for folder in fallback_paths],
             ordered=ordered_sets,
-            factories={**_made_modules(), **(modules or {})},
+            factories={**refused_modules(), **MADE, **(modules or {})},
             find_factory=find_module,
-            fixes=_FIXES,
+            fixes=FIXES,
         )
         self.builtins = sys_module.builtins_module(self, ordered_sets)
         self.importer.modules["builtins"] = self.builtins
         self.importer.load("sys")
 
     def run_script(self) -> int:
-        """Execute the script in the current task; see `cfepy.nodes.script.run_script`."""
-        return run_script(self)
+        """Execute the script as `__main__` in the current task, until its last non-daemon thread has ended.
+
+        It runs once.
+
+        Returns:
+            The exit status: 0, what `sys.exit` was given, or 1 after an uncaught error, which is in `error`.
+
+        Raises:
+            TaskExit: the task was ended from outside; the node's threads are ended too, its exit hooks do not run.
+        """
+        return _run_script(self)
 
     def spawn(self) -> Task:
         """Start a task that executes the script."""
         return self.kernel.spawn(self.name, self.run_script, self.priority)
 
     def _make_terminal(self, keys: Sequence[Key]) -> Terminal:
-        from cfepy.nodes.terminal import Terminal  # not on every system, and rarely needed
+        from cfepy.nodes.stdlib.terminal import Terminal  # not on every system, and rarely needed
 
         return Terminal(self, keys, self.deliver_signal)
 
@@ -260,7 +259,7 @@ class Universe:
             except SystemExit:
                 pass
             except Exception as error:
-                self.print_error(f"Exception ignored in atexit callback {function!r}:\n{report.traceback_text(error)}")
+                self.print_error(f"Exception ignored in atexit callback {function!r}:\n{traceback_text(error)}")
 
     def deliver_signal(self, number: int) -> None:
         """Let the node's handler of a signal run in the current task, which must be one of the node's.
@@ -327,53 +326,85 @@ def _free() -> None:
     """A call that takes no virtual time."""
 
 
-_FIXES: dict[str, Callable[[Universe, ModuleType], None]] = {
-    "asyncio": asyncio_module.fix_asyncio,
-    "concurrent.futures._base": serials.fix_futures,
-    "random": random_module.fix_random,
-    "threading": thread_module.fix_threading,
-    "traceback": lambda universe, module: report.hide_in(module),
-}
+def _run_script(universe: Universe) -> int:
+    """See `Universe.run_script`."""
+    universe.main_task = universe.kernel.current
+    universe.adopt_current()
+    if universe.terminal is not None:
+        universe.terminal.start_typing()
+    try:
+        status = _execute(universe)
+        status = _shut_down(universe) or status
+        universe.exit_status = status
+    except TaskExit:
+        if universe.exit_status is None:
+            raise
+    finally:
+        universe.end_threads()
+        universe.sockets.close_all()
+        universe.files.close_all()
+        universe.release_current()
+        universe.stdout.finish()
+        universe.stderr.finish()
+    return universe.exit_status
 
 
-def _late_module(file: str, function: str) -> Factory:
-    """The factory of a module that few nodes import, and not every system has."""
+def _execute(universe: Universe) -> int:
+    module = ModuleType("__main__")
+    loader = SourceFileLoader("__main__", universe.script)
+    vars(module).update(
+        __builtins__=vars(universe.builtins),
+        __cached__=None,
+        __file__=universe.script,
+        __loader__=loader,
+        __package__=None,
+    )
+    universe.importer.modules["__main__"] = module
+    try:
+        place = universe.resolve(universe.script)
+        exec(code_of_file(place, universe.ordered_sets, universe.script), vars(module))
+    except BaseException as error:
+        return _status_of(universe, error)
+    return 0
 
-    def factory(universe: Universe) -> ModuleType:
-        module: ModuleType = getattr(importlib.import_module(f"cfepy.nodes.{file}"), function)(universe)
-        return module
 
-    return factory
+def _status_of(universe: Universe, error: BaseException) -> int:
+    """The exit status that an error ends the program with; it is shown as Python does."""
+    if isinstance(error, SystemExit):
+        return _exit_code(universe, error.code)
+    if not isinstance(error, (Exception, NodeInterrupt)):
+        raise error  # the end of the task, or a Ctrl-C of the host's user
+    universe.error = error
+    _show(universe, error)
+    return 130 if isinstance(error, NodeInterrupt) else 1
 
 
-def _made_modules() -> dict[str, Factory]:
-    return {
-        **refused_modules(),
-        "_curses": _late_module("curses_module", "curses_module"),
-        "_signal": signal_module.signal_module,
-        "_socket": _late_module("socket_module", "socket_module"),
-        "_thread": thread_module.thread_module,
-        "atexit": signal_module.atexit_module,
-        "dataclasses": lookup.dataclasses_module,
-        "datetime": datetime_module.datetime_module,
-        "fcntl": _late_module("termios_module", "fcntl_module"),
-        "functools": lookup.functools_module,
-        "gc": _late_module("process_modules", "gc_module"),
-        "importlib": importlib_module.importlib_module,
-        "importlib.util": importlib_module.importlib_util_module,
-        "inspect": lookup.inspect_module,
-        "io": sys_module.io_module,
-        "locale": _late_module("process_modules", "locale_module"),
-        "numpy": random_module.numpy_module,
-        "numpy.random": random_module.numpy_random_module,
-        "os": os_module.os_module,
-        "resource": _late_module("process_modules", "resource_module"),
-        "select": _late_module("select_module", "select_module"),
-        "psutil": psutil_module.psutil_module,
-        "signal": signal_module.signal_module,
-        "socket": _late_module("socket_module", "socket_module"),
-        "sys": sys_module.sys_module,
-        "termios": _late_module("termios_module", "termios_module"),
-        "time": time_module.time_module,
-        "typing": lookup.typing_module,
-    }
+def _exit_code(universe: Universe, code: Any) -> int:
+    if code is None:
+        return 0
+    if isinstance(code, int):
+        return code & EXIT_BITS
+    universe.print_error(f"{code}\n")
+    return 1
+
+
+def _show(universe: Universe, error: BaseException) -> None:
+    hook = universe.importer.modules["sys"].excepthook
+    try:
+        hook(type(error), error, error.__traceback__)
+    except Exception as second:
+        universe.print_error(f"Error in sys.excepthook:\n{traceback_text(second)}")
+        universe.print_error(f"\nOriginal exception was:\n{traceback_text(error)}")
+
+
+def _shut_down(universe: Universe) -> int:
+    """What the interpreter does at its end: join threads, run exit hooks."""
+    threading = universe.importer.modules.get("threading")
+    status = 0
+    if threading is not None:
+        try:
+            threading._shutdown()
+        except BaseException as error:
+            status = _status_of(universe, error)
+    universe.run_exit_hooks()
+    return status

@@ -1,6 +1,8 @@
 """The operating system abstraction layer (OSAL) on the simulated kernel, and the OS_* constants that its callers use.
 
-It may import cfepy.rtos and what is left of it. Everything above talks to it through `Osal`.
+What belongs here is NASA's OSAL interface, a module for each of its headers, and what it stands on: the virtual file
+system (`filesystem`, `volumes`) and the virtual network (`network`). What only cFE knows, such as applications and
+tables, does not. All packages above use it through `Osal`.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ from cfepy.osal.clock import (
     OS_TIME_TICKS_PER_USEC,
     OS_TIME_ZERO,
     OsTime,
+    time_from_total_nanoseconds,
 )
 from cfepy.osal.core import Ledger, ObjectSizes
 from cfepy.osal.filesystem import FileSystem
@@ -57,16 +60,15 @@ from cfepy.osal.limits import (
     OS_SEM_FULL,
     OS_WRITE_ONLY,
 )
+from cfepy.osal.network import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Mailbox, Network, Place, Stream
 from cfepy.osal.osal import Osal
-from cfepy.osal.select import (
+from cfepy.osal.sockaddr import OS_SocketDomain_INET, OS_SocketDomain_INET6, OS_SocketDomain_INVALID
+from cfepy.osal.sockets import (
     OS_STREAM_STATE_BOUND,
     OS_STREAM_STATE_CONNECTED,
     OS_STREAM_STATE_LISTENING,
     OS_STREAM_STATE_READABLE,
     OS_STREAM_STATE_WRITABLE,
-)
-from cfepy.osal.sockaddr import OS_SocketDomain_INET, OS_SocketDomain_INET6, OS_SocketDomain_INVALID
-from cfepy.osal.sockets import (
     OS_socket_option_IP_DSCP,
     OS_socket_option_UNDEFINED,
     OS_SocketShutdownMode_SHUT_READ,
@@ -74,9 +76,12 @@ from cfepy.osal.sockets import (
     OS_SocketShutdownMode_SHUT_WRITE,
 )
 from cfepy.osal.streams import OS_SocketType_DATAGRAM, OS_SocketType_STREAM
-from cfepy.osal.volumes import Volume
+from cfepy.osal.tasks import NOBODY, Nobody
+from cfepy.osal.volumes import FileNode, Volume
 
 __all__ = [
+    "LONGEST_DATAGRAM",
+    "NOBODY",
     "OS_CHECK",
     "OS_EVENT_RESOURCE_ALLOCATED",
     "OS_EVENT_RESOURCE_CREATED",
@@ -127,8 +132,15 @@ __all__ = [
     "OS_TIME_TICK_RESOLUTION_NS",
     "OS_TIME_ZERO",
     "OS_WRITE_ONLY",
+    "Datagram",
+    "Endpoint",
+    "FileNode",
     "FileSystem",
     "Ledger",
+    "Listener",
+    "Mailbox",
+    "Network",
+    "Nobody",
     "OS_SocketDomain_INET",
     "OS_SocketDomain_INET6",
     "OS_SocketDomain_INVALID",
@@ -142,5 +154,8 @@ __all__ = [
     "ObjectSizes",
     "OsTime",
     "Osal",
+    "Place",
+    "Stream",
     "Volume",
+    "time_from_total_nanoseconds",
 ]

@@ -1,8 +1,7 @@
 """OSAL's clock and its time arithmetic (osapi-clock.h).
 
 OS_time_t is a plain integer here, `OsTime`, of ticks of 100 ns. The monotonic clock is the kernel's virtual clock; the
-local clock is that plus an offset that `set_local_time` changes. Divisions round towards zero, as C's do. May import
-cfepy.rtos, status and its neighbours in cfepy.osal.
+local clock is that plus an offset that `set_local_time` changes. Divisions round towards zero, as C's do.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 An OSAL object is a record in a table of its kind, under an id and a unique name, with the task that created it
 (osapi-idmap.c, OS_common_record_t). The parts of the interface are classes derived from `Core`, one module each, and
-`cfepy.osal.osal.Osal` is all of them together. May import cfepy.rtos, ids, status, config and console only.
+`cfepy.osal.osal.Osal` is all of them together.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from cfepy.osal.limits import (
     SIZE_MAX,
 )
 from cfepy.osal.network import Network
-from cfepy.rtos import Kernel, Task
+from cfepy.rtos import CpuCosts, Kernel, Task
 from cfepy.status import (
     OS_ERR_INCORRECT_OBJ_STATE,
     OS_ERR_INVALID_ID,
@@ -46,7 +46,7 @@ DELETED = Deleted()
 
 
 class Ledger(Protocol):
-    """Who accounts for memory: the board's budget (`cfepy.psp.memory.MemoryBudget`)."""
+    """The account of memory: the board's budget (`cfepy.psp.memory.MemoryBudget`)."""
 
     def claim(self, owner: str, kind: str, size: int) -> int:
         """Take `size` bytes for an owner; a token to give them back with."""
@@ -61,7 +61,7 @@ class Ledger(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ObjectSizes:
-    """Bytes of memory that the operating system of a board keeps for each object; all 0 where nobody counts."""
+    """Bytes of memory that the operating system of a board keeps for each object; all 0 where memory is not counted."""
 
     task: int = 0  # the control block; the stack comes on top
     queue: int = 0
@@ -83,8 +83,7 @@ class Setup:
         network: what sockets are plugged into.
         memory: accounts for stacks and objects; None does not count.
         sizes: what an object takes.
-        call_ns: virtual CPU time of a call.
-        byte_ps: virtual CPU time of copying one byte through a queue or a file, in picoseconds.
+        costs: virtual CPU time of a call, and of copying bytes through a queue, a file or a socket.
         epoch_ns: local time at virtual time 0, in ns since the epoch of the mission's choice.
     """
 
@@ -95,8 +94,7 @@ class Setup:
     network: Network = field(default_factory=Network)
     memory: Ledger | None = None
     sizes: ObjectSizes = field(default_factory=ObjectSizes)
-    call_ns: int = 0
-    byte_ps: int = 0
+    costs: CpuCosts = field(default_factory=CpuCosts)
     epoch_ns: int = 0
 
 
@@ -123,7 +121,7 @@ EventHandler = Callable[[int, int, Any], int | None]
 """Told of every object: OS_EVENT_*, the id, None; a status other than 0 refuses a new one (OS_EventHandler_t)."""
 
 
-class ObjectTable(IdTable[Record]):
+class OsObjectTable(IdTable[Record]):
     """All objects of one kind, by id and by name.
 
     Args:
@@ -197,18 +195,18 @@ class Core:
         self.config = setup.config
         self.console = setup.console
         self._setup = setup
-        self._cost = setup.call_ns
-        self._byte_cost = setup.byte_ps
+        self._costs = setup.costs
+        self._cost = setup.costs.call_ns
         self._task_ids: dict[Task, int] = {}
-        self._tables: dict[int, ObjectTable[Any]] = {}
+        self._tables: dict[int, OsObjectTable[Any]] = {}
         self._event_handler: EventHandler | None = None
 
-    def _table(self, kind: str, base: int, capacity: int, name_limit: int = OS_MAX_API_NAME) -> ObjectTable[Any]:
-        table: ObjectTable[Any] = ObjectTable(kind, base, capacity, name_limit)
+    def _table(self, kind: str, base: int, capacity: int, name_limit: int = OS_MAX_API_NAME) -> OsObjectTable[Any]:
+        table: OsObjectTable[Any] = OsObjectTable(kind, base, capacity, name_limit)
         self._tables[base] = table
         return table
 
-    def _register(self, table: ObjectTable[Record], record: Record, kind: str, size: int, owner: Any = None) -> int:
+    def _register(self, table: OsObjectTable[Record], record: Record, kind: str, size: int, owner: Any = None) -> int:
         """Account for an object of an application, by default the current task's, and give it an id."""
         task = self.kernel.current
         record.owner = task.owner if owner is None else owner
@@ -225,12 +223,12 @@ class Core:
             self._announce(table, record)
         return object_id
 
-    def _unregister(self, table: ObjectTable[Record], record: Record) -> None:
+    def _unregister(self, table: OsObjectTable[Record], record: Record) -> None:
         table.drop(record)
         self._release(record)
         self._notify(OS_EVENT_RESOURCE_DELETED, record.id)
 
-    def _announce(self, table: ObjectTable[Record], record: Record) -> None:
+    def _announce(self, table: OsObjectTable[Record], record: Record) -> None:
         """Tell the event handler of a new object, which it may refuse (OS_ObjectIdAllocateNew)."""
         status = self._notify(OS_EVENT_RESOURCE_ALLOCATED, record.id)
         if status:

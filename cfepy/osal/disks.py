@@ -1,7 +1,7 @@
 """OSAL's functions on whole file systems (osapi-filesys.h): making, mounting, measuring disks.
 
 /cf, the mission's folder, is a fixed map, and the RAM disk at /ram exists from the start as "/ramdev0", as after
-CFE_ES_InitializeFileSystems. May import cfepy.ids, status and its neighbours in cfepy.osal.
+CFE_ES_InitializeFileSystems.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.ids import OS_FILESYS_BASE, OS_STREAM_BASE
-from cfepy.osal.core import Core, ObjectTable, OsObject, Setup
+from cfepy.osal.core import Core, OsObject, OsObjectTable, Setup
 from cfepy.osal.filesystem import RAM_BLOCK_BYTES, FileSystem
 from cfepy.osal.limits import (
     OS_FS_DEV_NAME_LEN,
@@ -78,7 +78,7 @@ class DiskApi(Core):
         super().__init__(setup)
         self._mounts: FileSystem = setup.files
         self._mounts.forget_guests()
-        self._disks: ObjectTable[OsDisk] = self._table(
+        self._disks: OsObjectTable[OsDisk] = self._table(
             "file system", OS_FILESYS_BASE, OS_MAX_FILE_SYSTEMS, OS_MAX_PATH_LEN
         )
         for point in setup.files.mount_points():

@@ -1,7 +1,7 @@
-"""OSAL's functions on open files (osapi-file.h) on the virtual file system; those by path are in cfepy.osal.paths.
+"""OSAL's open files and directories (osapi-file.h, osapi-dir.h) on the virtual file system.
 
-A read gives bytes, b"" at the end of the file, and never waits; cfepy.osal.streams adds sockets, and with them the
-timed forms. May import cfepy.ids, status and its neighbours in cfepy.osal.
+Functions by path are in cfepy.osal.paths. A read gives bytes, b"" at the end of the file, and never waits;
+cfepy.osal.streams adds sockets, and with them the timed forms.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from cfepy.ids import OS_STREAM_BASE
-from cfepy.osal.core import Core, ObjectTable, OsObject, Setup, check_size
+from cfepy.ids import OS_DIR_BASE, OS_STREAM_BASE
+from cfepy.osal.core import Core, OsObject, OsObjectTable, Setup, check_size
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.limits import (
     OS_FILE_FLAG_CREATE,
@@ -18,6 +18,7 @@ from cfepy.osal.limits import (
     OS_FILE_FLAG_TRUNCATE,
     OS_FILESTAT_MODE_READ,
     OS_FILESTAT_MODE_WRITE,
+    OS_MAX_NUM_OPEN_DIRS,
     OS_MAX_NUM_OPEN_FILES,
     OS_READ_ONLY,
     OS_READ_WRITE,
@@ -26,8 +27,7 @@ from cfepy.osal.limits import (
     OS_SEEK_SET,
     OS_WRITE_ONLY,
 )
-from cfepy.osal.volumes import Node
-from cfepy.rtos.units import PS_PER_NS
+from cfepy.osal.volumes import FileNode
 from cfepy.status import (
     OS_ERR_NO_FREE_IDS,
     OS_ERR_OPERATION_NOT_SUPPORTED,
@@ -68,7 +68,7 @@ class OsFile(OsStream):
 
     __slots__ = ("access", "node", "position")
 
-    def __init__(self, name: str, path: str, node: Node, access: int) -> None:
+    def __init__(self, name: str, path: str, node: FileNode, access: int) -> None:
         super().__init__(name, path)
         self.node = node
         self.access = access
@@ -81,7 +81,7 @@ class FileApi(Core):
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
         self.files: FileSystem = setup.files
-        self._streams: ObjectTable[OsStream] = self._table("file", OS_STREAM_BASE, OS_MAX_NUM_OPEN_FILES)
+        self._streams: OsObjectTable[OsStream] = self._table("file", OS_STREAM_BASE, OS_MAX_NUM_OPEN_FILES)
         self._opened = 0
 
     def open_create(self, path: str, flags: int = OS_FILE_FLAG_NONE, access_mode: int = OS_READ_ONLY) -> int:
@@ -230,8 +230,8 @@ class FileApi(Core):
         return stream
 
     def _charge_bytes(self, count: int) -> None:
-        if self._byte_cost:
-            self.kernel.charge(count * self._byte_cost // PS_PER_NS)
+        if self._costs.byte_ps:
+            self.kernel.charge(self._costs.of_copying(count))
 
     def _resize(self, filedes: int, new_size: Callable[[int], int], is_valid: bool) -> None:
         stream = self._file(filedes)
@@ -251,3 +251,73 @@ class FileApi(Core):
         if missing > 0:
             self.files.check_room(stream.path, missing)
             stream.node.data.extend(bytes(missing))
+
+
+class OsDirectory(OsObject):
+    """The record of an open folder."""
+
+    __slots__ = ("entries", "position")
+
+    def __init__(self, name: str, entries: list[str]) -> None:
+        super().__init__(name)
+        self.entries = entries
+        self.position = 0
+
+
+class DirectoryApi(Core):
+    """The functions on folders."""
+
+    def __init__(self, setup: Setup) -> None:
+        super().__init__(setup)
+        self.files: FileSystem = setup.files
+        self._directories: OsObjectTable[OsDirectory] = self._table("directory", OS_DIR_BASE, OS_MAX_NUM_OPEN_DIRS)
+        self._directories_opened = 0
+
+    def mkdir(self, path: str, access: int = OS_READ_WRITE) -> None:
+        """Make a folder (OS_mkdir); OS_ERROR when that cannot be, OS_FS_ERR_* for the path.
+
+        Args:
+            path: virtual path; a folder that is there already stays as it is.
+            access: without effect, as in NASA's.
+        """
+        self.files.make_folder(path)
+
+    def rmdir(self, path: str) -> None:
+        """Remove an empty folder (OS_rmdir); OS_ERROR when it is none, OS_FS_ERR_* for the path."""
+        self.files.remove_folder(path)
+
+    def directory_open(self, path: str) -> int:
+        """Open a folder to read its names, sorted (OS_DirectoryOpen).
+
+        Raises:
+            OsalError: OS_ERROR when there is none; OS_FS_ERR_* for the path; OS_ERR_NO_FREE_IDS.
+        """
+        self._directories_opened += 1  # open folders have no names in OSAL, records here do
+        record = OsDirectory(f"#{self._directories_opened}", self.files.list_dir(path))
+        return self._register(self._directories, record, "directory", 0)
+
+    def directory_close(self, dir_id: int) -> None:
+        """Close a folder (OS_DirectoryClose), or OS_ERR_INVALID_ID."""
+        self._unregister(self._directories, self._directory(dir_id))
+
+    def directory_read(self, dir_id: int) -> str | None:
+        """The next name, None after the last one, where NASA's returns OS_ERROR (OS_DirectoryRead).
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        directory = self._directory(dir_id)
+        if directory.position >= len(directory.entries):
+            return None
+        directory.position += 1
+        return directory.entries[directory.position - 1]
+
+    def directory_rewind(self, dir_id: int) -> None:
+        """Begin again with the first name (OS_DirectoryRewind), or OS_ERR_INVALID_ID."""
+        self._directory(dir_id).position = 0
+
+    def _directory(self, dir_id: int) -> OsDirectory:
+        directory = self._directories.lookup(dir_id)
+        if directory is None:
+            raise self._directories.missing(dir_id)
+        return directory

@@ -1,7 +1,7 @@
 """The virtual file system behind OSAL's file functions: mount points and what is below them (osapi-filesys.c).
 
 `/cf` is the mission's folder, `/ram` a disk in memory. Files are read and written as a whole here; `cfepy.osal.files`
-adds OSAL's file descriptors. May import cfepy.status and its neighbours in cfepy.osal.
+adds OSAL's file descriptors.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.osal.limits import OS_MAX_FILE_NAME, OS_MAX_PATH_LEN
-from cfepy.osal.volumes import Node, Volume
+from cfepy.osal.volumes import FileNode, Volume
 from cfepy.status import (
     OS_ERR_NAME_NOT_FOUND,
     OS_ERROR,
@@ -24,7 +24,7 @@ RAM_BLOCK_BYTES = 512  # CFE_PLATFORM_ES_RAM_DISK_SECTOR_SIZE
 RAM_BLOCKS = 4096  # CFE_PLATFORM_ES_RAM_DISK_NUM_SECTORS
 
 
-class Place(NamedTuple):
+class FilePlace(NamedTuple):
     """Where a virtual path leads: a volume and a path in it."""
 
     volume: Volume
@@ -97,7 +97,7 @@ class FileSystem:
         """The paths at which volumes are mounted, sorted."""
         return sorted(self._mounts)
 
-    def translate(self, path: str) -> Place:
+    def translate(self, path: str) -> FilePlace:
         """Where a virtual path leads (OS_TranslatePath).
 
         Raises:
@@ -113,12 +113,12 @@ class FileSystem:
         for mount_point, volume in self._mounts.items():
             if path == mount_point or path.startswith(mount_point + "/"):
                 rest = [part for part in path[len(mount_point) :].split("/") if part not in ("", ".")]
-                return Place(volume, "/".join(rest))
+                return FilePlace(volume, "/".join(rest))
         raise OsalError(
             OS_FS_ERR_PATH_INVALID, f"{path!r} is below no mount point; there are {', '.join(self.mount_points())}"
         )
 
-    def find(self, path: str) -> Node | None:
+    def find(self, path: str) -> FileNode | None:
         """The file at a path, None when there is none.
 
         Raises:
@@ -154,7 +154,7 @@ class FileSystem:
         node.data[:] = data
         node.modified_ns = now_ns
 
-    def open_node(self, path: str) -> Node:
+    def open_node(self, path: str) -> FileNode:
         """The file at a path, an empty new one when there was none.
 
         Raises:

@@ -1,7 +1,4 @@
-"""OSAL's id map (osapi-idmap.h), error names, console output and versions: what concerns no particular kind of object.
-
-May import cfepy.ids, status, versions and its neighbours in cfepy.osal.
-"""
+"""OSAL's id map (osapi-idmap.h), error names, console output and versions: what all kinds of objects share."""
 
 from __future__ import annotations
 

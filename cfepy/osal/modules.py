@@ -1,8 +1,7 @@
 """OSAL's loader (osapi-module.h): modules of code by id and name, and the symbols in them.
 
-Code is Python here, and finding it is a mission's business: `modules` is the seam, where a mission plugs in what turns
-a virtual path into an object whose attributes are the symbols. May import cfepy.ids, status and its neighbours in
-cfepy.osal.
+Code is Python here, and the mission finds it: it plugs in as `modules` a loader that turns a virtual path into an
+object whose attributes are the symbols.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple, Protocol
 
 from cfepy.ids import OS_MODULE_BASE
-from cfepy.osal.core import Core, ObjectTable, OsObject, Setup
+from cfepy.osal.core import Core, OsObject, OsObjectTable, Setup
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.limits import OS_MAX_MODULES, OS_MODULE_FLAG_GLOBAL_SYMBOLS
 from cfepy.status import OS_ERR_NOT_IMPLEMENTED, OS_ERROR, OsalError
@@ -72,7 +71,7 @@ class ModuleApi(Core):
         super().__init__(setup)
         self.modules: CodeSource | None = None
         self._paths: FileSystem = setup.files
-        self._modules: ObjectTable[OsModule] = self._table("module", OS_MODULE_BASE, OS_MAX_MODULES)
+        self._modules: OsObjectTable[OsModule] = self._table("module", OS_MODULE_BASE, OS_MAX_MODULES)
 
     def module_load(self, module_name: str, filename: str, flags: int = OS_MODULE_FLAG_GLOBAL_SYMBOLS) -> int:
         """Load code (OS_ModuleLoad).

@@ -1,21 +1,271 @@
 """`Osal`: the operating system abstraction layer as one object, `cfe.os`, put together from its parts.
 
 Names are NASA's in snake case: OS_QueueCreate is `os.queue_create`. A failed call raises OsalError with NASA's OS_*
-code; a time-out or an empty queue is None or False. May import cfepy.rtos and what is left of it.
+code; a time-out or an empty queue is None or False.
+
+Two parts are here: the frame around flight software (osapi-common.h, osapi-bsp.h, osapi-heap.h, osapi-network.h; a
+mission makes an `Osal` ready to use, so OS_API_Init has nothing left to do), and the functions that ES calls when an
+application ends to delete its objects, which NASA does task by task in CFE_ES_CleanupTaskResources.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
-from cfepy.osal.application import ApplicationApi
-from cfepy.osal.core import Ledger, ObjectSizes, Setup
+from cfepy.ids import (
+    OS_BINSEM_BASE,
+    OS_CONDVAR_BASE,
+    OS_COUNTSEM_BASE,
+    OS_DIR_BASE,
+    OS_MODULE_BASE,
+    OS_MUTEX_BASE,
+    OS_QUEUE_BASE,
+    OS_RWLOCK_BASE,
+    OS_STREAM_BASE,
+    OS_TASK_BASE,
+    OS_TIMEBASE_BASE,
+    OS_TIMECB_BASE,
+)
+from cfepy.osal.core import EventHandler, Ledger, ObjectSizes, OsObject, Setup, check_size
 from cfepy.osal.disks import DiskApi
+from cfepy.osal.files import DirectoryApi
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.idmap import IdMapApi
+from cfepy.osal.limits import OS_MAX_PATH_LEN
+from cfepy.osal.locks import CondVarApi, MutexApi, RwLockApi
+from cfepy.osal.modules import ModuleApi
 from cfepy.osal.network import Network
+from cfepy.osal.paths import PathApi
+from cfepy.osal.queues import QueueApi
+from cfepy.osal.semaphores import SemaphoreApi
 from cfepy.osal.shell import ShellApi
-from cfepy.rtos import Kernel
+from cfepy.osal.sockets import SelectApi
+from cfepy.osal.tasks import OsTask, TaskApi
+from cfepy.osal.timers import TimerApi
+from cfepy.rtos import CpuCosts, Kernel, WaitList
+from cfepy.status import OS_ERR_NOT_IMPLEMENTED, OS_ERROR, OS_INVALID_POINTER, OS_SUCCESS, OsalError
+
+EXIT_SUCCESS, EXIT_FAILURE = 0, 1
+
+
+class Leftover(NamedTuple):
+    """An object that could not be deleted, and why."""
+
+    object_id: int
+    error: OsalError
+
+
+class CleanupApi(
+    TaskApi,
+    QueueApi,
+    SemaphoreApi,
+    MutexApi,
+    CondVarApi,
+    RwLockApi,
+    TimerApi,
+    SelectApi,
+    PathApi,
+    DirectoryApi,
+    ModuleApi,
+):
+    """Deletion of everything that belongs to an application."""
+
+    def __init__(self, setup: Setup) -> None:
+        super().__init__(setup)
+        # NASA's order; what comes after the timers is left behind by NASA's CFE_ES_CleanupObjectCallback.
+        self._deleters: dict[int, Callable[[int], None]] = {
+            OS_TASK_BASE: self.task_delete,
+            OS_QUEUE_BASE: self.queue_delete,
+            OS_COUNTSEM_BASE: self.count_sem_delete,
+            OS_BINSEM_BASE: self.bin_sem_delete,
+            OS_MUTEX_BASE: self.mut_sem_delete,
+            OS_STREAM_BASE: self.close,
+            OS_TIMECB_BASE: self.timer_delete,
+            OS_TIMEBASE_BASE: self.time_base_delete,
+            OS_DIR_BASE: self.directory_close,
+            OS_CONDVAR_BASE: self.cond_var_delete,
+            OS_RWLOCK_BASE: self.rw_lock_delete,
+            OS_MODULE_BASE: self.module_unload,
+        }
+
+    def delete_objects_of(self, owner: Any) -> list[Leftover]:
+        """Delete the tasks that work for an application, youngest first, each after all it made.
+
+        The calling task is left out.
+
+        Args:
+            owner: what `Task.owner` is for these tasks.
+
+        Returns:
+            What could not be deleted.
+        """
+        for task_id, record in reversed(self._tasks_of(owner)):
+            self.delete_objects_of_task(task_id)
+            if not record.deleted:
+                self.task_delete(task_id)
+        # Once more for what is left: mutexes that a task held until it ended, things of tasks that ended before.
+        return self._delete_where(lambda record: record.owner is owner and not self._is_caller(record))
+
+    def delete_objects_of_task(self, task_id: int) -> list[Leftover]:
+        """Delete every object that a task created, other tasks included, but not the task (OS_ForEachObject).
+
+        Returns:
+            What could not be deleted.
+        """
+        return self._delete_where(lambda record: record.creator == task_id and not self._is_caller(record))
+
+    def _tasks_of(self, owner: Any) -> list[tuple[int, OsTask]]:
+        return [
+            (task_id, record)
+            for task_id, record in sorted(self._tasks.items())
+            if record.task is not None and record.task.owner is owner and not self._is_caller(record)
+        ]
+
+    def _is_caller(self, record: OsObject) -> bool:
+        return isinstance(record, OsTask) and record.task is self.kernel.current
+
+    def _delete_where(self, belongs: Callable[[OsObject], bool]) -> list[Leftover]:
+        leftovers: list[Leftover] = []
+        for base, delete in self._deleters.items():
+            for object_id, record in self._tables[base].items():
+                if record.deleted or not belongs(record):
+                    continue
+                try:
+                    delete(object_id)
+                except OsalError as error:
+                    leftovers.append(Leftover(object_id, error))
+        return leftovers
+
+
+class HeapInfo(NamedTuple):
+    """What `heap_get_info` tells (OS_heap_prop_t), in bytes."""
+
+    free_bytes: int
+    free_blocks: int
+    largest_free_block: int
+
+
+def strnlen(text: bytes, maxlen: int) -> int:
+    """Length of a C string up to its NUL, `maxlen` at most (OS_strnlen)."""
+    nul = text.find(b"\0", 0, maxlen)
+    return nul if nul >= 0 else min(len(text), maxlen)
+
+
+class ApplicationApi(CleanupApi):
+    """The functions around an application; `exit_code` is what OS_BSP_SetExitCode left."""
+
+    strnlen = staticmethod(strnlen)
+
+    def __init__(self, setup: Setup) -> None:
+        super().__init__(setup)
+        self.exit_code = OS_SUCCESS
+        self._is_shut_down = False
+        self._idle = WaitList("shutdown")
+        self._resource_type_config: dict[int, int] = {}
+
+    def api_init(self) -> None:
+        """Nothing: OSAL is ready when it was made, and a second call is ignored in NASA's too (OS_API_Init)."""
+
+    def api_teardown(self) -> None:
+        """Delete every object, then let the idle loop end (OS_API_Teardown)."""
+        self.delete_all_objects()
+        self.application_shutdown(True)
+
+    def delete_all_objects(self) -> None:
+        """Delete every object and task but the caller (OS_DeleteAllObjects)."""
+        self._delete_where(lambda record: not self._is_caller(record))
+
+    def register_event_handler(self, handler: EventHandler) -> None:
+        """Tell `handler` of every object made or deleted, and every task that starts (OS_RegisterEventHandler).
+
+        Args:
+            handler: called with OS_EVENT_*, the object's id, and None. A status other than 0 for
+                OS_EVENT_RESOURCE_ALLOCATED refuses the object, whose creation fails with it.
+
+        Raises:
+            OsalError: OS_INVALID_POINTER for what cannot be called.
+        """
+        if not callable(handler):
+            raise OsalError(OS_INVALID_POINTER, "the event handler cannot be called")
+        self._event_handler = handler
+
+    def application_run(self) -> None:
+        """What the main task does when all is started: idle until the application is shut down (OS_Application_Run)."""
+        self.idle_loop()
+
+    def idle_loop(self) -> None:
+        """Wait until `application_shutdown` (OS_IdleLoop)."""
+        while not self._is_shut_down:
+            self.kernel.wait_on(self._idle)
+
+    def application_shutdown(self, flag: bool) -> None:
+        """Let `idle_loop` end, if `flag` is true (OS_ApplicationShutdown)."""
+        self._is_shut_down |= flag
+        self.kernel.wake_all(self._idle)
+
+    def application_exit(self, status: int) -> None:
+        """End the run at once (OS_ApplicationExit); a task does not come back from it.
+
+        Args:
+            status: OS_SUCCESS ends it with exit code 0, anything else with 1.
+        """
+        self.exit_code = EXIT_SUCCESS if status == OS_SUCCESS else EXIT_FAILURE
+        self.kernel.stop()
+        if self.kernel.current is not self.kernel.host:
+            self.kernel.exit_task()
+
+    def heap_get_info(self) -> HeapInfo:
+        """How much of the board's RAM is left (OS_HeapGetInfo); it does not fragment.
+
+        Raises:
+            OsalError: OS_ERR_NOT_IMPLEMENTED where memory is not counted, as on NASA's Linux.
+        """
+        free = None if self._setup.memory is None else self._setup.memory.free
+        if free is None:
+            raise OsalError(OS_ERR_NOT_IMPLEMENTED, "this board has no limit of memory")
+        return HeapInfo(free, 1 if free else 0, free)
+
+    def network_get_id(self) -> int:
+        """Number of this computer in its network: the processor id (OS_NetworkGetID)."""
+        return self.config.processor_id
+
+    def network_get_host_name(self, name_len: int = OS_MAX_PATH_LEN) -> str:
+        """Name of this computer in its network: the processor's (OS_NetworkGetHostName).
+
+        Args:
+            name_len: bytes that there are for the name and a NUL.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_SIZE for none, OS_ERROR when the name does not fit.
+        """
+        check_size(name_len, "host name")
+        name = self.config.processor_name
+        if len(name.encode("utf-8", "replace")) >= name_len:
+            raise OsalError(OS_ERROR, f"the host name {name} does not fit in {name_len} bytes")
+        return name
+
+    def bsp_get_argc(self) -> int:
+        """How many words the command line of the flight software has (OS_BSP_GetArgC)."""
+        return len(self.bsp_get_argv())
+
+    def bsp_get_argv(self) -> tuple[str, ...]:
+        """Its words: the name of NASA's executable for this processor, without options (OS_BSP_GetArgV)."""
+        return (f"core-{self.config.processor_name}",)
+
+    def bsp_set_exit_code(self, code: int) -> None:
+        """Leave a code for the program that started the run (OS_BSP_SetExitCode)."""
+        self.exit_code = code
+
+    def bsp_set_resource_type_config(self, resource_type: int, config_option_value: int) -> None:
+        """Keep an option for a kind of object (OS_BSP_SetResourceTypeConfig); nothing here asks for one."""
+        self._resource_type_config[resource_type] = config_option_value
+
+    def bsp_get_resource_type_config(self, resource_type: int) -> int:
+        """The option kept for a kind of object, 0 when there is none (OS_BSP_GetResourceTypeConfig)."""
+        return self._resource_type_config.get(resource_type, 0)
 
 
 class Osal(ShellApi, ApplicationApi, DiskApi, IdMapApi):
@@ -29,8 +279,7 @@ class Osal(ShellApi, ApplicationApi, DiskApi, IdMapApi):
         network: what sockets are plugged into; None makes one of its own.
         memory: accounts for stacks and objects, None does not count.
         sizes: what the operating system takes for each object, in bytes.
-        call_ns: virtual CPU time that a call takes.
-        byte_ps: virtual CPU time to copy a byte through a queue or file, in picoseconds.
+        costs: virtual CPU time that a call takes, and copying bytes; None for nothing.
         epoch_ns: local time at virtual time 0, in ns.
     """
 
@@ -44,8 +293,7 @@ class Osal(ShellApi, ApplicationApi, DiskApi, IdMapApi):
         network: Network | None = None,
         memory: Ledger | None = None,
         sizes: ObjectSizes | None = None,
-        call_ns: int = 0,
-        byte_ps: int = 0,
+        costs: CpuCosts | None = None,
         epoch_ns: int = 0,
     ) -> None:
         super().__init__(
@@ -57,8 +305,7 @@ class Osal(ShellApi, ApplicationApi, DiskApi, IdMapApi):
                 network or Network(),
                 memory,
                 sizes or ObjectSizes(),
-                call_ns,
-                byte_ps,
+                costs or CpuCosts(),
                 epoch_ns,
             )
         )

@@ -1,7 +1,6 @@
 """OSAL's functions on files by path (osapi-file.h): facts, access, removing, renaming, copying.
 
-OS_FILESTAT_MODE and its kin, macros on the result of `stat`, are functions here. May import cfepy.status and its
-neighbours in cfepy.osal.
+OS_FILESTAT_MODE and the like, macros on the result of `stat`, are functions here.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
 """OSAL message queues (OS_Queue*): bounded, first in first out, and a writer never waits.
 
-Messages are bytes; they are handed over by reference when immutable, and copied otherwise. May import cfepy.rtos,
-ids, status and its neighbours in cfepy.osal.
+Messages are bytes; they are handed over by reference when immutable, and copied otherwise.
 """
 
 from __future__ import annotations
@@ -9,11 +8,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from cfepy.ids import OS_QUEUE_BASE
-from cfepy.osal.core import DELETED, Core, ObjectTable, OsObject, Setup, check_size
+from cfepy.osal.core import DELETED, Core, OsObject, OsObjectTable, Setup, check_size
 from cfepy.osal.limits import OS_PEND
 from cfepy.rtos import Queue
-from cfepy.rtos.units import NS_PER_MS, PS_PER_NS
 from cfepy.status import OS_ERR_INVALID_SIZE, OS_QUEUE_FULL, OS_QUEUE_INVALID_SIZE, OsalError
+from cfepy.units import NS_PER_MS
 
 
 class QueueInfo(NamedTuple):
@@ -39,7 +38,7 @@ class QueueApi(Core):
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
-        self._queues: ObjectTable[OsQueue] = self._table("queue", OS_QUEUE_BASE, setup.config.os_max_queues)
+        self._queues: OsObjectTable[OsQueue] = self._table("queue", OS_QUEUE_BASE, setup.config.os_max_queues)
         self._find_queue = self._queues.lookup
 
     def queue_create(self, name: str, depth: int, data_size: int, flags: int = 0) -> int:
@@ -89,7 +88,7 @@ class QueueApi(Core):
         """
         size = len(data)
         if self._cost:
-            self.kernel.charge(self._cost + size * self._byte_cost // PS_PER_NS)
+            self.kernel.charge(self._costs.of(size))
         record = self._find_queue(queue_id)
         if record is None:
             raise self._queues.missing(queue_id)
@@ -118,7 +117,7 @@ class QueueApi(Core):
         item = record.queue.get(timeout_ms * NS_PER_MS if timeout_ms > 0 else timeout_ms)
         if item:
             if self._cost:
-                self.kernel.charge(self._cost + len(item) * self._byte_cost // PS_PER_NS)
+                self.kernel.charge(self._costs.of(len(item)))
             return item  # type: ignore[no-any-return]  # queues hold bytes, the kernel's queue anything
         if item is DELETED:
             raise self._queues.gone(record)

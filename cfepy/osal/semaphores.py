@@ -1,18 +1,15 @@
-"""OSAL binary and counting semaphores (OS_BinSem*, OS_CountSem*).
-
-May import cfepy.rtos, ids, status and its neighbours in cfepy.osal.
-"""
+"""OSAL binary and counting semaphores (OS_BinSem*, OS_CountSem*)."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 from cfepy.ids import OS_BINSEM_BASE, OS_COUNTSEM_BASE
-from cfepy.osal.core import Core, ObjectTable, OsObject, Setup
+from cfepy.osal.core import Core, OsObject, OsObjectTable, Setup
 from cfepy.osal.limits import OS_CHECK, OS_PEND, SEM_VALUE_MAX
 from cfepy.rtos import TIMEOUT, Semaphore
-from cfepy.rtos.units import NS_PER_MS
 from cfepy.status import OS_ERR_INVALID_ARGUMENT, OS_INVALID_SEM_VALUE, OS_SEM_FAILURE, OsalError
+from cfepy.units import NS_PER_MS
 
 
 class SemaphoreInfo(NamedTuple):
@@ -39,8 +36,8 @@ class SemaphoreApi(Core):
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
         limit = setup.config.os_max_semaphores
-        self._bin_sems: ObjectTable[OsSemaphore] = self._table("binary semaphore", OS_BINSEM_BASE, limit)
-        self._count_sems: ObjectTable[OsSemaphore] = self._table("counting semaphore", OS_COUNTSEM_BASE, limit)
+        self._bin_sems: OsObjectTable[OsSemaphore] = self._table("binary semaphore", OS_BINSEM_BASE, limit)
+        self._count_sems: OsObjectTable[OsSemaphore] = self._table("counting semaphore", OS_COUNTSEM_BASE, limit)
 
     def bin_sem_create(self, name: str, initial_value: int, options: int = 0) -> int:
         """Make a binary semaphore (OS_BinSemCreate).
@@ -176,7 +173,7 @@ class SemaphoreApi(Core):
         """Facts about a counting semaphore, or OS_ERR_INVALID_ID (OS_CountSemGetInfo)."""
         return _info(self._semaphore(self._count_sems, sem_id))
 
-    def _create(self, table: ObjectTable[OsSemaphore], name: str, initial_value: int, maximum: int | None) -> int:
+    def _create(self, table: OsObjectTable[OsSemaphore], name: str, initial_value: int, maximum: int | None) -> int:
         if self._cost:
             self.kernel.charge(self._cost)
         table.check_name(name)
@@ -185,13 +182,13 @@ class SemaphoreApi(Core):
         record = OsSemaphore(name, Semaphore(self.kernel, initial_value, maximum, name))
         return self._register(table, record, "semaphore", self._setup.sizes.semaphore)
 
-    def _semaphore(self, table: ObjectTable[OsSemaphore], sem_id: int) -> OsSemaphore:
+    def _semaphore(self, table: OsObjectTable[OsSemaphore], sem_id: int) -> OsSemaphore:
         record = table.lookup(sem_id)
         if record is None:
             raise table.missing(sem_id)
         return record
 
-    def _take(self, table: ObjectTable[OsSemaphore], sem_id: int, timeout_ns: int) -> bool:
+    def _take(self, table: OsObjectTable[OsSemaphore], sem_id: int, timeout_ns: int) -> bool:
         if self._cost:
             self.kernel.charge(self._cost)
         record = table.lookup(sem_id)
@@ -203,12 +200,12 @@ class SemaphoreApi(Core):
             raise table.gone(record)
         return False
 
-    def _timed_wait(self, table: ObjectTable[OsSemaphore], sem_id: int, timeout_ms: int) -> bool:
+    def _timed_wait(self, table: OsObjectTable[OsSemaphore], sem_id: int, timeout_ms: int) -> bool:
         if timeout_ms < OS_CHECK:
             raise OsalError(OS_ERR_INVALID_ARGUMENT, f"time-out of {timeout_ms} ms")
         return self._take(table, sem_id, timeout_ms * NS_PER_MS)
 
-    def _delete(self, table: ObjectTable[OsSemaphore], sem_id: int) -> None:
+    def _delete(self, table: OsObjectTable[OsSemaphore], sem_id: int) -> None:
         record = self._semaphore(table, sem_id)
         self._unregister(table, record)
         self.kernel.wake_all(record.semaphore.waits, TIMEOUT)

@@ -1,14 +1,13 @@
 """OSAL's shell (osapi-shell.h): a handful of commands on the virtual file system, their output written to a file.
 
-NASA's Linux hands the line to the host's shell, of which a simulated computer has none. May import cfepy.status and its
-neighbours in cfepy.osal.
+NASA's Linux hands the line to the host's shell, of which a simulated computer has none.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from cfepy.osal.directories import DirectoryApi
+from cfepy.osal.files import DirectoryApi
 from cfepy.osal.limits import OS_MAX_CMD_LEN
 from cfepy.osal.paths import PathApi
 from cfepy.status import OS_ERROR, OsalError

@@ -1,11 +1,8 @@
-"""OSAL's network addresses (OS_SockAddr_t, OS_SocketAddr*): IPv4 and IPv6, as objects that are filled in step by step.
-
-May import cfepy.status and the network beside it.
-"""
+"""OSAL's network addresses (OS_SockAddr_t, OS_SocketAddr*): IPv4 and IPv6, as objects that callers fill in."""
 
 from __future__ import annotations
 
-from cfepy.osal.endpoints import Place
+from cfepy.osal.network import Place
 from cfepy.status import (
     OS_ERR_BAD_ADDRESS,
     OS_ERR_INVALID_ARGUMENT,

@@ -1,26 +1,31 @@
-"""OSAL's sockets (osapi-sockets.h) on the virtual network: datagrams and streams, IPv4 and IPv6.
+"""OSAL's sockets and select (osapi-sockets.h, osapi-select.h) on the virtual network: IPv4 and IPv6, in virtual time.
 
-A socket is a descriptor: stream sockets send and receive with `read` and `write` (`cfepy.osal.streams`). Waiting is in
-virtual time. May import ids, status and its neighbours in cfepy.osal.
+A socket is a descriptor: stream sockets send and receive with `read` and `write` (`cfepy.osal.streams`), datagram
+sockets with functions of their own. Select waits until one of several descriptors can be read or written; a file can
+always be both.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+from cfepy.ids import OS_STREAM_BASE, get_base
 from cfepy.osal import sockaddr
 from cfepy.osal.clock import OsTime
-from cfepy.osal.datagrams import DatagramApi
-from cfepy.osal.endpoints import Place, Stream
+from cfepy.osal.core import check_size
+from cfepy.osal.files import OsStream
 from cfepy.osal.limits import OS_MAX_API_NAME, OS_PEND
+from cfepy.osal.network import Place, Stream
 from cfepy.osal.sockaddr import SockAddr, check_address, from_place
-from cfepy.osal.streams import OS_SocketType_DATAGRAM, OS_SocketType_STREAM, OsSocket, ns_of
+from cfepy.osal.streams import OS_SocketType_DATAGRAM, OS_SocketType_STREAM, OsSocket, StreamApi, ns_of
 from cfepy.status import (
     OS_ERR_INCORRECT_OBJ_STATE,
     OS_ERR_INVALID_ARGUMENT,
+    OS_ERR_INVALID_ID,
     OS_ERR_NAME_NOT_FOUND,
     OS_ERR_NOT_IMPLEMENTED,
     OS_ERROR,
+    OS_INVALID_POINTER,
     OsalError,
 )
 
@@ -30,6 +35,70 @@ OS_SocketShutdownMode_SHUT_READWRITE = 3
 OS_socket_option_UNDEFINED = 0
 OS_socket_option_IP_DSCP = 1
 DSCP_BITS = 0x3F
+OS_STREAM_STATE_BOUND = 0x01
+OS_STREAM_STATE_CONNECTED = 0x02
+OS_STREAM_STATE_READABLE = 0x04
+OS_STREAM_STATE_WRITABLE = 0x08
+OS_STREAM_STATE_LISTENING = 0x10
+
+
+class DatagramApi(StreamApi):
+    """The functions that only datagram sockets have."""
+
+    def socket_send_to(self, sock_id: int, buffer: bytes | bytearray | memoryview, remote_addr: SockAddr) -> int:
+        """Send a datagram; never waits (OS_SocketSendTo). Without a receiver it is lost, as with UDP.
+
+        Args:
+            sock_id: a datagram socket.
+            buffer: the data, at least a byte.
+            remote_addr: where to.
+
+        Returns:
+            The number of bytes.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_SIZE, OS_INVALID_POINTER, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE,
+                OS_ERR_BAD_ADDRESS; OS_ERROR for an address of another domain or for more than UDP carries.
+        """
+        check_size(len(buffer), "datagram")
+        check_address(remote_addr)
+        record = self._socket(sock_id, OS_SocketType_DATAGRAM)
+        if remote_addr.domain != record.domain:
+            raise record.error(f"cannot send to {remote_addr!r}: that is another domain")
+        return self._send(record, bytes(buffer), remote_addr.place)
+
+    def socket_recv_from(self, sock_id: int, buflen: int, timeout_ms: int = OS_PEND) -> tuple[bytes, SockAddr] | None:
+        """Receive a datagram (OS_SocketRecvFrom).
+
+        Args:
+            sock_id: a bound datagram socket.
+            buflen: bytes; what is longer is cut off.
+            timeout_ms: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
+
+        Returns:
+            The data and the sender's address; None when there was nothing in that time.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_SIZE, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for what is no datagram
+                socket, OS_ERR_INCORRECT_OBJ_STATE when it is not bound.
+        """
+        return self._recv_from(sock_id, buflen, ns_of(timeout_ms))
+
+    def socket_recv_from_abs(self, sock_id: int, buflen: int, abs_timeout: OsTime) -> tuple[bytes, SockAddr] | None:
+        """As `socket_recv_from`, until a local time (OS_SocketRecvFromAbs)."""
+        return self._recv_from(sock_id, buflen, self._ns_until(abs_timeout))
+
+    def _recv_from(self, sock_id: int, buflen: int, timeout_ns: int) -> tuple[bytes, SockAddr] | None:
+        check_size(buflen, "receive buffer")
+        record = self._socket(sock_id, OS_SocketType_DATAGRAM)
+        if not record.bound:
+            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} is not bound")
+        if not self._wait_readable(record, timeout_ns):
+            return None
+        datagram = record.mailbox.take()
+        data = datagram.data[:buflen]
+        self._charge_bytes(len(data))
+        return data, from_place(datagram.source)
 
 
 class SocketInfo(NamedTuple):
@@ -121,8 +190,8 @@ class SocketApi(DatagramApi):
 
         Raises:
             OsalError: OS_INVALID_POINTER, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for a file,
-                OS_ERR_INCORRECT_OBJ_STATE for a connected stream socket, OS_ERR_BAD_ADDRESS; OS_ERROR when nobody
-                listens there.
+                OS_ERR_INCORRECT_OBJ_STATE for a connected stream socket, OS_ERR_BAD_ADDRESS; OS_ERROR when no
+                socket listens there.
         """
         return self._connect(sock_id, addr, ns_of(timeout_ms))
 
@@ -162,14 +231,14 @@ class SocketApi(DatagramApi):
         return True
 
     def socket_accept(self, sock_id: int, timeout_ms: int = OS_PEND) -> tuple[int, SockAddr] | None:
-        """Wait for somebody to connect (OS_SocketAccept).
+        """Wait for a connection (OS_SocketAccept).
 
         Args:
             sock_id: a listening socket.
             timeout_ms: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
 
         Returns:
-            The socket of the connection and the address of the other side; None when nobody came in that time.
+            The socket of the connection and the address of the other side; None when none came in that time.
 
         Raises:
             OsalError: OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for what is no stream socket,
@@ -280,3 +349,140 @@ class SocketApi(DatagramApi):
         """Name a socket after its address, as OS_CreateSocketName does."""
         self._streams.names.pop(record.name, None)
         record.name = f"{place.host}:{place.port}{more}"
+
+
+class FdSet:
+    """A set of descriptors (OS_FdSet); filled with `select_fd_add`, and changed by `select_multiple`.
+
+    Attributes:
+        slots: places in the table of descriptors, ascending.
+    """
+
+    __slots__ = ("slots",)
+
+    def __init__(self) -> None:
+        self.slots: list[int] = []
+
+
+class SelectApi(SocketApi):
+    """The OS_Select* functions."""
+
+    def select_single(self, objid: int, state_flags: int, msecs: int = OS_PEND) -> int | None:
+        """Wait until a descriptor can be read or written (OS_SelectSingle).
+
+        Args:
+            objid: a socket or a file.
+            state_flags: what to wait for: OS_STREAM_STATE_READABLE, OS_STREAM_STATE_WRITABLE or both; 0 never waits.
+            msecs: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
+
+        Returns:
+            Which of the flags are true; None when none came true in that time.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+        """
+        return self._select_single(objid, state_flags, ns_of(msecs))
+
+    def select_single_abs(self, objid: int, state_flags: int, abs_timeout: OsTime) -> int | None:
+        """As `select_single`, until a local time (OS_SelectSingleAbs)."""
+        return self._select_single(objid, state_flags, self._ns_until(abs_timeout))
+
+    def select_multiple(self, read_set: FdSet | None, write_set: FdSet | None, msecs: int = OS_PEND) -> bool:
+        """Wait until a descriptor of the one set can be read or one of the other written (OS_SelectMultiple).
+
+        Args:
+            read_set: what to read from; afterwards only those that can be read are in it. None for nothing.
+            write_set: the same for writing.
+            msecs: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
+
+        Returns:
+            False when none was ready in that time; the sets are as they were then.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID when there is no open descriptor in the sets.
+        """
+        return self._select_multiple(read_set, write_set, ns_of(msecs))
+
+    def select_multiple_abs(self, read_set: FdSet | None, write_set: FdSet | None, abs_timeout: OsTime) -> bool:
+        """As `select_multiple`, until a local time (OS_SelectMultipleAbs)."""
+        return self._select_multiple(read_set, write_set, self._ns_until(abs_timeout))
+
+    def select_fd_zero(self, fd_set: FdSet) -> None:
+        """Empty a set (OS_SelectFdZero), or OS_INVALID_POINTER."""
+        _given(fd_set).slots.clear()
+
+    def select_fd_add(self, fd_set: FdSet, objid: int) -> None:
+        """Add a descriptor (OS_SelectFdAdd), or OS_INVALID_POINTER, OS_ERR_INVALID_ID."""
+        slots, slot = _given(fd_set).slots, self._slot(objid)
+        if slot not in slots:
+            slots.append(slot)
+            slots.sort()
+
+    def select_fd_clear(self, fd_set: FdSet, objid: int) -> None:
+        """Take a descriptor out, if it is there (OS_SelectFdClear), or OS_INVALID_POINTER, OS_ERR_INVALID_ID."""
+        slots, slot = _given(fd_set).slots, self._slot(objid)
+        if slot in slots:
+            slots.remove(slot)
+
+    def select_fd_is_set(self, fd_set: FdSet, objid: int) -> bool:
+        """Whether a descriptor is in a set (OS_SelectFdIsSet)."""
+        return get_base(objid) == OS_STREAM_BASE and self._streams.index(objid) in fd_set.slots
+
+    def _select_single(self, objid: int, wanted: int, timeout_ns: int) -> int | None:
+        record = self._stream(objid)
+        if not wanted:
+            return 0
+        endpoints = [record.endpoint] if isinstance(record, OsSocket) else []
+        if not self._await(endpoints, lambda: record.deleted or _state(record) & wanted != 0, timeout_ns):
+            return None
+        if record.deleted:
+            raise self._streams.gone(record)
+        return _state(record) & wanted
+
+    def _select_multiple(self, read_set: FdSet | None, write_set: FdSet | None, timeout_ns: int) -> bool:
+        readers, writers = self._open_of(read_set), self._open_of(write_set)
+        if not readers and not writers:
+            raise OsalError(OS_ERR_INVALID_ID, "there is no descriptor to wait for")
+
+        def ready() -> bool:
+            return any(_can(record, OS_STREAM_STATE_READABLE) for record in readers) or any(
+                _can(record, OS_STREAM_STATE_WRITABLE) for record in writers
+            )
+
+        endpoints = [record.endpoint for record in (*readers, *writers) if isinstance(record, OsSocket)]
+        if not self._await(endpoints, ready, timeout_ns):
+            return False
+        self._keep(read_set, readers, OS_STREAM_STATE_READABLE)
+        self._keep(write_set, writers, OS_STREAM_STATE_WRITABLE)
+        return True
+
+    def _open_of(self, fd_set: FdSet | None) -> list[OsStream]:
+        found = [self._streams.at(slot) for slot in fd_set.slots] if fd_set is not None else []
+        return [record for record in found if record is not None]
+
+    def _keep(self, fd_set: FdSet | None, records: list[OsStream], flag: int) -> None:
+        if fd_set is not None:
+            fd_set.slots = [self._streams.index(record.id) for record in records if _can(record, flag)]
+
+    def _slot(self, objid: int) -> int:
+        if get_base(objid) != OS_STREAM_BASE:
+            raise OsalError(OS_ERR_INVALID_ID, f"{objid:#x} is no descriptor")
+        return self._streams.index(objid)
+
+
+def _state(record: OsStream) -> int:
+    """OS_STREAM_STATE_READABLE and OS_STREAM_STATE_WRITABLE as they are now."""
+    if not isinstance(record, OsSocket):
+        return OS_STREAM_STATE_READABLE | OS_STREAM_STATE_WRITABLE
+    endpoint = record.endpoint
+    return OS_STREAM_STATE_READABLE * endpoint.readable | OS_STREAM_STATE_WRITABLE * endpoint.writable
+
+
+def _can(record: OsStream, flag: int) -> bool:
+    return not record.deleted and _state(record) & flag != 0
+
+
+def _given(fd_set: FdSet | None) -> FdSet:
+    if fd_set is None:
+        raise OsalError(OS_INVALID_POINTER, "a set of descriptors is missing")
+    return fd_set

@@ -1,7 +1,6 @@
 """Descriptors that may stand for sockets: reading, writing and closing them, and how their waiting works.
 
-On a file these are the functions of `cfepy.osal.files`, which never wait. May import cfepy.rtos, ids, status and its
-neighbours in cfepy.osal.
+On a file these are the functions of `cfepy.osal.files`, which never wait.
 """
 
 from __future__ import annotations
@@ -10,13 +9,13 @@ from collections.abc import Callable, Sequence
 
 from cfepy.osal.clock import OS_TIME_MAX, OS_TIME_TICK_RESOLUTION_NS, ClockApi, OsTime
 from cfepy.osal.core import Setup, check_size
-from cfepy.osal.endpoints import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Mailbox, Place, Stream
 from cfepy.osal.files import FileApi, OsStream
 from cfepy.osal.limits import OS_PEND
+from cfepy.osal.network import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Mailbox, Place, Stream
 from cfepy.osal.sockaddr import ANY_HOST
-from cfepy.rtos.task import FOREVER, WaitList
-from cfepy.rtos.units import NS_PER_MS
+from cfepy.rtos import FOREVER, WaitList
 from cfepy.status import OS_ERR_INCORRECT_OBJ_TYPE, OS_ERROR, OsalError
+from cfepy.units import NS_PER_MS
 
 OS_SocketType_DATAGRAM = 1
 OS_SocketType_STREAM = 2
@@ -82,7 +81,7 @@ class StreamApi(ClockApi, FileApi):
 
         Raises:
             OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR when it is not open for writing, the disk is
-                full, or nobody will ever read it.
+                full, or no reader is left.
         """
         return self._timed_write(filedes, data, FOREVER) or 0
 
@@ -164,7 +163,7 @@ class StreamApi(ClockApi, FileApi):
         return taken
 
     def _unplug(self, record: OsSocket) -> None:
-        """Take a closed socket off the network; whoever waits there finds it deleted."""
+        """Take a closed socket off the network; a task that waits there finds it deleted."""
         self.network.datagrams.release(record.mailbox)
         self.network.streams.release(record.listener)
         record.listener.close()

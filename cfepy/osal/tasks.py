@@ -1,7 +1,4 @@
-"""OSAL tasks (OS_Task*): kernel tasks with an id, a name, a stack that is accounted for, and a delete handler.
-
-May import cfepy.rtos, ids, status and its neighbours in cfepy.osal.
-"""
+"""OSAL tasks (OS_Task*): kernel tasks with an id, a name, a stack that is accounted for, and a delete handler."""
 
 from __future__ import annotations
 
@@ -9,10 +6,9 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from cfepy.ids import OS_TASK_BASE
-from cfepy.osal.core import Core, ObjectTable, OsObject, Setup, check_size
+from cfepy.osal.core import Core, OsObject, OsObjectTable, Setup, check_size
 from cfepy.osal.limits import OS_EVENT_TASK_STARTUP, OS_MAX_TASK_PRIORITY
 from cfepy.rtos import Task
-from cfepy.rtos.units import NS_PER_MS
 from cfepy.status import (
     OS_ERR_INVALID_ARGUMENT,
     OS_ERR_INVALID_PRIORITY,
@@ -20,15 +16,25 @@ from cfepy.status import (
     OS_INVALID_POINTER,
     OsalError,
 )
+from cfepy.units import NS_PER_MS
 
 
-class TaskInfo(NamedTuple):
+class TaskProperties(NamedTuple):
     """What `task_get_info` tells (OS_task_prop_t)."""
 
     name: str
     creator: int
     stack_size: int
     priority: int
+
+
+class Nobody:
+    """The owner of tasks that belong to no application; there is one, `NOBODY`."""
+
+    name = "system"  # in the board's books and in lines about the task
+
+
+NOBODY = Nobody()
 
 
 class OsTask(OsObject):
@@ -50,7 +56,7 @@ class TaskApi(Core):
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
-        self._tasks: ObjectTable[OsTask] = self._table("task", OS_TASK_BASE, setup.config.os_max_tasks)
+        self._tasks: OsObjectTable[OsTask] = self._table("task", OS_TASK_BASE, setup.config.os_max_tasks)
 
     def task_create(
         self,
@@ -70,7 +76,9 @@ class TaskApi(Core):
             stack_size: bytes, accounted for where the board counts memory.
             priority: 0 (most urgent) to 255.
             flags: OS_FP_ENABLED or 0; without effect here.
-            owner: the application it works for; None takes over the caller's.
+            owner: the application it works for; None takes over the caller's. A task of NOBODY is what cFE makes of
+                every task that OS_TaskCreate starts: the end of an application does not end it, CFE_ES_GetAppID fails
+                in it and in what it starts, and an exception in it resets the processor.
 
         Returns:
             The task's id.
@@ -113,7 +121,7 @@ class TaskApi(Core):
         self.kernel.exit_task()
 
     def task_install_delete_handler(self, handler: Callable[[], object] | None) -> None:
-        """Call `handler` when somebody deletes the calling task (OS_TaskInstallDeleteHandler).
+        """Call `handler` when another task deletes the calling one (OS_TaskInstallDeleteHandler).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID when the caller is no OSAL task.
@@ -158,14 +166,14 @@ class TaskApi(Core):
         """
         return self._tasks.named(name)
 
-    def task_get_info(self, task_id: int) -> TaskInfo:
+    def task_get_info(self, task_id: int) -> TaskProperties:
         """Facts about a task (OS_TaskGetInfo).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
         """
         record = self._task(task_id)
-        return TaskInfo(record.name, record.creator, record.stack_size, record.priority)
+        return TaskProperties(record.name, record.creator, record.stack_size, record.priority)
 
     def task_find_id_by_system_data(self, system_data: Task) -> int:
         """Id of the OSAL task that runs as a kernel task (OS_TaskFindIdBySystemData).
@@ -195,7 +203,7 @@ class TaskApi(Core):
             self._forget(record)
 
     def _call_delete_handler(self, record: OsTask) -> None:
-        """An error in it is its application's, and does not keep anybody from deleting more."""
+        """An error in it is its application's, and does not stop the deletion of more."""
         if record.on_delete is None:
             return
         try:

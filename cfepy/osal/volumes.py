@@ -13,7 +13,7 @@ from cfepy.osal.limits import OS_FILESTAT_MODE_READ, OS_FILESTAT_MODE_WRITE
 
 
 @dataclass(slots=True)
-class Node:
+class FileNode:
     """A file.
 
     Attributes:
@@ -38,20 +38,20 @@ class Volume:
     def __init__(self, host: Path | None = None, capacity: int | None = None) -> None:
         self.host = host
         self.capacity = capacity
-        self._nodes: dict[str, Node] = {}
+        self._nodes: dict[str, FileNode] = {}
         self._folders: set[str] = {""}
         self._hidden: set[str] = set()  # files and folders of the host that were removed or renamed
 
-    def node(self, path: str) -> Node | None:
+    def node(self, path: str) -> FileNode | None:
         """The file at a path; None when there is none."""
         found = self._nodes.get(path)
         if found is None and (real := self._on_host(path)) is not None and real.is_file():
-            found = self._nodes[path] = Node(bytearray(real.read_bytes()))
+            found = self._nodes[path] = FileNode(bytearray(real.read_bytes()))
         return found
 
-    def create(self, path: str) -> Node:
+    def create(self, path: str) -> FileNode:
         """An empty file at a path where there was none."""
-        node = self._nodes[path] = Node()
+        node = self._nodes[path] = FileNode()
         return node
 
     def remove(self, path: str) -> None:

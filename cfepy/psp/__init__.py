@@ -1,22 +1,45 @@
 """The board under a mission (cFE's Platform Support Package): its profile, memory, clock and resets.
 
-It may import cfepy.osal and what is left of it.
+What belongs here is what a board has or lacks: the numbers of its profile, its memory and how much of it is in use,
+what outlives a reset, the watchdog, stored exceptions. How cFE answers a reset or an exception belongs to `cfepy.es`.
 """
 
 from __future__ import annotations
 
-from cfepy.psp.cpu import CpuCosts
+from cfepy.psp.exceptions import ExceptionSummary
 from cfepy.psp.memory import MemoryBudget, OverBudget, object_sizes
-from cfepy.psp.profile import BoardProfile, available_boards, load_profile
-from cfepy.psp.psp import Psp, RestartType
-from cfepy.psp.retained import Retained
+from cfepy.psp.profile import LIMIT_NAMES, BoardProfile, Limit, available_boards, load_profile, read_limit
+from cfepy.psp.psp import (
+    RST_SUBTYPE_EXCEPTION,
+    RST_SUBTYPE_HW_SPECIAL_COMMAND,
+    RST_SUBTYPE_HW_WATCHDOG,
+    RST_SUBTYPE_POWER_CYCLE,
+    RST_SUBTYPE_RESET_COMMAND,
+    RST_TYPE_POWERON,
+    RST_TYPE_PROCESSOR,
+    PanicError,
+    Psp,
+    RestartType,
+)
+from cfepy.psp.retained import EEPROM_BYTES, Retained
 from cfepy.psp.watchdog import Watchdog
 
 __all__ = [
+    "EEPROM_BYTES",
+    "LIMIT_NAMES",
+    "RST_SUBTYPE_EXCEPTION",
+    "RST_SUBTYPE_HW_SPECIAL_COMMAND",
+    "RST_SUBTYPE_HW_WATCHDOG",
+    "RST_SUBTYPE_POWER_CYCLE",
+    "RST_SUBTYPE_RESET_COMMAND",
+    "RST_TYPE_POWERON",
+    "RST_TYPE_PROCESSOR",
     "BoardProfile",
-    "CpuCosts",
+    "ExceptionSummary",
+    "Limit",
     "MemoryBudget",
     "OverBudget",
+    "PanicError",
     "Psp",
     "RestartType",
     "Retained",
@@ -24,4 +47,5 @@ __all__ = [
     "available_boards",
     "load_profile",
     "object_sizes",
+    "read_limit",
 ]

@@ -1,16 +1,28 @@
-"""Memory by address (CFE_PSP_Mem*): the table of memory ranges and what lies in them.
+"""Memory and I/O ports by address (CFE_PSP_Mem*, CFE_PSP_Eeprom*, CFE_PSP_Port*), and the order of their bytes.
 
-Ranges hold bytes here when somebody attached an area to them, as the PSP does with the retained areas and the EEPROM;
-NASA's Linux PSP refuses direct RAM access, so reading and writing RAM works better here than there. May import
-cfepy.status only.
+Memory ranges hold bytes here when an area was attached to them, as the PSP does with the retained areas and the EEPROM;
+NASA's Linux PSP refuses direct RAM access, so reading and writing RAM works better here than there.
+
+EEPROM is written by functions of its own, protected and switched off by bank. On a board with data flash both work, and
+it starts protected, as such a part does after a reset; on others they are what they are on NASA's Linux.
+
+Ports are registers of devices, as far as the board's profile declares some. A register reads what was written to it
+last, by flight software or by a test that plays the device (`port_areas`).
+
+The simulated processors are little-endian, so of CFE_PSP_HtoBE16 and the like the LE forms change nothing.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
+from cfepy.psp.profile import PortRange
 from cfepy.status import (
+    CFE_PSP_ERROR,
     CFE_PSP_ERROR_ADDRESS_MISALIGNED,
+    CFE_PSP_ERROR_NOT_IMPLEMENTED,
+    CFE_PSP_ERROR_TIMEOUT,
     CFE_PSP_INVALID_MEM_ADDR,
     CFE_PSP_INVALID_MEM_ATTR,
     CFE_PSP_INVALID_MEM_RANGE,
@@ -28,6 +40,7 @@ MEM_ATTR_READ = 2
 MEM_ATTR_READWRITE = 3
 MEM_TABLE_SIZE = 10
 _WORD_SIZES = (1, 2, 4)
+NUM_EEPROM_BANKS = 1
 
 
 class MemRange(NamedTuple):
@@ -158,7 +171,7 @@ class AddressSpace:
         return memoryview(self._areas[number])[offset : offset + size]
 
     def _check_access(self, memory_type: int, is_write: bool) -> None:
-        """For kinds of memory that cannot always be read or written; see `cfepy.psp.eeprom`."""
+        """For kinds of memory that cannot always be read or written; see `cfepy.psp.addresses`."""
 
     def _read(self, address: int, size: int) -> int:
         _check_alignment(address, size)
@@ -173,3 +186,191 @@ class AddressSpace:
 def _check_alignment(address: int, size: int) -> None:
     if address % size:
         raise OsalError(CFE_PSP_ERROR_ADDRESS_MISALIGNED, f"{address:#x} is not divisible by {size}")
+
+
+class EepromSpace(AddressSpace):
+    """An address space whose EEPROM can be protected.
+
+    Attributes:
+        has_eeprom_control: whether there is hardware that protects it and switches it off.
+        is_writable, is_powered: its state; always true without that hardware.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.has_eeprom_control = False
+        self.is_writable = self.is_powered = True
+
+    def protect_eeprom(self) -> None:
+        """The board has hardware that protects the EEPROM; it does so from the start."""
+        self.has_eeprom_control = True
+        self.is_writable = False
+
+    def eeprom_write8(self, address: int, value: int) -> None:
+        """Change a byte of EEPROM (CFE_PSP_EepromWrite8).
+
+        Raises:
+            OsalError: CFE_PSP_INVALID_MEM_*; CFE_PSP_ERROR_TIMEOUT while it is protected or switched off.
+        """
+        self._write(address, value, 1, MEM_EEPROM)
+
+    def eeprom_write16(self, address: int, value: int) -> None:
+        """Change a 16-bit word of EEPROM (CFE_PSP_EepromWrite16); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
+        self._write(address, value, 2, MEM_EEPROM)
+
+    def eeprom_write32(self, address: int, value: int) -> None:
+        """Change a 32-bit word of EEPROM (CFE_PSP_EepromWrite32); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
+        self._write(address, value, 4, MEM_EEPROM)
+
+    def eeprom_write_enable(self, bank: int) -> None:
+        """Let it be written (CFE_PSP_EepromWriteEnable).
+
+        Args:
+            bank: 0, there is one.
+
+        Raises:
+            OsalError: CFE_PSP_ERROR for another bank; CFE_PSP_ERROR_NOT_IMPLEMENTED on a board that cannot protect it.
+        """
+        self._check_control(bank)
+        self.is_writable = True
+
+    def eeprom_write_disable(self, bank: int) -> None:
+        """Protect it (CFE_PSP_EepromWriteDisable); errors as `eeprom_write_enable`."""
+        self._check_control(bank)
+        self.is_writable = False
+
+    def eeprom_power_up(self, bank: int) -> None:
+        """Switch it on (CFE_PSP_EepromPowerUp); without effect on a board that cannot."""
+        if self.has_eeprom_control:
+            self._check_control(bank)
+            self.is_powered = True
+
+    def eeprom_power_down(self, bank: int) -> None:
+        """Switch it off (CFE_PSP_EepromPowerDown); without effect on a board that cannot."""
+        if self.has_eeprom_control:
+            self._check_control(bank)
+            self.is_powered = False
+
+    def _check_control(self, bank: int) -> None:
+        if not self.has_eeprom_control:
+            raise OsalError(CFE_PSP_ERROR_NOT_IMPLEMENTED, "the EEPROM of this board cannot be protected")
+        if not 0 <= bank < NUM_EEPROM_BANKS:
+            raise OsalError(CFE_PSP_ERROR, f"there is no EEPROM bank {bank}")
+
+    def _check_access(self, memory_type: int, is_write: bool) -> None:
+        if memory_type != MEM_EEPROM:
+            return
+        if not self.is_powered:
+            raise OsalError(CFE_PSP_ERROR_TIMEOUT, "the EEPROM is switched off")
+        if is_write and not self.is_writable:
+            raise OsalError(CFE_PSP_ERROR_TIMEOUT, "the EEPROM is protected; see CFE_PSP_EepromWriteEnable")
+
+
+class _Area(NamedTuple):
+    """A range and its bytes."""
+
+    start: int
+    data: bytearray
+
+
+class PortSpace:
+    """The CFE_PSP_Port* functions; `port_areas` has the bytes of every range by its name."""
+
+    def __init__(self) -> None:
+        self.port_areas: dict[str, bytearray] = {}
+        self._port_ranges: list[_Area] = []
+
+    def declare_ports(self, ranges: Iterable[PortRange]) -> None:
+        """Make the ports of a board; all their bits are 0."""
+        for declared in ranges:
+            data = self.port_areas[declared.name] = bytearray(declared.size)
+            self._port_ranges.append(_Area(declared.address, data))
+
+    def port_read8(self, port_address: int) -> int:
+        """An 8-bit register (CFE_PSP_PortRead8).
+
+        Raises:
+            OsalError: CFE_PSP_INVALID_MEM_ADDR when there is no such port; CFE_PSP_ERROR_NOT_IMPLEMENTED on a board
+                without ports, as on NASA's Linux.
+        """
+        return self._read_port(port_address, 1)
+
+    def port_read16(self, port_address: int) -> int:
+        """A 16-bit register (CFE_PSP_PortRead16); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
+        return self._read_port(port_address, 2)
+
+    def port_read32(self, port_address: int) -> int:
+        """A 32-bit register (CFE_PSP_PortRead32); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
+        return self._read_port(port_address, 4)
+
+    def port_write8(self, port_address: int, value: int) -> None:
+        """Set an 8-bit register (CFE_PSP_PortWrite8); errors as `port_read8`."""
+        self._write_port(port_address, value, 1)
+
+    def port_write16(self, port_address: int, value: int) -> None:
+        """Set a 16-bit register (CFE_PSP_PortWrite16); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
+        self._write_port(port_address, value, 2)
+
+    def port_write32(self, port_address: int, value: int) -> None:
+        """Set a 32-bit register (CFE_PSP_PortWrite32); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
+        self._write_port(port_address, value, 4)
+
+    def _read_port(self, address: int, size: int) -> int:
+        return int.from_bytes(self._register(address, size), "little")
+
+    def _write_port(self, address: int, value: int, size: int) -> None:
+        self._register(address, size)[:] = (value & (1 << 8 * size) - 1).to_bytes(size, "little")
+
+    def _register(self, address: int, size: int) -> memoryview:
+        if not self._port_ranges:
+            raise OsalError(CFE_PSP_ERROR_NOT_IMPLEMENTED, "this board has no I/O ports")
+        for start, data in self._port_ranges:
+            if start <= address and address + size <= start + len(data):
+                if address % size:
+                    raise OsalError(CFE_PSP_ERROR_ADDRESS_MISALIGNED, f"{address:#x} is not divisible by {size}")
+                return memoryview(data)[address - start : address - start + size]
+        raise OsalError(CFE_PSP_INVALID_MEM_ADDR, f"there is no port of {size} bytes at {address:#x}")
+
+
+def _swapped(value: int, size: int) -> int:
+    return int.from_bytes((value & (1 << 8 * size) - 1).to_bytes(size, "little"), "big")
+
+
+def swap_16(value: int) -> int:
+    """The 16-bit number with its bytes the other way round (CFE_PSP_HtoBE16, CFE_PSP_BE16toH)."""
+    return _swapped(value, 2)
+
+
+def swap_32(value: int) -> int:
+    """The 32-bit number with its bytes the other way round (CFE_PSP_HtoBE32, CFE_PSP_BE32toH)."""
+    return _swapped(value, 4)
+
+
+def swap_64(value: int) -> int:
+    """The 64-bit number with its bytes the other way round (CFE_PSP_HtoBE64, CFE_PSP_BE64toH)."""
+    return _swapped(value, 8)
+
+
+def keep_16(value: int) -> int:
+    """The lower 16 bits as they are (CFE_PSP_HtoLE16, CFE_PSP_LE16toH)."""
+    return value & 0xFFFF
+
+
+def keep_32(value: int) -> int:
+    """The lower 32 bits as they are (CFE_PSP_HtoLE32, CFE_PSP_LE32toH)."""
+    return value & 0xFFFFFFFF
+
+
+def keep_64(value: int) -> int:
+    """The lower 64 bits as they are (CFE_PSP_HtoLE64, CFE_PSP_LE64toH)."""
+    return value & 0xFFFFFFFFFFFFFFFF
+
+
+def is_big_endian() -> bool:
+    """Whether the processor is big-endian (CFE_PSP_IsBigEndian)."""
+    return False
+
+
+def is_little_endian() -> bool:
+    """Whether the processor is little-endian (CFE_PSP_IsLittleEndian)."""
+    return True

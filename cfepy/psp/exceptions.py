@@ -1,8 +1,8 @@
-"""Exceptions that the board stored until somebody deals with them (CFE_PSP_Exception_*, cfe_psp_exceptionstorage.c).
+"""Exceptions that the board stores until they are read (CFE_PSP_Exception_*, cfe_psp_exceptionstorage.c).
 
-A Python exception that ends a task is what a signal of the processor is to NASA's Linux PSP. Who catches it hands it to
-`store_exception`; ES reads it out in its background task. The storage is retained memory: it outlives a processor
-reset, though CFE_PSP_AttachExceptions then discards what nobody read. May import cfepy.console and cfepy.status only.
+A Python exception that ends a task is what a signal of the processor is to NASA's Linux PSP. The code that catches it
+hands it to `store_exception`; ES reads it out in its background task. The storage is retained memory: it outlives a
+processor reset, though CFE_PSP_AttachExceptions then discards unread entries.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class ExceptionStorage:
 
     @property
     def unread(self) -> int:
-        """Entries of which nobody has read the summary."""
+        """Entries whose summary has not been read."""
         return self.written - self.read
 
     def add(self, task_id: int, reason: str, context: bytes) -> int:
@@ -90,10 +90,10 @@ class ExceptionApi:
     def store_exception(self, task_id: int, reason: str, context: bytes = b"") -> int:
         """Keep an exception that ended a task; what a signal handler does in NASA's PSP.
 
-        Whoever calls this then tells ES, as the PSP's idle task does with CFE_ES_ProcessAsyncEvent.
+        The caller then tells ES, as the PSP's idle task does with CFE_ES_ProcessAsyncEvent.
 
         Args:
-            task_id: OSAL's id of the task, kept even when the task is gone by the time somebody asks.
+            task_id: OSAL's id of the task, kept even when the task is gone by the time it is read.
             reason: what happened, in words.
             context: what else is known, for the exception and reset log.
 
@@ -103,7 +103,7 @@ class ExceptionApi:
         return self.exceptions.add(task_id, reason, context)
 
     def exception_get_count(self) -> int:
-        """How many exceptions nobody has read yet (CFE_PSP_Exception_GetCount)."""
+        """The number of exceptions that are still unread (CFE_PSP_Exception_GetCount)."""
         return self.exceptions.unread
 
     def exception_get_summary(self) -> ExceptionSummary:

@@ -1,8 +1,7 @@
-"""The memory budget of a board: who uses how much RAM for what, and the refusal when there is no more.
+"""The memory budget of a board: how much RAM each owner uses and for what, and the refusal when there is no more.
 
 Objects and stacks do not live in that RAM here; they are booked, in bytes, as they would be on the board. On a board
-without limits everything is booked too, so that a mission can be sized before it moves to a small one. May import
-cfepy.status, cfepy.osal and cfepy.psp.profile.
+without limits everything is booked too, so that a mission can be sized before it moves to a small one.
 """
 
 from __future__ import annotations
@@ -73,7 +72,7 @@ class MemoryBudget:
             A token to give them back with.
 
         Raises:
-            OverBudget: they do not fit; the text shows who uses what.
+            OverBudget: they do not fit; the text lists the owners and their shares.
             CfeError: a negative size.
         """
         if size < 0:

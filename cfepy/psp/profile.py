@@ -1,7 +1,6 @@
-"""The board a mission runs on: processor speed, clock tick, memory, what kernel calls cost, and what limits follow.
+"""The board a mission runs on: processor speed, clock tick, memory, cost of kernel calls, and the limits that follow.
 
-A profile is a file, boards/<name>.yaml; a number that is 0 or left out means "no limit" or "costs nothing". Imports
-cfepy.status, cfepy.ids, cfepy.config and cfepy.resources, and cfepy.psp.marked_yaml.
+A profile is a file, boards/<name>.yaml; a number that is 0 or left out means "no limit" or "costs nothing".
 """
 
 from __future__ import annotations
@@ -11,10 +10,12 @@ from pathlib import Path
 
 from cfepy.config import COUNTED_BY_ID, MAY_BE_ZERO, PlatformConfig
 from cfepy.ids import SERIAL_MAX
-from cfepy.psp.marked_yaml import Marked, load
+from cfepy.marked_yaml import Marked, load
 from cfepy.resources import shipped
-from cfepy.rtos.units import NS_PER_S
+from cfepy.rtos import CpuCosts
 from cfepy.status import UsageError
+from cfepy.suggestions import did_you_mean
+from cfepy.units import NS_PER_S, PS_PER_NS
 
 DEFAULT_NODE_CALL_NS = 1000
 _UNITS = {"B": 1, "KiB": 1024, "MiB": 1024 * 1024}
@@ -22,9 +23,21 @@ MOST_BYTES = 1 << 32  # a board with more needs none of this
 MOST_LIMIT = (1 << 31) - 1
 MOST_OBJECTS = SERIAL_MAX - 1  # a resource id has 16 bits for them
 LIMIT_NAMES = tuple(known.name for known in fields(PlatformConfig))
-
 Limit = int | str | tuple[int, ...]
 """A value of `PlatformConfig`."""
+
+_SIZES = ("program_flash", "data_flash")
+_NUMBERS = (
+    "cpu_hz",
+    "watchdog_max_ms",
+    "tick_ns",
+    *_SIZES,
+    "context_switch_cycles",
+    "syscall_cycles",
+    "copy_cycles_per_byte",
+    "max_publish_hz",
+    "node_call_ns",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +114,16 @@ class BoardProfile:
         """Bytes of all RAM; 0 for no limit."""
         return sum(region.size for region in self.sram)
 
+    def cpu_costs(self) -> CpuCosts:
+        """What calls cost on this board; the time of a byte is rounded up to a picosecond."""
+        byte_ps = -(-self.copy_cycles_per_byte * PS_PER_NS * NS_PER_S // self.cpu_hz) if self.cpu_hz else 0
+        return CpuCosts(
+            call_ns=self.cycles_ns(self.syscall_cycles),
+            byte_ps=byte_ps,
+            switch_ns=self.cycles_ns(self.context_switch_cycles),
+            polling_ns=self.node_call_ns,
+        )
+
     def cycles_ns(self, cycles: int) -> int:
         """Nanoseconds that some processor cycles take, rounded up; 0 on a board without a clock rate."""
         return -(-cycles * NS_PER_S // self.cpu_hz) if self.cpu_hz else 0
@@ -138,30 +161,15 @@ def load_profile(name_or_path: str | Path) -> BoardProfile:
     return BoardProfile(**texts, **numbers, **parts)  # type: ignore[arg-type]  # keys and types are of the fields
 
 
-_SIZES = ("program_flash", "data_flash")
-_NUMBERS = (
-    "cpu_hz",
-    "watchdog_max_ms",
-    "tick_ns",
-    *_SIZES,
-    "context_switch_cycles",
-    "syscall_cycles",
-    "copy_cycles_per_byte",
-    "max_publish_hz",
-    "node_call_ns",
-)
-
-
 def _find(name_or_path: str | Path) -> Path:
     path = Path(name_or_path)
     if path.suffix in (".yaml", ".yml") or len(path.parts) != 1:
         return path
     boards = available_boards()
     if str(name_or_path) not in boards:
-        raise UsageError(
-            f"there is no board {str(name_or_path)!r}; there are {', '.join(boards)}, or give the path of a .yaml file",
-            field="board",
-        )
+        otherwise = f"there are {', '.join(boards)}, or give the path of a .yaml file"
+        hint = did_you_mean(str(name_or_path), boards, otherwise)
+        raise UsageError(f"there is no board {str(name_or_path)!r}; {hint}", field="board")
     return shipped("boards") / f"{path}.yaml"
 
 

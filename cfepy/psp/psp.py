@@ -1,8 +1,8 @@
 """`Psp`: the board under a mission as one object, `cfe.psp` (cFE's Platform Support Package).
 
-It boots the board with the console lines of NASA's Linux PSP, tells who and when it is, keeps the reset-proof memory,
-and passes resets on to the mission. Names are NASA's in snake case without CFE_PSP_. May import cfepy.rtos,
-cfepy.osal and what is left of them.
+It boots the board with the console lines of NASA's Linux PSP, gives the processor's name and time, keeps the memory
+that outlives resets, and passes resets on to the mission. Names are NASA's in snake case without CFE_PSP_. What a
+simulated board does not have (a segment of machine code, caches, a recorder) fails as on NASA's Linux PSP.
 """
 
 from __future__ import annotations
@@ -12,20 +12,23 @@ from typing import NamedTuple
 
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
-from cfepy.osal import Osal, OsTime
-from cfepy.osal.clock import time_from_total_nanoseconds
-from cfepy.psp import endian
-from cfepy.psp.absent import AbsentHardware
-from cfepy.psp.addresses import MEM_ATTR_READWRITE, MEM_EEPROM, MEM_RAM
-from cfepy.psp.eeprom import EepromSpace
+from cfepy.osal import Osal, OsTime, time_from_total_nanoseconds
+from cfepy.psp import addresses as endian
+from cfepy.psp.addresses import MEM_ATTR_READWRITE, MEM_EEPROM, MEM_RAM, EepromSpace, PortSpace
 from cfepy.psp.exceptions import ExceptionApi
-from cfepy.psp.ports import PortSpace
 from cfepy.psp.profile import BoardProfile
 from cfepy.psp.retained import EEPROM_BYTES, Retained
 from cfepy.psp.watchdog import WATCHDOG_MAX, Watchdog
 from cfepy.rtos import Kernel
-from cfepy.rtos.units import NS_PER_S
-from cfepy.status import CFE_PSP_ERROR, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError, status_to_string
+from cfepy.status import (
+    CFE_PSP_ERROR,
+    CFE_PSP_ERROR_NOT_IMPLEMENTED,
+    CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
+    CfeError,
+    OsalError,
+    status_to_string,
+)
+from cfepy.units import NS_PER_S
 from cfepy.versions import PSP_VERSION, VersionFunctions
 
 RST_TYPE_PROCESSOR = 1
@@ -39,7 +42,6 @@ RST_SUBTYPE_EXCEPTION = 6
 RST_SUBTYPE_UNDEFINED_RESET = 7
 RST_SUBTYPE_HWDEBUG_RESET = 8
 RST_SUBTYPE_BANKSWITCH_RESET = 9
-
 SOFT_TIMEBASE_NAME = "cFS-Master"
 SOFT_TIMEBASE_PERIOD_US = 10_000
 TICKS_PER_SECOND = 1_000_000_000
@@ -47,21 +49,56 @@ RESTART_DELAY_MS = 10_000
 EEPROM_ADDRESS = 0x1000_0000
 RESET_AREA_ADDRESS = 0x2000_0000
 USER_RESERVED_ADDRESS = 0x3000_0000
-
 # The modules of NASA's Linux PSP that there is a counterpart of here, with their ids there and what they say.
 _MODULES = (
     ("soft_timebase", 0x0110FF00, f"Instantiated software timebase '{SOFT_TIMEBASE_NAME}' running at 10000 usec"),
     ("ram_notimpl", 0x0110FF03, "Physical RAM access not implemented"),
     ("endian_api", 0x0110FF07, "Host CPU Endian=LITTLE"),
 )
-
-
 _PORTS_NOTIMPL = ("port_notimpl", 0x0110FF04, "I/O Port access not implemented")
 _PORTS_DIRECT = ("port_direct", 0x0110FF04, "Using DIRECT memory mapped PORT implementation")
 _MEMORY_REMOVED = """\
 CFE_PSP: Critical Data Store Shared memory segment removed
 Reset Area Shared memory segment removed
 User Reserved Area Shared memory segment removed"""
+
+
+class AbsentHardware:
+    """The functions of the PSP that find nothing."""
+
+    console: Console
+
+    def flush_caches(self, cache_type: int, address: int, size: int) -> None:
+        """Say that there are none (CFE_PSP_FlushCaches)."""
+        self.console.write("CFE_PSP_FlushCaches called -- Currently no Linux/OSX/Cygwin implementation")
+
+    def init_ssr(self, bus: int, device: int, device_name: str) -> None:
+        """There is no solid state recorder (CFE_PSP_InitSSR).
+
+        Raises:
+            OsalError: CFE_PSP_ERROR, always.
+        """
+        raise OsalError(CFE_PSP_ERROR, f"there is no recorder {device_name} on bus {bus}, device {device}")
+
+    def get_volatile_disk_mem(self) -> memoryview:
+        """The memory of the RAM disk, of size 0: its files are no bytes at addresses (CFE_PSP_GetVolatileDiskMem)."""
+        return memoryview(b"")
+
+    def get_kernel_text_segment_info(self) -> memoryview:
+        """The code of the operating system (CFE_PSP_GetKernelTextSegmentInfo).
+
+        Raises:
+            OsalError: CFE_PSP_ERROR_NOT_IMPLEMENTED, always.
+        """
+        raise OsalError(CFE_PSP_ERROR_NOT_IMPLEMENTED, "the kernel has no text segment")
+
+    def get_cfe_text_segment_info(self) -> memoryview:
+        """The machine code of the cFE core (CFE_PSP_GetCFETextSegmentInfo): Python has none, unlike NASA's Linux.
+
+        Raises:
+            OsalError: CFE_PSP_ERROR_NOT_IMPLEMENTED, always.
+        """
+        raise OsalError(CFE_PSP_ERROR_NOT_IMPLEMENTED, "the cFE has no text segment")
 
 
 class RestartType(NamedTuple):
@@ -79,7 +116,7 @@ class Timebase(NamedTuple):
 
 
 class PanicError(CfeError):
-    """CFE_PSP_Panic was called: the run is over, whoever called."""
+    """CFE_PSP_Panic was called: the run is over."""
 
 
 class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions):
@@ -88,7 +125,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
     Args:
         kernel: its clock and tasks.
         profile: what kind of board it is.
-        config: who it is: spacecraft id, processor id and name.
+        config: spacecraft id, processor id and name.
         console: where its lines go.
         osal: for the software time base.
         retained: memory that outlives a processor reset; None makes a new one.
@@ -181,7 +218,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         Args:
             reset_type: RST_TYPE_PROCESSOR or RST_TYPE_POWERON.
             reason: for the report of the run.
-            fault: something failed; otherwise somebody asked for it.
+            fault: something failed; otherwise it was asked for.
         """
         if not self._is_resetting:  # else a `finally` block of a task that is being ended asks once more
             self._is_resetting = True
@@ -202,7 +239,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         """The watchdog resets the processor; software has no say in it.
 
         Args:
-            reason: why; empty stands for the usual one, that nobody served it in time.
+            reason: why; empty stands for the usual one, that no task served it in time.
         """
         self.retained.next_reset_type = RST_TYPE_PROCESSOR
         self.retained.next_subtype = RST_SUBTYPE_HW_WATCHDOG
@@ -305,7 +342,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
     status_to_string = staticmethod(status_to_string)
 
     def _announce(self, subtype: int) -> None:
-        """Say who this is; a subtype of 0 is one that nobody gave."""
+        """Print the name of the computer and the reset's subtype; 0 stands for the default one."""
         if subtype:
             self.console.write(f"CFE_PSP: Reset SubType: {subtype}")
         else:

@@ -1,7 +1,7 @@
 """Memory that outlives a reset: the boot record, the reset area, the CDS, the user reserved area, and the EEPROM.
 
 The mission keeps one `Retained` for each simulated processor and hands it to the `Psp` of every boot. It stands for the
-shared memory segments of NASA's Linux PSP (cfe_psp_memory.c). May import cfepy.psp.exceptions only.
+shared memory segments of NASA's Linux PSP (cfe_psp_memory.c).
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ class Retained:
         self.exited = False  # the last run ended by a restart
 
     def clear(self) -> None:
-        """A power-on reset: all but the EEPROM is gone, also for those who hold the areas."""
+        """A power-on reset: all but the EEPROM is gone, also for code that holds the areas."""
         for area in (self.reset_area, self.cds, self.user_reserved):
             blank = bytes(len(area))
-            if area != blank:  # what nobody has written to since it was made costs the host no memory, and stays so
+            if area != blank:  # an area that was never written to costs the host no memory, and stays so
                 area[:] = blank
         self.exceptions.clear()
         self.kept.clear()

@@ -1,7 +1,7 @@
-"""The watchdog of a board (CFE_PSP_Watchdog*): if nobody serves it in time, it bites.
+"""The watchdog of a board (CFE_PSP_Watchdog*): if no task serves it in time, it bites.
 
 NASA's Linux PSP only keeps the value. On a board that has a watchdog it counts virtual time and calls `on_bite`, which
-resets the processor; without that it keeps the value, as on Linux. May import cfepy.rtos only.
+resets the processor; without that it keeps the value, as on Linux.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cfepy.rtos import Kernel, WaitList
-from cfepy.rtos.units import NS_PER_MS
+from cfepy.units import NS_PER_MS
 
 WATCHDOG_MIN = 0
 WATCHDOG_MAX = 0xFFFFFFFF

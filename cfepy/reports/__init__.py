@@ -1,4 +1,59 @@
-"""What a run looks like: a trace for Perfetto, a page for a browser.
+"""Pictures of a run: a trace for Perfetto, an HTML page for a browser, values over time.
 
-It looks on at a mission through `cfepy.mission.observer`, and may import cfepy.mission and below.
+What belongs here watches a run through `cfepy.monitors.observer` and draws it: `perfetto` writes while the mission
+runs, `collector` sums up (in `bins`) what `page` shows, `curves` draws what `cfepy.ground.series` has recorded. The
+numbers themselves come from `cfepy.pilot.results`; what judges a run belongs to `cfepy.monitors`.
+
+The names below are loaded when they are first used.
 """
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.reports.collector import Collector
+    from cfepy.reports.curves import Change, Curve, Curves, curves_of, picture_of, save, thinned
+    from cfepy.reports.page import About, page_of
+    from cfepy.reports.perfetto import PerfettoTrace
+    from cfepy.reports.trace_events import write_perf_log
+
+__all__ = [
+    "About",
+    "Change",
+    "Collector",
+    "Curve",
+    "Curves",
+    "PerfettoTrace",
+    "curves_of",
+    "page_of",
+    "picture_of",
+    "save",
+    "thinned",
+    "write_perf_log",
+]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".collector": ("Collector",),
+            ".curves": (
+                "Change",
+                "Curve",
+                "Curves",
+                "curves_of",
+                "picture_of",
+                "save",
+                "thinned",
+            ),
+            ".page": (
+                "About",
+                "page_of",
+            ),
+            ".perfetto": ("PerfettoTrace",),
+            ".trace_events": ("write_perf_log",),
+        },
+    )

@@ -1,4 +1,4 @@
-"""Numbers of a run that are collected while it goes on, in memory that does not grow with it. Imports nothing."""
+"""Numbers of a run that are collected while it goes on, in memory that does not grow with it."""
 
 from __future__ import annotations
 

@@ -1,43 +1,47 @@
-"""What a page about a run shows beside its numbers: what happened when, how long messages took, events, the console.
+"""What a page about a run shows besides its numbers: what happened when, how long messages took, events, the console.
 
 A long run is summed up while it goes on, so the memory that this takes does not grow with it.
 """
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from cfepy.mission.live_names import LiveNames
-from cfepy.mission.observer import Observer, Sent, app_of
+from cfepy.evs import ERROR
+from cfepy.ground import DecodedEvent, LiveNames, MissionGraph, graph_of
+from cfepy.monitors import Observer, Sent, app_of
+from cfepy.pilot.determinism_look import place_text
 from cfepy.reports.bins import Bins, Histogram
-from cfepy.reports.event_packets import Event, event_in
-from cfepy.reports.text_marks import mark_of
-from cfepy.rtos import Task
-from cfepy.sb.pipe import Pipe
+from cfepy.reports.noteworthy import event_in, mark_of
+from cfepy.rtos import HOLD, Decision, Moment, Policy, Task
+from cfepy.sb import Pipe
 
 MOST = 2_000
 """Events and lines that are kept of each; the others are only counted."""
 
+SWITCH = "switch"
 MOST_OF_A_KIND = 500  # marks, so that many of one kind leave room for the others
 
 
-class Line(NamedTuple):
+class ConsoleLine(NamedTuple):
     """A line of the console, and its virtual time in ns."""
 
     at_ns: int
     text: str
 
 
-class Mark(NamedTuple):
-    """Something that stands out: a "reset", "note", or what `mark_of` knows, at a virtual time in ns."""
+class PageMark(NamedTuple):
+    """Something that stands out: a "reset", "note", "switch", or what `mark_of` knows, at a virtual time in ns."""
 
     at_ns: int
     kind: str
     text: str
 
 
-class Drop(NamedTuple):
+class DropPlace(NamedTuple):
     """Where messages were lost: MsgId, name of the pipe, why."""
 
     msg_id: int
@@ -55,8 +59,9 @@ class AppActivity:
 
 @dataclass(slots=True)
 class TopicActivity:
-    """A MsgId: when it was sent, and how long each receiver waited for it."""
+    """A MsgId: when and by which applications it was sent, and how long each receiver waited for it."""
 
+    senders: set[str] = field(default_factory=set)
     sent: Bins = field(default_factory=Bins)
     latency: Histogram = field(default_factory=Histogram)
 
@@ -70,7 +75,9 @@ class Collector(Observer):
         drops: how many messages were lost where.
         events, lines: the first `MOST` of each; `event_count` and `line_count` count all.
         marks: the first `MOST_OF_A_KIND` of each kind; `mark_counts` counts all, by kind.
+        first_errors: when an application sent its first ERROR or CRITICAL event.
         memory: bytes that are booked by (owner, purpose).
+        graph: who sends what to whom; as it was then, and so is `memory`.
         end_ns: when the time of the run was over.
         names: of MsgIds.
     """
@@ -79,13 +86,15 @@ class Collector(Observer):
         super().__init__()
         self.apps: dict[str, AppActivity] = {}
         self.topics: dict[int, TopicActivity] = {}
-        self.drops: dict[Drop, int] = {}
-        self.events: list[Event] = []
-        self.lines: list[Line] = []
-        self.marks: list[Mark] = []
+        self.drops: dict[DropPlace, int] = {}
+        self.events: list[DecodedEvent] = []
+        self.lines: list[ConsoleLine] = []
+        self.marks: list[PageMark] = []
         self.event_count = self.line_count = 0
         self.mark_counts: dict[str, int] = {}
+        self.first_errors: dict[str, int] = {}
         self.memory: dict[tuple[str, str], int] = {}
+        self.graph: MissionGraph
         self.end_ns = 0
         self.names: LiveNames
         self._since_ns = 0
@@ -106,6 +115,7 @@ class Collector(Observer):
         """Take down what the end of the tasks would change."""
         self.end_ns = self._kernel.now
         self.memory = self.mission.memory.totals()
+        self.graph = graph_of(self.mission, {msg_id: topic.senders for msg_id, topic in self.topics.items()})
 
     def on_run(self, task: Task, at_ns: int) -> None:
         """See `Observer.on_run`."""
@@ -126,10 +136,14 @@ class Collector(Observer):
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
         """See `Observer.on_send`."""
-        self._topic(sent.msg_id).sent.add(sent.at_ns)
+        topic = self._topic(sent.msg_id)
+        topic.sent.add(sent.at_ns)
+        topic.senders.add(app_of(sent.task))
         event = event_in(sent.msg_id, packet, sent.at_ns)
         if event is not None:
             self.event_count += 1
+            if event.event_type >= ERROR:
+                self.first_errors.setdefault(event.app, sent.at_ns)
             _keep(self.events, event)
 
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
@@ -145,13 +159,13 @@ class Collector(Observer):
 
     def on_drop(self, msg_id: int, pipe: Pipe, why: str, at_ns: int) -> None:
         """See `Observer.on_drop`."""
-        drop = Drop(msg_id, pipe.name, why)
+        drop = DropPlace(msg_id, pipe.name, why)
         self.drops[drop] = self.drops.get(drop, 0) + 1
 
     def on_console(self, line: str, at_ns: int) -> None:
         """See `Observer.on_console`."""
         self.line_count += 1
-        _keep(self.lines, Line(at_ns, line))
+        _keep(self.lines, ConsoleLine(at_ns, line))
         mark = mark_of(line)
         if mark is not None:
             self._mark(*mark, at_ns)
@@ -160,10 +174,14 @@ class Collector(Observer):
         """See `Observer.on_note`."""
         self._mark(*(mark_of(text) or ("note", text)), at_ns)
 
+    def policy(self, inner: Policy) -> Policy:
+        """A policy that decides as another does, and lets each decision that is not fifo's be marked as a switch."""
+        return _SwitchNotes(inner, lambda moment, place: self._mark(SWITCH, _switch_text(moment, place), moment.now))
+
     def _mark(self, kind: str, text: str, at_ns: int) -> None:
         self.mark_counts[kind] = count = self.mark_counts.get(kind, 0) + 1
         if count <= MOST_OF_A_KIND:
-            self.marks.append(Mark(at_ns, kind, text))
+            self.marks.append(PageMark(at_ns, kind, text))
 
     # -- for the timeline --------------------------------------------------------------------------------------------
 
@@ -172,6 +190,32 @@ class Collector(Observer):
         all_bins = [bins for app in self.apps.values() for bins in (app.runs, app.busy)]
         all_bins += [topic.sent for topic in self.topics.values()]
         return max((bins.width_ns for bins in all_bins), default=1)
+
+
+class _SwitchNotes(Policy):
+    """Asks another policy, and tells of what is not fifo's answer, with the line that was about to go on."""
+
+    def __init__(self, inner: Policy, note: Callable[[Moment, str], None]) -> None:
+        super().__init__(inner.any_priority, inner.hold_ns)
+        self._inner, self._note = inner, note
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`; a policy is asked in the task that gives the processor away, so its stack is there."""
+        choice = self._inner.choose(decision)
+        if choice:
+            place = place_text(sys._getframe(1)) if decision.running else ""
+            self._note(Moment.of(decision, choice), place)
+        return choice
+
+
+def _switch_text(moment: Moment, place: str) -> str:
+    at = f" at {place}" if place else ""
+    number = f"(decision at:{moment.decision}={moment.choice})"
+    if moment.chosen == HOLD:
+        return f"{moment.instead_of} is held up{at} {number}"
+    if moment.preemption:
+        return f"{moment.instead_of} is preempted by {moment.chosen}{at} {number}"
+    return f"{moment.chosen} goes before {moment.instead_of} {number}"
 
 
 def _keep(kept: list[Any], thing: Any) -> None:

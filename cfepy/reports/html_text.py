@@ -1,19 +1,12 @@
-"""HTML as text: everything that a mission may have said is escaped here. Imports nothing of cfepy."""
+"""Parts of the page: sections, numbers under their paths, tables that can be sorted."""
 
 from __future__ import annotations
 
-import html
 import json
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-_CONTROLS = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
-
-
-def escaped(text: object) -> str:
-    """Text for an element or an attribute; characters that no page may have are shown by their number."""
-    return html.escape(_CONTROLS.sub(lambda match: f"\\x{ord(match[0]):02x}", str(text)))
+from cfepy.markup import element, escaped
 
 
 def json_text(value: Any) -> str:
@@ -22,34 +15,26 @@ def json_text(value: Any) -> str:
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
-def element(name: str, inside: str = "", **attributes: object) -> str:
-    """An element around HTML; `class_` is the attribute class, `data_path` is data-path, None leaves one out."""
-    given = "".join(
-        f' {key.rstrip("_").replace("_", "-")}="{escaped(value)}"'
-        for key, value in attributes.items()
-        if value is not None
-    )
-    return f"<{name}{given}>{inside}</{name}>"
-
-
-class Part(str):
+class PageSection(str):
     """HTML of a part of the page, which has a heading and an anchor to link to."""
 
     heading: str
     anchor: str
 
-    def __new__(cls, heading: str, anchor: str, inside: str) -> Part:
+    def __new__(cls, heading: str, anchor: str, inside: str) -> PageSection:
         """Made of HTML."""
         part = super().__new__(cls, inside)
         part.heading, part.anchor = heading, anchor
         return part
 
 
-def section(title: str, anchor: str, inside: str, about: str = "") -> Part:
+def section(title: str, anchor: str, inside: str, about: str = "") -> PageSection:
     """A part of the page with a heading; `about` is HTML that says what it shows."""
     lead = element("p", about, class_="about") if about else ""
     head = element("h2", escaped(title), id=f"{anchor}-title")
-    return Part(title, anchor, element("section", head + lead + inside, id=anchor, aria_labelledby=f"{anchor}-title"))
+    return PageSection(
+        title, anchor, element("section", head + lead + inside, id=anchor, aria_labelledby=f"{anchor}-title")
+    )
 
 
 class Numbers:
@@ -96,12 +81,12 @@ def _plain(value: int | float) -> str:
     return f"{value:,}" if isinstance(value, int) else f"{value:,.6g}"
 
 
-class Cell(str):
+class TableCell(str):
     """HTML of a cell of a table; `order` is what the table is sorted by, None for the text."""
 
     order: int | float | None
 
-    def __new__(cls, inside: str, order: int | float | None = None) -> Cell:
+    def __new__(cls, inside: str, order: int | float | None = None) -> TableCell:
         """Made of HTML."""
         cell = super().__new__(cls, inside)
         cell.order = order
@@ -145,7 +130,7 @@ def meter(share: float, text: str, is_lost: bool = True) -> str:
 
     Args:
         share: how much of it is used.
-        text: HTML beside it.
+        text: HTML to the right of the bar.
         is_lost: whether a full bar is bad, or just full.
     """
     level = "high" if share >= 0.95 and is_lost else "raised" if share >= 0.75 else None

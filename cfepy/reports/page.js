@@ -5,7 +5,7 @@ const data = JSON.parse(document.getElementById("timeline-data").textContent);
 const canvas = document.getElementById("timeline-canvas");
 const box = canvas.parentElement;
 const context = canvas.getContext("2d");
-const ROW = 18, TOP = 24, LEAST_BINS = 8, MARK_REACH = 5;
+const ROW = 18, TOP = 24, LEAST_BINS = 8, MARK_REACH = 5, MOST_NAMED = 12;
 
 /* Counts of a lane as sums up to each bin, so that any stretch of time is one subtraction. */
 function sums(runs) {
@@ -21,6 +21,7 @@ function sums(runs) {
 const lanes = data.lanes.map(lane => ({ ...lane, runs: sums(lane.runs), busy: sums(lane.busy) }));
 const end = Math.max(data.end, data.width);
 let view = { from: 0, to: end };
+let focus = null;  // an instant that a link has asked for
 let labels = 150;
 
 function between(table, from, to) {
@@ -64,28 +65,39 @@ function draw() {
   context.setTransform(scale, 0, 0, scale, 0, 0);
   context.fillStyle = color("--panel");
   context.fillRect(0, 0, width, height);
-  drawAxis(width, height);
+  drawAxis(context, width, TOP - 4, height, 11);
   lanes.forEach((lane, row) => drawLane(lane, row, width));
   drawMarks(width, height);
+  drawFocus(context, width, height);
   const shown = document.getElementById("timeline-range");
   shown.textContent = seconds(view.from) + " to " + seconds(view.to);
   shown.dataset.from = Math.round(view.from);
   shown.dataset.to = Math.round(view.to);
+  drawValues();
 }
 
-function drawAxis(width, height) {
+function place(ns, width) { return labels + (ns - view.from) / (view.to - view.from) * (width - labels); }
+
+function drawFocus(on, width, height) {
+  if (focus === null || focus < view.from || focus > view.to) return;
+  on.fillStyle = color("--accent");
+  on.fillRect(Math.round(place(focus, width)) - 1, 0, 2, height);
+}
+
+/* Lines at round times from one height to another, and the times themselves. */
+function drawAxis(on, width, top, height, textAt) {
   const span = view.to - view.from, room = width - labels;
   let step = 10 ** Math.ceil(Math.log10(span / Math.max(2, room / 110)));
   if (step / 2 * room / span > 90) step /= 2;
-  context.font = "11px system-ui, sans-serif";
-  context.textBaseline = "middle";
+  on.font = "11px system-ui, sans-serif";
+  on.textBaseline = "middle";
   for (let at = Math.ceil(view.from / step) * step; at <= view.to; at += step) {
     const x = labels + (at - view.from) / span * room;
-    context.fillStyle = color("--line");
-    context.fillRect(x, TOP - 4, 1, height);
-    context.fillStyle = color("--soft");
+    on.fillStyle = color("--line");
+    on.fillRect(x, top, 1, height);
+    on.fillStyle = color("--soft");
     const text = seconds(at);
-    context.fillText(text, Math.min(x + 3, width - context.measureText(text).width - 2), 11);
+    on.fillText(text, Math.min(x + 3, width - on.measureText(text).width - 2), textAt);
   }
 }
 
@@ -118,12 +130,13 @@ function drawMarks(width, height) {
   const room = width - labels, span = view.to - view.from;
   const seen = data.marks.filter(mark => mark[0] >= view.from && mark[0] <= view.to);
   for (const [at, kind] of seen) {
-    context.fillStyle = color(kind === "note" ? "--warn" : "--bad");
+    context.fillStyle = color(kind === "note" ? "--warn" : kind === "switch" ? "--switch" : "--bad");
     const x = labels + (at - view.from) / span * room;
     context.globalAlpha = Math.min(0.7, 8 / seen.length);
     context.fillRect(x, TOP, 1, height);
     context.globalAlpha = 1;
     context.fillRect(x - 1, TOP - 5, 3, 5);
+    if (kind === "switch" && seen.length <= MOST_NAMED) context.fillText("switch", x + 4, TOP - 3);
   }
 }
 
@@ -146,33 +159,253 @@ function describe(event) {
   tip.textContent = texts.join(" | ");
 }
 
-let dragged = null;
-canvas.addEventListener("pointerdown", event => { dragged = event.clientX; canvas.setPointerCapture(event.pointerId); });
-canvas.addEventListener("pointerup", () => { dragged = null; });
-canvas.addEventListener("pointermove", event => {
-  if (dragged === null) { describe(event); return; }
-  move((dragged - event.clientX) / (box.clientWidth - labels));
-  dragged = event.clientX;
-});
-canvas.addEventListener("wheel", event => {
-  if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) move(Math.sign(event.deltaX || event.deltaY) / 10);
-  else {
-    const place = canvas.getBoundingClientRect();
-    const share = (event.clientX - place.left - labels) / (place.width - labels);
-    zoom(event.deltaY > 0 ? 1.25 : 0.8, Math.min(1, Math.max(0, share)));
-  }
-  event.preventDefault();
-}, { passive: false });
+/* The mouse zooms and moves; where it does neither, something is told. */
+function movable(surface, tell) {
+  let dragged = null;
+  surface.addEventListener("pointerdown", event => { dragged = event.clientX; surface.setPointerCapture(event.pointerId); });
+  surface.addEventListener("pointerup", () => { dragged = null; });
+  surface.addEventListener("pointermove", event => {
+    if (dragged === null) { tell(event); return; }
+    move((dragged - event.clientX) / (box.clientWidth - labels));
+    dragged = event.clientX;
+  });
+  surface.addEventListener("wheel", event => {
+    if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) move(Math.sign(event.deltaX || event.deltaY) / 10);
+    else {
+      const place = surface.getBoundingClientRect();
+      const share = (event.clientX - place.left - labels) / (place.width - labels);
+      zoom(event.deltaY > 0 ? 1.25 : 0.8, Math.min(1, Math.max(0, share)));
+    }
+    event.preventDefault();
+  }, { passive: false });
+  surface.addEventListener("keydown", event => {
+    const name = KEYS[event.key];
+    if (name) { ACTIONS[name](); event.preventDefault(); }
+  });
+}
 
 const ACTIONS = {
   in: () => zoom(0.5), out: () => zoom(2), left: () => move(-0.25), right: () => move(0.25), all: () => setView(0, end),
 };
 const KEYS = { "+": "in", "=": "in", "-": "out", ArrowLeft: "left", ArrowRight: "right", Home: "all", 0: "all" };
 for (const name in ACTIONS) document.getElementById("timeline-" + name).addEventListener("click", ACTIONS[name]);
-canvas.addEventListener("keydown", event => {
-  const name = KEYS[event.key];
-  if (name) { ACTIONS[name](); event.preventDefault(); }
-});
+movable(canvas, describe);
+/* Values over time. */
+const STEP_MISSING = 65535, PLOT = 170, PLOT_TOP = 28, PLOT_BOTTOM = 12, TEXTS = 36, TIMES = 20;
+const valuesCanvas = document.getElementById("values-canvas");
+const COLORS = ["--line-1", "--line-2", "--line-3", "--line-4", "--line-5", "--line-6", "--line-7", "--line-8"];
+
+function decoded(line, count) {
+  const found = new Float64Array(count).fill(line.low);
+  if (line.data === undefined) return found;
+  const bytes = atob(line.data);
+  for (let at = 0; at < count; at++) {
+    const step = bytes.charCodeAt(2 * at) | bytes.charCodeAt(2 * at + 1) << 8;
+    found[at] = step === STEP_MISSING ? NaN : line.low + step * line.step;
+  }
+  return found;
+}
+
+function timesOf(steps) {
+  let at = 0;
+  return Float64Array.from(steps, step => (at += step) * 1e3);
+}
+
+/* What can be chosen: groups of lines, and texts that change. Lines are decoded when they are first drawn. */
+const groups = [];
+for (const series of JSON.parse(document.getElementById("values-data").textContent)) {
+  for (const group of series.groups)
+    groups.push({ ...group, series, title: series.name + "." + group.name, count: group.lines.length });
+  if (series.changes.length) {
+    const changes = series.changes.map(([at, text]) => [at * 1e3, text]);
+    groups.push({ name: "changes", unit: "text", series, title: series.name, changes, count: changes.length });
+  }
+}
+const chosen = new Set();
+
+function linesOf(group) {
+  group.times ??= timesOf(group.series.times);
+  group.decoded ??= group.lines.map(line => ({ name: line.name, values: decoded(line, group.times.length) }));
+  return group.decoded;
+}
+
+/* The first point that is not before an instant. */
+function firstAt(times, ns) {
+  let low = 0, high = times.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] < ns) low = middle + 1; else high = middle;
+  }
+  return low;
+}
+
+function limits(group) {
+  const from = Math.max(0, firstAt(group.times, view.from) - 1), to = firstAt(group.times, view.to) + 1;
+  let low = Infinity, high = -Infinity;
+  for (const line of linesOf(group))
+    for (const value of line.values.subarray(from, to))
+      if (value === value) { low = Math.min(low, value); high = Math.max(high, value); }
+  if (low > high) return { low: 0, high: 1, from, to };
+  const rim = (high - low) * 0.06 || Math.abs(high) * 0.1 || 1;
+  return { low: low - rim, high: high + rim, from, to };
+}
+
+function number(value, span) {
+  if (value !== 0 && (Math.abs(value) >= 1e7 || span < 1e-5)) return value.toPrecision(6);
+  return value.toFixed(Math.max(0, Math.min(9, Math.ceil(-Math.log10(span || 1)) + 1)));
+}
+
+function drawValues() {
+  if (!valuesCanvas) return;
+  const shown = groups.filter(group => chosen.has(group)), plots = shown.filter(group => group.lines);
+  const texts = shown.flatMap(group => group.changes || []);
+  const width = valuesCanvas.parentElement.clientWidth, scale = window.devicePixelRatio || 1;
+  const top = texts.length ? TEXTS : 0, height = top + Math.max(1, plots.length) * PLOT + TIMES;
+  valuesCanvas.hidden = !shown.length;
+  valuesCanvas.style.height = height + "px";
+  valuesCanvas.width = Math.round(width * scale);
+  valuesCanvas.height = Math.round(height * scale);
+  const on = valuesCanvas.getContext("2d");
+  on.setTransform(scale, 0, 0, scale, 0, 0);
+  on.fillStyle = color("--panel");
+  on.fillRect(0, 0, width, height);
+  drawAxis(on, width, top, height - top - TIMES, height - TIMES / 2);
+  plots.forEach((group, index) => drawPlot(on, group, top + index * PLOT, width));
+  on.fillStyle = color("--soft");
+  let last = -Infinity;
+  for (const [at, text] of texts) {
+    if (at < view.from || at > view.to) continue;
+    const x = place(at, width);
+    for (let y = top; y < height - TIMES; y += 7) on.fillRect(x, y, 1, 4);
+    if (x > last + 4) { on.fillText(text, x, top / 2 + 4); last = x + on.measureText(text).width; }
+  }
+  drawFocus(on, width, height);
+}
+
+function drawPlot(on, group, top, width) {
+  linesOf(group);
+  const range = limits(group), begin = top + PLOT_TOP, room = PLOT - PLOT_TOP - PLOT_BOTTOM;
+  const y = value => begin + (range.high - value) / (range.high - range.low) * room;
+  drawGrid(on, range, y, width);
+  on.fillStyle = color("--ink");
+  on.fillText(group.title + (group.unit ? ", " + group.unit : ""), labels, top + 9);
+  on.save();
+  on.beginPath();
+  on.rect(labels, top, width - labels, PLOT);
+  on.clip();
+  group.decoded.forEach((line, index) => drawLine(on, group, line, index, range, y, width));
+  on.restore();
+  drawNames(on, group, top);
+}
+
+function drawGrid(on, range, y, width) {
+  const span = range.high - range.low;
+  let step = 10 ** Math.floor(Math.log10(span / 2));
+  while (span / step > 5) step *= span / step > 10 ? 2.5 : 2;
+  for (let value = Math.ceil(range.low / step) * step; value <= range.high; value += step) {
+    on.fillStyle = color("--line");
+    on.fillRect(labels, y(value), width - labels, 1);
+    on.fillStyle = color("--soft");
+    on.fillText(number(Math.abs(value) < step / 1e6 ? 0 : value, step), labels + 3, y(value) - 6);
+  }
+}
+
+function drawLine(on, group, line, index, range, y, width) {
+  on.strokeStyle = on.fillStyle = color(COLORS[index % COLORS.length]);
+  on.lineWidth = 1.4;
+  on.beginPath();
+  let isDown = false;
+  const few = range.to - range.from < 60;
+  for (let at = range.from; at < Math.min(range.to, line.values.length); at++) {
+    const value = line.values[at], x = place(group.times[at], width);
+    if (value !== value) { isDown = false; continue; }
+    if (isDown) on.lineTo(x, y(value)); else on.moveTo(x, y(value));
+    if (few) on.fillRect(x - 1.5, y(value) - 1.5, 3, 3);
+    isDown = true;
+  }
+  on.stroke();
+}
+
+/* The names of the lines stand where the timeline has those of its lanes. */
+function drawNames(on, group, top) {
+  const room = Math.floor((PLOT - PLOT_TOP) / 14);
+  on.save();
+  on.beginPath();
+  on.rect(0, top, labels - 6, PLOT);
+  on.clip();
+  group.decoded.slice(0, room).forEach((line, index) => {
+    const more = group.decoded.length - room, isLast = index === room - 1 && more > 0;
+    on.fillStyle = color(isLast ? "--soft" : COLORS[index % COLORS.length]);
+    const name = line.name.startsWith(group.name) ? line.name.slice(group.name.length).replace(/^\./, "") : line.name;
+    on.fillText(isLast ? more + 1 + " more" : name || group.name, 6, top + PLOT_TOP + index * 14 + 5);
+  });
+  on.restore();
+}
+
+/* Values at the mouse, those of the last point before it. */
+function tellValues(event) {
+  const box = valuesCanvas.getBoundingClientRect(), x = event.clientX - box.left - labels;
+  const plots = groups.filter(group => chosen.has(group) && group.lines);
+  const top = groups.some(group => chosen.has(group) && group.changes) ? TEXTS : 0;
+  const group = plots[Math.floor((event.clientY - box.top - top) / PLOT)];
+  const tip = document.getElementById("values-tip");
+  if (x < 0 || !group) { tip.textContent = ""; return; }
+  const at = view.from + x / (box.width - labels) * (view.to - view.from);
+  const point = firstAt(group.times, at + 1) - 1;
+  const texts = point < 0 ? [] : linesOf(group).map(line => line.name + " " + +line.values[point].toPrecision(7));
+  tip.textContent = group.series.name + " at " + seconds(at) + ": " + texts.join(", ");
+}
+
+function choose(group, box) {
+  if (box.checked) chosen.add(group); else chosen.delete(group);
+  document.getElementById("values-tip").textContent = chosen.size ? "" : "Choose fields to draw them.";
+  drawValues();
+}
+
+function fillPicker() {
+  const picker = document.getElementById("values-fields"), filter = document.getElementById("values-filter");
+  const parts = new Map(), rows = [];
+  for (const group of groups) {
+    if (!parts.has(group.series)) {
+      const part = document.createElement("details"), head = document.createElement("summary");
+      head.textContent = group.series.name;
+      head.title = group.series.type + ", " + group.series.count + " messages";
+      part.append(head);
+      parts.set(group.series, part);
+      picker.append(part);
+    }
+    const row = document.createElement("label"), box = document.createElement("input"), about = document.createElement("span");
+    box.type = "checkbox";
+    box.addEventListener("change", () => choose(group, box));
+    about.className = "type";
+    about.textContent = [group.count > 1 ? "[" + group.count + "]" : "", group.unit].filter(Boolean).join(" ");
+    row.append(box, group.name, about);
+    parts.get(group.series).append(row);
+    rows.push([row, (group.title + " " + (group.lines || []).map(line => line.name).join(" ")).toLowerCase()]);
+  }
+  filter.addEventListener("input", () => {
+    const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
+    for (const [row, text] of rows) row.hidden = !words.every(word => text.includes(word));
+    for (const part of parts.values()) {
+      part.hidden = ![...part.querySelectorAll("label")].some(row => !row.hidden);
+      part.open = words.length > 0 && !part.hidden;
+    }
+  });
+}
+
+if (valuesCanvas) {
+  fillPicker();
+  movable(valuesCanvas, tellValues);
+}
+
+/* Links to an instant. */
+for (const link of document.querySelectorAll("a[data-at]"))
+  link.addEventListener("click", () => {
+    focus = Number(link.dataset.at);
+    const span = Math.max(end / 50, 4 * LEAST_BINS * data.width);
+    setView(focus - span / 2, focus + span / 2);
+  });
+
 new ResizeObserver(draw).observe(box);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
 draw();

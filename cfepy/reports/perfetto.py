@@ -1,27 +1,22 @@
 """A run in the Trace Event Format, which Perfetto (ui.perfetto.dev) and chrome://tracing open.
 
 A process stands for an application and a thread for a task of it; "mission" is a process of its own, with a thread each
-for what happens to the mission as a whole. Much happens at one and the same virtual instant, on a board without
-processor costs nearly everything. So that its order can be seen, each thing is drawn at least `STEP_NS` after the one
-before it, and the drawing is back at the virtual time as soon as that has gone on; `args.virtual_ns` is the true time.
+for what happens to the mission as a whole. What happens at one instant is drawn apart (`trace_events`);
+`args.virtual_ns` is the true time.
 """
 
 from __future__ import annotations
 
-import json
 from typing import IO, Any
 
-from cfepy import __version__
-from cfepy.es.records import AppRecord
-from cfepy.mission.live_names import LiveNames
-from cfepy.mission.observer import Observer, Sent, app_of
-from cfepy.reports.event_packets import event_in
-from cfepy.reports.text_marks import DEADLINE, FAULT, INVARIANT, mark_of
+from cfepy.es import AppRecord
+from cfepy.ground import LiveNames
+from cfepy.monitors import Observer, Sent, app_of
+from cfepy.reports.noteworthy import DEADLINE, FAULT, INVARIANT, event_in, mark_of
+from cfepy.reports.trace_events import STEP_NS, TraceEvents, us
 from cfepy.rtos import Task
-from cfepy.sb.pipe import Pipe
+from cfepy.sb import Pipe
 
-STEP_NS = 10
-NS_PER_US = 1_000  # the format counts in us
 MISSION = "mission"
 MISSION_TRACKS = ("console", "events", "resets", DEADLINE, FAULT, INVARIANT, "notes")
 MOST_UNDER_WAY = 20_000  # transmissions whose arrows can still be drawn
@@ -32,16 +27,13 @@ class PerfettoTrace(Observer):
     """Writes the trace while the mission runs.
 
     Args:
-        file: a text file; whoever opened it closes it.
-        error: what writing raised, for who closes the file: inside the simulation nothing of the host may be raised.
+        file: a text file, which the caller closes.
     """
 
     def __init__(self, file: IO[str]) -> None:
         super().__init__()
-        self.error: OSError | None = None
-        self._file = file
-        self._drawn_ns = -STEP_NS
-        self._is_first = True
+        self._events = TraceEvents(file)
+        self._write, self._draw = self._events.write, self._events.draw
         self._names: LiveNames
         self._pids: dict[str, int] = {}
         self._tids: set[tuple[int, int]] = set()
@@ -51,32 +43,19 @@ class PerfettoTrace(Observer):
         self._depths: dict[tuple[int, str], int] = {}
         self._markers: dict[tuple[int, int], int] = {}  # entered and not left, by task and marker: pid
 
-    # -- writing -----------------------------------------------------------------------------------------------------
-
-    def _write(self, **fields: Any) -> None:
-        start = "" if self._is_first else ",\n"
-        self._is_first = False
-        self._put(start + json.dumps(fields, separators=(",", ":")))
-
-    def _put(self, text: str) -> None:
-        if self.error is None:
-            try:
-                self._file.write(text)
-            except OSError as error:
-                self.error = error
-
-    def _draw(self, at_ns: int) -> int:
-        self._drawn_ns = max(at_ns, self._drawn_ns + STEP_NS)
-        return self._drawn_ns
+    @property
+    def error(self) -> OSError | None:
+        """What writing raised, for the caller that closes the file."""
+        return self._events.error
 
     def begin(self, mission: Any) -> None:
         """See `Observer.begin`."""
         super().begin(mission)
         self._names = LiveNames(mission)
-        self._put('{"displayTimeUnit":"ns","traceEvents":[\n')
+        self._events.begin()
         pid = self._pid(MISSION)
         for number, name in enumerate(MISSION_TRACKS):
-            self._name_thread(pid, FIRST_OWN_TID + number, name)
+            self._events.name_thread(pid, FIRST_OWN_TID + number, name)
 
     def power_up(self, processor: Any) -> None:
         """A reset is an instant; ES's performance log shows which marked parts of the code run."""
@@ -94,9 +73,7 @@ class PerfettoTrace(Observer):
         for (ident, marker), pid in list(self._markers.items()):
             self._leave_marker(pid, ident, marker, self._kernel.now)
         mission = self.mission
-        about = {"mission": mission.spec.name, "board": mission.board.name, "seed": mission.seed}
-        other = {**about, "cfepy": __version__, "drawn_apart_ns": STEP_NS}
-        self._put(f'\n],"otherData":{json.dumps(other)}}}\n')
+        self._events.end({"mission": mission.spec.name, "board": mission.board.name, "seed": mission.seed})
 
     # -- tracks ------------------------------------------------------------------------------------------------------
 
@@ -104,8 +81,7 @@ class PerfettoTrace(Observer):
         pid = self._pids.get(app)
         if pid is None:
             pid = self._pids[app] = len(self._pids) + 1
-            self._write(ph="M", pid=pid, tid=0, name="process_name", args={"name": app})
-            self._write(ph="M", pid=pid, tid=0, name="process_sort_index", args={"sort_index": pid})
+            self._events.name_process(pid, app)
         return pid
 
     def _track(self, task: Task) -> tuple[int, int]:
@@ -113,11 +89,8 @@ class PerfettoTrace(Observer):
         tid = task.ident or FIRST_OWN_TID - 1
         if (pid, tid) not in self._tids:
             self._tids.add((pid, tid))
-            self._name_thread(pid, tid, task.name)
+            self._events.name_thread(pid, tid, task.name)
         return pid, tid
-
-    def _name_thread(self, pid: int, tid: int, name: str) -> None:
-        self._write(ph="M", pid=pid, tid=tid, name="thread_name", args={"name": name})
 
     # -- what happens ------------------------------------------------------------------------------------------------
 
@@ -125,7 +98,7 @@ class PerfettoTrace(Observer):
         """A slice begins."""
         pid, tid = self._open = self._track(task)
         self._write(
-            ph="B", pid=pid, tid=tid, ts=_us(self._draw(at_ns)), name="running", cat="task", args={"virtual_ns": at_ns}
+            ph="B", pid=pid, tid=tid, ts=us(self._draw(at_ns)), name="running", cat="task", args={"virtual_ns": at_ns}
         )
 
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
@@ -136,7 +109,7 @@ class PerfettoTrace(Observer):
         if self._open is not None:
             pid, tid = self._open
             self._open = None
-            self._write(ph="E", pid=pid, tid=tid, ts=_us(self._draw(at_ns)))
+            self._write(ph="E", pid=pid, tid=tid, ts=us(self._draw(at_ns)))
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
         """A short slice in that of its sender; an event is an instant as well."""
@@ -148,7 +121,7 @@ class PerfettoTrace(Observer):
             del self._starts[next(iter(self._starts))]
         event = event_in(sent.msg_id, packet, sent.at_ns)
         if event is not None:
-            self._instant("events", event.type, sent.at_ns, app=event.app, id=event.number, text=event.text)
+            self._instant("events", event.type_name, sent.at_ns, app=event.app, id=event.event_id, text=event.text)
 
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
         """A short slice in that of the receiver, and an arrow that leads to it."""
@@ -159,22 +132,22 @@ class PerfettoTrace(Observer):
             return
         start, from_pid, from_tid = self._starts[sent.number]
         self._flows = flow = self._flows + 1
-        self._write(ph="s", id=flow, pid=from_pid, tid=from_tid, ts=_us(start), name="message", cat="message")
-        self._write(ph="f", bp="e", id=flow, pid=pid, tid=tid, ts=_us(drawn), name="message", cat="message")
+        self._write(ph="s", id=flow, pid=from_pid, tid=from_tid, ts=us(start), name="message", cat="message")
+        self._write(ph="f", bp="e", id=flow, pid=pid, tid=tid, ts=us(drawn), name="message", cat="message")
 
     def _short(self, pid: int, tid: int, name: str, at_ns: int, sent: Sent | None, **more: Any) -> int:
         drawn = self._draw(at_ns)
         args = {"virtual_ns": at_ns, **more}
         if sent is not None:
             args |= {"MsgId": f"0x{sent.msg_id:04X}", "sequence": sent.sequence, "bytes": sent.size}
-        self._write(ph="X", pid=pid, tid=tid, ts=_us(drawn), dur=_us(STEP_NS), name=name, cat="message", args=args)
+        self._write(ph="X", pid=pid, tid=tid, ts=us(drawn), dur=us(STEP_NS), name=name, cat="message", args=args)
         return drawn
 
     def on_drop(self, msg_id: int, pipe: Pipe, why: str, at_ns: int) -> None:
         """An instant where the sender is."""
         pid, tid = self._track(self._kernel.current)
         args = {"virtual_ns": at_ns, "pipe": pipe.name, "why": why}
-        drawn = _us(self._draw(at_ns))
+        drawn = us(self._draw(at_ns))
         name = f"dropped {self._names[msg_id]}"
         self._write(ph="i", s="t", pid=pid, tid=tid, ts=drawn, name=name, cat="drop", args=args)
 
@@ -184,7 +157,7 @@ class PerfettoTrace(Observer):
         if self._depths.get(key) == waiting:
             return
         self._depths[key] = waiting
-        self._write(ph="C", pid=key[0], tid=0, ts=_us(self._draw(at_ns)), name=key[1], args={"waiting": waiting})
+        self._write(ph="C", pid=key[0], tid=0, ts=us(self._draw(at_ns)), name=key[1], args={"waiting": waiting})
 
     def on_console(self, line: str, at_ns: int) -> None:
         """An instant; what stands out is one of all tracks."""
@@ -200,7 +173,7 @@ class PerfettoTrace(Observer):
 
     def _instant(self, track: str, name: str, at_ns: int, scope: str = "t", **more: Any) -> None:
         tid = FIRST_OWN_TID + MISSION_TRACKS.index(track)
-        drawn = _us(self._draw(at_ns))
+        drawn = us(self._draw(at_ns))
         args = {"virtual_ns": at_ns, **more}
         self._write(ph="i", s=scope, pid=self._pid(MISSION), tid=tid, ts=drawn, name=name, cat=track, args=args)
 
@@ -227,9 +200,5 @@ class PerfettoTrace(Observer):
             self._async("e", pid, ident, marker, at_ns)
 
     def _async(self, phase: str, pid: int, ident: int, marker: int, at_ns: int) -> None:
-        number, drawn = f"{ident}.{marker}", _us(self._draw(at_ns))
+        number, drawn = f"{ident}.{marker}", us(self._draw(at_ns))
         self._write(ph=phase, id=number, pid=pid, tid=ident, ts=drawn, name=f"marker {marker}", cat="performance log")
-
-
-def _us(time_ns: int) -> float:
-    return time_ns / NS_PER_US

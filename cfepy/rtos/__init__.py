@@ -1,41 +1,58 @@
 """The simulated real-time kernel: virtual time, tasks with priorities, and the objects tasks wait for.
 
-It may import only `cfepy.trace` and `cfepy.status`. Everything above talks to it through the names below.
+What belongs here makes tasks run or wait, decides which task runs next, or charges virtual time for it. OSAL's tasks,
+queues and mutexes do not: OSAL builds them on the names below. The host's threads and clock are touched in `context`,
+`realtime` and `watchdog`, and in no package above.
 """
 
 from __future__ import annotations
 
-from cfepy.rtos.depth_first import DepthFirst
-from cfepy.rtos.errors import DeadlockError
+from cfepy.rtos.costs import CpuCosts
+from cfepy.rtos.errors import DeadlockError, InjectedCrash
 from cfepy.rtos.exploring import ExploringKernel, make_kernel
-from cfepy.rtos.kernel import Kernel
+from cfepy.rtos.kernel import ENDLESS, Kernel
 from cfepy.rtos.mutex import Mutex
-from cfepy.rtos.policy import PCT, Decision, Deviations, Policy, Recorded, SeededRandom
+from cfepy.rtos.policy import HOLD, PCT, Decision, Deviations, Moment, NotingPolicy, Policy, SeededRandom
 from cfepy.rtos.queue import EMPTY, Queue
-from cfepy.rtos.schedule import Schedule
+from cfepy.rtos.realtime import Pacer, Stopwatch
+from cfepy.rtos.report import Wait
+from cfepy.rtos.schedule import DEPTH, STEPS, Schedule
 from cfepy.rtos.semaphore import Semaphore
 from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit, WaitList
+from cfepy.rtos.watchdog import STALL_S, LastResort, StallWatch
 
 __all__ = [
+    "DEPTH",
     "EMPTY",
+    "ENDLESS",
     "FOREVER",
+    "HOLD",
     "PCT",
+    "STALL_S",
+    "STEPS",
     "TIMEOUT",
+    "CpuCosts",
     "DeadlockError",
     "Decision",
-    "DepthFirst",
     "Deviations",
     "ExploringKernel",
+    "InjectedCrash",
     "Kernel",
+    "LastResort",
+    "Moment",
     "Mutex",
+    "NotingPolicy",
+    "Pacer",
     "Policy",
     "Queue",
-    "Recorded",
     "Schedule",
     "SeededRandom",
     "Semaphore",
+    "StallWatch",
+    "Stopwatch",
     "Task",
     "TaskExit",
+    "Wait",
     "WaitList",
     "make_kernel",
 ]

@@ -1,4 +1,4 @@
-"""What can go wrong in the kernel itself."""
+"""The errors of the kernel itself."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 class DeadlockError(RuntimeError):
-    """No task can ever go on: nobody is ready and no deadline is left. The text says who waits for what.
+    """No task can ever go on: none is ready and no deadline is left. The text says which task waits for what.
 
     Args:
         text: that.

@@ -1,4 +1,4 @@
-"""A kernel that asks a policy who runs at every scheduling point, in order to find what fifo never shows.
+"""A kernel that asks a policy at every scheduling point which task runs, to find failures that fifo never shows.
 
 Scheduling points are: each call of an app or a node into the API (`point`), each charge of virtual CPU time, each call
 that makes another task ready or changes a priority, and each wait. Taking candidate 0 every time gives exactly the run
@@ -36,7 +36,7 @@ class ExploringKernel(Kernel):
 
     Args:
         context: see `Kernel`, as for the arguments not named here.
-        policy: who runs next.
+        policy: decides which task runs next.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class ExploringKernel(Kernel):
         if self._hold_ns or self._early:
             if task is self.host or task.dying or not self._has_choice(task):
                 return
-        else:  # most calls find nobody who could get in: they end here
+        else:  # most calls find no task that could get in: they end here
             ready = self.ready
             if not ready or not (self._any or ready[0][0] <= task.priority) or task.dying or task is self.host:
                 return
@@ -138,7 +138,7 @@ class ExploringKernel(Kernel):
         )
 
     def _has_choice(self, task: Task) -> bool:
-        """Whether anybody but the running task might go on from here."""
+        """Whether another task than the running one might go on from here."""
         ready = self.ready
         return (
             bool(ready and (self._any or ready[0][0] <= task.priority))

@@ -1,19 +1,22 @@
 """The simulated real-time kernel: the scheduler, the life of tasks, and the host that lets them run.
 
-`Scheduler` decides who runs; this adds how tasks come and go, and `run`, which the host calls. It may be used by one
-host thread at a time.
+`Scheduler` decides which task runs; this adds the start and end of tasks, and `run`, which the host calls. It may be
+used by one host thread at a time.
 """
 
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from heapq import heapify, heappop, heappush
 from types import TracebackType
 from typing import Any
 
 from cfepy import trace as tr
-from cfepy.rtos.context import make_context
+from cfepy.garbage import no_collection
+from cfepy.rtos.context import make_context, take_back
 from cfepy.rtos.errors import DeadlockError
 from cfepy.rtos.report import Wait, deadlocks, waiting_report
 from cfepy.rtos.scheduler import Scheduler
@@ -35,6 +38,13 @@ class Kernel(Scheduler):
         tick_ns: deadlines are rounded up to multiples of this; 0 for a tickless clock.
         switch_cost_ns: virtual CPU time that a change of task takes.
         seed: what random streams above the kernel are derived from; the kernel itself uses no randomness.
+
+    Attributes:
+        is_running: the host lets tasks run or end, and waits for that.
+        is_collecting: the host itself runs finalizers.
+        broken: why the run was broken off; None as long as it was not.
+        is_lost: the running task will not give the CPU back; the host is about to go on without it.
+        guard: held by who looks at these from another thread and acts on it.
     """
 
     def __init__(
@@ -55,6 +65,10 @@ class Kernel(Scheduler):
         self._stopped = False
         self._begun = False
         self._collect_at = COLLECT_NS
+        self.is_running = self.is_collecting = self.is_lost = False
+        self.broken: BaseException | None = None
+        self.guard = threading.Lock()
+        self._gave_up = False
 
     def __enter__(self) -> Kernel:
         return self
@@ -97,7 +111,10 @@ class Kernel(Scheduler):
         self._stop_waiting(task)
         self.ready = [entry for entry in self.ready if entry[2] is not task]
         heapify(self.ready)
-        self._finish_in(task)
+        if self._gave_up and self.current is self.host:
+            self._leave(task)
+        else:
+            self._finish_in(task)
         self.preempt()  # its end may have made a more urgent task ready
 
     def interrupt(self, task: Task, error: BaseException) -> None:
@@ -144,15 +161,18 @@ class Kernel(Scheduler):
         task.killer = killer
         if killer is self.host:
             self.context.bind_host(killer)
-        self.current = task
-        task.resume()
-        if killer is self.host:
-            self.context.enter(killer)
-        elif killer.park is not None:
-            killer.park()
-        self.current = killer
-        if killer is self.host:
+            with self._letting_run():
+                self.current = task
+                task.resume()
+                self._await()
+            self.current = killer
             self._drop_pause_mark()
+        else:
+            self.current = task
+            task.resume()
+            if killer.park is not None:
+                killer.park()
+            self.current = killer
 
     def _main(self, task: Task) -> Task:
         """The life of a task; returns the one to resume at its end."""
@@ -164,7 +184,10 @@ class Kernel(Scheduler):
         except TaskExit:
             pass
         except BaseException as error:
-            self._failure(task, error)
+            if not task.done:
+                self._failure(task, error)
+        if task.done:  # the host went on without it
+            return self.host
         task.done = True
         task.entry = None
         for mutex in task.held[:]:
@@ -203,24 +226,28 @@ class Kernel(Scheduler):
                 task can ever go on.
 
         Raises:
-            DeadlockError: without `until_ns`, when tasks are left that wait for each other or for nobody.
-            BaseException: what a task raised, when `on_task_error` did not handle it; KeyboardInterrupt.
+            DeadlockError: without `until_ns`, when tasks are left that can never go on.
+            BaseException: what a task raised, when `on_task_error` did not handle it; KeyboardInterrupt; what the run
+                was broken off for, also in every later call.
         """
         if self.current is not self.host:
             raise RuntimeError("run() was called from inside the simulation")
+        self.check_caller()
+        if self.broken is not None:
+            raise self.broken
         end = ENDLESS if until_ns is None else until_ns
         self._stopped = self._exhausted = False
         if not self._begun:
             self._begun = True
             _freeze_many()
-        enabled = gc.isenabled()
-        gc.disable()
-        try:
-            self._run_until(end)
-        finally:
-            self._drop_host()
-            if enabled:
-                gc.enable()
+        with no_collection:
+            try:
+                with self._letting_run():
+                    self._run_until(end)
+            finally:
+                self._drop_host()
+        if self.broken is not None:
+            raise self.broken
         if not self._stopped and until_ns is not None:
             self.now = max(self.now, until_ns)
         if until_ns is None and self._exhausted and self.tasks:
@@ -230,12 +257,12 @@ class Kernel(Scheduler):
         """Run piece by piece: between the pieces, at fixed virtual times, garbage is collected."""
         while self.now <= end:
             if self.now >= self._collect_at:
-                gc.collect()
+                self._collect(gc.collect)
                 self._collect_at = self.now // COLLECT_NS * COLLECT_NS + COLLECT_NS
             self._until = min(end, self._collect_at)
             self._enter()
             self._drop_pause_mark()
-            if self._stopped or self._exhausted or self._until >= end:
+            if self._stopped or self._exhausted or self._until >= end or self.broken is not None:
                 return
             self.now = max(self.now, self._until)
 
@@ -246,6 +273,71 @@ class Kernel(Scheduler):
         if self.current is not self.host:
             heappush(self.ready, (-1, 0, self.host))
 
+    def break_off(self, why: BaseException) -> None:
+        """Called by another thread, which holds `guard`: the run ends as soon as the running task gives the CPU away.
+
+        Args:
+            why: what `run` raises, now and from now on.
+        """
+        if self.broken is None:
+            self.broken = why
+        self._until = -1
+        self._stopped = True
+        if self.current is not self.host:
+            heappush(self.ready, (-1, 0, self.host))
+
+    def give_up(self) -> None:
+        """Called by another thread: tasks that have not ended yet are left where they are."""
+        self._gave_up = self.is_lost = True
+
+    @contextmanager
+    def _letting_run(self) -> Iterator[None]:
+        """Around what the host lets tasks do. An error that was meant for one of them may strike the host."""
+        was_running, self.is_running = self.is_running, True
+        try:
+            yield
+        except TaskExit:
+            if self.broken is None:
+                raise
+        finally:
+            while self.is_running is not was_running:
+                with suppress(TaskExit):
+                    self._stand_still(was_running)
+
+    def _stand_still(self, was_running: bool) -> None:
+        with self.guard:
+            self.is_running = was_running
+            if self.broken is not None and not was_running:
+                take_back()
+
+    def _collect(self, collect: Callable[[], object]) -> None:
+        """Collect garbage. What strikes a finalizer may come a little late."""
+        self.is_collecting = True
+        try:
+            with suppress(TaskExit):
+                collect()
+        finally:
+            self.is_collecting = False
+
+    def _await(self) -> None:
+        """Wait in the host until the baton comes back; go on without it when its task is lost."""
+        self.context.enter(self.host, lambda: self.is_lost)
+        if self.is_lost:
+            self._leave(self.current)
+
+    def _leave(self, task: Task) -> None:
+        """Go on in the host without a task: it will never run again as far as this kernel is concerned."""
+        self.is_lost = False
+        self.current = self.host
+        if task is self.host or task.done:
+            return
+        self.context.disown(task)
+        task.done = True
+        self.tasks.remove(task)
+        self.stuck.append(task)
+        for mutex in task.held[:]:
+            mutex.abandon(task)
+
     def unwind(self) -> None:
         """End every task, youngest first; the clock and the trace go on. The host calls it when a computer is reset."""
         while self.tasks:
@@ -253,6 +345,16 @@ class Kernel(Scheduler):
         self.ready.clear()
         self.timers.clear()
         self._last = None
+
+    def check_caller(self) -> None:
+        """That the caller can let the tasks go on.
+
+        Raises:
+            RuntimeError: it is in another process than they are, or for greenlets in another thread.
+        """
+        why = self.context.stranger()
+        if why:
+            raise RuntimeError(f"this mission cannot go on from here: {why}")
 
     def shutdown(self, tidy: bool = False) -> None:
         """Unwind every task and let their threads go. The host calls it at the end.
@@ -263,11 +365,12 @@ class Kernel(Scheduler):
         """
         self.unwind()
         if tidy and gc.isenabled():
-            _tidy()
+            with self._letting_run():
+                self._collect(_tidy)
         self._begun = False
 
     def waiting(self) -> str:
-        """Who waits for what, held by whom: the deadlock report."""
+        """The deadlock report: each waiting task, what it waits for, and its holder."""
         return waiting_report(self.tasks, self.timers)
 
     def deadlocked(self) -> list[tuple[Wait, ...]]:
@@ -292,7 +395,7 @@ class Kernel(Scheduler):
         return timers[0][0] if timers else None
 
     def _drop_pause_mark(self) -> None:
-        """Whoever gave the CPU to the host recorded the host's empty mark; nobody is to see it."""
+        """Take the host's empty mark, recorded when the host got the CPU, out of the trace."""
         records = self.trace.records if self.trace is not None else []
         if records and not records[-1]:
             records.pop()
@@ -313,7 +416,7 @@ class Kernel(Scheduler):
             self._go_on_with(following)
             try:
                 following.resume()
-                self.context.enter(host)
+                self._await()
             except BaseException as error:
                 self._take_back(error)
         if self._interrupted is not None:
@@ -344,8 +447,10 @@ class Kernel(Scheduler):
             heappush(self.ready, (-1, 0, self.host))
             while self.current is not self.host:
                 try:
-                    self.context.interrupt(lambda: self.current, self.host, TaskExit)
-                    self.current = self.host
+                    if self.context.interrupt(lambda: self.current, self.host):
+                        self.current = self.host
+                    else:
+                        self._leave(self.current)
                 except KeyboardInterrupt:
                     continue  # Ctrl-C once more; there is nothing more to do about it
         raise error
@@ -354,9 +459,9 @@ class Kernel(Scheduler):
 def _tidy() -> None:
     """Look for garbage in what is not frozen; every so many times in everything.
 
-    A run leaves classes, whose circles reference counting cannot free; the simulation itself is still in somebody's
-    hands, and is found the next time. What was there before the first run stays frozen: to go through it takes longer
-    than all the rest.
+    A run leaves classes, whose circles reference counting cannot free; the simulation itself is still
+    referenced, and is found the next time. What was there before the first run stays frozen: to go through it takes
+    longer than all the rest.
     """
     looks = gc.get_stats()[-1]["collections"] + 1
     if looks % LOOKS == 0 and looks // LOOKS % max(1, gc.get_freeze_count() // OBJECTS) == 0:

@@ -92,7 +92,7 @@ class Mutex:
                 kernel.inherit(self.owner)  # we were killed while waiting: our urgency goes with us
 
     def _circle(self, task: Task) -> tuple[Wait, ...]:
-        """Who would wait for each other if this task waited here, the oldest one in front; empty for no circle."""
+        """The tasks of the circle that would arise if this task waited here, the oldest in front; empty without one."""
         waits: list[Wait] = []
         waiter = task
         mutex: Mutex | None = self

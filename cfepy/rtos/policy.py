@@ -1,4 +1,4 @@
-"""Who runs next, where there is a choice.
+"""Policies: they decide which task runs next, where there is a choice.
 
 Without a policy the kernel goes on with the running task, or takes the one that has been ready for longest (fifo). A
 policy is asked at every scheduling point of an `ExploringKernel` that has more than one candidate: these decisions,
@@ -15,7 +15,7 @@ from typing import NamedTuple
 from cfepy.rtos.task import Task
 
 HOLD_ODDS = 16  # one in so many chances to hold a task up is taken: time would else run away from the work
-HOLD = "hold"  # in place of a task's name: nobody runs until the next timer
+HOLD = "hold"  # in place of a task's name: no task runs until the next timer
 
 
 @dataclass(slots=True)
@@ -25,7 +25,7 @@ class Decision:
     Attributes:
         number: how many decisions there were before it in the run.
         now: virtual time in ns.
-        tasks: who could run, the one that fifo would take first.
+        tasks: those that could run, the one that fifo would take first.
         running: whether `tasks[0]` is the running task, which could go on: another answer than 0 preempts it.
         hold: whether there is one more answer, `len(tasks)`: the running task is held up until the next timer is due.
         left: the task that gave up its turn just now, as it yields or used the CPU for a whole time slice, or None.
@@ -184,12 +184,19 @@ class Moment(NamedTuple):
     chosen: str
     preemption: bool
 
+    @classmethod
+    def of(cls, decision: Decision, choice: int) -> Moment:
+        """What a decision and its answer were, which is not 0."""
+        tasks = decision.tasks
+        chosen = tasks[choice].name if choice < len(tasks) else HOLD
+        return cls(decision.number, choice, decision.now, tasks[0].name, chosen, decision.running)
 
-class Recorded(Policy):
+
+class NotingPolicy(Policy):
     """Asks another policy, and keeps what was decided.
 
     Args:
-        inner: who decides; None is fifo.
+        inner: the policy that decides; None is fifo.
 
     Attributes:
         choices: the answers, in order.
@@ -210,9 +217,7 @@ class Recorded(Policy):
         """See `Policy.choose`."""
         choice = self._inner.choose(decision)
         if choice:
-            tasks = decision.tasks
-            chosen = tasks[choice].name if choice < len(tasks) else HOLD
-            self.moments.append(Moment(decision.number, choice, decision.now, tasks[0].name, chosen, decision.running))
+            self.moments.append(Moment.of(decision, choice))
         self.choices.append(choice)
         self.widths.append(decision.width)
         self.running.append(decision.running)

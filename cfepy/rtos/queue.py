@@ -73,6 +73,6 @@ class Queue:
         return self.kernel.wait_on(self.waits, timeout_ns)
 
     def close(self, value: Any = TIMEOUT) -> None:
-        """The queue goes away: everyone who waits gets `value`."""
+        """The queue goes away: every task that waits gets `value`."""
         self.items.clear()
         self.kernel.wake_all(self.waits, value)

@@ -1,8 +1,8 @@
-"""The wall clock, for those who look at a run from outside: a stopwatch, and pacing virtual time to real time.
+"""The wall clock, for code outside of a run: a stopwatch, and pacing virtual time to real time.
 
 Pacing is a wrapper around running the kernel, not a mode of it: it sleeps until the next event is due, then lets the
-kernel run. So a paced run has the trace of a free one. Whoever brings input from outside gives the pacer another way of
-sleeping, one that ends when there is some. This is one of the few modules that may read the wall clock.
+kernel run. So a paced run has the trace of a free one. Code that brings input from outside gives the pacer another
+function to sleep with, which returns when input arrives. This is one of the few modules that may read the wall clock.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable
 
 from cfepy.rtos.kernel import Kernel
-from cfepy.rtos.units import NS_PER_S
+from cfepy.units import NS_PER_S
 
 STEP_NS = 1_000_000  # wall time: what is due within a millisecond runs in one go
 PATIENCE_NS = 50_000_000  # wall time: longest sleep
@@ -38,6 +38,7 @@ class Pacer:
         run_until: runs it until a virtual time in ns: `Kernel.run`, or what wraps it.
         factor: virtual seconds for a real one, more than 0.
         wait: sleeps for so many real seconds, more than 0, or less when there is input for the run.
+        elapsed_ns: the clock on the wall, in ns since some instant; another one for tests.
     """
 
     def __init__(
@@ -46,6 +47,7 @@ class Pacer:
         run_until: Callable[[int], object],
         factor: float = 1.0,
         wait: Callable[[float], object] = time.sleep,
+        elapsed_ns: Callable[[], int] | None = None,
     ) -> None:
         if not factor > 0:
             raise ValueError(f"factor is {factor}, it must be more than 0")
@@ -54,7 +56,7 @@ class Pacer:
         self._factor = factor
         self._wait = wait
         self._virtual_start = kernel.now
-        self._watch = Stopwatch()
+        self._elapsed_ns = elapsed_ns or Stopwatch().elapsed_ns
 
     def step(self, until_ns: int) -> None:
         """Wait for the next event to be due and run it, at most until a virtual time in ns.
@@ -62,15 +64,15 @@ class Pacer:
         It comes back after some 50 ms of wall time at the latest, so that the caller can look after other things, and
         calls again until the clock is where it wants it.
         """
-        elapsed = self._watch.elapsed_ns()
+        elapsed = self._elapsed_ns()
         latest = self._due(elapsed + PATIENCE_NS)
         upcoming = self._kernel.next_event()
         idle_until = latest if upcoming is None else min(upcoming, latest)
         target = min(max(idle_until, self._due(elapsed + STEP_NS)), until_ns)
-        ahead = self._wall_of(target) - self._watch.elapsed_ns()
+        ahead = self._wall_of(target) - self._elapsed_ns()
         if ahead > 0:
             self._wait(ahead / NS_PER_S)
-            target = min(target, self._due(self._watch.elapsed_ns()))  # earlier when input ended the wait
+            target = min(target, self._due(self._elapsed_ns()))  # earlier when input ended the wait
         self._run_until(max(target, self._kernel.now))
 
     def _due(self, wall_ns: int) -> int:

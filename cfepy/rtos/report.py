@@ -1,4 +1,4 @@
-"""Deadlocks: who waits in a circle, and the report of every waiting task, what it waits for, and who holds that."""
+"""Deadlocks: the tasks that wait in a circle, and a report of every waiting task, what it waits for, and the holder."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ class Wait(NamedTuple):
     """A task that waits, without a limit in time, for something that another one holds.
 
     Attributes:
-        task: who waits.
+        task: the one that waits.
         what: for what, such as "mutex BUS".
-        holder: who has it.
+        holder: the task that has it.
     """
 
     task: Task

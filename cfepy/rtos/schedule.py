@@ -115,7 +115,7 @@ class Schedule:
         """The schedule that takes some decisions otherwise than fifo, with this one's options.
 
         Args:
-            deviations: choice by number of the decision, as `Recorded.deviations` has them.
+            deviations: choice by number of the decision, as `NotingPolicy.deviations` has them.
         """
         return replace(self, kind="at", seed=0, depth=DEPTH, steps=STEPS, deviations=tuple(sorted(deviations.items())))
 

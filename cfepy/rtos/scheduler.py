@@ -1,8 +1,8 @@
-"""The scheduler: who runs, who waits, and until when; virtual time, strict priorities, direct hand-over.
+"""The scheduler: which task runs, which wait, and until when; virtual time, strict priorities, direct hand-over.
 
 A task gives up the CPU only inside a kernel call: when it waits, when it makes a more urgent task ready, or when the
-virtual CPU time it used lets another one in. When nobody is ready, the clock jumps to the next deadline, so idle time
-costs nothing. Who runs next is decided in the task that yields, which then hands the baton over directly.
+virtual CPU time it used lets another one in. When no task is ready, the clock jumps to the next deadline, so idle time
+costs nothing. The task that yields decides which one runs next, and hands the CPU over to it directly.
 
 The parts of this module share the ready heap, the timer heap and the clock, and its hot paths are written out where a
 call would cost more than the work. It takes no lock and never logs. It stands for the scheduler below OSAL (a POSIX
@@ -60,7 +60,7 @@ class Scheduler:
         self._slice_task: Task | None = None
         self._slice_from = 0
         self._slice_end = 0
-        self._last: Task | None = None  # who gave the CPU to the host when the run paused
+        self._last: Task | None = None  # the task that gave the CPU to the host when the run paused
         self._exhausted = False
 
     # -- waiting ---------------------------------------------------------------------------------------------------
@@ -113,7 +113,7 @@ class Scheduler:
         return self.block()
 
     def wake_first(self, waits: WaitList, value: Any = None) -> bool:
-        """Make the most urgent waiter ready; it may run before this returns. False when nobody waits."""
+        """Make the most urgent waiter ready; it may run before this returns. False when no task waits."""
         if not waits:
             return False
         self.make_ready(waits.pop(0), value)
@@ -196,9 +196,9 @@ class Scheduler:
         heappush(self.timers, (when, sequence, task))
 
     def block(self) -> Any:
-        """Give the CPU away until somebody makes the current task ready; the value it was made ready with.
+        """Give the CPU away until the current task is made ready; the value it was made ready with.
 
-        Whoever calls this has seen to it that somebody will, and that the task is not dying (`_refuse`).
+        The caller made sure that this will happen, and that the task is not dying (`_refuse`).
         """
         task = self.current
         ready = self.ready
@@ -302,7 +302,7 @@ class Scheduler:
         return self._take() if self.ready else self._advance()
 
     def _advance(self) -> Task:
-        """Nobody is ready: move the clock to the next deadline. The host, when the run is over before that."""
+        """Move the clock to the next deadline, since no task is ready; the host, when the run is over before that."""
         timers = self.timers
         while timers:
             when, sequence, task = timers[0]

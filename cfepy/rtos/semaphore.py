@@ -33,7 +33,7 @@ class Semaphore:
             self.count += 1
 
     def take(self, timeout_ns: int = FOREVER) -> bool:
-        """Lower the count, or wait until somebody gives.
+        """Lower the count, or wait until another task gives.
 
         Args:
             timeout_ns: longest time to wait; 0 does not wait, FOREVER (-1) has no limit.

@@ -53,6 +53,7 @@ class Task:
     """One thread of control, with a priority from 0 (most urgent) to 255."""
 
     __slots__ = (
+        "__weakref__",
         "base_priority",
         "carrier",
         "cpu_ns",
@@ -86,8 +87,8 @@ class Task:
         self.ident = ident
         self.entry = entry
         self.priority = self.base_priority = priority
-        self.number = 0  # for whoever made the task: OSAL's id, known until the task has ended
-        self.owner: Any = None  # whoever the task works for: an application of ES
+        self.number = 0  # OSAL's id of the task, known until the task has ended
+        self.owner: Any = None  # what the task works for: an application of ES
         self.resume: Callable[[], Any] = _not_bound
         self.park: Callable[..., Any] | None = None
         self.interruption: BaseException | None = None  # comes out of the call that it waits in

@@ -1,24 +1,55 @@
-"""A watchdog for the host: it names a task that does not give up the CPU, with its stack.
+"""The stall watch: a thread of the host that ends a run in which a task does not give up the CPU.
 
-The simulation cannot do that itself: while one task computes, nothing else runs. So a thread of the host looks on, in
-wall-clock time; it only tells, and changes nothing in the run.
+The simulation cannot do that itself: while one task computes, nothing else runs, and virtual time stands still. So a
+thread looks on, in wall-clock time. It changes nothing in a run that goes on, and a run that it ends has failed.
+
+A stall is a virtual clock that stands still for so many seconds, while this process uses the CPU: because one task
+computes, or because tasks make calls that cost nothing, a thousand in a second and more. Who computes for longer
+raises the limit. A task that waits for something outside of the simulation, such as `input()` or a debugger, uses no
+CPU and is only told; and the time in which the process is stopped, or the computer asleep, does not count.
 """
 
 from __future__ import annotations
 
 import contextlib
+import faulthandler
+import linecache
+import os
+import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
+import time
+import weakref
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from types import CodeType, FrameType
+from typing import NamedTuple
 
+from cfepy.rtos.context import frame_of_thread, insist, raise_in_thread
 from cfepy.rtos.kernel import Kernel
+from cfepy.rtos.task import Task, TaskExit
+from cfepy.status import StallError
+from cfepy.units import NS_PER_S
 
-LOOK_S = 1.0
+STALL_S = 10.0
+LOOK_S, SOON_S = 0.25, 0.05  # wall time between two looks; when the run is being ended
+GRACE_S = 0.6  # wall time from the wish of the host's user until the run is broken off
+SPUN_S = 0.3  # of it without a call: that is what the user is told then
+END_S = 0.8  # wall time in which all tasks of a run that was broken off have to end
+PRESS_S = 0.15  # of it that each of them may take
+BUSY = 0.1  # share of a CPU that this process uses at least while a task computes
+TURNS_PER_S = 1000  # so many calls that let another task run, while the clock stands still, are a stall as well
+LOOKS, LOOK_AGAIN_S = 12, 0.01  # at what spins, so that the loop is found that it does not leave
+POLL_S = 0.002
+LINES = 5
+SPARE_S = 2.0  # CPU time beyond the limit until the last resort
+COLLECTOR = "a finalizer"
 
 
 def to_stderr(text: str) -> None:
     """Where a report goes by default."""
     sys.stderr.write(text + "\n")
+    sys.stderr.flush()
 
 
 class StallWatch:
@@ -26,23 +57,48 @@ class StallWatch:
 
     Args:
         kernel: the kernel to watch.
-        limit_s: wall-clock seconds without a kernel call after which the running task is reported.
-        report: gets the text.
+        limit_s: wall-clock seconds for which the virtual clock may stand still; 0 for any time.
+        is_own: whether a source file is the user's own, not the simulator's or a library's.
+        tell: gets the text about a task that waits for something outside of the simulation.
+
+    Attributes:
+        limit_s: as given; may be set before the first `begin`.
+        wanted: whether the host's user wants the run to end: then it is broken off when it does not end by itself soon.
+        on_lost: called, in the thread of the watch, when a task cannot be ended that runs on the host's own thread, or
+            a finalizer: only the end of the process ends it.
+        last_resort: ends the process when this thread does not get to run any more; None leaves it.
     """
 
-    def __init__(self, kernel: Kernel, limit_s: float = 10.0, report: Callable[[str], object] = to_stderr) -> None:
+    def __init__(
+        self,
+        kernel: Kernel,
+        limit_s: float = STALL_S,
+        is_own: Callable[[str], bool] = lambda file: True,
+        tell: Callable[[str], object] = to_stderr,
+    ) -> None:
+        self.limit_s = limit_s
+        self.wanted: Callable[[], bool] = lambda: False
+        self.on_lost: Callable[[BaseException], object] = self._tell_lost
+        self.last_resort: LastResort | None = None
         self._kernel = kernel
-        self._limit_s = limit_s
-        self._report = report
+        self._is_own = is_own
+        self._tell = tell
         self._over = threading.Event()
         self._thread: threading.Thread | None = None
         self._host_ident = 0
-        self._is_paused = False
+        self._is_paused = self._has_lost = False
+        self._stand: _Stand | None = None
+        self._wanted_s = self._ending_s = 0.0
 
     def begin(self) -> None:
-        """The calling thread is about to run the kernel. Cheap after the first time: a run may come in many pieces."""
+        """The calling thread is about to run the kernel. Cheap after the first time: a run may come in many pieces.
+
+        A forked process has none of its parent's threads: it begins anew.
+        """
         self._host_ident = threading.get_ident()
-        if self._thread is None:
+        if self._thread is None or not self._thread.is_alive():
+            self._arm()
+            self._over = threading.Event()
             self._thread = threading.Thread(target=self._look_on, name="cfepy stall watch", daemon=True)
             self._thread.start()
 
@@ -51,31 +107,346 @@ class StallWatch:
         self._over.set()
         if self._thread is not None:
             self._thread.join()
+        if self.last_resort is not None:
+            self.last_resort.disarm()
 
     @contextlib.contextmanager
     def paused(self) -> Iterator[None]:
-        """Somebody looks at a task with a debugger, which takes its time."""
+        """A debugger holds a task, for as long as its user wants."""
         self._is_paused = True
         try:
             yield
         finally:
             self._is_paused = False
 
-    def _look_on(self) -> None:
-        interval = min(LOOK_S, self._limit_s / 4)
-        seen, still = self._kernel.progress(), 0.0
-        while not self._over.wait(interval):
-            now = self._kernel.progress()
-            still = still + interval if now == seen and not self._is_paused else 0.0
-            seen = now
-            if still >= self._limit_s and self._kernel.current is not self._kernel.host:
-                self._tell()
-                still = 0.0
+    # -- looking -----------------------------------------------------------------------------------------------------
 
-    def _tell(self) -> None:
-        task = self._kernel.current
-        stack = "".join(self._kernel.context.stack_of_running(task, self._host_ident))
-        self._report(
-            f"cfepy: task {task.name} has not given up the CPU for {self._limit_s:g} s of wall time; "
-            f"it is here:\n{stack}"
+    def _look_on(self) -> None:
+        over, clock, cpu = self._over, time.monotonic(), time.process_time()
+        while not over.wait(interval := self._interval()):
+            now, used = time.monotonic(), time.process_time()
+            wall_s = min(now - clock, 2 * interval)  # this process may have been stopped
+            self._look(wall_s, used - cpu >= BUSY * wall_s)
+            clock, cpu = time.monotonic(), time.process_time()
+
+    def _interval(self) -> float:
+        if self._kernel.broken is not None or self._wanted_s:
+            return SOON_S
+        return min(LOOK_S, self.limit_s / 4) if self.limit_s else LOOK_S
+
+    def _look(self, wall_s: float, is_busy: bool) -> None:
+        kernel = self._kernel
+        self._arm()
+        if self._is_paused or self._has_lost:
+            self._stand = None
+            return
+        self._wanted_s = self._wanted_s + wall_s if self.wanted() else 0.0
+        self._stand = self._standing(wall_s, is_busy) if kernel.is_running else None
+        if kernel.broken is not None:
+            self._hurry(wall_s)
+        elif self._stand is not None and self._wanted_s >= GRACE_S:
+            stand = self._stand
+            is_stall = stand.still_s + stand.idle_s >= SPUN_S or stand.is_turning
+            self._break_off(self._error(stand, "the run was ended") if is_stall else KeyboardInterrupt())
+        elif self._stand is not None and self.limit_s:
+            self._hold_against_limit(self._stand)
+
+    def _arm(self) -> None:
+        if self.last_resort is not None:
+            self.last_resort.arm(self.limit_s + SPARE_S if self.limit_s and not self._is_paused else 0)
+
+    def _standing(self, wall_s: float, is_busy: bool) -> _Stand:
+        """How long the clock has been standing still by now."""
+        kernel, stand = self._kernel, self._stand
+        now_ns, sequence, front = kernel.progress()
+        task, calls = kernel.current, sequence - front
+        if stand is None or stand.now_ns != now_ns:
+            return _Stand(now_ns, calls, calls, weakref.ref(task))
+        stand.standing_s += wall_s if is_busy else 0.0
+        if stand.calls == calls and stand.seen() is task:
+            stand.still_s += wall_s if is_busy else 0.0
+            stand.idle_s += 0.0 if is_busy else wall_s
+        else:
+            stand.still_s = stand.idle_s = 0.0
+        stand.calls, stand.seen = calls, weakref.ref(task)
+        stand.names[task.name] = None
+        return stand
+
+    def _looks(self, stand: _Stand) -> list[tuple[_Place, ...]]:
+        """Where the task is, several times. Only now: who looks at frames keeps their variables alive."""
+        ident = self._thread_of(self._task_of(stand))
+        looks = [_places(frame_of_thread(ident))]
+        while len(looks) < LOOKS and not stand.is_idle:
+            time.sleep(LOOK_AGAIN_S)
+            stand.names[self._kernel.current.name] = None
+            looks.append(_places(frame_of_thread(ident)))
+        return looks
+
+    def _hold_against_limit(self, stand: _Stand) -> None:
+        if stand.still_s >= self.limit_s or (stand.standing_s >= self.limit_s and stand.is_turning):
+            hint = f"the run was ended: --stall {6 * self.limit_s:g} gives a long computation more time, 0 any"
+            self._break_off(self._error(stand, hint))
+        elif stand.is_idle and stand.idle_s >= self.limit_s and not stand.is_told:
+            stand.is_told = True
+            self._tell(f"cfepy: {self._error(stand, 'the run waits for it')}")
+
+    def _error(self, stand: _Stand, end: str) -> StallError:
+        """What is told of it."""
+        task = self._task_of(stand)
+        is_host = task is self._kernel.host
+        lines = lines_of(self._looks(stand), self._is_own)  # and who has the CPU meanwhile
+        app = "" if is_host or task.owner is None else str(task.owner.name)
+        return StallError(
+            f"{self._subject(stand, app)} since {stand.now_ns / NS_PER_S:.6f} s of virtual time, "
+            f"for {stand.standing_s + stand.idle_s:.1f} s of wall time; {end}",
+            tuple(map(str, lines)),
+            app=app,
+            task=COLLECTOR if is_host else task.name,
+            place=lines[0].place if lines else "",
+            at_ns=stand.now_ns,
         )
+
+    def _subject(self, stand: _Stand, app: str) -> str:
+        task = self._task_of(stand)
+        if task is self._kernel.host:
+            return f"{COLLECTOR} has not come to an end"
+        who = f"task {task.name}" + (f" of {app}" if app not in ("", task.name) else "")
+        if stand.is_idle:
+            return f"{who} has waited for something outside of the simulation"
+        if len(stand.names) > 1 and stand.is_turning:
+            return f"tasks {', '.join(sorted(stand.names))} have kept each other going, and time has stood still,"
+        return f"{who} has not given up the CPU"
+
+    def _task_of(self, stand: _Stand) -> Task:
+        return stand.seen() or self._kernel.current
+
+    def _thread_of(self, task: Task) -> int:
+        kernel = self._kernel
+        return self._host_ident if task is kernel.host else kernel.context.thread_of(task, self._host_ident)
+
+    # -- ending ------------------------------------------------------------------------------------------------------
+
+    def _break_off(self, why: BaseException) -> None:
+        """The run cannot go on; have the running task give the CPU back."""
+        kernel = self._kernel
+        with kernel.guard:
+            if not kernel.is_running:
+                return  # it has come to its end just now
+            kernel.break_off(why)
+        self._press()
+
+    def _hurry(self, wall_s: float) -> None:
+        """The run was broken off, and its tasks are ended one after the other: none of them may take long."""
+        kernel, stand = self._kernel, self._stand
+        self._ending_s += wall_s
+        if stand is None:
+            return
+        if self._ending_s >= END_S:
+            kernel.give_up()
+        if stand.still_s + stand.idle_s >= PRESS_S:
+            self._press()
+            self._stand = None
+
+    def _press(self) -> None:
+        """Have the running task, or a finalizer, end."""
+        task = self._kernel.current
+        with _quiet():
+            is_back = self._is_back(task, POLL_S) or insist(
+                lambda: self._strike(task), lambda seconds: self._is_back(task, seconds)
+            )
+        if not is_back:
+            self._lose(task)
+
+    def _strike(self, task: Task) -> None:
+        kernel = self._kernel
+        with kernel.guard:
+            if not self._has_cpu(task):
+                return
+            assert kernel.broken is not None
+            kernel.break_off(kernel.broken)
+            if task is not kernel.host:
+                kernel.context.spoil(task)
+            raise_in_thread(self._thread_of(task), TaskExit)
+
+    def _has_cpu(self, task: Task) -> bool:
+        kernel = self._kernel
+        return kernel.is_running and kernel.current is task and (task is not kernel.host or kernel.is_collecting)
+
+    def _is_back(self, task: Task, seconds: float) -> bool:
+        until = time.monotonic() + seconds
+        while self._has_cpu(task):
+            if time.monotonic() >= until:
+                return False
+            time.sleep(min(seconds, POLL_S))
+        return True
+
+    def _lose(self, task: Task) -> None:
+        """Nothing ends it. A host with a thread of its own goes on without it."""
+        kernel = self._kernel
+        if self._thread_of(task) != self._host_ident:
+            kernel.is_lost = True
+            return
+        self._has_lost = True
+        assert kernel.broken is not None
+        self.on_lost(kernel.broken)
+
+    def _tell_lost(self, why: BaseException) -> None:
+        self._tell(f"cfepy: {why}\n  it cannot be ended: it ends with this process alone")
+
+
+@dataclass(slots=True)
+class _Stand:
+    """A clock that stands still.
+
+    Attributes:
+        now_ns: where it stands.
+        first_calls, calls: number of calls that may let another task go on: at first, and now.
+        seen: the task that has the CPU; not held, since one that has ended would hold its whole processor until the
+            next look.
+        standing_s: for how long it stands; wall time in which the CPU was used.
+        still_s: for how long this task has made no such call, and used the CPU.
+        idle_s: for how long it has made none, and used no CPU.
+        is_told: that has been told.
+        names: of the tasks that were seen.
+    """
+
+    now_ns: int
+    first_calls: int
+    calls: int
+    seen: weakref.ref[Task]
+    standing_s: float = 0.0
+    still_s: float = 0.0
+    idle_s: float = 0.0
+    is_told: bool = False
+    names: dict[str, None] = field(default_factory=dict)
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether the task waits for something outside of the simulation."""
+        return self.idle_s > self.still_s
+
+    @property
+    def is_turning(self) -> bool:
+        """Whether tasks let each other go on without an end."""
+        return self.calls - self.first_calls >= TURNS_PER_S * max(self.standing_s, SPUN_S)
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """What strikes a finalizer cannot leave it, and Python would tell so; there is a better report."""
+    usual = sys.unraisablehook
+
+    def hook(unraisable: sys.UnraisableHookArgs) -> None:
+        if unraisable.exc_type is not TaskExit:
+            usual(unraisable)
+
+    sys.unraisablehook = hook
+    try:
+        yield
+    finally:
+        sys.unraisablehook = usual
+
+
+# -- where it spins ----------------------------------------------------------------------------------------------------
+
+
+class _Place(NamedTuple):
+    """Where a frame is."""
+
+    frame: FrameType
+    code: CodeType
+    at: int
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class StallLine:
+    """A line of source that is to be shown."""
+
+    file: str
+    number: int
+    function: str
+
+    @property
+    def place(self) -> str:
+        """Where it is: "spin.py:4"."""
+        return f"{os.path.basename(self.file)}:{self.number}"
+
+    def __str__(self) -> str:
+        here = os.path.join(os.getcwd(), "")
+        source = linecache.getline(self.file, self.number).strip()
+        return f"{self.file.removeprefix(here)}:{self.number} in {self.function}: {source}"
+
+
+def _places(frame: FrameType | None) -> tuple[_Place, ...]:
+    """Where a thread is, outermost frame first."""
+    found: list[_Place] = []
+    while frame is not None:
+        found.append(_Place(frame, frame.f_code, frame.f_lasti, frame.f_lineno))
+        frame = frame.f_back
+    return tuple(reversed(found))
+
+
+def lines_of(looks: Sequence[tuple[_Place, ...]], is_own: Callable[[str], bool]) -> list[StallLine]:
+    """The lines to show for something that was looked at several times: the loop that it does not leave, its callers.
+
+    Args:
+        looks: where it was, once or several times.
+        is_own: whether a source file is the user's own.
+    """
+    depth = 0
+    least = min(map(len, looks), default=0)
+    while depth < least and len({each[depth].frame for each in looks}) == 1:
+        depth += 1
+    while depth and not is_own(looks[0][depth - 1].code.co_filename):
+        depth -= 1
+    if not depth:  # no code of the user's is at work
+        return [] if not least else [_line(looks[-1][-1])]
+    outer = [_line(each) for each in reversed(looks[-1][: depth - 1]) if is_own(each.code.co_filename)]
+    loop = _loop_line(looks[0][depth - 1].code, [each[depth - 1] for each in looks])
+    return [_line(looks[0][depth - 1]._replace(line=loop)), *outer][:LINES]
+
+
+def _line(place: _Place) -> StallLine:
+    return StallLine(place.code.co_filename, place.line, place.code.co_qualname)
+
+
+def _loop_line(code: CodeType, places: Sequence[_Place]) -> int:
+    """The line with which the innermost loop begins that all places are in; without one, the first of their lines."""
+    import dis  # it is needed here alone, and takes time
+
+    steps = list(dis.get_instructions(code))
+    jumps = frozenset((*dis.hasjrel, *dis.hasjabs))
+    loops = [(step.argval, step.offset) for step in steps if step.opcode in jumps and step.argval <= step.offset]
+    around = [loop for loop in loops if all(loop[0] <= place.at <= loop[1] for place in places)]
+    if not around:
+        return min(place.line for place in places)
+    start, end = max(around, key=lambda loop: (loop[0], -loop[1]))
+    lines = (step.positions.lineno for step in steps if start <= step.offset <= end and step.positions is not None)
+    return min((line for line in lines if line is not None), default=places[0].line)
+
+
+# -- the last resort ---------------------------------------------------------------------------------------------------
+
+
+class LastResort:
+    """Ends the process when a C function keeps all threads of Python from running, so that none can look on.
+
+    It counts CPU time, and is armed anew at each look: a process that is stopped, or waits, does not come to its end.
+    Python's `faulthandler` writes the stack to standard error, and the process is killed by SIGVTALRM. Only for a
+    process that has nothing else to do.
+    """
+
+    def __init__(self) -> None:
+        self._is_there = hasattr(signal, "setitimer") and hasattr(faulthandler, "register")
+        if self._is_there and not (sys.__stderr__ is None or sys.__stderr__.closed):
+            faulthandler.register(signal.SIGVTALRM, file=sys.__stderr__, all_threads=False, chain=True)
+
+    def arm(self, seconds: float) -> None:
+        """End the process after so many seconds of CPU time; 0 for never."""
+        if self._is_there:
+            signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+
+    def disarm(self) -> None:
+        """Leave it alone."""
+        self.arm(0)

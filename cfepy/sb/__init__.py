@@ -1,26 +1,32 @@
 """Software Bus: messages between applications by MsgId (cFE SB).
 
-The five services do not import each other; what SB needs of them it finds in its `Ports`.
+What belongs here moves packets: pipes, subscriptions, routes, buffers, and the application CFE_SB. What a packet means
+belongs to `cfepy.msg`. Code that watches or disturbs the bus is in packages above, as a class derived from
+`SoftwareBus`. The five services do not import each other; what SB needs of the others it finds in its `Ports`.
 """
 
 from __future__ import annotations
 
 from cfepy.ports import PEND_FOREVER
-from cfepy.sb.buffers import MessageBuffer
+from cfepy.sb.buffers import BUFFER_BYTES, MessageBuffer
 from cfepy.sb.bus import POLL, SoftwareBus
-from cfepy.sb.core import BusCosts
 from cfepy.sb.packets import COMMANDS, TELEMETRY
+from cfepy.sb.pipe import Pipe
 from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE
+from cfepy.sb.routing import Destination, Route
 from cfepy.sb.task import SbTask
 
 __all__ = [
+    "BUFFER_BYTES",
     "COMMANDS",
     "PEND_FOREVER",
     "PIPEOPTS_IGNOREMINE",
     "POLL",
     "TELEMETRY",
-    "BusCosts",
+    "Destination",
     "MessageBuffer",
+    "Pipe",
+    "Route",
     "SbTask",
     "SoftwareBus",
 ]

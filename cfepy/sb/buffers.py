@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from cfepy.config import SB_LARGEST_BLOCK_MORE, SB_MEM_BLOCK_SIZES, PlatformConfig
 from cfepy.msg import PRIMARY_HEADER_SIZE, Packet, get_size, set_msg_time
+from cfepy.osal import ObjectSizes
 from cfepy.ports import Block, Ports
-from cfepy.rtos import Kernel
+from cfepy.rtos import CpuCosts, Kernel
 from cfepy.sb import events as ev
-from cfepy.sb.core import BusCore, BusCosts
+from cfepy.sb.core import BusCore
 from cfepy.sb.routing import Destination, Route
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_BUF_ALOC_ERR, CFE_SB_BUFFER_INVALID, CFE_SB_MSG_TOO_BIG, CfeError
 
@@ -37,8 +38,15 @@ class MessageBuffer(bytearray):
 class BufferServices(BusCore):
     """The pool, and the functions of zero-copy messages. Arguments as `BusCore`."""
 
-    def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, costs: BusCosts | None = None) -> None:
-        super().__init__(kernel, ports, config, costs)
+    def __init__(
+        self,
+        kernel: Kernel,
+        ports: Ports,
+        config: PlatformConfig,
+        costs: CpuCosts | None = None,
+        sizes: ObjectSizes | None = None,
+    ) -> None:
+        super().__init__(kernel, ports, config, costs, sizes)
         self.pool_handle = 0
         self._zero_copy: dict[int, MessageBuffer] = {}
         self._last_number = 0

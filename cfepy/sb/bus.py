@@ -1,8 +1,11 @@
-"""The Software Bus: transmitting and receiving packets (CFE_SB_TransmitMsg, CFE_SB_ReceiveBuffer).
+"""The Software Bus: subscribing, transmitting and receiving (cfe_sb_api.c).
 
-A message is one immutable bytes object, shared by all pipes that it goes to; nobody can change it on the way, so what
-C needs reference-counted buffers for is done by the interpreter. Transmitting never waits. This is the hot path of
-every mission: it makes no object beside the packet and its queue entry, and the usual case comes first.
+A message is one immutable bytes object, shared by all pipes that it goes to; it cannot change on the way, so what C
+needs reference-counted buffers for is done by the interpreter. Transmitting never waits. This is the hot path of every
+mission: it makes no object but the packet and its queue entry, and the usual case comes first.
+
+Subscriptions that are not local to this processor are told to other processors when reports are on: one as it is made
+(`tell_one`), or all there are (`tell_all`).
 """
 
 from __future__ import annotations
@@ -13,42 +16,225 @@ from typing import Any, ClassVar
 
 from cfepy.config import PlatformConfig
 from cfepy.msg import CMD_HEADER_SIZE, compute_checksum
+from cfepy.osal import ObjectSizes
 from cfepy.ports import PEND_FOREVER, Ports
-from cfepy.rtos import FOREVER, TIMEOUT, Kernel
+from cfepy.rtos import FOREVER, TIMEOUT, CpuCosts, Kernel
 from cfepy.sb import events as ev
-from cfepy.sb.buffers import BUFFER_BYTES
-from cfepy.sb.core import BusCosts
+from cfepy.sb import packets as pk
+from cfepy.sb.buffers import BUFFER_BYTES, DESTINATION_BYTES, BufferServices
+from cfepy.sb.core import BusCore
 from cfepy.sb.pipe import Pipe
 from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE, PipeServices
-from cfepy.sb.routing import SECONDARY, Destination, Route
-from cfepy.sb.subscriptions import SubscriptionServices
+from cfepy.sb.routing import GLOBAL, LOCAL, SECONDARY, Destination, Route
 from cfepy.status import (
     CFE_SB_BAD_ARGUMENT,
     CFE_SB_BUF_ALOC_ERR,
+    CFE_SB_MAX_DESTS_MET,
+    CFE_SB_MAX_MSGS_MET,
     CFE_SB_PIPE_RD_ERR,
+    CFE_SUCCESS,
     OS_ERR_INVALID_ID,
     CfeError,
 )
 from cfepy.trace import BATCH
 
+DEFAULT_QOS = 0
 POLL = 0
-
 SECONDARY_BIT = SECONDARY >> 8
 FIRST_SEGMENT = 0x40  # of the sequence flags in byte 2: a message begins, whole or in segments
 unpack_primary = struct.Struct(">HH").unpack_from
 pack_telemetry = struct.Struct(">HHH6s").pack
 
 
+def tell_one(bus: BusCore, msg_id: int, pipe_id: int, qos: int) -> None:
+    """Report a subscription, when reports are on (CFE_SB_SendSubscriptionReport).
+
+    Args:
+        bus: the bus.
+        msg_id: what was subscribed to.
+        pipe_id: by which pipe.
+        qos: as `SubscriptionServices.subscribe_ex` takes it.
+    """
+    if not bus.reporting:
+        return
+    quality = {"Priority": qos & 0xFF, "Reliability": qos >> 8 & 0xFF}
+    status = _send(bus, pk.ONESUB_TLM.packet(SubType=pk.SUBSCRIPTION, MsgId=msg_id, Qos=quality, Pipe=pipe_id))
+    text = f"Sending Subscription Report Msg=0x{msg_id:x},Pipe={pipe_id},Stat=0x{status:x}"
+    bus.report(ev.SUBSCRIPTION_RPT_EID, ev.DEBUG, text)
+
+
+def tell_all(bus: BusCore) -> None:
+    """Send every MsgId that is wanted from other processors, 20 to a packet (CFE_SB_SendPrevSubsCmd).
+
+    As NASA's, the entries tell no pipe and no quality, and TotalSegments stays 0.
+    """
+    wanted = [each.msg_id for each in bus.routes.values() if any(one.scope == GLOBAL for one in each.destinations)]
+    most = pk.SUB_ENTRIES_PER_PKT
+    for segment, start in enumerate(range(0, len(wanted), most), 1):
+        entries = [{"MsgId": msg_id} for msg_id in wanted[start : start + most]]
+        status = _send(bus, pk.ALLSUBS_TLM.packet(PktSegment=segment, Entries=len(entries), Entry=entries))
+        is_full = len(entries) == most
+        text = f"{'Full' if is_full else 'Partial'} Sub Pkt {segment} Sent,Entries={len(entries)},Stat=0x{status:x}"
+        bus.report(ev.FULL_SUB_PKT_EID if is_full else ev.PART_SUB_PKT_EID, ev.DEBUG, text)
+
+
+def _send(bus: BusCore, packet: bytes) -> int:
+    """Transmit; the status as an unsigned number."""
+    try:
+        bus.ports.sb.transmit_msg(packet)
+    except CfeError as error:
+        return error.status & 0xFFFFFFFF
+    return CFE_SUCCESS
+
+
+class SubscriptionServices(BufferServices):
+    """The CFE_SB_Subscribe* and CFE_SB_Unsubscribe* functions."""
+
+    destination_type = Destination
+    """What subscriptions make; a bus that watches destinations has a kind of its own."""
+
+    def subscribe(self, msg_id: int, pipe_id: int) -> None:
+        """Let a MsgId into a pipe, with the default message limit of 4 (CFE_SB_Subscribe)."""
+        self._subscribe(msg_id, pipe_id, self.config.sb_default_msg_limit, GLOBAL)
+
+    def subscribe_ex(self, msg_id: int, pipe_id: int, qos: int = DEFAULT_QOS, msg_limit: int = 4) -> None:
+        """Let a MsgId into a pipe (CFE_SB_SubscribeEx).
+
+        Args:
+            msg_id: the message.
+            pipe_id: a pipe of the calling application.
+            qos: priority, and reliability times 256 (CFE_SB_Qos_t); told to other processors, not used on this one.
+            msg_limit: messages of this MsgId that may wait in the pipe.
+
+        Raises:
+            CfeError: CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_MSGS_MET (MsgIds), CFE_SB_MAX_DESTS_MET (pipes of the MsgId),
+                CFE_SB_BUF_ALOC_ERR (the message pool has no room).
+        """
+        self._subscribe(msg_id, pipe_id, msg_limit, GLOBAL, qos)
+
+    def subscribe_local(self, msg_id: int, pipe_id: int, msg_limit: int) -> None:
+        """As `subscribe_ex`, not told to other processors (CFE_SB_SubscribeLocal)."""
+        self._subscribe(msg_id, pipe_id, msg_limit, LOCAL)
+
+    def unsubscribe(self, msg_id: int, pipe_id: int) -> None:
+        """Take a MsgId out of a pipe (CFE_SB_Unsubscribe); the messages that wait there stay.
+
+        Raises:
+            CfeError: CFE_SB_BAD_ARGUMENT for a bad MsgId or pipe. Not being subscribed is an event, not an error.
+        """
+        self._unsubscribe(msg_id, pipe_id, GLOBAL)
+
+    def unsubscribe_local(self, msg_id: int, pipe_id: int) -> None:
+        """As `unsubscribe` (CFE_SB_UnsubscribeLocal)."""
+        self._unsubscribe(msg_id, pipe_id, LOCAL)
+
+    def _unsubscribe(self, msg_id: int, pipe_id: int, scope: int) -> None:
+        app = self.caller_name()
+        pipe = self.find_pipe(pipe_id)
+        if pipe is None:
+            text = f"Unsubscribe Err:Invalid Pipe Id Msg=0x{msg_id:x},Pipe={pipe_id},app={app}"
+            raise self._refused(ev.UNSUB_INV_PIPE_EID, text)
+        if self.is_foreign(pipe):
+            text = f"Unsubscribe Err:Caller({app}) is not the owner of pipe {pipe_id},Msg=0x{msg_id:x}"
+            raise self._refused(ev.UNSUB_INV_CALLER_EID, text)
+        if not self.is_valid_msg_id(msg_id):
+            text = f"Unsubscribe Err:Bad Arg,MsgId 0x{msg_id:x},PipeId {pipe_id},app {app},scope {scope}"
+            raise self._refused(ev.UNSUB_ARG_ERR_EID, text)
+        self._remove(msg_id, pipe, app)
+
+    def _remove(self, msg_id: int, pipe: Pipe, app: str) -> None:
+        route = self.routes.get(msg_id)
+        destination = route.find(pipe) if route is not None else None
+        if route is None or destination is None:
+            text = f"Unsubscribe Err:No subs for Msg 0x{msg_id:x} on {pipe.name},app {app}"
+            self.report(ev.UNSUB_NO_SUBS_EID, ev.INFORMATION, text)
+            return
+        self.remove_destination(route, destination)
+        text = f"Subscription Removed:Msg 0x{msg_id:x} on pipe {pipe.pipe_id},app {app}"
+        self.report(ev.SUBSCRIPTION_REMOVED_EID, ev.DEBUG, text)
+
+    def _subscribe(self, msg_id: int, pipe_id: int, limit: int, scope: int, qos: int = DEFAULT_QOS) -> None:
+        pipe = self._check_subscription(msg_id, pipe_id, scope)
+        app = self.caller_name()
+        route = self._route_for(msg_id, pipe, app)
+        if route.find(pipe) is not None:
+            self.counters.duplicate_subscriptions += 1
+            text = f"Duplicate Subscription,MsgId 0x{msg_id:x} on {pipe.name} pipe,app {app}"
+            self.report(ev.DUP_SUBSCRIP_EID, ev.INFORMATION, text)
+        else:
+            self._add(route, pipe, limit & 0xFFFF, scope)  # C takes 16 bits
+            text = f"Subscription Rcvd:MsgId 0x{msg_id:x} on PipeId {pipe_id},app {app}"
+            self.report(ev.SUBSCRIPTION_RCVD_EID, ev.DEBUG, text)
+        if scope == GLOBAL:
+            tell_one(self, msg_id, pipe_id, qos)
+
+    def _route_for(self, msg_id: int, pipe: Pipe, app: str) -> Route:
+        """The route of a MsgId, made when there is none."""
+        if msg_id not in self.routes and not self.routing.add_route(msg_id):
+            limit_text = f"Max Msgs({self.config.sb_max_msg_ids})In Use"
+            text = f"Subscribe Err:{limit_text},MsgId 0x{msg_id:x},pipe {pipe.name},app {app}"
+            raise self._subscribe_error(ev.MAX_MSGS_MET_EID, CFE_SB_MAX_MSGS_MET, text)
+        self.peaks.msg_ids = len(self.routes)
+        return self.routes[msg_id]
+
+    def _add(self, route: Route, pipe: Pipe, limit: int, scope: int) -> None:
+        most = self.config.sb_max_dest_per_pkt
+        if len(route.destinations) >= most:
+            where = f"For Msg 0x{route.msg_id:x},pipe {pipe.name},app {self.caller_name()}"
+            text = f"Subscribe Err:Max Dests({most})In Use {where}"
+            raise self._subscribe_error(ev.MAX_DESTS_MET_EID, CFE_SB_MAX_DESTS_MET, text)
+        try:
+            block = self.take_block(DESTINATION_BYTES)
+        except CfeError as error:
+            text = f"Subscribe Err:Request for Destination Blk failed for Msg 0x{route.msg_id:x}"
+            raise self._subscribe_error(ev.DEST_BLK_ERR_EID, error.status, text) from error
+        route.add(self.destination_type(pipe, limit, scope, block))
+        self.subscriptions += 1
+        self.peaks.subscriptions = max(self.peaks.subscriptions, self.subscriptions)
+        self.note_growth()
+
+    def _check_subscription(self, msg_id: int, pipe_id: int, scope: int) -> Pipe:
+        app = self.caller_name()
+        pipe = self.find_pipe(pipe_id)
+        if pipe is None:
+            text = f"Subscribe Err:Invalid Pipe Id,Msg=0x{msg_id:x},PipeId={pipe_id},App {app}"
+            raise self._subscribe_error(ev.SUB_INV_PIPE_EID, CFE_SB_BAD_ARGUMENT, text)
+        if self.is_foreign(pipe):
+            text = f"Subscribe Err:Caller({app}) is not the owner of pipe {pipe_id},Msg=0x{msg_id:x}"
+            raise self._subscribe_error(ev.SUB_INV_CALLER_EID, CFE_SB_BAD_ARGUMENT, text)
+        if not self.is_valid_msg_id(msg_id):
+            text = f"Subscribe Err:Bad Arg,MsgId 0x{msg_id:x},PipeId {pipe_id},app {app},scope {scope}"
+            raise self._subscribe_error(ev.SUB_ARG_ERR_EID, CFE_SB_BAD_ARGUMENT, text)
+        return pipe
+
+    def _subscribe_error(self, event_id: int, status: int, text: str) -> CfeError:
+        self.counters.subscribe_error += 1
+        self.report(event_id, ev.ERROR, text)
+        return CfeError(status, text)
+
+    def _refused(self, event_id: int, text: str) -> CfeError:
+        self.report(event_id, ev.ERROR, text)
+        return CfeError(CFE_SB_BAD_ARGUMENT, text)
+
+
 class SoftwareBus(PipeServices, SubscriptionServices):
     """One processor's Software Bus; the arguments are those of `BusCore`.
 
-    `on_unsent` of a bus that is looked at is shown what senders keep back because nobody would get it: sender, bytes.
+    On a bus that is watched, `on_unsent` is called with each message that a sender keeps back because it has no
+    subscriber: sender, bytes.
     """
 
     on_unsent: ClassVar[Callable[[Any, bytes], object] | None] = None
 
-    def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, costs: BusCosts | None = None) -> None:
-        super().__init__(kernel, ports, config, costs)
+    def __init__(
+        self,
+        kernel: Kernel,
+        ports: Ports,
+        config: PlatformConfig,
+        costs: CpuCosts | None = None,
+        sizes: ObjectSizes | None = None,
+    ) -> None:
+        super().__init__(kernel, ports, config, costs, sizes)
         self._stamped_at = -1
         self._time = bytes(6)
         self._max_size = config.sb_max_msg_size

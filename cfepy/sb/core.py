@@ -12,9 +12,9 @@ from dataclasses import dataclass, field, fields
 from cfepy.config import PlatformConfig
 from cfepy.ids import SB_PIPEID_BASE, IdTable
 from cfepy.msg import Packet
+from cfepy.osal import ObjectSizes
 from cfepy.ports import Ports
-from cfepy.rtos import Kernel
-from cfepy.rtos.units import PS_PER_NS
+from cfepy.rtos import CpuCosts, Kernel
 from cfepy.sb import events as ev
 from cfepy.sb.pipe import Pipe
 from cfepy.sb.routing import Route, RoutingTable
@@ -22,7 +22,7 @@ from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_PIPES_MET, CFE_SB_MSG_T
 
 
 @dataclass(slots=True)
-class Counters:
+class BusCounters:
     """The counters of SB's housekeeping packet (CFE_SB_HousekeepingTlm_Payload_t)."""
 
     command: int = 0
@@ -59,26 +59,8 @@ class Peaks:
 
 
 @dataclass(slots=True)
-class BusCosts:
-    """What the bus costs on a board; zeros on a host without limits.
-
-    Virtual CPU time: `call_ns` a call, `byte_ps` picoseconds for each byte copied. Bytes of RAM: `queue` the control
-    block of a queue, `queue_slot` a place in it besides the message.
-    """
-
-    call_ns: int = 0
-    byte_ps: int = 0
-    queue: int = 0
-    queue_slot: int = 0
-
-    def of(self, size: int) -> int:
-        """ns for a call that copies `size` bytes."""
-        return self.call_ns + size * self.byte_ps // PS_PER_NS
-
-
-@dataclass(slots=True)
 class Unrouted:
-    """Messages that nobody ever subscribed to, per MsgId."""
+    """Messages whose MsgId never had a subscriber, per MsgId."""
 
     sent: dict[int, int] = field(default_factory=dict)
 
@@ -90,7 +72,8 @@ class BusCore:
         kernel: the processor.
         ports: the other services.
         config: limits.
-        costs: virtual CPU time of calls, and RAM of pipes.
+        costs: virtual CPU time of calls; None for nothing.
+        sizes: RAM of pipes; None for nothing.
 
     Attributes:
         routing: the routing table; `routes` is its dictionary.
@@ -98,13 +81,20 @@ class BusCore:
         reporting: whether each subscription is told to other processors.
     """
 
-    def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, costs: BusCosts | None = None) -> None:
+    def __init__(
+        self,
+        kernel: Kernel,
+        ports: Ports,
+        config: PlatformConfig,
+        costs: CpuCosts | None = None,
+        sizes: ObjectSizes | None = None,
+    ) -> None:
         self.kernel = kernel
         self.ports = ports
         self.config = config
-        self.sizes = costs or BusCosts()
+        self.sizes = sizes or ObjectSizes()
         self.costs = costs if costs is not None and (costs.call_ns or costs.byte_ps) else None
-        self.counters = Counters()
+        self.counters = BusCounters()
         self.peaks = Peaks()
         self.pipes: IdTable[Pipe] = IdTable(SB_PIPEID_BASE, config.sb_max_pipes, full=CFE_SB_MAX_PIPES_MET)
         self.routing = RoutingTable(config.sb_max_msg_ids, config.sb_highest_valid_msg_id)
@@ -124,7 +114,7 @@ class BusCore:
         return f"{app}.{task.name}"
 
     def report(self, event_id: int, event_type: int, text: str) -> None:
-        """Send an event of SB; before its task runs there is nobody in whose name it could be sent."""
+        """Send an event of SB; one from before its task runs is lost, since events need an application."""
         with suppress(CfeError):
             self.ports.evs.send_event_with_app_id(event_id, event_type, self.app_id, text)
 
@@ -146,11 +136,11 @@ class BusCore:
         return CfeError(status, text)
 
     def check_header(self, packet: Packet, size: int) -> None:
-        """Check length, MsgId and size of a packet that shall be sent, in this order.
+        """Check length, MsgId and size of a packet before it is sent, in this order.
 
         Args:
             packet: the packet.
-            size: bytes of it that shall be sent.
+            size: bytes of it to send.
 
         Raises:
             CfeError: CFE_SB_BAD_ARGUMENT, CFE_SB_MSG_TOO_BIG.

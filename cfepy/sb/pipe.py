@@ -1,4 +1,4 @@
-"""`Pipe`: a queue of packets that belongs to an application (CFE_SB_PipeD_t). Imports only cfepy.trace and rtos."""
+"""`Pipe`: a queue of packets that belongs to an application (CFE_SB_PipeD_t)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from cfepy.rtos import Kernel, Queue
 
 
 class Pipe(Queue):
-    """The queue and who owns it.
+    """The queue and its owner.
 
     `send_errors` counts what a message limit kept out, as NASA's SendErrors does; `overflows` what did not fit in. One
     that `keeps_newest` makes room for a message by dropping the oldest one, as the queue of a ROS subscriber does.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cfepy.ids import SB_PIPEID_BASE, name_size, to_index
-from cfepy.osal.limits import OS_MAX_API_NAME
+from cfepy.osal import OS_MAX_API_NAME
 from cfepy.sb import events as ev
 from cfepy.sb.buffers import BufferServices
 from cfepy.sb.pipe import Pipe
@@ -79,7 +79,7 @@ class PipeServices(BufferServices):
         self._report_deleted(pipe)
 
     def remove_pipe(self, pipe: Pipe) -> None:
-        """Delete a pipe, whoever asks: at clean-up of an application."""
+        """Delete a pipe without asking whose it is: also at clean-up of an application."""
         for route in self.routes.values():
             destination = route.find(pipe)
             if destination is not None:

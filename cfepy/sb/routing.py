@@ -1,8 +1,7 @@
-"""The routing table of the Software Bus (CFE_SBR): which pipes a MsgId goes to, and what became of each message.
+"""The routing table of the Software Bus (CFE_SBR): which pipes a MsgId goes to, and the fate of each message.
 
 A route is made by the first subscription to a MsgId and stays for good, since it keeps the sequence count. Route ids
-count from 1 in the order in which routes were made; a dictionary stands for NASA's map, so nothing collides. Imports
-only its neighbours in cfepy.sb and the header functions.
+count from 1 in the order in which routes were made; a dictionary stands for NASA's map, so nothing collides.
 """
 
 from __future__ import annotations
@@ -153,7 +152,7 @@ class RoutingTable:
         return route.route_id
 
     def get_route_id(self, msg_id: int) -> int:
-        """The id of a MsgId's route, INVALID_ROUTE_ID when nobody ever subscribed (CFE_SBR_GetRouteId)."""
+        """The id of a MsgId's route, INVALID_ROUTE_ID when it never had a subscriber (CFE_SBR_GetRouteId)."""
         route = self.routes.get(msg_id)
         return route.route_id if route is not None else INVALID_ROUTE_ID
 

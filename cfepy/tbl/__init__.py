@@ -1,10 +1,16 @@
-"""Table Services (CFE_TBL): named blocks of parameters that the ground loads, validates, activates and dumps."""
+"""Table Services (CFE_TBL): named blocks of parameters that the ground loads, validates, activates and dumps.
+
+What belongs here registers, loads and keeps tables, and reads and writes table files as bytes. The YAML form of table
+files is in `cfepy.ground.files`. The five services do not import each other; what TBL needs of the others it finds in
+its `Ports`.
+"""
 
 from __future__ import annotations
 
-from cfepy.tbl.access import BAD_TABLE_HANDLE, TableInfo
 from cfepy.tbl.definition import TableType
 from cfepy.tbl.image import (
+    PROCESSOR_ID,
+    SPACECRAFT_ID,
     TableImage,
     build,
     is_intact,
@@ -27,7 +33,7 @@ from cfepy.tbl.registry import (
     OPT_USR_DEF_ADDR,
     TableHandle,
 )
-from cfepy.tbl.services import TableServices
+from cfepy.tbl.services import BAD_TABLE_HANDLE, TableInfo, TableServices
 
 __all__ = [
     "BAD_TABLE_HANDLE",
@@ -39,6 +45,8 @@ __all__ = [
     "OPT_LOAD_DUMP",
     "OPT_SNGL_BUFFER",
     "OPT_USR_DEF_ADDR",
+    "PROCESSOR_ID",
+    "SPACECRAFT_ID",
     "TELEMETRY",
     "TableHandle",
     "TableImage",

@@ -1,7 +1,7 @@
 """The memory that table images live in: a table's own one or two buffers, and the load buffers that tables share.
 
 Stands for cfe_tbl_loadbuff.c. All come out of one memory pool of Executive Services. Images never move; only which
-buffer is active changes. Imports only cfepy.fs, cfepy.ports and cfepy.status.
+buffer is active changes.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ class BufferMemory:
 
     @property
     def free_shared(self) -> int:
-        """Shared buffers that nobody has."""
+        """The number of shared buffers that are free."""
         return len(self._free)
 
     def allocate(self, size: int, place: int) -> Buffer:

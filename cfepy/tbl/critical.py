@@ -1,8 +1,8 @@
 """Critical tables: those whose image is kept in the Critical Data Store and comes back after a processor reset.
 
-Each has a CDS block of its own under the table's name. What else must be known of it, the file it came from and when,
-stands in the critical table registry, which is a CDS block too ("CFE_TBL.CritReg"). Stands for the critical part of
-cfe_tbl_internal.c. Imports only cfepy.msg, cfepy.ports, cfepy.status and its neighbours here.
+Each has a CDS block of its own under the table's name. Its other facts, the file it came from and the time of loading,
+are in the critical table registry, which is a CDS block too ("CFE_TBL.CritReg"). Stands for the critical part of
+cfe_tbl_internal.c.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from cfepy.msg import sys_time_fields
 from cfepy.ports import Ports
 from cfepy.status import CFE_ES_CDS_ALREADY_EXISTS, CFE_SUCCESS, CFE_TBL_INFO_RECOVERED_TBL, CfeError
 from cfepy.tbl.packets import CRITICAL_RECORD
-from cfepy.tbl.registry import Table
+from cfepy.tbl.registry import TableRecord
 
 REGISTRY_NAME = "CFE_TBL.CritReg"
 
@@ -103,7 +103,7 @@ class CriticalTables:
         for number, record in enumerate(self._records):
             record.unpack(data, number * CRITICAL_RECORD.size)
 
-    def register(self, table: Table) -> int:
+    def register(self, table: TableRecord) -> int:
         """Make a new table critical, with the image it had before a reset if there is a good one.
 
         Returns:
@@ -125,7 +125,7 @@ class CriticalTables:
             self._save("RegisterWithCriticalTableRegistry", "Unable to update Critical Table Registry in CDS")
         return CFE_SUCCESS
 
-    def _restore(self, table: Table) -> bool:
+    def _restore(self, table: TableRecord) -> bool:
         """Give a table the image that the CDS has; False when there is none, or it is not to be trusted."""
         function = "RestoreTableDataFromCDS"
         try:
@@ -146,7 +146,7 @@ class CriticalTables:
             access.updated = True
         return True
 
-    def save(self, table: Table) -> None:
+    def save(self, table: TableRecord) -> None:
         """Keep the active image of a critical table; a failure is logged, and the table good all the same."""
         active, function = table.active, "UpdateCriticalTblCDS"
         if not table.cds_handle or active is None:

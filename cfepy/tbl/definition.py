@@ -1,7 +1,7 @@
-"""What a table is made of, declared once by the app that owns it: for the app itself and for the tools on the ground.
+"""The definition of a table, declared once by the app that owns it: for the app itself and for the tools on the ground.
 
-An app package offers its tables as `TABLES` beside its entry point, where tools find them. Stands for what a C app says
-in its table header and in CFE_TBL_FILEDEF. Imports only cfepy.msg, cfepy.status and cfepy.tbl.image.
+An app package offers its tables as `TABLES` next to its entry point, where tools find them. Stands for what a C app
+says in its table header and in CFE_TBL_FILEDEF.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Dumping a table to a file: a request, a snapshot of the image, and the file, written with the next housekeeping.
 
 Stands for cfe_tbl_dump.c. The snapshot of a dump-only table is taken by its owner (CFE_TBL_DumpToBuffer), of any other
-table at once. Imports only cfepy.config, cfepy.fs, cfepy.ports, cfepy.status and its neighbours here.
+table at once.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from cfepy.status import (
 from cfepy.tbl import events as ev
 from cfepy.tbl.buffers import Buffer, BufferMemory
 from cfepy.tbl.packets import ACTIVE_BUFFER, INACTIVE_BUFFER
-from cfepy.tbl.registry import Dump, Table
-from cfepy.tbl.table_file import Files
+from cfepy.tbl.registry import DumpControl, TableRecord
+from cfepy.tbl.table_file import TableStorage
 
 DESCRIPTION = "Table Dump Image"
 
@@ -36,7 +36,7 @@ class DumpRefused(CfeError):
         self.event_id = event_id
 
 
-def select_buffer(table: Table, which: int) -> Buffer | None:
+def select_buffer(table: TableRecord, which: int) -> Buffer | None:
     """The image that a dump or validate command means; None when there is none (CFE_TBL_GetSelectedBuffer)."""
     if which == ACTIVE_BUFFER:
         return table.active
@@ -50,15 +50,15 @@ class Dumps:
         last_file: the file written last, for housekeeping.
     """
 
-    def __init__(self, memory: BufferMemory, config: PlatformConfig, ports: Ports, files: Files) -> None:
+    def __init__(self, memory: BufferMemory, config: PlatformConfig, ports: Ports, files: TableStorage) -> None:
         self._memory = memory
         self._config = config
         self._ports = ports
         self._files = files
-        self._dumps: list[Dump] = []
+        self._dumps: list[DumpControl] = []
         self.last_file = ""
 
-    def request(self, table: Table, which: int, file_name: str) -> None:
+    def request(self, table: TableRecord, which: int, file_name: str) -> None:
         """Begin a dump of the active or inactive image.
 
         Raises:
@@ -78,14 +78,14 @@ class Dumps:
         except CfeError as error:
             text = "No working buffers available"
             raise DumpRefused(error.status, ev.NO_WORK_BUFFERS_ERR_EID, text) from None
-        dump = Dump(table, source, image, file_name)
+        dump = DumpControl(table, source, image, file_name)
         self._dumps.append(dump)
         if table.dump_only:
             table.dump = dump
         else:
             self._take(dump)
 
-    def take_snapshot(self, table: Table) -> int:
+    def take_snapshot(self, table: TableRecord) -> int:
         """Take the snapshot that waits for the owner.
 
         Returns:
@@ -97,7 +97,7 @@ class Dumps:
         self._take(dump)
         return CFE_SUCCESS
 
-    def _take(self, dump: Dump) -> None:
+    def _take(self, dump: DumpControl) -> None:
         dump.image.copy(dump.source.view())
         dump.file_time = self._ports.time.now()
         dump.performed = True
@@ -115,7 +115,7 @@ class Dumps:
             where = f"dump,table={dump.table.name},app={app_name},file={dump.file_name}"
             self._ports.evs.send_event_with_app_id(event_id, event_type, app_id, f"{where}:{text}")
 
-    def _write(self, dump: Dump, app_id: int) -> tuple[int, int, str]:
+    def _write(self, dump: DumpControl, app_id: int) -> tuple[int, int, str]:
         existed = self._files.exists(dump.file_name)
         header = FileHeader(
             description=DESCRIPTION,
@@ -155,7 +155,7 @@ class Dumps:
         for dump in [dump for dump in self._dumps if dump.table.owner == app_id]:
             self._end(dump)
 
-    def _end(self, dump: Dump) -> None:
+    def _end(self, dump: DumpControl) -> None:
         if dump.table.dump is dump:
             dump.table.dump = None
         self._dumps.remove(dump)

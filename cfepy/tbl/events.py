@@ -1,4 +1,4 @@
-"""Event ids of Table Services, with NASA's names and numbers (cfe_tbl_eventids.h). Imports only cfepy.ports."""
+"""Event ids of Table Services, with NASA's names and numbers (cfe_tbl_eventids.h)."""
 
 from __future__ import annotations
 

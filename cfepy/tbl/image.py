@@ -5,7 +5,7 @@ A mission describes its tables as Python values and a layout; this turns them in
 cFE's table files carry no check value. A file may be given one here, an integrity mark: the reserved word of its table
 header, which is 0 in all others and which NASA's cFE does not look at, then says "CR" and the CRC of the whole file. It
 is the CRC of CFE_ES_CalculateCRC, so that flight software can check it too. A marked file of which a bit is wrong is
-never loaded; a file without mark loads as ever. Imports only cfepy.fs, cfepy.msg and cfepy.status.
+never loaded; a file without mark loads as ever.
 """
 
 from __future__ import annotations

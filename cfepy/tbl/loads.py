@@ -1,6 +1,6 @@
 """Loading a table: the working buffer, validation, and the switch to the new image.
 
-Stands for the second half of cfe_tbl_load.c. Imports only cfepy.ports, cfepy.status and its neighbours here.
+Stands for the second half of cfe_tbl_load.c.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from cfepy.status import (
 from cfepy.tbl import events as ev
 from cfepy.tbl.buffers import Buffer, BufferMemory, Bytes
 from cfepy.tbl.critical import CriticalTables
-from cfepy.tbl.registry import FIRST_PLACE, Registry, Table
-from cfepy.tbl.table_file import Files, Refused, TableFile
+from cfepy.tbl.registry import FIRST_PLACE, TableRecord, TableRegistry
+from cfepy.tbl.table_file import LoadFile, Refused, TableStorage
 
 _SIGN_EXTENDED = 0xFFFFFFFFFFFFFFFF
 
@@ -31,7 +31,7 @@ class Loads:
     """What loads need of the registry, the buffers and the other services."""
 
     def __init__(
-        self, registry: Registry, memory: BufferMemory, ports: Ports, files: Files, critical: CriticalTables
+        self, registry: TableRegistry, memory: BufferMemory, ports: Ports, files: TableStorage, critical: CriticalTables
     ) -> None:
         self._critical = critical
         self._registry = registry
@@ -39,7 +39,7 @@ class Loads:
         self._ports = ports
         self._files = files
 
-    def reserve(self, table: Table, from_file: bool) -> None:
+    def reserve(self, table: TableRecord, from_file: bool) -> None:
         """Check that a table can be loaded now, and reserve its working buffer (CFE_TBL_ValidateLoadRequest).
 
         Raises:
@@ -57,7 +57,7 @@ class Loads:
         if not table.user_defined:
             table.loading = self._working_buffer(table)
 
-    def _working_buffer(self, table: Table) -> Buffer:
+    def _working_buffer(self, table: TableRecord) -> Buffer:
         """A buffer that starts as a copy of the active image, so that a file may hold part of the table."""
         try:
             own = table.active is None or table.double_buffered
@@ -73,7 +73,7 @@ class Loads:
         buffer.mark_unvalidated()
         return buffer
 
-    def fill_from_file(self, table: Table, file: TableFile) -> None:
+    def fill_from_file(self, table: TableRecord, file: LoadFile) -> None:
         """Read a file into the working buffer.
 
         Raises:
@@ -87,7 +87,7 @@ class Loads:
         buffer.recompute_crc()
         buffer.is_valid = table.validator is None
 
-    def fill_from_memory(self, table: Table, source: Bytes) -> None:
+    def fill_from_memory(self, table: TableRecord, source: Bytes) -> None:
         """Copy an image into the working buffer, or, with a user-defined address, make it the working buffer.
 
         Raises:
@@ -109,7 +109,7 @@ class Loads:
         buffer.file_time = (0, 0)
         buffer.recompute_crc()
 
-    def validate(self, table: Table) -> list[Refused]:
+    def validate(self, table: TableRecord) -> list[Refused]:
         """Run the validator over the working buffer; returns what to report, nothing when the image is good.
 
         A bad image is overwritten with zeros. A positive result of a validator is a mistake of its own and is reported
@@ -129,7 +129,7 @@ class Loads:
         text = f"Validation func reports table invalid (Stat={result & _SIGN_EXTENDED:x})"
         return [*faults, Refused(result, ev.VALIDATION_ERR_EID, text, names_file=False)]
 
-    def update(self, table: Table) -> int:
+    def update(self, table: TableRecord) -> int:
         """Make the loaded image the active one (CFE_TBL_UpdateInternal).
 
         Returns:
@@ -153,7 +153,9 @@ class Loads:
         self._registry.discard_load(table)
         return CFE_SUCCESS
 
-    def report(self, refused: Refused, app_id: int, caller: str, file: TableFile | None, table: Table | None) -> None:
+    def report(
+        self, refused: Refused, app_id: int, caller: str, file: LoadFile | None, table: TableRecord | None
+    ) -> None:
         """Send the event of a refusal, in the name of Table Services.
 
         Args:
@@ -168,12 +170,12 @@ class Loads:
         text = f"{'LoadFile' if file else 'Load'},app={caller},{where}:{refused.text}"
         self._ports.evs.send_event_with_app_id(refused.event_id, ev.ERROR, app_id, text)
 
-    def open(self, file: TableFile) -> None:
-        """Read and check a file that was named; see `TableFile.open`."""
+    def open(self, file: LoadFile) -> None:
+        """Read and check a file that was named; see `LoadFile.open`."""
         file.open(self._files)
 
 
-def _loading(table: Table) -> Buffer:
+def _loading(table: TableRecord) -> Buffer:
     if table.loading is None:
         raise CfeError(CFE_TBL_ERR_NO_BUFFER_AVAIL, f"no load of {table.name!r} is in progress; please report this")
     return table.loading

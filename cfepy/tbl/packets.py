@@ -1,6 +1,6 @@
 """The messages of Table Services, commands and telemetry, each declared with its layout (cfe_tbl_msg.h).
 
-Also the records of a registry dump file and of the critical table registry. Imports only cfepy.msg.
+Also the records of a registry dump file and of the critical table registry.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from cfepy.msg import (
     Command,
     Layout,
     Telemetry,
+    ValueNames,
     local_cmd_topic_id_to_msg_id,
     local_tlm_topic_id_to_msg_id,
 )
@@ -32,11 +33,14 @@ _FULL_NAME = f"char[{FULL_NAME_SIZE}]"
 _PATH = f"char[{PATH_SIZE}]"
 _OWNER = f"char[{OWNER_NAME_SIZE}]"
 
+BUFFERS = ValueNames("u16", INACTIVE=0, ACTIVE=1)
+"""CFE_TBL_BufferSelect_Enum_t."""
+
 _LOAD = Layout("CFE_TBL_LoadCmd_Payload_t", [("LoadFilename", _PATH)])
 _DUMP = Layout(
-    "CFE_TBL_DumpCmd_Payload_t", [("ActiveTableFlag", "u16"), ("TableName", _FULL_NAME), ("DumpFilename", _PATH)]
+    "CFE_TBL_DumpCmd_Payload_t", [("ActiveTableFlag", BUFFERS), ("TableName", _FULL_NAME), ("DumpFilename", _PATH)]
 )
-_VALIDATE = Layout("CFE_TBL_ValidateCmd_Payload_t", [("ActiveTableFlag", "u16"), ("TableName", _FULL_NAME)])
+_VALIDATE = Layout("CFE_TBL_ValidateCmd_Payload_t", [("ActiveTableFlag", BUFFERS), ("TableName", _FULL_NAME)])
 _TABLE_NAME = Layout("CFE_TBL_ActivateCmd_Payload_t", [("TableName", _FULL_NAME)])
 _DUMP_REGISTRY = Layout("CFE_TBL_DumpRegistryCmd_Payload_t", [("DumpFilename", _PATH)])
 NOTIFY_COMMAND = Layout("CFE_TBL_NotifyCmd_Payload_t", [("Parameter", "u32")])

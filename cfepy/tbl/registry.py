@@ -1,7 +1,7 @@
-"""The table registry: which tables exist, who owns them, who uses them through which handle.
+"""The table registry: which tables exist, which app owns each, and which apps use it through which handle.
 
 Stands for cfe_tbl_regrec.c, cfe_tbl_accdesc.c and cfe_tbl_registry.c. A table lives until its owner and every app that
-shares it gave their handles back. Imports only cfepy.config, cfepy.ids, cfepy.status and its neighbours here.
+shares it gave their handles back.
 """
 
 from __future__ import annotations
@@ -74,12 +74,12 @@ class Validation:
         self.result = 0
 
 
-class Dump:
+class DumpControl:
     """One dump that the ground asked for: `source` is copied into `image` first, `image` goes to the file later."""
 
     __slots__ = ("file_name", "file_time", "image", "performed", "source", "table")
 
-    def __init__(self, table: Table, source: Buffer, image: Buffer, file_name: str) -> None:
+    def __init__(self, table: TableRecord, source: Buffer, image: Buffer, file_name: str) -> None:
         self.table = table
         self.source = source
         self.image = image
@@ -88,7 +88,7 @@ class Dump:
         self.performed = False
 
 
-class Table:
+class TableRecord:
     """A registered table (CFE_TBL_RegistryRec_t).
 
     Attributes:
@@ -120,7 +120,7 @@ class Table:
         self.last_update = (0, 0)
         self.modified = False
         self.validations: dict[bool, Validation] = {}
-        self.dump: Dump | None = None
+        self.dump: DumpControl | None = None
         self.notify: tuple[int, int, int] | None = None
 
     @property
@@ -173,7 +173,7 @@ class Access:
 
     __slots__ = ("app_id", "buffer", "handle", "locked", "table", "updated")
 
-    def __init__(self, table: Table, app_id: int) -> None:
+    def __init__(self, table: TableRecord, app_id: int) -> None:
         self.table = table
         self.app_id = app_id
         self.handle = TableHandle(UNDEFINED)
@@ -182,7 +182,7 @@ class Access:
         self.updated = not table.dump_only and table.active is not None
 
 
-class Registry:
+class TableRegistry:
     """All tables and handles of a mission.
 
     Args:
@@ -198,7 +198,7 @@ class Registry:
         self._config = config
         self._memory = memory
         capacity = config.tbl_max_num_tables
-        self.tables: IdTable[Table] = IdTable(TBL_REGID_BASE, capacity, full=CFE_TBL_ERR_REGISTRY_FULL)
+        self.tables: IdTable[TableRecord] = IdTable(TBL_REGID_BASE, capacity, full=CFE_TBL_ERR_REGISTRY_FULL)
         self.accesses: IdTable[Access] = IdTable(
             TBL_HANDLE_BASE,
             config.tbl_max_num_handles,
@@ -206,11 +206,11 @@ class Registry:
             invalid=CFE_TBL_ERR_INVALID_HANDLE,
         )
 
-    def find(self, name: str) -> Table | None:
+    def find(self, name: str) -> TableRecord | None:
         """The table of a full name, or None."""
         return next((table for table in self.tables if table.name == name), None)
 
-    def by_name(self, name: str) -> Table:
+    def by_name(self, name: str) -> TableRecord:
         """The table of a full name.
 
         Raises:
@@ -259,7 +259,7 @@ class Registry:
                 return access
         raise CfeError(CFE_TBL_ERR_UNREGISTERED, f"the owner of {full_name!r} has no handle on it")
 
-    def add(self, table: Table) -> Access:
+    def add(self, table: TableRecord) -> Access:
         """Enter a new table, with its buffers, and give its owner a handle.
 
         Raises:
@@ -276,7 +276,7 @@ class Registry:
             table.active = table.buffers[0]
         return access
 
-    def connect(self, table: Table, app_id: int) -> Access:
+    def connect(self, table: TableRecord, app_id: int) -> Access:
         """One more handle on a table.
 
         Raises:
@@ -297,17 +297,17 @@ class Registry:
         if table.owner == UNDEFINED and not table.accesses:
             self._forget(table)
 
-    def discard_load(self, table: Table) -> None:
+    def discard_load(self, table: TableRecord) -> None:
         """Drop a load in progress; a shared buffer is free again."""
         buffer, table.loading = table.loading, None
         if buffer is not None and buffer.is_shared:
             self._memory.release_shared(buffer)
 
-    def exclusive_buffer(self, table: Table) -> Buffer:
-        """The own buffer that comes next, when nobody holds its address.
+    def exclusive_buffer(self, table: TableRecord) -> Buffer:
+        """The own buffer that comes next, when no app holds its address.
 
         Raises:
-            CfeError: CFE_TBL_ERR_NO_BUFFER_AVAIL when somebody does; the text names the app.
+            CfeError: CFE_TBL_ERR_NO_BUFFER_AVAIL when another app does; the text names it.
         """
         buffer = table.next_buffer()
         holder = table.locker_of(buffer)
@@ -316,12 +316,12 @@ class Registry:
             raise CfeError(CFE_TBL_ERR_NO_BUFFER_AVAIL, text)
         return buffer
 
-    def _allocate(self, table: Table) -> None:
+    def _allocate(self, table: TableRecord) -> None:
         places = [] if table.user_defined else [FIRST_PLACE, SECOND_PLACE][: 1 + table.double_buffered]
         for place in places:
             table.buffers.append(self._memory.allocate(table.size, place))
 
-    def _forget(self, table: Table) -> None:
+    def _forget(self, table: TableRecord) -> None:
         self.discard_load(table)
         for buffer in table.buffers:
             self._memory.free(buffer)

@@ -1,18 +1,27 @@
 """Table Services for apps (CFE_TBL_*): register, load, validate, update and look at tables.
 
-A failed call raises CfeError with NASA's status; a call that NASA answers with a warning or information returns that
-number. Host code may look tables up but owns none. The ground's side is in `cfepy.tbl.task`. Imports only cfepy.config,
-cfepy.ids, cfepy.ports, cfepy.rtos, cfepy.status and its neighbours here; other services are reached through the ports.
+`TableAccess` is what every app that has a handle may do, owner or not; `TableServices` adds what owners do. A failed
+call raises CfeError with NASA's status; a call that NASA answers with a warning or information returns that number.
+Host code may look tables up (`get_info`) but owns none and has no handles. The ground's side is in `cfepy.tbl.task`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import NamedTuple
+
 from cfepy.config import PlatformConfig
-from cfepy.ports import Ports
+from cfepy.ids import UNDEFINED
+from cfepy.ports import Caller, Ports
 from cfepy.rtos import Kernel
 from cfepy.status import (
+    CFE_ES_ERR_RESOURCEID_NOT_VALID,
     CFE_SUCCESS,
+    CFE_TBL_ERR_INVALID_HANDLE,
     CFE_TBL_ERR_INVALID_NAME,
+    CFE_TBL_ERR_NEVER_LOADED,
+    CFE_TBL_ERR_NO_ACCESS,
+    CFE_TBL_ERR_UNREGISTERED,
     CFE_TBL_INFO_DUMP_PENDING,
     CFE_TBL_INFO_NO_VALIDATION_PENDING,
     CFE_TBL_INFO_TABLE_LOCKED,
@@ -24,14 +33,191 @@ from cfepy.status import (
     CfeError,
 )
 from cfepy.tbl import events as ev
-from cfepy.tbl.access import TableAccess
 from cfepy.tbl.buffers import BufferMemory, Bytes
 from cfepy.tbl.critical import CriticalTables
 from cfepy.tbl.dumps import Dumps
 from cfepy.tbl.loads import Loads
-from cfepy.tbl.registry import OPT_CRITICAL, Registry, Table, TableHandle, Validator
-from cfepy.tbl.table_file import Files, Refused, TableFile
+from cfepy.tbl.registry import OPT_CRITICAL, Access, TableHandle, TableRecord, TableRegistry, Validator
+from cfepy.tbl.table_file import LoadFile, Refused, TableStorage
 from cfepy.tbl.task import TableTask
+
+BAD_TABLE_HANDLE = -1
+MODIFIED_MARK = "(*)"
+
+
+class TableInfo(NamedTuple):
+    """What CFE_TBL_GetInfo tells; times are (seconds, subseconds)."""
+
+    size: int
+    num_users: int
+    file_time: tuple[int, int]
+    crc: int
+    time_of_last_update: tuple[int, int]
+    table_loaded_once: bool
+    dump_only: bool
+    double_buffered: bool
+    user_def_addr: bool
+    critical: bool
+    last_file_loaded: str
+
+
+class TableAccess:
+    """The part of Table Services that changes no table.
+
+    Args:
+        kernel: tells whose task is running.
+        ports: the other services.
+        registry: the tables.
+    """
+
+    def __init__(self, kernel: Kernel, ports: Ports, registry: TableRegistry) -> None:
+        self._kernel = kernel
+        self._ports = ports
+        self.registry = registry
+
+    def get_address(self, handle: int) -> tuple[memoryview, bool]:
+        """The active image, locked until `release_address` (CFE_TBL_GetAddress).
+
+        Returns:
+            A view of the bytes, and whether they changed since the last call (CFE_TBL_INFO_UPDATED).
+
+        Raises:
+            CfeError: CFE_TBL_ERR_NEVER_LOADED, CFE_TBL_ERR_UNREGISTERED, or no access.
+        """
+        access = self._access("GetAddress", handle)
+        table = access.table
+        if table.owner == UNDEFINED:
+            self._log("TxnGetTableAddress", f"App({access.app_id}) attempt to access unowned Tbl Handle={int(handle)}")
+            raise CfeError(CFE_TBL_ERR_UNREGISTERED, f"the owner of {table.name!r} gave it up")
+        if table.active is None:
+            raise CfeError(CFE_TBL_ERR_NEVER_LOADED, f"{table.name!r} was never loaded")
+        updated, access.updated = access.updated, False
+        access.locked, access.buffer = True, table.active
+        return table.active.view(), updated
+
+    def release_address(self, handle: int) -> int:
+        """Give the address back, so that updates can take place (CFE_TBL_ReleaseAddress).
+
+        Returns:
+            CFE_SUCCESS, or CFE_TBL_INFO_UPDATED when the table changed meanwhile.
+        """
+        access = self._access("ReleaseAddress", handle)
+        access.locked, access.buffer = False, None
+        if access.table.active is None:
+            raise CfeError(CFE_TBL_ERR_NEVER_LOADED, f"{access.table.name!r} was never loaded")
+        return CFE_TBL_INFO_UPDATED if access.updated else CFE_SUCCESS
+
+    def get_addresses(self, handles: Iterable[int]) -> list[tuple[memoryview, bool]]:
+        """`get_address` of several tables; when one fails, those before it are released (CFE_TBL_GetAddresses)."""
+        taken: list[int] = []
+        found = []
+        try:
+            for handle in handles:
+                found.append(self.get_address(handle))
+                taken.append(handle)
+        except CfeError:
+            self.release_addresses(taken)
+            raise
+        return found
+
+    def release_addresses(self, handles: Iterable[int]) -> int:
+        """`release_address` of every one of several tables (CFE_TBL_ReleaseAddresses).
+
+        Returns:
+            The first status that is not CFE_SUCCESS.
+
+        Raises:
+            CfeError: instead, when that is an error; the tables behind are released all the same.
+        """
+        answers: list[int | CfeError] = []
+        for handle in handles:
+            try:
+                answers.append(self.release_address(handle))
+            except CfeError as error:
+                answers.append(error)
+        first = next((answer for answer in answers if answer != CFE_SUCCESS), CFE_SUCCESS)
+        if isinstance(first, CfeError):
+            raise first
+        return first
+
+    def get_status(self, handle: int) -> int:
+        """What a table waits for (CFE_TBL_GetStatus).
+
+        Returns:
+            CFE_SUCCESS, or CFE_TBL_INFO_VALIDATION_PENDING, _UPDATE_PENDING, _DUMP_PENDING; in that order.
+        """
+        table = self._access("GetStatus", handle).table
+        if table.validations:
+            return CFE_TBL_INFO_VALIDATION_PENDING
+        if table.is_update_pending:
+            return CFE_TBL_INFO_UPDATE_PENDING
+        return CFE_TBL_INFO_DUMP_PENDING if table.dump is not None else CFE_SUCCESS
+
+    def get_info(self, full_name: str) -> TableInfo:
+        """All about a table, by its full name (CFE_TBL_GetInfo).
+
+        Raises:
+            CfeError: CFE_TBL_ERR_INVALID_NAME.
+        """
+        table = self.registry.by_name(full_name)
+        active = table.active
+        return TableInfo(
+            size=table.size,
+            num_users=len(table.accesses),
+            file_time=active.file_time if active else (0, 0),
+            crc=active.crc if active else 0,
+            time_of_last_update=table.last_update,
+            table_loaded_once=active is not None,
+            dump_only=table.dump_only,
+            double_buffered=table.double_buffered,
+            user_def_addr=table.user_defined,
+            critical=table.critical,
+            last_file_loaded=table.last_file + MODIFIED_MARK * table.modified,
+        )
+
+    def handle_to_id(self, handle: int) -> int:
+        """The resource id of a handle, 0 for CFE_TBL_BAD_TABLE_HANDLE (CFE_TBL_HandleToID)."""
+        return UNDEFINED if handle == BAD_TABLE_HANDLE else int(handle)
+
+    def handle_from_id(self, handle_id: int) -> int:
+        """The handle of a resource id, CFE_TBL_BAD_TABLE_HANDLE for 0 (CFE_TBL_HandleFromID)."""
+        return BAD_TABLE_HANDLE if handle_id == UNDEFINED else handle_id
+
+    def handle_id_is_equal(self, first: int, second: int) -> bool:
+        """Whether two handle ids are the same (CFE_TBL_HandleID_IsEqual)."""
+        return first == second
+
+    def handle_id_as_int(self, handle_id: int) -> int:
+        """The number to show a person (CFE_TBL_HandleID_AsInt)."""
+        return int(handle_id)
+
+    def handle_id_is_defined(self, handle_id: int) -> bool:
+        """Whether it is the id of anything (CFE_TBL_HandleID_IsDefined)."""
+        return handle_id != UNDEFINED
+
+    def _caller(self) -> tuple[int, str]:
+        caller: Caller | None = self._kernel.current.owner
+        if caller is None:
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, "tables belong to apps; host code cannot make this call")
+        return caller.app_id, caller.name
+
+    def _access(self, function: str, handle: int, owner_only: bool = False) -> Access:
+        """The access descriptor of a handle, once the caller is found to have the right to use it."""
+        app_id, _ = self._caller()
+        access = self.registry.accesses.find(handle)
+        if access is None:
+            error = CfeError(CFE_TBL_ERR_INVALID_HANDLE, f"0x{int(handle) & 0xFFFFFFFF:x} is no table handle")
+        elif app_id not in (access.app_id, self.registry.services_app_id):
+            error = CfeError(CFE_TBL_ERR_NO_ACCESS, f"this handle on {access.table.name!r} is another app's")
+        elif owner_only and app_id not in (access.table.owner, self.registry.services_app_id):
+            error = CfeError(CFE_TBL_ERR_NO_ACCESS, f"{access.table.name!r} belongs to another app")
+        else:
+            return access
+        self._log(function, f"App({app_id}) does not have access to Tbl Handle={int(handle)}")
+        raise error
+
+    def _log(self, function: str, text: str) -> None:
+        self._ports.syslog.write_to_sys_log(f"CFE_TBL_{function}: {text}")
 
 
 class TableServices(TableAccess):
@@ -44,13 +230,13 @@ class TableServices(TableAccess):
         files: where table files are.
     """
 
-    def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, files: Files) -> None:
+    def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, files: TableStorage) -> None:
         shared_size = max(config.tbl_max_sngl_table_size, config.tbl_max_dbl_table_size)
         memory = BufferMemory(ports, config.tbl_buf_memory_bytes, config.tbl_max_simultaneous_loads, shared_size)
         self._config = config
         self._memory = memory
         self._critical = CriticalTables(ports, config.tbl_max_critical_tables)
-        super().__init__(kernel, ports, Registry(config, memory))
+        super().__init__(kernel, ports, TableRegistry(config, memory))
         self._loads = Loads(self.registry, memory, ports, files, self._critical)
         self._dumps = Dumps(memory, config, ports, files)
         self.task = TableTask(ports, config, files, self.registry, self._loads, self._dumps, memory, self._critical)
@@ -89,14 +275,14 @@ class TableServices(TableAccess):
             access = self.registry.duplicate(full_name, size, app_id)
             if access is not None:
                 return access.handle.with_status(CFE_TBL_WARN_DUPLICATE)
-            access = self.registry.add(Table(full_name, size, options, validate, app_id))
+            access = self.registry.add(TableRecord(full_name, size, options, validate, app_id))
         except CfeError as error:
             text = f"{app_name} Failed to Register table '{name}', Status={error.hex}"
             self._event(ev.REGISTER_ERR_EID, ev.ERROR, text)
             raise
         return access.handle.with_status(self._make_critical(access.table)) if options & OPT_CRITICAL else access.handle
 
-    def _make_critical(self, table: Table) -> int:
+    def _make_critical(self, table: TableRecord) -> int:
         try:
             return self._critical.register(table)
         except CfeError as error:
@@ -139,15 +325,15 @@ class TableServices(TableAccess):
                 then is the table).
 
         Returns:
-            CFE_SUCCESS, CFE_TBL_WARN_SHORT_FILE, CFE_TBL_WARN_PARTIAL_LOAD, or CFE_TBL_INFO_TABLE_LOCKED: somebody
-            has the table's address, `manage` switches later.
+            CFE_SUCCESS, CFE_TBL_WARN_SHORT_FILE, CFE_TBL_WARN_PARTIAL_LOAD, or CFE_TBL_INFO_TABLE_LOCKED: an
+            application has the table's address, `manage` switches later.
 
         Raises:
             CfeError: what was wrong; an event tells the ground too, and the table is as it was.
         """
         access = self._access("Load", handle, owner_only=True)
         table, caller = access.table, self._caller()[1]
-        file = TableFile(source, self._config) if isinstance(source, str) else None
+        file = LoadFile(source, self._config) if isinstance(source, str) else None
         try:
             self._loads.reserve(table, from_file=file is not None)
         except Refused as refused:
@@ -170,7 +356,7 @@ class TableServices(TableAccess):
             raise faults[-1]
         return self._finish_load(table, caller, status)
 
-    def _fill(self, table: Table, file: TableFile | None, source: str | Bytes) -> int:
+    def _fill(self, table: TableRecord, file: LoadFile | None, source: str | Bytes) -> int:
         if file is not None:
             self._loads.open(file)
             self._loads.fill_from_file(table, file)
@@ -179,7 +365,7 @@ class TableServices(TableAccess):
             self._loads.fill_from_memory(table, source)
         return CFE_SUCCESS
 
-    def _finish_load(self, table: Table, caller: str, status: int) -> int:
+    def _finish_load(self, table: TableRecord, caller: str, status: int) -> int:
         is_first = table.active is None
         result = self._loads.update(table)
         if result != CFE_SUCCESS:

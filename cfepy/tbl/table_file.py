@@ -1,7 +1,7 @@
-"""A table file on its way into a table: what can be wrong with it, and the event that says so.
+"""A table file on its way into a table: the checks on it, and the event of each that fails.
 
-Stands for the first half of cfe_tbl_load.c. A refusal carries the event that reports it; whoever asked for the load
-sends it. Imports only cfepy.config, cfepy.fs, cfepy.status and its neighbours here.
+Stands for the first half of cfe_tbl_load.c. A refusal carries the event that reports it; the code that asked for
+the load sends it.
 """
 
 from __future__ import annotations
@@ -9,8 +9,16 @@ from __future__ import annotations
 from typing import Protocol
 
 from cfepy.config import PlatformConfig
-from cfepy.fs import CONTENT_ID, HEADER_SIZE, TABLE_HEADER_SIZE, FileHeader, TableHeader, read_header, read_table_header
-from cfepy.fs.header import SUBTYPE_TBL_IMG
+from cfepy.fs import (
+    CONTENT_ID,
+    HEADER_SIZE,
+    SUBTYPE_TBL_IMG,
+    TABLE_HEADER_SIZE,
+    FileHeader,
+    TableHeader,
+    read_header,
+    read_table_header,
+)
 from cfepy.status import (
     CFE_STATUS_VALIDATION_FAILURE,
     CFE_SUCCESS,
@@ -35,10 +43,10 @@ from cfepy.status import (
 )
 from cfepy.tbl import events as ev
 from cfepy.tbl.image import is_intact, mark_for, mark_in
-from cfepy.tbl.registry import Table
+from cfepy.tbl.registry import TableRecord
 
 
-class Files(Protocol):
+class TableStorage(Protocol):
     """The file system as Table Services use it; failures raise OsalError."""
 
     def read_file(self, path: str) -> bytes:
@@ -67,7 +75,7 @@ class Refused(CfeError):
         self.names_file = names_file
 
 
-class TableFile:
+class LoadFile:
     """A table file as far as it could be read: `table_name` stays "[unknown]" until both headers are found good.
 
     Args:
@@ -83,7 +91,7 @@ class TableFile:
         self.table = TableHeader("", 0)
         self.image = b""
 
-    def open(self, files: Files) -> None:
+    def open(self, files: TableStorage) -> None:
         """Read the file and check its headers (CFE_TBL_TxnOpenTableLoadFile).
 
         Raises:
@@ -123,7 +131,7 @@ class TableFile:
         self.image = data[HEADER_SIZE + TABLE_HEADER_SIZE :]
 
     def _check_ids(self, header: FileHeader) -> None:
-        """Check who the file is for (CFE_TBL_ValidateTableHeaderId); an empty list takes everybody."""
+        """Check the processor that the file is for (CFE_TBL_ValidateTableHeaderId); an empty list takes all."""
         spacecraft, processors = self._config.tbl_valid_scid, self._config.tbl_valid_prid
         if spacecraft and header.spacecraft_id not in spacecraft:
             text = f"Invalid Spacecraft ID (0x{header.spacecraft_id:08X})"
@@ -132,7 +140,7 @@ class TableFile:
             text = f"Invalid Processor ID (0x{header.processor_id:08X})"
             raise Refused(CFE_TBL_ERR_BAD_PROCESSOR_ID, ev.PROCESSOR_ID_ERR_EID, text)
 
-    def check_fits(self, table: Table) -> None:
+    def check_fits(self, table: TableRecord) -> None:
         """Check that the content belongs into a table (CFE_TBL_ValidateFileIsLoadable and the checks of the content).
 
         Raises:
@@ -159,7 +167,7 @@ class TableFile:
             text = f"File has more data than Tbl Hdr indicates ({size})"
             raise Refused(CFE_TBL_ERR_FILE_TOO_LARGE, ev.FILE_TOO_BIG_ERR_EID, text)
 
-    def completeness(self, table: Table) -> int:
+    def completeness(self, table: TableRecord) -> int:
         """CFE_SUCCESS, or the warning that the file held only part of the table."""
         if self.table.offset > 0:
             return CFE_TBL_WARN_PARTIAL_LOAD

@@ -1,33 +1,445 @@
-"""The CFE_TBL task: its pipe, dispatch, housekeeping, and the commands that change no table.
+"""The CFE_TBL task: its pipe, dispatch, housekeeping, and what the ground can do with tables.
 
-Stands for cfe_tbl_task.c and part of cfe_tbl_task_cmds.c; the rest is in `cfepy.tbl.commands`. Imports only
-cfepy.config, cfepy.msg, cfepy.ports, cfepy.status, cfepy.versions and its neighbours here.
+Stands for cfe_tbl_task.c and cfe_tbl_task_cmds.c: load, validate, activate, dump, and a file about the registry of all
+tables, which the background task of ES writes record by record. LOAD works as in cFE v7.0.1: v7.0.0 refuses every one.
+`Housekeeping` counts, remembers the last validation, load, update and dump, and builds values for packets
+(CFE_TBL_GetHkData, CFE_TBL_GetTblRegData); it sends nothing.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 from cfepy.config import PlatformConfig
 from cfepy.core_app import serve
-from cfepy.msg import CommandTable
-from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, Dispatch
+from cfepy.fs import SUBTYPE_TBL_REG, FileWriteEvent, FileWriteMetaData, calculate_crc, dump_file_name
+from cfepy.msg import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, CommandTable, Dispatch, command, sys_time_fields
 from cfepy.ports import Ports
-from cfepy.status import CfeError
+from cfepy.status import (
+    CFE_ES_CDS_OWNER_ACTIVE_ERR,
+    CFE_ES_CDS_WRONG_TYPE_ERR,
+    CFE_ES_ERR_NAME_NOT_FOUND,
+    CFE_TBL_ERR_INVALID_NAME,
+    CfeError,
+    OsalError,
+)
 from cfepy.tbl import events as ev
 from cfepy.tbl import packets as pk
 from cfepy.tbl.buffers import BufferMemory
-from cfepy.tbl.commands import APP_NAME, TableCommands
 from cfepy.tbl.critical import CriticalTables
-from cfepy.tbl.dumps import Dumps
-from cfepy.tbl.housekeeping import Housekeeping
+from cfepy.tbl.dumps import DumpRefused, Dumps, select_buffer
 from cfepy.tbl.loads import Loads
-from cfepy.tbl.registry import Registry, Table
-from cfepy.tbl.registry_dump import RegistryDump
-from cfepy.tbl.table_file import Files
+from cfepy.tbl.packets import REGISTRY_RECORD
+from cfepy.tbl.registry import TableRecord, TableRegistry, Validation
+from cfepy.tbl.table_file import LoadFile, Refused, TableStorage
 from cfepy.versions import version_string
 
+NO_LOAD = -1
+_BYTE = 0xFF
+_HALF = 0xFFFF
+APP_NAME = "CFE_TBL"
+_NOT_DELETED = {
+    CFE_ES_CDS_WRONG_TYPE_ERR: (
+        ev.NOT_CRITICAL_TBL_ERR_EID,
+        "Table '{}' is in Critical Table Registry but CDS is not tagged as a table",
+    ),
+    CFE_ES_CDS_OWNER_ACTIVE_ERR: (ev.CDS_OWNER_ACTIVE_ERR_EID, "CDS '{}' owning app is still active"),
+    CFE_ES_ERR_NAME_NOT_FOUND: (ev.CDS_NOT_FOUND_ERR_EID, "Unable to locate '{}' in CDS Registry"),
+}
+"""Event id and text of DELETE_CDS by what the CDS says."""
+
+REGISTRY_FILE = "/ram/cfe_tbl_reg.log"
+REGISTRY_DESCRIPTION = "Table Registry"
+_DUMP_FAILURES = {
+    FileWriteEvent.CREATE_ERROR: (ev.CREATING_DUMP_FILE_ERR_EID, "Error creating dump file '{}'"),
+    FileWriteEvent.HEADER_WRITE_ERROR: (ev.WRITE_CFE_HDR_ERR_EID, "Error writing cFE File Header to '{}'"),
+    FileWriteEvent.RECORD_WRITE_ERROR: (ev.WRITE_TBL_REG_ERR_EID, "Error writing Registry to '{}'"),
+}
 PIPE_NAME = "TBL_CMD_PIPE"
 PIPE_DEPTH = 12
 MAIN_PERF_ID = 3
+
+
+class Housekeeping:
+    """Counters and last values.
+
+    Attributes:
+        last_updated: the table that changed last.
+        last_file_loaded: the file of the ground's last load.
+        last_table_loaded: the table of that load.
+    """
+
+    def __init__(self, registry: TableRegistry, memory: BufferMemory, dumps: Dumps) -> None:
+        self._registry = registry
+        self._memory = memory
+        self._dumps = dumps
+        self._validations: list[Validation] = []
+        self._last_validation = Validation("", 0, of_active=False)
+        self._registry_request: TableRecord | None = None
+        self.last_updated: TableRecord | None = None
+        self.last_file_loaded = ""
+        self.last_table_loaded = ""
+        self.reset_counters()
+
+    def reset_counters(self) -> None:
+        """The RESET_COUNTERS command."""
+        self._commands = self._errors = 0
+        self._validated = self._successes = self._failures = self._requests = 0
+
+    def count_command(self, accepted: bool) -> None:
+        """Count a command done or refused."""
+        self._commands += accepted
+        self._errors += not accepted
+
+    def add_validation(self, request: Validation, by_owner: bool = False) -> None:
+        """Keep a validation request until its result was told; `by_owner`: an app has to do it."""
+        self._validations.append(request)
+        self._requests += by_owner
+
+    def validations_under_way(self) -> int:
+        """Requests whose results were not told yet."""
+        return len(self._validations)
+
+    def request_registry(self, table: TableRecord) -> None:
+        """Send a table's registry entry with the next housekeeping packet."""
+        self._registry_request = table
+
+    def take_registry_request(self) -> TableRecord | None:
+        """The table whose entry is wanted, if it still exists; asked for once."""
+        table, self._registry_request = self._registry_request, None
+        return table if table is not None and table.reg_id in self._registry.tables else None
+
+    def _count_a_validation(self) -> None:
+        """Take over one finished validation; the next one waits for the next packet, so that none is missed."""
+        done = next((request for request in self._validations if request.performed), None)
+        if done is None:
+            return
+        self._validations.remove(done)
+        self._last_validation = done
+        self._validated += 1
+        self._successes += done.result == 0
+        self._failures += done.result != 0
+
+    def collect(self) -> dict[str, Any]:
+        """The fields of packets.HOUSEKEEPING."""
+        self._count_a_validation()
+        last, table = self._last_validation, self.last_updated
+        values: dict[str, Any] = {
+            "CommandCounter": self._commands & _BYTE,
+            "CommandErrorCounter": self._errors & _BYTE,
+            "NumTables": len(self._registry.tables),
+            "NumLoadPending": sum(table.loading is not None for table in self._registry.tables),
+            "ValidationCounter": self._validated & _HALF,
+            "LastValCrc": last.crc,
+            "LastValStatus": last.result,
+            "ActiveBuffer": last.of_active,
+            "LastValTableName": last.table_name,
+            "SuccessValCounter": self._successes & _BYTE,
+            "FailedValCounter": self._failures & _BYTE,
+            "NumValRequests": self._requests & _BYTE,
+            "NumFreeSharedBufs": self._memory.free_shared,
+            "MemPoolHandle": self._memory.pool_id,
+            "LastFileLoaded": self.last_file_loaded,
+            "LastFileDumped": self._dumps.last_file,
+            "LastTableLoaded": self.last_table_loaded,
+        }
+        if table is not None:
+            values |= {"LastUpdateTime": sys_time_fields(table.last_update), "LastUpdatedTable": table.name}
+        return values
+
+    def registry_packet(self, table: TableRecord, owner_name: str) -> dict[str, Any]:
+        """The fields of packets.REGISTRY_PACKET for one table."""
+        inactive = table.inactive()
+        return _common(table, owner_name) | {
+            "ActiveBufferAddr": table.active.address if table.active else 0,
+            "InactiveBufferAddr": inactive.address if inactive else 0,
+            "ValidationFuncPtr": int(table.validator is not None),
+            "Critical": table.critical,
+        }
+
+    def registry_record(self, table: TableRecord, owner_name: str) -> dict[str, Any]:
+        """The fields of packets.REGISTRY_RECORD for one table."""
+        return _common(table, owner_name) | {
+            "NumUsers": len(table.accesses),
+            "LoadInProgress": table.loading.place if table.loading else NO_LOAD,
+            "ValidationFunc": table.validator is not None,
+            "CriticalTable": table.critical,
+        }
+
+
+def _common(table: TableRecord, owner_name: str) -> dict[str, Any]:
+    return {
+        "Size": table.size,
+        "Crc": table.active.crc if table.active else 0,
+        "TimeOfLastUpdate": sys_time_fields(table.last_update),
+        "FileTime": sys_time_fields(table.active.file_time if table.active else (0, 0)),
+        "TableLoadedOnce": table.active is not None,
+        "LoadPending": table.is_update_pending,
+        "DumpOnly": table.dump_only,
+        "DoubleBuffered": table.double_buffered,
+        "Name": table.name,
+        "LastFileLoaded": table.last_file,
+        "OwnerAppName": owner_name,
+    }
+
+
+class TableCommands:
+    """The commands about single tables; each returns whether it was carried out."""
+
+    def __init__(
+        self,
+        ports: Ports,
+        config: PlatformConfig,
+        registry: TableRegistry,
+        loads: Loads,
+        dumps: Dumps,
+        critical: CriticalTables,
+        housekeeping: Housekeeping,
+    ) -> None:
+        self._ports = ports
+        self._config = config
+        self._registry = registry
+        self._loads = loads
+        self._dumps = dumps
+        self._critical = critical
+        self._housekeeping = housekeeping
+
+    def load(self, packet: bytes) -> bool:
+        """Read a table file into the inactive image of its table (CFE_TBL_LoadCmd)."""
+        file = LoadFile(pk.LOAD.read(packet)["LoadFilename"], self._config)
+        table = None
+        try:
+            self._loads.open(file)
+            table = self._registry.find(file.table.table_name)
+            if table is None:
+                text = "Unable to locate in Table Registry"
+                raise Refused(CFE_TBL_ERR_INVALID_NAME, ev.NO_SUCH_TABLE_ERR_EID, text, names_file=False)
+            self._loads.reserve(table, from_file=True)
+            self._fill(table, file)
+        except Refused as refused:
+            self._loads.report(refused, self._registry.services_app_id, APP_NAME, file, table)
+            return False
+        self._housekeeping.last_file_loaded, self._housekeeping.last_table_loaded = file.path, table.name
+        where = f"LoadFile,app={APP_NAME},file={file.path},tbl={table.name}"
+        self._info(ev.FILE_LOADED_INF_EID, f"{where}:Successful load into '{table.name}' working buffer")
+        return True
+
+    def _fill(self, table: TableRecord, file: LoadFile) -> None:
+        try:
+            self._loads.fill_from_file(table, file)
+        except Refused:
+            self._registry.discard_load(table)
+            raise
+
+    def dump(self, packet: bytes) -> bool:
+        """Begin to write an image of a table to a file (CFE_TBL_DumpCmd)."""
+        values = pk.DUMP.read(packet)
+        table = self._table(values["TableName"])
+        if table is None:
+            return False
+        try:
+            self._dumps.request(table, values["ActiveTableFlag"], values["DumpFilename"])
+        except DumpRefused as refused:
+            where = f"dump,table={table.name},app={APP_NAME},file={values['DumpFilename']}"
+            self._error(refused.event_id, f"{where}:{refused.text}")
+            return False
+        self._notify(table)
+        return True
+
+    def validate(self, packet: bytes) -> bool:
+        """Have an image of a table validated (CFE_TBL_ValidateCmd)."""
+        values = pk.VALIDATE.read(packet)
+        table = self._table(values["TableName"])
+        if table is None:
+            return False
+        buffer = select_buffer(table, values["ActiveTableFlag"])
+        if buffer is None:
+            self._error(ev.NO_INACTIVE_BUFFER_ERR_EID, f"No Buffer for Table '{table.name}' present")
+            return False
+        if self._housekeeping.validations_under_way() >= self._config.tbl_max_num_validations:
+            text = "Too many Table Validations have been requested"
+            self._error(ev.TOO_MANY_VALIDATIONS_ERR_EID, text)
+            return False
+        of_active = values["ActiveTableFlag"] == pk.ACTIVE_BUFFER
+        self._begin_validation(table, Validation(table.name, calculate_crc(buffer.view()), of_active))
+        return True
+
+    def _begin_validation(self, table: TableRecord, request: Validation) -> None:
+        if table.validator is None:
+            request.performed = True
+            self._housekeeping.add_validation(request)
+            text = f"Tbl Services assumes '{table.name}' is valid. No Validation Function has been registered"
+            self._info(ev.ASSUMED_VALID_INF_EID, text)
+            return
+        if request.of_active in table.validations:
+            return  # the owner has not got round to the request before; one answer serves both
+        table.validations[request.of_active] = request
+        self._housekeeping.add_validation(request, by_owner=True)
+        if self._notify(table):
+            text = f"Tbl Services issued validation request for '{table.name}'"
+            self._debug(ev.VAL_REQ_MADE_INF_EID, text)
+
+    def activate(self, packet: bytes) -> bool:
+        """Let a table's owner switch to the inactive image (CFE_TBL_ActivateCmd)."""
+        table = self._named(packet)
+        if table is None:
+            return False
+        name, loading = table.name, table.loading
+        if table.dump_only:
+            text = f"Illegal attempt to activate dump-only table '{name}'"
+            self._error(ev.ACTIVATE_DUMP_ONLY_ERR_EID, text)
+            return False
+        if loading is None:
+            text = f"Cannot activate table '{name}'. No Inactive image available"
+            self._error(ev.ACTIVATE_ERR_EID, text)
+            return False
+        if not loading.is_valid:
+            text = f"Cannot activate table '{name}'. Inactive image not Validated"
+            self._error(ev.UNVALIDATED_ERR_EID, text)
+            return False
+        loading.activate_requested = True
+        if self._notify(table):
+            text = f"Tbl Services notifying App that '{name}' has a load pending"
+            self._debug(ev.LOAD_PEND_REQ_INF_EID, text)
+        return True
+
+    def send_registry(self, packet: bytes) -> bool:
+        """Send a table's registry entry with the next housekeeping (CFE_TBL_SendRegistryCmd)."""
+        table = self._named(packet)
+        if table is None:
+            return False
+        self._housekeeping.request_registry(table)
+        text = f"Table Registry entry for '{table.name}' will be telemetered"
+        self._debug(ev.TLM_REG_CMD_INF_EID, text)
+        return True
+
+    def delete_cds(self, packet: bytes) -> bool:
+        """Delete the CDS of a critical table that is not registered any more (CFE_TBL_DeleteCDSCmd)."""
+        name = pk.DELETE_CDS.read(packet)["TableName"]
+        if self._registry.find(name) is not None:
+            text = f"'{name}' found in Table Registry. CDS cannot be deleted until table is unregistered"
+            self._error(ev.IN_REGISTRY_ERR_EID, text)
+            return False
+        record = self._critical.find(name)
+        if record is None:
+            text = f"Table '{name}' is not found in Critical Table Registry"
+            self._error(ev.NOT_IN_CRIT_REG_ERR_EID, text)
+            return False
+        try:
+            self._critical.delete(record)
+        except CfeError as error:
+            other = ev.CDS_DELETE_ERR_EID, "Error while deleting '{}' from CDS, See SysLog.(Err={})"
+            event_id, text = _NOT_DELETED.get(error.status, other)
+            self._error(event_id, text.format(name, error.hex))
+            return False
+        self._info(ev.CDS_DELETED_INFO_EID, f"Successfully removed '{name}' from CDS")
+        return True
+
+    def abort_load(self, packet: bytes) -> bool:
+        """Give up a load that was begun (CFE_TBL_AbortLoadCmd)."""
+        table = self._named(packet)
+        if table is None:
+            return False
+        if table.loading is None:
+            text = f"Cannot abort load of '{table.name}'. No load started."
+            self._error(ev.LOAD_ABORT_ERR_EID, text)
+            return False
+        self._registry.discard_load(table)
+        self._info(ev.LOAD_ABORT_INF_EID, f"Table Load Aborted for '{table.name}'")
+        return True
+
+    def _named(self, packet: bytes) -> TableRecord | None:
+        return self._table(pk.ACTIVATE.read(packet)["TableName"])
+
+    def _table(self, name: str) -> TableRecord | None:
+        table = self._registry.find(name)
+        if table is None:
+            self._error(ev.NO_SUCH_TABLE_ERR_EID, f"Unable to locate '{name}' in Table Registry")
+        return table
+
+    def _notify(self, table: TableRecord) -> bool:
+        """Send the owner's notification; False when there is none to send or it could not be sent."""
+        if table.notify is None:
+            return False
+        msg_id, fcn_code, parameter = table.notify
+        try:
+            packet = command(msg_id, fcn_code, pk.NOTIFY_COMMAND.pack(Parameter=parameter))
+            self._ports.sb.transmit_msg(bytes(packet))
+        except CfeError as error:
+            text = f"Manage Notification Pkt Error(Status={error.hex})"
+            self._error(ev.FAIL_NOTIFY_SEND_ERR_EID, text)
+            return False
+        return True
+
+    def _debug(self, event_id: int, text: str) -> None:
+        self._ports.evs.send_event(event_id, ev.DEBUG, text)
+
+    def _info(self, event_id: int, text: str) -> None:
+        self._ports.evs.send_event(event_id, ev.INFORMATION, text)
+
+    def _error(self, event_id: int, text: str) -> None:
+        self._ports.evs.send_event(event_id, ev.ERROR, text)
+
+
+class RegistryDump:
+    """The one dump of the registry that may be under way."""
+
+    def __init__(self, ports: Ports, registry: TableRegistry, housekeeping: Housekeeping, files: TableStorage) -> None:
+        self._ports = ports
+        self._registry = registry
+        self._housekeeping = housekeeping
+        self._files = files
+        self._existed = False
+        self._job = FileWriteMetaData("", SUBTYPE_TBL_REG, REGISTRY_DESCRIPTION, self._record, self._ended)
+
+    def request(self, wish: str) -> bool:
+        """Begin a dump.
+
+        Args:
+            wish: name of the file; empty for the usual one, and completed where it lacks a folder or an ending.
+
+        Returns:
+            Whether the dump could be queued; no event tells of it if not, as in cFE.
+        """
+        if self._job.is_pending:
+            return False
+        try:
+            self._job.file_name = dump_file_name(wish, REGISTRY_FILE)
+            self._existed = self._exists(self._job.file_name)
+            self._ports.fs.background_file_dump_request(self._job)
+        except CfeError:
+            return False
+        return True
+
+    def _exists(self, path: str) -> bool:
+        try:
+            return self._files.exists(path)
+        except OsalError:
+            return False
+
+    def _record(self, number: int) -> tuple[bytes, bool]:
+        """The record in a slot of the registry, nothing for a free one, and whether it is the last."""
+        table = self._registry.tables.at(number)
+        is_last = number >= self._registry.tables.capacity - 1
+        if table is None:
+            return b"", is_last
+        owner = self._ports.es.get_app_name(table.owner) if table.owner else "--UNOWNED--"
+        return REGISTRY_RECORD.pack(self._housekeeping.registry_record(table, owner)), is_last
+
+    def _ended(self, event: FileWriteEvent, status: int, record: int, size: int, position: int) -> None:
+        path = self._job.file_name
+        if event in _DUMP_FAILURES:
+            event_id, text = _DUMP_FAILURES[event]
+            self._send(event_id, ev.ERROR, f"{text.format(path)}, Status=0x{status & 0xFFFFFFFF:08X}")
+        elif self._existed:
+            text = f"Successfully overwrote '{path}' with Table Registry:Size={position},Entries={record}"
+            self._send(ev.OVERWRITE_REG_DUMP_INF_EID, ev.DEBUG, text)
+        else:
+            text = f"Successfully dumped Table Registry to '{path}':Size={position},Entries={record}"
+            self._send(ev.WRITE_REG_DUMP_INF_EID, ev.DEBUG, text)
+
+    def _send(self, event_id: int, event_type: int, text: str) -> None:
+        self._ports.evs.send_event_with_app_id(event_id, event_type, self._registry.services_app_id, text)
 
 
 class TableTask:
@@ -37,8 +449,8 @@ class TableTask:
         self,
         ports: Ports,
         config: PlatformConfig,
-        files: Files,
-        registry: Registry,
+        files: TableStorage,
+        registry: TableRegistry,
         loads: Loads,
         dumps: Dumps,
         memory: BufferMemory,
@@ -101,7 +513,7 @@ class TableTask:
         elif done.outcome == BAD_MSG_ID:
             self._error(ev.MID_ERR_EID, f"Invalid message ID -- ID = 0x{done.msg_id:X}")
 
-    def note_update(self, table: Table) -> None:
+    def note_update(self, table: TableRecord) -> None:
         """Remember for housekeeping which table changed last."""
         self._housekeeping.last_updated = table
 

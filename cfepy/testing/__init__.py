@@ -1,26 +1,30 @@
 """Testing missions with pytest: the fixture `mission`, exploration of schedules, Hypothesis strategies.
 
-pytest finds the plugin (`cfepy.testing.plugin`) by itself; docs/testing.md shows what can be done with it. Everything
-here is imported when it is first asked for, so that no other test-suite pays for it.
+What belongs here is used by tests of flight software: the plugin (`plugin`), which pytest finds by itself, the booting
+of missions for tests (`missions`) and generated inputs (`strategies`). A mission under test is a `Flight` of
+`cfepy.flight`, what judges every run belongs to `cfepy.monitors`. docs/testing.md has examples. Everything here is
+imported when it is first asked for, so that no other test-suite pays for it.
 """
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from cfepy.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.testing.errors import ExpectationError
+    from cfepy.flight import ExpectationError, Flight
     from cfepy.testing.exploration import explore
-    from cfepy.testing.flight import Flight
     from cfepy.testing.missions import Missions
 
 __all__ = ["ExpectationError", "Flight", "Missions", "explore"]
 
-_PLACES = {"ExpectationError": "errors", "Flight": "flight", "Missions": "missions", "explore": "exploration"}
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _PLACES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(f"{__name__}.{_PLACES[name]}"), name)
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            "cfepy.flight": ("ExpectationError", "Flight"),
+            ".exploration": ("explore",),
+            ".missions": ("Missions",),
+        },
+    )

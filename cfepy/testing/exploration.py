@@ -1,18 +1,29 @@
-"""`@explore`: a test that is run under many schedules, which differ in who goes first. Imports pytest."""
+"""`@explore`: a test that is run under many schedules, and the report when it fails under one of them.
+
+Each run is a complete one, with setup and teardown, so function-scoped fixtures are made anew; only those of a wider
+scope stay. pytest sees the reports of one run: the first that failed, shrunk, or the last.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal, cast
 
 import pytest
+from _pytest.runner import runtestprotocol
 
-from cfepy.rtos.schedule import DEPTH, STEPS, Schedule
+from cfepy.exploration import Failure, Move, Shrinker, Shrunk, TaskLook, Tried, Verdict, columns, drawn
+from cfepy.rtos import DEPTH, STEPS, Policy, Schedule
 from cfepy.status import UsageError
-from cfepy.testing.plugin import EXPLORE_MARK
+from cfepy.testing.missions import SECTION, UNDER_TEST, Conditions, Missions
+
+EXPLORE_MARK = "cfepy_explore"
+"""The mark of an explored test; the plugin looks for it before this module is loaded."""
 
 POLICIES = ("random", "pct")
 MOST_PROBES = 200
+FAILED = "test failed"
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,19 +31,14 @@ class Exploration:
     """Which schedules a test is run under; see `explore`."""
 
     seeds: int
-    policies: tuple[str, ...]
-    depth: int
-    steps: int
-    options: str
+    kinds: tuple[Schedule, ...]
     shrink: int
 
     def schedules(self, count: int | None = None) -> Iterator[Schedule]:
-        """So many schedules; fifo comes first, then the policies take turns."""
+        """So many schedules; fifo comes first, then the kinds take turns, each with a seed of its own."""
         yield Schedule()
         for seed in range(1, self.seeds if count is None else count):
-            policy = self.policies[(seed - 1) % len(self.policies)]
-            depth = f":{self.depth}:{self.steps}" if policy == "pct" else ""
-            yield Schedule.parse(f"{policy}:{seed}{depth}{self.options}")
+            yield self.kinds[(seed - 1) % len(self.kinds)].with_seed(seed)
 
 
 def explore(
@@ -75,7 +81,159 @@ def explore(
         raise UsageError("there is nothing to run; give at least one", field="seeds" if policies else "policy")
     options = (":any" if any_priority else "") + (f":hold={hold}" if hold else "")
     options += f":from={start}" if start else ""
-    found = Exploration(seeds, policies, depth, steps, options, shrink)
-    list(found.schedules(min(seeds, 1 + len(policies))))  # a wrong `hold`, `start` or `depth` is told now
+    numbers = {"random": "", "pct": f":{depth}:{steps}"}
+    kinds = [Schedule.parse(f"{each}:{seed}{numbers[each]}{options}") for seed, each in enumerate(policies, 1)]
     mark: pytest.MarkDecorator = getattr(pytest.mark, EXPLORE_MARK)
-    return mark(found)
+    return mark(Exploration(seeds, tuple(kinds), shrink))
+
+
+@dataclass(frozen=True, slots=True)
+class OneRun:
+    """One run of a test.
+
+    Attributes:
+        reports: of setup, call and teardown.
+        conditions: what its missions were flown under.
+    """
+
+    reports: tuple[pytest.TestReport, ...]
+    conditions: Conditions
+
+    @property
+    def is_done(self) -> bool:
+        """Whether there is no need for another schedule: it failed, or was skipped."""
+        return any(report.outcome != "passed" for report in self.reports)
+
+    @property
+    def failure(self) -> Failure | None:
+        """How it failed; None when it did not. An expected failure (xfail) is one."""
+        for report in self.reports:
+            if report.failed or (report.skipped and hasattr(report, "wasxfail")):
+                crash = getattr(report.longrepr, "reprcrash", None)
+                place = "" if crash is None else f"{crash.path}:{crash.lineno} {crash.message.partition(':')[0]}"
+                return Failure(FAILED, report.nodeid, f"{report.when} {place.splitlines()[0] if place else ''}")
+        return None
+
+
+class ExploredTests:
+    """The pytest plugin that runs them; registered when there are any."""
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
+        """Run a test under its schedules; others, and all under --cfepy-schedule, are left to pytest."""
+        mark = item.get_closest_marker(EXPLORE_MARK)
+        if mark is None or item.config.getoption("--cfepy-schedule") is not None:
+            return None
+        item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
+        for report in ExploredTest(item, mark.args[0]).explore(nextitem):
+            item.ihook.pytest_runtest_logreport(report=report)
+        item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+        return True
+
+
+class ExploredTest:
+    """One test under its schedules; a `cfepy.exploration.Shrinkable`, under one at a time.
+
+    Args:
+        item: the test.
+        exploration: which schedules.
+    """
+
+    def __init__(self, item: pytest.Item, exploration: Exploration) -> None:
+        self._item = item
+        self._exploration = exploration
+        self._properties = len(item.user_properties)
+        self._last: OneRun
+
+    def explore(self, nextitem: pytest.Item | None) -> Sequence[pytest.TestReport]:
+        """Run it; the reports that stand for all runs."""
+        count = self._item.config.getoption("--cfepy-schedules") or self._exploration.seeds
+        for number, schedule in enumerate(self._exploration.schedules(count), 1):
+            when = f"under the {number}. of {count} schedules"
+            self._last = self._once(Conditions(schedule))
+            if self._last.is_done:
+                break
+            if not self._last.conditions.plans:
+                self._last = OneRun((*self._last.reports, self._report("call", _complain)), self._last.conditions)
+                return [*self._last.reports, *self._end_wider(nextitem)]
+        reports = [*self._last.reports]
+        failure = self._last.failure
+        if failure is not None:
+            reports = self._told(schedule, when, failure.group)
+        return [*reports, *self._end_wider(nextitem)]
+
+    def _end_wider(self, nextitem: pytest.Item | None) -> list[pytest.TestReport]:
+        """Tear down the fixtures of a wider scope that the next test does not need; a report if that fails."""
+        setup_state = self._item.session._setupstate
+        report = self._report("teardown", lambda: setup_state.teardown_exact(nextitem))
+        return [report] if report.failed else []
+
+    def _report(self, when: Literal["call", "teardown"], act: Callable[[], None]) -> pytest.TestReport:
+        """What pytest reports of a piece of the test."""
+        call = pytest.CallInfo.from_call(act, when)
+        report: pytest.TestReport = self._item.ihook.pytest_runtest_makereport(item=self._item, call=call)
+        return report
+
+    def _told(self, schedule: Schedule, when: str, group: str) -> list[pytest.TestReport]:
+        """The reports of the failure, shrunk if that can be."""
+        lines = [f"failed {when}, {schedule}"]
+        shrunk = self._shrunk(schedule, group)
+        if shrunk is not None:
+            schedule = shrunk.verdict.schedule
+            lines.append(f"the shortest schedule that fails in this way, after {shrunk.probes} runs: {schedule}")
+            lines += ["", *self._timeline(schedule, shrunk.moves), ""]
+        if self._missions is not None:
+            lines.append(f"the same again: {self._missions.command(self._item, schedule)}")
+        reports = list(self._last.reports)
+        failed = next((each for each in reports if each.outcome != "passed"), reports[-1])
+        failed.sections.append((f"{SECTION} explore", "\n".join(lines)))
+        return reports
+
+    def _shrunk(self, schedule: Schedule, group: str) -> Shrunk[ExploredTest] | None:
+        """The shortest schedule; None when there is none to look for."""
+        recorded = self._last.conditions.recorded
+        is_alone = len(recorded) == 1 and recorded[0].moments
+        if not (self._exploration.shrink and is_alone) or self._item.config.getoption("usepdb"):
+            return None
+        return Shrinker(self, schedule, group, self._exploration.shrink).run()
+
+    def _timeline(self, schedule: Schedule, moves: Sequence[Move]) -> list[str]:
+        """What happens under a schedule, a column for each task that matters; the test is run once more for it."""
+        look = TaskLook(self._last.conditions.plans[0].spec())
+        policy = look.policy(schedule.policy() or Policy())
+        self._last = self._once(Conditions(schedule, policy, (look,)))
+        return drawn(look.rows, columns(look.rows, moves))
+
+    # -- one run -------------------------------------------------------------------------------------------------------
+
+    def fly(self, schedule: Schedule, policy: Policy | None = None) -> Tried:
+        """As `cfepy.exploration.trial.Trial.fly`: the verdict under a schedule, or a policy in its place."""
+        run = self._once(Conditions(schedule, policy))
+        failure, recorded = run.failure, run.conditions.recorded
+        deviations = tuple(sorted(recorded[0].deviations.items())) if recorded else ()
+        return Tried(Verdict(schedule, () if failure is None else (failure,), deviations=deviations))
+
+    def until(self, end_ns: int) -> None:
+        """See `cfepy.exploration.Shrinkable`: a test is as long as it is."""
+
+    @property
+    def _missions(self) -> Missions | None:
+        return cast("Missions | None", self._item.config.pluginmanager.get_plugin("cfepy-missions"))
+
+    def _once(self, conditions: Conditions) -> OneRun:
+        """The whole test, from its setup to its teardown; fixtures of a wider scope stay."""
+        item = self._item
+        item._report_sections.clear()  # of the run before
+        del item.user_properties[self._properties :]
+        item.config.stash[UNDER_TEST] = conditions
+        try:
+            parent = cast("pytest.Item", item.parent)  # what is not the parent's is torn down
+            reports = runtestprotocol(item, log=False, nextitem=parent)
+        finally:
+            del item.config.stash[UNDER_TEST]
+        return OneRun(tuple(reports), conditions)
+
+
+def _complain() -> None:
+    text = "the test boots no mission under the schedules; it has to, or a function-scoped fixture of it"
+    raise UsageError(text, field="@explore")

@@ -8,24 +8,24 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from cfepy.journal.recorder import JournalRecorder
-from cfepy.mission.run_plan import RunPlan
-from cfepy.rtos.policy import Policy
+from cfepy.journal import JournalRecorder
+from cfepy.pilot import RunPlan
+from cfepy.rtos import Policy
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
-    from cfepy.testing.flight import Flight
+    from cfepy.flight import Flight
 
 UNDECIDED = ".undecided"  # while the test runs
 
 
-class Journal:
+class FlightJournal:
     """The journal of one mission.
 
     Args:
         path: while it is not decided whether it is kept.
         plan: what is flown.
-        policy: who goes first.
+        policy: decides which task goes first.
 
     Attributes:
         recorder: to be attached to the mission, with its own `policy`.
@@ -44,7 +44,7 @@ class Journal:
         """The run is over, whatever it came to."""
         if not self._ended:
             self._ended = True
-            self.recorder.end(self.flight.results)
+            self.recorder.end(self.flight.flown())
             self.recorder.__exit__(None, None, None)
 
     def keep(self, path: Path) -> Path:
@@ -53,14 +53,14 @@ class Journal:
         return self._path.replace(path)
 
     def drop(self) -> None:
-        """Nobody needs it."""
+        """End the journal and delete it, since it is not needed."""
         if not self._ended:
             self._ended = True
             self.recorder.__exit__(None, None, None)
         self._path.unlink()
 
 
-class Journals:
+class FlightJournals:
     """Writes a journal for each mission, and keeps those of tests that fail.
 
     Args:
@@ -81,14 +81,14 @@ class Journals:
         except OSError as error:
             text = f"cannot be made: {error.strerror}; name a folder that you may write to"
             raise UsageError(text, file=folder, field="--cfepy-record") from None
-        self._open: list[Journal] = []
-        self._failed: list[Journal] = []  # of the last example of Hypothesis that has failed
+        self._open: list[FlightJournal] = []
+        self._failed: list[FlightJournal] = []  # of the last example of Hypothesis that has failed
         self._count = 0
 
-    def begin(self, plan: RunPlan, policy: Policy | None) -> Journal:
+    def begin(self, plan: RunPlan, policy: Policy | None) -> FlightJournal:
         """The journal of a mission that is about to be made."""
         self._count += 1
-        journal = Journal(self._folder / f"{self._count}{UNDECIDED}", plan, policy)
+        journal = FlightJournal(self._folder / f"{self._count}{UNDECIDED}", plan, policy)
         self._open.append(journal)
         return journal
 

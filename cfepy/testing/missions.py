@@ -1,12 +1,13 @@
 """`Missions`, which the fixture `mission` gives: it boots missions, and ends them with the test or fixture that did.
 
-It is a pytest plugin of its own, registered when the first test asks for a mission. It tells of a test that failed what
-its missions had come to, and the command that does the same again.
+It is a pytest plugin of its own, registered when the first test asks for a mission. To the report of a failed test it
+adds the state of its missions, and the command that does the same again.
 """
 
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.util import find_spec
@@ -16,21 +17,20 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from cfepy.attachment import Attachment
-from cfepy.mission.run_plan import FIFO, RunPlan
-from cfepy.rtos.policy import Policy, Recorded
-from cfepy.rtos.schedule import Schedule
-from cfepy.testing.errors import ExpectationError
-from cfepy.testing.fault_options import Faults, fault_attachments, fault_text
-from cfepy.testing.flight import Flight
+from cfepy.flight import SEED, ExpectationError, Faults, Flight, fault_attachments, fault_text, schedule_of
+from cfepy.pilot import RunPlan
+from cfepy.rtos import NotingPolicy, Policy, Schedule
+from cfepy.status import UsageError
 from cfepy.testing.hypothesis_tests import ExampleTests
-from cfepy.testing.pytest_command import pytest_command
 
 if TYPE_CHECKING:
-    from cfepy.testing.journals import Journals
+    from cfepy.testing.journals import FlightJournals
 
 __tracebackhide__ = True  # pytest shows the line of the test
 
 SECTION = "cfepy"
+_BELOW_TESTS = (Path(__file__).parents[1], Path(os.__file__).parent)  # cfepy, and the library that it calls
+FIFO = Schedule().text()
 BETWEEN = ";"  # schedules of several missions in one test
 UNDER_TEST = pytest.StashKey["Conditions"]()
 """In the stash of the configuration: what the missions of an explored test are flown under."""
@@ -42,18 +42,36 @@ class Conditions:
     """What the missions of one run of an explored test are flown under.
 
     Attributes:
-        schedule: of each, as `--cfepy-schedule` has it.
+        schedule: of each.
         policy: in place of the schedule's own; None for that.
-        attachments: what looks on at each.
+        attachments: what watches each.
         plans: what was flown, a mission each.
         recorded: what the policies have decided, a mission each.
     """
 
-    schedule: str
+    schedule: Schedule
     policy: Policy | None = None
     attachments: Sequence[Attachment] = ()
     plans: list[RunPlan] = field(default_factory=list)
-    recorded: list[Recorded] = field(default_factory=list)
+    recorded: list[NotingPolicy] = field(default_factory=list)
+
+
+def leave_out_own_lines(failure: pytest.ExceptionInfo[BaseException]) -> None:
+    """Of an error in what a test asks for, or of what did not come, show the test's lines and not those of cfepy.
+
+    Args:
+        failure: its traceback ends with the last line of the test; that of any other error stays.
+    """
+    if not isinstance(failure.value, (UsageError, ExpectationError)):
+        return
+    last, each = None, failure.value.__traceback__
+    while each is not None:
+        file = Path(each.tb_frame.f_code.co_filename)
+        if not any(file.is_relative_to(folder) for folder in _BELOW_TESTS):
+            last = each
+        each = each.tb_next
+    if last is not None:
+        last.tb_next = None
 
 
 class Missions:
@@ -85,7 +103,7 @@ class Missions:
         seed: int | None = None,
         schedule: str | Schedule | None = None,
         tasks: str | None = None,
-        faults: Faults = None,
+        faults: Faults | None = None,
         args: Mapping[str, object] | None = None,
         attachments: Sequence[Attachment] = (),
     ) -> Flight:
@@ -96,33 +114,33 @@ class Missions:
                 shipped mission.
             board: name or file of a board; None takes the mission's own.
             seed: of everything random in it; None takes --cfepy-seed.
-            schedule: who goes first, such as "random:7"; None takes that of @explore or --cfepy-schedule.
+            schedule: which task goes first, such as "random:7"; None takes that of @explore or --cfepy-schedule.
             tasks: "thread" or "greenlet"; None takes --cfepy-tasks.
             faults: what goes wrong: a plan's path, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
             args: of a launch file.
-            attachments: what else looks on or meddles (`cfepy.attachment.Attachment`).
+            attachments: what else watches the run or changes it (`cfepy.attachment.Attachment`).
 
         Raises:
             UsageError: there is no such mission or board, or something in it is wrong.
         """
-        text = str(schedule) if schedule is not None else self._schedule_of_next()
         plan = RunPlan(
             (self._place(name),),
             launch_args=tuple((key, str(value)) for key, value in (args or {}).items()),
             seed=self._config.getoption("--cfepy-seed") if seed is None else seed,
             board=board,
             tasks=tasks or self._config.getoption("--cfepy-tasks") or self._usual_tasks(),
-            schedule=Schedule.parse(text).text(),
-            faults=fault_text(faults, self._place),
+            schedule=self._schedule(schedule),
+            faults=self._fault_text(faults),
+            stall=self._stall(),
         )
         return self._fly(plan, fault_attachments(faults), attachments)
 
     def _fly(self, plan: RunPlan, faults: Sequence[Attachment], attachments: Sequence[Attachment]) -> Flight:
         is_own = bool(attachments or faults)  # which the command line of a run cannot have
-        policy: Policy | None = Schedule.parse(plan.schedule).policy()
+        policy = plan.schedule.policy()
         conditions = None if self._is_wide else self._conditions
         if conditions is not None:
-            policy = Recorded(policy if conditions.policy is None else conditions.policy)
+            policy = NotingPolicy(policy if conditions.policy is None else conditions.policy)
             conditions.recorded.append(policy)
             conditions.plans.append(plan)
             attachments = [*attachments, *conditions.attachments]
@@ -169,20 +187,44 @@ class Missions:
         here = Path.cwd()
         return os.path.relpath(found, here) if found.is_relative_to(here) else str(found)
 
-    def _schedule_of_next(self) -> str:
-        """The schedule of the next mission that gets none."""
-        is_wide, conditions = self._is_wide, self._conditions
-        if conditions is None or is_wide:
-            texts = (self._config.getoption("--cfepy-schedule") or FIFO).split(BETWEEN)
-        else:
-            texts = conditions.schedule.split(BETWEEN)
-        return texts[0 if is_wide else min(len(self.flown), len(texts) - 1)]
+    def _schedule(self, given: str | Schedule | None) -> Schedule:
+        """The schedule of the next mission.
+
+        Args:
+            given: by the test; None takes that of @explore or --cfepy-schedule.
+        """
+        if given is not None:
+            return schedule_of(given)
+        if self._conditions is not None and not self._is_wide:
+            return self._conditions.schedule
+        texts = (self._config.getoption("--cfepy-schedule") or FIFO).split(BETWEEN)
+        return Schedule.parse(texts[0 if self._is_wide else min(len(self.flown), len(texts) - 1)])
+
+    def _fault_text(self, faults: Faults | None) -> str | None:
+        text = fault_text(faults)
+        return text if text is None or text.startswith(SEED) else self._place(text)
+
+    def _stall(self) -> float:
+        """For how many seconds a task may keep the CPU.
+
+        Raises:
+            UsageError: what the configuration says is no such number.
+        """
+        given = self._config.getoption("--cfepy-stall")
+        text = str(self._config.getini("cfepy_stall") if given is None else given)
+        try:
+            seconds = float(text)
+        except ValueError:
+            seconds = -1.0
+        if not 0 <= seconds < float("inf"):
+            raise UsageError(f"{text!r} is no number of seconds; give 0 for never, or more", field="cfepy_stall")
+        return seconds
 
     def _usual_tasks(self) -> str:
         """Greenlets are quicker where there are many runs, and the runs are the same."""
         return "greenlet" if self._conditions is not None and find_spec("greenlet") is not None else "thread"
 
-    def command(self, item: pytest.Item, schedule: str | None = None, example: str | None = None) -> str:
+    def command(self, item: pytest.Item, schedule: Schedule | None = None, example: str | None = None) -> str:
         """The command that does a test again.
 
         Args:
@@ -191,13 +233,15 @@ class Missions:
             example: of a Hypothesis test, as `--cfepy-example` takes it.
         """
         conditions = self._conditions
-        present = self._config.getoption("--cfepy-schedule") if conditions is None else conditions.schedule
+        if schedule is None and conditions is not None:
+            schedule = conditions.schedule
+        given = self._config.getoption("--cfepy-schedule") or FIFO
         tasks = self._config.getoption("--cfepy-tasks")
         options = [
             "--cfepy-seed",
             str(self._config.getoption("--cfepy-seed")),
             "--cfepy-schedule",
-            schedule or present or FIFO,
+            given if schedule is None else schedule.text(),
         ]
         options += ["--cfepy-tasks", tasks] if tasks else []
         options += ["--cfepy-example", example] if example else []
@@ -229,7 +273,9 @@ class Missions:
     def pytest_runtest_makereport(
         self, item: pytest.Item, call: pytest.CallInfo[None]
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-        """Tell of a failure how to get it again."""
+        """Tell of a failure how to get it again; of what a test does wrong, show the test's own lines."""
+        if call.excinfo is not None:
+            leave_out_own_lines(call.excinfo)
         report = yield
         if call.excinfo is not None and report.failed:
             if self._journals is not None:
@@ -278,8 +324,34 @@ class Missions:
             self._journals.drop(first)
 
 
-def _journals(folder: str) -> Journals:
+def _journals(folder: str) -> FlightJournals:
     """Only runs with --cfepy-record import what journals need."""
-    from cfepy.testing.journals import Journals
+    from cfepy.testing.journals import FlightJournals
 
-    return Journals(folder)
+    return FlightJournals(folder)
+
+
+def pytest_command(config: pytest.Config, item: pytest.Item, options: Sequence[str]) -> str:
+    """The command, as it can be given where this run was started.
+
+    Args:
+        config: of this run.
+        item: the test.
+        options: to be added.
+    """
+    file, _, rest = item.nodeid.partition("::")
+    start = config.invocation_params.dir
+    path = os.path.relpath(config.rootpath / file, start)
+    kept = [word for name in ("-m", "-c", "--rootdir") for word in _given(config, name)]
+    return shlex.join(["pytest", *kept, f"{path}::{rest}", *options])
+
+
+def _given(config: pytest.Config, name: str) -> list[str]:
+    """An option of this run that decides which tests there are, with its value, if it was given."""
+    words = [str(word) for word in config.invocation_params.args]
+    for index, word in enumerate(words):
+        if word == name and index + 1 < len(words):
+            return [name, words[index + 1]]
+        if word.startswith(f"{name}=") or (len(name) == 2 and word.startswith(name) and len(word) > 2):
+            return [word]
+    return []

@@ -1,7 +1,7 @@
 """The pytest plugin: options, the fixture `mission`, and what is loaded only for tests that need it.
 
-A suite that has nothing to do with cfepy pays for some options and a look at its collected tests. Imports pytest, and
-nothing of cfepy before a test asks for a mission.
+A suite that does not use cfepy pays for some options and a look at its collected tests: what a mission needs is
+imported when a test asks for one.
 
 PYTEST_DONT_REWRITE: it is loaded by its entry point or by name, and pytest warns of one that was loaded in both ways.
 """
@@ -15,7 +15,7 @@ import pytest
 if TYPE_CHECKING:
     from cfepy.testing.missions import Missions
 
-EXPLORE_MARK = "cfepy_explore"
+EXPLORE_MARK = "cfepy_explore"  # as in `cfepy.testing.exploration`, which is loaded for tests that have it
 CURRENT = pytest.StashKey[pytest.Item]()
 """In the stash of the configuration: the test that runs."""
 
@@ -32,6 +32,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         " of several missions in one test with ';' between them. Tests with @explore are run under this one alone",
     )
     group.addoption("--cfepy-tasks", choices=["thread", "greenlet"], default=None, help="what missions' tasks run on")
+    stall = (
+        "seconds of wall time after which a task that does not give up the CPU fails its test; 0: never (default: 10)"
+    )
+    group.addoption("--cfepy-stall", type=float, default=None, metavar="SECONDS", help=stall)
+    parser.addini("cfepy_stall", f"as --cfepy-stall: {stall}", default="10")
     group.addoption("--cfepy-schedules", type=int, metavar="N", help="how many schedules each @explore goes through")
     group.addoption("--cfepy-record", metavar="DIR", help="keep journals of the missions of failed tests there")
     group.addoption("--cfepy-example", metavar="CODE", help="the Hypothesis example to run, as a failure tells it")
@@ -45,7 +50,7 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Load what tests with @explore need, if there are any."""
     if any(item.get_closest_marker(EXPLORE_MARK) for item in items):
-        from cfepy.testing.explored_tests import ExploredTests
+        from cfepy.testing.exploration import ExploredTests
 
         _add(config, "cfepy-explore", ExploredTests)
 

@@ -1,6 +1,8 @@
 """Time Services: one spacecraft time for all, set by ground and tone (cFE TIME).
 
-The five services do not import each other; what TIME needs of them it finds in its `Ports`.
+What belongs here makes, keeps or converts spacecraft time. The virtual time of the simulation does not; it belongs to
+the kernel (`cfepy.rtos`). The five services do not import each other; what TIME needs of the others it finds in its
+`Ports`.
 """
 
 from __future__ import annotations

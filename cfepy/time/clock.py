@@ -1,4 +1,4 @@
-"""The spacecraft clock: what was true at the last tone, and the time now that follows from it.
+"""The spacecraft clock: the values at the last tone, and the present time that follows from them.
 
 MET is the MET at the tone plus what the processor's own clock counted since, on a client also the delay of the tone on
 its way; TAI is MET plus STCF, and UTC is TAI less the leap seconds. The processor's clock is the kernel's virtual
@@ -14,8 +14,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from cfepy.rtos import Kernel
-from cfepy.rtos.units import NS_PER_S
 from cfepy.time.systime import MASK_64, SysTime, from_ticks, ticks_of_ns
+from cfepy.units import NS_PER_S
 
 CLOCK_INVALID, CLOCK_VALID, CLOCK_FLYWHEEL = -1, 0, 1
 """Clock states (CFE_TIME_ClockState_Enum_t)."""
@@ -29,7 +29,7 @@ class Reference:
     """What the time is computed from (CFE_TIME_ReferenceState_t); times in ticks of 2**-32 s.
 
     `met` and `latch` are MET and local clock at the last tone; `stcf` is added to MET to get TAI; `delay` is what the
-    tone needs to reach a client; `flying` means that nobody told the time lately, `was_set` that somebody said it is
+    tone needs to reach a client; `flying` means that no time was received lately, `was_set` that the time was declared
     right.
     """
 

@@ -1,7 +1,7 @@
-"""The commands of Time Services: what the ground may ask for, and what each answers (cfe_time_task.c).
+"""The commands of Time Services, and how each is answered (cfe_time_task.c).
 
 A server refuses commands for clients, a client those for servers, and both refuse to switch source or tone signal when
-they are not configured to; each in NASA's words. Imports no other service.
+they are not configured to; each in NASA's words.
 """
 
 from __future__ import annotations
@@ -10,10 +10,8 @@ from collections.abc import Callable
 from functools import partial
 
 from cfepy.core_app import Replies
-from cfepy.msg import CommandTable, Dispatch
-from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID
+from cfepy.msg import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, CommandTable, Dispatch
 from cfepy.ports import Ports
-from cfepy.rtos.units import US_PER_S
 from cfepy.time import events as ev
 from cfepy.time import packets as pk
 from cfepy.time.clock import ADD, CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID, SUBTRACT, SpacecraftTime
@@ -26,9 +24,10 @@ from cfepy.time.tone import (
     SIGNAL_REDUNDANT,
     SOURCE_EXTERNAL,
     SOURCE_INTERNAL,
-    Counters,
     Tone,
+    ToneCounters,
 )
+from cfepy.units import US_PER_S
 from cfepy.versions import version_string
 
 _STATES = {CLOCK_INVALID: "INVALID", CLOCK_VALID: "VALID", CLOCK_FLYWHEEL: "FLYWHEEL"}
@@ -121,7 +120,7 @@ class TimeCommands:
 
     def _reset_counters(self, packet: bytes) -> None:
         self.replies.reset()
-        self._tone.counters = Counters()
+        self._tone.counters = ToneCounters()
         self._version_at_reset = self._clock.version
         self.replies.send(ev.RESET_EID, "Reset Counters command", ev.DEBUG)
 

@@ -1,4 +1,4 @@
-"""Event ids of Time Services, with NASA's names and numbers (cfe_time_eventids.h). Imports only cfepy.ports."""
+"""Event ids of Time Services, with NASA's names and numbers (cfe_time_eventids.h)."""
 
 from __future__ import annotations
 

@@ -1,11 +1,8 @@
-"""Commands and telemetry of Time Services: message ids, function codes, layouts (default_cfe_time_msgstruct.h).
-
-Imports cfepy.msg.
-"""
+"""Commands and telemetry of Time Services: message ids, function codes, layouts (default_cfe_time_msgstruct.h)."""
 
 from __future__ import annotations
 
-from cfepy.msg import SYS_TIME, Command, Layout, Telemetry
+from cfepy.msg import SYS_TIME, Command, Layout, Telemetry, ValueNames
 
 CMD_MID = 0x1805
 SEND_HK_MID = 0x180D
@@ -33,13 +30,21 @@ ADD_ONE_HZ_ADJUSTMENT_CC = 13
 SUB_ONE_HZ_ADJUSTMENT_CC = 14
 SET_SIGNAL_CC = 15
 
+CLOCK_STATES = ValueNames("i16", INVALID=-1, VALID=0, FLYWHEEL=1)
+SOURCES = ValueNames("i16", INTERNAL=1, EXTERNAL=2)
+SIGNALS = ValueNames("i16", PRIMARY=1, REDUNDANT=2)
+SET_STATES = ValueNames("i16", NOT_SET=0, WAS_SET=1)
+FLYWHEEL_STATES = ValueNames("i16", NO_FLY=0, IS_FLY=1)
+DIRECTIONS = ValueNames("i16", ADD=1, SUBTRACT=2)
+"""The names of values (default_cfe_time_extern_typedefs.h)."""
+
 HOUSEKEEPING = Layout(
     "CFE_TIME_HousekeepingTlm_Payload_t",
     [
         ("CommandCounter", "u8"),
         ("CommandErrorCounter", "u8"),
         ("ClockStateFlags", "u16"),
-        ("ClockStateAPI", "i16"),
+        ("ClockStateAPI", CLOCK_STATES),
         ("LeapSeconds", "i16"),
         ("MET", SYS_TIME),
         ("STCF", SYS_TIME),
@@ -55,22 +60,22 @@ DIAGNOSTIC = Layout(
         ("AtToneDelay", SYS_TIME),
         ("AtToneLatch", SYS_TIME),
         ("AtToneLeapSeconds", "i16"),
-        ("ClockStateAPI", "i16"),
+        ("ClockStateAPI", CLOCK_STATES),
         ("TimeSinceTone", SYS_TIME),
         ("CurrentLatch", SYS_TIME),
         ("CurrentMET", SYS_TIME),
         ("CurrentTAI", SYS_TIME),
         ("CurrentUTC", SYS_TIME),
-        ("ClockSetState", "i16"),
-        ("ClockFlyState", "i16"),
-        ("ClockSource", "i16"),
-        ("ClockSignal", "i16"),
-        ("ServerFlyState", "i16"),
+        ("ClockSetState", SET_STATES),
+        ("ClockFlyState", FLYWHEEL_STATES),
+        ("ClockSource", SOURCES),
+        ("ClockSignal", SIGNALS),
+        ("ServerFlyState", FLYWHEEL_STATES),
         ("Forced2Fly", "i16"),
         ("ClockStateFlags", "u16"),
-        ("OneTimeDirection", "i16"),
-        ("OneHzDirection", "i16"),
-        ("DelayDirection", "i16"),
+        ("OneTimeDirection", DIRECTIONS),
+        ("OneHzDirection", DIRECTIONS),
+        ("DelayDirection", DIRECTIONS),
         ("OneTimeAdjust", SYS_TIME),
         ("OneHzAdjust", SYS_TIME),
         ("ToneSignalLatch", SYS_TIME),
@@ -97,14 +102,14 @@ DIAGNOSTIC = Layout(
 
 TONE_DATA = Layout(
     "CFE_TIME_ToneDataCmd_Payload_t",
-    [("AtToneMET", SYS_TIME), ("AtToneSTCF", SYS_TIME), ("AtToneLeapSeconds", "i16"), ("AtToneState", "i16")],
+    [("AtToneMET", SYS_TIME), ("AtToneSTCF", SYS_TIME), ("AtToneLeapSeconds", "i16"), ("AtToneState", CLOCK_STATES)],
 )
 
 TIME_COMMAND = Layout("CFE_TIME_TimeCmd_Payload_t", [("Seconds", "u32"), ("MicroSeconds", "u32")])
 ONE_HZ_COMMAND = Layout("CFE_TIME_OneHzAdjustmentCmd_Payload_t", [("Seconds", "u32"), ("Subseconds", "u32")])
-STATE_COMMAND = Layout("CFE_TIME_StateCmd_Payload_t", [("ClockState", "i16")])
-SOURCE_COMMAND = Layout("CFE_TIME_SourceCmd_Payload_t", [("TimeSource", "i16")])
-SIGNAL_COMMAND = Layout("CFE_TIME_SignalCmd_Payload_t", [("ToneSource", "i16")])
+STATE_COMMAND = Layout("CFE_TIME_StateCmd_Payload_t", [("ClockState", CLOCK_STATES)])
+SOURCE_COMMAND = Layout("CFE_TIME_SourceCmd_Payload_t", [("TimeSource", SOURCES)])
+SIGNAL_COMMAND = Layout("CFE_TIME_SignalCmd_Payload_t", [("ToneSource", SIGNALS)])
 LEAPS_COMMAND = Layout("CFE_TIME_LeapsCmd_Payload_t", [("LeapSeconds", "i16")])
 
 RESET_VARS = Layout(

@@ -1,6 +1,6 @@
 """What outlives a processor reset: MET, STCF, tone delay, leap seconds and tone signal, in the bytes that C has.
 
-Stands for CFE_TIME_QueryResetVars and CFE_TIME_UpdateResetVars. Imports no other service.
+Stands for CFE_TIME_QueryResetVars and CFE_TIME_UpdateResetVars.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any
 from cfepy.time.clock import SpacecraftTime
 from cfepy.time.packets import RESET_VARS
 from cfepy.time.settings import TimeSettings
-from cfepy.time.telemetry import fields_of, ticks_of
+from cfepy.time.systime import fields_of, ticks_of
 from cfepy.time.tone import SIGNAL_PRIMARY, SIGNAL_REDUNDANT, Tone
 
 KEPT = "TIME"
@@ -44,7 +44,7 @@ def start(kept: dict[str, Any], clock: SpacecraftTime, tone: Tone, settings: Tim
 
 
 def save(kept: dict[str, Any], clock: SpacecraftTime, tone: Tone) -> None:
-    """Keep the values of now; MET without the tone's delay, which is kept beside it."""
+    """Keep the values of now; MET without the tone's delay, which is kept separately."""
     reference = clock.reference
     kept[KEPT] = RESET_VARS.pack(
         Signature=SIGNATURE,

@@ -1,6 +1,6 @@
 """Time Services as applications and the other services call them (cfe_time.h).
 
-MET, STCF, leap seconds, TAI and UTC on the kernel's virtual time. Imports no other service.
+MET, STCF, leap seconds, TAI and UTC on the kernel's virtual time.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from cfepy.config import PlatformConfig
 from cfepy.ids import ES_APPID_BASE, to_index
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel, Semaphore
-from cfepy.rtos.units import NS_PER_S
 from cfepy.status import (
     CFE_TIME_BAD_ARGUMENT,
     CFE_TIME_CALLBACK_NOT_REGISTERED,
@@ -28,8 +27,8 @@ from cfepy.time.settings import TimeSettings
 from cfepy.time.systime import SysTime, from_ticks
 from cfepy.time.task import TimeTask
 from cfepy.time.telemetry import clock_info
-from cfepy.time.tone import Tone
-from cfepy.time.tone_data import ToneDataSender
+from cfepy.time.tone import Tone, ToneDataSender
+from cfepy.units import NS_PER_S
 
 SynchCallback = Callable[[], object]
 

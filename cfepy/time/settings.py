@@ -1,7 +1,6 @@
 """How Time Services is configured: server or client, where tone and time come from, and the limits, as TIME needs them.
 
-Stands for cfe_time_verify.h and the constants that CFE_TIME_InitData works out. Imports cfepy.config,
-cfepy.rtos.units and cfepy.status.
+Stands for cfe_time_verify.h and the constants that CFE_TIME_InitData works out.
 """
 
 from __future__ import annotations
@@ -9,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cfepy.config import PlatformConfig
-from cfepy.rtos.units import US_PER_S
 from cfepy.status import UsageError
 from cfepy.time.systime import SysTime, micro2sub_secs, to_ticks
+from cfepy.units import US_PER_S
 
 SOURCES = ("met", "gps", "time")
 

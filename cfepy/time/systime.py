@@ -1,17 +1,18 @@
-"""Spacecraft time values and their arithmetic (CFE_TIME_SysTime_t, CFE_TIME_Add and relatives).
+"""Spacecraft time values and their arithmetic (CFE_TIME_SysTime_t, CFE_TIME_Add and the like).
 
 A time is 32 bits of seconds and 32 bits of 2**-32 s. Within Time Services one 64-bit integer of 2**-32 s stands for it,
-here called ticks, so that adding, carrying and rolling over are a single addition. Pure functions; imports only
-cfepy.rtos.units and cfepy.status.
+here called ticks, so that adding, carrying and rolling over are a single addition. Pure functions.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
-from cfepy.rtos.units import NS_PER_S, US_PER_S
+from cfepy.msg import sys_time_fields
 from cfepy.status import CFE_TIME_BAD_ARGUMENT, CfeError
+from cfepy.units import NS_PER_S, US_PER_S
 
 MASK_32 = 0xFFFFFFFF
 MASK_64 = 0xFFFFFFFFFFFFFFFF
@@ -126,3 +127,13 @@ def _date(days: int) -> str:
 def _days_of(year: int) -> int:
     is_leap = year % 4 == 0 and (year % 100 != 0 or year % 400 == 0)
     return 366 if is_leap else 365
+
+
+def fields_of(ticks: int) -> dict[str, int]:
+    """A time as the fields of CFE_TIME_SysTime_t."""
+    return sys_time_fields(from_ticks(ticks))
+
+
+def ticks_of(fields: Mapping[str, int]) -> int:
+    """The time that the fields of a CFE_TIME_SysTime_t are, in ticks."""
+    return to_ticks((fields["Seconds"], fields["Subseconds"]))

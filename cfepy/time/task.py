@@ -1,7 +1,7 @@
-"""The tasks of Time Services: CFE_TIME itself, one that tells of every tone, and one that tells of every second.
+"""The tasks of Time Services: CFE_TIME itself, one that announces every tone, and one that announces every second.
 
 A timer gives the local 1 Hz signal at the whole seconds of MET. Stands for CFE_TIME_TaskMain, CFE_TIME_Tone1HzTask,
-CFE_TIME_Local1HzTask and the timer "cFS-1Hz". Imports no other service.
+CFE_TIME_Local1HzTask and the timer "cFS-1Hz".
 """
 
 from __future__ import annotations
@@ -10,15 +10,13 @@ from cfepy.config import PlatformConfig
 from cfepy.core_app import serve
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel, Semaphore
-from cfepy.rtos.units import NS_PER_S
 from cfepy.time import events as ev
 from cfepy.time import packets as pk
 from cfepy.time.commands import TimeCommands
 from cfepy.time.settings import TimeSettings
-from cfepy.time.systime import ticks_of_ns
-from cfepy.time.telemetry import ticks_of
-from cfepy.time.tone import SECOND, Tone, ToneData
-from cfepy.time.tone_data import ToneDataSender
+from cfepy.time.systime import ticks_of, ticks_of_ns
+from cfepy.time.tone import SECOND, Tone, ToneData, ToneDataSender
+from cfepy.units import NS_PER_S
 from cfepy.versions import version_string
 
 PIPE_DEPTH = 12

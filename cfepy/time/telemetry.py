@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from cfepy.core_app import Replies
 from cfepy.msg import sys_time_fields
 from cfepy.time.clock import ADD, SpacecraftTime
-from cfepy.time.systime import MASK_32, from_ticks, to_ticks
+from cfepy.time.systime import MASK_32, fields_of
 from cfepy.time.tone import SIGNAL_PRIMARY, SOURCE_INTERNAL, Tone
 
 FLAG_CLKSET = 0x8000
@@ -45,16 +45,6 @@ def clock_info(clock: SpacecraftTime, tone: Tone) -> int:
         if is_set:
             flags |= flag
     return flags
-
-
-def fields_of(ticks: int) -> dict[str, int]:
-    """A time as the fields of CFE_TIME_SysTime_t."""
-    return sys_time_fields(from_ticks(ticks))
-
-
-def ticks_of(fields: Mapping[str, int]) -> int:
-    """The time that the fields of a CFE_TIME_SysTime_t are, in ticks."""
-    return to_ticks((fields["Seconds"], fields["Subseconds"]))
 
 
 def housekeeping(clock: SpacecraftTime, tone: Tone, replies: Replies) -> Mapping[str, object]:

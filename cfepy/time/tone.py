@@ -5,7 +5,9 @@ an external source takes MET or STCF from the message; a client takes all of the
 CFE_TIME_ToneVerify, CFE_TIME_ToneUpdate, CFE_TIME_Local1HzStateMachine). Without a good pair for some seconds the clock
 goes on by itself, which is called flywheel mode. A simulated tone is taken at the instant its interrupt was due, not
 when the task got round to it: on a real processor that delay shakes the time and makes flywheel mode come and go.
-Imports no other service.
+
+A server sends the message itself: its own time, or that of an external source (CFE_TIME_ToneSend, CFE_TIME_ToneSendMET,
+CFE_TIME_ToneSendGPS, CFE_TIME_ToneSendTime).
 """
 
 from __future__ import annotations
@@ -14,10 +16,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from cfepy.ports import Ports
+from cfepy.time import packets as pk
 from cfepy.time.clock import ADD, CLOCK_FLYWHEEL, CLOCK_INVALID, SpacecraftTime
 from cfepy.time.events import FLY_OFF_EID, INFORMATION
 from cfepy.time.settings import TimeSettings
-from cfepy.time.systime import MASK_32
+from cfepy.time.systime import A_GT_B, A_LT_B, MASK_32, add, compare, fields_of, from_ticks, subtract, to_ticks
 
 SECOND = 1 << 32
 TONE_PERF_ID = 7
@@ -27,9 +30,11 @@ SOURCE_INTERNAL, SOURCE_EXTERNAL = 1, 2
 SIGNAL_PRIMARY, SIGNAL_REDUNDANT = 1, 2
 """Where the tone comes from (CFE_TIME_ToneSignalSelect_Enum_t)."""
 
+SEND_MET_PERF_ID = 9
+
 
 @dataclass(slots=True)
-class Counters:
+class ToneCounters:
     """Counts of the diagnostic packet that the reset command clears."""
 
     tone_match: int = 0
@@ -69,10 +74,10 @@ class Tone:
 
     Args:
         clock: what it sets.
-        settings: who this processor is, and the windows that tones and messages must keep to.
+        settings: the role of this processor, and the windows that tones and messages must keep to.
         ports: for its events.
-        give_tone: wakes the task that tells everybody about the tone.
-        notify: calls those who asked to be told of every tone.
+        give_tone: wakes the task that announces the tone.
+        notify: calls the functions that were registered for every tone.
 
     Attributes:
         source: SOURCE_INTERNAL or SOURCE_EXTERNAL.
@@ -90,7 +95,7 @@ class Tone:
     ports: Ports
     give_tone: Callable[[], object]
     notify: Callable[[], object]
-    counters: Counters = field(default_factory=Counters)
+    counters: ToneCounters = field(default_factory=ToneCounters)
     adjustments: Adjustments = field(default_factory=Adjustments)
     source: int = field(init=False)
     signal: int = SIGNAL_PRIMARY
@@ -187,7 +192,7 @@ class Tone:
         }
 
     def one_hz(self) -> None:
-        """What is to be done every second before its tone (CFE_TIME_Local1HzStateMachine)."""
+        """Do what comes every second before its tone (CFE_TIME_Local1HzStateMachine)."""
         clock, adjustments = self.clock, self.adjustments
         if adjustments.one_hz:
             self.adjust(adjustments.one_hz, adjustments.one_hz_direction)
@@ -207,3 +212,74 @@ class Tone:
     def adjust(self, ticks: int, direction: int) -> None:
         """Add to STCF, or take away."""
         self.clock.update(stcf=self.clock.reference.stcf + (ticks if direction == ADD else -ticks))
+
+
+class ToneDataSender:
+    """Sends the message.
+
+    Args:
+        ports: the bus, and the performance log.
+        clock: the time.
+        tone: counts MET, and knows which source is selected.
+        settings: whether the message is about the next tone, and how far off an external time may be.
+    """
+
+    def __init__(self, ports: Ports, clock: SpacecraftTime, tone: Tone, settings: TimeSettings) -> None:
+        self._ports = ports
+        self._clock = clock
+        self._tone = tone
+        self._settings = settings
+
+    def send(self) -> None:
+        """Send the server's own time."""
+        reference = self._clock.reference
+        met = self._clock.current_met() >> 32 if reference.flying else self._tone.virtual_met
+        self._transmit(met + self._settings.will_be << 32, reference.stcf, reference.leap_seconds)
+
+    def send_met(self, met: tuple[int, int]) -> None:
+        """Send an external MET, or the own time when the MET is not wanted or not to be believed."""
+        self._ports.es.perf_log_entry(SEND_MET_PERF_ID)
+        reference = self._clock.reference
+        if self._is_wanted(met, from_ticks(self._met_at_tone())):
+            self._transmit(to_ticks(met), reference.stcf, reference.leap_seconds)
+        else:
+            self.send()
+        self._ports.es.perf_log_exit(SEND_MET_PERF_ID)
+
+    def send_time(self, time: tuple[int, int], leap_seconds: int | None = None) -> None:
+        """Send what makes an external spacecraft time come true, or the own time when that is not wanted or believed.
+
+        Args:
+            time: at the tone.
+            leap_seconds: that go with it; None keeps the own ones.
+        """
+        reference = self._clock.reference
+        leaps = reference.leap_seconds if leap_seconds is None else leap_seconds
+        met = self._met_at_tone()
+        stcf = to_ticks(time) - met + (leaps << 32 if self._settings.utc else 0)
+        if self._is_wanted(from_ticks(stcf), from_ticks(reference.stcf)):
+            self._transmit(met, stcf, leaps)
+        else:
+            self.send()
+
+    def _met_at_tone(self) -> int:
+        """Whole seconds of MET at the tone that the message is about, in ticks."""
+        return (self._clock.current_met() >> 32) + self._settings.will_be << 32
+
+    def _is_wanted(self, given: tuple[int, int], expected: tuple[int, int]) -> bool:
+        """Whether an external source is selected, and a set clock would not be changed by too much."""
+        if self._tone.source == SOURCE_INTERNAL:
+            return False
+        delta = self._settings.max_delta
+        is_early = compare(given, subtract(expected, delta)) == A_LT_B
+        is_late = compare(given, add(expected, delta)) == A_GT_B
+        return not self._clock.reference.was_set or not (is_early or is_late)
+
+    def _transmit(self, met: int, stcf: int, leap_seconds: int) -> None:
+        packet = pk.DATA_CMD.packet(
+            AtToneMET=fields_of(met),
+            AtToneSTCF=fields_of(stcf),
+            AtToneLeapSeconds=leap_seconds,
+            AtToneState=self._clock.state(),
+        )
+        self._ports.sb.transmit_msg(packet)

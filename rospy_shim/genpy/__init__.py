@@ -1,7 +1,7 @@
 """The part of ROS 1's genpy that nodes see: times, the message base class and its errors.
 
-A node imports it as `genpy` (`rospy_shim.msgs.make_module("genpy")`). Message classes themselves are generated in
-`rospy_shim.msgs`. Imports nothing of cfepy.
+What belongs here is what a node imports as `genpy` (`rospy_shim.msgs.make_module("genpy")`). The message classes
+themselves are generated in `rospy_shim.msgs`.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 """`fill_message_args` and `get_printable_message_args` of genpy.message: YAML-like values into a message, and its field
-names for a usage line. Command-line tools and some nodes use them. Imports nothing of cfepy.
+names for a usage line. Command-line tools and some nodes use them.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Why a field cannot be serialized: `check_type`, as genpy.message runs it after packing has failed.
 
 The rules are genpy's, gaps included: a fixed array's length is not looked at, and a str is accepted as uint8[]. Never
-on the hot path. Imports nothing of cfepy.
+on the hot path.
 """
 
 from __future__ import annotations

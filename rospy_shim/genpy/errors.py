@@ -1,4 +1,4 @@
-"""The three message errors of genpy.message, and what becomes of text that is not UTF-8. Imports nothing of cfepy."""
+"""The three message errors of genpy.message, and how text that is not UTF-8 is handled."""
 
 from __future__ import annotations
 

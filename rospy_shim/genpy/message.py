@@ -1,13 +1,14 @@
 """`Message`, the base of every generated message class, as genpy.message has it.
 
 What generated code adds is in `rospy_shim.msgs`; here is what all classes share: filling in arguments, comparison,
-text, copying and the check that follows a failed serialization. Imports nothing of cfepy.
+text, copying and the check that follows a failed serialization.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from io import BytesIO
-from typing import Any, BinaryIO, ClassVar
+from typing import TYPE_CHECKING, Any, BinaryIO, ClassVar
 
 from rospy_shim.genpy.checks import check_type
 from rospy_shim.genpy.errors import SerializationError
@@ -24,11 +25,13 @@ class Message:
     _md5sum: ClassVar[str]
     _slot_types: ClassVar[list[str]]
     _full_text: ClassVar[str]
+    _has_header: ClassVar[bool]  # of classes that are made here; those of genpy's sources have it too
+    _connection_header: dict[str, str]
 
     # A class made by the generator names itself here, so that it can be pickled where no "std_msgs" is importable.
-    _restore_as: ClassVar[tuple[type, Any] | None] = None
+    _restore_as: ClassVar[tuple[type[Message], Callable[[str], Message]] | None] = None
     # How many messages are in the arrays of one; None for a type that has no such arrays.
-    _count_items: ClassVar[Any] = None
+    _count_items: ClassVar[Callable[[Message], int] | None] = None
 
     def __init__(self, *args: Any, **kwds: Any) -> None:
         """Set all fields from positional arguments, or some of them by name; the rest become None.
@@ -96,6 +99,12 @@ class Message:
         if known is not None and known[0] is type(self):
             return known[1], (self._type,), self.__getstate__()
         return super().__reduce_ex__(protocol)
+
+    if TYPE_CHECKING:  # the fields of a type are known when its class is made
+
+        def __getattr__(self, name: str) -> Any: ...
+
+        def __setattr__(self, name: str, value: Any) -> None: ...
 
     def __repr__(self) -> str:
         return strify_message(self)

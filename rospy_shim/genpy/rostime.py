@@ -2,7 +2,7 @@
 
 Arithmetic, comparison and rounding are those of genpy 0.6 (pinned by recorded behaviour in the tests), also where they
 surprise: the difference of two Times is a plain genpy Duration while everything else keeps the class of the operand, a
-Time is never negative, and `Time(1) > Duration(1)` is a TypeError. Imports nothing of cfepy.
+Time is never negative, and `Time(1) > Duration(1)` is a TypeError.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Messages as text: `strify_message`, what `str(msg)`, `print(msg)` and `rostopic echo` show.
 
 The layout is genpy's: YAML-like, nested messages indented by two spaces, strings in double quotes, nanoseconds padded
-to nine places. PyYAML is imported only for strings that need escapes and for lists of strings. Imports
-nothing of cfepy.
+to nine places. PyYAML is loaded only for strings that need escapes and for lists of strings.
 """
 
 from __future__ import annotations

@@ -1,13 +1,12 @@
 """ROS's XML-RPC side of a mission: the master (rosmaster) and the nodes' slave API, found by URI without a network.
 
-`Switchboard` knows who answers at which URI; `xmlrpc_client` gives a node the `xmlrpc.client` that asks there. May
-import cfepy.nodes and rospy_shim.
+What belongs here answers XML-RPC calls or carries them: `Switchboard` knows which object answers at which URI;
+`xmlrpc_client` gives a node the `xmlrpc.client` that asks there. The graph itself belongs to `rospy_shim.graph`.
 """
 
 from __future__ import annotations
 
 from rospy_shim.master.proxy import make_get_master, make_master_proxy
-from rospy_shim.master.switchboard import MASTER_PORT, Switchboard
-from rospy_shim.master.xmlrpc_client import xmlrpc_client
+from rospy_shim.master.switchboard import MASTER_PORT, Switchboard, xmlrpc_client
 
 __all__ = ["MASTER_PORT", "Switchboard", "make_get_master", "make_master_proxy", "xmlrpc_client"]

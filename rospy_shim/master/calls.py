@@ -1,6 +1,6 @@
 """Calls of ROS's XML-RPC APIs: checks of the arguments, and the triple of code, text and value that is the answer.
 
-An API is a class whose methods are declared with `answers`. Imports nothing of cfepy.
+An API is a class whose methods are declared with `answers`.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from rospy_shim.names import ANYTYPE, PRIV_NAME, SEP, canonicalize_name
+from rospy_shim.client.names import ANYTYPE, PRIV_NAME, SEP, canonicalize_name
 
 Answer = tuple[int, str, Any]
 """Code (1 success, 0 failure, -1 error of the caller), text, value (wiki.ros.org/ROS/Master_API)."""

@@ -1,21 +1,21 @@
 """The master and the parameter server of a mission, with rosmaster's codes and texts.
 
-Source: wiki.ros.org/ROS/Master_API and wiki.ros.org/ROS/Parameter%20Server%20API. Imports nothing of cfepy.
+Source: wiki.ros.org/ROS/Master_API and wiki.ros.org/ROS/Parameter%20Server%20API.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rospy_shim.client.names import PRIV_NAME, SEP
 from rospy_shim.master import calls
 from rospy_shim.master.calls import Answer, answers
-from rospy_shim.master.registry import Entries, Registry
-from rospy_shim.names import PRIV_NAME, SEP
-from rospy_shim.parameter_tree import ParameterTree
-from rospy_shim.parameter_values import marshalled
+from rospy_shim.master.registrations import Entries, Registrations
+from rospy_shim.parameters.tree import ParameterTree
+from rospy_shim.parameters.values import marshalled
 
 if TYPE_CHECKING:
-    from rospy_shim.graph import Graph
+    from rospy_shim.graph.graph import Graph
 
 MASTER_PID = 100  # of a process that there is not
 
@@ -30,7 +30,7 @@ class MasterApi:
 
     def __init__(self, graph: Graph, uri: str) -> None:
         self._params: ParameterTree = graph.params
-        self._registry = Registry(graph)
+        self._registry = Registrations(graph)
         self._uri = uri
 
     @answers("")
@@ -119,7 +119,7 @@ class MasterApi:
         return 1, f"Unsubscribe to parameter [{key}]", 1
 
     def subscribes_to_param(self, uri: str, key: str) -> bool:
-        """Whether somebody at a URI has subscribed to a parameter."""
+        """Whether a node at a URI has subscribed to a parameter."""
         return uri in self._registry.param_subscribers.get(key, {}).values()
 
     # -- the graph ---------------------------------------------------------------------------------------------------
@@ -138,7 +138,7 @@ class MasterApi:
 
     @answers(0, calls.name_or_nothing("subgraph"))
     def getPublishedTopics(self, caller: str, subgraph: str) -> Answer:
-        """[topic, type] of all topics below a namespace that somebody publishes."""
+        """[topic, type] of all topics below a namespace that a node publishes."""
         prefix = subgraph.rstrip(SEP) + SEP if subgraph else ""
         types = self._registry.topic_types()
         return (
@@ -193,7 +193,7 @@ class MasterApi:
 
     @answers(0, calls.name_of_thing("service"), calls.address("service_api"))
     def unregisterService(self, caller: str, service: str, service_uri: str) -> Answer:
-        """Forget the provider of a service; nobody can call it any more."""
+        """Forget the provider of a service, which cannot be called any more."""
         if not self._is_known(caller):
             return 1, f"[{caller}] is not a registered node", 0
         providers = self._registry.providers().get(service, {})

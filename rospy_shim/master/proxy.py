@@ -1,17 +1,14 @@
-"""`rospy.msproxy.MasterProxy` and `rospy.get_master`: the master with the node's name and remappings filled in.
-
-Imports nothing of cfepy.
-"""
+"""`rospy.msproxy.MasterProxy` and `rospy.get_master`: the master with the node's name and remappings filled in."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rospy_shim.exceptions import ROSException
+from rospy_shim.client.exceptions import ROSException
 
 if TYPE_CHECKING:
-    from rospy_shim.node import Node
+    from rospy_shim.client.node import Node
 
 # Methods whose first argument is a name that the node's remappings apply to.
 # fmt: off

@@ -1,7 +1,4 @@
-"""What a node answers when it is asked at its URI (wiki.ros.org/ROS/Slave_API), with rospy's codes and texts.
-
-Imports nothing of cfepy.
-"""
+"""The answers of a node to calls at its URI (wiki.ros.org/ROS/Slave_API), with rospy's codes and texts."""
 
 from __future__ import annotations
 
@@ -11,11 +8,12 @@ from urllib.parse import urlsplit
 
 from rospy_shim.master import calls
 from rospy_shim.master.calls import Answer, InvalidArgument, answers
-from rospy_shim.master.registry import uri_of
+from rospy_shim.master.registrations import uri_of
 
 if TYPE_CHECKING:
+    from rospy_shim.client.node import Node
+    from rospy_shim.client.topic_side import TopicSide
     from rospy_shim.master.master_api import MasterApi
-    from rospy_shim.node import Node
 
 TRANSPORT = "cFE SB"  # in place of TCPROS
 
@@ -99,7 +97,7 @@ class SlaveApi:
         """[number, other side, direction, transport, topic, connected, text] for each connection."""
         return 1, "bus info", [[number, *each] for number, each in enumerate(self._connections(), 1)]
 
-    def _connections(self) -> Iterable[tuple[Any, ...]]:
+    def _connections(self) -> Iterable[tuple[str, str, str, str, bool, str]]:
         for name, link in self._node.links.items():
             for each in link.topic.subscriptions if link.topic is not None else ():
                 text = f"{TRANSPORT} connection on MsgId 0x{link.msg_id:04X} to [{each.node.names.name}]"
@@ -161,7 +159,7 @@ class SlaveApi:
         return -1, f"Not a provider of [{service}]", {}
 
 
-def _types(sides: Iterable[tuple[str, Any]]) -> list[list[str]]:
+def _types(sides: Iterable[tuple[str, TopicSide]]) -> list[list[str]]:
     return [[name, side.data_class._type] for name, side in sides]
 
 

@@ -1,23 +1,36 @@
-"""Who answers at which URI: the master, and the nodes of the mission.
+"""Which object answers at which URI, the master or a node of the mission, and the `xmlrpc.client` that nodes use.
 
-Imports nothing of cfepy.
+That module is Python's own, whose requests to the master and to nodes go to the switchboard. Requests and answers are
+marshalled by the module itself, so that what can be sent, what comes out at the other side and which errors there are
+is XML-RPC's. Requests to others go over HTTP, if the mission has a network.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import errno
+import importlib.util
+import os
+from collections.abc import Callable
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
+from cfepy.nodes.refused import RefusedError
+from rospy_shim.master.calls import UnknownMethod, call
 from rospy_shim.master.master_api import MasterApi
-from rospy_shim.master.registry import uri_of
+from rospy_shim.master.registrations import uri_of
 from rospy_shim.master.slave_api import SlaveApi
+from rospy_shim.parameters.values import DateTime
 
 if TYPE_CHECKING:
-    from rospy_shim.graph import Graph
-    from rospy_shim.node import Node
+    from cfepy.nodes import Universe
+    from rospy_shim.client.node import Node
+    from rospy_shim.graph.graph import Graph
 
 MASTER_PORT = 11311
 HERE = frozenset({"cfepy", "localhost", "127.0.0.1", "127.0.1.1", "[::1]"})
+NAME = "xmlrpc.client"
+ROUND_TRIP_NS = 500_000  # about what a request takes on one computer; a loop that asks until something is there gets on
 
 
 class Switchboard:
@@ -32,7 +45,7 @@ class Switchboard:
         self._master = MasterApi(graph, f"http://cfepy:{MASTER_PORT}/")
 
     def find(self, asker: Node, address: str) -> MasterApi | SlaveApi | None:
-        """Who answers, or None.
+        """The object that answers, or None.
 
         Args:
             asker: the node that asks; its ROS_MASTER_URI names the master, whatever host that is.
@@ -58,3 +71,71 @@ def _place(address: str) -> tuple[str, str]:
     """Host and port; all names of this machine are one."""
     host, _, port = address.rpartition("@")[2].rpartition(":")
     return ("cfepy" if host in HERE else host), port
+
+
+def xmlrpc_client(node: Node, switchboard: Switchboard) -> Callable[[Universe], ModuleType]:
+    """The factory of a node's `xmlrpc.client`.
+
+    Args:
+        node: the caller.
+        switchboard: finds the object to call.
+    """
+
+    def make(universe: Universe) -> ModuleType:
+        spec = importlib.util.find_spec(NAME)
+        if spec is None or spec.origin is None:
+            raise ModuleNotFoundError(f"No module named {NAME!r}", name=NAME)
+        module = universe.importer.load_file(NAME, spec.origin)
+        vars(module)["Transport"].request = _request(node, switchboard, module)
+        vars(module)["WRAPPERS"] += (DateTime,)  # can be marshalled, too
+        return module
+
+    return make
+
+
+def _request(node: Node, switchboard: Switchboard, module: Any) -> Callable[..., Any]:
+    """`Transport.request` on the switchboard."""
+    over_http = vars(module)["Transport"].request
+
+    def request(self: Any, host: Any, handler: str, request_body: bytes, verbose: bool = False) -> Any:
+        node.kernel.charge(ROUND_TRIP_NS)
+        address, _, _ = self.get_host_info(host)
+        api = switchboard.find(node, address)
+        if api is None:
+            try:
+                return over_http(self, host, handler, request_body, verbose)
+            except RefusedError:  # without a network no program listens anywhere
+                raise ConnectionRefusedError(errno.ECONNREFUSED, os.strerror(errno.ECONNREFUSED)) from None
+        answer = _answer(module, api, request_body)
+        parser, unmarshaller = self.getparser()
+        parser.feed(answer.encode("utf-8", "xmlcharrefreplace"))
+        parser.close()
+        return unmarshaller.close()
+
+    return request
+
+
+def _answer(module: Any, api: object, body: bytes) -> str:
+    """What an XML-RPC server sends back."""
+    arguments, method = module.loads(body, use_builtin_types=True)
+    try:
+        if method == "system.multicall":
+            result: Any = [_one_of_many(module, api, each) for each in arguments[0]]
+        else:
+            result = call(api, method, arguments)
+        return str(module.dumps((result,), methodresponse=True))
+    except Exception as error:
+        return str(module.dumps(_fault(module, error), methodresponse=True))
+
+
+def _one_of_many(module: Any, api: object, request: dict[str, Any]) -> Any:
+    try:
+        return [call(api, request["methodName"], request["params"])]
+    except Exception as error:
+        fault = _fault(module, error)
+        return {"faultCode": fault.faultCode, "faultString": fault.faultString}
+
+
+def _fault(module: Any, error: Exception) -> Any:
+    kind = Exception if isinstance(error, UnknownMethod) else type(error)
+    return module.Fault(1, f"{kind}:{error}")

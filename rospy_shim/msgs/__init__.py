@@ -5,20 +5,24 @@
     data: "hello"
 
 Inside a node the same classes are found the usual way (`from std_msgs.msg import String`), through `make_module`.
+
+What a message type is and how it is encoded belongs here; times and the base class of messages are in
+`rospy_shim.genpy`, what rospy adds to a message in `rospy_shim.client.message`.
 """
 
 from __future__ import annotations
 
 from types import ModuleType
 
-from rospy_shim.msgs.classes import MessageClass
+from rospy_shim.msgs.checking import DefinitionFault, check_definitions
+from rospy_shim.msgs.classes import MessageClass, ServiceClass
 from rospy_shim.msgs.library import Library, from_full_text, library_of, shipped
 from rospy_shim.msgs.modules import generate_dynamic, make_module
 from rospy_shim.msgs.packages import Packages
-from rospy_shim.msgs.services import ServiceClass
 from rospy_shim.msgs.sources import OnDisk, Shipped, Source
 
 __all__ = [
+    "DefinitionFault",
     "Library",
     "MessageClass",
     "OnDisk",
@@ -26,6 +30,7 @@ __all__ = [
     "ServiceClass",
     "Shipped",
     "Source",
+    "check_definitions",
     "from_full_text",
     "generate_dynamic",
     "library_of",

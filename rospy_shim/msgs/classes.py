@@ -1,25 +1,56 @@
-"""Message classes: what genpy writes into a package's Python files, made in memory from a `Spec`.
+"""Message and service classes: what genpy writes into a package's Python files, made in memory from a `Spec`.
 
-A class carries genpy's public face (`_type`, `_md5sum`, `__slots__`, `serialize`, ...) and two functions of our own
-that the publisher and the subscriber use: `_pack(msg) -> bytes` and `_unpack(data, at=0) -> msg`. Functions that are
-seldom called are compiled at their first call. Imports nothing of cfepy.
+A message class carries genpy's public face (`_type`, `_md5sum`, `__slots__`, `serialize`, ...) and two functions of our
+own that the publisher and the subscriber use: `_pack(msg) -> bytes` and `_unpack(data, at=0) -> msg`. Functions that
+are seldom called are compiled at their first call. A service class holds a request and a response class.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
 
 from rospy_shim.genpy.message import Message
 from rospy_shim.msgs.decoder import Form, unpack_source
 from rospy_shim.msgs.encoder import pack_source
-from rospy_shim.msgs.namespace import Lines, Namespace
+from rospy_shim.msgs.namespace import CodeLines, Namespace
 from rospy_shim.msgs.reference import explain
-from rospy_shim.msgs.spec import PRIMITIVES, Field, Spec
+from rospy_shim.msgs.spec import PRIMITIVES, Field, Spec, hash_text
 
-MessageClass = Any
-"""A generated class: its attributes are known at run time only."""
+MessageClass = type[Message]
+"""A generated class; what its messages have for fields is known at run time only."""
+
+
+class ServiceClass(Protocol):
+    """A generated class of a service."""
+
+    _type: str
+    _md5sum: str
+    _request_class: MessageClass
+    _response_class: MessageClass
+
+
+def build_service(
+    full_name: str, module: str, md5_texts: Sequence[str], request: MessageClass, response: MessageClass
+) -> ServiceClass:
+    """Make the class of a service type.
+
+    Args:
+        full_name: "package/Name".
+        module: value of `__module__`, e.g. "std_srvs.srv._SetBool".
+        md5_texts: of request and response; hashed together they are the service's md5sum.
+        request: class of the request.
+        response: class of the response.
+    """
+    body = {
+        "__module__": module,
+        "_type": full_name,
+        "_md5sum": hash_text("".join(md5_texts)),
+        "_request_class": request,
+        "_response_class": response,
+    }
+    return cast(ServiceClass, type(full_name.rpartition("/")[2], (), body))
 
 
 class TypeTable(Protocol):
@@ -38,7 +69,7 @@ class TypeTable(Protocol):
         """Its class."""
 
 
-def build_class(spec: Spec, table: TypeTable, restore: Callable[[str], Any] | None, module: str) -> MessageClass:
+def build_class(spec: Spec, table: TypeTable, restore: Callable[[str], Message] | None, module: str) -> MessageClass:
     """Make the class of a message type.
 
     Args:
@@ -73,7 +104,7 @@ def build_class(spec: Spec, table: TypeTable, restore: Callable[[str], Any] | No
     return cls
 
 
-def serialize(self: MessageClass, buff: Any) -> None:
+def serialize(self: Message, buff: Any) -> None:
     """Write the message to a file-like object.
 
     Raises:
@@ -82,7 +113,7 @@ def serialize(self: MessageClass, buff: Any) -> None:
     buff.write(self._pack())
 
 
-def serialize_numpy(self: MessageClass, buff: Any, numpy: Any) -> None:
+def serialize_numpy(self: Message, buff: Any, numpy: Any) -> None:
     """Write a message whose number arrays are numpy arrays; `numpy` is the module.
 
     Raises:
@@ -101,14 +132,15 @@ def _add_readers(cls: MessageClass, spec: Spec, table: TypeTable, names: Namespa
     def reader(form: Form) -> list[str]:
         return unpack_source(spec, table.spec, table.message_class, names, form)
 
-    cls._unpack = classmethod(_function(spec, names, reader(Form.UNPACK), "_unpack"))
+    unpack = classmethod(_function(spec, names, reader(Form.UNPACK), "_unpack"))
+    cls._unpack = unpack  # type: ignore[method-assign, assignment]  # in place of the slow one of the base
     _compile_later(cls, spec, names, "deserialize", partial(reader, Form.DESERIALIZE))
     _compile_later(cls, spec, names, "deserialize_numpy", partial(reader, Form.DESERIALIZE_NUMPY))
     with_numpy = partial(pack_source, spec, table.spec, names, with_numpy=True)
     _compile_later(cls, spec, names, "_pack_numpy", with_numpy)
 
 
-def _counter(spec: Spec, table: TypeTable, names: Namespace) -> Callable[[MessageClass], int] | None:
+def _counter(spec: Spec, table: TypeTable, names: Namespace) -> Callable[[Message], int] | None:
     """What counts the messages in a message's arrays: those of itself, and of the single messages in it."""
     lengths = " + ".join(f"len(self.{path})" for path in _arrays(spec, table))
     if not lengths:
@@ -127,7 +159,7 @@ def _arrays(spec: Spec, table: TypeTable, owner: str = "") -> Iterator[str]:
 
 
 def _compile_later(cls: MessageClass, spec: Spec, names: Namespace, name: str, source: Callable[[], list[str]]) -> None:
-    def first_call(self: MessageClass, *args: Any) -> Any:
+    def first_call(self: Message, *args: Any) -> Any:
         function = _function(spec, names, source(), name)
         setattr(cls, name, function)
         return function(self, *args)
@@ -137,7 +169,7 @@ def _compile_later(cls: MessageClass, spec: Spec, names: Namespace, name: str, s
 
 def _constructor(spec: Spec, table: TypeTable, names: Namespace) -> Callable[..., Any]:
     names.globals["_Message_init"] = Message.__init__
-    out = Lines(depth=1)
+    out = CodeLines(depth=1)
     out.add("if args or kwds:")
     # One positional argument per field is by far the commonest call.
     if spec.fields:

@@ -2,7 +2,6 @@
 
 The mirror of `encoder`. `_unpack` makes new objects without running any `__init__`; `deserialize` fills an existing
 message and keeps its nested ones, as genpy does. Offsets that are known when the code is written are constants in it.
-Imports nothing of cfepy.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ from collections.abc import Callable
 from enum import Enum
 from struct import calcsize
 
-from rospy_shim.msgs.namespace import Lines, Namespace
+from rospy_shim.msgs.namespace import CodeLines, Namespace
 from rospy_shim.msgs.spec import PRIMITIVES, Field, Spec
 
 _TIMES = {"time": ("_Time", "I"), "duration": ("_Duration", "i")}
@@ -43,7 +42,7 @@ def unpack_source(
         names: receives what the source refers to.
         form: which function.
     """
-    out = Lines(depth=2)
+    out = CodeLines(depth=2)
     decoder = _Decoder(out, lookup, class_of, names, form)
     decoder.fields(spec, "self")
     decoder.flush()
@@ -59,7 +58,7 @@ class _Decoder:
 
     def __init__(
         self,
-        out: Lines,
+        out: CodeLines,
         lookup: Callable[[str], Spec],
         class_of: Callable[[str], type],
         names: Namespace,

@@ -1,16 +1,16 @@
 """Writes the source of `_pack`: a message to bytes in one straight line of code.
 
-Neighbouring fixed-size fields, across nested messages, go through one precompiled struct, together with one string
-or array of variable length, for which there is a struct per length. At most one array of numbers enters a struct, so
-that a fixed array of the wrong length is always noticed. The wire format is ROS 1's serialization: little-endian,
-packed, a uint32 count before whatever varies in length. Imports nothing of cfepy.
+Neighbouring fixed-size fields, across nested messages, go through one precompiled struct, together with one string or
+array of variable length, for which there is a struct per length. At most one array of numbers enters a struct, so that
+a fixed array of the wrong length is always noticed. The wire format is ROS 1's serialization: little-endian, packed, a
+uint32 count before whatever varies in length.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from rospy_shim.msgs.namespace import Lines, Namespace
+from rospy_shim.msgs.namespace import CodeLines, Namespace
 from rospy_shim.msgs.spec import PRIMITIVES, Field, Spec
 
 _TIME_CODES = {"time": "II", "duration": "ii"}
@@ -27,7 +27,7 @@ def pack_source(spec: Spec, lookup: Callable[[str], Spec], names: Namespace, *, 
         names: receives what the source refers to; `_explain` must be added by the caller.
         with_numpy: write `_pack_numpy(self, numpy)`, where number arrays are numpy's.
     """
-    out = Lines(depth=2)
+    out = CodeLines(depth=2)
     encoder = _Encoder(out, lookup, names, with_numpy)
     encoder.fields(spec, "self")
     head = "def _pack_numpy(self, numpy):" if with_numpy else "def _pack(self):"
@@ -44,7 +44,7 @@ def pack_source(spec: Spec, lookup: Callable[[str], Spec], names: Namespace, *, 
 class _Encoder:
     """Collects the parts that, joined, are the encoded message."""
 
-    def __init__(self, out: Lines, lookup: Callable[[str], Spec], names: Namespace, with_numpy: bool) -> None:
+    def __init__(self, out: CodeLines, lookup: Callable[[str], Spec], names: Namespace, with_numpy: bool) -> None:
         self.out, self.lookup, self.names, self.with_numpy = out, lookup, names, with_numpy
         self.parts: list[str] = []
         self.start()

@@ -1,22 +1,19 @@
 """A `Library` turns definitions into specs, fingerprints and classes, each made once, when it is first asked for.
 
 It looks through its sources in order. The library of the shipped packages is `shipped()`; that of a node stands on it
-and adds the packages that the node brings along. Imports cfepy.status only.
+and adds the packages that the node brings along.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache
-from typing import Any
 
 from cfepy.status import UsageError
-from rospy_shim.msgs import fingerprint
-from rospy_shim.msgs.classes import MessageClass, build_class
-from rospy_shim.msgs.parts import Definition, split_service
-from rospy_shim.msgs.services import ServiceClass, build_service
-from rospy_shim.msgs.sources import Definitions, Kind, Shipped, Source, Texts
-from rospy_shim.msgs.spec import BUILTINS, Spec, parse
+from rospy_shim.genpy.message import Message
+from rospy_shim.msgs.classes import MessageClass, ServiceClass, build_class, build_service
+from rospy_shim.msgs.sources import Definition, Definitions, Kind, Shipped, Source, Texts, split_service
+from rospy_shim.msgs.spec import BUILTINS, Spec, full_text, md5_text, md5sum, parse, split_full_text
 
 _PARTS = ("Request", "Response")
 _KINDS: tuple[Kind, ...] = ("msg", "srv")
@@ -28,7 +25,7 @@ class Library:
     def __init__(
         self,
         sources: Sequence[Source],
-        restore: Callable[[str], Any] | None = None,
+        restore: Callable[[str], Message] | None = None,
         *,
         module: str | None = None,
         base: Library | None = None,
@@ -102,7 +99,7 @@ class Library:
             return self._base.md5sum(full_name)
         found = self._md5sums.get(full_name)
         if found is None:
-            found = self._md5sums[full_name] = fingerprint.md5sum(self.spec(full_name), self.md5sum)
+            found = self._md5sums[full_name] = md5sum(self.spec(full_name), self.md5sum)
         return found
 
     def full_text(self, full_name: str) -> str:
@@ -111,7 +108,7 @@ class Library:
             return self._base.full_text(full_name)
         found = self._full_texts.get(full_name)
         if found is None:
-            found = self._full_texts[full_name] = fingerprint.full_text(self.spec(full_name), self.spec)
+            found = self._full_texts[full_name] = full_text(self.spec(full_name), self.spec)
         return found
 
     def message_class(self, full_name: str) -> MessageClass:
@@ -137,7 +134,7 @@ class Library:
             if not self.has(full_name, "srv"):
                 raise UsageError(f"there is no service type {full_name!r}; is its package on ROS_PACKAGE_PATH?")
             parts = [self.message_class(full_name + part) for part in _PARTS]
-            texts = [fingerprint.md5_text(self.spec(full_name + part), self.md5sum) for part in _PARTS]
+            texts = [md5_text(self.spec(full_name + part), self.md5sum) for part in _PARTS]
             found = self._services[full_name] = build_service(full_name, parts[0].__module__, texts, *parts)
         return found
 
@@ -209,12 +206,12 @@ def from_full_text(full_name: str, text: str) -> Library:
         text: the full text.
     """
     definitions = {}
-    for name, body, line in fingerprint.split_full_text(text):
+    for name, body, line in split_full_text(text):
         definitions[name or full_name] = Definition(body, f"<definition of {full_name}>", line)
     return Library([Texts(definitions)], module=full_name)
 
 
-def restore_message(full_name: str) -> Any:
+def restore_message(full_name: str) -> Message:
     """An empty message of a shipped type, to be filled by pickle or copy."""
     cls = shipped().message_class(full_name)
     return cls.__new__(cls)
@@ -228,7 +225,7 @@ def shipped() -> Library:
 
 @cache
 def library_of(full_name: str, definition: str) -> Library:
-    """The library that knows a type as those do who use it.
+    """The library that has a type as its users have it.
 
     Args:
         full_name: the type, e.g. "rover_msgs/Drive".

@@ -1,7 +1,7 @@
 """The modules that ROS code imports: `std_msgs.msg`, `std_srvs.srv`, `geometry_msgs.msg._Pose`, `genpy.rostime`, ...
 
 They are synthetic: `make_module` builds one by name, without touching sys.modules, so that each node can have its own.
-Message classes inside are generated when their name is first looked up. Imports nothing of cfepy.
+Message classes inside are generated when their name is first looked up.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def make_module(name: str, library: Library | None = None) -> ModuleType | None:
     """A fresh module of a ROS package or of genpy; or one of the modules that hold the codec, which all share.
 
     The latter (`rospy_shim.msgs`, `rospy_shim.genpy` and below) must be the same inside a node and outside: a pickled
-    message names a function there.
+    message names a function there. So they are loaded by the name that the node asks for.
 
     Args:
         name: dotted name as in an import statement.

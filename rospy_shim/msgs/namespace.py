@@ -1,18 +1,139 @@
-"""The globals of one generated codec: structs, caches and classes under short names, and the source lines themselves.
+"""What generated codec functions stand on: their globals under short names, their source lines, and what they call.
 
-Used by `encoder` and `decoder`. Imports nothing of cfepy.
+Structs are cached by length, encoded lists of strings at the place that held them last. Everything cached is a pure
+result, so a cache never changes what a message encodes or decodes to.
 """
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Callable
 from functools import cache
+from struct import Struct
 from types import CodeType
 from typing import Any
 
+from rospy_shim.genpy.errors import DeserializationError
 from rospy_shim.genpy.rostime import Duration, Time
-from rospy_shim.msgs import runtime
+
+_LENGTHS_KEPT = 256
+_STRINGS_KEPT = 64
+_BYTES_KEPT = 4096
+_COUNT = Struct("<I")
+_NEEDED = re.compile(r"for unpacking (\d+) bytes")
+StringSite = list[Any]
+"""[list of str, its encoded form]: the last list of strings that one place in a message held."""
+
+
+class Packers(dict[int, Callable[..., bytes]]):
+    """`pack` of a run of fixed fields around one item of n elements, by n."""
+
+    __slots__ = ("_after", "_before")
+
+    def __init__(self, before: str, after: str) -> None:
+        super().__init__()
+        self._before, self._after = "<" + before, after
+
+    def __missing__(self, count: int) -> Callable[..., bytes]:
+        pack = Struct(f"{self._before}{count}{self._after}").pack
+        if len(self) >= _LENGTHS_KEPT:
+            self.clear()
+        self[count] = pack
+        return pack
+
+
+class Unpackers(dict[int, Callable[..., tuple[Any, ...]]]):
+    """`unpack_from` of an array of n elements, by n."""
+
+    __slots__ = ("_code",)
+
+    def __init__(self, code: str) -> None:
+        super().__init__()
+        self._code = code
+
+    def __missing__(self, count: int) -> Callable[..., tuple[Any, ...]]:
+        unpack = Struct(f"<{count}{self._code}").unpack_from
+        if len(self) >= _LENGTHS_KEPT:
+            self.clear()
+        self[count] = unpack
+        return unpack
+
+
+def write_strings(site: StringSite, values: Any, length: int | None) -> bytes:
+    """Encode a list of strings and remember it at its site.
+
+    Args:
+        site: the place's memory.
+        values: the strings.
+        length: of a fixed array, which has no count on the wire; else None.
+
+    Raises:
+        TypeError: a fixed array of another length, or an item that is no string.
+    """
+    parts = [] if length is not None else [_COUNT.pack(len(values))]
+    if length is not None and len(values) != length:
+        raise TypeError("a fixed array has the wrong length")
+    for value in values:
+        encoded = value.encode()
+        parts += (_COUNT.pack(len(encoded)), encoded)
+    raw = b"".join(parts)
+    # Only true str can be found again by comparison: an object that merely compares equal must not pass.
+    if type(values) is list and _worth_keeping(values, raw) and all(type(value) is str for value in values):
+        site[:] = values.copy(), raw
+    return raw
+
+
+def read_strings(site: StringSite, data: bytes, start: int, length: int | None) -> tuple[list[str], int]:
+    """Decode a list of strings and remember it at its site.
+
+    The encoding delimits itself, so bytes that start with the remembered ones decode to the remembered list.
+
+    Returns:
+        the strings and the offset behind them.
+    """
+    at, count = start, length
+    if count is None:
+        (count,) = _COUNT.unpack_from(data, at)
+        at += 4
+    values = []
+    for _ in range(count):
+        (size,) = _COUNT.unpack_from(data, at)
+        at += 4 + size
+        values.append(data[at - size : at].decode("utf-8", "replace"))
+    # A last string that is cut off decodes to what is there, as in genpy; such a form is not complete.
+    if at <= len(data) and _worth_keeping(values, data[start:at]):
+        site[:] = values.copy(), data[start:at]
+    return values, at
+
+
+def read_times(kind: type[Time] | type[Duration], code: str, data: bytes, at: int, count: int) -> list[Any]:
+    """Decode an array of times or durations."""
+    flat = Struct(f"<{2 * count}{code}").unpack_from(data, at)
+    return [kind(secs, nsecs) for secs, nsecs in zip(flat[::2], flat[1::2], strict=True)]
+
+
+def too_short(error: Exception) -> DeserializationError:
+    """genpy's error for bytes that end too early, from the one that struct raised."""
+    match = _NEEDED.search(str(error))
+    return DeserializationError(f"unpack requires a buffer of {match[1]} bytes" if match else str(error))
+
+
+def array_bytes(numpy: Any, value: Any, dtype: str, length: int | None) -> bytes:
+    """Wire form of a number array for `serialize_numpy`.
+
+    Raises:
+        TypeError: a fixed array of another length.
+    """
+    array = numpy.ascontiguousarray(value, dtype=dtype)
+    if length is not None and array.size != length:
+        raise TypeError("a fixed array has the wrong length")
+    encoded: bytes = array.tobytes()
+    return encoded
+
+
+def _worth_keeping(values: list[str], raw: bytes) -> bool:
+    return len(values) <= _STRINGS_KEPT and len(raw) <= _BYTES_KEPT
 
 
 class Namespace:
@@ -23,11 +144,11 @@ class Namespace:
             "_new": object.__new__,
             "_join": b"".join,
             "_struct_error": struct.error,
-            "_too_short": runtime.too_short,
-            "_write_strings": runtime.write_strings,
-            "_read_strings": runtime.read_strings,
-            "_read_times": runtime.read_times,
-            "_array_bytes": runtime.array_bytes,
+            "_too_short": too_short,
+            "_write_strings": write_strings,
+            "_read_strings": read_strings,
+            "_read_times": read_times,
+            "_array_bytes": array_bytes,
             "_Time": Time,
             "_Duration": Duration,
         }
@@ -43,11 +164,11 @@ class Namespace:
 
     def packers(self, before: str, after: str) -> str:
         """Name of a `Packers`."""
-        return self._named(("packers", before, after), lambda: runtime.Packers(before, after))
+        return self._named(("packers", before, after), lambda: Packers(before, after))
 
     def unpackers(self, code: str) -> str:
         """Name of an `Unpackers`."""
-        return self._named(("unpackers", code), lambda: runtime.Unpackers(code))
+        return self._named(("unpackers", code), lambda: Unpackers(code))
 
     def cls(self, full_name: str, cls: type) -> str:
         """Name of a message class."""
@@ -79,7 +200,7 @@ def _code(source: str, file: str) -> CodeType:
     return compile(source, file, "exec")
 
 
-class Lines:
+class CodeLines:
     """Source lines at a changing depth, and fresh names for local variables."""
 
     def __init__(self, depth: int = 0) -> None:

@@ -1,8 +1,8 @@
 """ROS packages on disk: which there are and where they lie, by the rules of rospkg and catkin.
 
-A package is a folder with a package.xml (or rosbuild's manifest.xml), which also names it. Near a node and in
-`share` folders a folder with definitions in `msg`, `srv` or `action` will do; its own name is the package's then. The
-one place that knows this; what reads definitions or looks packages up by name asks here. Imports nothing of cfepy.
+A package is a folder with a package.xml (or rosbuild's manifest.xml), which also names it. Near a node and in `share`
+folders a folder with definitions in `msg`, `srv` or `action` will do; its own name is the package's then. This is the
+one place that knows the rules; code that reads definitions or looks packages up by name calls it.
 """
 
 from __future__ import annotations
@@ -10,8 +10,9 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping
-from functools import cached_property
 from pathlib import Path
+
+from cfepy.cached import CachedProperty
 
 _MANIFESTS = ("package.xml", "manifest.xml")
 _FENCES = ("CATKIN_IGNORE", "AMENT_IGNORE", "rospack_nosubdirs")
@@ -64,7 +65,7 @@ class Packages:
         found = [folders[0] / inner for folders in self._found.values() for inner in _code_roots(folders[0])]
         return [folder for folder in found if any(folder.glob("*/__init__.py"))]
 
-    @cached_property
+    @CachedProperty
     def _found(self) -> dict[str, list[Path]]:
         found: dict[str, list[Path]] = {}
         for folder in dict.fromkeys(self._search()):
@@ -93,7 +94,7 @@ def _code_roots(package: Path) -> list[str]:
 
 
 def near(script: Path) -> Iterator[Path]:
-    """Packages near a program: those it lies in and those beside them, then the folders beside the program itself.
+    """Packages near a program: those it lies in and their neighbours, then the folders next to the program itself.
 
     At last those of the catkin workspace, if the program's package lies in the `src` of one.
     """

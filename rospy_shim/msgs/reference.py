@@ -1,8 +1,7 @@
 """The plain encoder: one struct call per value, in wire order, straight from the spec.
 
 It is what the generated code must agree with, byte for byte, and it explains failures: run on a message that generated
-code could not pack, it fails at the same field and in the same way as genpy. Never on the hot path. Imports nothing of
-cfepy.
+code could not pack, it fails at the same field and in the same way as genpy. Never on the hot path.
 """
 
 from __future__ import annotations

@@ -1,16 +1,19 @@
-"""ROS .msg text to a `Spec`: fields, constants and where they came from, by genmsg's rules.
+"""ROS .msg text to a `Spec`: fields, constants and where they came from, by genmsg's rules; its md5sum and full text.
 
 A bare type name belongs to the message's own package, except that `Header` is std_msgs/Header; a string constant takes
-all that stands right of its `=`, comments included. A mistake is a UsageError with file and line. Knows nothing of
-Python classes; imports cfepy.status only.
+all that stands right of its `=`, comments included. A mistake is a UsageError with file and line. Two programs talk
+only if their md5sums agree; the full text travels in connection headers and bags, so that a reader without the package
+can still decode.
 """
 
 from __future__ import annotations
 
 import keyword
 import re
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
+from cfepy.marked_yaml import Mistakes
 from cfepy.status import UsageError
 
 PRIMITIVES = {
@@ -18,10 +21,8 @@ PRIMITIVES = {
     "int64": "q", "uint64": "Q", "float32": "f", "float64": "d", "char": "B", "byte": "b",
 }  # fmt: skip
 """struct code of each type that has one."""
-
 BUILTINS = frozenset(PRIMITIVES) | {"string", "time", "duration"}
 HEADER = "std_msgs/Header"
-
 _RANGES = {
     code: (-(1 << bits - 1), (1 << bits - 1) - 1) if code.islower() else (0, (1 << bits) - 1)
     for code, bits in zip("bBhHiIqQ", (8, 8, 16, 16, 32, 32, 64, 64), strict=True)
@@ -29,6 +30,7 @@ _RANGES = {
 _TYPE = re.compile(r"([A-Za-z][\w/]*)(\[(\d*)\])?")
 _NAME = re.compile(r"[A-Za-z]\w*")
 _RESERVED = frozenset(keyword.kwlist) | {"self"}
+_SEPARATOR = "=" * 80 + "\n"
 
 
 class Field(NamedTuple):
@@ -63,6 +65,8 @@ class Constant(NamedTuple):
     value: Any
     text: str
     """As written, which is what enters the md5sum."""
+    line: int = 0
+    """Where it stands in its file."""
 
 
 class Spec(NamedTuple):
@@ -86,7 +90,7 @@ class Spec(NamedTuple):
         return list(dict.fromkeys(field.base for field in self.fields if field.base not in BUILTINS))
 
 
-def parse(text: str, full_name: str, file: str, first_line: int = 1) -> Spec:
+def parse(text: str, full_name: str, file: str, first_line: int = 1, mistakes: Mistakes | None = None) -> Spec:
     """Parse the text of a .msg file.
 
     Args:
@@ -94,9 +98,11 @@ def parse(text: str, full_name: str, file: str, first_line: int = 1) -> Spec:
         full_name: "package/Name".
         file: path for errors.
         first_line: number of the text's first line in that file.
+        mistakes: takes a line that is neither a field nor a constant, a bad name or value, a field named twice; None
+            raises the first.
 
     Raises:
-        UsageError: a line that is neither a field nor a constant, a bad name or value, or a field named twice.
+        UsageError: the first mistake.
     """
     package = full_name.rpartition("/")[0]
     fields: list[Field] = []
@@ -105,11 +111,14 @@ def parse(text: str, full_name: str, file: str, first_line: int = 1) -> Spec:
         line = raw.split("#", 1)[0].strip()
         try:
             if "=" in line:
-                constants.append(_constant(line, raw))
+                constants.append(_constant(line, raw)._replace(line=number))
             elif line:
                 fields.append(_field(line, package, {field.name for field in fields})._replace(line=number))
         except ValueError as error:
-            raise UsageError(f"{error}; write `type name` or `type NAME=value`", file=file, line=number) from None
+            mistake = UsageError(f"{error}; write `type name` or `type NAME=value`", file=file, line=number)
+            if mistakes is None:
+                raise mistake from None
+            mistakes.add(mistake)
     return Spec(full_name, text, tuple(fields), tuple(constants), file)
 
 
@@ -170,3 +179,65 @@ def _value(kind: str, text: str) -> Any:
     if not low <= number <= high:
         raise ValueError(f"{number} does not fit into {kind}")
     return number
+
+
+_Lookup = Callable[[str], Spec]
+
+
+def md5_text(spec: Spec, md5sum_of: Callable[[str], str]) -> str:
+    """The text that is hashed: constants, then fields; a nested message stands as its own md5sum.
+
+    Args:
+        spec: the message.
+        md5sum_of: md5sum of a nested type, by full name.
+    """
+    lines = [f"{constant.type} {constant.name}={constant.text}" for constant in spec.constants]
+    lines += [f"{_hashed_type(field, md5sum_of)} {field.name}" for field in spec.fields]
+    return "\n".join(lines)
+
+
+def md5sum(spec: Spec, md5sum_of: Callable[[str], str]) -> str:
+    """Fingerprint of a message, as 32 hexadecimal digits."""
+    return hash_text(md5_text(spec, md5sum_of))
+
+
+def hash_text(text: str) -> str:
+    """md5 of a text; an identity, not a protection."""
+    import hashlib
+
+    return hashlib.md5(text.encode(), usedforsecurity=False).hexdigest()
+
+
+def full_text(spec: Spec, lookup: _Lookup) -> str:
+    """The definition followed by those of all types that it needs, each once, in order of first need."""
+    parts = [spec.text + "\n"]
+    for name in _needs(spec, lookup):
+        parts.append(f"{_SEPARATOR}MSG: {name}\n{lookup(name).text}\n")
+    return "".join(parts)[:-1]
+
+
+def split_full_text(text: str) -> Iterable[tuple[str | None, str, int]]:
+    """Take a full text apart: (type name or None for the first, definition, number of its first line)."""
+    line = 1
+    parts = text.split("\n" + _SEPARATOR)
+    for index, part in enumerate(parts):
+        name, body = None, part
+        if index:
+            heading, _, body = part.partition("\n")
+            name = heading.removeprefix("MSG:").strip()
+            line += 1
+        yield name, body, line
+        line += body.count("\n") + 2
+
+
+def _hashed_type(field: Field, md5sum_of: Callable[[str], str]) -> str:
+    return field.type if field.base in BUILTINS else md5sum_of(field.base)
+
+
+def _needs(spec: Spec, lookup: _Lookup) -> dict[str, None]:
+    found: dict[str, None] = {}
+    for name in spec.message_types:
+        found.setdefault(name)
+        for deeper in _needs(lookup(name), lookup):
+            found.setdefault(deeper)
+    return found

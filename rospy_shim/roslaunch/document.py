@@ -1,6 +1,7 @@
-"""Launch files as XML: every tag knows its file and line, so that an error can say where.
+"""Launch files as XML: tags and their attributes, substitutions made, types checked.
 
-Imports cfepy.status.
+What is wrong names file, line, tag and attribute. It goes to `LaunchFindings`, where the first mistake is raised or all
+are kept.
 """
 
 from __future__ import annotations
@@ -9,6 +10,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from cfepy.status import UsageError
+from cfepy.suggestions import did_you_mean
+from rospy_shim.roslaunch.model import LaunchRemark
+from rospy_shim.roslaunch.scope import Scope
+from rospy_shim.roslaunch.substitution import SubstitutionError, UnknownArgument, UnsetArgument, arguments_in
+from rospy_shim.roslaunch.values import truth
+
+DEEPEST_TAG = 100
 
 
 class Tag:
@@ -38,11 +46,32 @@ class Tag:
         field = f"<{self.name}>" if attribute is None else f"<{self.name} {attribute}>"
         return UsageError(text, file=self.file, line=self.line, field=field)
 
+    def remark(self, text: str, *, is_error: bool = False, before_runs: bool = True) -> LaunchRemark:
+        """A remark about this tag; see `LaunchRemark`."""
+        return LaunchRemark(text, self.file, self.line, is_error, before_runs)
+
     def walk(self) -> Iterator[Tag]:
         """The tag itself and all tags inside it."""
         yield self
         for child in self.children:
             yield from child.walk()
+
+
+def unused_arguments(launch: Tag) -> list[Tag]:
+    """The <arg> tags of a file, without those inside an <include>, whose argument nothing in the file may use.
+
+    What is inside tags that `if` and `unless` leave out counts as a use. Nothing is told of a file that passes all its
+    arguments on, or that has substitutions made in another one.
+    """
+    tags = list(launch.walk())
+    for tag in tags:
+        given = tag.attributes
+        if given.get("pass_all_args", "false").lower() != "false" or {"file", "subst_value"} <= set(given):
+            return []
+    used = set().union(*(arguments_in(text) for tag in tags for text in (tag.text, *tag.attributes.values())))
+    passed = [tag for include in tags if include.name == "include" for tag in include.walk()]
+    declared = [tag for tag in tags if tag.name == "arg" and tag not in passed and tag.attributes.get("name")]
+    return [tag for tag in declared if tag.attributes["name"] not in used]
 
 
 def read_launch_tag(file: Path) -> Tag:
@@ -72,6 +101,8 @@ def _parse(file: Path) -> Tag:
 
     def start(name: str, attributes: dict[str, str]) -> None:
         tag = Tag(name, attributes, file, parser.CurrentLineNumber)
+        if len(open_tags) > DEEPEST_TAG:
+            raise tag.fail(f"is inside {DEEPEST_TAG} other tags, which is too deep; is an end tag missing?")
         open_tags[-1].children.append(tag)
         open_tags.append(tag)
 
@@ -85,5 +116,117 @@ def _parse(file: Path) -> Tag:
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
-        raise UsageError(f"is not XML: {expat.ErrorString(error.code)}", file=file, line=error.lineno) from None
+        what = f"is not XML: {expat.ErrorString(error.code)}, column {error.offset + 1}"
+        if len(open_tags) > 1:
+            what += f"; the <{open_tags[-1].name}> of line {open_tags[-1].line} is open there"
+        raise UsageError(what, file=file, line=error.lineno) from None
     return top.children[0]
+
+
+class Attributes:
+    """The attributes of one tag, seen from a scope. What is wrong goes to the findings of the scope.
+
+    Args:
+        tag: the tag.
+        scope: where it stands.
+
+    Attributes:
+        failed: whether something of the tag is wrong, or follows from what was wrong before.
+    """
+
+    def __init__(self, tag: Tag, scope: Scope) -> None:
+        self.tag = tag
+        self.failed = False
+        self._scope = scope
+
+    def wrong(self, text: str, attribute: str | None = None) -> None:
+        """Something is wrong with the tag; see `Tag.fail`.
+
+        Raises:
+            UsageError: the mistake, unless mistakes are kept; so do all methods that find one.
+        """
+        self.failed = True
+        self._scope.findings.mistakes.add(self.tag.fail(text, attribute))
+
+    def remark(self, text: str, *, is_error: bool = False) -> None:
+        """There is something to tell about the tag; see `LaunchRemark`."""
+        self._scope.findings.remarks.append(self.tag.remark(text, is_error=is_error))
+
+    def tell_unknown(self, known: tuple[str, ...]) -> None:
+        """Tell of the attributes that this kind of tag should not have; they are ignored, as roslaunch does."""
+        allowed = (*known, "if", "unless")
+        for name in self.tag.attributes:
+            if name not in allowed:
+                hint = did_you_mean(name, known, before=", ")
+                self.remark(f"<{self.tag.name}> has no attribute {name!r}; it is ignored{hint}", is_error=True)
+
+    def optional(self, name: str) -> str | None:
+        """The value of an attribute, None when it is not there or a substitution cannot be made."""
+        text = self.tag.attributes.get(name)
+        return None if text is None else self.resolved(text, name)
+
+    def resolved(self, text: str, name: str | None = None) -> str | None:
+        """A text with its substitutions made; None when one cannot be. `name` is the attribute it comes from."""
+        try:
+            return self._scope.substitutions.resolve(text)
+        except UnknownArgument:
+            self.failed = True
+        except UnsetArgument as error:
+            self._tell_unset(error, name)
+        except SubstitutionError as error:
+            self.wrong(str(error), name)
+        return None
+
+    def _tell_unset(self, error: UnsetArgument, attribute: str | None) -> None:
+        """An argument without a value is told of once for each time that its file is read."""
+        scope, self.failed = self._scope, True
+        key = (scope.file, scope.included_at, error.name)
+        if key in scope.findings.unset:
+            return
+        scope.findings.unset.add(key)
+        hint = f'give {error.name}:=VALUE, or write <arg name="{error.name}" default="..."/> before it'
+        if scope.included_at:
+            hint = f'pass it in the <include> of {scope.included_at}, or write <arg name="{error.name}" default="..."/>'
+        known = () if error.name in scope.declared else tuple(scope.args)
+        other = did_you_mean(error.name, known)
+        self.wrong(f"{error}; {other} Or {hint}" if other else f"{error}; {hint}", attribute)
+
+    def required(self, name: str) -> str | None:
+        """The value of an attribute that must be there; None when it is not, or a substitution cannot be made."""
+        if name not in self.tag.attributes:
+            self.wrong(f'has no {name!r}; write {name}="..."')
+        return self.optional(name)
+
+    def flag(self, name: str) -> bool:
+        """An attribute that is true or false; False when it is not there or something else."""
+        value = self.optional(name)
+        if value is not None and value.lower() not in ("true", "false"):
+            self.wrong(f"is {value!r}; write true or false", name)
+        return value is not None and value.lower() == "true"
+
+    def number(self, name: str, least: float) -> float | None:
+        """An attribute that is a number of at least `least`; None when it is not there or something else."""
+        value = self.optional(name)
+        if value is None:
+            return None
+        try:
+            number = float(value)
+        except ValueError:
+            number = least - 1
+        if number >= least:
+            return number
+        self.wrong(f"is {value!r}; write a number of at least {least:g}", name)
+        return None
+
+    def counts(self) -> bool:
+        """Whether `if` and `unless` let the tag count: not when both are there, or one is neither true nor false."""
+        given = {name: self.optional(name) for name in ("if", "unless") if name in self.tag.attributes}
+        if len(given) > 1:
+            self.wrong("has both 'if' and 'unless'; leave one of them out")
+        for name, value in given.items():
+            try:
+                if value is not None and not self.failed:
+                    return truth(value) == (name == "if")
+            except ValueError as error:
+                self.wrong(str(error), name)
+        return not self.failed

@@ -1,13 +1,51 @@
-"""What a launch file comes to: nodes, tests, parameters, and what to tell its user. Imports nothing of cfepy."""
+"""The contents of a launch file as plain records: nodes, tests, parameters, and remarks for its user."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+
+from cfepy.marked_yaml import Mistakes
 
 DEFAULT_TIME_LIMIT_S = 60.0
+
+
+class LaunchRemark(NamedTuple):
+    """Something about a launch file that does not keep it from running.
+
+    Attributes:
+        text: what it is.
+        file: where it is.
+        line: in the file, from 1; 0 is the file as a whole.
+        is_error: something that the file asks for is not there, so it is left out.
+        before_runs: it is told before each run, and not by `cfepy check` alone.
+    """
+
+    text: str
+    file: Path
+    line: int
+    is_error: bool = False
+    before_runs: bool = True
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}: {self.text}" if self.line else f"{self.file}: {self.text}"
+
+
+@dataclass(slots=True)
+class LaunchFindings:
+    """What is found while launch files are read.
+
+    Attributes:
+        mistakes: takes what is wrong: it raises the first mistake, or keeps all.
+        remarks: all else that a user should know.
+        unset: arguments without a value that have been told of: file, the <include> that reads it, name.
+    """
+
+    mistakes: Mistakes = field(default_factory=Mistakes)
+    remarks: list[LaunchRemark] = field(default_factory=list)
+    unset: set[tuple[Path, str, str]] = field(default_factory=set)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,11 +108,13 @@ class Launch:
         files: every file that was read, the launch file first.
         nodes, tests: in the order of the file.
         params: by resolved name, in the order in which they were first set.
-        notes: what a user should know, a line each.
+        places: file and line that each parameter has its value from.
+        remarks: what a user should know.
     """
 
     files: list[Path] = field(default_factory=list)
     nodes: list[LaunchNode] = field(default_factory=list)
     tests: list[LaunchTest] = field(default_factory=list)
     params: dict[str, Any] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
+    places: dict[str, tuple[Path, int]] = field(default_factory=dict)
+    remarks: list[LaunchRemark] = field(default_factory=list)

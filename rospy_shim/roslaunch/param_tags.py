@@ -1,50 +1,104 @@
-"""<param> and <rosparam>: what goes to the parameter server before the nodes start.
+"""<param> and <rosparam>: the parameters that are set before the nodes start.
 
-May import nothing of cfepy.
+The output of a program can be a parameter (`command`). No process is started, since what a program prints could be
+anything each time; two programs are imitated, `cat` and `xacro`.
 """
 
 from __future__ import annotations
 
+import importlib
+import shlex
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from rospy_shim.names import PRIV_NAME, canonicalize_name
-from rospy_shim.parameter_values import marshalled
-from rospy_shim.roslaunch.attributes import Attributes
-from rospy_shim.roslaunch.commands import output_of
-from rospy_shim.roslaunch.document import Tag
+from rospy_shim.client.names import PRIV_NAME, SEP, canonicalize_name
+from rospy_shim.parameters.values import marshalled
+from rospy_shim.roslaunch.document import Attributes, Tag
 from rospy_shim.roslaunch.model import Launch
-from rospy_shim.roslaunch.names import joined
-from rospy_shim.roslaunch.scope import Scope
+from rospy_shim.roslaunch.scope import Scope, joined
 from rospy_shim.roslaunch.values import converted, from_yaml
 
+STOOD_IN = {"xacro": Path("xacro")}
+"""What $(find) gives for packages whose programs are stood in for, when they are not there."""
 PARAM = ("name", "value", "type", "textfile", "binfile", "command")
 ROSPARAM = ("command", "ns", "file", "param", "subst_value")
 _SOURCES = ("value", "textfile", "binfile", "command")
 
 
-def add_param(launch: Launch, name: str, value: Any, tag: Tag) -> None:
-    """Give a parameter its value; the last one counts.
+def output_of(command: str) -> str:
+    """What a command prints.
+
+    Args:
+        command: the command line; relative paths in it start at the current folder.
+
+    Raises:
+        ValueError: it is neither cat nor xacro, or it fails.
+    """
+    program, *arguments = shlex.split(command) or [""]
+    name = Path(program).name.removesuffix(".py")
+    if name not in _PROGRAMS:
+        raise ValueError(
+            f"would start the program {program!r}, which cfepy does not do; run it yourself, and name its output with"
+            " textfile= instead"
+        )
+    try:
+        return _PROGRAMS[name](arguments)
+    except OSError as error:
+        raise ValueError(f"{command}: {error.strerror}: {error.filename}") from None
+
+
+def _cat(arguments: list[str]) -> str:
+    return "".join(Path(file).read_text(encoding="utf-8") for file in arguments)
+
+
+def _xacro(arguments: list[str]) -> str:
+    """The library xacro, when it is installed where cfepy runs."""
+    try:
+        xacro: Any = importlib.import_module("xacro")
+    except ImportError:
+        raise ValueError(
+            "needs the Python package xacro, which is not installed here; run `pip install xacro`, or run xacro"
+            " yourself and name its output with textfile="
+        ) from None
+    words = [word for word in arguments if not word.startswith("-")]
+    mappings = dict(word.split(":=", 1) for word in words if ":=" in word)
+    files = [word for word in words if ":=" not in word]
+    if len(files) != 1:
+        raise ValueError(f"names {len(files)} files; xacro reads one")
+    try:
+        return str(xacro.process_file(files[0], mappings=mappings).toprettyxml(indent="  "))
+    except OSError:
+        raise
+    except Exception as error:  # whatever the macros of the file do wrong
+        raise ValueError(f"xacro {files[0]}: {error}") from None
+
+
+_PROGRAMS = {"cat": _cat, "xacro": _xacro}
+
+
+def add_param(launch: Launch, name: str, value: Any, attributes: Attributes) -> None:
+    """Give a parameter its value; the last one counts. One that XML-RPC, and so ROS, cannot carry is wrong.
 
     Args:
         launch: what it is a parameter of.
         name: resolved.
         value: no mapping.
-        tag: that says so.
-
-    Raises:
-        UsageError: XML-RPC, and so ROS, cannot carry the value.
+        attributes: of the tag that says so.
     """
-    name = canonicalize_name(name)
+    name, tag = canonicalize_name(name), attributes.tag
+    if name in ("", SEP):
+        attributes.wrong("has a name that stands for all parameters; write a parameter's name")
+        return
     parents = [name[:index] for index, letter in enumerate(name) if letter == "/" and index]
     for parent in parents:
         if parent in launch.params:
-            launch.notes.append(f"{tag.file}:{tag.line}: parameter {name} replaces {parent}, which it lies below")
+            attributes.remark(f"parameter {name} replaces {parent}, which it lies below")
+    launch.places[name] = (tag.file, tag.line)
     try:
         launch.params[name] = None if value is None else marshalled(value)
     except (TypeError, OverflowError) as error:
-        raise tag.fail(f"{name} is {value!r}, which no parameter can be: {error}; put text in quotes") from None
+        attributes.wrong(f"{name} is {value!r}, which no parameter can be: {error}; put text in quotes")
 
 
 def read_param(launch: Launch, tag: Tag, scope: Scope, of_node: bool = False) -> None:
@@ -55,25 +109,29 @@ def read_param(launch: Launch, tag: Tag, scope: Scope, of_node: bool = False) ->
         tag: the tag.
         scope: where it stands.
         of_node: it stands inside a <node>.
-
-    Raises:
-        UsageError: it is wrong.
     """
     attributes = Attributes(tag, scope)
+    attributes.tell_unknown(PARAM)
     given = [source for source in _SOURCES if source in tag.attributes]
+    name = attributes.required("name")
     if len(given) != 1:
-        raise tag.fail(f"has {' and '.join(given) or 'no value'}; give one of {', '.join(_SOURCES)}")
-    name = attributes.required("name").strip()
+        attributes.wrong(f"has {' and '.join(given) or 'no value'}; give one of {', '.join(_SOURCES)}")
+        return
     value = _value(attributes, given[0])
+    if name is None or attributes.failed:
+        return
+    name = name.strip()
     if of_node or name.startswith(PRIV_NAME):
         scope.set_param(name, value)
     else:
-        add_param(launch, joined(scope.namespace, name), value, tag)
+        add_param(launch, joined(scope.namespace, name), value, attributes)
 
 
 def _value(attributes: Attributes, source: str) -> Any:
-    tag = attributes.tag
-    text = attributes.required(source)
+    """The value of a <param>; None when it is wrong, which `attributes` knows."""
+    text = attributes.optional(source)
+    if text is None:
+        return None
     try:
         if source == "binfile":
             return Path(text).read_bytes()
@@ -82,67 +140,75 @@ def _value(attributes: Attributes, source: str) -> Any:
             found = Path(text).read_text(encoding="utf-8")
         elif source == "command":
             found = output_of(text)
-        return converted(found, (tag.attributes.get("type") or "auto").strip())
+        return converted(found, (attributes.tag.attributes.get("type") or "auto").strip())
     except OSError as error:
-        raise tag.fail(f"{text} cannot be read: {error.strerror}", source) from None
+        attributes.wrong(f"{text} cannot be read: {error.strerror}", source)
     except UnicodeDecodeError:
-        raise tag.fail(
-            f"{text} is no text in UTF-8; name it with binfile= if it is meant to be bytes", source
-        ) from None
+        attributes.wrong(f"{text} is no text in UTF-8; name it with binfile= if it is meant to be bytes", source)
     except ValueError as error:
-        raise tag.fail(str(error), source) from None
+        attributes.wrong(str(error), source)
+    return None
 
 
 def read_rosparam(launch: Launch, tag: Tag, scope: Scope) -> None:
-    """A <rosparam> tag.
-
-    Raises:
-        UsageError: it is wrong.
-    """
+    """A <rosparam> tag."""
     attributes = Attributes(tag, scope)
+    attributes.tell_unknown(ROSPARAM)
     command = attributes.optional("command") or "load"
     param = joined(attributes.optional("ns") or "", attributes.optional("param") or "")
     file, resolves = attributes.optional("file"), attributes.flag("subst_value")
     if command not in ("load", "dump", "delete"):
-        raise tag.fail(f"is {command!r}; write load, dump or delete", "command")
+        attributes.wrong(f"is {command!r}; write load, dump or delete", "command")
+        return
     if command == "delete" and file is not None:
-        raise tag.fail('is of no use to command="delete"; remove it', "file")
+        attributes.wrong('is of no use to command="delete"; remove it', "file")
     if command != "load":
         why = "it stands before all parameters are set, so nothing is there" if command == "delete" else "writes a file"
-        launch.notes.append(f'{tag.file}:{tag.line}: <rosparam command="{command}"> is left out: {why}')
+        attributes.remark(f'<rosparam command="{command}"> is left out: {why}')
         return
-    text = tag.text if file is None else _text_of(file, tag)
-    if resolves:
+    text = None if attributes.failed else _text_of(file, attributes)
+    if text is not None and resolves:
         text = attributes.resolved(text)
+    value = None if text is None else _loaded(text, file, attributes)
+    if value is None:
+        return
     name = joined(scope.namespace, param) if param else scope.namespace
-    for each, value in _leaves(name, _loaded(text, file, tag), tag, bool(param)):
-        add_param(launch, each, value, tag)
+    for each, leaf in _leaves(name, value, attributes, bool(param)):
+        add_param(launch, each, leaf, attributes)
 
 
-def _text_of(file: str, tag: Tag) -> str:
+def _text_of(file: str | None, attributes: Attributes) -> str | None:
+    """The YAML of a <rosparam>; None when it cannot be read."""
+    if file is None:
+        return attributes.tag.text
     try:
         return Path(file).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         why = error.strerror if isinstance(error, OSError) else "is no text in UTF-8"
-        raise tag.fail(f"{file} cannot be read: {why}", "file") from None
+        attributes.wrong(f"{file} cannot be read: {why}", "file")
+    return None
 
 
-def _loaded(text: str, file: str | None, tag: Tag) -> Any:
+def _loaded(text: str, file: str | None, attributes: Attributes) -> Any:
+    """The value of a YAML text; None when it is empty or wrong."""
     try:
-        value = from_yaml(text)
+        return from_yaml(text)
     except ValueError as error:
-        raise tag.fail(f"{file or 'the text'} {error}", None if file is None else "file") from None
-    return {} if value is None else value
+        attributes.wrong(f"{file or 'the text'} {error}", None if file is None else "file")
+    return None
 
 
-def _leaves(name: str, value: Any, tag: Tag, named: bool) -> Iterator[tuple[str, Any]]:
+def _leaves(name: str, value: Any, attributes: Attributes, named: bool) -> Iterator[tuple[str, Any]]:
     """The parameters in a YAML value; a mapping is a namespace."""
     if not isinstance(value, dict):
-        if not named:
-            raise tag.fail(f'is {value!r}, which needs a name; write param="NAME", or a mapping of names to values')
-        yield name, value
+        if named:
+            yield name, value
+        else:
+            text = f'is {value!r}, which needs a name; write param="NAME", or a mapping of names to values'
+            attributes.wrong(text)
         return
     for key, inner in value.items():
-        if not isinstance(key, str):
-            raise tag.fail(f"has the name {key!r}, which is no text; put it in quotes")
-        yield from _leaves(joined(name, key), inner, tag, True)
+        if isinstance(key, str):
+            yield from _leaves(joined(name, key), inner, attributes, True)
+        else:
+            attributes.wrong(f"has the name {key!r}, which is no text; put it in quotes")

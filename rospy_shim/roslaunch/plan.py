@@ -1,6 +1,7 @@
-"""From a launch file to applications: each node that can run here with a cFE name, its script and its process's world.
+"""From a launch file to applications: a cFE name, script, arguments and environment for each node that can run here.
 
-The mission calls `plan_of`. May import cfepy.nodes.config, cfepy.rtos.units and cfepy.status.
+The program of a node is a Python script in its package (roslib.packages.find_node). A few C++ nodes are so common in
+launch files that `rospy_shim/roslaunch/tools` has the same in Python; a package's own script of that name comes first.
 """
 
 from __future__ import annotations
@@ -8,23 +9,123 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from cfepy.nodes.config import ROSCORE_PARAMS, NodeConfig
-from cfepy.rtos.units import NS_PER_S
+from cfepy.marked_yaml import Mistakes
+from cfepy.nodes import ROSCORE_PARAMS, NodeConfig
 from cfepy.status import UsageError
+from cfepy.suggestions import did_you_mean
+from cfepy.units import NS_PER_S
+from rospy_shim.client.names import SEP
 from rospy_shim.msgs import Packages
-from rospy_shim.names import SEP
-from rospy_shim.roslaunch.model import Launch, LaunchNode, LaunchTest
+from rospy_shim.roslaunch.model import Launch, LaunchNode, LaunchRemark, LaunchTest
 from rospy_shim.roslaunch.reader import read
-from rospy_shim.roslaunch.scripts import ScriptError, find_file, find_script
 
+_TOOLS = Path(__file__).parent / "tools"
 LONGEST_NAME = 16  # of OSAL's 19 characters; the rest is for numbers
 ROS_ENVIRONMENT = {"ROS_DISTRO": "noetic", "ROS_PYTHON_VERSION": "3", "ROS_VERSION": "1"}  # as ROS's setup.sh has it
 _NOT_OURS = ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "ROS_NAMESPACE")  # of the network that is not there
+
+
+class ScriptError(Exception):
+    """A node that cannot run here; its text says why.
+
+    Args:
+        text: the reason.
+        is_there: the node exists, but is no Python.
+    """
+
+    def __init__(self, text: str, is_there: bool = False) -> None:
+        super().__init__(text)
+        self.is_there = is_there
+
+
+def find_script(packages: Packages, package: str, node_type: str) -> Path:
+    """The Python script of a node.
+
+    Args:
+        packages: where to look.
+        package: the node's package.
+        node_type: the file's name.
+
+    Raises:
+        ScriptError: there is none.
+    """
+    found = sorted(_candidates(packages.folders(package), node_type), key=_rank)
+    script = next(filter(is_python, found), None) or _tool(package, node_type)
+    if script is not None:
+        return script
+    if found:
+        raise ScriptError(f"{found[0]} is no Python script; cfepy runs nodes that are written in Python", is_there=True)
+    folders = packages.folders(package)
+    if not folders:
+        hint = did_you_mean(package, packages.names(), before="; ")
+        raise ScriptError(f"there is no package {package!r} near by or on ROS_PACKAGE_PATH{hint}")
+    is_built = any(_is_built(folder, package, node_type) for folder in folders)
+    why = "a C++ node" if is_built else "a C++ node, or one that is not here"
+    hint = "" if is_built else did_you_mean(node_type, _programs(folders), before="; ")
+    text = f"package {package!r} has no file {node_type!r}{'' if node_type.endswith('.py') else f': {why}'}{hint}"
+    raise ScriptError(text, is_there=is_built)
+
+
+def _is_built(folder: Path, package: str, node_type: str) -> bool:
+    """Whether the CMakeLists.txt of a package, or one further down in its folder, has something of that name."""
+    word = re.compile(rf"(?<![\w.-]){re.escape(node_type)}(?![\w.-])")
+    for file in folder.rglob("CMakeLists.txt") if not node_type.endswith(".py") else ():
+        try:
+            text = file.read_text(encoding="utf-8", errors="replace")
+        except OSError:
+            continue
+        if word.search(text.replace("${PROJECT_NAME}", package)):
+            return True
+    return False
+
+
+def _programs(folders: list[Path]) -> list[str]:
+    """Names of the Python scripts in a package's folders that may be nodes."""
+    files = (Path(place) / name for folder in folders for place, _, names in os.walk(folder) for name in names)
+    return sorted({file.name for file in files if file.name != "setup.py" and file.is_file() and is_python(file)})
+
+
+def find_file(packages: Packages, package: str, name: str) -> Path | None:
+    """A file of a package, such as a launch file, by its name alone; None when there is none."""
+    return min(_candidates(packages.folders(package), name), key=lambda file: len(file.parts), default=None)
+
+
+def is_python(file: Path) -> bool:
+    """Whether a file is a Python script: by its name, or by its first line."""
+    if file.suffix == ".py":
+        return True
+    with file.open("rb") as stream:
+        first = stream.readline(200)
+    return first.startswith(b"#!") and b"python" in first
+
+
+def _tool(package: str, node_type: str) -> Path | None:
+    """Ours; the name has both, for a script that has a library's name would be imported in its place."""
+    tool = _TOOLS / f"{package}__{node_type}.py"
+    return tool if tool.is_file() else None
+
+
+def _candidates(folders: list[Path], name: str) -> Iterator[Path]:
+    """Files of a name in a package's folders, at any depth, and where an installed package has its programs."""
+    for folder in folders:
+        installed = folder.parent.parent / "lib" / folder.name / name
+        if folder.parent.name == "share" and installed.is_file():
+            yield installed
+        for place, inner, files in os.walk(folder):
+            inner[:] = sorted(each for each in inner if not each.startswith("."))
+            if name in files:
+                yield Path(place) / name
+
+
+def _rank(file: Path) -> tuple[bool, int]:
+    """Executable files first, as only they count for ROS; then those nearer to the top."""
+    return not os.access(file, os.X_OK), len(file.parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,13 +142,19 @@ class PlannedTest:
 
 
 @dataclass(slots=True)
-class Plan:
-    """What to run: applications by name, tests, the tree of parameters, and what to tell the user."""
+class LaunchPlan:
+    """What to run: applications by name, tests, the tree of parameters, the files that were read, and remarks."""
 
     nodes: dict[str, NodeConfig] = field(default_factory=dict)
     tests: list[PlannedTest] = field(default_factory=list)
     params: dict[str, Any] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
+    files: list[Path] = field(default_factory=list)
+    remarks: list[LaunchRemark] = field(default_factory=list)
+
+    @property
+    def notes(self) -> list[str]:
+        """What to tell the user before a run, a line each."""
+        return [str(remark) for remark in self.remarks if remark.before_runs]
 
 
 def plan_of(
@@ -58,8 +165,9 @@ def plan_of(
     taken: Iterable[str] = (),
     cwd: Path | None = None,
     results: Path | None = None,
-) -> Plan:
-    """What a launch file comes to.
+    mistakes: Mistakes | None = None,
+) -> LaunchPlan:
+    """The applications that a launch file stands for.
 
     Args:
         file: the launch file.
@@ -68,14 +176,16 @@ def plan_of(
         taken: names of applications that are there already.
         cwd: where the launch is started; what cwd="cwd" means.
         results: folder that tests write their results to.
+        mistakes: takes what is wrong; None raises the first mistake.
 
     Raises:
         UsageError: the file is wrong, or a required node cannot run here.
     """
     environ = {**ROS_ENVIRONMENT, **environ}
     packages = Packages(file, environ)
+    mistakes = Mistakes() if mistakes is None else mistakes
     planner = Planner(packages, environ, taken, cwd or file.parent, results)
-    return planner.plan(read(file, args, packages, environ))
+    return planner.plan(read(file, args, packages, environ, mistakes), mistakes)
 
 
 def node_file(package: str, node_type: str, near: Path, environ: Mapping[str, str]) -> Path:
@@ -91,7 +201,7 @@ def node_file(package: str, node_type: str, near: Path, environ: Mapping[str, st
         UsageError: there is none.
     """
     try:
-        return find_script(_packages(near, environ, package), package, node_type)
+        return find_script(packages_near(near, environ, package), package, node_type)
     except ScriptError as error:
         raise UsageError(str(error), field=f"{package} {node_type}") from None
 
@@ -108,20 +218,33 @@ def launch_file(package: str, name: str, near: Path, environ: Mapping[str, str])
     Raises:
         UsageError: there is none.
     """
-    packages = _packages(near, environ, package)
+    packages = packages_near(near, environ, package)
     file = find_file(packages, package, name)
     if file is None and packages.folders(package):
-        raise UsageError(f"package {package!r} has no file {name!r}", field=f"{package} {name}")
+        hint = did_you_mean(name, _launch_files(packages.folders(package)), before="; ")
+        raise UsageError(f"package {package!r} has no file {name!r}{hint}", field=f"{package} {name}")
     if file is None:
-        text = f"there is no package {package!r}; go into its workspace, or put it on ROS_PACKAGE_PATH"
-        raise UsageError(text, field=f"{package} {name}")
+        otherwise = "go into its workspace, or put it on ROS_PACKAGE_PATH"
+        hint = did_you_mean(package, packages.names(), otherwise, before="; ")
+        raise UsageError(f"there is no package {package!r}{hint}", field=f"{package} {name}")
     return file
 
 
-def _packages(near: Path, environ: Mapping[str, str], package: str) -> Packages:
-    """Packages as seen from a folder: when the one that is asked for is not near, the catkin workspace counts, too."""
+def _launch_files(folders: list[Path]) -> list[str]:
+    """Names of the launch files in a package's folders."""
+    return sorted({file.name for folder in folders for file in folder.rglob("*.launch")})
+
+
+def packages_near(near: Path, environ: Mapping[str, str], package: str | None = None) -> Packages:
+    """Packages as seen from a folder: when the one that is asked for is not near, the catkin workspace counts, too.
+
+    Args:
+        near: a file; packages near it count first.
+        environ: for ROS_PACKAGE_PATH.
+        package: what is asked for; None is all.
+    """
     packages = Packages(near, environ)
-    if packages.folders(package):
+    if package is not None and packages.folders(package):
         return packages
     sources = [near.parent / "src", *(folder for folder in near.parents if folder.name == "src")]
     roots = [str(source) for source in sources[:2] if source.is_dir()]
@@ -161,32 +284,42 @@ class Planner:
         self._taken = set(taken)
         self._cwd = cwd
 
-    def plan(self, launch: Launch) -> Plan:
+    def plan(self, launch: Launch, mistakes: Mistakes) -> LaunchPlan:
         """Everything in a launch file; see `plan_of`.
 
-        Raises:
-            UsageError: a required node cannot run here.
+        Args:
+            launch: what was read of it.
+            mistakes: takes what is wrong, such as a required node that cannot run here.
         """
-        plan = Plan(params=_tree({**ROSCORE_PARAMS, **launch.params}, launch), notes=launch.notes)
+        remarks = launch.remarks
+        plan = LaunchPlan(params=_tree(launch), files=launch.files, remarks=remarks)
         for node in launch.nodes:
-            try:
-                config = self.config(node)
-            except ScriptError as error:
-                if node.required:
-                    raise _failure(node, f"{node.full_name} is required, but {error}") from None
-                plan.notes.append(f"{node.file}:{node.line}: node {node.full_name} is left out: {error}")
-            else:
+            config = mistakes.attempt(partial(self._config_or_remark, node, remarks))
+            if config is not None:
                 plan.nodes[config.app] = config
-        plan.tests += [self._test(test) for test in launch.tests]
+        tests = (mistakes.attempt(partial(self._test, test, remarks)) for test in launch.tests)
+        plan.tests += [test for test in tests if test is not None]
         return plan
 
-    def _test(self, test: LaunchTest) -> PlannedTest:
+    def _config_or_remark(self, node: LaunchNode, remarks: list[LaunchRemark]) -> NodeConfig | None:
+        try:
+            return self.config(node)
+        except ScriptError as error:
+            if node.required:
+                raise _failure(node, f"{node.full_name} is required, but {error}") from None
+            text = f"node {node.full_name} is left out: {error}"
+            remarks.append(LaunchRemark(text, node.file, node.line, is_error=not error.is_there))
+            return None
+
+    def _test(self, test: LaunchTest, remarks: list[LaunchRemark]) -> PlannedTest:
         """A test; it is told where to write, and its end is the end of its run."""
         node, name, limit = test.node, test.test_name, round(test.time_limit * NS_PER_S)
         results = self._results / f"{node.package}-{name}.xml"
         try:
             config = self.config(replace(node, required=True), (f"--gtest_output=xml:{results}",))
         except ScriptError as error:
+            text = f"test {name} cannot run here: {error}"
+            remarks.append(LaunchRemark(text, node.file, node.line, not error.is_there, before_runs=False))
             return PlannedTest(node.package, name, None, limit, test.retry, results, str(error))
         return PlannedTest(node.package, name, config, limit, test.retry, results)
 
@@ -239,12 +372,13 @@ def _failure(node: LaunchNode, text: str) -> UsageError:
     return UsageError(text, file=node.file, line=node.line, field="<node>")
 
 
-def _tree(params: Mapping[str, Any], launch: Launch) -> dict[str, Any]:
+def _tree(launch: Launch) -> dict[str, Any]:
     """Parameters by name as a tree; a later one replaces what is in its way."""
     root: dict[str, Any] = {}
-    for name, value in params.items():
+    for name, value in {**ROSCORE_PARAMS, **launch.params}.items():
         if value is None:
-            launch.notes.append(f"parameter {name} is left out: it has no value (null)")
+            text = f"parameter {name} is left out: it has no value (null)"
+            launch.remarks.append(LaunchRemark(text, *launch.places[name]))
             continue
         *path, last = [part for part in name.split(SEP) if part]
         place = root

@@ -1,7 +1,7 @@
 """What is in force at a place of a launch file: namespace, remappings, private parameters, environment, arguments.
 
 Every tag with contents opens a scope inside the one around it; an included file gets one whose arguments are its own.
-Stands for roslaunch.loader.LoaderContext. Imports nothing of cfepy.
+Names are put together as rosgraph.names does it. Stands for roslaunch.loader.LoaderContext.
 """
 
 from __future__ import annotations
@@ -9,9 +9,28 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from rospy_shim.names import canonicalize_name, is_legal_name
-from rospy_shim.roslaunch.names import as_namespace, joined
+from rospy_shim.client.names import PRIV_NAME, SEP, canonicalize_name, is_legal_name
+from rospy_shim.roslaunch.model import LaunchFindings
 from rospy_shim.roslaunch.substitution import Substitutions, World
+
+
+def joined(namespace: str, name: str) -> str:
+    """A name below a namespace; global and private names stay as they are."""
+    if not namespace or name.startswith((SEP, PRIV_NAME)):
+        return name
+    return namespace + name if namespace.endswith(SEP) else f"{namespace}{SEP}{name}"
+
+
+def as_namespace(name: str) -> str:
+    """A namespace with a slash at both ends.
+
+    Raises:
+        ValueError: it begins with "~".
+    """
+    if name.startswith(PRIV_NAME):
+        raise ValueError(f"{name!r} is private, which a namespace cannot be")
+    name = name if name.startswith(SEP) else SEP + name
+    return name if name.endswith(SEP) else name + SEP
 
 
 class Scope:
@@ -22,13 +41,25 @@ class Scope:
         file: the launch file.
         namespace: with a slash at both ends.
         args: values of arguments.
+        findings: takes what is found.
         parent: the scope around it.
+
+    Attributes:
+        included_at: file and line of the <include> that reads the file; empty for the launch file itself.
     """
 
     def __init__(
-        self, world: World, file: Path, namespace: str, args: dict[str, str], parent: Scope | None = None
+        self,
+        world: World,
+        file: Path,
+        namespace: str,
+        args: dict[str, str],
+        findings: LaunchFindings,
+        parent: Scope | None = None,
     ) -> None:
         self.namespace = namespace
+        self.findings = findings
+        self.included_at: str = parent.included_at if parent else ""
         anonymous: dict[str, str] = dict(parent.substitutions.anonymous) if parent else {}
         self.substitutions: Substitutions = Substitutions(world, file, args, anonymous)
         self.declared: list[str] = list(parent.declared) if parent else []
@@ -58,7 +89,7 @@ class Scope:
             ValueError: the namespace is private.
         """
         world = self.substitutions.world
-        return Scope(world, self.file, self._below(namespace), dict(self.args), self)
+        return Scope(world, self.file, self._below(namespace), dict(self.args), self.findings, self)
 
     def of_included(self, file: Path, namespace: str | None, args: dict[str, str]) -> Scope:
         """The scope of an included file, which sees no arguments but those it is passed.
@@ -66,7 +97,7 @@ class Scope:
         Raises:
             ValueError: the namespace is private.
         """
-        scope = Scope(self.substitutions.world, file, self._below(namespace), args, self)
+        scope = Scope(self.substitutions.world, file, self._below(namespace), args, self.findings, self)
         scope.declared, scope.substitutions.anonymous = [], {}
         return scope
 

@@ -1,7 +1,6 @@
-"""Nodes that a node starts: what the library roslaunch, which is code of nodes, asks the mission for.
+"""Nodes that a node starts: the mission's functions for the library roslaunch, which is code of nodes.
 
-The library finds these functions in its module `roslaunch._processes`. May import cfepy.es.records, cfepy.nodes.config
-and cfepy.rtos.units.
+The library finds these functions in its module `roslaunch._processes`.
 """
 
 from __future__ import annotations
@@ -12,17 +11,15 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from cfepy.nodes.config import NodeConfig
-from cfepy.rtos.units import NS_PER_MS, NS_PER_S
+from cfepy.nodes import NodeConfig
+from cfepy.units import NS_PER_MS, NS_PER_S
 from rospy_shim.msgs import Packages
-from rospy_shim.roslaunch.expression import SubstitutionError
 from rospy_shim.roslaunch.model import LaunchNode
-from rospy_shim.roslaunch.plan import Planner, plan_of
-from rospy_shim.roslaunch.scripts import ScriptError
-from rospy_shim.roslaunch.substitution import Substitutions, UnsetArgument, World
+from rospy_shim.roslaunch.plan import Planner, ScriptError, plan_of
+from rospy_shim.roslaunch.substitution import SubstitutionError, Substitutions, UnsetArgument, World
 
 if TYPE_CHECKING:
-    from rospy_shim.node import Node
+    from rospy_shim.client.node import Node
     from rospy_shim.runtime import RosRuntime
 
 LOOK_NS = 50 * NS_PER_MS  # how often is looked whether a node has ended
@@ -33,7 +30,7 @@ class Starter:
 
     Args:
         runtime: ROS on the mission.
-        node: who asks.
+        node: the caller.
     """
 
     def __init__(self, runtime: RosRuntime, node: Node) -> None:
@@ -141,7 +138,7 @@ class Starter:
 
 
 def _leaves(prefix: str, tree: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """The parameters of a tree by their full names, so that what else lies beside them stays."""
+    """The parameters of a tree by their full names, so that other parameters in the same namespaces stay."""
     for name, value in tree.items():
         if isinstance(value, dict) and value:
             yield from _leaves(f"{prefix}/{name}", value)

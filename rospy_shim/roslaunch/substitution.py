@@ -1,21 +1,67 @@
 """Substitution arguments of launch files: $(arg x), $(find pkg), $(eval ...) (wiki.ros.org/roslaunch/XML).
 
-Imports nothing of cfepy.
+The expression of $(eval ...) is Python's; it can reach arguments, numbers and texts, and nothing of the computer.
 """
 
 from __future__ import annotations
 
+import builtins
+import math
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rospy_shim.roslaunch.expression import SubstitutionError, evaluate
 from rospy_shim.roslaunch.values import converted
 
+# fmt: off
+_FUNCTIONS = (
+    "abs", "all", "any", "bool", "dict", "divmod", "enumerate", "filter", "float", "int", "len", "list", "map", "max",
+    "min", "pow", "range", "repr", "reversed", "round", "set", "sorted", "str", "sum", "tuple", "zip",
+)
+# fmt: on
+_SAFE = {name: getattr(builtins, name) for name in _FUNCTIONS}
+_MATH = {name: value for name, value in vars(math).items() if not name.startswith("_")}
+_WORDS = {"true": True, "false": False}
 COMMANDS = ("find", "env", "optenv", "dirname", "anon", "arg")
 _OPEN = re.compile(r"\$\(([^$()]*)(.?)", re.DOTALL)
 _EVAL, _EVAL_END = "$(eval ", ")"
+_ARG = re.compile(r"\$\(\s*arg\s+([^\s()]+)\s*\)")
+_WORD = re.compile(r"\w+")
+
+
+class SubstitutionError(Exception):
+    """A substitution that cannot be made; its text says why."""
+
+
+def evaluate(text: str, functions: Mapping[str, Any], arguments: Mapping[str, Any]) -> str:
+    """The value of an expression, as text.
+
+    Args:
+        text: the expression.
+        functions: roslaunch's functions; they and the names of `math` win over arguments.
+        arguments: what arguments stand for.
+
+    Raises:
+        SubstitutionError: it is no expression, looks at names with two underscores, or fails.
+    """
+    if "__" in text:
+        raise SubstitutionError(f"$(eval {text}) has two underscores in a row, which are not allowed there")
+    names = {**arguments, **_MATH, **_WORDS, **functions, "__builtins__": _SAFE}
+    try:
+        return str(eval(text.strip(), names))
+    except SubstitutionError:
+        raise
+    except Exception as error:
+        raise SubstitutionError(f"$(eval {text}) has no value: {type(error).__name__}: {error}") from None
+
+
+UNKNOWN = "\0unknown"
+"""Stands for the value of an argument that could not be read; no launch file can have this text."""
+
+
+class UnknownArgument(SubstitutionError):
+    """$(arg x) of an argument whose value could not be read, which was told before."""
 
 
 class UnsetArgument(SubstitutionError):
@@ -26,11 +72,16 @@ class UnsetArgument(SubstitutionError):
         self.name = name
 
 
+def arguments_in(text: str) -> set[str]:
+    """Names of arguments that a text may use; each word of an expression may be one."""
+    return set((_WORD if _EVAL in text else _ARG).findall(text))
+
+
 class World(NamedTuple):
     """What substitutions of all files of a launch look at.
 
-    `environ` is the environment; `find` gives the folder of a package, or None; `anonymous` makes a name that nobody
-    else has.
+    `environ` is the environment; `find` gives the folder of a package, or None; `anonymous` makes a name that no other
+    node has.
     """
 
     environ: Mapping[str, str]
@@ -123,9 +174,12 @@ class Substitutions:
         return self.anonymous[name]
 
     def _arg(self, name: str) -> str:
-        if name not in self.args:
+        value = self.args.get(name)
+        if value is None:
             raise UnsetArgument(name)
-        return self.args[name]
+        if value == UNKNOWN:
+            raise UnknownArgument(name)
+        return value
 
     def _dirname(self) -> str:
         return str(self.file.absolute().parent)
@@ -139,4 +193,7 @@ class Substitutions:
             "find": self._find,
             "optenv": self._optenv,
         }
+        words = set(_WORD.findall(text))
+        if any(value == UNKNOWN and name in words for name, value in self.args.items()):
+            raise UnknownArgument(text)
         return evaluate(text, functions, {name: converted(value, "auto") for name, value in self.args.items()})

@@ -1,6 +1,6 @@
 """How texts in launch files become values: roslaunch's types of parameters, truth values, numbers, YAML with angles.
 
-Imports nothing of cfepy; PyYAML is imported when there is YAML to read.
+PyYAML is imported when there is YAML to read.
 """
 
 from __future__ import annotations
@@ -10,6 +10,8 @@ import math
 import re
 from collections.abc import Callable
 from typing import Any
+
+from cfepy.syntax_trees import parsed
 
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
 TYPES = ("str", "string", "int", "double", "bool", "boolean", "yaml", "auto")
@@ -84,7 +86,7 @@ def _angle(name: str, unit: float) -> Callable[[Any, Any], float]:
         text = str(loader.construct_scalar(node)).strip()
         inside = text[len(name) + 1 : -1] if text.startswith(f"{name}(") else text
         try:
-            return _arithmetic(ast.parse(inside.strip(), mode="eval").body) * unit
+            return _arithmetic(parsed(inside.strip(), mode="eval").body) * unit
         except SyntaxError:
             raise ValueError(f"{text!r} is no angle; write {name}(NUMBER)") from None
 

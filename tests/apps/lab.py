@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.console import Console
+from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission
-from cfepy.mission.ground import GroundLink
 from cfepy.msg import Telemetry
 
 STARTUP = """\
@@ -31,7 +31,7 @@ class Lab:
         before = len(self.mission.console.lines)
         for packet in packets:
             assert self.ground.send(packet)
-        self.mission.run(seconds)
+        self.mission.run_for(seconds)
         lines = self.mission.console.lines[before:]
         events = [line.partition(" 66/1/")[2] for line in lines if line.startswith("EVS Port1")]
         return [event for event in events if event.startswith(app)]
@@ -53,5 +53,5 @@ def lab(folder: Path, tasks: str = "thread", before: str = "", **options: Any) -
     (folder / "startup.scr").write_text(before + STARTUP)
     mission = Mission(str(folder), tasks=tasks, console=Console(quiet=True), **options)
     with mission, GroundLink(mission) as ground:
-        mission.run(1)
+        mission.run_for(1)
         yield Lab(mission, ground)

@@ -10,7 +10,7 @@ import pytest
 
 from apps.ci_lab import packets as pk
 from apps.to_lab import packets as to_lab
-from cfepy.mission.ground import GroundLink
+from cfepy.ground.link import GroundLink
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_STATUS_WRONG_MSG_LENGTH
 from tests.apps.lab import Lab, lab
 from tests.layouts import assert_same
@@ -119,7 +119,7 @@ def test_eleven_datagrams_in_a_pass(session: Lab) -> None:
         session.ground.send(bytes.fromhex("18f0c0000001fe11"))
     passes = []
     for _ in range(4):
-        session.mission.run(0.5)
+        session.mission.run_for(0.5)
         count = 0
         while sb.receive_buffer(pipe, 0) is not None:
             count += 1
@@ -152,7 +152,7 @@ def test_an_unknown_function_code_goes_unnoticed(session: Lab) -> None:
 def test_a_restart_frees_the_port(session: Lab) -> None:
     restart = bytes.fromhex("1806c00000150600") + b"CI_LAB".ljust(20, b"\0")
     session.mission.cfe.sb.transmit_msg(restart[:5] + bytes([len(restart) - 7]) + restart[6:], is_origination=False)
-    session.mission.run(9)
+    session.mission.run_for(9)
     lines = session.mission.console.lines
     assert lines.count("CI delete callback -- Closing CI Network socket.") == 1
     assert sum(line.endswith("CI_LAB listening on UDP port: 1234") for line in lines) == 2
@@ -182,7 +182,7 @@ def test_without_a_pipe_the_app_ends(tmp_path: Path) -> None:
     body = "def Squat(cfe):\n    cfe.sb.create_pipe(1, 'CI_LAB_CMD_PIPE')\n    cfe.os.task_delay(1 << 30)\n"
     (tmp_path / "squat.py").write_text(body)
     with lab(tmp_path, before="CFE_APP, squat, Squat, SQUAT, 50, 16384, 0x0, 0;\n") as session:
-        session.mission.run(3)
+        session.mission.run_for(3)
         lines = session.mission.console.lines
         assert any("CI_LAB 11: Error creating SB Command Pipe, RC = 0xCA000005" in line for line in lines)
         assert "CI_LAB" not in [app.name for app in session.mission.cfe.es.apps]

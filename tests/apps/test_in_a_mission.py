@@ -36,7 +36,7 @@ class Session:
         before = len(self.mission.console.lines)
         for packet in commands:
             self.mission.kernel.spawn("ground", partial(self.mission.cfe.sb.transmit_msg, packet, False), 10)
-        self.mission.run(seconds)
+        self.mission.run_for(seconds)
         lines = [line.partition(" 66/1/")[2] for line in self.mission.console.lines[before:]]
         return [line for line in lines if line.startswith(("SAMPLE", "HK", "CFE_TBL"))]
 
@@ -65,7 +65,7 @@ def test_a_day_in_orbit(session: Session) -> None:
 
 
 def test_restarted_app_has_its_table_again(session: Session) -> None:
-    session.mission.run(2)
+    session.mission.run_for(2)
     restart = bytes(command(0x1806, 6, b"SAMPLE_APP".ljust(20, b"\0")))
     assert session.events(9, restart)[-1] == SAMPLE_STARTED
     assert session.mission.cfe.tbl.get_info(TABLE).num_users == 1

@@ -114,9 +114,9 @@ def test_the_library_in_a_mission(tmp_path: Path) -> None:
         "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
     )
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
-        mission.run(2)
+        mission.run_for(2)
         mission.cfe.sb.transmit_msg(packets.PROCESS.packet())
-        mission.run(1)
+        mission.run_for(1)
         lines = mission.console.lines
     start = "SAMPLE Lib Initialized.Sample Lib v7.0.0+dev0 (Draco) v7.0.0 Official Release, EDS disabled"
     assert start in lines

@@ -213,6 +213,6 @@ def test_both_kinds_of_task_contexts_give_one_trace(tmp_path: Path) -> None:
     digests = set()
     for tasks in ("thread", "greenlet"):
         with Mission(str(tmp_path), tasks=tasks, console=Console(quiet=True)) as mission:
-            mission.run(5)
+            mission.run_for(5)
             digests.add(mission.trace.digest())
     assert len(digests) == 1

@@ -6,8 +6,8 @@ import pytest
 
 from apps.sch import TABLES, packets
 from apps.sch.definition import activity, message_image, schedule_image
+from apps.sch.state import judge_messages, judge_schedule
 from apps.sch.tables import sch_def_msgtbl, sch_def_schtbl
-from apps.sch.validation import judge_messages, judge_schedule
 from cfepy.msg import get_msg_id, init
 from cfepy.status import UsageError
 from cfepy.tbl import build

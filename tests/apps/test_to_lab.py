@@ -34,7 +34,7 @@ def spy(session: Lab, count: int) -> int:
     """Send packets of a MsgId from within; how many came down."""
     for number in range(count):
         session.mission.cfe.sb.transmit_msg(bytes(telemetry(SPY.msg_id, bytes([number]))))
-    session.mission.run(0.6)
+    session.mission.run_for(0.6)
     return len(session.packets(SPY))
 
 
@@ -73,7 +73,7 @@ def test_packets_leave_every_500_ms_in_the_order_of_the_bus(session: Lab) -> Non
     session.mission.run_until(4_000_000_000)
     for request in (pk.SEND_HK, ci_lab.SEND_HK, ci_lab.SEND_HK):
         session.mission.cfe.sb.transmit_msg(request.packet())
-    session.mission.run(1.2)
+    session.mission.run_for(1.2)
     down = session.ground.received()
     assert [packet[:2].hex() for _, packet in down] == ["0884", "0884", "0880"]
     times = [time // 1_000_000 for time, _ in down]
@@ -141,7 +141,7 @@ def test_fifty_packets_in_a_round(session: Lab) -> None:
     for number in range(3):
         for _ in range(20):
             session.mission.cfe.sb.transmit_msg(bytes(telemetry(0x0900 + number)))
-    session.mission.run(0.6)
+    session.mission.run_for(0.6)
     assert len(session.ground.received()) == 50  # as many as the pipe holds
 
 
@@ -167,7 +167,7 @@ def test_a_command_that_is_too_short_is_filled_up_with_zeros(session: Lab) -> No
 def test_a_missing_table_ends_the_app(tmp_path: Path) -> None:
     (tmp_path / "to_lab_sub.tbl").write_bytes(b"no table")
     with lab(tmp_path) as session:
-        session.mission.run(3)
+        session.mission.run_for(3)
         lines = session.mission.console.lines
         assert any("TO_LAB 19: L156 TO Can't load table status" in line for line in lines)
         assert lines.count("TO delete callback -- Closing TO Network socket.") == 1

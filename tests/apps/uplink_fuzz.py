@@ -19,12 +19,12 @@ import pytest
 
 from apps.ci_lab import packets as ci_lab
 from cfepy.console import Console
+from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission
-from cfepy.mission.ground import GroundLink
 from cfepy.msg import CommandTable, get_msg_id, get_size
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, DONE, Dispatch
-from cfepy.rtos.units import NS_PER_MS
 from cfepy.sb.routing import Destination
+from cfepy.units import NS_PER_MS
 
 DATA = Path(__file__).parents[1] / "data"
 STARTUP = """\
@@ -232,7 +232,7 @@ class Books:
         """Ask everybody for housekeeping, and add up how far the counters went; they begin again after 255."""
         for request in REQUESTS.values():
             self._sb.transmit_msg(bytes([request >> 8, request & 0xFF, 0xC0, 0, 0, 1, 0, 0]))
-        self.mission.run(1)
+        self.mission.run_for(1)
         found: dict[int, bytes] = {}
         while (packet := self._sb.receive_buffer(self._pipe, 0)) is not None:
             found[get_msg_id(packet)] = packet
@@ -255,7 +255,7 @@ def fly(folder: Path, seed: int, count: int, monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(CommandTable, "dispatch", counting)
     with Mission(str(folder), console=Console(quiet=True)) as mission, GroundLink(mission) as ground:
-        mission.run(2)
+        mission.run_for(2)
         books = Books(mission, ground, outcomes)
         datagrams = damaged(seed, count)
         while batch := list(islice(datagrams, PASS * BATCH)):

@@ -37,7 +37,7 @@ rospy.spin()
 
 
 def check(folder: str, *options: str) -> int:
-    return main(["run", folder, "--for", "3", "--check-determinism", *options])
+    return main(["run", folder, "--for", "1", "--check-determinism", *options])
 
 
 def test_a_deterministic_mission(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -45,10 +45,11 @@ def test_a_deterministic_mission(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert check(folder) == 0
     shown = capsys.readouterr().out.splitlines()
     assert shown[0].startswith("3 runs: PYTHONHASHSEED=0 --tasks thread; PYTHONHASHSEED=1 --tasks greenlet; ")
-    assert main(["run", folder, "--for", "3", "--quiet"]) == 0
+    assert main(["run", folder, "--for", "1", "--quiet"]) == 0
     assert shown[-1] == capsys.readouterr().out.splitlines()[-1]  # the trace is that of an ordinary run
 
 
+@pytest.mark.slow
 def test_the_order_of_a_set(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = write_mission(tmp_path, STARTUP, talker=TALKER.format(names="names"), listener=LISTENER)
     assert check(folder, "4") == 1
@@ -60,6 +61,7 @@ def test_the_order_of_a_set(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert f"{tmp_path / 'talker.py'}:10: goes through a set: for name in names:" in shown
 
 
+@pytest.mark.slow
 def test_messages_without_a_subscriber_count(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     startup = "CFE_APP, talker.py, __main__, TALKER, 100, 16384, 0x0, 0;\n!\n"
     folder = write_mission(tmp_path, startup, talker=TALKER.format(names="names"))
@@ -77,7 +79,7 @@ def test_messages_without_a_subscriber_are_not_in_the_digest(
     folder = write_mission(tmp_path, startup, talker=TALKER.format(names="sorted(names)"))
     assert check(folder) == 0
     compared = capsys.readouterr().out.splitlines()[-1]
-    assert main(["run", folder, "--for", "3", "--quiet"]) == 0
+    assert main(["run", folder, "--for", "1", "--quiet"]) == 0
     assert compared == capsys.readouterr().out.splitlines()[-1]
 
 
@@ -98,6 +100,7 @@ def test_ordered_sets_in_the_mission_file(tmp_path: Path, mission_yaml: str) -> 
         ("hash('text')", "it hangs on PYTHONHASHSEED, but ordered sets do not cure it"),
     ],
 )
+@pytest.mark.slow
 def test_other_causes(tmp_path: Path, capsys: pytest.CaptureFixture[str], expression: str, cause: str) -> None:
     program = f"""
     import time

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from cfepy.cli.ground.target import RemoteHost, host_of
 from cfepy.cli.main import main
-from cfepy.cli.target import Host, host_of
-from cfepy.io.udp import Listener
+from cfepy.io.udp import UdpListener
 from cfepy.status import UsageError
 from tests.cli.conftest import Write
 
@@ -23,16 +23,16 @@ def mission(make_mission: Write) -> str:
 @pytest.mark.parametrize(
     ("text", "host"),
     [
-        ("127.0.0.1", Host("127.0.0.1", 1234)),
-        ("10.0.0.7:99", Host("10.0.0.7", 99)),
-        ("localhost", Host("localhost", 1234)),
-        ("board.local:2000", Host("board.local", 2000)),
+        ("127.0.0.1", RemoteHost("127.0.0.1", 1234)),
+        ("10.0.0.7:99", RemoteHost("10.0.0.7", 99)),
+        ("localhost", RemoteHost("localhost", 1234)),
+        ("board.local:2000", RemoteHost("board.local", 2000)),
         ("capture", None),
         ("missions/capture", None),
         ("C:/missions", None),
     ],
 )
-def test_what_looks_like_a_computer(text: str, host: Host | None) -> None:
+def test_what_looks_like_a_computer(text: str, host: RemoteHost | None) -> None:
     assert host_of(text, 1234) == host
 
 
@@ -73,7 +73,7 @@ def test_options_may_stand_between_the_words(capsys: pytest.CaptureFixture[str])
 
 
 def test_a_command_goes_to_a_computer(capsys: pytest.CaptureFixture[str]) -> None:
-    with Listener("127.0.0.1", 0) as ci_lab:
+    with UdpListener("127.0.0.1", 0) as ci_lab:
         assert main(["cmd", f"127.0.0.1:{ci_lab.port}", "CFE_ES_NOOP"]) == 0
         assert ci_lab.receive(5) == bytes.fromhex("1806c00000010020")
     assert capsys.readouterr().out == f"CFE_ES_NOOP sent to 127.0.0.1:{ci_lab.port}, 8 bytes\n"
@@ -113,7 +113,7 @@ def test_an_app_that_dies_of_a_command_is_a_failure(make_mission: Write, capsys:
 
 
 def test_a_computer_on_which_nobody_listens(capsys: pytest.CaptureFixture[str]) -> None:
-    with Listener("127.0.0.1", 0) as closed:
+    with UdpListener("127.0.0.1", 0) as closed:
         place = f"127.0.0.1:{closed.port}"
     assert main(["cmd", place, "CFE_ES_NOOP"]) == 1
     said = capsys.readouterr()
@@ -125,7 +125,7 @@ def test_a_computer_on_which_nobody_listens(capsys: pytest.CaptureFixture[str]) 
     [
         ([], "say where to, and which command"),
         (["127.0.0.1"], "say where to, and which command"),
-        (["127.0.0.1", "CFE_ES_NOP"], "no command is called CFE_ES_NOP; is CFE_ES_NOOP"),
+        (["127.0.0.1", "CFE_ES_NOP"], "no command is called CFE_ES_NOP; did you mean CFE_ES_NOOP"),
         (["127.0.0.1", "CFE_ES_NOOP", "X=1"], "X: CFE_ES_NOOP has no fields"),
         (["no_such_mission", "CFE_ES_NOOP"], "no_such_mission: no startup script"),
         (["nohost", "CFE_ES_NOOP"], "; a computer is an address such as 192.168.1.5, localhost, or NAME:PORT"),

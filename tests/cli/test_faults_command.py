@@ -65,7 +65,7 @@ def test_bad_plans_are_bad_usage(tmp_path: Path, capsys: pytest.CaptureFixture[s
     path = tmp_path / "bad.yaml"
     path.write_text("- drop: /a\n  cuont: 3\n")
     assert main(["run", "lab", "--faults", str(path)]) == 2
-    assert f"{path}:2: [0].cuont: is no option of drop; is count meant?" in capsys.readouterr().err
+    assert f"{path}:2: [0].cuont: is no option of drop; did you mean count?" in capsys.readouterr().err
     assert main(["run", "lab", "--faults", "seed:x"]) == 2
     assert "--faults: is 'seed:x'" in capsys.readouterr().err
     assert main(["run", "lab", "--faults", str(tmp_path / "none.yaml")]) == 2
@@ -75,7 +75,7 @@ def test_an_unknown_application_is_told_before_the_run(tmp_path: Path, capsys: p
     path = tmp_path / "plan.yaml"
     path.write_text("- crash: SAMPLE_AP\n  at: 1\n")
     assert main(["run", "lab", "--for", "1", "--quiet", "--faults", str(path)]) == 0
-    assert "no application is called SAMPLE_AP; is SAMPLE_APP meant?" in capsys.readouterr().err
+    assert "no application is called SAMPLE_AP; did you mean SAMPLE_APP?" in capsys.readouterr().err
 
 
 def test_a_command_of_a_script_gets_lost(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -103,7 +103,7 @@ def test_check_compares_a_plan_with_the_mission(tmp_path: Path, capsys: pytest.C
         ("/motor_command", "HK", "HK_CMD_PIPE", "HK.CopyTable", "/cf/hk_cpy_tbl.tbl", "ARM", "HK"), start=1
     ):
         assert f"plan.yaml:{line}: " in out
-        assert f"is {meant} meant?" in out
+        assert f"did you mean {meant}?" in out
     assert "7 problems found" in out
     path.write_text("- drop: /phase\n  every: x\n")
     assert main(["check", "capture", "--faults", str(path)]) == 1

@@ -14,7 +14,7 @@ from cfepy.cli.main import main
 from cfepy.evs.packets import LONG_EVENT
 from cfepy.fs import HEADER_SIZE
 from cfepy.msg import TLM_HEADER_SIZE
-from tests.mission.test_dump_files import EXIT_BIT, perf_file
+from tests.ground.test_dump_files import EXIT_BIT, perf_file
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -37,7 +37,7 @@ def test_empty_records_are_left_out(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_json(capsys: pytest.CaptureFixture[str]) -> None:
     names = ["cfe_evs.log", "cfe_es_syslog.log", "cfe_erlog.log"]
-    assert main(["log", "--json", *(str(DATA / name) for name in names)]) == 0
+    assert main(["log", "--json", "-", *(str(DATA / name) for name in names)]) == 0
     events, log, resets = json.loads(capsys.readouterr().out)
     assert events["kind"] == "event log"
     assert events["header"]["processor_id"] == 1
@@ -54,6 +54,37 @@ def test_performance_data(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert ["10000.0", "8000.0", "5", "entered"] in rows
     assert ["5", "2", "2000.0", "3000.0", "4000.0", "6000.0", "0", "0"] in rows
     assert ["6", "0", "-", "-", "-", "-", "1", "0"] in rows
+
+
+def test_performance_data_as_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, out = tmp_path / "perf.dat", tmp_path / "perf.json"
+    inside = ((1, 0, 10), (91, 0, 10), (91 | EXIT_BIT, 0, 10), (1 | EXIT_BIT, 0, 12))
+    path.write_bytes(perf_file((7 | EXIT_BIT, 0, 5), *inside, (91, 0, 30)))
+    assert main(["log", str(path), "--perfetto", str(out)]) == 0
+    assert capsys.readouterr().out == f"{out}: 6 entries; open it in https://ui.perfetto.dev\n"
+    trace = json.loads(out.read_text())
+    assert trace["otherData"]["DataCount"] == 6
+    events = [event for event in trace["traceEvents"] if event["ph"] != "M"]
+    assert [(event["ph"], event["tid"]) for event in events] == [
+        *(("i", 7), ("B", 1), ("B", 91), ("E", 91), ("E", 1), ("B", 91), ("E", 91))
+    ]
+    times = [event["ts"] for event in events]
+    assert times == sorted(times)
+    assert len({*times}) == len(times), "what happens at one instant is drawn apart"
+    assert [event["args"]["virtual_ns"] for event in events[:3]] == [5_000_000, 10_000_000, 10_000_000]
+    tracks = {
+        event["tid"]: event["args"]["name"] for event in trace["traceEvents"] if event.get("name") == "thread_name"
+    }
+    assert tracks == {7: "7 CFE_TIME tone interrupt", 1: "1 CFE_ES main", 91: "91"}
+
+
+def test_what_is_no_performance_data_has_no_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = str(tmp_path / "x.json")
+    log = str(DATA / "cfe_es_syslog.log")
+    assert main(["log", log, "--perfetto", out]) == 2
+    assert "--perfetto: is for performance data, and this is the system log" in capsys.readouterr().err
+    assert main(["log", log, log, "--perfetto", out]) == 2
+    assert "--perfetto: is for one file" in capsys.readouterr().err
 
 
 def test_a_bad_file_does_not_hide_the_good_ones(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -38,7 +38,7 @@ def test_the_trace_of_a_journal_is_that_of_its_run(
 
 
 def test_the_trace_is_filtered_by_time_task_and_topic(journal: Path, capsys: Capture) -> None:
-    assert main(["trace", str(journal), "--from", "1", "--to", "1.5", "--topic", "0x089*"]) == 0
+    assert main(["trace", str(journal), "--from", "1", "--until", "1.5", "--topic", "0x089*"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 5
     assert all(re.fullmatch(r"1\.\d{9} CHATTY send 0x0890 sequence \d+ length \d+", line) for line in lines)
@@ -103,7 +103,6 @@ def test_a_replay_that_is_another_run_is_told(journal: Path, tmp_path: Path, cap
     [
         (["trace", "JOURNAL", "--seed", "3"], "--seed: JOURNAL is a journal, which says that itself"),
         (["report", "JOURNAL", "--for", "3"], "--for: JOURNAL is a journal"),
-        (["report", "MISSION", "--until", "1"], "--until: is for the replay of a journal"),
         (["trace", "MISSION", "--from-disk"], "--from-disk: is for the replay of a journal"),
         (["trace", "MISSION", "--perfetto", "x.json", "--from", "1"], "--from: is for the text"),
         (["trace", "nowhere"], "nowhere: no startup script"),

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import cfepy
-from cfepy.cli.main import COMMANDS, main
+from cfepy.cli.main import ROOMS, main
 
 
 @pytest.mark.parametrize("words", [["--help"], ["run", "--help"], ["check", "--help"], ["new", "--help"]])
@@ -48,10 +48,10 @@ def test_words_too_many_show_the_usage_of_the_command(
     assert f"{command}: error: unrecognized arguments: {words[-1]}" in said
 
 
-@pytest.mark.parametrize(("part", "names"), COMMANDS.items())
-def test_each_part_of_the_parser_adds_the_commands_that_it_is_asked_for(part: str, names: tuple[str, ...]) -> None:
+@pytest.mark.parametrize(("room", "names"), ROOMS.items())
+def test_each_room_adds_the_commands_that_it_is_asked_for(room: str, names: tuple[str, ...]) -> None:
     commands = argparse.ArgumentParser().add_subparsers()
-    importlib.import_module(f"cfepy.cli.{part}").add(commands)
+    importlib.import_module(f"cfepy.cli.{room}").add(commands)
     assert tuple(commands.choices) == names
 
 
@@ -59,7 +59,7 @@ def test_a_wrong_command_is_answered_with_all_of_them(capsys: pytest.CaptureFixt
     with pytest.raises(SystemExit):
         main(["fly"])
     said = capsys.readouterr().err
-    assert all(repr(name) in said for names in COMMANDS.values() for name in names)
+    assert all(repr(name) in said for names in ROOMS.values() for name in names)
 
 
 def test_help_imports_nothing_heavy() -> None:
@@ -76,8 +76,8 @@ def test_an_empty_run_imports_neither_ros_nor_what_other_commands_need(tmp_path:
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.splitlines()[-1].split())
     assert {"cfepy.mission", "cfepy.rtos"} <= loaded
-    others = {f"cfepy.cli.{name}" for name in COMMANDS if name != "arguments"}
-    assert loaded.isdisjoint({"rich", "numpy", "json", "rospy_shim", "cfepy.io", "cfepy.mission.script"} | others)
+    others = {f"cfepy.cli.{room}" for room in ROOMS if room != "run"}
+    assert loaded.isdisjoint({"rich", "numpy", "json", "rospy_shim", "cfepy.io", "cfepy.script.run"} | others)
 
 
 def test_boards(capsys: pytest.CaptureFixture[str]) -> None:

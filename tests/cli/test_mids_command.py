@@ -19,7 +19,7 @@ def test_the_table(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> N
 
 def test_as_json(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
     folder = make_mission("Chatty")
-    assert main(["mids", str(folder), "--json"]) == 0
+    assert main(["mids", str(folder), "--json", "-"]) == 0
     rows = json.loads(capsys.readouterr().out)
     assert rows == sorted(rows, key=lambda row: row["msg_id"])
     assert main(["mids", str(folder), "--json", str(folder / "x.json")]) == 0

@@ -29,7 +29,7 @@ def test_tests_that_pass(write_launch: Launch, capsys: pytest.CaptureFixture[str
 def test_a_test_that_fails(write_launch: Launch, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     written = tmp_path / "results.xml"
     file = write_launch(TALKER + CHECK.format("", "bye", ""))
-    assert main(["rostest", file, "--results-file", str(written)]) == 1
+    assert main(["rostest", file, "--results", str(written)]) == 1
     shown = capsys.readouterr().out
     assert "[demo.check.__main__.TestTalker/test_hears][FAILURE]\n    'hello' != 'bye'" in shown
     assert " * RESULT: FAIL\n * TESTS: 2\n * ERRORS: 0\n * FAILURES: 1" in shown

@@ -68,7 +68,7 @@ def test_a_mistake_in_the_script_is_bad_usage(
 ) -> None:
     assert run(make_mission("Quiet"), script, "at 1 send CFE_ES_NOOP\nsned CFE_ES_NOOP\n") == 2
     shown = capsys.readouterr()
-    assert shown.err == f"cfepy: {script}:2: 'sned' is no step; is send meant?\n"
+    assert shown.err == f"cfepy: {script}:2: 'sned' is no step; did you mean send?\n"
     assert shown.out == ""
 
 

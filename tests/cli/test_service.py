@@ -33,7 +33,7 @@ def test_what_is_offered(mission: str, capsys: Capture) -> None:
     assert lines[0] == "Node: /robot"
     assert lines[1].startswith("URI: rosrpc://")
     assert lines[2:] == ["Type: std_srvs/SetBool", "Args: data", ""]
-    found = json.loads(said(capsys, "info", mission, "/switch", "--for", "1", "--json"))
+    found = json.loads(said(capsys, "info", mission, "/switch", "--for", "1", "--json", "-"))
     assert (found["node"], found["args"]) == ("/robot", ["data"])
 
 
@@ -48,7 +48,7 @@ def test_nothing_of_the_kind(mission: str, tmp_path: Path, capsys: Capture) -> N
 
 def test_calls(mission: str, capsys: Capture) -> None:
     assert said(capsys, "call", mission, "/switch", "{data: true}") == 'success: True\nmessage: "is True"\n'
-    found = json.loads(said(capsys, "call", mission, "switch", "false", "--at", "2.0", "--json"))
+    found = json.loads(said(capsys, "call", mission, "switch", "false", "--at", "2.0", "--json", "-"))
     assert found["response"] == {"success": False, "message": "is False"}
     assert 2.0 <= found["at"] < 2.01
 
@@ -96,5 +96,5 @@ def test_calls_that_fail(mission: str, capsys: Capture) -> None:
     assert "No field name [dta]" in capsys.readouterr().err
     assert main(["service", "call", mission, "/none", "--for", "2"]) == 1
     assert "no answer from /none until the run was over" in capsys.readouterr().err
-    assert main(["service", "call", mission, "/none", "--for", "2", "--json"]) == 1
+    assert main(["service", "call", mission, "/none", "--for", "2", "--json", "-"]) == 1
     assert "no answer" in json.loads(capsys.readouterr().out)["error"]

@@ -39,7 +39,7 @@ def Main(cfe):
 
 
 def test_show_then_build_gives_the_same_bytes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["tbl", "show", "--yaml", str(SAMPLE)]) == 0
+    assert main(["tbl", "show", "--yaml", "-", str(SAMPLE)]) == 0
     source = tmp_path / "sample.yaml"
     source.write_text(capsys.readouterr().out)
     assert main(["tbl", "build", str(source)]) == 0
@@ -59,7 +59,7 @@ def test_show_for_people(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_show_as_json(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["tbl", "show", "--json", str(DATA / "sch_lab_table.tbl")]) == 0
+    assert main(["tbl", "show", "--json", "-", str(DATA / "sch_lab_table.tbl")]) == 0
     values = json.loads(capsys.readouterr().out)
     assert values["crc"] == 0x70D5
     assert values["rows"][0]["TickRate"] == 100
@@ -74,7 +74,7 @@ def test_layout_in_a_file_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixt
     assert (image.name, image.spacecraft_id, image.description) == ("MINE.Gains", 42, "Gains of mine")
     assert image.data == bytes.fromhex("0100f401 00000000 03000000")
     capsys.readouterr()
-    assert main(["tbl", "show", str(target), "--yaml", "--layout", str(source)]) == 0
+    assert main(["tbl", "show", str(target), "--yaml", "-", "--layout", str(source)]) == 0
     again = tmp_path / "again.yaml"
     again.write_text(capsys.readouterr().out)
     assert main(["tbl", "build", str(again), "-o", str(tmp_path / "again.tbl")]) == 0
@@ -120,7 +120,7 @@ def test_diff_of_unknown_layouts_shows_bytes(tmp_path: Path, capsys: pytest.Capt
 
 
 def test_diff_takes_yaml_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    main(["tbl", "show", "--yaml", str(SAMPLE)])
+    main(["tbl", "show", "--yaml", "-", str(SAMPLE)])
     source = tmp_path / "sample.yaml"
     source.write_text(capsys.readouterr().out)
     assert main(["tbl", "diff", str(SAMPLE), str(source)]) == 0

@@ -8,10 +8,10 @@ from types import TracebackType
 
 import pytest
 
-from cfepy.cli import tlm
+from cfepy.cli.ground import tlm
 from cfepy.cli.main import main
 from cfepy.evs.packets import LONG_EVENT
-from cfepy.io.udp import Listener
+from cfepy.io.udp import UdpListener
 from cfepy.msg import get_fcn_code, get_msg_id, telemetry
 from tests.cli.conftest import Write
 from tests.cli.ros_missions import robot
@@ -48,7 +48,7 @@ class Datagrams:
 
 def arrives(monkeypatch: pytest.MonkeyPatch, *datagrams: bytes) -> Datagrams:
     found = Datagrams(*datagrams)
-    monkeypatch.setattr(tlm.udp, "Listener", found)
+    monkeypatch.setattr(tlm.udp, "UdpListener", found)
     return found
 
 
@@ -56,7 +56,7 @@ def test_what_arrives_is_shown_by_name(monkeypatch: pytest.MonkeyPatch, capsys: 
     port = arrives(monkeypatch, b"no packet", EVENT, bytes(telemetry(0x0999, b"\x01\x02")))
     assert main(["tlm", "--count", "2"]) == 0
     event, unknown = capsys.readouterr().out.splitlines()
-    assert " CFE_EVS_LONG_EVENT_MSG PacketID.AppName=APP PacketID.EventID=3 PacketID.EventType=2 " in event
+    assert " CFE_EVS_LONG_EVENT_MSG PacketID.AppName=APP PacketID.EventID=3 PacketID.EventType=INFORMATION " in event
     assert 'Message="all is well"' in event
     assert unknown.endswith(f" 0x0999 {bytes(telemetry(0x0999, bytes([1, 2]))).hex()} (its layout is not known)")
     assert port.place == ("0.0.0.0", 1235)
@@ -77,7 +77,7 @@ def test_ctrl_c_ends_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureF
 
 def test_json_lines(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     arrives(monkeypatch, EVENT, bytes(telemetry(0x0999, b"x")))
-    assert main(["tlm", "--json", "--count", "2"]) == 0
+    assert main(["tlm", "--json", "-", "--count", "2"]) == 0
     event, unknown = map(json.loads, capsys.readouterr().out.splitlines())
     assert (event["name"], event["msg_id"], event["sequence"]) == ("CFE_EVS_LONG_EVENT_MSG", 0x0808, 0)
     assert event["values"]["PacketID"]["AppName"] == "APP"
@@ -85,7 +85,7 @@ def test_json_lines(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixtu
 
 
 def test_to_lab_is_asked_to_send(monkeypatch: pytest.MonkeyPatch) -> None:
-    with Listener("127.0.0.1", 0) as ci_lab:
+    with UdpListener("127.0.0.1", 0) as ci_lab:
         arrives(monkeypatch, EVENT)
         assert main(["tlm", "--enable", f"127.0.0.1:{ci_lab.port}", "--count", "1"]) == 0
         packet = ci_lab.receive(5)
@@ -136,7 +136,7 @@ def test_nothing_came(make_mission: Write, capsys: pytest.CaptureFixture[str]) -
 
 
 def test_nothing_arrived(capsys: pytest.CaptureFixture[str]) -> None:
-    with Listener("127.0.0.1", 0) as free:
+    with UdpListener("127.0.0.1", 0) as free:
         place = f"127.0.0.1:{free.port}"
     assert main(["tlm", place, "--for", "0.01"]) == 1
     assert "no such packet came to port" in (said := capsys.readouterr().err)
@@ -149,7 +149,7 @@ def test_an_app_that_died_is_told(make_mission: Write, capsys: pytest.CaptureFix
 
 
 def test_nobody_is_there_to_be_asked(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    with Listener("127.0.0.1", 0) as closed:
+    with UdpListener("127.0.0.1", 0) as closed:
         place = f"127.0.0.1:{closed.port}"
     arrives(monkeypatch, EVENT)
     assert main(["tlm", "--enable", place]) == 2
@@ -167,13 +167,13 @@ def test_a_mission_in_virtual_time_is_not_asked_to_send(
 def test_a_count_that_is_none(count: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["tlm", "--count", count])
-    assert "is not a number of packets" in capsys.readouterr().err
+    assert "is not a number of them" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["CFE_ES_HK"], "no telemetry packet is called CFE_ES_HK; is CFE_ES_HK_TLM"),
+        (["CFE_ES_HK"], "no telemetry packet is called CFE_ES_HK; did you mean CFE_ES_HK_TLM"),
         (["--mission", "no_such_mission"], "no_such_mission: no startup script"),
         (["127.0.0.1:0"], "0 is no port"),
     ],

@@ -35,7 +35,7 @@ def test_lists_of_topics(tmp_path: Path, capsys: Capture, bag: str) -> None:
     assert " * /said [std_msgs/String] 1 publisher\n" in verbose.partition("Subscribed")[0]
     assert " * /orders [std_msgs/String] 1 subscriber\n" in verbose.partition("Subscribed")[2]
     assert said(capsys, "list", bag) == "/odom\n/said\n"
-    rows = json.loads(said(capsys, "list", bag, "--json"))
+    rows = json.loads(said(capsys, "list", bag, "--json", "-"))
     assert rows[0] == {"name": "/odom", "type": "nav_msgs/Odometry", "publishers": ["/robot"], "subscribers": []}
     assert main(["topic", "list", bag, "/none"]) == 1
     assert capsys.readouterr() == ("", f"cfepy: no topic in /none/ in {bag}\n")
@@ -86,7 +86,7 @@ def test_echo(tmp_path: Path, capsys: Capture, bag: str) -> None:
     assert "covariance" not in text
     assert "frame_id" not in text
     assert said(capsys, "echo", bag, "/odom/pose/covariance[1:3]", "-n", "1") == "[0.0, 0.0]\n---\n"
-    found = json.loads(said(capsys, "echo", bag, "/said", "-n", "1", "--json"))
+    found = json.loads(said(capsys, "echo", bag, "/said", "-n", "1", "--json", "-"))
     assert (found["topic"], found["at"], found["message"]) == ("/said", 0.0, {"data": "m0"})
     lines = said(capsys, "echo", bag, "/odom", "-p", "--for", "0.35").split("\n")
     assert lines[0].startswith("%time,field.header.seq,field.header.stamp,field.header.frame_id,")
@@ -112,7 +112,7 @@ def test_numbers(tmp_path: Path, capsys: Capture, bag: str) -> None:
         assert lines == ["average delay: 0.250", "\tmin: 0.250s max: 0.250s std dev: 0.00000s window: 5", ""]
     lines = said(capsys, "bw", bag, "/said", "-n", "11").split("\n")
     assert lines == ["average: 67.00B/s", "\tmean: 6.09B min: 6.00B max: 7.00B window: 11", ""]
-    assert json.loads(said(capsys, "hz", bag, "/said", "--json"))["window"] == 25
+    assert json.loads(said(capsys, "hz", bag, "/said", "--json", "-"))["window"] == 25
     assert main(["topic", "hz", bag, "/said", "-n", "1"]) == 1
     assert main(["topic", "delay", bag, "/said"]) == 2
     assert "its messages have no header" in capsys.readouterr().err
@@ -122,7 +122,7 @@ def test_a_script_flies_meanwhile(tmp_path: Path, capsys: Capture) -> None:
     mission = robot(tmp_path)
     script = tmp_path / "end.txt"
     script.write_text("at 2 send CFE_ES_STOP_APP Application=ROBOT\n")
-    words = ("hz", str(mission), "/said", "--json", "--for", "5")
+    words = ("hz", str(mission), "/said", "--json", "-", "--for", "5")
     alone = json.loads(said(capsys, *words))["window"]
     assert json.loads(said(capsys, *words, "--script", str(script)))["window"] < alone - 20
 
@@ -133,7 +133,7 @@ def test_publishing(tmp_path: Path, capsys: Capture) -> None:
     assert said(capsys, *words, "data: halt", "--at", "1", "--for", "2") == (
         "[robot] got halt\npublished 1 message on /orders\n"
     )
-    found = json.loads(said(capsys, *words, "go", "-r", "2", "--at", "1", "--for", "2.9", "--json"))
+    found = json.loads(said(capsys, *words, "go", "-r", "2", "--at", "1", "--for", "2.9", "--json", "-"))
     assert found == {"topic": "/orders", "published": 4, "printed": ["[robot] got go"] * 4, "problems": []}
     assert main(["topic", "pub", mission, "/orders", "std_msgs/None", "x"]) == 1
     assert "there is no message type std_msgs/None" in capsys.readouterr().err

@@ -11,8 +11,7 @@ from string import ascii_uppercase
 from typing import Any
 
 from cfepy.console import Console
-from cfepy.mission.mission import Mission
-from cfepy.mission.spec import MissionSpec
+from cfepy.mission import Mission, MissionSpec
 from cfepy.nodes.config import NodeConfig, RosConfig
 from tests.corpus.scenarios import Program, Scenario
 from tests.corpus.sources import Sources
@@ -119,7 +118,7 @@ class Flight:
     def _run_until(mission: Mission, over: Any, seconds: float) -> None:
         end = mission.kernel.now + round(seconds * 1e9)
         while not over() and mission.kernel.now < end:
-            mission.run(STEP_S)
+            mission.run_for(STEP_S)
 
     # -- afterwards --------------------------------------------------------------------------------------------------
 

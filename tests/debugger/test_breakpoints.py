@@ -8,7 +8,8 @@ import pytest
 
 from cfepy.debugger.breakpoints import breakpoints
 from cfepy.mission import MissionSpec, read_mission
-from cfepy.mission.run_plan import RunPlan
+from cfepy.pilot.pilot import fly
+from cfepy.pilot.plan import RunPlan
 from cfepy.status import UsageError
 
 TALKER = """
@@ -37,7 +38,7 @@ def hits(plan: RunPlan, *texts: str) -> list[str]:
     """What a run would stop at."""
     found: list[str] = []
     spec = plan.spec()
-    plan.fly(breakpoints(texts, spec, found.append), spec=spec)
+    fly(plan, attachments=breakpoints(texts, spec, found.append), spec=spec)
     return found
 
 
@@ -53,14 +54,14 @@ def hits(plan: RunPlan, *texts: str) -> list[str]:
 def test_one_that_stops_nowhere_says_so(plan: RunPlan, text: str, why: str | None) -> None:
     spec = plan.spec()
     (point,) = breakpoints([text], spec, lambda what: None)
-    plan.fly([point], spec=spec)
+    fly(plan, attachments=[point], spec=spec)
     assert point.missed == why
 
 
 def test_a_field_that_no_message_has_is_told(plan: RunPlan) -> None:
     spec = plan.spec()
     (point,) = breakpoints(["msg.dat > 2"], spec, lambda what: None)
-    plan.fly([point], spec=spec)
+    fly(plan, attachments=[point], spec=spec)
     assert "applies to no message: /" in str(point.missed)
     assert "'dat'" in str(point.missed)
 
@@ -106,7 +107,7 @@ def test_a_command_is_told_from_others_with_its_msg_id() -> None:
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("CFE_EVS_LONG_EVENT_MSGG", "is CFE_EVS_LONG_EVENT_MSG meant?"),
+        ("CFE_EVS_LONG_EVENT_MSGG", "did you mean CFE_EVS_LONG_EVENT_MSG?"),
         ("nonsense", "is no packet of this mission; write APP:ID"),
         ("HK:FOO", "FOO is no type of event; there are DEBUG, INFORMATION, ERROR, CRITICAL"),
         ("msg.x >", "'msg.x >' is no Python expression"),

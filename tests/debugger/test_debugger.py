@@ -9,7 +9,9 @@ from typing import Any
 import pytest
 
 from cfepy.debugger.debugger import Debugger
-from cfepy.mission.run_plan import Flown, RunPlan
+from cfepy.pilot.pilot import Flown, fly
+from cfepy.pilot.plan import RunPlan
+from cfepy.rtos.schedule import Schedule
 
 COUNTER = """
 import rospy
@@ -43,13 +45,13 @@ def debugged(plan: RunPlan, commands: str = "", **options: Any) -> tuple[str, Fl
     """Run with a debugger whose user has written his commands before; what it says."""
     spec, stream = plan.spec(), io.StringIO()
     debugger = Debugger(spec, commands=io.StringIO(commands), stream=stream, **options)
-    flown = plan.fly([debugger], spec=spec)
+    flown = fly(plan, attachments=[debugger], spec=spec)
     return stream.getvalue(), flown
 
 
 @BOTH
 def test_the_run_does_not_notice(plan: RunPlan, tasks: str) -> None:
-    plain = plan.fly().trace
+    plain = fly(plan).trace
     plan = RunPlan(plan.words, command="node", seconds=3, tasks=tasks)
     for options in ({"stops": ["/numbers"]}, {"step": True}, {"from_ns": 700_000_000, "step": True}):
         said, flown = debugged(plan, **options)
@@ -112,7 +114,7 @@ def test_pdb_where_an_exception_ends_the_application(plan: RunPlan) -> None:
 def test_pdb_where_an_exception_ends_a_cfe_app(tmp_path: Path) -> None:
     (tmp_path / "faulty.py").write_text("def main(cfe):\n    height = 0\n    return 1 / height\n")
     (tmp_path / "startup.scr").write_text("CFE_APP, faulty, main, FAULTY, 50, 16384, 0x0, 0;\n!\n")
-    plan = RunPlan((str(tmp_path),), seconds=1, schedule="random:1")
+    plan = RunPlan((str(tmp_path),), seconds=1, schedule=Schedule.parse("random:1"))
     said, _ = debugged(plan, "p height\nq\n", app="FAULTY", stops=["0x1FFF"])
     assert "FAULTY: ZeroDivisionError: division by zero" in said
     assert "-> return 1 / height" in said

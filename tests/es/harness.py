@@ -43,7 +43,7 @@ class Lab:
         self.cfe = self.mission.cfe
         self.es = self.cfe.es
         self.es.loader = Functions(self.cfe, {f"/cf/{name}.so": main for name, main in mains.items()})
-        self.mission.run(1)
+        self.mission.run_for(1)
         self.lines = self.mission.console.lines
 
     def start(self, name: str, exception_action: int = 0, priority: int = 50) -> int:

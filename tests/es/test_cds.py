@@ -10,8 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cfepy.es.cds import SIGNATURE_BEGIN, SIGNATURE_END, CriticalDataStore
-from cfepy.es.cds_registry import RECORD, CdsBlock, pack
+from cfepy.es.cds import RECORD, SIGNATURE_BEGIN, SIGNATURE_END, CdsBlock, CriticalDataStore, pack
 from cfepy.es.pools import DESCRIPTOR
 from cfepy.fs import crc16
 from cfepy.psp.profile import load_profile

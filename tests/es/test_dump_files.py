@@ -36,7 +36,7 @@ def records(data: bytes, layout: Layout) -> list[dict[str, Any]]:
 
 def ours(lab: Lab, command: Command, name: str) -> bytes:
     lab.cfe.sb.transmit_msg(command.packet())
-    lab.mission.run(3)
+    lab.mission.run_for(3)
     return lab.mission.files.read_file(f"/ram/{name}")
 
 

@@ -43,7 +43,7 @@ def test_housekeeping_of_nasas_build_can_be_read_and_made_again() -> None:
 def test_housekeeping(tmp_path: Path) -> None:
     lab = Lab(tmp_path, one=lambda cfe: cfe.os.task_delay(10**6))
     lab.start("one")
-    lab.mission.run(1)
+    lab.mission.run_for(1)
     values = sent(lab, pk.SEND_HK.packet(), pk.HK_TLM)
     assert values["CFEMajorVersion"] == values["OSALMajorVersion"] == values["PSPMajorVersion"] == 7
     assert (values["RegisteredCoreApps"], values["RegisteredExternalApps"]) == (5, 1)
@@ -60,7 +60,7 @@ def test_query_one(tmp_path: Path) -> None:
     lab = Lab(tmp_path, one=lambda cfe: cfe.os.task_delay(10**6), lib=lambda cfe: 0)
     app_id = lab.start("one", exception_action=1, priority=77)
     lib_id = lab.es.load_library("LIB", "/cf/lib.so", "lib_init")
-    lab.mission.run(1)
+    lab.mission.run_for(1)
     values = sent(lab, pk.QUERY_ONE.packet(Application="ONE"), pk.APP_TLM)
     assert (values["ResourceId"], values["Type"], values["Name"], values["MainTaskName"]) == (app_id, 2, "ONE", "ONE")
     assert (values["ExceptionAction"], values["Priority"], values["StackSize"]) == (1, 77, 8192)
@@ -84,7 +84,7 @@ def sent(lab: Lab, command: bytes, answer: Telemetry) -> dict[str, Any]:
     lab.cfe.sb.subscribe(answer.msg_id, pipe)
     lab.mission.kernel.spawn("listener", lambda: listen(pipe))
     lab.cfe.sb.transmit_msg(command)
-    lab.mission.run(1)
+    lab.mission.run_for(1)
     lab.cfe.sb.delete_pipe(pipe)
     assert (got[0][0] << 8 | got[0][1], len(got[0])) == (answer.msg_id, answer.length)
     return answer.read(got[0])

@@ -39,7 +39,7 @@ def in_app(tmp_path: Path) -> Iterator[Callable[[Callable[[Cfe], Any]], Lab]]:
 
         labs.append(Lab(tmp_path, one=app))
         labs[0].start("one")
-        labs[0].mission.run(1)
+        labs[0].mission.run_for(1)
         assert done, labs[0].log()
         return labs[0]
 
@@ -63,6 +63,25 @@ def test_pools_of_all_kinds(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> No
     lab = in_app(main)
     assert "CFE_ES_PoolCreateEx_WithAlignment: Pool size(0) too small, need >=32 bytes" in lab.log()
     assert "CFE_ES_PoolCreateEx_WithAlignment: Num Block Sizes (18) greater than max (17)" in lab.log()
+
+
+def test_pools_on_memory_of_the_application(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
+    def main(cfe: Cfe) -> None:
+        es, booked = cfe.es, cfe.es.ports.memory
+        for create in (es.pool_create, es.pool_create_no_sem, es.pool_create_ex, es.pool_create_ex_with_alignment):
+            memory = bytearray(1024)
+            before = booked.used
+            pool = create(1024, memory=memory)
+            assert not any(kind == "memory pool" and owner == "ONE" for owner, kind in booked.totals())
+            block = es.get_pool_buf(pool, 8)
+            block.memory[:] = b"in place"
+            assert memory[block.offset : block.offset + 8] == b"in place"
+            assert es.get_mem_pool_stats(pool)["PoolSize"] == 1024
+            es.pool_delete(pool)
+            assert booked.used == before
+            assert status_of(lambda: create(2048, memory=memory)) == CFE_ES_BAD_ARGUMENT  # noqa: B023
+
+    in_app(main)
 
 
 def test_a_mutex_protects_the_pools_that_want_one(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:

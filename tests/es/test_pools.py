@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import tracemalloc
 
+import pytest
+
 from cfepy.es.pools import BUCKETS, DESCRIPTOR, MemPool
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -98,3 +100,30 @@ def test_a_large_pool_takes_no_memory_before_it_is_used() -> None:
     assert most < 1 << 20
     block = pool.get(80_000)
     assert bytes(block.memory) == bytes(80_000)
+
+
+def test_a_pool_on_memory_that_the_caller_brings() -> None:
+    memory = bytearray(b"\xaa" * 1100)
+    pool = MemPool("P", 1024, memory=memory)
+    block = pool.get(100)
+    block.memory[:5] = b"hello"
+    assert memory[block.offset : block.offset + 5] == b"hello"
+    memory[block.offset] = ord("j")
+    assert bytes(block.memory[:5]) == b"jello"
+    check, _, size, _ = DESCRIPTOR.unpack_from(memory, block.offset - DESCRIPTOR.size)
+    assert (check, size) == (0x5A5A, 100)
+    assert memory[1024:] == b"\xaa" * 76  # what is beyond the pool is not touched
+    assert pool.put(block) == 100
+    assert pool.get(110).offset == block.offset
+
+
+def test_views_of_any_item_size_are_counted_in_bytes() -> None:
+    memory = memoryview(bytearray(1024)).cast("I")
+    pool = MemPool("P", 1024, memory=memory)
+    pool.get(4).memory[:] = b"\1\0\0\0"
+    assert 1 in memory.tolist()
+
+
+@pytest.mark.parametrize("memory", [bytes(1024), bytearray(1023), memoryview(bytearray(4096))[::2], "text"])
+def test_memory_that_cannot_hold_the_pool(memory: object) -> None:
+    assert status_of(lambda: MemPool("P", 1024, memory=memory)) == CFE_ES_BAD_ARGUMENT  # type: ignore[arg-type]

@@ -59,7 +59,7 @@ def test_an_app_is_running_once_it_loops(make_lab: Callable[..., Lab]) -> None:
     states: list[int] = []
     lab = make_lab(one=one)
     lab.start("one")
-    lab.mission.run(0.3)
+    lab.mission.run_for(0.3)
     assert states == [1, RUNNING, RUNNING, RUNNING]
     app_id = lab.es.get_app_id_by_name("ONE")
     assert lab.es.get_app_info(app_id).execution_counter == 3
@@ -75,7 +75,7 @@ def test_run_loop_with_another_status_ends_it(make_lab: Callable[..., Lab], stat
     answers: list[object] = []
     lab = make_lab(one=one)
     lab.start("one")
-    lab.mission.run(0.2)
+    lab.mission.run_for(0.2)
     assert answers == [False, 1]
 
 
@@ -91,9 +91,9 @@ def test_a_restart_request_ends_the_loop(make_lab: Callable[..., Lab]) -> None:
     requests: list[int] = []
     lab = make_lab(one=one)
     first = lab.start("one")
-    lab.mission.run(1)
+    lab.mission.run_for(1)
     lab.es.restart_app(first)
-    lab.mission.run(8)
+    lab.mission.run_for(8)
     assert requests == [SYS_RESTART]
     assert len(starts) == 2
     assert starts[1] > first
@@ -104,7 +104,7 @@ def test_a_restart_request_ends_the_loop(make_lab: Callable[..., Lab]) -> None:
 def test_apps_that_cannot_be_controlled(make_lab: Callable[..., Lab]) -> None:
     lab = make_lab(idle=lambda cfe: cfe.os.task_delay(100_000))
     app_id = lab.start("idle")
-    lab.mission.run(1)
+    lab.mission.run_for(1)
     evs = lab.es.get_app_id_by_name("CFE_EVS")
     for control in (lab.es.restart_app, lab.es.delete_app):
         for one in (app_id, evs, 0x110099):  # the first never reached its run loop
@@ -158,7 +158,7 @@ def test_child_tasks(make_lab: Callable[..., Lab]) -> None:
     seen: Result = {}
     lab = make_lab(one=one)
     lab.start("one")
-    lab.mission.run(2)
+    lab.mission.run_for(2)
     assert seen["owner"] == "ONE"
     assert seen["name"] == "CHILD"
     assert seen["begun_at"] - seen["created_at"] == 50_000_000
@@ -182,7 +182,7 @@ def test_waiting_for_a_system_state(make_lab: Callable[..., Lab]) -> None:
     seen: list[int] = []
     lab = make_lab(one=one)
     lab.start("one")
-    lab.mission.run(1)
+    lab.mission.run_for(1)
     assert seen == [RUNNING, 120]
 
 
@@ -207,7 +207,7 @@ def test_memory_pools(make_lab: Callable[..., Lab]) -> None:
     lab = make_lab(one=one)
     booked = lab.mission.memory.used
     lab.start("one")
-    lab.mission.run(1)
+    lab.mission.run_for(1)
     assert seen["size"] == seen["given"] == 100
     assert seen["too_big"] == CFE_ES_ERR_MEM_BLOCK_SIZE
     assert seen["full"] == [0, 0, CFE_ES_ERR_MEM_BLOCK_SIZE, CFE_ES_ERR_MEM_BLOCK_SIZE]
@@ -248,6 +248,6 @@ def test_a_child_task_that_dies_is_its_apps_fault(make_lab: Callable[..., Lab]) 
 
     lab = make_lab(one=one)
     lab.start("one")
-    lab.mission.run(1.5)
+    lab.mission.run_for(1.5)
     assert lab.es.history["ONE"].restarts == 1
     assert "RuntimeError: child" in lab.log()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cfepy import status
-from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, Entry, check, parse, strtoul
+from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, StartupEntry, check, parse, strtoul
 
 BAD_SCRIPT = b"""\
 CFE_LIB, cfe_assert,  CFE_Assert_LibInit, ASSERT_LIB,  0,   0,     0x0, 0;
@@ -50,11 +50,11 @@ CFE_ES_ParseFileEntry: Invalid ES Startup file entry: 1
 def log_of(script: bytes) -> list[str]:
     found: list[str] = []
     for result in parse(script):
-        found += [result.log_text] if isinstance(result, Entry) else result.log_texts
+        found += [result.log_text] if isinstance(result, StartupEntry) else result.log_texts
     return found
 
 
-def only(script: bytes) -> Entry | BadLine:
+def only(script: bytes) -> StartupEntry | BadLine:
     (result,) = parse(script)
     return result
 
@@ -65,7 +65,7 @@ def app(*, name: bytes = b"HK", priority: bytes = b"90", stack: bytes = b"16384"
 
 def test_a_good_entry() -> None:
     entry = only(b"\n\n  CFE_APP, apps/hk, HK_AppMain,\n HK, 90, 0x4000, 0x0, 3;")
-    assert entry == Entry(
+    assert entry == StartupEntry(
         kind=CFE_APP,
         file="apps/hk",
         path="apps/hk.so",
@@ -89,7 +89,7 @@ def test_entry_numbers_and_text_lines() -> None:
     assert [result.number for result in results] == list(range(1, 16))
     assert [result.line for result in results] == [*range(1, 12), *range(13, 17)]
     assert [result.number for result in results if isinstance(result, BadLine)] == [7, 8, 11, 12, 13, 15]
-    assert isinstance(results[0], Entry)
+    assert isinstance(results[0], StartupEntry)
     assert results[0].kind == CFE_LIB
 
 
@@ -152,7 +152,7 @@ def test_strtoul(text: str, value: int) -> None:
 
 def test_priority_and_action_are_clamped() -> None:
     entry = only(app(priority=b"-1", action=b"7"))
-    assert isinstance(entry, Entry)
+    assert isinstance(entry, StartupEntry)
     assert (entry.priority, entry.exception_action) == (255, 1)
 
 
@@ -166,7 +166,7 @@ def test_an_empty_file_name() -> None:
 def test_the_buffer_takes_128_characters() -> None:
     entry = b"CFE_APP,hk,%s,HK,90,16384,0x0,0;"
     symbol = b"s" * (128 - len(entry) + 3)
-    assert isinstance(only(entry % symbol), Entry)
+    assert isinstance(only(entry % symbol), StartupEntry)
     assert isinstance(only(entry % (symbol + b"s")), BadLine)
 
 

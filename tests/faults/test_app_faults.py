@@ -64,7 +64,7 @@ def test_a_crash_at_the_nth_message(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"crash": "TAKER", "message": "NUMBER_TLM", "number": 4}, {"crash": "OTHER", "number": 3})
     assert mission.record.history["TAKER"].deaths == mission.record.history["OTHER"].deaths == 1
     assert told(mission, "cfepy fault crash-1: crashes TAKER")
-    assert mission.record.faults.rows()[1]["times"] == 1
+    assert mission.record.rows("faults")[1]["times"] == 1
 
 
 @BOTH
@@ -117,7 +117,7 @@ def test_who_is_not_there_is_told(tmp_path: Path) -> None:
     mission = fly(
         tmp_path, {"crash": "NOBODY", "at": 1.5}, {"restart": "CFE_ES", "at": 1.5}, {"hang": "TAKER", "at": 0}
     )
-    nevers = [each["never"] for each in mission.record.faults.rows()]
+    nevers = [each["never"] for each in mission.record.rows("faults")]
     assert nevers[0] == "no application NOBODY runs at 1.5 s"
     assert "CFE_ES" in nevers[1]
     assert nevers[2] == "no application TAKER runs at 0 s"

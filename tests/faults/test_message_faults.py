@@ -196,7 +196,7 @@ def test_the_trace_is_the_same_on_both_contexts_and_each_time(tmp_path: Path) ->
 
 def test_a_queue_that_nobody_has_says_what_to_take_for_a_pipe(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"fail": "OS_QueueGet", "number": 1}, {"fail": "OS_MutSemTake", "app": "TAKER"})
-    reasons = [each["never"] for each in mission.record.faults.rows()]
+    reasons = [each["never"] for each in mission.record.rows("faults")]
     text = "pipes are not read by it here: let CFE_SB_ReceiveBuffer fail"
     assert reasons[0] == f"nobody that it is about called os.queue_get; {text}"
     assert reasons[1] == "nobody that it is about called os.mut_sem_take"
@@ -209,7 +209,7 @@ def test_what_never_happened_says_why(tmp_path: Path) -> None:
         {"drop": NUMBER, "after": 100},
         {"drop": NUMBER, "number": 900},
     )
-    reasons = [each["never"] for each in mission.record.faults.rows()]
+    reasons = [each["never"] for each in mission.record.rows("faults")]
     assert reasons[0] == "no such message was sent to anybody"
     assert "but not in its window of time" in reasons[1]
     assert "none" in reasons[2] or "no time was one" in reasons[2]

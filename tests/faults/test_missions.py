@@ -5,12 +5,11 @@ from __future__ import annotations
 import pytest
 
 from cfepy.console import Console
-from cfepy.faults import FaultInjector, FaultPlan, random_plan
+from cfepy.faults import FaultInjector, FaultPlan, check_plan, look_at, plan_of, prepare, random_plan
 from cfepy.mission import Mission, read_mission
-from cfepy.mission.fault_check import check_plan
-from cfepy.mission.fault_plans import look_at, plan_of
-from cfepy.mission.results import Results, mark
-from cfepy.mission.run_plan import RunPlan
+from cfepy.pilot.pilot import fly
+from cfepy.pilot.plan import RunPlan
+from cfepy.pilot.results import Results, mark
 from cfepy.rtos.errors import InjectedCrash
 from cfepy.status import CfeError, UsageError
 
@@ -18,7 +17,7 @@ from cfepy.status import CfeError, UsageError
 def flown(name: str, plan: FaultPlan, seconds: float, tasks: str = "thread") -> Results:
     """A mission with faults; what its applications died of must be the faults' doing."""
     with Mission(name, console=Console(quiet=True), tasks=tasks, attachments=[FaultInjector(plan)]) as mission:
-        mission.run(seconds)
+        mission.run_for(seconds)
         at = mark(mission, 0)
         mission.shut_down_nodes()
         digest = mission.trace.digest()
@@ -47,6 +46,7 @@ def test_random_faults_repeat(name: str) -> None:
     check(name, range(1), 11)
 
 
+@pytest.mark.slow
 def test_random_faults_repeat_on_capture() -> None:
     check("capture", range(1), 3)
 
@@ -65,9 +65,22 @@ def test_a_plan_by_its_seed_by_its_text_and_as_a_run_plan() -> None:
     assert len(plan.faults) == 2
     assert plan_of(plan.to_yaml(), spec) == plan
     by_seed = RunPlan(("lab",), seconds=4, faults="seed:3:low")
-    assert by_seed.fly().trace == RunPlan(("lab",), seconds=4, faults=plan.to_yaml()).fly().trace
+    assert fly(by_seed).trace == fly(RunPlan(("lab",), seconds=4, faults=plan.to_yaml())).trace
     assert "--faults seed:3:low" in by_seed.command_line()
-    assert by_seed.fly().trace != RunPlan(("lab",), seconds=4).fly().trace
+    assert fly(by_seed).trace != fly(RunPlan(("lab",), seconds=4)).trace
+
+
+LOST = FaultPlan.from_dict({"faults": [{"drop": "/no_such_topic"}, {"crash": "NOBODY", "at": 2}]}).to_yaml()
+
+
+def test_a_prepared_plan_says_what_is_not_in_the_mission() -> None:
+    spec = read_mission("lab")
+    prepared = prepare(LOST, spec)
+    assert prepared.injector.plan == plan_of(LOST, spec)
+    assert ["no application is called NOBODY" in problem.text for problem in prepared.problems] == [True]
+    texts = [problem.text for problem in prepare(LOST, spec, flies=True).problems]
+    assert ["no message is called /no_such_topic" in texts[0], "no application" in texts[1]] == [True, True]
+    assert prepare("seed:3", spec, flies=True).problems == ()
 
 
 def test_an_injector_serves_one_mission_after_the_other() -> None:
@@ -75,7 +88,7 @@ def test_an_injector_serves_one_mission_after_the_other() -> None:
     traces = []
     for _ in range(2):
         with Mission("lab", console=Console(quiet=True), attachments=[injector]) as mission:
-            mission.run(11)
+            mission.run_for(11)
             traces.append(mission.trace.digest())
     assert traces[0] == traces[1]
 
@@ -88,5 +101,5 @@ def test_seeds_that_are_none(text: str) -> None:
 
 def test_another_seed_of_the_run_draws_other_numbers() -> None:
     plan = FaultPlan.from_dict({"faults": [{"drop": "CFE_TIME_*", "probability": 0.5}]}).to_yaml()
-    traces = {RunPlan(("lab",), seconds=10, seed=seed, faults=plan).fly().trace for seed in (1, 1, 2)}
+    traces = {fly(RunPlan(("lab",), seconds=10, seed=seed, faults=plan)).trace for seed in (1, 1, 2)}
     assert len(traces) == 2

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from cfepy.faults import Fault, FaultPlan, Targets, When, random_plan, read_plan
 from cfepy.faults.calls import call_name
 from cfepy.faults.kinds import KINDS
-from cfepy.faults.random_plan import INTENSITIES
+from cfepy.faults.targets import INTENSITIES
 from cfepy.status import UsageError
 
 EVERYTHING = """
@@ -70,9 +70,9 @@ def test_the_list_may_stand_alone(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "line", "says"),
     [
-        ("faults:\n  - drop: /a\n  - dropp: /b", 3, "no kind of fault that is known; is drop meant?"),
+        ("faults:\n  - drop: /a\n  - dropp: /b", 3, "no kind of fault that is known; did you mean drop?"),
         ("- {drop: /a, crash: B}", 1, "is both drop and crash"),
-        ("- drop: /a\n  probabilty: 1", 2, "is no option of drop; is probability meant?"),
+        ("- drop: /a\n  probabilty: 1", 2, "is no option of drop; did you mean probability?"),
         ("- drop: /a\n  probability: 1.5", 2, "a probability of more than 0 and at most 1"),
         ("- drop: /a\n  probability: 0", 2, "a probability of more than 0"),
         ("- drop: /a\n  after: soon", 2, "write a number of seconds"),
@@ -95,7 +95,7 @@ def test_the_list_may_stand_alone(tmp_path: Path) -> None:
         ("- {jump_clock: 0, at: 1}", 1, "a number, not 0"),
         ("- jump_clock: 5", 1, "jump_clock needs at"),
         ("- {corrupt_file: x.tbl}", 1, "a path of the virtual file system"),
-        ("- {fail: OS_QueuePutt}", 1, "is os.queue_put meant?"),
+        ("- {fail: OS_QueuePutt}", 1, "did you mean os.queue_put?"),
         ("- {fail: queue_put}", 1, "is no call"),
         ("- fail: os.write\n  status: OS_WRONG", 2, "is no status"),
         ("- {drop: 'udp:1', to: A}", 1, "datagrams, which have no to"),

@@ -10,7 +10,7 @@ from cfepy.console import Console
 from cfepy.es.records import STATE_NAMES
 from cfepy.faults import FaultInjector, FaultPlan
 from cfepy.mission import Mission
-from cfepy.osal.endpoints import Datagram, Place
+from cfepy.osal.network import Datagram, Place
 from cfepy.status import CfeError
 from tests.faults.worlds import fly, row, told, values
 from tests.mission.flights import write_mission
@@ -148,6 +148,7 @@ def test_a_file_is_damaged_before_it_is_loaded(tmp_path: Path) -> None:
     assert row(late, "corrupt_file-1")["never"] == "there is no file /cf/none at 1 s"
 
 
+@pytest.mark.slow
 def test_a_processor_reset_finds_the_cds_invalid(tmp_path: Path) -> None:
     reset = {"reset": "processor", "at": 2.5}
     kept = fly(tmp_path, reset, startup=STARTUP, worker=TABLE, seconds=5)
@@ -254,11 +255,11 @@ def datagrams(folder: Path, *faults: dict[str, object]) -> list[bytes]:
     injector = FaultInjector(FaultPlan.from_dict({"faults": list(faults)}))
     path = write_mission(folder, STARTUP, worker=worker)
     with Mission(path, console=Console(quiet=True), attachments=[injector]) as mission:
-        mission.run(1)
+        mission.run_for(1)
         for number in range(5):
             mission.network.send(Datagram(Place("127.0.0.1", 5), Place("127.0.0.1", 1234), bytes([number])))
-            mission.run(0.1)
-        mission.run(1)
+            mission.run_for(0.1)
+        mission.run_for(1)
     return [bytes.fromhex(line.split()[-1]) for line in told(mission, "WORKER gets")]
 
 

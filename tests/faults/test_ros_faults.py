@@ -84,7 +84,7 @@ def test_a_field_of_a_ros_message(tmp_path: Path) -> None:
         {"corrupt": "/numbers", "number": 4, "fields": {"data": "x"}},
     )
     assert numbers(mission)[:4] == [0, 77, 2, 3]
-    nevers = [each["never"] for each in mission.record.faults.rows()]
+    nevers = [each["never"] for each in mission.record.rows("faults")]
     assert nevers[0] is None
     assert "no field date" in nevers[1]
     assert "/numbers: " in nevers[2]
@@ -162,7 +162,7 @@ def test_a_node_of_a_launch_file_comes_back(tmp_path: Path) -> None:
     launch.write_text('<launch><node pkg="beats" type="beat.py" name="beat" respawn="true" output="screen"/></launch>')
     injector = FaultInjector(FaultPlan.from_dict({"faults": [{"crash": "BEAT", "at": 2}]}))
     with Mission(read_launch(launch, {}), console=Console(quiet=True), attachments=[injector]) as mission:
-        mission.run(4)
+        mission.run_for(4)
         lines = mission.console.lines
         assert sum("begins" in line for line in lines) == 2
         assert any("exit status 139 and is started again" in line for line in lines)

@@ -76,7 +76,7 @@ def fly(
     injector = FaultInjector(FaultPlan.from_dict({"faults": list(faults)}))
     console = Console(quiet=True)
     with Mission(path, seed=seed, board=board, tasks=tasks, console=console, attachments=[injector]) as mission:
-        mission.run(seconds)
+        mission.run_for(seconds)
         mission.shut_down_nodes()
     return mission
 
@@ -93,4 +93,4 @@ def values(mission: Mission, app: str = "TAKER") -> list[int]:
 
 def row(mission: Mission, name: str) -> dict[str, Any]:
     """What the report says of a fault."""
-    return next(each for each in mission.record.faults.rows() if each["name"] == name)
+    return next(each for each in mission.record.rows("faults") if each["name"] == name)

@@ -97,7 +97,7 @@ def run_as_application(mission: Mission, function: Callable[[], object]) -> None
 
     cfe.es.loader = LoaderOfTest(cfe.es.loader, main)
     for _ in range(LONGEST_S):
-        mission.run(1)
+        mission.run_for(1)
         if attempt.is_over:
             break
     attempt.confirm()

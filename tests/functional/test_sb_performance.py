@@ -8,7 +8,7 @@ from functools import partial
 
 from cfepy.app import Cfe
 from cfepy.sb import POLL
-from cfepy.sb.subscriptions import DEFAULT_QOS
+from cfepy.sb.bus import DEFAULT_QOS
 from tests.functional.harness import CHILD_STACK, CMD_MID, TLM_MID, Attempt
 
 MESSAGES = 1000

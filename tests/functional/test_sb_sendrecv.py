@@ -8,7 +8,7 @@ from cfepy.app import Cfe
 from cfepy.ids import UNDEFINED
 from cfepy.msg import get_msg_id, get_sequence_count, get_user_data, set_sequence_count, set_size
 from cfepy.sb import PEND_FOREVER, POLL, MessageBuffer
-from cfepy.sb.subscriptions import DEFAULT_QOS
+from cfepy.sb.bus import DEFAULT_QOS
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_BUFFER_INVALID, CFE_SB_MSG_TOO_BIG
 from tests.functional.harness import CMD_MID, TLM_MID, status_of
 

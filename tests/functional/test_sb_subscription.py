@@ -11,7 +11,7 @@ from collections.abc import Callable
 from cfepy.app import Cfe
 from cfepy.ids import UNDEFINED
 from cfepy.mission import Mission
-from cfepy.sb.subscriptions import DEFAULT_QOS
+from cfepy.sb.bus import DEFAULT_QOS
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_DESTS_MET, CFE_SB_MAX_MSGS_MET, CFE_SUCCESS
 from tests.functional.harness import CMD_MID, TLM_MID, status_of
 

@@ -18,11 +18,9 @@ from cfepy.console import Console
 from cfepy.io.host_network import TCP, HostNetwork
 from cfepy.mission import Mission
 from cfepy.msg import command
-from cfepy.rtos.realtime import Pacer, Stopwatch
-from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
 from cfepy.trace import Trace
-from tests.io.echo import ECHO, FAST, LOOPBACK, PATIENCE_NS
+from tests.io.echo import ECHO, LOOPBACK, PATIENCE_NS, pacer
 
 LAB = """\
 CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;
@@ -57,7 +55,7 @@ class Session:
         self.records = records
         self.ground = ground
         self.bridge = bridge
-        self._pacer = Pacer(mission.kernel, self._run_until, FAST, bridge.wait)
+        self._pacer = pacer(mission.kernel, self._run_until, bridge.wait)
 
     def run_while(self, missing: Callable[[], bool]) -> None:
         """Let the run go on until nothing is missing any more."""
@@ -133,9 +131,7 @@ def test_input_ends_the_wait(tmp_path: Path) -> None:
     with session(tmp_path, LAB) as lab:
         lab.run_while(lambda: lab.bridge.host_port(1234) is None)
         lab.command(b"wake up")
-        watch = Stopwatch()
-        lab.bridge.wait(30)
-        assert watch.elapsed_ns() < 15 * NS_PER_S
+        lab.bridge.wait(1_000_000)  # days, if it did not end
 
 
 def test_streams_both_ways_with_back_pressure(tmp_path: Path) -> None:

@@ -131,6 +131,6 @@ def test_in_virtual_time_sockets_are_refused(tmp_path: Path) -> None:
     write_node(tmp_path, "import socket\nsocket.socket()\n")
     (tmp_path / "startup.scr").write_text(NODE)
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
-        mission.run(1)
+        mission.run_for(1)
         text = "socket.socket is not available on the simulated computer; run the mission with --realtime"
         assert any(text in line for line in mission.console.lines)

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import pytest
 
-from cfepy.io.udp import Listener, own_address, send
+from cfepy.io.udp import UdpListener, own_address, send
 from cfepy.status import UsageError
 
 
 def test_a_datagram_goes_there_and_arrives() -> None:
-    with Listener("127.0.0.1", 0) as listener:
+    with UdpListener("127.0.0.1", 0) as listener:
         send("127.0.0.1", listener.port, b"one")
         send("127.0.0.1", listener.port, b"two")
         assert (listener.receive(5), listener.receive(5)) == (b"one", b"two")
         assert listener.receive(0.001) is None
         with pytest.raises(UsageError, match=f"127.0.0.1:{listener.port}: cannot listen there"):
-            Listener("127.0.0.1", listener.port)
+            UdpListener("127.0.0.1", listener.port)
 
 
 def test_a_host_at_hand_tells_that_nobody_listens() -> None:
-    with Listener("127.0.0.1", 0) as listener:
+    with UdpListener("127.0.0.1", 0) as listener:
         assert send("127.0.0.1", listener.port, b"one")
     assert not send("127.0.0.1", listener.port, b"two")
 

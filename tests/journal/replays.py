@@ -8,7 +8,9 @@ from pathlib import Path
 
 from cfepy.attachment import Attachment
 from cfepy.journal import Journal, read_journal, record, replay
-from cfepy.mission.run_plan import Flown, RunPlan
+from cfepy.pilot.pilot import Flown
+from cfepy.pilot.plan import RunPlan
+from cfepy.rtos.schedule import Schedule
 
 CONTEXTS = ("thread", "greenlet")
 
@@ -41,6 +43,7 @@ def assert_same_again(journal: Journal, trace: str) -> None:
         assert again.flown.trace == trace
 
 
-def plan_for(mission: str, seconds: float | None = None, **options: object) -> RunPlan:
+def plan_for(mission: str, seconds: float | None = None, schedule: str = "fifo", **options: object) -> RunPlan:
     """The plan of `cfepy run MISSION`."""
-    return replace(RunPlan((mission,), seconds=seconds), **options)  # type: ignore[arg-type]
+    plan = RunPlan((mission,), seconds=seconds, schedule=Schedule.parse(schedule))
+    return replace(plan, **options)  # type: ignore[arg-type]

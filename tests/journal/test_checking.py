@@ -9,8 +9,8 @@ from typing import Any, cast
 
 import pytest
 
-from cfepy.journal.checking import Checker
 from cfepy.journal.journal import Checkpoint
+from cfepy.journal.replay import Checker
 from cfepy.trace import UNSENT, Trace
 
 RECORDS = [bytes([number + 1]) * 5 for number in range(12)]

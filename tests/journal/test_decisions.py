@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from cfepy.journal.decisions import NotedPolicy, RetoldPolicy
-from cfepy.rtos import Decision, Kernel, Policy, Recorded, Schedule, make_kernel
+from cfepy.journal.decisions import JournalPolicy, RetoldPolicy
+from cfepy.rtos import Decision, Kernel, NotingPolicy, Policy, Schedule, make_kernel
 
 
 def fly(policy: Policy) -> list[int]:
     """The decisions of three tasks that make five calls each."""
-    recorded = Recorded(policy)
+    recorded = NotingPolicy(policy)
 
     def work() -> None:
         for _ in range(5):
@@ -48,7 +48,7 @@ class Taking(Policy):
 
     def __init__(self, inner: Policy, every: int) -> None:
         super().__init__()
-        self._noted = NotedPolicy(inner)
+        self._noted = JournalPolicy(inner)
         self._every = every
         self._before = 0
         self.taken: dict[int, int] = {}

@@ -13,14 +13,15 @@ import pytest
 
 from cfepy.attachment import Attachment
 from cfepy.console import Console
+from cfepy.ground.link import GroundLink
 from cfepy.journal import JournalRecorder, read_journal, record, replay
-from cfepy.journal.frames import MARK, FrameWriter, JournalError, read_frames
+from cfepy.journal.journal import MARK, FrameWriter, JournalError, read_frames
 from cfepy.mission import Mission
-from cfepy.mission.ground import GroundLink
-from cfepy.mission.results import Results
+from cfepy.pilot.pilot import fly
+from cfepy.pilot.results import Results
 from cfepy.resources import import_path
-from cfepy.rtos.units import NS_PER_S
 from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
 from tests.journal.missions import paths, race
 from tests.journal.replays import plan_for
 
@@ -66,8 +67,8 @@ def test_files_can_be_left_out(tmp_path: Path) -> None:
     folder.mkdir()
     plan = plan_for(race(folder), 1)
     with JournalRecorder(tmp_path / "run.cfepy", plan, carried=0) as recorder:
-        flown = plan.fly([recorder])
-        recorder.end(flown.results)
+        flown = fly(plan, attachments=[recorder])
+        recorder.end(flown)
     journal = read_journal(tmp_path / "run.cfepy")
     assert all(each.data is None for each in journal.files.values())
     assert replay(journal).verdict.same
@@ -133,7 +134,7 @@ def test_a_length_that_no_frame_has_is_damage_and_not_a_cut_off_end(
     writer.close()
     size = (tmp_path / "frames").stat().st_size - len(MARK) - 8
     for largest, cut, frames in ((size, 0, [("a", {"b": 1})]), (size, 1, []), (size - 1, 1, None)):
-        monkeypatch.setattr("cfepy.journal.frames.LARGEST", largest)
+        monkeypatch.setattr("cfepy.journal.journal.LARGEST", largest)
         (tmp_path / "cut").write_bytes((tmp_path / "frames").read_bytes()[: len(MARK) + 8 + size - cut])
         if frames is not None:
             assert list(read_frames(tmp_path / "cut")) == frames
@@ -229,7 +230,7 @@ def test_what_comes_in_is_in_the_file_before_the_run_goes_on(tmp_path: Path) -> 
         JournalRecorder(tmp_path / "run.cfepy", plan) as recorder,
         Mission(plan.spec(), console=Console(quiet=True), attachments=[recorder]) as mission,
     ):
-        mission.run(2)
+        mission.run_for(2)
         with GroundLink(mission) as ground:
             assert ground.send(b"first")
             assert ground.send(b"second")
@@ -262,9 +263,9 @@ def test_a_run_that_fails_to_begin_writes_no_results(tmp_path: Path) -> None:
 
 
 def test_digests_of_results_leave_the_wall_clock_out(tmp_path: Path) -> None:
-    from cfepy.journal.result_digest import digest_of
+    from cfepy.journal.journal import digest_of
 
     plan = plan_for(race(tmp_path), 1)
-    one, other = plan.fly().results, plan.fly().results
+    one, other = fly(plan).results, fly(plan).results
     assert isinstance(one, Results)
     assert digest_of(one) == digest_of(other)

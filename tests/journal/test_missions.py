@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.journal import read_journal, record, replay
-from cfepy.mission.results import Results
-from cfepy.mission.run_plan import LAUNCH, NODE, RunPlan
+from cfepy.pilot.plan import LAUNCH, NODE, RunPlan
+from cfepy.pilot.results import Results
 from cfepy.resources import shipped
 from tests.journal.missions import SHIPPED, SMALL, paths
 from tests.journal.replays import assert_replays, plan_for

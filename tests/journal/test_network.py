@@ -16,13 +16,12 @@ from cfepy.console import Console
 from cfepy.io.host_network import TCP, HostNetwork
 from cfepy.journal import Journal, JournalRecorder, read_journal, replay
 from cfepy.mission import Mission, outside
-from cfepy.mission.course import BROKEN_OFF, INTERRUPTED, Course
-from cfepy.mission.results import Results
-from cfepy.mission.run_plan import RunPlan
-from cfepy.rtos.realtime import Pacer
-from cfepy.rtos.schedule import Schedule
-from cfepy.rtos.units import NS_PER_S
-from tests.io.echo import ECHO, FAST, LOOPBACK, PATIENCE_NS
+from cfepy.pilot.course import BROKEN_OFF, INTERRUPTED, Course
+from cfepy.pilot.pilot import Flown
+from cfepy.pilot.plan import RunPlan
+from cfepy.pilot.results import Results
+from cfepy.units import NS_PER_S
+from tests.io.echo import ECHO, FAST, LOOPBACK, PATIENCE_NS, pacer
 from tests.journal.replays import assert_same_again, plan_for
 
 STARTUP = """\
@@ -54,7 +53,7 @@ class Session:
         self.mission = course.mission
         self.bridge = bridge
         self._recorder = recorder
-        self._pacer = Pacer(self.mission.kernel, self._run_until, FAST, bridge.wait)
+        self._pacer = pacer(self.mission.kernel, self._run_until, bridge.wait)
 
     def run_while(self, missing: Callable[[], bool]) -> None:
         """Let the run go on until nothing is missing any more."""
@@ -77,8 +76,7 @@ def session(folder: Path, schedule: str = "fifo", board: str = "linux", port: in
     for name, text in (("startup.scr", STARTUP), ("apps.py", ECHO), ("caller.py", CALLER)):
         (folder / name).write_text(text)
     plan = plan_for(str(folder), schedule=schedule, board=board)
-    policy = Schedule.parse(schedule).policy()
-    with JournalRecorder(folder / "run.cfepy", plan, paced=FAST, policy=policy) as recorder:
+    with JournalRecorder(folder / "run.cfepy", plan, paced=FAST) as recorder:
         mission = Mission(
             plan.spec(), board=board, console=Console(quiet=True), policy=recorder.policy, attachments=[recorder]
         )
@@ -88,7 +86,7 @@ def session(folder: Path, schedule: str = "fifo", board: str = "linux", port: in
             course.end()
             mission.shut_down_nodes()
             digest = mission.finish()
-        recorder.end(Results.of(mission, course.at, digest), None, INTERRUPTED)
+        recorder.end(Flown(mission, Results.of(mission, course.at, digest), None, INTERRUPTED))
 
 
 @pytest.mark.parametrize(("schedule", "board"), [("fifo", "linux"), ("random:3", "rx64m"), ("pct:1:3:500", "linux")])
@@ -195,7 +193,7 @@ def broken_off(folder: Path, plan: RunPlan, at_ns: int, paced: float | None = No
             mission.run_until(at_ns)
             course.end()
             digest = mission.finish()
-        recorder.end(Results.of(mission, course.at, digest), None, BROKEN_OFF)
+        recorder.end(Flown(mission, Results.of(mission, course.at, digest), None, BROKEN_OFF))
     return read_journal(path)
 
 

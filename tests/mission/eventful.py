@@ -11,8 +11,8 @@ import sys
 from apps.to_lab import packets as to_lab
 from cfepy import msg
 from cfepy.console import Console
+from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission
-from cfepy.mission.ground import GroundLink
 from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.rtos.policy import SeededRandom
 

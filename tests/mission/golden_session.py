@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 from cfepy import msg
 from cfepy.console import Console
+from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission
-from cfepy.mission.ground import GroundLink
-from cfepy.rtos.units import NS_PER_S
+from cfepy.units import NS_PER_S
 from tests.mission.flights import write_mission
 
 DATA = Path(__file__).parents[1] / "data"
@@ -76,7 +76,7 @@ def fly(folder: Path) -> Session:
             ground.send(bytes.fromhex(command["hex"]))
         files = {name: mission.files.read_file(f"/ram/{name}") for name in mission.files.list_dir("/ram")}
         while not mission.record.resets:
-            mission.run(0.1)
+            mission.run_for(0.1)
         ends = [*marks[1:], len(mission.console.lines)]
         lines = [mission.console.lines[begin:end] for begin, end in zip(marks, ends, strict=True)]
         return Session([packet for _, packet in ground.received()], [list(events_in(each)) for each in lines], files)

@@ -10,7 +10,7 @@ import pytest
 from cfepy.console import Console
 from cfepy.es.records import RUNNING
 from cfepy.mission import Mission
-from cfepy.rtos.threads import drain
+from cfepy.rtos.context import drain
 from tests.mission.flights import write_mission
 
 APP = "CFE_APP, {0}, {0}_main, {1}, 50, 16384, 0x0, {2};\n"
@@ -34,7 +34,7 @@ CRASHING = """
 def fly(folder: str, seconds: float, tasks: str = "thread", **options: object) -> Mission:
     mission = Mission(folder, console=Console(quiet=True), tasks=tasks, **options)  # type: ignore[arg-type]
     try:
-        mission.run(seconds)
+        mission.run_for(seconds)
     finally:
         mission.close()
     return mission
@@ -116,7 +116,7 @@ def test_a_hundred_restarts_leave_nothing_behind(tmp_path: Path, tasks: str) -> 
     threads = _thread._count()
     mission = Mission(folder, console=Console(quiet=True), tasks=tasks)
     with mission:
-        mission.run(2)
+        mission.run_for(2)
         es = mission.cfe.es
         before = held(mission)
         for number in range(100):
@@ -124,7 +124,7 @@ def test_a_hundred_restarts_leave_nothing_behind(tmp_path: Path, tasks: str) -> 
             assert app is not None, number
             assert app.state == RUNNING
             es.restart_app(app.app_id)
-            mission.run(8)
+            mission.run_for(8)
         assert es.history["LEAKY"].restarts == 100
         assert held(mission) == before
     drain()
@@ -172,3 +172,39 @@ def test_a_script_without_suffix_is_not_the_one_with_suffix_beside_it(tmp_path: 
     (tmp_path / "talker.py").write_text("print('another one')\n")
     with fly(write_mission(tmp_path, "CFE_APP, talker, __main__, TALKER, 60, 16384, 0, 0;\n!"), 1) as mission:
         assert "[TALKER] the one that is meant" in text_of(mission)
+
+
+NOBODYS = """
+    from cfepy.osal import NOBODY
+    from cfepy.status import CfeError
+
+    def work(cfe):
+        try:
+            cfe.es.get_app_id()
+        except CfeError as error:
+            cfe.es.write_to_sys_log(f"no application: {error.hex}")
+        cfe.os.task_delay(2000)
+        raise ValueError("a stray pointer")
+
+    def maker_main(cfe):
+        nested = lambda: cfe.os.task_create("NESTED", lambda: work(cfe), 4096, 120)
+        cfe.os.task_create("WORKER", nested, 4096, 110, owner=NOBODY)
+        cfe.os.task_delay(100)
+        cfe.es.exit_app()
+"""
+
+
+@pytest.mark.parametrize("action", [0, 1])
+def test_an_exception_in_a_task_of_nobody_resets_the_processor(tmp_path: Path, action: int) -> None:
+    folder = write_mission(tmp_path, APP.format("maker", "MAKER", action) + "!", maker=NOBODYS)
+    mission = fly(folder, 20)
+    first = mission.record.resets[0]
+    assert first.reason == "task NESTED: ValueError: a stray pointer (maker.py:11)"
+    assert first.fault
+    text = text_of(mission)
+    assert "no application: 0xC4000001" in text  # CFE_ES_ERR_RESOURCEID_NOT_VALID
+    assert "Exit Application MAKER Completed" in text  # before, and its tasks went on
+    assert "system: task NESTED died of an exception" in text
+    assert "CFE_ES_RunExceptionScan: Processor Reset count not reached (0/2)" in text
+    assert "CFE_ES_RunExceptionScan: Maximum Processor Reset count reached (2)" in text
+    assert not [task for task in mission.kernel.tasks if task.name == "NESTED"]

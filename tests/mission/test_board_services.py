@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from cfepy.console import Console
-from cfepy.mission.mission import Mission
+from cfepy.mission import Mission
 from tests.mission.flights import write_mission
 
 STARTUP = "CFE_APP, app, MAIN, APP, 50, 4096, 0x0, 0;\n"
@@ -15,7 +15,7 @@ def flight(folder: Path, app: str, seconds: float, board: str = "linux", **sourc
     """The console of a mission with one application."""
     console = Console(quiet=True)
     with Mission(write_mission(folder, STARTUP, app=app, **sources), board=board, console=console) as mission:
-        mission.run(seconds)
+        mission.run_for(seconds)
     return console.lines
 
 
@@ -101,7 +101,7 @@ def test_what_the_board_stored_of_an_exception_outlives_the_reset(tmp_path: Path
     """
     reset_on_exception = STARTUP.replace("0;", "1;")
     with Mission(write_mission(tmp_path, reset_on_exception, app=app), console=console) as mission:
-        mission.run(10)
+        mission.run_for(10)
     text = "\n".join(console.lines)
     assert "CFE_ES_RunExceptionScan: ExceptionID 0x1110000 in TaskID" in text
     assert "context: b'app.py:4" in text

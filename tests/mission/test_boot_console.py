@@ -98,7 +98,7 @@ def flight(folder: Path, startup: str, files: dict[str, str] = APPS) -> list[str
     (folder / "to_lab_sub.tbl").write_bytes(wrong_table())
     console = Console(quiet=True)
     with Mission(str(folder), console=console) as mission:
-        mission.run(2)
+        mission.run_for(2)
     return console.lines
 
 

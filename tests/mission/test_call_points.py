@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 
 from cfepy.mission.call_points import GIVING
-from cfepy.mission.run_plan import RunPlan
 from cfepy.osal import Osal
+from cfepy.pilot.pilot import fly
+from cfepy.pilot.plan import RunPlan
+from cfepy.rtos.schedule import Schedule
 from cfepy.sb import SoftwareBus
 from cfepy.tbl import TableServices
 
@@ -34,9 +36,10 @@ def main(cfe):
 def test_what_comes_right_after_letting_go_is_found(tmp_path: Path, policy: str) -> None:
     (tmp_path / "counting.py").write_text(LETS_GO_TOO_EARLY)
     (tmp_path / "startup.scr").write_text("CFE_APP, counting, main, COUNTING, 50, 16384, 0x0, 0;\n!\n")
-    found = [RunPlan((str(tmp_path),), seconds=0.8, schedule=policy.format(seed)).fly().results for seed in range(20)]
+    schedules = [Schedule.parse(policy.format(seed)) for seed in range(20)]
+    found = [fly(RunPlan((str(tmp_path),), seconds=0.8, schedule=each)).results for each in schedules]
     assert any("somebody else counts on" in problem for results in found for problem in results.problems)
-    assert not RunPlan((str(tmp_path),), seconds=0.8).fly().results.problems
+    assert not fly(RunPlan((str(tmp_path),), seconds=0.8)).results.problems
 
 
 def test_there_are_such_calls() -> None:

@@ -24,7 +24,7 @@ import sys
 from cfepy.console import Console
 from cfepy.mission import Mission
 with Mission(sys.argv[1], console=Console(quiet=True), tasks=sys.argv[2]) as mission:
-    mission.run(float(sys.argv[3]))
+    mission.run_for(float(sys.argv[3]))
     mission.shut_down_nodes()
     print(mission.trace.digest())
 """
@@ -38,7 +38,7 @@ def folder(tmp_path: Path) -> str:
 def digest(folder: str, tasks: str, slices: list[float]) -> str:
     with Mission(folder, console=Console(quiet=True), tasks=tasks) as mission:
         for seconds in slices:
-            mission.run(seconds)
+            mission.run_for(seconds)
         return mission.trace.digest()
 
 
@@ -54,8 +54,8 @@ def test_two_missions_side_by_side_do_not_meet(folder: str) -> None:
         Mission(folder, console=Console(quiet=True), tasks="greenlet") as second,
     ):
         for _ in range(6):
-            first.run(1)
-            second.run(1)
+            first.run_for(1)
+            second.run_for(1)
         assert [first.trace.digest(), second.trace.digest()] == [alone, alone]
 
 
@@ -85,7 +85,9 @@ def eventful(hash_seed: int, *arguments: object) -> subprocess.Popen[str]:
     return subprocess.Popen(command, cwd=root, env=environment, stdout=subprocess.PIPE, text=True)
 
 
-@pytest.mark.parametrize(("mission", "schedule"), [("lab", []), ("sched", [7]), ("capture", [7])])
+@pytest.mark.parametrize(
+    ("mission", "schedule"), [("lab", []), ("sched", [7]), pytest.param("capture", [7], marks=pytest.mark.slow)]
+)
 def test_resets_and_a_ground_link_change_nothing(mission: str, schedule: list[int]) -> None:
     flights = [
         eventful(0, mission, "thread", 1, *schedule),

@@ -30,7 +30,7 @@ def check(folder: str, runs: int, *options: str) -> int:
 
 def test_all_nodes_come_to_their_end(folder: str) -> None:
     with Mission(folder, console=Console(quiet=True)) as mission:
-        mission.run(26)
+        mission.run_for(26)
         mission.shut_down_nodes()
         printed = [line for line in mission.console.lines if line.startswith("[")]
         assert mission.record.resets == []

@@ -44,7 +44,7 @@ def send(mission: Mission, command: Command, **values: object) -> list[str]:
     """Send a command, and wait for its file; the events."""
     mission.console.lines.clear()
     mission.cfe.sb.transmit_msg(command.packet(values))
-    mission.run(8)
+    mission.run_for(8)
     assert mission.record.resets == []
     return [line.partition("66/1/")[2] for line in mission.console.lines if line.startswith("EVS")]
 
@@ -52,7 +52,7 @@ def send(mission: Mission, command: Command, **values: object) -> list[str]:
 @pytest.fixture(scope="module")
 def full() -> Iterator[Mission]:
     with Mission("lab", console=Console(quiet=True)) as mission:
-        mission.run(3)
+        mission.run_for(3)
         fill(mission)
         yield mission
 
@@ -73,7 +73,7 @@ def test_there_is_no_room_for_the_header(full: Mission, command: Command) -> Non
 )
 def test_a_table_of_several_blocks(blocks: int, event: str) -> None:
     with Mission("lab", console=Console(quiet=True)) as mission:
-        mission.run(3)
+        mission.run_for(3)
         fill(mission, blocks)
         events = send(mission, tbl.DUMP, TableName="HK.CopyTable", DumpFilename=FILE, ActiveTableFlag=1)
         assert "CFE_TBL " + event.format(f"table=HK.CopyTable,app=CFE_TBL,file={FILE}") in events

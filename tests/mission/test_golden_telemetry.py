@@ -9,8 +9,8 @@ import pytest
 
 from cfepy import msg
 from cfepy.evs.packets import LONG_EVENT_MSG
-from cfepy.mission.dictionary import dictionary_of
-from cfepy.mission.spec import read_mission
+from cfepy.ground.dictionary import dictionary_of
+from cfepy.mission import read_mission
 from cfepy.msg import TLM_HEADER_SIZE, Telemetry
 from tests.mission.flights import write_mission
 from tests.mission.golden_masks import BUILD_EVENT, MASKED

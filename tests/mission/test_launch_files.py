@@ -8,11 +8,10 @@ from pathlib import Path
 import pytest
 
 from cfepy.console import Console
-from cfepy.mission import read_mission
-from cfepy.mission.check import check_mission
+from cfepy.mission import Mission, read_mission
 from cfepy.mission.launch import spec_of
-from cfepy.mission.mission import Mission
 from cfepy.nodes.config import NodeConfig
+from cfepy.pilot.check import check_mission
 from cfepy.status import UsageError
 
 SAY = "import rospy\nrospy.init_node('say')\nprint(rospy.get_name(), rospy.get_param('/shared', None))\n"
@@ -44,7 +43,7 @@ def folder(tmp_path: Path) -> Path:
 def fly(folder: Path) -> list[str]:
     console = Console(quiet=True)
     with Mission(str(folder), console=console) as mission:
-        mission.run(2)
+        mission.run_for(2)
         assert not mission.over
     return [line for line in console.lines if line.startswith("[")]
 
@@ -95,7 +94,7 @@ def test_a_mission_in_memory_has_room_for_its_nodes(tmp_path: Path) -> None:
     script.write_text("import rospy\nrospy.init_node('idle', anonymous=True)\nrospy.spin()\n")
     nodes = {f"N{number}": NodeConfig(f"N{number}", script=script) for number in range(40)}
     with Mission(spec_of(script, nodes, {}), console=Console(quiet=True)) as mission:
-        mission.run(2)
+        mission.run_for(2)
         assert len(mission.ros.graph.nodes) == 40
     assert not list(tmp_path.glob("*.scr"))
 
@@ -112,5 +111,5 @@ def test_a_burst_waits_as_on_a_pc(tmp_path: Path) -> None:
     )
     console = Console(quiet=True)
     with Mission(spec_of(script, {"BURST": NodeConfig("BURST", script=script)}, {}), console=console) as mission:
-        mission.run(3)
+        mission.run_for(3)
     assert "[burst] True" in console.lines

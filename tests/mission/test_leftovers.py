@@ -9,8 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from cfepy.console import Console
-from cfepy.mission import Mission
-from cfepy.mission.spec import read_mission
+from cfepy.mission import Mission, read_mission
 from cfepy.nodes import Universe
 from cfepy.rtos import Kernel
 
@@ -38,7 +37,7 @@ def parts() -> Counter[str]:
 
 def fly(seconds: float = SECONDS, tasks: str = "thread") -> Mission:
     with Mission(read_mission("capture"), console=Console(quiet=True), tasks=tasks) as mission:
-        mission.run(seconds)
+        mission.run_for(seconds)
     return mission
 
 

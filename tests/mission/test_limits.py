@@ -74,20 +74,20 @@ LINUX = {
 def test_all_of_everything(tmp_path: Path, board: str | None) -> None:
     folder = write_mission(tmp_path, STARTUP, taker=TAKER)
     with Mission(folder, console=Console(quiet=True), board=board) as mission:
-        mission.run(3)
+        mission.run_for(3)
         took = [line for line in mission.console.lines if line.startswith("took ")]
         assert len(took) == len(LINUX)
         if board is None:
             assert took == [f"took {what}: {count}, status {status}" for what, (count, status) in LINUX.items()]
         es = mission.cfe.es
         es.restart_app(es.get_app_id_by_name("TAKER"))
-        mission.run(8)
+        mission.run_for(8)
         again = [line for line in mission.console.lines if line.startswith("took ")][len(took) :]
         assert again[:-2] == took[:-2]  # generic counters and blocks of the CDS belong to nobody and stay
         es.delete_app(es.get_app_id_by_name("TAKER"))
-        mission.run(8)
+        mission.run_for(8)
         kept = left(mission)
     (tmp_path / "startup.scr").write_text("!")
     with Mission(folder, console=Console(quiet=True), board=board) as empty:
-        empty.run(3)
+        empty.run_for(3)
         assert kept == left(empty)

@@ -9,7 +9,7 @@ import pytest
 
 from cfepy.console import Console
 from cfepy.mission import Mission
-from cfepy.mission.results import Results, mark
+from cfepy.pilot.results import Results, mark
 from tests.mission.flights import write_mission
 
 APP = "CFE_APP, app, Main, APP, 50, 16384, 0x0, 0;\n"
@@ -21,7 +21,7 @@ def fly(folder: Path, source: str, startup: str = APP, seconds: float = 3.0, tas
     write_mission(folder, startup + "!")
     (folder / "app.py").write_text(source)
     with Mission(str(folder), console=Console(quiet=True), tasks=tasks) as mission:
-        mission.run(seconds)
+        mission.run_for(seconds)
     return mission
 
 
@@ -97,7 +97,7 @@ def test_a_module_keeps_its_name_in_every_run_and_is_forgotten(tmp_path: Path) -
 def test_restarts_leave_no_modules_behind(tmp_path: Path) -> None:
     write_mission(tmp_path, APP + "!", app=f"def Main(cfe):\n{READY}    raise ValueError\n")
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
-        mission.run(20)
+        mission.run_for(20)
         assert mission.cfe.es.history["APP"].restarts > 1
         assert len([name for name in sys.modules if name.startswith("cfepy_app_")]) == 2  # the place, and the last one
 
@@ -182,9 +182,9 @@ def test_handlers_that_fail_keep_nobody_from_the_end(tmp_path: Path, kind: str) 
     )
     write_mission(tmp_path, APP + "!", app=source)
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
-        mission.run(2)
+        mission.run_for(2)
         mission.processor.psp.restart(1, "the test wants it")
-        mission.run(2)
+        mission.run_for(2)
         assert mission.processor.booted is not None
         assert len(mission.record.resets) == 1
 
@@ -195,9 +195,9 @@ def test_a_delete_handler_that_fails_is_its_applications(tmp_path: Path) -> None
     )
     write_mission(tmp_path, APP + "!", app=source)
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
-        mission.run(2)
+        mission.run_for(2)
         mission.cfe.es.delete_app(mission.cfe.es.get_app_id_by_name("APP"))
-        mission.run(9)
+        mission.run_for(9)
         assert "APP: task APP died of an exception" in text_of(mission)
         assert mission.cfe.es.app_named("APP") is None
         assert not mission.record.resets

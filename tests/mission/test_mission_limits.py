@@ -9,8 +9,8 @@ import pytest
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
-from cfepy.mission.check import check_mission
 from cfepy.mission.limits import ROS_ROOM, MissionLimits, limits_for
+from cfepy.pilot.check import check_mission
 from cfepy.psp.profile import load_profile
 from cfepy.status import UsageError
 from tests.mission.flights import write_mission
@@ -66,7 +66,7 @@ def test_fifty_nodes_fly_with_one_line_in_the_mission_file(tmp_path: Path) -> No
     mission = write_mission(tmp_path, startup + "!\n", n=node, mission_yaml="limits: {nodes: 50}\n")
     assert check_mission(mission) == []
     with Mission(mission, console=Console(quiet=True)) as flight:
-        flight.run(1)
+        flight.run_for(1)
         assert len(flight.ros.graph.nodes) == 50
         assert len(flight.ros.graph.topics["/all"].subscriptions) == 50
 

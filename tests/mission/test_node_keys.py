@@ -33,7 +33,7 @@ def mission_with(folder: Path, keys: str, script: str = TELEOP) -> str:
 def test_keys_are_typed_at_their_times(tmp_path: Path) -> None:
     console = Console(quiet=True)
     with Mission(mission_with(tmp_path, '["s", 0.5, "w", "\\x1b[A"]'), console=console) as mission:
-        mission.run(3)
+        mission.run_for(3)
     lines = [line for line in console.lines if line.startswith("[teleop]")]
     keys = ["'s' 0.1", "'w' 0.7", r"'\x1b' 0.8", "'[' 0.8", "'A' 0.8"]
     assert lines == [f"[teleop] {key}" for key in keys]
@@ -50,7 +50,7 @@ def test_ctrl_c_shuts_a_node_down(tmp_path: Path) -> None:
     console = Console(quiet=True)
     script = "\n".join(line[8:] for line in script.splitlines())
     with Mission(mission_with(tmp_path, '["\\x03"]', script), console=console) as mission:
-        mission.run(2)
+        mission.run_for(2)
         assert mission.ros.all_finished()
         assert mission.ros.ended["TELEOP"].status == 0
     assert [line for line in console.lines if line.startswith("[spinner]")] == ["[spinner] hook", "[spinner] over True"]

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.mission import read_mission
-from cfepy.mission.check import check_mission
 from cfepy.nodes.config import ROSCORE_PARAMS
+from cfepy.pilot.check import check_mission
 from cfepy.status import UsageError
 from tests.mission.flights import write_mission
 

@@ -10,13 +10,12 @@ import pytest
 
 from cfepy import msg
 from cfepy.console import Console
-from cfepy.mission import Mission
-from cfepy.mission.dictionary import dictionary_of
-from cfepy.mission.ground import GroundLink
-from cfepy.mission.spec import read_mission
+from cfepy.ground.dictionary import dictionary_of
+from cfepy.ground.link import GroundLink
+from cfepy.mission import Mission, read_mission
 from cfepy.msg import Command
 from cfepy.msg.layout import Cell
-from cfepy.rtos.threads import drain
+from cfepy.rtos.context import drain
 from cfepy.sb import SoftwareBus
 
 APPS = {
@@ -91,14 +90,14 @@ def survive(name: str, seed: int, count: int, board: str | None = None) -> int:
     drain()
     threads = threading.active_count()
     with Mission(name, console=Console(quiet=True), board=board) as mission, GroundLink(mission) as ground:
-        mission.run(2)
+        mission.run_for(2)
         for number, packet in zip(range(count), Commander(name, seed), strict=False):
             if random.random() < 0.9:
                 mission.cfe.sb.transmit_msg(packet, is_origination=False)
             else:
                 ground.send(packet)
             if random.random() < 0.5:
-                mission.run(random.choice((0.001, 0.1, 0.5, 1, 3)))
+                mission.run_for(random.choice((0.001, 0.1, 0.5, 1, 3)))
                 ground.received()
             dead = [line for line in mission.console.lines if "died of an exception" in line]
             assert not dead, f"command {number}, {packet.hex()}: {mission.console.lines[-20:]}"
@@ -113,11 +112,11 @@ def survive(name: str, seed: int, count: int, board: str | None = None) -> int:
 
 
 def _stop_all(mission: Mission) -> None:
-    mission.run(30)  # whatever is under way comes to its end
+    mission.run_for(30)  # whatever is under way comes to its end
     for app in list(mission.cfe.es.apps):
         if not app.is_core:
             mission.cfe.es.delete_app(app.app_id)
-    mission.run(30)
+    mission.run_for(30)
 
 
 def left(mission: Mission) -> dict[str, object]:
@@ -137,12 +136,19 @@ def left(mission: Mission) -> dict[str, object]:
 
 def _left_of_core(name: str, board: str | None) -> dict[str, object]:
     with Mission(name, console=Console(quiet=True), board=board) as mission:
-        mission.run(2)
+        mission.run_for(2)
         _stop_all(mission)
         return left(mission)
 
 
-@pytest.mark.parametrize(("name", "board"), [("lab", None), ("lab", "rx64m"), ("sched", None)])
+@pytest.mark.parametrize(
+    ("name", "board"),
+    [
+        ("lab", None),
+        pytest.param("lab", "rx64m", marks=pytest.mark.slow),
+        pytest.param("sched", None, marks=pytest.mark.slow),
+    ],
+)
 def test_hundreds_of_commands(name: str, board: str | None) -> None:
     assert survive(name, 1, 400, board) > 0
 

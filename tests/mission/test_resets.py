@@ -16,7 +16,7 @@ from cfepy.ids import get_base
 from cfepy.mission import Mission
 from cfepy.osal.limits import OS_OBJECT_CREATOR_ANY
 from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR, PanicError
-from cfepy.rtos.threads import drain
+from cfepy.rtos.context import drain
 from tests.mission.flights import write_mission
 
 KEEPER = """
@@ -52,12 +52,12 @@ def restart(reset_type: int) -> bytes:
 
 def command_reset(mission: Mission, reset_type: int) -> None:
     mission.cfe.sb.transmit_msg(restart(reset_type), is_origination=False)
-    mission.run(3)
+    mission.run_for(3)
 
 
 def test_a_processor_reset_loses_ram_and_keeps_reserved_memory(tmp_path: Path) -> None:
     with make(tmp_path) as mission:
-        mission.run(3)
+        mission.run_for(3)
         first = mission.processor
         command_reset(mission, RST_TYPE_PROCESSOR)
         assert mission.processor is not first
@@ -72,7 +72,7 @@ def test_a_processor_reset_loses_ram_and_keeps_reserved_memory(tmp_path: Path) -
 
 def test_a_power_on_reset_loses_everything(tmp_path: Path) -> None:
     with make(tmp_path) as mission:
-        mission.run(3)
+        mission.run_for(3)
         mission.files.write_file("/ram/kept.txt", b"?")
         command_reset(mission, RST_TYPE_POWERON)
         assert starts(mission)[1] == "start 1, boot 1, pipe 0x160006, type 2"
@@ -81,7 +81,7 @@ def test_a_power_on_reset_loses_everything(tmp_path: Path) -> None:
 
 def test_the_ram_disk_outlives_a_processor_reset(tmp_path: Path) -> None:
     with make(tmp_path) as mission:
-        mission.run(3)
+        mission.run_for(3)
         mission.files.write_file("/ram/kept.txt", b"?")
         command_reset(mission, RST_TYPE_PROCESSOR)
         assert mission.files.read_file("/ram/kept.txt") == b"?"
@@ -89,16 +89,16 @@ def test_the_ram_disk_outlives_a_processor_reset(tmp_path: Path) -> None:
 
 def test_a_reset_by_the_host_between_two_pieces_of_a_run(tmp_path: Path) -> None:
     with make(tmp_path) as mission:
-        mission.run(2)
+        mission.run_for(2)
         mission.processor.psp.restart(RST_TYPE_PROCESSOR, "the test wants it")
-        mission.run(2)
+        mission.run_for(2)
         assert [reset.reason for reset in mission.record.resets] == ["the test wants it"]
         assert len(starts(mission)) == 2
 
 
 def test_the_report_counts_over_resets(tmp_path: Path) -> None:
     with make(tmp_path) as mission:
-        mission.run(3)
+        mission.run_for(3)
         before = mission.record.traffic(mission.cfe.sb, ())[0x0808].sent
         command_reset(mission, RST_TYPE_PROCESSOR)
         assert mission.record.traffic(mission.cfe.sb, ())[0x0808].sent > before
@@ -116,7 +116,7 @@ def test_finally_blocks_of_apps_run_before_the_next_boot(tmp_path: Path) -> None
             cfe.psp.restart(1)
     """
     with make(tmp_path, keeper=source) as mission:
-        mission.run(2)
+        mission.run_for(2)
         command_reset(mission, RST_TYPE_PROCESSOR)
         assert len(starts(mission)) == 1
         assert len(mission.record.resets) == 1
@@ -124,7 +124,7 @@ def test_finally_blocks_of_apps_run_before_the_next_boot(tmp_path: Path) -> None
 
 def test_a_mission_that_resets_itself_at_every_boot_still_comes_to_an_end(tmp_path: Path) -> None:
     with make(tmp_path, keeper="def keeper_main(cfe):\n    cfe.psp.restart(1)\n") as mission:
-        mission.run(10)
+        mission.run_for(10)
         assert mission.kernel.now == 10_000_000_000
         assert len(mission.record.resets) > 5
 
@@ -134,7 +134,7 @@ def test_one_trace_on_both_contexts_and_in_any_number_of_pieces(tmp_path: Path, 
     digests = []
     for tasks in ("thread", "greenlet"):
         with make(tmp_path, tasks) as mission:
-            mission.run(1)
+            mission.run_for(1)
             mission.cfe.sb.transmit_msg(restart(RST_TYPE_PROCESSOR), is_origination=False)
             for _ in range(pieces):
                 mission.run_until(mission.kernel.now + 7_000_000_000 // pieces)
@@ -156,9 +156,10 @@ def objects(mission: Mission) -> int:
     return len(gc.get_objects())
 
 
+@pytest.mark.slow
 def test_two_hundred_resets_leave_nothing_behind(tmp_path: Path) -> None:
     with make(tmp_path) as mission:
-        mission.run(1)
+        mission.run_for(1)
         drain()
         threads, modules = threading.active_count(), len(sys.modules)
         osal_ids = osal_objects(mission)
@@ -166,7 +167,7 @@ def test_two_hundred_resets_leave_nothing_behind(tmp_path: Path) -> None:
         sizes: list[int] = []
         for number in range(200):
             mission.processor.psp.restart(RST_TYPE_PROCESSOR if number % 3 else RST_TYPE_POWERON, "again")
-            mission.run(1)
+            mission.run_for(1)
             if number % 50 == 49:
                 sizes.append(objects(mission))
         assert max(sizes) - min(sizes) < 300, sizes  # the record of each reset, and noise
@@ -181,24 +182,25 @@ def test_two_hundred_resets_leave_nothing_behind(tmp_path: Path) -> None:
         assert sum(isinstance(each, type(mission.processor)) for each in gc.get_objects()) <= 2
 
 
-def test_a_thousand_restarts_of_an_app_leave_nothing_behind(tmp_path: Path) -> None:
+@pytest.mark.parametrize("count", [200, pytest.param(1000, marks=pytest.mark.slow)])
+def test_many_restarts_of_an_app_leave_nothing_behind(tmp_path: Path, count: int) -> None:
     with make(tmp_path) as mission:
         es = mission.cfe.es
-        mission.run(2)
+        mission.run_for(2)
         drain()
         threads, modules = threading.active_count(), len(sys.modules)
         tables = osal_objects(mission)
         routes, pipes, tasks = len(mission.cfe.sb.routes), len(mission.cfe.sb.pipes), len(mission.kernel.tasks)
         sizes: list[int] = []
         begun = 0
-        for number in range(1000):
+        for number in range(count):
             es.restart_app(es.get_app_id_by_name("KEEPER"))
-            mission.run(7)
-            if number % 250 == 249:
+            mission.run_for(7)
+            if (number + 1) % (count // 4) == 0:
                 begun += len(starts(mission))
                 sizes.append(objects(mission))
-        assert es.history["KEEPER"].restarts == 1000
-        assert begun == 1001
+        assert es.history["KEEPER"].restarts == count
+        assert begun == count + 1
         assert max(sizes) - min(sizes) < 300, sizes
         assert osal_objects(mission) == tables
         assert (len(mission.cfe.sb.routes), len(mission.cfe.sb.pipes)) == (routes, pipes)
@@ -230,9 +232,9 @@ LEFTOVERS = """
 
 def test_what_is_made_while_all_ends_does_not_outlive_the_reset(tmp_path: Path) -> None:
     with make(tmp_path, keeper=LEFTOVERS) as mission:
-        mission.run(2)
+        mission.run_for(2)
         mission.processor.psp.restart(RST_TYPE_PROCESSOR, "the test wants it")
-        mission.run(0)
+        mission.run_for(0)
         assert not mission.network.datagrams.bound
 
 
@@ -247,9 +249,9 @@ def test_a_reset_that_is_under_way_is_not_changed_by_another(tmp_path: Path) -> 
             cfe.psp.restart(2, "too late")
     """
     with make(tmp_path, keeper=source) as mission:
-        mission.run(2)
+        mission.run_for(2)
         mission.processor.psp.restart(RST_TYPE_PROCESSOR, "the test wants it")
-        mission.run(2)
+        mission.run_for(2)
         assert starts(mission) == ["start as 2", "start as 1"]
 
 
@@ -261,5 +263,5 @@ def test_a_panic_ends_the_run(tmp_path: Path) -> None:
     """
     with make(tmp_path, keeper=source) as mission:
         with pytest.raises(PanicError, match="code -5"):
-            mission.run(10)
+            mission.run_for(10)
         assert not mission.record.resets

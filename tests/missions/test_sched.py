@@ -11,10 +11,10 @@ from apps.sch import packets as sch
 from cfepy.cli.main import main
 from cfepy.console import Console
 from cfepy.mission import Mission
-from cfepy.mission.watch import PacketWatch, Seen
+from cfepy.mission.packet_watch import PacketWatch, Seen
 from cfepy.resources import shipped
-from cfepy.rtos.units import NS_PER_S
 from cfepy.tbl import build
+from cfepy.units import NS_PER_S
 
 FOLDER = shipped("missions") / "sched"
 COMBINED, SAMPLE_HK = 0x089C, 0x0883
@@ -38,7 +38,7 @@ def test_housekeeping_is_collected_slot_by_slot() -> None:
     seen: list[Seen] = []
     watch = PacketWatch(seen.append, lambda msg_id: msg_id in (COMBINED, SAMPLE_HK))
     with Mission("sched", console=Console(quiet=True), attachments=[watch]) as mission:
-        mission.run(20)
+        mission.run_for(20)
         assert mission.cfe.evs.errors_by_app == {}
     for msg_id, slot in ((COMBINED, 75), (SAMPLE_HK, 45)):
         times = [each.at_ns for each in seen if each.msg_id == msg_id]
@@ -51,7 +51,7 @@ def test_a_group_is_silenced_from_the_ground() -> None:
     seen: list[Seen] = []
     watch = PacketWatch(seen.append, lambda msg_id: msg_id == SAMPLE_HK)
     with Mission("sched", console=Console(quiet=True), attachments=[watch]) as mission:
-        mission.run(4.5)
+        mission.run_for(4.5)
         mission.cfe.sb.transmit_msg(sch.DISABLE_GROUP.packet(GroupData=0x10))
-        mission.run(5)
+        mission.run_for(5)
     assert max(each.at_ns for each in seen) < 5 * NS_PER_S

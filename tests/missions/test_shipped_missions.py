@@ -12,9 +12,10 @@ import pytest
 from apps.to_lab import packets as to_lab
 from cfepy.cli.main import main
 from cfepy.console import Console
+from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission, shipped_missions
-from cfepy.mission.ground import GroundLink
-from cfepy.mission.script import run_script
+from cfepy.pilot import pilot
+from cfepy.pilot.plan import RunPlan
 from cfepy.resources import shipped
 from cfepy.tbl import build
 
@@ -24,7 +25,7 @@ MISSIONS = shipped("missions")
 def fly(mission: str, seconds: float, **options: object) -> tuple[Mission, list[str]]:
     flight = Mission(mission, console=Console(quiet=True), **options)  # type: ignore[arg-type]
     try:
-        flight.run(seconds)
+        flight.run_for(seconds)
         flight.shut_down_nodes()
     finally:
         flight.close()
@@ -51,8 +52,10 @@ def test_capture_catches_the_debris() -> None:
     assert not flight.record.resets
 
 
+@pytest.mark.slow
 def test_capture_passes_its_own_checks() -> None:
-    outcome = run_script("capture", MISSIONS / "capture" / "checks.txt", console=Console(quiet=True))
+    outcome = pilot.fly(RunPlan(("capture",), script=str(MISSIONS / "capture" / "checks.txt"))).outcome
+    assert outcome is not None
     assert outcome.ok, outcome.text()
     assert len(outcome.verdicts) > 15
 
@@ -168,9 +171,9 @@ def test_an_application_that_does_not_fit_fails_the_run(tmp_path: Path, capsys: 
 
 def test_lab_is_nasas_sample_mission() -> None:
     with Mission("lab", console=Console(quiet=True)) as flight, GroundLink(flight) as ground:
-        flight.run(2)
+        flight.run_for(2)
         ground.send(to_lab.OUTPUT_ENABLE.packet(dest_IP="127.0.0.1"))
-        flight.run(4)
+        flight.run_for(4)
         down = {int.from_bytes(packet[:2], "big") for _, packet in ground.received()}
     housekeeping = {0x0800, 0x0801, 0x0803, 0x0804, 0x0805, 0x0880, 0x0883, 0x0884}
     assert down == housekeeping | {0x0808}

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cfepy.osal.endpoints import STREAM_BUFFER
 from cfepy.osal.limits import OS_CHECK
-from cfepy.osal.select import OS_STREAM_STATE_READABLE, OS_STREAM_STATE_WRITABLE, FdSet
+from cfepy.osal.network import STREAM_BUFFER
+from cfepy.osal.sockets import OS_STREAM_STATE_READABLE, OS_STREAM_STATE_WRITABLE, FdSet
 from cfepy.status import OS_ERR_INVALID_ID, OS_INVALID_POINTER
 from tests.osal.helpers import MS, Bench
 from tests.osal.sockets import DATAGRAM, INET, NO_SOCKET, STREAM, a_file, address, bound, connection

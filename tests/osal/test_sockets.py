@@ -6,14 +6,14 @@ from functools import partial
 
 import pytest
 
-from cfepy.osal.endpoints import DATAGRAM_BUFFER, DATAGRAM_OVERHEAD, Datagram, Place
 from cfepy.osal.limits import OS_CHECK
-from cfepy.osal.network import Network
+from cfepy.osal.network import DATAGRAM_BUFFER, DATAGRAM_OVERHEAD, Datagram, Network, Place
 from cfepy.osal.sockaddr import OS_SocketDomain_INVALID, SockAddr
 from cfepy.osal.sockets import (
     OS_socket_option_IP_DSCP,
     OS_socket_option_UNDEFINED,
 )
+from cfepy.rtos import CpuCosts
 from cfepy.status import (
     OS_ERR_BAD_ADDRESS,
     OS_ERR_INCORRECT_OBJ_STATE,
@@ -299,7 +299,7 @@ def crowd(context: str) -> tuple[str, list[object]]:
 
 
 def test_a_socket_that_is_closed_while_it_sends_takes_no_port() -> None:
-    bench = Bench(byte_ps=1_000_000)
+    bench = Bench(costs=CpuCosts(byte_ps=1_000_000))
     sock = bench.os.socket_open(INET, DATAGRAM)
     statuses: list[int] = []
 

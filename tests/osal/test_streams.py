@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cfepy.osal.endpoints import STREAM_BUFFER
 from cfepy.osal.limits import OS_CHECK
+from cfepy.osal.network import STREAM_BUFFER
 from cfepy.osal.sockets import (
     OS_SocketShutdownMode_SHUT_READ,
     OS_SocketShutdownMode_SHUT_READWRITE,

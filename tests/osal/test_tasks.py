@@ -6,7 +6,8 @@ import pytest
 
 from cfepy.config import PlatformConfig
 from cfepy.ids import OS_TASK_BASE, get_base
-from cfepy.osal.tasks import TaskInfo
+from cfepy.osal.tasks import TaskProperties
+from cfepy.rtos import CpuCosts
 from cfepy.status import (
     OS_ERR_INVALID_ARGUMENT,
     OS_ERR_INVALID_ID,
@@ -77,7 +78,7 @@ def test_task_get_info_and_id_by_name(bench: Bench) -> None:
         bench.log.append(bench.os.task_get_id())
 
     bench.run(body)
-    assert bench.log == [True, TaskInfo("CHILD", bench.log[2], 2048, 120), bench.log[2]]
+    assert bench.log == [True, TaskProperties("CHILD", bench.log[2], 2048, 120), bench.log[2]]
 
 
 def test_a_task_that_ended_is_unknown(bench: Bench) -> None:
@@ -174,7 +175,7 @@ def test_find_id_by_system_data(bench: Bench) -> None:
 
 
 def test_calls_cost_virtual_time_on_a_board() -> None:
-    bench = Bench(call_ns=1500, byte_ps=8333)
+    bench = Bench(costs=CpuCosts(call_ns=1500, byte_ps=8333))
     with bench.kernel:
         queue_id = bench.os.queue_create("Q", 2, 100)
 

@@ -27,7 +27,7 @@ SHIPPED = [
     "rospy_shim/msgs/definitions/std_msgs.msgs",
 ]
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("wheel")]  # one wheel and one environment for all
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +71,7 @@ def test_the_capture_mission_flies_as_in_the_checkout(home: Path) -> None:
     assert output.splitlines()[-1] == f"trace: {numbers['trace']}"
     assert {topic["name"] for topic in numbers["topics"]} >= {"/joint_states", "/motor_command"}
     with Mission("capture", console=Console(quiet=True)) as mission:
-        mission.run(1)
+        mission.run_for(1)
         mission.shut_down_nodes()
         assert mission.trace.digest() == numbers["trace"]
 

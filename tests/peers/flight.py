@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.cli.junit import read_results
+from cfepy.cli.ros.rostest import read_results
 from tests.corpus.sources import Sources
 from tests.peers.peers import UNIT, Peer
 
@@ -66,7 +66,7 @@ def _run(peer: Peer, sources: Sources, folder: Path) -> tuple[dict[str, str], st
     if peer.kind == UNIT:
         command = ["node", "--for", str(VIRTUAL_S), str(DRIVER), str(file), str(results)]
     else:
-        command = ["rostest", "--results-file", str(results), str(file)]
+        command = ["rostest", "--results", str(results), str(file)]
     try:
         done = subprocess.run(
             [sys.executable, "-m", "cfepy", *command],

@@ -13,9 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cfepy.cli.main import main
-from cfepy.mission.dictionary import dictionary_of
-from cfepy.mission.script_text import read_script
-from cfepy.mission.spec import read_mission
+from cfepy.ground.dictionary import dictionary_of
+from cfepy.mission import read_mission
+from cfepy.script.text import read_script
 from cfepy.status import UsageError
 
 ROOT = Path(__file__).parents[2]
@@ -95,26 +95,30 @@ SEEDS = st.integers(0, 2**32)
 @given(st.sampled_from(DUMPS), SEEDS, st.booleans())
 def test_dump_files(folder: Path, source: Path, seed: int, as_json: bool) -> None:
     name = write(folder / "dump.log", source, seed, damaged)
-    assert command("log", *["--json"] * as_json, name) in STATUSES
+    assert command("log", *["--json", "-"] * as_json, name) in STATUSES
 
 
-@settings(max_examples=20, deadline=None)
-@given(st.sampled_from(TABLES), SEEDS, st.sampled_from((["show"], ["show", "--yaml"], ["show", "--json"], ["verify"])))
+@settings(max_examples=8, deadline=None)
+@given(
+    st.sampled_from(TABLES),
+    SEEDS,
+    st.sampled_from((["show"], ["show", "--yaml", "-"], ["show", "--json", "-"], ["verify"])),
+)
 def test_table_files(folder: Path, source: Path, seed: int, action: list[str]) -> None:
     name = write(folder / "table.tbl", source, seed, damaged)
     assert command("tbl", *action, name) in STATUSES
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=5, deadline=None)
 @given(st.sampled_from(TABLES), SEEDS)
 def test_table_yaml(folder: Path, source: Path, seed: int) -> None:
     yaml = folder / "table.yaml"
-    assert command("tbl", "show", "--yaml", str(source), "-o", str(yaml)) == 0
+    assert command("tbl", "show", str(source), "--yaml", str(yaml)) == 0
     write(yaml, yaml, seed, garbled)
     assert command("tbl", "build", str(yaml), "-o", str(folder / "out.tbl")) in STATUSES
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=5, deadline=None)
 @given(st.sampled_from(("mission.yaml", "startup.scr")), SEEDS)
 def test_missions(folder: Path, name: str, seed: int) -> None:
     mission = folder / "mission"

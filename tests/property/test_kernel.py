@@ -14,9 +14,9 @@ from cfepy.rtos import (
     DeadlockError,
     Kernel,
     Mutex,
+    NotingPolicy,
     Policy,
     Queue,
-    Recorded,
     Schedule,
     SeededRandom,
     Semaphore,
@@ -231,7 +231,7 @@ def test_slices_give_the_same_run_on_a_board(program: Program, cost: int, tick: 
 @given(TASKS, SCHEDULES, ENDS)
 def test_every_schedule_can_be_given_again(program: Program, schedule: Schedule, ends: list[int]) -> None:
     """By itself, as deviations from fifo, on the other context, and in slices."""
-    recorded = Recorded(schedule.policy())
+    recorded = NotingPolicy(schedule.policy())
     first = execute(program, "greenlet", policy=recorded)
     again = schedule.at(recorded.deviations)
     assert execute(program, "thread", policy=schedule.policy() or Policy()) == first

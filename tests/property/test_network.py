@@ -7,8 +7,16 @@ from collections import deque
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cfepy.osal.endpoints import DATAGRAM_BUFFER, DATAGRAM_OVERHEAD, STREAM_BUFFER, Datagram, Listener, Mailbox, Place
-from cfepy.osal.network import Ports
+from cfepy.osal.network import (
+    DATAGRAM_BUFFER,
+    DATAGRAM_OVERHEAD,
+    STREAM_BUFFER,
+    BoundEndpoints,
+    Datagram,
+    Listener,
+    Mailbox,
+    Place,
+)
 
 HERE, THERE = Place("127.0.0.1", 1), Place("127.0.0.1", 2)
 HOSTS = ("0.0.0.0", "127.0.0.1", "127.0.0.2", "::", "::1")
@@ -54,7 +62,7 @@ def test_a_mailbox_is_a_queue_with_a_limit(steps: list[int | None]) -> None:
 
 @given(st.lists(st.tuples(st.sampled_from(HOSTS), st.integers(1, 3), st.booleans()), max_size=25))
 def test_a_place_belongs_to_one(steps: list[tuple[str, int, bool]]) -> None:
-    ports: Ports[Mailbox] = Ports()
+    ports: BoundEndpoints[Mailbox] = BoundEndpoints()
     owners: dict[Place, Mailbox] = {}
     for host, port, binds in steps:
         place = Place(host, port)

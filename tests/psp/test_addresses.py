@@ -13,9 +13,9 @@ from cfepy.psp.addresses import (
     MEM_EEPROM,
     MEM_INVALID,
     MEM_RAM,
+    EepromSpace,
     MemRange,
 )
-from cfepy.psp.eeprom import EepromSpace
 from cfepy.status import (
     CFE_PSP_ERROR,
     CFE_PSP_ERROR_ADDRESS_MISALIGNED,

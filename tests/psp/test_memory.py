@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
 from cfepy.osal import Osal
-from cfepy.psp import BoardProfile, CpuCosts, MemoryBudget, OverBudget, load_profile, object_sizes
+from cfepy.psp import BoardProfile, MemoryBudget, OverBudget, load_profile, object_sizes
 from cfepy.psp.profile import MemoryCosts, MemoryRegion
-from cfepy.rtos import Kernel
+from cfepy.rtos import CpuCosts, Kernel
 from cfepy.status import CfeError
 
 SMALL = BoardProfile("small", sram=(MemoryRegion("main", 900), MemoryRegion("standby", 100)))
@@ -116,6 +116,13 @@ def test_a_full_board_creates_nothing() -> None:
 
 
 def test_costs_of_a_board() -> None:
-    costs = CpuCosts.of_board(load_profile("rx64m"))
-    assert costs == CpuCosts(call_ns=1500, byte_ps=8334, switch_ns=2500)
-    assert CpuCosts.of_board(load_profile("linux")) == CpuCosts()
+    costs = load_profile("rx64m").cpu_costs()
+    assert costs == CpuCosts(call_ns=1500, byte_ps=8334, switch_ns=2500, polling_ns=1000)
+    assert load_profile("linux").cpu_costs() == CpuCosts(polling_ns=1000)  # a loop that polls ends on any board
+
+
+def test_what_a_call_costs() -> None:
+    costs = CpuCosts(call_ns=1500, byte_ps=8334)
+    assert (costs.of(0), costs.of(1), costs.of(100)) == (1500, 1508, 2333)
+    assert (costs.of_copying(0), costs.of_copying(100)) == (0, 833)
+    assert CpuCosts().of(1000) == 0

@@ -14,9 +14,10 @@ from typing import Any
 
 import yaml
 
-from cfepy.explore import verdict
-from cfepy.explore.trial import Trial
-from cfepy.mission.run_plan import RunPlan
+from cfepy.exploration import verdict
+from cfepy.exploration.trial import Trial
+from cfepy.pilot.plan import RunPlan
+from cfepy.rtos import Schedule
 
 MISSIONS = Path(__file__).parent / "missions"
 SECONDS = 1.3  # virtual; all of them have done their work by then
@@ -112,7 +113,7 @@ def reference_trial(folder: Path, tasks: str = "greenlet") -> Trial:
     script = folder / "checks.txt"
     plan = RunPlan((str(folder),), seconds=SECONDS, tasks=tasks, script=str(script) if script.is_file() else None)
     trial = Trial(plan, keep_widths=True)
-    return trial.against(trial.fly("fifo")[1])
+    return trial.against(trial.fly(Schedule()).results)
 
 
 def by_name(name: str) -> Bug:

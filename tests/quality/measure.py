@@ -10,10 +10,9 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from cfepy.explore.findings import Findings
-from cfepy.explore.search import SeededSearch, SystematicSearch, make_search
-from cfepy.explore.trial import Trial
-from cfepy.explore.verdict import Verdict
+from cfepy.exploration.search import SeededSearch, SystematicSearch, make_search
+from cfepy.exploration.trial import Trial
+from cfepy.exploration.verdict import Findings, Verdict
 from cfepy.rtos.schedule import Schedule
 
 TRIALS = 25
@@ -150,7 +149,7 @@ def find(trial: Trial, policy: str, most: int = LONGEST) -> Verdict | None:
 def simplest(trial: Trial, policy: str) -> Verdict | None:
     """Of the runs that `cfepy explore` would have made, the failure with the fewest preemptions."""
     (hunt,) = hunts(trial, policy, 1)
-    findings = Findings(trial.run("fifo"))
+    findings = Findings(trial.run(Schedule()))
     for number in range(LONGEST):
         verdict = hunt.step()
         if verdict is None:
@@ -161,6 +160,6 @@ def simplest(trial: Trial, policy: str) -> Verdict | None:
     return findings.all()[0].simplest if findings.all() else None
 
 
-def as_deviations(verdict: Verdict) -> str:
+def as_deviations(verdict: Verdict) -> Schedule:
     """A schedule that gives the same run by what it does otherwise than fifo."""
-    return Schedule.parse(verdict.schedule).at(dict(verdict.deviations)).text()
+    return verdict.schedule.at(dict(verdict.deviations))

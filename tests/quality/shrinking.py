@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from cfepy.explore.shrink import Shrinker
-from cfepy.explore.verdict import Verdict
+from cfepy.exploration.shrink import Shrinker
+from cfepy.exploration.verdict import Verdict
 from tests.quality.bugs import Bug, reference_trial
 
 
@@ -45,4 +45,4 @@ def shrunk(bug: Bug, verdict: Verdict) -> Shrunk:
     found = Shrinker(trial, verdict.schedule, verdict.groups[0]).run()
     assert found is not None, f"{verdict.schedule} does not show {bug.name} again"
     preemptions = sum(move.preempts for move in found.moves)
-    return Shrunk(preemptions, len(found.moves) - preemptions, found.probes, found.verdict.schedule)
+    return Shrunk(preemptions, len(found.moves) - preemptions, found.probes, found.verdict.schedule.text())

@@ -7,16 +7,22 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.explore.stuck import waits_of
-from cfepy.explore.trial import Trial
-from cfepy.explore.verdict import Verdict
-from cfepy.rtos.units import NS_PER_S
+from cfepy.exploration.stuck import waits_of
+from cfepy.exploration.trial import Trial
+from cfepy.exploration.verdict import Verdict
+from cfepy.rtos import Schedule
+from cfepy.units import NS_PER_S
 from tests.quality.bugs import BUGS, MISSIONS, SECONDS, Bug, by_name, reference_trial
 from tests.quality.measure import as_deviations, find, simplest
 from tests.quality.report import best, load, shown_by
 from tests.quality.shrinking import shrunk
 
 EACH = pytest.mark.parametrize("bug", BUGS, ids=[bug.name for bug in BUGS])
+HALF_LATER = pytest.mark.parametrize(
+    "bug",
+    [pytest.param(bug, marks=[pytest.mark.slow] * (number % 2), id=bug.name) for number, bug in enumerate(BUGS)],
+)
+"""Each bug; every other one is left to the slow tests."""
 SHRUNK_HERE = ("frame_counter", "late_subscription")
 
 
@@ -33,13 +39,13 @@ def test_every_mission_is_listed() -> None:
 @EACH
 def test_first_come_first_served_shows_nothing(bug: Bug) -> None:
     trial = reference_trial(bug.folder)
-    plain, asked = trial.run("fifo"), trial.run("at:")
+    plain, asked = trial.run(Schedule()), trial.run(Schedule("at"))
     assert not plain.failures
     assert not plain.trouble
     assert asked.trace == plain.trace
 
 
-@EACH
+@HALF_LATER
 def test_the_best_policy_finds_it_and_the_schedule_shows_it_again_on_threads(bug: Bug) -> None:
     verdict = found_by(bug, best(load(), bug.name)[0])
     assert verdict.failures[0].kind in bug.kinds
@@ -62,7 +68,7 @@ def mended(bug: Bug, folder: Path) -> Trial:
     return replace(trial, waits=waits_of(trial.plan, round(SECONDS * NS_PER_S), None))
 
 
-@EACH
+@HALF_LATER
 def test_mended_it_does_not_fail(bug: Bug, tmp_path: Path) -> None:
     never_fails(mended(bug, tmp_path), "all", 4)
 
@@ -81,10 +87,11 @@ def shrinks(bug: Bug) -> None:
     small = shrunk(bug, verdict)
     assert small.preemptions <= bug.preemptions
     for tasks in ("greenlet", "thread"):
-        assert verdict.groups[0] in reference_trial(bug.folder, tasks).run(small.schedule).groups
+        assert verdict.groups[0] in reference_trial(bug.folder, tasks).run(Schedule.parse(small.schedule)).groups
 
 
 @pytest.mark.parametrize("name", SHRUNK_HERE)
+@pytest.mark.slow
 def test_shrinking_leaves_few_preemptions(name: str) -> None:
     shrinks(by_name(name))
 

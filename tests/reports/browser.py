@@ -70,7 +70,7 @@ class Browser:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             preexec_fn=take_descriptors,
-            pass_fds=(3, 4),
+            close_fds=False,  # all others of Python are closed by themselves; these two need not be open here
         )
         os.close(theirs_in)
         os.close(theirs_out)

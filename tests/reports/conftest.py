@@ -6,18 +6,20 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from cfepy.mission.run_plan import Flown
+from cfepy.ground.series import SeriesRecorder
+from cfepy.pilot.pilot import Flown
 from cfepy.reports.collector import Collector
 from cfepy.reports.page import About, page_of
 from tests.reports import looked_at
 
 
 class Shown(NamedTuple):
-    """A flight, what was collected, its page, and its trace for Perfetto."""
+    """A flight, what was collected and recorded, its page, and its trace for Perfetto."""
 
     mission: str
     flown: Flown
     collector: Collector
+    recorder: SeriesRecorder
     page: str
     events: list[dict[str, Any]]
 
@@ -25,8 +27,8 @@ class Shown(NamedTuple):
 @pytest.fixture(scope="session")
 def shown(tmp_path_factory: pytest.TempPathFactory) -> Shown:
     mission = looked_at.busy_mission(tmp_path_factory.mktemp("busy"))
-    collector = Collector()
-    flown = looked_at.fly(mission, collector)
-    page = page_of(flown, collector, About(f"cfepy run --for 3 {mission}", "fifo", mission))
+    collector, recorder = Collector(), SeriesRecorder()
+    flown = looked_at.fly(mission, collector, recorder)
+    page = page_of(flown, collector, About(f"cfepy run --for 3 {mission}", "fifo", mission), recorder)
     _, events = looked_at.perfetto(mission)
-    return Shown(mission, flown, collector, page, events)
+    return Shown(mission, flown, collector, recorder, page, events)

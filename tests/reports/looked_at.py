@@ -8,8 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.mission.run_plan import Flown, RunPlan
+from cfepy.pilot import pilot
+from cfepy.pilot.pilot import Flown
+from cfepy.pilot.plan import RunPlan
 from cfepy.reports.perfetto import PerfettoTrace
+from cfepy.rtos.schedule import Schedule
 from tests.mission.flights import write_mission
 
 NASTY = "</script><img src=x onerror=document.title='owned'>\\x00&quot;'"
@@ -90,9 +93,10 @@ def busy_mission(folder: Path, mission_file: str = DEADLINES) -> str:
     return write_mission(folder, STARTUP, slow=SLOW, flood=FLOOD, talk=TALK, hear=HEAR, mission_yaml=mission_file)
 
 
-def fly(mission: str, *attachments: Attachment, seconds: float = 3.0, **options: Any) -> Flown:
+def fly(mission: str, *attachments: Attachment, seconds: float = 3.0, schedule: str = "fifo", **options: Any) -> Flown:
     """Fly it."""
-    return RunPlan((mission,), seconds=seconds, **options).fly(attachments)
+    plan = RunPlan((mission,), seconds=seconds, schedule=Schedule.parse(schedule), **options)
+    return pilot.fly(plan, attachments=attachments)
 
 
 def perfetto(mission: str, seconds: float = 3.0) -> tuple[Flown, list[dict[str, Any]]]:

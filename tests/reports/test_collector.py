@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from cfepy.reports import bins
 from cfepy.reports.bins import Bins, Histogram
 from cfepy.reports.collector import MOST_OF_A_KIND, Collector
-from cfepy.reports.text_marks import mark_of
+from cfepy.reports.noteworthy import mark_of
 from tests.mission.flights import write_mission
 from tests.reports import looked_at
 from tests.reports.conftest import Shown

@@ -11,9 +11,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cfepy.ground.series import SeriesRecorder
+from cfepy.markup import escaped
+from cfepy.pilot import RunPlan, pilot
 from cfepy.reports.collector import Collector
-from cfepy.reports.html_text import escaped, json_text, numbers_in
+from cfepy.reports.html_text import json_text, numbers_in
 from cfepy.reports.page import About, page_of
+from cfepy.rtos import NotingPolicy
+from cfepy.rtos.schedule import Schedule
+from tests.mission.flights import write_mission
 from tests.reports import looked_at
 from tests.reports.conftest import Shown
 
@@ -94,7 +100,7 @@ def test_it_is_well_formed_and_has_one_script_and_no_handlers(shown: Shown) -> N
     reader = Reader(shown.page)
     assert reader.open == []
     assert reader.handlers == []
-    assert reader.tags.count("script") == 3  # two of them are JSON
+    assert reader.tags.count("script") == 4  # three of them are JSON
     assert "img" not in reader.tags
     assert reader.tags.count("h1") == 1
     assert reader.tags.count("caption") == reader.tags.count("table") > 5
@@ -151,6 +157,73 @@ def test_its_parts_can_be_found(shown: Shown, title: str) -> None:
 
 
 def test_the_same_run_gives_the_same_page(shown: Shown) -> None:
+    collector, recorder = Collector(), SeriesRecorder()
+    flown = looked_at.fly(shown.mission, collector, recorder)
+    about = About(f"cfepy run --for 3 {shown.mission}", "fifo", shown.mission)
+    assert page_of(flown, collector, about, recorder) == shown.page
+
+
+def items(page: str) -> list[str]:
+    """The lines of the problem box, as text."""
+    box = page.partition('class="banner')[2].partition("</div>")[0]
+    return [re.sub("<[^>]*>", "", item) for item in re.findall("<li.*?</li>", box)]
+
+
+def test_each_problem_has_its_time(shown: Shown) -> None:
+    texts = items(shown.page)
+    assert [text.partition(" s: ")[2] for text in texts] == [escaped(each) for each in shown.flown.results.problems]
+    first = {each.owner: each.first_at_s for each in shown.flown.results.deadlines if each.overruns}
+    assert any(text.startswith(f"{at_s:.6f} s: {owner} missed") for owner, at_s in first.items() for text in texts)
+    event = next(event for event in shown.collector.events if event.type_name == "ERROR" and event.app == "SLOW")
+    assert f"{event.at_ns / 1e9:.6f} s: SLOW sent 1 ERROR or CRITICAL event" in texts
+
+
+DIES = """\
+def main(cfe):
+    cfe.es.wait_for_startup_sync(1000)
+    cfe.os.task_delay(300)
+    raise ValueError("boom")
+"""
+EXITS = """\
+def main(cfe):
+    cfe.es.wait_for_startup_sync(1000)
+    cfe.os.task_delay(200)
+    cfe.es.exit_app(3)
+"""
+
+
+def test_deaths_bad_ends_and_failed_steps_have_their_times(tmp_path: Path) -> None:
+    startup = "CFE_APP, dies, main, DIES, 50, 16384, 0x0, 0;\nCFE_APP, exits, main, EXITS, 50, 16384, 0x0, 0;\n!\n"
+    mission = write_mission(tmp_path, startup, dies=DIES, exits=EXITS)
+    script = tmp_path / "script.txt"
+    script.write_text("expect event DIES 1 within 1\n")
     collector = Collector()
-    flown = looked_at.fly(shown.mission, collector)
-    assert page_of(flown, collector, About(f"cfepy run --for 3 {shown.mission}", "fifo", shown.mission)) == shown.page
+    flown = looked_at.fly(mission, collector, seconds=2, script=str(script))
+    booted_s = flown.results.booted_s
+    assert booted_s is not None
+    texts = items(page_of(flown, collector, About("", "fifo", mission)))
+    assert len(texts) == 3
+    assert re.match(rf"{booted_s + 0.3:.2f}\d+ s: DIES died: ValueError: boom", texts[0])
+    assert re.match(rf"{booted_s + 0.2:.2f}\d+ s: EXITS ended with CFE_ES_RunStatus_APP_ERROR", texts[1])
+    assert re.match(r"1\.\d+ s: step .*script\.txt:1 failed: expect event DIES 1", texts[2])
+
+
+def test_the_switches_of_a_schedule_are_marked(tmp_path: Path) -> None:
+    """Those of an `at:` schedule, which is what a shrunk one is; marking them changes nothing."""
+    mission = str(Path(__file__).parents[1] / "quality" / "missions" / "lost_update")
+    noting = NotingPolicy(Schedule.parse("random:0").policy())
+    before = pilot.fly(RunPlan((mission,), seconds=1.3), policy=noting)
+    plan = RunPlan((mission,), seconds=1.3, schedule=Schedule().at(noting.deviations))
+    collector, inner = Collector(), plan.schedule.policy()
+    assert inner is not None
+    flown = pilot.fly(plan, attachments=[collector], policy=collector.policy(inner))
+    assert flown.results.trace == before.results.trace
+    switches = [mark for mark in collector.marks if mark.kind == "switch"]
+    assert [mark.at_ns for mark in switches] == [moment.now for moment in noting.moments]
+    for mark, moment in zip(switches, noting.moments, strict=True):
+        assert f"(decision at:{moment.decision}={moment.choice})" in mark.text
+        assert f"{moment.instead_of} is preempted by {moment.chosen}" in mark.text or not moment.preemption
+    assert any("odometer.py:" in mark.text for mark in switches)
+    page = page_of(flown, collector, About("", plan.schedule.text(), mission))
+    assert f"The schedule made {len(switches)} switches before" in page
+    assert any("is preempted by" in text for text in items(page))

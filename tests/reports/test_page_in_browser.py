@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from cfepy.ground.series import SeriesRecorder
 from cfepy.reports.collector import Collector
 from cfepy.reports.html_text import numbers_in
 from cfepy.reports.page import About, page_of
@@ -38,7 +39,7 @@ def opened(browser: Browser, shown: Shown, tmp_path: Path) -> Browser:
     browser.errors.clear()
     browser.requests.clear()
     browser.resize(1280, 900)
-    assert browser.open(page) < 2
+    browser.open(page)
     return browser
 
 
@@ -129,6 +130,54 @@ def test_keys_work_on_the_timeline(opened: Browser) -> None:
     assert shown_range(opened)[1] - shown_range(opened)[0] < end - begin
 
 
+def test_a_field_is_drawn_when_it_is_chosen(opened: Browser, shown: Shown) -> None:
+    is_hidden = "document.getElementById('values-canvas').hidden"
+    assert opened.evaluate(is_hidden)
+    name = "CFE_EVS_LONG_EVENT_MSG"
+    opened.evaluate(f"""(() => {{
+        const parts = [...document.querySelectorAll('.fields details')];
+        const part = parts.find(part => part.textContent.startsWith('{name}'));
+        part.open = true;
+        part.querySelector('input').click();
+    }})()""")
+    assert not opened.evaluate(is_hidden)
+    drawn = """(() => {
+        const canvas = document.getElementById('values-canvas'), seen = new Set();
+        const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+        for (let at = 0; at < data.length; at += 4) seen.add(data[at] << 16 | data[at + 1] << 8 | data[at + 2]);
+        return seen.size;
+    })()"""
+    assert opened.evaluate(drawn) > 10
+    found = f"""(group => [group.lines.map(line => line.name), linesOf(group).map(line => [...line.values]),
+        [...group.times]])(groups.find(group => group.series.name === '{name}'))"""
+    names, values, times = opened.evaluate(found)
+    series = shown.recorder.series(name)
+    assert names == [f"PacketID.{each}" for each in ("EventID", "EventType", "SpacecraftID", "ProcessorID")]
+    assert values == [series.to_numpy(each).values.tolist() for each in names]
+    assert times == [round(each / 1000) * 1000 for each in series.times_ns.tolist()]
+
+
+def test_fields_are_found_by_words(opened: Browser) -> None:
+    rows = "[...document.querySelectorAll('.fields label')]"
+    visible = f"{rows}.filter(row => row.offsetHeight).map(row => row.textContent)"
+    opened.evaluate("""(field => { field.value = 'long_event packetid'; field.dispatchEvent(new Event('input')); })(
+        document.getElementById('values-filter'))""")
+    assert opened.evaluate(visible) == ["PacketID[4]"]
+
+
+def test_the_time_of_a_problem_leads_to_the_timeline(opened: Browser, shown: Shown) -> None:
+    link = "document.querySelector('.banner a[data-at]')"
+    at = int(opened.evaluate(f"{link}.dataset.at"))
+    assert at in {round((each.first_at_s or 0) * 1e9) for each in shown.flown.results.deadlines} | set(
+        shown.collector.first_errors.values()
+    )
+    opened.evaluate(f"{link}.click()")
+    begin, end = shown_range(opened)
+    assert begin <= at <= end
+    assert end - begin < shown.collector.end_ns / 10
+    assert opened.evaluate("document.location.hash") == "#timeline"
+
+
 def test_events_are_filtered(opened: Browser, shown: Shown) -> None:
     visible = "[...document.querySelectorAll('#events-table tbody tr')].filter(row => row.offsetHeight).length"
     count = len(shown.collector.events)
@@ -180,11 +229,11 @@ def test_it_fits_and_can_be_read(opened: Browser, width: int, scheme: str) -> No
 
 @pytest.mark.slow
 def test_a_minute_of_capture_is_small_and_quick(browser: Browser, tmp_path: Path) -> None:
-    collector = Collector()
-    flown = looked_at.fly("capture", collector, seconds=60)
+    collector, recorder = Collector(), SeriesRecorder(most=10_000)
+    flown = looked_at.fly("capture", collector, recorder, seconds=60)
     assert sum(topic.sent for topic in flown.results.topics) > 60_000
     page = tmp_path / "capture.html"
-    page.write_text(page_of(flown, collector, About("", "fifo", "capture")), encoding="utf-8")
+    page.write_text(page_of(flown, collector, About("", "fifo", "capture"), recorder), encoding="utf-8")
     assert page.stat().st_size < 5_000_000
     browser.errors.clear()
     assert browser.open(page) < 2

@@ -38,8 +38,8 @@ def ask(
     lab = make_lab(**{"one": one, "idle": idle, "lib": lambda cfe: 0, **mains})
     lab.es.load_library("LIB", "/cf/lib.so", "lib_init")
     lab.start("idle")
-    lab.mission.run(0.3)
+    lab.mission.run_for(0.3)
     lab.start("one")
-    lab.mission.run(seconds)
+    lab.mission.run_for(seconds)
     assert found, "the application died"
     return found[0], lab

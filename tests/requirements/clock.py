@@ -39,4 +39,4 @@ def tone(flight: Flight) -> None:
 def to_next_second(flight: Flight) -> None:
     """Go on to the tenth of a second after the next tone."""
     subseconds = flight.cfe.time.get_met_subsecs()
-    flight.run(1.1 - subseconds / 2**32)
+    flight.run_for(1.1 - subseconds / 2**32)

@@ -83,10 +83,10 @@ class Flight:
         self._boot()
 
     def _boot(self) -> None:
-        self.mission.run(BOOT_S)
+        self.mission.run_for(BOOT_S)
         ready: list[bool] = []
         self._spawn("listener", lambda: self._note(ready), LISTENER_PRIORITY)
-        self.run(0)
+        self.run_for(0)
         assert ready
         self.packets.clear()
 
@@ -110,9 +110,9 @@ class Flight:
         """The services that run now."""
         return self.mission.cfe
 
-    def run(self, seconds: float) -> None:
+    def run_for(self, seconds: float) -> None:
         """Let virtual time go by; zero is a moment."""
-        self.mission.run(seconds or 0.001)
+        self.mission.run_for(seconds or 0.001)
 
     def call(self, function: Callable[[], Result], app: str = "PROBE") -> Result:
         """What a function returns or raises when an application calls it."""
@@ -126,7 +126,7 @@ class Flight:
                 errors.append(error)
 
         self._spawn("caller", call, PROBE_PRIORITY, app)
-        self.run(0)
+        self.run_for(0)
         if errors:
             raise errors[0]
         return results[0]
@@ -134,7 +134,7 @@ class Flight:
     def transmit(self, packet: bytes) -> None:
         """Put a packet onto the bus, as a link to the ground or to another processor does."""
         self.mission.kernel.spawn("ground", partial(self.cfe.sb.transmit_msg, packet, False), GROUND_PRIORITY)
-        self.run(0)
+        self.run_for(0)
 
     def send(self, command: Command, **fields: Any) -> list[Event]:
         """Send a command; the events that it brings about at once."""

@@ -31,7 +31,7 @@ class Ground:
         """Send a packet and let some time pass; the events meanwhile, as "APP id: text"."""
         before = len(self.mission.console.lines)
         self.mission.cfe.sb.transmit_msg(bytes(packet), is_origination=False)
-        self.mission.run(seconds)
+        self.mission.run_for(seconds)
         return [found[1] for line in self.mission.console.lines[before:] if (found := _EVENT.match(line))]
 
     def command(self, kind: Command, seconds: float = 0.2, /, **fields: Any) -> list[str]:

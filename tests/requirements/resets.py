@@ -50,7 +50,7 @@ SOURCES = {
 def booted(folder: Path) -> Mission:
     """The mission, operational."""
     mission = Mission(write_mission(folder, STARTUP, **SOURCES), console=Console(quiet=True))
-    mission.run(2)
+    mission.run_for(2)
     return mission
 
 

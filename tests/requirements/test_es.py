@@ -43,7 +43,7 @@ LOOPER = """
 def ground(tmp_path: Path) -> Iterator[Ground]:
     folder = write_mission(tmp_path, STARTUP, tools=TOOLS, looper=LOOPER, other=LOOPER.replace("_CHILD", "_BABY"))
     with Mission(folder, console=Console(quiet=True)) as mission:
-        mission.run(2)
+        mission.run_for(2)
         ground = Ground(mission)
         ground.show_debug_events("CFE_ES")
         yield ground
@@ -91,7 +91,7 @@ def test_cES1000_housekeeping_tells_how_the_executive_is(ground: Ground) -> None
 def test_cES1000_heap_is_what_is_left_of_a_board_with_limits(tmp_path: Path) -> None:
     board = load_profile("rx64m")
     with Mission(write_mission(tmp_path, "!"), board=board, console=Console(quiet=True)) as mission:
-        mission.run(2)
+        mission.run_for(2)
         values = Ground(mission).answer(pk.SEND_HK, pk.HK_TLM)
         assert 0 < values["HeapBytesFree"] == values["HeapMaxBlockSize"] < board.sram_size
         assert values["HeapBlocksFree"] == 1

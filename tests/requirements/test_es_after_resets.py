@@ -170,7 +170,7 @@ def test_an_executive_without_its_objects_panics(tmp_path: Path, what: str) -> N
         mission.processor.osal.task_create = fail  # type: ignore[method-assign]
         said = "OS_TaskCreate error creating core App: CFE_EVS: EC = 0xC8000005"
     with pytest.raises(CfeError):
-        mission.run(2)
+        mission.run_for(2)
     assert Ground(mission).lines("CFE_ES_CreateObjects")[-1] == f"CFE_ES_CreateObjects: {said}"
     assert "CFE_PSP_Panic called with error code = 0x00000006. Exiting." in mission.console.lines
     mission.close()

@@ -155,7 +155,7 @@ def test_cES1334_an_application_waits_until_the_mission_is_operational(tmp_path:
                 cfe.os.task_delay(100)
     """
     with Mission(write_mission(tmp_path, startup, waits=waits, slow=slow), console=Console(quiet=True)) as mission:
-        mission.run(3)
+        mission.run_for(3)
         said = [line.partition(" ")[2] if "entering" in line else line for line in mission.console.lines]
     order = [line for line in said if line.startswith(("WAITS", "SLOW")) or "OPERATIONAL" in line]
     assert order == [
@@ -210,7 +210,7 @@ def test_cES1017_an_exception_is_dealt_with_at_once(make_lab: Make) -> None:
 
     lab = make_lab(dies=dies)
     lab.start("dies")
-    lab.mission.run(0.9)
+    lab.mission.run_for(0.9)
     (line,) = [line for line in lab.lines if "CFE_ES_RunExceptionScan" in line]
     assert line.startswith("1980-012-14:03:21.827")
     assert Ground(lab.mission).lines("CFE_ES_RestartApp") == ["CFE_ES_RestartApp: Restart Application DIES Initiated"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cfepy.es import packets as pk
-from cfepy.es.cds_registry import RECORD
+from cfepy.es.cds import RECORD
 from cfepy.fs import crc16, read_header
 from cfepy.ports import ERROR, INFORMATION
 from cfepy.status import (
@@ -74,7 +74,7 @@ def test_cES1027_delete(fly: Fly) -> None:
     (event,) = flight.send(pk.DELETE_CDS, CdsName="MUTE.Data")
     assert (event.event_id, event.text) == (80, "CDS 'MUTE.Data' not deleted because owning app is active")
     flight.call(lambda: es.delete_app(es.get_app_id_by_name("MUTE")))
-    flight.run(8)
+    flight.run_for(8)
     (event,) = flight.send(pk.DELETE_CDS, CdsName="MUTE.Data")
     assert (event.event_id, event.event_type) == (78, INFORMATION)
     assert status_of(lambda: es.get_cds_block_id_by_name("MUTE.Data")) == CFE_ES_ERR_NAME_NOT_FOUND

@@ -28,7 +28,7 @@ def orphan(flight: Flight) -> Fields:
     es = flight.cfe.es
     flight.call(lambda: es.register_cds(10, "Data"), app="MUTE")
     flight.call(lambda: es.delete_app(es.get_app_id_by_name("MUTE")))
-    flight.run(8)
+    flight.run_for(8)
     return {"CdsName": "MUTE.Data"}
 
 

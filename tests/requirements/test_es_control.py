@@ -43,7 +43,7 @@ class Family:
     def is_running(self, lab: Lab) -> bool:
         """Whether the child task does anything."""
         before = self.beats
-        lab.mission.run(1)
+        lab.mission.run_for(1)
         return self.beats > before
 
 
@@ -162,7 +162,7 @@ def test_cES1319_an_application_ends_itself(make_lab: Make) -> None:
     lab = make_lab(ends=ends)
     tasks, booked = len(lab.es.tasks()), lab.mission.memory.used
     lab.start("ends")
-    lab.mission.run(3)
+    lab.mission.run_for(3)
     assert lab.es.app_named("ENDS") is None
     assert (len(lab.es.tasks()), lab.mission.memory.used) == (tasks, booked)
     assert status_of(lab.cfe.sb.get_pipe_id_by_name, "ENDS_PIPE")
@@ -173,7 +173,7 @@ def test_cES1319_an_application_ends_itself(make_lab: Make) -> None:
 def test_cES1319_an_odd_status_counts_as_an_error(make_lab: Make) -> None:
     lab = make_lab(odd=lambda cfe: cfe.es.exit_app(99))
     lab.start("odd")
-    lab.mission.run(3)
+    lab.mission.run_for(3)
     assert "CFE_ES_ExitApp: Called with invalid status (99)." in lab.log()
     assert "CFE_ES 14: Exit Application ODD Completed." in lab.log()
 

@@ -34,7 +34,7 @@ LINE = re.compile(rb"\d{4}-\d{3}-\d\d:\d\d:\d\d\.\d{5} \S.*\n")
 @pytest.fixture
 def ground(tmp_path: Path) -> Iterator[Ground]:
     with Mission(write_mission(tmp_path, STARTUP, fails=FAILS), console=Console(quiet=True)) as mission:
-        mission.run(1)
+        mission.run_for(1)
         ground = Ground(mission)
         ground.show_debug_events("CFE_ES")
         yield ground
@@ -144,7 +144,7 @@ def test_cES1016_1_its_file_has_a_default_name(ground: Ground) -> None:
 
 @covers("cES1017", "cES1019")
 def test_cES1017_exceptions_and_resets_are_logged(ground: Ground) -> None:
-    ground.mission.run(9)
+    ground.mission.run_for(9)
     values = housekeeping(ground)
     assert (values["ERLogIndex"], values["ERLogEntries"]) == (2, 2)
     assert ground.command(pk.WRITE_ER_LOG, 3, FileName="er.log") == ["CFE_ES 20: /ram/er.log written:Size=7904"]

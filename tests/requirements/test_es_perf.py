@@ -37,7 +37,7 @@ def ground(tmp_path: Path) -> Iterator[Ground]:
     board.write_text("name: small\nlimits:\n  es_perf_data_buffer_size: 100\n")
     folder = write_mission(tmp_path, STARTUP, worker=WORKER)
     with Mission(folder, board=str(board), console=Console(quiet=True)) as mission:
-        mission.run(1.05)
+        mission.run_for(1.05)
         ground = Ground(mission)
         ground.show_debug_events("CFE_ES")
         yield ground
@@ -128,7 +128,7 @@ def test_cES1023_one_thing_at_a_time(ground: Ground) -> None:
     assert ground.command(pk.STOP_PERF_DATA, 0.001) == [
         "CFE_ES 62: Stop performance data cmd ignored,perf data write in progress"
     ]
-    ground.mission.run(1)
+    ground.mission.run_for(1)
     assert ground.command(pk.START_PERF_DATA, TriggerMode=3) == [
         "CFE_ES 59: Cannot start collecting performance data, trigger mode (3) out of range (0 to 2)"
     ]

@@ -79,7 +79,7 @@ def test_cES1321_allocate_under_a_mutex(fly: Fly) -> None:
 
     for name, function in (("holder", hold), ("user", allocate)):
         flight.mission.kernel.spawn(name, function, 100)
-    flight.run(1)
+    flight.run_for(1)
     assert waited == [100_000_000]
     assert sizes == [500, 500]
     assert status_of(lambda: es.get_pool_buf(0, 8)) == CFE_ES_ERR_RESOURCEID_NOT_VALID

@@ -143,7 +143,7 @@ def test_cES1510_a_reset_by_the_watchdog_is_told_apart(tmp_path: Path) -> None:
     """
     folder = write_mission(tmp_path, "CFE_APP, sleeper, main, SLEEPER, 50, 16384, 0, 0;!", sleeper=sleeper)
     with Mission(folder, board=str(board), console=Console(quiet=True)) as mission:
-        mission.run(3)
+        mission.run_for(3)
         ground = Ground(mission)
         values = housekeeping(ground)
         assert (values["ResetType"], values["ResetSubtype"]) == (PROCESSOR, RST_SUBTYPE_HW_WATCHDOG)
@@ -187,7 +187,7 @@ def test_cES1500_the_subtype_of_a_reset_is_told_apart(
 def test_cES1709_resets_by_the_hardware_count_too(ground: Ground, subtype: int, cause: str) -> None:
     ground.command(pk.SET_MAX_PR_COUNT, MaxPRCount=0)
     ground.mission.cfe.es.setup_reset_variables(PROCESSOR, subtype, 1)
-    ground.mission.run(3)
+    ground.mission.run_for(3)
     assert ground.lines("CFE_ES_SetupResetVariables")[1] == (
         f"CFE_ES_SetupResetVariables: POWER ON RESET due to max proc resets ({cause})."
     )

@@ -191,7 +191,7 @@ def test_cEVS3006_what_is_no_command_is_counted_and_told(flight: Flight) -> None
     assert flight.send(Command("unknown", pk.CMD_MID, 99)) == [
         ("CFE_EVS", 15, ERROR, "Invalid command code -- ID = 0x00001801, CC = 99")
     ]
-    assert flight.send(Command("too long", pk.CMD_MID, pk.NOOP_CC, pk.BIT_MASK_COMMAND)) == [
+    assert flight.send(Command("too long", pk.CMD_MID, pk.NOOP_CC, pk.TYPES_COMMAND)) == [
         ("CFE_EVS", 43, ERROR, "Invalid msg length: ID = 0x1801,  CC = 0, Len = 10, Expected = 8")
     ]
     assert flight.send(pk.ENABLE_PORTS, BitMask=0x10) == [

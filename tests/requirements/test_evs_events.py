@@ -182,7 +182,7 @@ def flood(flight: Flight, count: int) -> list[int]:
 
 @covers("cEVS3220", "cEVS3220.1", "cEVS3220.5")
 def test_cEVS3220_floods_are_cut_after_a_burst(flight: Flight) -> None:
-    flight.run(CREDIT_S)
+    flight.run_for(CREDIT_S)
     assert flood(flight, 100) == [CFE_SUCCESS] * 32 + [CFE_EVS_APP_SQUELCHED] * 68
     events = flight.events()
     assert len(events) == 33
@@ -191,13 +191,13 @@ def test_cEVS3220_floods_are_cut_after_a_burst(flight: Flight) -> None:
 
 def test_cEVS3220_2_events_come_again_when_the_flood_is_over(flight: Flight) -> None:
     flood(flight, 100)
-    flight.run(2 * CREDIT_S)
+    flight.run_for(2 * CREDIT_S)
     assert flood(flight, 10) == [CFE_SUCCESS] * 10
 
 
 @covers("cEVS3220.3", "cEVS3220.4")
 def test_cEVS3220_3_squelched_events_are_counted_up_to_255(flight: Flight) -> None:
-    flight.run(CREDIT_S)
+    flight.run_for(CREDIT_S)
     flood(flight, 42)
     assert of_app(flight)["AppMessageSquelchedCounter"] == 10
     flood(flight, 300)

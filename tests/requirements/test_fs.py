@@ -35,7 +35,7 @@ def ask(tmp_path: Path) -> Iterator[Callable[..., Any]]:
         lab = Lab(tmp_path, one=lambda cfe: found.append(question(cfe)))
         labs.append(lab)
         lab.start("one")
-        lab.mission.run(seconds)
+        lab.mission.run_for(seconds)
         assert found, "the application died"
         return found[0]
 

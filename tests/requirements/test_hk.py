@@ -137,7 +137,7 @@ def test_HK2001_at_the_scheduled_rate(fly: Fly) -> None:
     flight = start(fly, schedule=build(schedule.image(1, wishes)))
     feed(flight, FIRST, b"ab")
     flight.packets.clear()
-    flight.run(8)
+    flight.run_for(8)
     assert [[get_msg_id(packet) for packet in flight.packets].count(msg_id) for msg_id in (COMBINED, OTHER)] == [8, 4]
     assert {packet[TLM_HEADER_SIZE:] for packet in flight.packets if get_msg_id(packet) == OTHER} == {b"b"}
 
@@ -161,7 +161,7 @@ def test_HK2000_1_a_bad_copy_table_is_refused(fly: Fly, entry: tuple[int, int, i
     assert ("HK", 36, ERROR, text) in validate_new_table(flight, ROWS[0], entry)
     (refusal,) = flight.send(tbl.ACTIVATE, TableName="HK.CopyTable")
     assert (refusal.app, refusal.event_id, refusal.event_type) == ("CFE_TBL", 81, ERROR)
-    flight.run(2)
+    flight.run_for(2)
     feed(flight, FIRST, b"ab")
     assert combined(flight, OTHER) == ([b"b"], [])
 
@@ -171,7 +171,7 @@ def validate_new_table(flight: Flight, *entries: tuple[int, int, int, int, int])
     flight.mission.files.write_file("/ram/new.tbl", build(hk.COPY_TABLE.image(rows(*entries))))
     flight.send(tbl.LOAD, LoadFilename="/ram/new.tbl")
     flight.send(tbl.VALIDATE, ActiveTableFlag=0, TableName="HK.CopyTable")
-    flight.run(2)
+    flight.run_for(2)
     return flight.events()
 
 
@@ -179,7 +179,7 @@ def test_HK2001_1_a_new_table_changes_the_packets(flight: Flight) -> None:
     feed(flight, FIRST, b"ab")
     validate_new_table(flight, (SECOND, 16, OTHER, 18, 1))
     flight.send(tbl.ACTIVATE, TableName="HK.CopyTable")
-    flight.run(2)
+    flight.run_for(2)
     assert feed(flight, FIRST, b"ab") == []
     feed(flight, SECOND, b"z")
     assert combined(flight, OTHER) == ([b"\0\0z"], [])

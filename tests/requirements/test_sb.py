@@ -140,7 +140,7 @@ SUBTYPES = {pk.WRITE_PIPE_INFO: 20, pk.WRITE_ROUTING_INFO: 21, pk.WRITE_MAP_INFO
 def dumped(flight: Flight, kind: Command, path: str, row: Layout, name: str = "") -> list[dict[str, object]]:
     """Have a file written; its rows."""
     flight.send(kind, Filename=name)
-    flight.run(3)
+    flight.run_for(3)
     data = flight.mission.files.read_file(path)
     header = read_header(data)
     assert (header.content_type, header.length, header.spacecraft_id) == (0x63464531, 64, 66)
@@ -217,7 +217,7 @@ def test_cSB4009_valid_commands_are_counted(flight: Flight) -> None:
     ):
         before = flight.ask(pk.SEND_HK, pk.HK_TLM)
         flight.send(kind, **fields)
-        flight.run(3)  # one file at a time
+        flight.run_for(3)  # one file at a time
         after = flight.ask(pk.SEND_HK, pk.HK_TLM)
         assert after["CommandCounter"] == before["CommandCounter"] + 1, kind
         assert after["CommandErrorCounter"] == before["CommandErrorCounter"], kind

@@ -255,7 +255,7 @@ def test_cSB4306_receiving_with_and_without_waiting(flight: Flight) -> None:
     begun = kernel.now
     kernel.spawn("reader", reader, 90)
     for _ in range(2):
-        flight.run(1)
+        flight.run_for(1)
         transmit(flight, TLM)
     assert [each is None for each in got] == [True, False, False]
     assert times[0] - begun == 30_000_000

@@ -200,7 +200,7 @@ def test_cTBL6005_registry_to_a_file(table: ProbeTable) -> None:
     three_tables(table)
     for path, wish in (("/ram/cfe_tbl_reg.log", {}), ("/ram/mine.log", {"DumpFilename": "/ram/mine.log"})):
         table.flight.send(pk.DUMP_REGISTRY, **wish)
-        table.flight.run(3)
+        table.flight.run_for(3)
         data = table.flight.mission.files.read_file(path)
         size = pk.REGISTRY_RECORD.size
         records = [pk.REGISTRY_RECORD.unpack(data, 64 + number * size) for number in range(3)]
@@ -380,7 +380,7 @@ def test_cTBL6013_delete_the_cds_of_a_table(fly: Fly) -> None:
     flight.call(lambda: cfe.tbl.unregister(handle), app="MUTE")
     assert ids(flight.send(pk.DELETE_CDS, TableName=name)) == [87]
     flight.call(lambda: cfe.es.delete_app(cfe.es.get_app_id_by_name("MUTE")))
-    flight.run(8)
+    flight.run_for(8)
     (event,) = flight.send(pk.DELETE_CDS, TableName=name)
     assert (event.event_id, event.text) == (38, f"Successfully removed '{name}' from CDS")
     assert name not in [block.name for block in cfe.es.cds_blocks()]

@@ -216,7 +216,7 @@ def test_cTBL6315_modified(fly: Fly) -> None:
     flight.call(lambda: cfe.tbl.get_address(shared), app="MUTE")
     flight.call(lambda: cfe.tbl.release_address(shared), app="MUTE")
     before = table.info()
-    flight.run(1)
+    flight.run_for(1)
     table.mine("get_address")[0][:] = NEW
     table.mine("modified")
     after = table.info()

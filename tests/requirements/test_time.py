@@ -90,7 +90,7 @@ def test_cTIME2006_stcf(flight: Flight) -> None:
 def test_cTIME2007_current_time(fly: Fly, utc: bool) -> None:
     """The time in the command is TAI, or UTC where that is the spacecraft's time."""
     flight = fly(time_cfg_default_utc=utc)
-    flight.run(0.4)
+    flight.run_for(0.4)
     met = flight.cfe.time.get_met()
     text = "Set Time -- secs = 3000000, usecs = 0, ssecs = 0x0"
     assert flight.send(pk.SET_TIME, Seconds=3_000_000) == told(12, text)
@@ -106,10 +106,10 @@ def test_cTIME2009_stcf_is_adjusted_every_second(flight: Flight, command: str, a
     direction = 1 if command == "ADD" else 2
     text = f"STCF 1Hz Adjust -- secs = 0, ssecs = 0x40000000, dir[1=Pos, 2=Neg] = {direction}"
     assert flight.send(adjust, Seconds=0, Subseconds=0x40000000) == told(16, text)
-    flight.run(4)
+    flight.run_for(4)
     assert flight.cfe.time.get_stcf() == after
     flight.send(adjust, Seconds=0, Subseconds=0)
-    flight.run(4)
+    flight.run_for(4)
     assert flight.cfe.time.get_stcf() == after
 
 
@@ -169,7 +169,7 @@ def test_cTIME2011_diagnostics(flight: Flight) -> None:
 def test_cTIME2013_stcf_is_adjusted_once(flight: Flight, command: Command, after: tuple[int, int]) -> None:
     (event,) = flight.send(command, Seconds=2, MicroSeconds=500_000)
     assert event.text.startswith("STCF Adjust -- secs = 2, usecs = 500000, ssecs = 0x80000000, dir[1=Pos, 2=Neg] = ")
-    flight.run(3)
+    flight.run_for(3)
     assert flight.cfe.time.get_stcf() == after
 
 
@@ -177,6 +177,6 @@ def test_cTIME2019_met(flight: Flight) -> None:
     to_next_second(flight)
     assert flight.send(pk.SET_MET, Seconds=7000) == told(13, "Set MET -- secs = 7000, usecs = 0, ssecs = 0x0")
     assert flight.cfe.time.get_met().seconds == 7000
-    flight.run(3)
+    flight.run_for(3)
     assert flight.cfe.time.get_met().seconds == 7003
     assert flight.cfe.time.get_stcf() == (1_000_000, 0)

@@ -21,7 +21,7 @@ def flight(fly: Fly) -> Flight:
 
 @covers("cTIME2300", "cTIME2301", "cTIME2302", "cTIME2303", "cTIME2304", "cTIME2305", "cTIME2306", "cTIME2307")
 def test_cTIME2300_the_times_of_an_instant(flight: Flight) -> None:
-    flight.run(0.25 - flight.mission.kernel.now % 10**9 / 1e9 + 1)
+    flight.run_for(0.25 - flight.mission.kernel.now % 10**9 / 1e9 + 1)
     time = flight.cfe.time
 
     def ask() -> tuple[object, ...]:
@@ -136,13 +136,13 @@ def test_cTIME2318_synchronization_callbacks(flight: Flight) -> None:
     with pytest.raises(CfeError) as caught:
         flight.call(lambda: time.register_synch_callback(print))
     assert caught.value.status == CFE_TIME_TOO_MANY_SYNCH_CALLBACKS
-    flight.run(2.5)
+    flight.run_for(2.5)
     assert calls == [1005, 1006]
     flight.call(lambda: time.unregister_synch_callback(callback))
     with pytest.raises(CfeError) as caught:
         flight.call(lambda: time.unregister_synch_callback(callback))
     assert caught.value.status == CFE_TIME_CALLBACK_NOT_REGISTERED
-    flight.run(2.5)
+    flight.run_for(2.5)
     assert calls == [1005, 1006]
 
 
@@ -168,7 +168,7 @@ def test_cTIME2323_the_api_triggers_tone_processing(fly: Fly) -> None:
     flight.call(lambda: flight.cfe.time.register_synch_callback(lambda: calls.append("tone")))
     for _ in range(3):
         flight.call(flight.cfe.time.external_tone)
-        flight.run(1 - 0.001)
+        flight.run_for(1 - 0.001)
     values = flight.ask(pk.SEND_DIAGNOSTIC, pk.DIAG_TLM)
     assert (values["ToneIntCounter"], values["ToneIntErrorCounter"]) == (2, 1)
     assert (values["ToneSignalCounter"], values["ToneTaskCounter"]) == (2, 2)

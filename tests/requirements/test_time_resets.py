@@ -47,7 +47,7 @@ def test_cTIME2500_power_on_reset(switchable: Flight) -> None:
 def test_cTIME2501_processor_reset(switchable: Flight) -> None:
     flight = switchable
     change_everything(flight)
-    flight.run(10)  # nobody saves the time of these
+    flight.run_for(10)  # nobody saves the time of these
     flight.reset(PROCESSOR_RESET)
     time = flight.cfe.time
     assert (time.get_met().seconds, time.get_stcf(), time.get_leap_seconds()) == (50_003, (5, 0), 3)

@@ -24,7 +24,7 @@ def test_cTIME2012_tones_are_used_or_ignored(flight: Flight) -> None:
     assert time.get_clock_state() == CLOCK_VALID
     assert flight.send(pk.SET_STATE, ClockState=CLOCK_FLYWHEEL) == told(7, "Set Clock State = FLYWHEEL")
     before, matches = time.get_met(), diagnostic(flight)["ToneMatchCounter"]
-    flight.run(20)
+    flight.run_for(20)
     values = diagnostic(flight)
     assert (time.get_clock_state(), values["Forced2Fly"]) == (CLOCK_FLYWHEEL, 1)
     assert values["ToneMatchCounter"] > matches
@@ -46,8 +46,8 @@ def test_cTIME2012_2_a_client_follows_a_server(fly: Fly) -> None:
     server.send(pk.SET_STATE, ClockState=CLOCK_VALID)
     for _ in range(300):
         server.packets.clear()
-        server.run(0.01)
-        client.run(0.01)
+        server.run_for(0.01)
+        client.run_for(0.01)
         if server.all(pk.TONE_CMD):
             client.call(client.cfe.time.external_tone)
             (packet,) = (packet for packet in server.packets if get_msg_id(packet) == pk.DATA_CMD_MID)
@@ -92,10 +92,10 @@ def test_cTIME2016_data_after_a_tone_updates_the_time(fly: Fly) -> None:
 def test_cTIME2017_a_tone_after_data_updates_the_time(fly: Fly) -> None:
     flight = fly(pk.DIAG_TLM_MID, time_at_tone_will_be=True, **ON_ITS_OWN)
     flight.call(flight.cfe.time.external_tone)
-    flight.run(0.9)
+    flight.run_for(0.9)
     flight.transmit(pk.SEND_CMD.packet())
     assert diagnostic(flight)["ToneMatchCounter"] == 0
-    flight.run(0.09)
+    flight.run_for(0.09)
     flight.packets.clear()
     flight.call(flight.cfe.time.external_tone)
     assert flight.events() == told(21, "Stop FLYWHEEL")
@@ -103,7 +103,7 @@ def test_cTIME2017_a_tone_after_data_updates_the_time(fly: Fly) -> None:
     assert (values["ToneMatchCounter"], values["ToneMatchErrorCounter"]) == (1, 0)
     assert values["AtToneLatch"] == values["ToneSignalLatch"]
     flight.transmit(pk.TONE_CMD.packet())  # told again of the same tone
-    flight.run(0.99)
+    flight.run_for(0.99)
     flight.call(flight.cfe.time.external_tone)  # a tone without data
     after = diagnostic(flight)
     assert (after["ToneMatchCounter"], after["ToneMatchErrorCounter"]) == (1, 2)
@@ -125,12 +125,12 @@ def test_a_lost_tone_starts_flywheel_mode_once(fly: Fly) -> None:
     flight.send(pk.SET_STATE, ClockState=CLOCK_VALID)
     for _ in range(3):
         tone(flight)
-        flight.run(1 - 0.002)
+        flight.run_for(1 - 0.002)
     assert flight.cfe.time.get_clock_state() == CLOCK_VALID
     assert flight.cfe.time.get_clock_info() & 0x20
     flight.packets.clear()
     met = flight.cfe.time.get_met()
-    flight.run(20)
+    flight.run_for(20)
     assert flight.events() == told(20, "Start FLYWHEEL")
     assert flight.cfe.time.get_clock_state() == CLOCK_FLYWHEEL
     assert flight.cfe.time.get_clock_info() & 0x4C00 == 0x4800
@@ -144,7 +144,7 @@ def test_a_lost_tone_starts_flywheel_mode_once(fly: Fly) -> None:
 
 def follow(client: Flight, second: int) -> None:
     """A tone, and a server's message that it was at this second of MET."""
-    client.run(0.998)
+    client.run_for(0.998)
     client.call(client.cfe.time.external_tone)
     times = {"AtToneMET": time_of(second), "AtToneSTCF": time_of(1_000_000)}
     client.transmit(pk.DATA_CMD.packet(**times, AtToneLeapSeconds=37, AtToneState=CLOCK_VALID))

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.console import Console
-from cfepy.mission.mission import Mission
-from cfepy.mission.spec import MissionSpec
+from cfepy.mission import Mission, MissionSpec
 from cfepy.nodes.config import NodeConfig, RosConfig, TopicConfig
 
 
@@ -61,7 +60,7 @@ def run_nodes(
     ros = RosConfig(nodes or {}, topics or {}, params or {})
     console = Console(quiet=True)
     with Mission(MissionSpec("test", folder, startup, None, "linux", ros), tasks=tasks, console=console) as mission:
-        mission.run(seconds)
+        mission.run_for(seconds)
         mission.shut_down_nodes()
         rows = {row.name: row for row in mission.ros.topics()} if mission.ros is not None else {}
         finished = mission.ros is None or mission.ros.all_finished()

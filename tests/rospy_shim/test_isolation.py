@@ -124,7 +124,7 @@ def test_fifty_nodes_of_one_script(tmp_path: Path) -> None:
     startup = "".join(f"CFE_APP, node.py, __main__, NODE{n}, 100, 16384, 0x0, 0;\n" for n in range(50))
     folder = write_mission(tmp_path, startup + "!\n", node=ONE_OF_MANY, mission_yaml="limits: {nodes: 50}\n")
     with Mission(folder, console=Console(quiet=True)) as mission:
-        mission.run(4)
+        mission.run_for(4)
         lines = [line.partition("] ")[2].split() for line in mission.console.lines if line.startswith("[node_")]
     assert len(lines) == 50
     assert {tuple(line[:5]) for line in lines} == {("1", "1", "1", "1", "1")}

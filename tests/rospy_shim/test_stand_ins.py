@@ -5,6 +5,7 @@ from __future__ import annotations
 import zlib
 from pathlib import Path
 
+from rospy_shim.library_parts import STAND_INS
 from tests.rospy_shim.missions import run_nodes
 
 
@@ -76,8 +77,9 @@ def test_pictures(tmp_path: Path) -> None:
     """Lines of a PNG file may be packed in five ways; the file here has one of each."""
     lines = b"\x00\x01\x02\x03" + b"\x01\x01\x01\x01" + b"\x02\x01\x01\x01" + b"\x03\x02\x02\x02" + b"\x04\x01\x01\x01"
     script = f"""
-        import io, os, zlib
+        import io, os, sys, zlib
         os.chdir({str(tmp_path)!r})
+        sys.path.insert(0, {str(STAND_INS)!r})  # where Pillow is installed, it would come first
         from PIL import Image
         stream = io.BytesIO()
         Image.frombytes("RGB", (2, 1), bytes(range(6))).save(stream, "png")

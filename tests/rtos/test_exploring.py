@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from cfepy.rtos import DepthFirst, Kernel, Mutex, Queue, Recorded, Schedule, make_kernel
+from cfepy.exploration.search import DepthFirst
+from cfepy.rtos import Kernel, Mutex, NotingPolicy, Queue, Schedule, make_kernel
 from cfepy.trace import Trace
 
 Program = Callable[[Kernel], Callable[[], object]]
@@ -90,9 +91,9 @@ def late_timer(kernel: Kernel) -> Callable[[], object]:
     return lambda: len(failed)
 
 
-def fly(program: Program, schedule: Schedule, context: str = "greenlet") -> tuple[object, Recorded, str]:
+def fly(program: Program, schedule: Schedule, context: str = "greenlet") -> tuple[object, NotingPolicy, str]:
     """Outcome, decisions and digest of one run."""
-    recorded, trace = Recorded(schedule.policy()), Trace()
+    recorded, trace = NotingPolicy(schedule.policy()), Trace()
     with make_kernel(context, trace, recorded) as kernel:
         outcome = program(kernel)
         kernel.run(5_000_000)
@@ -225,7 +226,7 @@ def test_a_moment_tells_who_was_preempted_by_whom() -> None:
 
 def test_a_task_that_may_start_early_is_a_candidate_until_it_has_started() -> None:
     log: list[str] = []
-    recorded = Recorded(Schedule.parse("at:0=1,2=1").policy())
+    recorded = NotingPolicy(Schedule.parse("at:0=1,2=1").policy())
     kernel = make_kernel(policy=recorded)
 
     def child() -> None:
@@ -250,7 +251,7 @@ def test_a_task_that_may_start_early_is_a_candidate_until_it_has_started() -> No
 
 def test_under_fifo_a_task_that_may_start_early_starts_at_its_time() -> None:
     log: list[int] = []
-    recorded = Recorded()
+    recorded = NotingPolicy()
     kernel = make_kernel(policy=recorded)
 
     def child() -> None:

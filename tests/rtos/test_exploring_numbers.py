@@ -15,16 +15,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cfepy.exploration.search import DepthFirst
 from cfepy.rtos import (
     Decision,
-    DepthFirst,
     Deviations,
     ExploringKernel,
     Kernel,
     Mutex,
+    NotingPolicy,
     Policy,
     Queue,
-    Recorded,
     Schedule,
     Semaphore,
     make_kernel,
@@ -44,9 +44,9 @@ Program = Callable[[Kernel, list[str]], None]
 SEEDS = 800
 
 
-def fly(program: Program, policy: Policy | None, context: str = "greenlet") -> tuple[str, Recorded, str]:
+def fly(program: Program, policy: Policy | None, context: str = "greenlet") -> tuple[str, NotingPolicy, str]:
     """What the tasks wrote, the decisions, and the digest of the trace."""
-    recorded, trace, written = Recorded(policy), Trace(), list[str]()
+    recorded, trace, written = NotingPolicy(policy), Trace(), list[str]()
     with make_kernel(context, trace, recorded) as kernel:
         program(kernel, written)
         kernel.run(1_000_000)

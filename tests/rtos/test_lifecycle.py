@@ -11,7 +11,7 @@ from itertools import count
 import pytest
 
 from cfepy.rtos import Kernel, Queue, Task, TaskExit, WaitList
-from cfepy.rtos.threads import drain
+from cfepy.rtos.context import drain
 from tests.rtos.helpers import Log
 
 

@@ -6,7 +6,8 @@ import _thread
 
 import pytest
 
-from cfepy.rtos import Kernel, threads
+from cfepy.rtos import Kernel
+from cfepy.rtos.context import drain
 from cfepy.status import UsageError
 
 
@@ -16,7 +17,7 @@ def test_what_the_user_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
 
     with Kernel(context="thread") as kernel:
         kernel.spawn("first", lambda: kernel.delay(10))
-        threads.drain()
+        drain()
         monkeypatch.setattr(_thread, "start_new_thread", refuse)
         with pytest.raises(UsageError, match=r"refuses another thread.*ulimit -u.*--tasks greenlet"):
             kernel.spawn("second", lambda: None)

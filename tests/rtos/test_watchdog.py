@@ -1,30 +1,237 @@
-"""The stall watch names a task that computes without end, and changes nothing else."""
+"""The stall watch ends a run whose clock stands still, and changes nothing else."""
 
 from __future__ import annotations
 
+import gc
+import os
 import threading
+import weakref
+from collections.abc import Callable
 
 import pytest
 
 from cfepy.rtos import Kernel
+from cfepy.rtos.context import drain
 from cfepy.rtos.watchdog import StallWatch
+from cfepy.status import StallError
+
+LIMIT_S = 0.1  # how much of the computer's time a spinning task gets here
 
 
-def test_a_task_that_never_yields_is_named(make_kernel: type[Kernel]) -> None:
-    reports: list[str] = []
+def is_here(file: str) -> bool:
+    return file == __file__
 
-    def spin() -> None:
-        while not reports:
-            pass
+
+def watched(kernel: Kernel, **options: object) -> StallWatch:
+    return StallWatch(kernel, LIMIT_S, is_here, **options)  # type: ignore[arg-type]
+
+
+def ended(kernel: Kernel, entry: Callable[[], object], limit_s: float = LIMIT_S) -> StallError:
+    """What a run comes to in which a task does something that has no end."""
+    watch = watched(kernel)
+    watch.limit_s = limit_s
+    kernel.spawn("spinning", entry)
+    watch.begin()
+    try:
+        with pytest.raises(StallError) as stalled:
+            kernel.run(10_000_000)
+        assert kernel.current is kernel.host
+        kernel.shutdown()
+        assert not kernel.tasks
+    finally:
+        watch.end()
+    return stalled.value
+
+
+def spin() -> None:
+    while True:
+        pass
+
+
+def spin_deep_down() -> None:
+    number = 0
+    while number >= 0:
+        for digit in str(number):
+            number += len(digit)
+        number += 1
+
+
+def test_a_task_that_never_gives_up_the_cpu_ends_the_run(kernel: Kernel) -> None:
+    error = ended(kernel, spin)
+    line = spin.__code__.co_firstlineno + 1
+    assert error.summary.startswith("task spinning has not given up the CPU since 0.000000 s of virtual time, for 0.")
+    assert error.place == f"test_watchdog.py:{line}"
+    assert error.lines[0].endswith(f"test_watchdog.py:{line} in spin: while True:")
+    with pytest.raises(StallError):
+        kernel.run(20_000_000)
+
+
+def test_the_loop_is_named_and_not_what_it_calls(kernel: Kernel) -> None:
+    def main() -> None:
+        spin_deep_down()
+
+    error = ended(kernel, main)
+    assert error.place == f"test_watchdog.py:{spin_deep_down.__code__.co_firstlineno + 2}"
+    assert error.lines[1].endswith(".main: spin_deep_down()")
+
+
+def test_calls_that_cost_nothing_do_not_help(kernel: Kernel) -> None:
+    def poll() -> None:
+        while True:
+            kernel.charge(0)
+
+    assert "has not given up the CPU" in ended(kernel, poll).summary
+
+
+def test_tasks_that_keep_each_other_going_stand_still_as_well(kernel: Kernel) -> None:
+    def toss() -> None:
+        while True:
+            kernel.yield_cpu()
+
+    kernel.spawn("other", toss)
+    assert ended(kernel, toss).summary.startswith("tasks other, spinning have kept each other going")
+
+
+def test_a_task_that_swallows_everything_is_ended(kernel: Kernel) -> None:
+    def stubborn() -> None:
+        number = 0
+        while True:
+            try:
+                for _ in range(50):
+                    number += 1
+            except BaseException:
+                number = 0
+
+    assert "stubborn" in ended(kernel, stubborn).lines[0]
+
+
+def test_a_finalizer_that_the_collection_of_garbage_runs_is_ended(
+    kernel: Kernel, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Spinning:
+        def __init__(self) -> None:
+            self.me = self
+
+        def __del__(self) -> None:
+            while True:
+                pass
+
+    def litter() -> None:
+        Spinning()
+        kernel.delay(20_000_000_000)
+
+    watch = watched(kernel)
+    kernel.spawn("litterer", litter)
+    watch.begin()
+    with pytest.raises(StallError, match="a finalizer has not come to an end since 10") as stalled:
+        kernel.run(30_000_000_000)
+    watch.end()
+    assert "__del__" in stalled.value.lines[0]
+    assert capsys.readouterr().err == ""
+
+
+def test_a_finalizer_in_a_task_is_ended(kernel: Kernel) -> None:
+    class Spinning:
+        def __del__(self) -> None:
+            while True:
+                pass
+
+    def drop() -> None:
+        Spinning()
+        kernel.delay(1)
+
+    assert "__del__" in ended(kernel, drop).lines[0]
+
+
+def test_a_task_that_does_not_end_is_made_to(kernel: Kernel) -> None:
+    def clings() -> None:
+        try:
+            kernel.delay(1_000_000_000)
+        finally:
+            spin()
+
+    watch = watched(kernel)
+    kernel.spawn("clinging", clings)
+    watch.begin()
+    kernel.run(10)
+    assert kernel.broken is None
+    kernel.shutdown()
+    watch.end()
+    assert isinstance(kernel.broken, StallError)
+    assert "spin" in kernel.broken.lines[0]
+
+
+def test_a_wish_ends_what_makes_no_calls_and_what_makes_some(make_kernel: Callable[[], Kernel]) -> None:
+    def poll(kernel: Kernel) -> None:
+        while True:
+            kernel.charge(1)
+
+    for entry, error in ((lambda kernel: spin(), StallError), (poll, KeyboardInterrupt)):
+        with make_kernel() as kernel:
+            watch = watched(kernel)
+            watch.limit_s = 0
+            watch.wanted = lambda: True
+            kernel.spawn("busy", lambda kernel=kernel, entry=entry: entry(kernel))
+            watch.begin()
+            with pytest.raises(error):
+                kernel.run()
+            watch.end()
+
+
+def test_who_waits_for_something_outside_is_told_once_and_left_alone(make_kernel: Callable[[], Kernel]) -> None:
+    reader, writer = os.pipe()
+    told: list[str] = []
+
+    def tell(text: str) -> None:
+        told.append(text)
+        threading.Timer(2 * LIMIT_S, lambda: os.write(writer, b"x")).start()
 
     with make_kernel() as kernel:
-        watch = StallWatch(kernel, limit_s=0.02, report=reports.append)
-        kernel.spawn("spinning", spin)
+        watch = watched(kernel, tell=tell)
+        kernel.spawn("asking", lambda: os.read(reader, 1))
         watch.begin()
-        kernel.run()
+        kernel.run(10)
         watch.end()
-    assert "task spinning has not given up the CPU" in reports[0]
-    assert "in spin" in reports[0]
+    os.close(reader)
+    os.close(writer)
+    assert len(told) == 1
+    assert told[0].startswith("cfepy: task asking has waited for something outside of the simulation since 0.0000")
+
+
+def test_what_cannot_be_struck_is_left_behind() -> None:
+    reader, writer = os.pipe()
+    watch_limit_s = 0
+    with Kernel("thread") as kernel:
+        watch = watched(kernel)
+        watch.limit_s, watch.wanted = watch_limit_s, lambda: True
+        stuck = kernel.spawn("stuck", lambda: os.read(reader, 1))
+        kernel.spawn("late", lambda: kernel.delay(1))
+        watch.begin()
+        with pytest.raises(StallError, match="stuck has waited for something outside"):
+            kernel.run()
+        assert kernel.stuck == [stuck]
+        kernel.shutdown()
+        watch.end()
+    os.write(writer, b"x")
+    while stuck.carrier.alive:  # the thread ends, and hands the CPU to nobody
+        threading.Event().wait(0.001)
+    os.close(reader)
+    os.close(writer)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork a process")
+def test_a_watch_begins_anew_in_a_forked_process(make_kernel: Callable[[], Kernel]) -> None:
+    with make_kernel() as kernel:
+        watch = watched(kernel)
+        kernel.spawn("sleeper", lambda: kernel.delay(1000))
+        watch.begin()
+        kernel.run(1)
+        child = os.fork()
+        if not child:
+            watch.begin()
+            os._exit(watch._thread is None or not watch._thread.is_alive())
+        assert os.waitpid(child, 0)[1] == 0
+        watch.end()
 
 
 @pytest.mark.parametrize("pieces", [1, 50])
@@ -39,3 +246,40 @@ def test_many_pieces_have_one_thread(make_kernel: type[Kernel], pieces: int) -> 
         assert threading.active_count() == before + 1
         watch.end()
     assert threading.active_count() == before
+
+
+def test_a_limit_of_none_ends_nothing(kernel: Kernel) -> None:
+    watch = watched(kernel)
+    watch.limit_s = 0
+    done = threading.Event()
+    threading.Timer(3 * LIMIT_S, done.set).start()
+
+    def compute() -> None:
+        while not done.is_set():
+            pass
+
+    kernel.spawn("long", compute)
+    watch.begin()
+    kernel.run(10)
+    watch.end()
+    assert kernel.broken is None
+
+
+def test_the_watch_does_not_hold_a_task_that_has_ended() -> None:
+    """A task holds its application and with it a whole processor, which a reset is to leave behind."""
+    with Kernel(context="thread") as kernel:
+        watch = StallWatch(kernel)
+        looked = threading.Event()
+
+        def body() -> None:
+            watch._look(0.0, False)
+            looked.set()
+
+        task = weakref.ref(kernel.spawn("task", body))
+        kernel.run(100)
+        assert looked.is_set()
+        assert watch._stand is not None
+        kernel.unwind()
+        drain()
+        gc.collect()
+        assert task() is None

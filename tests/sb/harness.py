@@ -94,14 +94,14 @@ class Files:
 class Bench:
     """A kernel, a bus, and what it reported."""
 
-    def __init__(self, context: str = "thread", **limits: Any) -> None:
+    def __init__(self, context: str = "thread", bus: type[SoftwareBus] = SoftwareBus, **limits: Any) -> None:
         self.kernel = Kernel(context, Trace())
         self.events = Events()
         ports = Ports()
         self.log, self.files = Log(), Files()
         ports.evs, ports.time, ports.memory = self.events, Clock(), Memory()
         ports.syslog, ports.fs = self.log, self.files  # type: ignore[assignment]  # what SB asks of them
-        self.bus = SoftwareBus(self.kernel, ports, PlatformConfig(**limits))
+        self.bus = bus(self.kernel, ports, PlatformConfig(**limits))
         ports.sb = self.bus
         self.apps: dict[str, App] = {}
 

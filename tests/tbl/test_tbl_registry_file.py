@@ -30,10 +30,10 @@ def test_records_are_packed_to_the_byte() -> None:
 
 def test_the_file_is_that_of_nasa(tmp_path: Path) -> None:
     with Mission(write_mission(tmp_path, STARTUP), console=Console(quiet=True)) as mission:
-        mission.run(3)
+        mission.run_for(3)
         packet = pk.DUMP_REGISTRY.packet()
         mission.kernel.spawn("ground", partial(mission.cfe.sb.transmit_msg, packet, False), 10)
-        mission.run(3)
+        mission.run_for(3)
         data = mission.files.read_file("/ram/cfe_tbl_reg.log")
     assert (len(data), data[:24], data[32:64]) == (len(GOLDEN), GOLDEN[:24], GOLDEN[32:64])
     for at in range(64, len(GOLDEN), SIZE):

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-import cfepy.testing.explored_tests
+import cfepy.testing.exploration
 import cfepy.testing.journals
 import cfepy.testing.strategies  # noqa: F401  # imported here, or each suite would import it anew
-from cfepy.mission.run_plan import RunPlan
+from cfepy.pilot.plan import RunPlan
 from cfepy.testing import Flight
 
 ROOT = Path(__file__).parents[2]
@@ -100,7 +100,7 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> None:
     folder = write_mission(tmp_path_factory.mktemp("loaded") / "talk", talker=TALKER, racy=RACY)
     for tasks in ("thread", "greenlet"):
         with Flight(RunPlan((str(folder),), tasks=tasks)) as flight:
-            flight.run(1)
+            flight.run_for(1)
             flight.publish("/jump", data=1)
             assert flight.call_service("/reset").success
             assert not flight.results.problems

@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 PROBE = ROOT / "examples" / "probe"
 
 
-@pytest.mark.parametrize("tasks", [pytest.param("thread", marks=pytest.mark.slow), "greenlet"])
+@pytest.mark.parametrize("tasks", [pytest.param(each, marks=pytest.mark.slow) for each in ("thread", "greenlet")])
 def test_its_tests_pass(pytester: pytest.Pytester, loaded: None, tasks: str) -> None:
     shutil.copytree(PROBE, pytester.path / "probe", ignore=shutil.ignore_patterns("__pycache__", ".*"))
     result = pytester.runpytest_inprocess("-p", "cfepy.testing.plugin", "--cfepy-tasks", tasks, "probe")

@@ -50,7 +50,7 @@ def check_journal(folder: Path, deviations: str) -> None:
     """One journal is kept, that of the shrunk run, and replays."""
     (path,) = folder.iterdir()
     journal = read_journal(path)
-    assert journal.plan.schedule == f"at:{deviations}"
+    assert journal.plan.schedule.text() == f"at:{deviations}"
     assert replay(journal).verdict.same
 
 
@@ -93,9 +93,9 @@ def test_each_schedule_has_fixtures_of_its_own(suite: Suite) -> None:
             assert not list(tmp_path.iterdir())
             (tmp_path / "mine").touch()
             assert flight.now == 0
-            flight.run(0.1)
+            flight.run_for(0.1)
             assert wide == [shared]
-            seen.append((number, shared, flight.plan.schedule))
+            seen.append((number, shared, flight.plan.schedule.text()))
 
         def test_what_was_seen():
             schedules = ["fifo", "random:1", "random:2"]
@@ -153,7 +153,7 @@ def test_a_test_that_explores_nothing_is_told(suite: Suite) -> None:
 
         @explore(seeds=3)
         def test_it(wide):
-            wide.run(0.1)
+            wide.run_for(0.1)
         """
     )
     result.assert_outcomes(failed=1, passed=1)
@@ -165,8 +165,8 @@ def test_several_missions_have_the_schedule_all(suite: Suite) -> None:
         """
         def test_it(mission):
             flights = [mission("talk") for _ in range(3)]
-            assert [each.plan.schedule for each in flights] == ["at:1=1", "random:3", "random:3"]
-            assert mission("talk", schedule="pct:1:2", seed=9).plan.schedule == "pct:1:2"
+            assert [each.plan.schedule.text() for each in flights] == ["at:1=1", "random:3", "random:3"]
+            assert mission("talk", schedule="pct:1:2", seed=9).plan.schedule.text() == "pct:1:2"
         """,
         "--cfepy-schedule",
         "at:1=1;random:3",

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
+
 from tests.testing.conftest import Suite, given_verbatim, told_command
 
 BIG = """
@@ -22,6 +24,7 @@ def test_small(mission, message, schedule):
 """
 
 
+@pytest.mark.slow
 def test_the_failing_example_is_small_and_can_be_given_on(suite: Suite, missions: Path) -> None:
     result = suite(BIG)
     result.assert_outcomes(failed=1)
@@ -47,7 +50,7 @@ def test_a_journal_of_the_failing_example_is_kept(suite: Suite, missions: Path) 
         @settings(max_examples=4, database=None, deadline=None)
         @given(number=st.integers(0, 3))
         def test_it(mission, number):
-            mission("talk").run(0.1)
+            mission("talk").run_for(0.1)
             assert number < 3
         """,
         "--cfepy-record",

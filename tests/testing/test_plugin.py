@@ -14,6 +14,7 @@ import pytest
 
 from cfepy.cli.main import main
 from cfepy.journal import read_journal, replay
+from cfepy.testing import exploration, plugin
 from tests.testing.conftest import ROOT, Suite, given_verbatim, told_command, write_mission
 
 WAITS = """
@@ -49,6 +50,31 @@ def test_a_failure_says_what_there_was_instead(suite: Suite) -> None:
             "*talker*talking*",
             "*the same again: pytest test_it.py::test_it --cfepy-seed 0 --cfepy-schedule fifo",
         ]
+    )
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_a_task_that_does_not_give_up_the_cpu_fails_its_test_alone(suite: Suite, tasks: str) -> None:
+    result = suite(
+        """
+        from pathlib import Path
+
+        def test_it(mission, tmp_path):
+            (tmp_path / "startup.scr").write_text("CFE_APP, app, main, SPIN, 50, 16384, 0x0, 0;\\n!\\n")
+            (tmp_path / "app.py").write_text("def main(cfe):\\n    while True:\\n        pass\\n")
+            mission(tmp_path).run_for(2)
+
+        def test_next(mission):
+            mission("talk").run_until_operational()
+        """,
+        "--cfepy-stall",
+        "0.2",
+        "--cfepy-tasks",
+        tasks,
+    )
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(
+        ["*StallError: task SPIN has not given up the CPU since*", "*app.py:2 in main: while True:*"]
     )
 
 
@@ -102,12 +128,12 @@ def test_missions_are_closed_and_no_thread_is_left(suite: Suite) -> None:
 
         def test_fails(mission, flight, shared):
             kept.append(mission("talk"))
-            kept[-1].run(1)
+            kept[-1].run_for(1)
             raise ValueError("whatever")
 
         def test_all_are_over(shared):
             assert [flight.closed for flight in kept] == [True, True]
-            shared.run(0.1)
+            shared.run_for(0.1)
             assert not shared.closed
         """
     )
@@ -120,7 +146,7 @@ def test_the_failure_of_an_assertion_has_the_console_too(suite: Suite) -> None:
         """
         def test_it(mission):
             flight = mission('talk')
-            flight.run(1)
+            flight.run_for(1)
             assert not flight.messages('/count')
         """
     )
@@ -135,14 +161,26 @@ def test_paths_are_seen_from_the_test_file(pytester: pytest.Pytester, missions: 
     pytester.runpytest_inprocess("-p", "cfepy.testing.plugin").assert_outcomes(passed=1)
 
 
-def test_an_unknown_mission_is_told(suite: Suite) -> None:
-    result = suite("def test_it(mission):\n    mission('nowhere')\n")
-    result.stdout.fnmatch_lines(["*no shipped mission*"])
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("mission('nowhere')", "UsageError: nowhere: no startup script*no shipped mission*"),
+        ("mission('talk', board='linxu')", "*there is no board 'linxu'; did you mean linux?"),
+        ("mission('talk').send('CFE_ES_NOP')", "*no command is called CFE_ES_NOP; did you mean*"),
+        ("mission('talk').expect_event('CFE_ES', 999, within=1)", "*ExpectationError*"),
+    ],
+)
+def test_what_a_test_does_wrong_shows_its_own_line(line: str, says: str, suite: Suite) -> None:
+    result = suite(f"def test_it(mission):\n    {line}\n")
+    result.stdout.fnmatch_lines([f">*{line}", f"E  *{says}"])
+    shown = result.stdout.str().split("= FAILURES")[1].split("short test summary")[0]
+    assert "cfepy/" not in re.sub(r"replay: .*|the same again: .*", "", shown)
+    assert "contextlib.py" not in shown
 
 
 def test_journals_of_failed_tests_are_kept_and_replay(suite: Suite, missions: Path) -> None:
     text = WAITS.format(act="flight.publish('/jump', data=76); flight.call_service('/reset')")
-    result = suite(text + "\ndef test_fine(mission):\n    mission('talk').run(1)\n", "--cfepy-record", "journals")
+    result = suite(text + "\ndef test_fine(mission):\n    mission('talk').run_for(1)\n", "--cfepy-record", "journals")
     result.assert_outcomes(failed=1, passed=1)
     found = list((missions / "journals").iterdir())
     assert [each.name for each in found] == ["test_it.py-test_it.cfepy"]
@@ -161,7 +199,11 @@ def test_other_suites_import_nothing() -> None:
     code = "import pytest, sys; before = set(sys.modules); import cfepy.testing.plugin as plugin"
     code += "; print(*sorted(set(sys.modules) - before))"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["cfepy", "cfepy.testing", "cfepy.testing.plugin"]
+    assert done.stdout.split() == ["cfepy", "cfepy.faces", "cfepy.testing", "cfepy.testing.plugin"]
+
+
+def test_the_plugin_knows_the_mark_of_explored_tests() -> None:
+    assert plugin.EXPLORE_MARK == exploration.EXPLORE_MARK
 
 
 def test_a_suite_without_missions_loads_nothing_more(pytester: pytest.Pytester) -> None:
@@ -196,7 +238,7 @@ def test_problems_are_told_with_every_failure(suite: Suite, missions: Path) -> N
         """
         def test_it(mission):
             flight = mission("deadly")
-            flight.run(2)
+            flight.run_for(2)
             assert len(flight.problems) == 2
             flight.expect_event("DYING", within=0.1)
         """

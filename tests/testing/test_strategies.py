@@ -10,14 +10,13 @@ from hypothesis import HealthCheck, find, given, settings
 from hypothesis import strategies as st
 
 from cfepy.faults import FaultPlan
-from cfepy.mission.dictionary import dictionary_of
-from cfepy.mission.spec import read_mission
+from cfepy.flight.message_library import library_near
+from cfepy.ground.dictionary import dictionary_of, table_type
+from cfepy.mission import read_mission
 from cfepy.msg import get_msg_id, get_size
 from cfepy.rtos.schedule import Schedule
 from cfepy.status import UsageError
-from cfepy.testing.message_library import library_near
 from cfepy.testing.strategies import fault_plans, messages, packets, schedules, tables
-from cfepy.testing.table_types import table_type
 from rospy_shim.msgs import message_class
 
 PROBE = Path(__file__).parents[2] / "examples/probe"
@@ -105,7 +104,9 @@ def test_malformed_packets_have_a_mistake(packet: bytes) -> None:
 
 
 def test_packets_that_there_are_not() -> None:
-    with pytest.raises(UsageError, match="no command or telemetry packet is called SAMPLE_APP_NOP; is SAMPLE_APP_NOOP"):
+    with pytest.raises(
+        UsageError, match="no command or telemetry packet is called SAMPLE_APP_NOP; did you mean SAMPLE_APP_NOOP"
+    ):
         packets("SAMPLE_APP_NOP")
     with pytest.raises(UsageError, match="0x1001 is no MsgId"):
         packets(0x1001)

@@ -40,7 +40,7 @@ def test_limits_the_wrong_way_round_are_refused(probe: Flight) -> None:
 
 
 def test_nothing_dies(probe: Flight) -> None:
-    probe.run(60)
+    probe.run_for(60)
     assert probe.app("HEATER").state == "RUNNING"
     assert probe.deaths == []
     assert probe.results.problems == []

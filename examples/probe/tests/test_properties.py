@@ -23,7 +23,7 @@ def test_the_total_is_the_sum(mission: Missions, messages: list[Any], schedule: 
     flight.run_until_operational()
     for message in messages:
         flight.publish("/add", message)
-    flight.run(0.5)
+    flight.run_for(0.5)
     totals = [count.total for count in flight.messages("/count")]
     assert totals == list(accumulate(each.data for each in messages))  # not sum(), which rounds otherwise
 
@@ -34,7 +34,7 @@ def test_no_command_kills_the_heater(mission: Missions, packet: bytes) -> None:
     flight = mission(MISSION)
     flight.run_until_operational()
     flight.send(packet)
-    flight.run(2)
+    flight.run_for(2)
     assert flight.deaths == []
 
 
@@ -58,5 +58,5 @@ def test_the_mission_goes_on_whatever_is_lost(mission: Missions, faults: Any) ->
     flight = mission(MISSION, faults=faults)
     flight.run_until_operational()
     flight.publish("/add", data=1.0)
-    flight.run(3)
+    flight.run_for(3)
     assert flight.app("COUNTER").state == "RUNNING"

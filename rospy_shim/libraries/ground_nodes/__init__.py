@@ -1,1 +1,4 @@
-"""Scripts of nodes that `cfepy topic`, `service` and `run --play` put into a mission, executed in a node's universe."""
+"""Scripts of nodes that `cfepy topic`, `service`, `rosnode`, `run --play` and the like put into a mission.
+
+They are executed in a node's universe.
+"""

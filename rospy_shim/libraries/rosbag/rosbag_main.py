@@ -12,6 +12,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import genpy.message
 from rosbag_storage import ROSBagException, ROSBagUnindexedException
 
 from .bag import Bag, Compression
@@ -48,6 +49,7 @@ def _parser() -> argparse.ArgumentParser:
     commands.add_parser("record", help="record topics into a bag")
     commands.add_parser("play", help="play bags back")
     _add_info(commands)
+    _add_check(commands)
     _add_filter(commands)
     compress = _add_rewrite(commands, "compress", "compress bags", lambda chosen: _recompress(chosen, chosen.kind))
     compress.add_argument("-j", "--bz2", dest="kind", action="store_const", const=Compression.BZ2)
@@ -89,6 +91,35 @@ def _opened(name: str, **options: Any) -> Bag:
         sys.exit(f"ERROR bag unindexed: {name}.  Run rosbag reindex.")
     except (ROSBagException, OSError) as error:
         sys.exit(f"ERROR reading {name}: {error}")
+
+
+# -- check -------------------------------------------------------------------------------------------------------------
+
+
+def _add_check(commands: Any) -> None:
+    check = commands.add_parser("check", help="tell which messages of a bag have other definitions than here")
+    check.add_argument("bag")
+    check.set_defaults(run=_check)
+
+
+def _check(chosen: Any) -> None:
+    """There are no migration rules, so each message type whose md5sum is another is one that cannot be used."""
+    with _opened(chosen.bag) as bag:
+        kinds = dict.fromkeys((each.datatype, each.md5sum) for each in bag._connections.values())
+    migrations = [(*kind, _md5sum(kind[0])) for kind in kinds if kind[1] != _md5sum(kind[0])]
+    if not migrations:
+        print("Bag file does not need any migrations.")
+        return
+    print("The following migrations need to occur:")
+    for name, there, here in migrations:
+        print(f" * From: {name} [{there}]\n   To:   {f'{name} [{here}]' if here else 'Unknown'}")
+    sys.exit(1)
+
+
+def _md5sum(name: str) -> str | None:
+    """That of a message type as it is here; None where there is none such."""
+    kind = genpy.message.get_message_class(name)
+    return None if kind is None else str(kind._md5sum)
 
 
 # -- filter ------------------------------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from typing import Any
 import rospkg
 
 import rosmsg
+from rosmsg.texts import expanded
 
 USAGE = """{0} is a command-line tool for displaying information about ROS {1} types.
 
@@ -47,12 +48,20 @@ def run(mode: str) -> None:
         sys.exit(1)
 
 
-def _parse(
-    mode: str, usage: str, args: list[str], *flags: tuple[str, str, str], most: int = 1
-) -> tuple[Any, list[str]]:
+def _parser(mode: str, usage: str, *flags: tuple[str, str, str]) -> OptionParser:
     parser = OptionParser(usage=f"usage: ros{mode[1:]} {usage}")
     for short, name, text in flags:
         parser.add_option(short, f"--{name}", dest=name, default=False, action="store_true", help=text)
+    return parser
+
+
+def _parse(
+    mode: str, usage: str, args: list[str], *flags: tuple[str, str, str], most: int = 1
+) -> tuple[Any, list[str]]:
+    return _parsed(_parser(mode, usage, *flags), args, most)
+
+
+def _parsed(parser: OptionParser, args: list[str], most: int = 1) -> tuple[Any, list[str]]:
     options, names = parser.parse_args(args)
     if most and not names:
         names = [sys.stdin.readline().strip()]
@@ -68,16 +77,40 @@ def _named(mode: str, name: str) -> list[str]:
 
 
 def _show(mode: str, args: list[str]) -> int:
-    options, (name,) = _parse(mode, "show [options] <type>", args, ("-r", "raw", "show raw text, including comments"))
-    found = _named(mode, name)
+    parser = _parser(mode, "show [options] <type>", ("-r", "raw", "show raw text, including comments"))
+    parser.add_option("-b", "--bag", dest="bag", metavar="BAGFILE", help="show a message as a bag has it")
+    options, (name,) = _parsed(parser, args)
+    found: list[Any] = _in_bag(options.bag, name) if options.bag else _named(mode, name)
     if not found:
         print(f"Could not find msg '{name}'", file=sys.stderr)
         return 1
     for each in found:
+        if options.bag:
+            print(each._full_text if options.raw else expanded(each))
+            continue
         if "/" not in name:
             print(f"[{each}]:")
         rosmsg.rosmsg_debug(None, mode, each, options.raw)
     return 0
+
+
+def _in_bag(file: str, name: str) -> list[Any]:
+    """The class of a message that a bag has, made of its definition there; empty when it has none of that name.
+
+    Raises:
+        rosmsg.ROSMsgException: there is no such bag, or it is broken.
+    """
+    import rosbag  # which few need
+    from genpy.dynamic import generate_dynamic
+
+    try:
+        with rosbag.Bag(file, skip_index=True) as bag:
+            texts = {each.datatype: each.msg_def for each in bag._connections.values()}
+    except FileNotFoundError:
+        raise rosmsg.ROSMsgException(f"ERROR: bag file [{file}] does not exist") from None
+    except rosbag.ROSBagException as error:
+        raise rosmsg.ROSMsgException(f"ERROR reading {file}: {error}") from None
+    return [generate_dynamic(name, texts[name])[name]] if name in texts else []
 
 
 def _md5(mode: str, args: list[str]) -> int:

@@ -103,16 +103,22 @@ def _kill(args: list[str]) -> int:
         parser.error("invalid arguments with kill all (-a) option")
     if not options.kill_all and not names:
         parser.error("You must specify at least one node name")
-    resolved = [rosgraph.names.script_resolve_name(rosnode.NAME, name) for name in names]
-    names = sorted(rosnode.get_node_names()) if options.kill_all else resolved
-    asked, unknown = rosnode.kill_nodes(names)
-    if asked:
-        print("killing:\n" + "\n".join(f" * {name}" for name in asked))
+    known = sorted(rosnode.get_node_names())
+    names = known if options.kill_all else [rosgraph.names.script_resolve_name(rosnode.NAME, name) for name in names]
+    unknown = [name for name in names if name not in known]
     if unknown:
-        print("ERROR: Failed to kill:\n" + "\n".join(f" * {name}" for name in unknown), file=sys.stderr)
+        raise rosnode.ROSNodeException("Unknown node(s):" + _listed(unknown))
+    print(f"killing {names[0]}" if len(names) == 1 else "killing:" + _listed(names))
+    _, failed = rosnode.kill_nodes(names)
+    if failed:
+        print("ERROR: Failed to kill:" + _listed(failed), file=sys.stderr)
         return 1
     print("killed")
     return 0
+
+
+def _listed(names: list[str]) -> str:
+    return "".join(f"\n * {name}" for name in names)
 
 
 def _cleanup(args: list[str]) -> None:

@@ -59,7 +59,7 @@ def written(folder: Path, kind: str) -> Path:
     return file
 
 
-@pytest.mark.parametrize("kind", ["none", "bz2", "lz4"])
+@pytest.mark.parametrize("kind", [pytest.param("none", marks=pytest.mark.slow), "bz2", "lz4"])
 def test_rosbag_says_the_same_of_a_bag(tmp_path: Path, kind: str) -> None:
     if not has_rosbag():
         pytest.skip("ROS's own rosbag is not installed (Debian: python3-rosbag), so it cannot read what was written")

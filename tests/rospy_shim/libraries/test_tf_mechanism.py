@@ -6,13 +6,13 @@ from pathlib import Path
 
 from cfepy.nodes import Universe
 from cfepy.rtos import Kernel
-from rospy_shim import library_path
+from rospy_shim.library_parts import FOLDER, library_names
 from tests.rospy_shim.libraries.world import universe
 from tests.rospy_shim.missions import run_nodes
 
 
 def test_the_names_are_those_of_the_folders() -> None:
-    assert {"tf", "tf2_ros", "tf2_py", "tf2_geometry_msgs"} <= library_path.names()
+    assert {"tf", "tf2_ros", "tf2_py", "tf2_geometry_msgs"} <= library_names()
 
 
 def test_each_node_executes_a_library_for_itself() -> None:
@@ -60,7 +60,7 @@ def test_the_compiled_half_of_a_copy_comes_from_the_library(tmp_path: Path) -> N
 def test_importlib_finds_a_library() -> None:
     spec = universe().importer.find_spec("tf2_geometry_msgs")
     assert spec is not None
-    assert spec.origin == str(library_path.FOLDER / "tf2_geometry_msgs" / "__init__.py")
+    assert spec.origin == str(FOLDER / "tf2_geometry_msgs" / "__init__.py")
 
 
 def test_without_library_paths_there_are_none() -> None:

@@ -8,17 +8,18 @@ from typing import Any
 
 from cfepy.nodes import Universe
 from cfepy.rtos import Kernel
-from rospy_shim import library_path, rostime
+from rospy_shim.client import rostime
+from rospy_shim.library_parts import FOLDER, library_names
 from rospy_shim.msgs import make_module
 
 
 def universe() -> Universe:
     """A fresh universe; `universe().importer.load(name)` is an import in it."""
-    return Universe(Kernel(), name="node", library_paths=[library_path.FOLDER], find_module=_find)
+    return Universe(Kernel(), name="node", library_paths=[FOLDER], find_module=_find)
 
 
 def _find(name: str) -> Callable[[Any], ModuleType] | None:
-    if name in library_path.names():
+    if name in library_names():
         return None
     module = _values_of_rospy() if name == "rospy" else make_module(name)
     return None if module is None else lambda universe: module

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.mission.topics import Topic
+from cfepy.ground.topics import Topic
 from cfepy.nodes.config import NodeConfig
 from cfepy.status import UsageError
 from rospy_shim.msgs import Library, OnDisk, Packages, message_class, service_class, shipped

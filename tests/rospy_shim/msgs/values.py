@@ -8,7 +8,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from cfepy.testing.message_strategies import MessageValues
+from cfepy.testing.strategies import MessageValues
 from rospy_shim.msgs import shipped
 
 

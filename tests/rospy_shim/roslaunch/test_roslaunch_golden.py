@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
 
+from cfepy.marked_yaml import Mistakes
 from cfepy.status import UsageError
 from rospy_shim.msgs import Packages
 from rospy_shim.roslaunch.model import Launch, LaunchNode
@@ -21,13 +23,13 @@ CASES = {case["name"]: case for case in GOLDEN["cases"]}
 ENVIRON = {"LAUNCH_TEST": "out there"}
 
 
-def read_case(case: dict[str, Any], folder: Path) -> Launch:
+def read_case(case: dict[str, Any], folder: Path, mistakes: Mistakes | None = None) -> Launch:
     for name, text in GOLDEN["files"].items():
         (folder / name).write_bytes(text.encode())
     file = folder / "main.launch"
     file.write_text(case["text"])
     args = dict(arg.split(":=") for arg in case["args"])
-    return read(file, args, Packages(file, ENVIRON), ENVIRON)
+    return read(file, args, Packages(file, ENVIRON), ENVIRON, mistakes)
 
 
 def as_recorded(launch: Launch, folder: Path) -> dict[str, Any]:
@@ -79,3 +81,33 @@ def test_a_file_is_refused_with_its_place(name: str, tmp_path: Path) -> None:
     assert raised.value.file is not None
     assert raised.value.line == 1
     assert raised.value.text
+
+
+def test_what_a_check_finds_begins_with_what_a_run_refuses(tmp_path: Path) -> None:
+    """Also in files that were damaged; those that a run takes have no mistake."""
+    random = Random(3)
+    seen = {True: 0, False: 0}
+    for case in (damaged(case, random) for case in GOLDEN["cases"][::2]):
+        kept = Mistakes(keep=True)
+        read_case(case, tmp_path, kept)
+        refused = error_of(case, tmp_path)
+        assert refused in (list(map(str, kept.errors)) or [None]), case["text"]
+        seen[refused is None] += 1
+    assert min(seen.values()) > 5
+
+
+def damaged(case: dict[str, Any], random: Random) -> dict[str, Any]:
+    """A case whose text lacks one or two characters, or none."""
+    text = case["text"]
+    for _ in range(random.randrange(3)):
+        at = random.randrange(len(text))
+        text = text[:at] + text[at + 1 :]
+    return {**case, "text": text}
+
+
+def error_of(case: dict[str, Any], folder: Path) -> str | None:
+    try:
+        read_case(case, folder)
+    except UsageError as error:
+        return str(error)
+    return None

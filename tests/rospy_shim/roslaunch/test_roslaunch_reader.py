@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.marked_yaml import Mistakes
 from cfepy.status import UsageError
 from rospy_shim.msgs import Packages
-from rospy_shim.parameter_values import DateTime
+from rospy_shim.parameters.values import DateTime
 from rospy_shim.roslaunch.model import Launch
 from rospy_shim.roslaunch.reader import read
 
@@ -41,6 +42,7 @@ def read_file(file: Path, args: Mapping[str, str] | None = None, environ: Mappin
         ("<rosparam>a: 2001-01-01</rosparam>", "<rosparam>: /a is datetime.date(2001, 1, 1), which no"),
         ('<param name="a" value="4294967296"/>', "<param>: /a is 4294967296, which no parameter can be: int exceeds"),
         ('<remap from="a"/>', "x.launch:3: <remap>: has no 'to'; write to="),
+        ('<param name="" value="1"/>', "x.launch:3: <param>: has a name that stands for all parameters"),
     ],
 )
 def test_an_error_says_where_and_what(tmp_path: Path, tag: str, said: str) -> None:
@@ -78,15 +80,14 @@ def test_a_file_that_includes_itself_ends(tmp_path: Path) -> None:
     ],
 )
 def test_what_does_not_count_is_noted(tmp_path: Path, tag: str, said: str) -> None:
-    (note,) = launch(tmp_path, tag).notes
+    (note,) = map(str, launch(tmp_path, tag).remarks)
     assert said in note
     assert note.startswith(f"{tmp_path}/x.launch:2: ")
 
 
 def test_an_argument_that_nobody_declares_is_noted(tmp_path: Path) -> None:
-    assert launch(tmp_path, '<arg name="x" default="1"/>', x="2", y="3").notes == [
-        f"{tmp_path}/x.launch: has no argument 'y'; y:=3 is ignored"
-    ]
+    remarks = launch(tmp_path, '<arg name="x" default="1"/><param name="x" value="$(arg x)"/>', x="2", y="3").remarks
+    assert list(map(str, remarks)) == [f"{tmp_path}/x.launch: has no argument 'y'; y:=3 is ignored"]
 
 
 def test_packages_are_found_near_and_on_the_package_path(tmp_path: Path) -> None:
@@ -114,3 +115,109 @@ def test_cat_and_xacro_are_stood_in_for(tmp_path: Path) -> None:
     assert launch(tmp_path, '<param name="a" command="cat $(dirname)/a.txt"/>').params == {"/a": 12}
     with pytest.raises(UsageError, match=r"names 0 files|needs the Python package xacro"):
         launch(tmp_path, '<param name="a" command="$(find xacro)/xacro --inorder"/>')
+
+
+def collected(folder: Path, body: str, **args: str) -> list[tuple[str, int, str]]:
+    """What is wrong with a launch file, and what of it is left out: file, line, text."""
+    file, mistakes = folder / "x.launch", Mistakes(keep=True)
+    file.write_text(f"<launch>\n{textwrap.dedent(body)}</launch>\n")
+    remarks = read(file, args, Packages(file, {}), {}, mistakes).remarks
+    errors = [
+        (Path(error.file or "").name, error.line or 0, f"{error.field}: {error.text}") for error in mistakes.errors
+    ]
+    return sorted(errors + [(remark.file.name, remark.line, remark.text) for remark in remarks])
+
+
+def test_a_file_is_read_to_the_end(tmp_path: Path) -> None:
+    (tmp_path / "inner.launch").write_text(
+        '<launch>\n<arg name="rate"/>\n<param name="$(arg rate)" value="1"/></launch>'
+    )
+    (tmp_path / "broken.yaml").write_text("a: [1\n")
+    (tmp_path / "broken.launch").write_text("<launch>\n<group>\n</launch>")
+    found = collected(
+        tmp_path,
+        """\
+        <node pkg="p" type="t" respawn="perhaps" nme="n"/>
+        <nod pkg="p" type="t" name="n"/>
+        <param name="a" value="$(arg missing)"/>
+        <param name="b" value="$(find nothing)" type="int"/>
+        <include file="none.launch"/>
+        <include file="$(dirname)/inner.launch"/>
+        <include file="$(dirname)/inner.launch"><arg name="rat" value="5"/></include>
+        <rosparam file="$(dirname)/broken.yaml"/>
+        <remap from="a"/>
+        <node pkg="p" type="t" name="twice"/>
+        <node pkg="p" type="t" name="twice" args="$(eval 1 / 0)"/>
+        <test pkg="p" type="t" test-name="t" time-limit="soon"/>
+        <include file="$(dirname)/broken.launch"/>
+        <param name="c" value="x" type="double"/>
+        """,
+    )
+    assert [(file, line) for file, line, _ in found] == [
+        ("broken.launch", 3),
+        ("inner.launch", 3),
+        ("inner.launch", 3),
+        *(("x.launch", line) for line in (2, 2, 2, 3, 4, 5, 6, 8, 9, 10, 12, 12, 13, 15)),
+    ]
+    texts = "\n".join(text for _, _, text in found)
+    for said in (
+        "mismatched tag, column 3; the <group> of line 2 is open there",
+        "the argument 'rate' has no value; pass it in the <include> of ",
+        "<node respawn>: is 'perhaps'; write true or false",
+        "<node>: has no 'name'",
+        "<node> has no attribute 'nme'; it is ignored, did you mean name?",
+        "<nod> is not known; it is ignored, did you mean <node>?",
+        "<include file>: passes rat, which",
+        "/broken.yaml is not YAML",
+        "/twice is also the name of the node at",
+        "<test time-limit>: is 'soon'; write a number",
+    ):
+        assert said in texts
+
+
+def test_what_a_mistake_brings_about_is_not_told(tmp_path: Path) -> None:
+    found = collected(
+        tmp_path,
+        """\
+        <arg name="x" value="$(find nothing)"/>
+        <arg name="y" default="$(arg x)/y" if="$(eval 1 / 0)"/>
+        <param name="a" value="$(arg x)$(arg y)"/>
+        <param name="b" value="$(eval x + 1)"/>
+        <group if="$(arg x)"><param/></group>
+        <param name="c" value="$(arg z)"/>
+        <param name="d" value="$(arg z)"/>
+        """,
+    )
+    assert [line for _, line, _ in found] == [2, 3, 7]
+
+
+def test_a_file_that_includes_itself_twice_ends(tmp_path: Path) -> None:
+    include = '<include file="$(dirname)/x.launch"/>\n'
+    assert [line for _, line, _ in collected(tmp_path, include * 2)] == [2]
+
+
+@pytest.mark.parametrize(
+    ("body", "unused"),
+    [
+        ('<arg name="x" default="1"/><arg name="y" default="$(arg x)"/>', ["y"]),
+        ('<arg name="x" default="1"/><group if="false"><param name="a" value="$(arg x)"/></group>', []),
+        ('<arg name="x" default="1"/><param name="a" value="$(eval int(x) + 1)"/>', []),
+        ("""<arg name="x" default="1"/><param name="a" value="$(eval arg('x') + 1)"/>""", []),
+        ('<arg name="x" default="1"/><rosparam subst_value="true">a: $(arg x)</rosparam>', []),
+        ('<arg name="x" default="1"/><include file="$(dirname)/in.launch" pass_all_args="true"/>', []),
+        ('<arg name="x" default="1"/><include file="$(dirname)/in.launch"><arg name="z" value="1"/></include>', ["x"]),
+        ('<arg name="x" default="1"/><rosparam file="$(dirname)/a.yaml" subst_value="true"/>', []),
+    ],
+)
+def test_arguments_that_nothing_uses(tmp_path: Path, body: str, unused: list[str]) -> None:
+    (tmp_path / "a.yaml").write_text("a: $(arg x)\n")
+    (tmp_path / "in.launch").write_text(
+        '<launch><arg name="z" default="1"/><param name="$(arg z)" value="2"/></launch>'
+    )
+    found = [text for _, _, text in collected(tmp_path, body)]
+    assert found == [f"nothing uses the argument {name!r}; remove it, or use $(arg ...)" for name in unused]
+
+
+def test_tags_that_are_nested_too_deeply(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"x\.launch:2: <group>: is inside 100 other tags"):
+        launch(tmp_path, "<group>" * 2000 + "</group>" * 2000)

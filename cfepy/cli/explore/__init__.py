@@ -1,0 +1,172 @@
+"""The commands explore and faults, which find out what may go wrong in a mission; here are their options.
+
+A command belongs here when it flies a mission many times, or makes faults happen in it, to find what fails. This
+module imports argparse only, for a quick start.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from cfepy.cli.options import RUN_OPTIONS, add_json, add_mission, add_run_options, seconds_of
+
+INTENSITIES = ("low", "medium", "high")
+DEFAULT_SEEDS = 100
+MOST_SEEDS = 100_000_000
+MOST_PROBES = 800
+STATUS_HELP = """exit status:
+  0    no schedule made the mission fail
+  1    a failure was found, or an error in cfepy itself
+  2    bad usage, or a mission that cannot be read
+  130  ended by Ctrl-C (what was found is reported)"""
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add these commands to the parser of `cfepy`."""
+    _add_explore(commands)
+    _add_faults(commands)
+
+
+def _add_explore(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    explore = commands.add_parser(
+        "explore",
+        help="run a mission under many schedules, in order to find what fails only now and then",
+        description="Run a mission under many schedules, which differ in who goes first at each call. Report each "
+        "failure once, with the command that replays it and the fewest preemptions that still fail.",
+        epilog=STATUS_HELP,
+    )
+    add_mission(explore)
+    explore.add_argument("node_args", metavar="ARG", nargs="*", help="what a node's .py gets")
+    add_run_options(explore, without=["schedule"])  # it is what explore chooses
+    _add_search(explore)
+    _add_failures(explore)
+    _add_crew(explore)
+    _add_outputs(explore)
+    explore.set_defaults(module="explore.explore", hint="; what a node itself is to get comes after --")
+
+
+def _add_search(explore: argparse.ArgumentParser) -> None:
+    """Which schedules."""
+    explore.add_argument(
+        "--seeds",
+        type=_count_of,
+        default=DEFAULT_SEEDS,
+        metavar="N",
+        help=f"how many schedules to run (default: {DEFAULT_SEEDS})",
+    )
+    explore.add_argument(
+        "--policy",
+        choices=("all", "random", "pct", "dfs"),
+        default="all",
+        help="where they come from: random, PCT, every one with few preemptions (dfs), or random and PCT of depths 1 "
+        "to 3 by turns (all, the default)",
+    )
+    explore.add_argument(
+        "--depth",
+        type=_count_of,
+        metavar="N",
+        help="of the bugs that pct looks for; most preemptions of dfs (default: 3 for pct, 2 for dfs)",
+    )
+    explore.add_argument(
+        "--first-seed", type=_number_of, default=0, metavar="N", help="seed of the first schedule (default: 0)"
+    )
+    explore.add_argument(
+        "--any-priority", action="store_true", help="less urgent tasks may run before more urgent ones"
+    )
+    explore.add_argument(
+        "--hold",
+        type=seconds_of,
+        metavar="SECONDS",
+        help="the running task may be held up until the next timer is due, if that is within a time such as 500us",
+    )
+    explore.add_argument(
+        "--from",
+        type=seconds_of,
+        metavar="SECONDS",
+        help="begin at this virtual time, such as 600ms; what comes before is fifo's",
+    )
+    explore.add_argument("--until-failure", action="store_true", help="stop with the first failure")
+
+
+def _add_failures(explore: argparse.ArgumentParser) -> None:
+    """What counts as a failure."""
+    explore.add_argument(
+        "--events",
+        choices=("error", "critical", "none"),
+        default="error",
+        help="events of the mission's applications that are failures: ERROR and CRITICAL (default), CRITICAL, or none",
+    )
+    explore.add_argument(
+        "--no-stuck", action="store_true", help="a task that waits for ever, and does not by default, is no failure"
+    )
+
+
+def _add_crew(explore: argparse.ArgumentParser) -> None:
+    """The options for the processes that run them."""
+    explore.add_argument(
+        "--jobs", type=_count_of, metavar="N", help="processes on this computer (default: one on each CPU)"
+    )
+    explore.add_argument(
+        "--cluster", metavar="ADDRESS", help="run on a dask cluster: its scheduler's address, or local:N"
+    )
+    explore.add_argument(
+        "--longest",
+        type=seconds_of,
+        default=120.0,
+        metavar="SECONDS",
+        help="wall time that one schedule may take (default: 120)",
+    )
+
+
+def _add_outputs(explore: argparse.ArgumentParser) -> None:
+    """What is left behind, and what is shown."""
+    explore.add_argument(
+        "--results",
+        metavar="FILE",
+        help="write the result of every schedule to a file; the same command goes on from there",
+    )
+    add_json(explore, "what was found")
+    explore.add_argument(
+        "--shrink",
+        type=_number_of,
+        default=MOST_PROBES,
+        metavar="N",
+        help=f"how many runs shrinking a failure may take; 0 leaves it as it is (default: {MOST_PROBES})",
+    )
+    explore.add_argument("--quiet", action="store_true", help="show no progress")
+
+
+def _add_faults(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    faults = commands.add_parser(
+        "faults",
+        help="write a random fault plan for a mission, or list what faults can strike in it",
+        description="Fly a mission quietly for 3 virtual seconds, and list what faults can strike in it; with --seed, "
+        "print a plan of random faults, for `cfepy run --faults FILE`.",
+        epilog="exit status: 0 well, 2 bad usage, or a mission that cannot boot",
+    )
+    add_mission(faults)
+    RUN_OPTIONS["launch_args"](faults)
+    faults.add_argument(
+        "--seed",
+        type=int,
+        metavar="N",
+        help="of everything random in the plan that is printed, as YAML: that of --faults seed:N",
+    )
+    faults.add_argument(
+        "--intensity", choices=INTENSITIES, default="medium", help="how much goes wrong in it (default: medium)"
+    )
+    faults.set_defaults(module="explore.faults")
+
+
+def _count_of(text: str) -> int:
+    return _whole(text, 1)
+
+
+def _number_of(text: str) -> int:
+    return _whole(text, 0)
+
+
+def _whole(text: str, least: int) -> int:
+    if not text.isdecimal() or not least <= int(text) <= MOST_SEEDS:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least} to {MOST_SEEDS}")
+    return int(text)

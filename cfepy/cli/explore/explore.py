@@ -1,0 +1,126 @@
+"""`cfepy explore`: run a mission under many schedules, and report what fails under some of them.
+
+Each failure is told once, with the command that replays it and its timeline.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator
+from typing import TextIO
+
+from cfepy.cli.failures import tell
+from cfepy.cli.host import terminable
+from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.options import plan_of
+from cfepy.exploration import Expedition, Finding, Report, Shrunk, Told, Trial
+from cfepy.pilot import NODE, RunPlan
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+
+def show(report: Report, stream: TextIO) -> None:
+    """Print it."""
+    for number, told in enumerate(report.findings, 1):
+        print(f"failure {number}: {told.finding.failure.title}", file=stream)
+        for line in _about(report, told):
+            print(f"  {line}".rstrip(), file=stream)
+        print(file=stream)
+    for trouble in report.troubles[:1]:
+        print(f"an error in cfepy itself, under {trouble.schedule}; please report it:", file=stream)
+        print(trouble.trouble, file=stream)
+    print(summary(report), file=stream)
+
+
+def summary(report: Report) -> str:
+    """The last line: how many schedules, how many failed, of how many kinds."""
+    tally = report.tally
+    parts = [f"{tally.done} schedules", f"{tally.failed} failed"]
+    if tally.troubled:
+        parts.append(f"{tally.troubled} with an error in cfepy itself")
+    if tally.resumed:
+        parts.append(f"{tally.resumed} from the results file")
+    if tally.interrupted:
+        parts.append("ended by Ctrl-C")
+    kinds = len(report.findings)
+    found = "no failure" if not kinds else "1 distinct failure" if kinds == 1 else f"{kinds} distinct failures"
+    return f"{', '.join(parts)}: {found}"
+
+
+def _about(report: Report, told: Told) -> Iterator[str]:
+    finding, shrunk = told.finding, told.shrunk
+    failure = finding.failure
+    if failure.at_ns is not None:
+        yield f"at {failure.at_ns / NS_PER_S:.6f} s"
+    yield from failure.detail.splitlines()
+    for other in finding.others:
+        yield f"and in the same run: {other}"
+    yield from _how_often(report, finding)
+    yield f"replay: {report.trial.command(report.schedule_of(told))}"
+    if shrunk is not None:
+        yield f"shrunk: {shrunk.trial.command(shrunk.verdict.schedule)}"
+        yield f"        {_moves_text(shrunk)}, found in {shrunk.probes} runs"
+    if told.timeline:
+        yield ""
+        yield from told.timeline
+
+
+def _how_often(report: Report, finding: Finding) -> Iterator[str]:
+    if finding.in_reference:
+        yield "under the default schedule, fifo, already"
+    if finding.numbers:
+        median = finding.median_schedules
+        count = f"{len(finding.numbers)} of {report.tally.done} schedules"
+        yield f"{count}, first number {finding.numbers[0]}; one in {median:g} in the median"
+
+
+def _moves_text(shrunk: Shrunk[Trial]) -> str:
+    preemptions = shrunk.verdict.preemptions
+    others = len(shrunk.verdict.deviations) - preemptions
+    parts = [f"{preemptions} {'preemption' if preemptions == 1 else 'preemptions'}"]
+    if others:
+        parts.append(f"{others} {'change' if others == 1 else 'changes'} of order")
+    return " and ".join(parts)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Explore the mission that the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: it cannot be explored like this.
+    """
+    check_json(arguments)
+    with terminable():
+        report = _expedition(arguments).run(tell)
+    show(report, sys.stdout)
+    write_json(arguments, report.to_dict())
+    if report.tally.interrupted:
+        return INTERRUPTED
+    return FOUND_PROBLEMS if report.findings or report.troubles else ENDED_WELL
+
+
+def _expedition(arguments: argparse.Namespace) -> Expedition:
+    """What the command line asks for."""
+    names = ("seeds", "policy", "depth", "first_seed", "any_priority", "until_failure", "events", "jobs", "cluster")
+    return Expedition(
+        _plan(arguments),
+        **{name: getattr(arguments, name) for name in (*names, "results", "shrink")},
+        hold_s=arguments.hold,
+        from_s=getattr(arguments, "from"),
+        stuck=not arguments.no_stuck,
+        longest_s=arguments.longest,
+        progress=None if arguments.quiet else sys.stderr,
+    )
+
+
+def _plan(arguments: argparse.Namespace) -> RunPlan:
+    """The run; a Python file is a node, and gets the words behind it."""
+    plan = plan_of(arguments, [arguments.mission, *arguments.node_args])
+    if len(plan.words) > 1 and plan.command != NODE:
+        raise UsageError(f"one mission at a time; {plan.words[1]!r} is one too many", field="MISSION")
+    return plan

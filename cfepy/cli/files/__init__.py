@@ -1,0 +1,69 @@
+"""The commands tbl and log, which work on cFE's files; here are their options.
+
+A command belongs here when it makes, shows or checks a file that goes to a flight computer or comes from it, and flies
+no mission. This module imports argparse only, for a quick start.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from cfepy.cli.options import MISSION_HELP, add_json, add_mission, add_output, add_perfetto
+
+TBL_STATUS = "exit status: 0 well, 1 differences or faults were found, 2 bad usage or an unreadable file"
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add these commands to the parser of `cfepy`."""
+    _add_tbl(commands)
+    _add_log(commands)
+
+
+def _add_tbl(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    tbl = commands.add_parser(
+        "tbl",
+        help="make table files from YAML, show them, compare them, check them",
+        description="Table files: from YAML and back, by the names of their fields.",
+        epilog=TBL_STATUS,
+    )
+    actions = tbl.add_subparsers(metavar="ACTION", dest="action", required=True)
+    build = _add_action(actions, "build", "make a table file from a YAML file")
+    build.add_argument("file", metavar="FILE.yaml", help="the table's headers and rows")
+    add_output(build, "the YAML file's name with .tbl")
+    show = _add_action(actions, "show", "show a table file")
+    show.add_argument("file", metavar="FILE.tbl", help="a table file")
+    show.add_argument(
+        "--yaml",
+        metavar="FILE|-",
+        help="write it as YAML, from which build makes the same bytes again, to a file, or with - to standard output "
+        "and nothing else there",
+    )
+    add_json(show, "it")
+    diff = _add_action(actions, "diff", "show the fields in which two tables differ")
+    diff.add_argument("file", metavar="A", help="a table file, or a YAML file")
+    diff.add_argument("other", metavar="B", help="another")
+    verify = _add_action(actions, "verify", "find what is wrong with table files")
+    verify.add_argument("files", metavar="FILE.tbl", nargs="+", help="table files")
+
+
+def _add_action(
+    actions: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str
+) -> argparse.ArgumentParser:
+    action = actions.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", epilog=TBL_STATUS)
+    add_mission(action, "--mission", help=f"whose tables are known by name: {MISSION_HELP}")
+    action.add_argument("--layout", metavar="FILE.yaml", help="takes a table's layout from a YAML file that has one")
+    action.set_defaults(module="files.tbl")
+    return action
+
+
+def _add_log(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    log = commands.add_parser(
+        "log",
+        help="read the files that cFE writes: logs, registries, performance data",
+        description="Show what is in files that cFE wrote; the header says which kind each is.",
+        epilog="exit status: 0 well, 2 a file that cannot be read or is cut off",
+    )
+    log.add_argument("files", metavar="FILE", nargs="+", help="a file with a cFE header")
+    add_json(log, "an object for each file")
+    add_perfetto(log)
+    log.set_defaults(module="files.log")

@@ -1,0 +1,204 @@
+"""The commands of a ground system: cmd, tlm, console, mids, graph, export; here are their options.
+
+A command belongs here when it works with cFE's packets by their names, over the network or with a mission that it
+flies. This module imports argparse only, for a quick start.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from cfepy.cli.options import (
+    LOOK_STATUS,
+    VALUES_HELP,
+    add_count,
+    add_drawing,
+    add_from,
+    add_json,
+    add_looked_at,
+    add_mission,
+    add_output,
+    add_pace,
+    add_recording,
+    add_run_options,
+    seconds_of,
+)
+
+DICTIONARY_HELP = "take names from this mission (default: the services and the apps that cfepy brings along)"
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add these commands to the parser of `cfepy`."""
+    _add_cmd(commands)
+    _add_tlm(commands)
+    _add_console(commands)
+    _add_mids(commands)
+    _add_graph(commands)
+    _add_export(commands)
+
+
+def _add_cmd(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    cmd = commands.add_parser(
+        "cmd",
+        help="send a command by its name, or list the commands",
+        description="Send a command to a flight computer, or to a mission that is flown for it in virtual time.",
+        epilog="exit status: 0 well, 1 an ERROR or CRITICAL event followed, an application died, or nobody takes it; "
+        "2 bad usage",
+    )
+    add_mission(
+        cmd,
+        "target",
+        nargs="?",
+        metavar="MISSION|HOST[:PORT]",
+        help="a mission, or where CI_LAB listens: 127.0.0.1, or any name with a port (default: 1234)",
+    )
+    cmd.add_argument("name", nargs="?", metavar="NAME", help="such as CFE_ES_NOOP")
+    cmd.add_argument("fields", nargs="*", metavar="FIELD=VALUE", help="others are zero")
+    add_mission(cmd, "--mission", help=DICTIONARY_HELP)
+    cmd.add_argument("--list", nargs="?", const="*", metavar="PATTERN", help="list the commands, such as '*_NOOP'")
+    cmd.add_argument("--show", metavar="NAME", help="show a command's fields")
+    cmd.add_argument("--hex", action="store_true", help="print the command's bytes instead of sending them")
+    cmd.add_argument(
+        "--for",
+        dest="seconds",
+        type=seconds_of,
+        metavar="SECONDS",
+        help="virtual seconds to wait for what it causes (default: 2)",
+    )
+    add_run_options(cmd, without=["seconds"])
+    cmd.set_defaults(module="ground.cmd")
+
+
+def _add_tlm(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    tlm = commands.add_parser(
+        "tlm",
+        help="show telemetry by name",
+        description="Show telemetry that arrives over UDP, or that of a mission which is flown in virtual time.",
+        epilog="exit status: 0 well, 1 no packet came, 2 bad usage, 130 ended by Ctrl-C",
+    )
+    add_mission(
+        tlm,
+        "words",
+        nargs="*",
+        metavar="WORD",
+        help="first a mission, or this computer's address to listen at, HOST[:PORT] (default: any, port 1235); then "
+        "the packets by their names or MsgIds (default: all)",
+    )
+    add_mission(tlm, "--mission", help=DICTIONARY_HELP)
+    tlm.add_argument("--enable", metavar="HOST[:PORT]", help="ask TO_LAB there to begin to send (default port: 1234)")
+    add_count(tlm, "packets")
+    tlm.add_argument(
+        "--for",
+        dest="seconds",
+        type=seconds_of,
+        metavar="SECONDS",
+        help="end after so many seconds (default: a mission flies for 10, else until Ctrl-C)",
+    )
+    add_json(tlm, "an object for each packet, a line each,")
+    add_run_options(tlm, without=["seconds"])
+    tlm.set_defaults(module="ground.tlm")
+
+
+def _add_console(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    console = commands.add_parser(
+        "console",
+        help="a standing ground console: commands, telemetry pages, events",
+        description="Speak with a mission that is flown meanwhile, or over UDP with a flight computer. Lines are "
+        "commands by name, steps of a mission script, or words of the console; help lists them. Without a terminal, "
+        "lines are read from standard input.",
+        epilog="exit status: 0 well, 1 a step or a line failed, or an application died; 2 bad usage; 130 ended by "
+        "Ctrl-C or SIGTERM",
+    )
+    add_mission(console, nargs="?")
+    console.add_argument("--udp", metavar="HOST[:PORT]", help="a flight computer: where CI_LAB listens (port: 1234)")
+    console.add_argument("--listen", metavar="HOST[:PORT]", help="where telemetry arrives (default: any, port 1235)")
+    console.add_argument(
+        "--enable",
+        nargs="?",
+        const="",
+        metavar="HOST[:PORT]",
+        help="ask TO_LAB there to begin to send (default: where commands go)",
+    )
+    add_mission(console, "--mission", dest="names", help=f"with --udp, {DICTIONARY_HELP}")
+    console.add_argument(
+        "--save-script",
+        metavar="FILE",
+        help="write what was sent, with its times, as a script: `cfepy run MISSION --script FILE` repeats the run",
+    )
+    console.add_argument("--plain", action="store_true", help="lines of text, on a terminal too")
+    add_run_options(console)
+    add_recording(console)
+    add_pace(console)
+    console.set_defaults(module="ground.console")
+
+
+def _add_mids(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    mids = commands.add_parser(
+        "mids",
+        help="show a mission's MsgIds: who sends and who subscribes",
+        description="Run a mission quietly for 10 virtual seconds, and show its MsgIds.",
+    )
+    add_mission(mids)
+    add_run_options(mids)
+    add_json(mids, "the table")
+    mids.add_argument(
+        "--lock",
+        action="store_true",
+        help="write topics.lock in the mission's folder, which gives every ROS topic and service a MsgId of its own; "
+        "ids that are in it already stay",
+    )
+    mids.set_defaults(module="ground.mids")
+
+
+def _add_graph(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    graph = commands.add_parser(
+        "graph",
+        help="show who sends which messages into whose pipes",
+        description="Run a mission quietly for 10 virtual seconds, and show its graph: applications and nodes, the "
+        "messages between them with MsgIds, the pipes with depths and limits, services and actions.",
+    )
+    add_mission(graph)
+    add_run_options(graph)
+    graph.add_argument(
+        "--all",
+        dest="everything",
+        action="store_true",
+        help="with cFE's services one by one and what they send to each other, and what every node has for its logs",
+    )
+    add_json(graph, "the graph")
+    add_drawing(graph, "svg", "draw the graph")
+    add_drawing(graph, "dot", "write the graph for graphviz")
+    graph.set_defaults(module="ground.graph")
+
+
+def _add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    export = commands.add_parser(
+        "export",
+        help="write values over time as CSV or Parquet, or a mission's packets for a ground system",
+        description="Write what other programs read: values over time, or what a mission's packets mean.",
+    )
+    export.set_defaults(module="ground.export")
+    formats = export.add_subparsers(metavar="FORMAT", dest="format", required=True)
+    _add_values(formats, "csv", "values over time as comma-separated values", "-")
+    _add_values(formats, "parquet", "values over time as Apache Parquet", "values.parquet")
+    xtce = formats.add_parser(
+        "xtce",
+        help="commands and telemetry of a mission in XTCE 1.2, which ground systems read",
+        description="Describe a mission's packets in XTCE 1.2, an XML format which ground systems read.",
+    )
+    add_mission(xtce)
+    add_output(xtce, "standard output", "-")
+
+
+def _add_values(formats: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str, usual: str) -> None:
+    values = formats.add_parser(
+        name,
+        help=text,
+        description=f"Write {text}: a row for each message, with its virtual time and its time on board in s, and a "
+        "column for each field.",
+        epilog=LOOK_STATUS,
+    )
+    add_looked_at(values, with_bags=True)
+    values.add_argument("names", metavar="NAME", nargs="+", help=VALUES_HELP)
+    add_from(values)
+    add_output(values, f"{usual}; into a folder a file for each topic or packet", usual)

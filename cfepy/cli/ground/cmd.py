@@ -1,0 +1,118 @@
+"""`cfepy cmd`: send a command by its name to a flight computer, or fly a mission for it and show what it causes."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import replace
+from fnmatch import fnmatchcase
+
+from cfepy.cli.failures import tell
+from cfepy.cli.ground.target import RemoteHost, check_is_mission, dictionary_for, host_of
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.options import LONGEST_S, plan_of, refuse_run_options
+from cfepy.cli.table import Table, show_paragraph, show_tables
+from cfepy.ground import CI_PORT, CommandTrial, Dictionary, dictionary_of, packet_of
+from cfepy.io import udp
+from cfepy.msg import Command
+from cfepy.pilot import RunPlan, never_struck, takeoff
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+ANSWER_S = 2.0  # virtual time to wait for what a command causes
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Send, list or show commands.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: no such mission, host, command or field.
+    """
+    target: str | None = arguments.target
+    host = host_of(target, CI_PORT) if target is not None else None
+    plan = None
+    if target is not None and host is None:
+        check_is_mission(target)
+        plan = plan_of(arguments, [target])
+    dictionary = dictionary_for(arguments.mission) if plan is None else dictionary_of(plan.spec())
+    if arguments.list is not None:
+        return _list(dictionary, arguments.list)
+    if arguments.show is not None:
+        return _show(dictionary.command(arguments.show))
+    if target is None or arguments.name is None:
+        raise UsageError("say where to, and which command: cfepy cmd MISSION|HOST NAME; --list shows the names")
+    declared = dictionary.command(arguments.name)
+    packet = packet_of(declared, arguments.fields)
+    if arguments.hex:
+        print(packet.hex())
+        return ENDED_WELL
+    if host is not None:
+        refuse_run_options(arguments, f"{host} is a computer, which is not flown; leave it out")
+        return _send(host, declared, packet)
+    assert plan is not None
+    return _fly(plan, dictionary, declared, packet)
+
+
+def _send(host: RemoteHost, declared: Command, packet: bytes) -> int:
+    if not udp.send(host.name, host.port, packet):
+        print(f"cfepy: {host}: nobody listens there; {declared.name} is lost", file=sys.stderr)
+        return FOUND_PROBLEMS
+    print(f"{declared.name} sent to {host}, {len(packet)} bytes")
+    return ENDED_WELL
+
+
+def _list(dictionary: Dictionary, pattern: str) -> int:
+    table = Table("Commands", ("name", "MsgId", "code", "what it does"), right=(2,))
+    for name, each in sorted(dictionary.commands.items()):
+        if fnmatchcase(name, pattern.upper()):
+            table.add(name, f"0x{each.msg_id:04X}", _code(each), each.text)
+    show_tables([table], sys.stdout)
+    _say_problems(dictionary)
+    return ENDED_WELL if table.rows else FOUND_PROBLEMS
+
+
+def _show(declared: Command) -> int:
+    table = Table(f"{declared.name}: {declared.text}", ("field", "type", "offset", "bytes", "values"), right=(2, 3))
+    offset = declared.length - declared.payload.size
+    for cell in declared.payload.cells():
+        names = "" if cell.names is None else str(cell.names)
+        table.add(cell.path, cell.type, str(offset + cell.offset), str(cell.size), names)
+    table.note = f"MsgId 0x{declared.msg_id:04X}, function code {_code(declared)}, {declared.length} bytes"
+    show_tables([table], sys.stdout)
+    return ENDED_WELL
+
+
+def _code(declared: Command) -> str:
+    return "none" if declared.code is None else str(declared.code)
+
+
+def _say_problems(dictionary: Dictionary) -> None:
+    for problem in dictionary.problems:
+        print(f"cfepy: {problem}", file=sys.stderr)
+
+
+def _fly(plan: RunPlan, dictionary: Dictionary, declared: Command, packet: bytes) -> int:
+    """Fly a mission until it is OPERATIONAL, send the command, and show what follows for the seconds of the plan."""
+    trial = CommandTrial(dictionary, packet)
+    seconds = ANSWER_S if plan.seconds is None else plan.seconds
+    with takeoff(replace(plan, seconds=LONGEST_S), attachments=[trial]) as run:
+        tell(run.notes)
+        trial.run(run.run_until, seconds)
+        problems = run.mission.record.deaths()
+        unstruck = never_struck(run.mission)
+    print(f"{trial.sent_ns / NS_PER_S:.3f} {declared.name} sent to {', '.join(trial.receivers) or 'nobody'}")
+    _say_what_followed(trial, dictionary)
+    tell((*problems, *unstruck))
+    return ENDED_WELL if trial.receivers and not trial.errors and not problems else FOUND_PROBLEMS
+
+
+def _say_what_followed(trial: CommandTrial, dictionary: Dictionary) -> None:
+    for event in trial.events:
+        line = f"{event.at_ns / NS_PER_S:.3f} {event.app} {event.event_id} {event.type_name}: {event.text}"
+        show_paragraph(line, sys.stdout)
+    for seen in trial.telemetry:
+        decoded = dictionary.decode(seen.packet)
+        show_paragraph(f"{seen.at_ns / NS_PER_S:.3f} {decoded.name} {decoded.problem or decoded.line()}", sys.stdout)

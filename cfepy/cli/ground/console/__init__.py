@@ -1,0 +1,256 @@
+"""`cfepy console`: a standing ground console, for a mission that is flown meanwhile, or over UDP for any computer.
+
+`session` says what a line does, `flight` and `remote` are what it speaks with, `pages` lays out telemetry, `completion`
+knows how a line may go on, `saved` keeps what was sent. `screen` and `plain` are its two faces.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from cfepy.cli.failures import tell, writing
+from cfepy.cli.ground.console.pages import PacketBoard
+from cfepy.cli.ground.console.saved import SavedScript
+from cfepy.cli.ground.console.session import REPLY, ConsoleSession
+from cfepy.cli.ground.target import RemoteHost, host_of
+from cfepy.cli.host import Interrupts
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.options import plan_of, refuse_run_options
+from cfepy.ground import CI_PORT, TO_PORT, dictionary_of, packet_of
+from cfepy.io import TypedLines, own_address, send
+from cfepy.mission import MissionSpec, read_mission
+from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from cfepy.cli.ground.console.flight import FlownCraft
+    from cfepy.pilot import Flown, RunPlan
+
+ANY_ADDRESS = "0.0.0.0"
+EXTRA = "the console on a terminal needs the package textual: pip install 'cfepy[console]'; or use --plain"
+
+
+class Ended(NamedTuple):
+    """What a session came to: lines for the user, what of it is wrong, and the exit status."""
+
+    lines: list[str]
+    problems: list[str]
+    status: int
+
+
+class Opening:
+    """Opens the session that a command line asks for.
+
+    Args:
+        arguments: of the command line.
+        interrupts: whether Ctrl-C was pressed.
+
+    Attributes:
+        ended: what the session came to; set when it is closed.
+    """
+
+    def __init__(self, arguments: argparse.Namespace, interrupts: Interrupts) -> None:
+        self.ended: Ended
+        self._arguments = arguments
+        self._interrupts = interrupts
+        if arguments.save_script is not None:
+            with writing(arguments.save_script, "--save-script"):
+                Path(arguments.save_script).open("a").close()
+
+    @contextlib.contextmanager
+    def session(self, note: Callable[[str], object]) -> Iterator[ConsoleSession]:
+        """Around the session; the thread that enters it lets time go on, and leaves it.
+
+        Args:
+            note: gets what the user should know before anything runs.
+
+        Raises:
+            UsageError: it cannot be opened like this.
+        """
+        with self._remote() if self._arguments.udp is not None else self._flown(note) as session:
+            yield session
+
+    # -- a mission -----------------------------------------------------------------------------------------------------
+
+    @contextlib.contextmanager
+    def _flown(self, note: Callable[[str], object]) -> Iterator[ConsoleSession]:
+        from cfepy.cli.ground.console.flight import FlownCraft
+        from cfepy.cli.run.outputs import recording
+
+        arguments = self._arguments
+        plan = replace(plan_of(arguments, [arguments.mission]), script=None)
+        with recording(arguments, plan) as journal:
+            spec = plan.spec()
+            dictionary = dictionary_of(spec)
+            saved = SavedScript(dictionary)
+            with FlownCraft(
+                plan,
+                spec,
+                dictionary,
+                saved,
+                self._interrupts,
+                realtime=arguments.realtime,
+                ports=dict(arguments.port),
+                journal=journal,
+                note=note,
+            ) as craft:
+                session = ConsoleSession(
+                    craft, PacketBoard(dictionary), saved, arguments.realtime, arguments.stop_on_failure
+                )
+                if arguments.script is not None:
+                    session.load(arguments.script)
+                yield session
+                self.ended = self._land(session, craft, plan)
+
+    def _land(self, session: ConsoleSession, craft: FlownCraft, plan: RunPlan) -> Ended:
+        end_ns = craft.stands_ns
+        session.end()
+        flown = craft.land()
+        results = flown.results
+        lines = []
+        if self._arguments.save_script is not None:
+            lines.append(f"again: {self._save(session, plan, end_ns)}")
+        lines.append(f"trace: {flown.trace}")
+        return Ended(
+            lines,
+            [*results.script_problems, *results.problems, *results.never_struck],
+            self._status(session, flown),
+        )
+
+    def _save(self, session: ConsoleSession, plan: RunPlan, end_ns: int) -> str:
+        """Write the script; the command that repeats the run with it."""
+        file = self._arguments.save_script
+        again = replace(plan, seconds=None, script=file, stop_on_failure=False).command_line()
+        session.saved.heading = ("What was sent in a session of cfepy console. The same run:", again)
+        session.saved.write(file, end_ns)
+        return again
+
+    def _status(self, session: ConsoleSession, flown: Flown | None) -> int:
+        if self._interrupts.asked:
+            return INTERRUPTED
+        died = flown is not None and flown.mission.record.deaths()
+        return FOUND_PROBLEMS if session.failed or died else ENDED_WELL
+
+    # -- a computer elsewhere ------------------------------------------------------------------------------------------
+
+    @contextlib.contextmanager
+    def _remote(self) -> Iterator[ConsoleSession]:
+        from cfepy.cli.ground.console.remote import RemoteCraft
+
+        arguments = self._arguments
+        host = host_of(arguments.udp, CI_PORT) or RemoteHost(arguments.udp, CI_PORT)
+        listen = _listening(arguments.listen)
+        spec: MissionSpec | None = None if arguments.names is None else read_mission(arguments.names)
+        dictionary = dictionary_of(spec)
+        saved = SavedScript(dictionary)
+        with RemoteCraft(host, listen, spec, dictionary, saved, self._interrupts) as craft:
+            session = ConsoleSession(craft, PacketBoard(dictionary), saved, stop_on_failure=arguments.stop_on_failure)
+            session.say(REPLY, f"commands go to {host}, telemetry comes to port {craft.port}")
+            self._enable(session, host)
+            if arguments.script is not None:
+                session.load(arguments.script)
+            yield session
+            end_ns = craft.stands_ns
+            session.end()
+            lines = []
+            if arguments.save_script is not None:
+                session.saved.write(arguments.save_script, end_ns)
+                lines.append(f"{arguments.save_script}: {session.saved.count} commands")
+            self.ended = Ended(lines, [], self._status(session, None))
+
+    def _enable(self, session: ConsoleSession, host: RemoteHost) -> None:
+        """Ask TO_LAB to send to this computer, or say how."""
+        asked: str | None = self._arguments.enable
+        elsewhere = (host_of(asked, CI_PORT) or RemoteHost(asked, CI_PORT)) if asked else host
+        enable = f"TO_LAB_OUTPUT_ENABLE dest_IP={own_address(elsewhere.name)}"
+        if asked is None:
+            session.say(REPLY, f"TO_LAB sends nothing before it is asked to, as by {enable}")
+        elif elsewhere == host:
+            session.take(enable)
+        else:
+            dictionary = session.craft.script.scene.dictionary
+            packet = packet_of(dictionary.command("TO_LAB_OUTPUT_ENABLE"), enable.split()[1:])
+            if not send(elsewhere.name, elsewhere.port, packet):
+                raise UsageError("nobody listens there, so TO_LAB cannot be asked to send", file=str(elsewhere))
+
+
+def _listening(text: str | None) -> RemoteHost:
+    """Where telemetry arrives, of "HOST:PORT", "HOST", "PORT" or nothing."""
+    if text is None:
+        return RemoteHost(ANY_ADDRESS, TO_PORT)
+    if text.isdecimal():
+        text = f"{ANY_ADDRESS}:{text}"
+    host = host_of(text, TO_PORT)
+    if host is None:
+        raise UsageError(f"{text!r} is no address of this computer, such as 127.0.0.1:1235", field="--listen")
+    return host
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Open the console that the command line asks for.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: it cannot be opened like this.
+    """
+    _check(arguments)
+    with Interrupts() as interrupts:
+        opening = Opening(arguments, interrupts)
+        if arguments.plain or not is_terminal():
+            _plain(opening)
+        else:
+            _screen(opening)
+    ended = opening.ended
+    for line in ended.lines:
+        print(line, flush=True)
+    tell(ended.problems)
+    return ended.status
+
+
+def is_terminal() -> bool:
+    """Whether a person sits in front of it."""
+    return sys.stdin.isatty() and sys.stdout.isatty()
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    if (arguments.mission is None) == (arguments.udp is None):
+        raise UsageError("say what it is for: cfepy console MISSION, or cfepy console --udp HOST:PORT")
+    if arguments.udp is not None:
+        why = f"{arguments.udp} is a computer, which is not flown; leave it out"
+        refuse_run_options(arguments, why, but=["script", "stop_on_failure"])
+        for name, option in (("realtime", "--realtime"), ("record", "--record"), ("port", "--port")):
+            if getattr(arguments, name):
+                raise UsageError(why, field=option)
+        return
+    for name in ("listen", "enable"):
+        if getattr(arguments, name) is not None:
+            raise UsageError("is for a computer elsewhere, with --udp; leave it out", field=f"--{name}")
+    if arguments.names is not None:
+        raise UsageError("a mission has names of its own; leave it out, or say --udp", field="--mission")
+    if arguments.port and arguments.realtime is None:
+        raise UsageError("without --realtime no port is opened on this computer", field="--port")
+
+
+def _plain(opening: Opening) -> None:
+    from cfepy.cli.ground.console.plain import PlainConsole
+
+    with opening.session(lambda text: tell([text])) as session:
+        console = PlainConsole(session, TypedLines(sys.stdin), sys.stdout)
+        console.run()
+    console.print()
+
+
+def _screen(opening: Opening) -> None:
+    if find_spec("textual") is None:
+        raise UsageError(EXTRA)
+    from cfepy.cli.ground.console.screen import ConsoleScreen
+
+    ConsoleScreen(opening.session).show()

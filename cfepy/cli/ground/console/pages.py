@@ -1,0 +1,177 @@
+"""Pages of telemetry: the newest packet of each kind, field by field, with what has changed in it.
+
+A page is a choice of packets. It is laid out for a width in columns, as rows of pieces of text with a style each, so
+that a screen can colour them and a plain stream can leave the styles away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from typing import NamedTuple
+
+from cfepy.ground import Decoded, Dictionary
+from cfepy.mission import Seen
+from cfepy.units import NS_PER_S
+
+HK, ALL = "hk", "all"
+TITLE, NAME, VALUE, CHANGED = "title", "name", "value", "changed"
+GAP = 2
+LEAST_COLUMN, MOST_COLUMN = 24, 38
+ACCEPTED, REFUSED = "CommandCounter", "CommandErrorCounter"
+DOTS = "…"
+
+
+class Piece(NamedTuple):
+    """A piece of text and its style."""
+
+    text: str
+    style: str = VALUE
+
+
+Row = list[Piece]
+
+
+@dataclass(slots=True)
+class Kind:
+    """The packets of one MsgId: how many came, the newest, and the texts of its fields when it was last looked at."""
+
+    newest: Seen
+    count: int = 0
+    looked: int = 0
+    name: str = ""
+    texts: dict[str, str] = field(default_factory=dict)
+    changed: set[str] = field(default_factory=set)
+
+
+class PacketBoard:
+    """Keeps the newest telemetry.
+
+    Args:
+        dictionary: names the packets and their fields.
+
+    Attributes:
+        page: what is chosen: "hk", "all", or names of packets.
+    """
+
+    def __init__(self, dictionary: Dictionary) -> None:
+        self.page: tuple[str, ...] = (HK,)
+        self._dictionary = dictionary
+        self._kinds: dict[int, Kind] = {}
+
+    def note(self, seen: Seen) -> None:
+        """A telemetry packet was sent."""
+        msg_id = seen.packet[0] << 8 | seen.packet[1]
+        kind = self._kinds.get(msg_id)
+        if kind is None:
+            kind = self._kinds[msg_id] = Kind(seen)
+        kind.newest = seen
+        kind.count += 1
+
+    def choose(self, names: list[str]) -> None:
+        """Turn to another page.
+
+        Args:
+            names: "hk", "all", or packets by name, MsgId or pattern; none turns to the next of hk and all.
+
+        Raises:
+            UsageError: there is no such packet.
+        """
+        if not names:
+            names = [ALL if self.page == (HK,) else HK]
+        for name in names:
+            if name not in (HK, ALL) and not self._is_known(name):
+                self._dictionary.telemetry_of(name)
+        self.page = tuple(names)
+
+    def counters(self) -> tuple[int, int]:
+        """How many commands the applications have accepted and refused, as their newest housekeeping says."""
+        accepted = refused = 0
+        for kind in self._kinds.values():
+            if not kind.name or _is_hk(kind.name):
+                self._look(kind)
+                accepted += int(kind.texts.get(ACCEPTED, 0))
+                refused += int(kind.texts.get(REFUSED, 0))
+        return accepted, refused
+
+    def rows(self, width: int) -> list[Row]:
+        """The chosen page.
+
+        Args:
+            width: columns of the screen.
+        """
+        if self.page == (ALL,):
+            return list(self._overview(width))
+        rows: list[Row] = []
+        for kind in sorted(self._kinds.values(), key=lambda each: each.newest.msg_id):
+            self._look(kind)
+            if self._is_chosen(kind):
+                rows += _rows_of(kind, width)
+        return rows or [[Piece(f"no packet of {' '.join(self.page)} yet", NAME)]]
+
+    def _is_known(self, name: str) -> bool:
+        names = [*self._dictionary.telemetry, *(kind.name for kind in self._kinds.values())]
+        return any(fnmatchcase(each, name) for each in names)
+
+    def _is_chosen(self, kind: Kind) -> bool:
+        if HK in self.page and _is_hk(kind.name):
+            return True
+        number = f"0x{kind.newest.msg_id:04X}"
+        return any(fnmatchcase(kind.name, name) or name.lower() == number.lower() for name in self.page)
+
+    def _look(self, kind: Kind) -> None:
+        """Read the newest packet, if there was another one since the last look."""
+        if kind.looked == kind.count:
+            return
+        decoded = self._dictionary.decode(kind.newest.packet)
+        texts = _texts(decoded, kind.newest.packet)
+        kind.changed = {path for path, text in texts.items() if kind.texts.get(path, text) != text}
+        kind.name, kind.texts, kind.looked = decoded.name, texts, kind.count
+
+    def _overview(self, width: int) -> Iterator[Row]:
+        """A row for each kind of packet."""
+        for kind in sorted(self._kinds.values(), key=lambda each: each.newest.msg_id):
+            decoded = self._dictionary.decode(kind.newest.packet)
+            head = f"{decoded.name}  {kind.count:,}  {kind.newest.at_ns / NS_PER_S:.3f}  "
+            content = decoded.problem or decoded.line()
+            yield [Piece(cut(head, width), TITLE), Piece(cut(content, max(0, width - len(head))))]
+
+
+def _texts(decoded: Decoded, packet: bytes) -> dict[str, str]:
+    if decoded.problem:
+        return {"bytes": packet.hex(), "problem": decoded.problem}
+    return decoded.texts()
+
+
+def _is_hk(name: str) -> bool:
+    return name.endswith(("_HK_TLM", "_HK"))
+
+
+def _rows_of(kind: Kind, width: int) -> Iterator[Row]:
+    """A packet's title, and its fields in as many columns as there is room for."""
+    yield [Piece(cut(f"{kind.name}  n={kind.count:,}  at {kind.newest.at_ns / NS_PER_S:.3f}", width), TITLE)]
+    lengths = {path: len(path) + 1 + len(text) for path, text in kind.texts.items()}
+    most = min(MOST_COLUMN, width)
+    short = [path for path, length in lengths.items() if length <= most]
+    column = max([min(LEAST_COLUMN, width), *(lengths[path] for path in short)])
+    across = max(1, (width + GAP) // (column + GAP))
+    down = -(-len(short) // across)
+    for line in range(down):
+        yield [piece for path in short[line::down] for piece in _cell(path, kind, column)]
+    for path, length in lengths.items():
+        if length > most:
+            yield _cell(path, kind, width)
+
+
+def _cell(path: str, kind: Kind, width: int) -> Row:
+    """`path value`, the value at the right end; one that is too long is cut."""
+    name = cut(path, width)
+    text = cut(kind.texts[path], width - len(name) - 1)
+    blank = " " * (width - len(name) - len(text))
+    return [Piece(name, NAME), Piece(blank), Piece(text, CHANGED if path in kind.changed else VALUE), Piece(" " * GAP)]
+
+
+def cut(text: str, width: int) -> str:
+    """A text that is no longer than a width; what is left out shows as dots."""
+    return text if len(text) <= width else text[: max(0, width - 1)] + DOTS if width > 0 else ""

@@ -1,0 +1,134 @@
+"""The craft of a console that speaks with a computer elsewhere, over UDP: any cFS with CI_LAB and TO_LAB."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cfepy.cli.ground.console.saved import SavedScript
+from cfepy.cli.ground.target import RemoteHost
+from cfepy.cli.host import Interrupts
+from cfepy.ground import Dictionary
+from cfepy.io import UdpListener
+from cfepy.io import send as send_datagram
+from cfepy.mission import MissionSpec, Seen
+from cfepy.msg import PRIMARY_HEADER_SIZE
+from cfepy.rtos import Stopwatch
+from cfepy.script import Collected, Scene, Since, StandingScript
+from cfepy.units import NS_PER_MS, NS_PER_S
+
+MOST_PACKETS = 50_000
+WAIT_S = 0.05
+NO_WAIT_S = 1e-4
+PIECE_NS = 50 * NS_PER_MS
+
+
+class RemoteScene(Scene):
+    """A computer elsewhere: its packets, and the time since the session began."""
+
+    def __init__(self, host: RemoteHost, dictionary: Dictionary, packets: Collected, saved: SavedScript) -> None:
+        super().__init__(None, dictionary, packets)
+        self._host = host
+        self._saved = saved
+        self._watch = Stopwatch()
+
+    @property
+    def now_ns(self) -> int:
+        """Wall-clock time in ns since the session began."""
+        return self._watch.elapsed_ns()
+
+    def here(self) -> Since:
+        """See `Scene.here`."""
+        return Since(len(self.packets), 0)
+
+    def send(self, packet: bytes, must_arrive: bool) -> str:
+        """See `Scene.send`; UDP has no receipts, so all that is known is whether a computer at hand listens."""
+        self._saved.sent(packet, self.now_ns)
+        return "" if send_datagram(self._host.name, self._host.port, packet) else f"{self._host}: nobody listens there"
+
+    def learn_topics(self) -> None:
+        """See `Scene.learn_topics`; nothing is known of them."""
+
+
+class RemoteCraft:
+    """A computer elsewhere; use as a context manager.
+
+    Args:
+        host: where commands are sent to.
+        listen: where telemetry arrives on this computer.
+        spec: the mission whose names are meant; None for none.
+        dictionary: names the packets.
+        saved: gets what is sent.
+        interrupts: whether Ctrl-C was pressed.
+
+    Attributes:
+        name, flows, script: see `Craft`.
+    """
+
+    flows = True
+    is_over = False
+
+    def __init__(
+        self,
+        host: RemoteHost,
+        listen: RemoteHost,
+        spec: MissionSpec | None,
+        dictionary: Dictionary,
+        saved: SavedScript,
+        interrupts: Interrupts,
+    ) -> None:
+        self._interrupts = interrupts
+        self.name = str(host)
+        self._packets = Collected(MOST_PACKETS)
+        self._new: list[Seen | str] = []
+        self.script = StandingScript(RemoteScene(host, dictionary, self._packets, saved), spec)
+        self._listener = UdpListener(listen.name, listen.port)
+
+    def __enter__(self) -> RemoteCraft:
+        self._listener.__enter__()
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        self._listener.__exit__(*error)
+
+    @property
+    def port(self) -> int:
+        """The port of this computer at which telemetry arrives."""
+        return self._listener.port
+
+    @property
+    def stands_ns(self) -> int:
+        """See `Craft.stands_ns`."""
+        return self.script.scene.now_ns
+
+    @property
+    def is_asked(self) -> bool:
+        """See `Craft.is_asked`."""
+        return self._interrupts.asked
+
+    def step(self, until_ns: int) -> bool:
+        """See `Craft.step`: take what arrives."""
+        begin_ns = self.stands_ns
+        rest_s = min(WAIT_S, max(0, until_ns - begin_ns) / NS_PER_S)
+        packet = self._listener.receive(max(rest_s, NO_WAIT_S))
+        while packet is not None:
+            if len(packet) > PRIMARY_HEADER_SIZE:
+                seen = Seen(self.stands_ns, packet, self.name)
+                self._new.append(seen)
+                self._packets.append(seen)
+            if self.stands_ns - begin_ns > PIECE_NS:
+                break
+            packet = self._listener.receive(NO_WAIT_S)
+        self.script.advance()
+        return True
+
+    def next_event(self) -> int | None:
+        """See `Craft.next_event`."""
+        return None
+
+    def pace(self, factor: float | None) -> None:
+        """See `Craft.pace`: its time is its own."""
+
+    def news(self) -> list[Seen | str]:
+        """See `Craft.news`; what it prints is not seen here."""
+        news, self._new = self._new, []
+        return news

@@ -1,0 +1,156 @@
+"""What was sent in a session, as a mission script: `cfepy run MISSION --script FILE` repeats the same run.
+
+Each packet is written with the virtual time at which the run stood when it was sent. What was expected is written too
+where it cannot hold up what follows; elsewhere it is a comment, since an expectation in a file waits, while one that
+was typed let others pass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from cfepy.ground import Dictionary, line_of, packet_of
+from cfepy.msg import CMD_HEADER_SIZE, get_header_size
+from cfepy.script import LOOK_NS, OVER, Step, StepVerdict
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+
+@dataclass(frozen=True, slots=True)
+class Noted:
+    """A line of the script: when it was begun and done, in virtual ns, and what it expects, if it does."""
+
+    began_ns: int
+    done_ns: int
+    text: str
+    step: Step | None = None
+    was_over: bool = False
+
+    @property
+    def is_quick(self) -> bool:
+        """Whether it is done at once: something sent, a state that is judged, what is watched for beside the rest."""
+        step = self.step
+        if step is None or step.must_not:
+            return True
+        return step.condition is not None and step.condition.lasts and step.within_ns is step.until_ns is None
+
+
+class SavedScript:
+    """Keeps what was sent.
+
+    Args:
+        dictionary: names the commands.
+        heading: lines for the head of the file.
+    """
+
+    def __init__(self, dictionary: Dictionary, heading: Sequence[str] = ()) -> None:
+        self.heading = tuple(heading)
+        self._dictionary = dictionary
+        self._noted: list[Noted] = []
+
+    @property
+    def count(self) -> int:
+        """How many packets were sent."""
+        return sum(each.step is None for each in self._noted)
+
+    def sent(self, packet: bytes, at_ns: int) -> None:
+        """A packet was sent at a virtual time in ns."""
+        self._noted.append(Noted(at_ns, at_ns, f"send {self._words(packet)}"))
+
+    def expected(self, step: Step, verdict: StepVerdict, began_ns: int, done_ns: int) -> None:
+        """A step that expects something was begun, and has its verdict, at virtual times in ns."""
+        self._noted.append(Noted(began_ns, done_ns, without_when(step.text), step, verdict.detail == OVER))
+
+    def write(self, file: str | Path, end_ns: int) -> None:
+        """Write the script.
+
+        Args:
+            file: its path.
+            end_ns: virtual time at which the run ends.
+
+        Raises:
+            UsageError: it cannot be written.
+        """
+        try:
+            Path(file).write_text(self.text(end_ns), encoding="utf-8")
+        except OSError as error:
+            raise UsageError(f"cannot be written: {error.strerror}", file=file) from None
+
+    def text(self, end_ns: int) -> str:
+        """The whole script, for a run that ends at a virtual time in ns."""
+        lines = [*(f"# {line}" for line in self.heading), *self._lines(end_ns), f"at {time_text(end_ns)} end"]
+        return "\n".join(lines) + "\n"
+
+    def _lines(self, end_ns: int) -> Iterator[str]:
+        noted = sorted((each for each in self._noted if each.began_ns <= end_ns), key=lambda each: each.began_ns)
+        done_ns = 0
+        for number, each in enumerate(noted):
+            rest = noted[number + 1 :]
+            next_ns = next((later.began_ns for later in rest if later.step is None), end_ns)
+            follows_at_once = each.began_ns == done_ns
+            is_last = not rest or rest[0].step is None
+            if each.step is None or (each.is_quick and is_last and not follows_at_once and _ends(each, end_ns)):
+                yield f"at {time_text(each.began_ns)} {each.text}"
+            elif follows_at_once if each.is_quick else _is_done(each, next_ns, follows_at_once):
+                yield f"        {each.text}"
+            else:
+                yield f"# {time_text(each.began_ns)}: {each.text}"
+                continue
+            done_ns = each.done_ns if each.step is None or not each.step.must_not else each.began_ns
+
+    def _words(self, packet: bytes) -> str:
+        """A packet as a script writes it: by its name if that gives the very same bytes."""
+        if get_header_size(packet) == CMD_HEADER_SIZE:
+            decoded = self._dictionary.decode(packet)
+            command = self._dictionary.commands.get(decoded.name)
+            words = f"{decoded.name} {line_of(_given(decoded.values))}".rstrip()
+            try:
+                if command is not None and not decoded.problem and packet_of(command, _split(words)) == packet:
+                    return words
+            except UsageError:
+                pass  # a text that cannot be written
+        return f"raw {packet.hex()}"
+
+
+def _is_done(each: Noted, next_ns: int, follows_at_once: bool) -> bool:
+    """Whether an expectation has its verdict before anything else happens, also when a file expects it."""
+    return not each.was_over and each.done_ns + (0 if follows_at_once else LOOK_NS) <= next_ns
+
+
+def _ends(each: Noted, end_ns: int) -> bool:
+    """Whether what must not come is not watched for longer than the run takes."""
+    assert each.step is not None
+    has_limit = each.step.within_ns is not None or each.step.until_ns is not None
+    return not has_limit or not each.was_over
+
+
+def _given(values: dict[str, object]) -> dict[str, object]:
+    """Values without those that are zero anyway."""
+    return {name: value for name, value in values.items() if value not in (0, "", b"")}
+
+
+def _split(words: str) -> list[str]:
+    from shlex import split
+
+    return split(words)[1:]
+
+
+def time_text(ns: int) -> str:
+    """A virtual time in seconds, exact to the ns."""
+    whole, rest = divmod(max(0, ns), NS_PER_S)
+    return f"{whole}.{rest:09d}".rstrip("0").rstrip(".")
+
+
+def when_of(step: Step, before_ns: int) -> int:
+    """When a step began that could have begun at a virtual time in ns."""
+    if step.at_ns is not None:
+        return max(step.at_ns, before_ns)
+    return before_ns + (step.after_ns or 0)
+
+
+def without_when(text: str) -> str:
+    """A step's text without its time in front."""
+    first, _, rest = text.partition(" ")
+    return rest.strip().partition(" ")[2].strip() if first in ("at", "after") else text

@@ -1,0 +1,187 @@
+"""`cfepy export`: values over time as CSV or Parquet, and what a mission's packets mean as XTCE."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import sys
+from collections.abc import Iterable, Sequence
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
+
+from cfepy.cli.failures import writing
+from cfepy.cli.json_output import STDOUT, write_text
+from cfepy.cli.looked_at import look_at_series
+from cfepy.cli.main import ENDED_WELL
+from cfepy.ground import Series, dictionary_of, surveyed_topics
+from cfepy.mission import read_mission
+from cfepy.pilot import booting
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+TIME, STAMP = "time", "stamp"
+"""Columns of every table: virtual time of sending and time on board, in s."""
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Export what the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: there is no such run, mission, message or field, it cannot boot, or a file cannot be written.
+    """
+    return _xtce(arguments) if arguments.format == "xtce" else _values(arguments)
+
+
+def _xtce(arguments: argparse.Namespace) -> int:
+    from cfepy.ground.xtce import xtce_of
+
+    spec = read_mission(arguments.mission)
+    dictionary = dictionary_of(spec)
+    with booting(spec.script):
+        dictionary.learn(surveyed_topics(spec))
+    for problem in dictionary.problems:
+        print(f"cfepy: {problem}", file=sys.stderr)
+    document = xtce_of(spec.name, dictionary)
+    write_text(arguments.output, document, "--output", arguments)
+    return ENDED_WELL
+
+
+# -- values over time --------------------------------------------------------------------------------------------------
+
+
+class ValueTable(NamedTuple):
+    """The rows of a file: a name, times in ns, times on board in ns, and columns of the same length by their names."""
+
+    name: str
+    times_ns: NDArray[Any]
+    stamps_ns: NDArray[Any]
+    columns: dict[str, NDArray[Any]]
+
+
+def _values(arguments: argparse.Namespace) -> int:
+    write = _write_csv if arguments.format == "csv" else _write_parquet
+    output = arguments.output
+    folder = Path(output) if output.endswith("/") or Path(output).is_dir() else None
+    if arguments.format == "parquet":
+        _parquet()  # that it is installed is better known before a long run than after it
+    if folder is None and output != STDOUT:
+        with writing(output, "--output"):
+            Path(output).open("a").close()
+    series, status = look_at_series(arguments, arguments.names)
+    chosen: dict[str, tuple[Series, list[str]]] = {}
+    for found, field in chain.from_iterable(series.matching(word) for word in arguments.names):
+        chosen.setdefault(found.name, (found, []))[1].append(field)
+    tables = [_table(found, fields, arguments.from_s or 0.0) for found, fields in chosen.values()]
+    if folder is None:
+        write(output, _joined(tables), arguments)
+    else:
+        with writing(folder, "--output"):
+            folder.mkdir(parents=True, exist_ok=True)
+        for table in tables:
+            write(str(folder / f"{_file_name(table.name)}.{arguments.format}"), table, arguments)
+    return status
+
+
+def _file_name(name: str) -> str:
+    return name.strip("/").replace("/", ".")
+
+
+def _table(series: Series, fields: Sequence[str], from_s: float) -> ValueTable:
+    """The table of one series."""
+    columns = series.columns() if "" in fields else series.columns(*fields)
+    wanted = series.times_ns >= from_s * NS_PER_S
+    named = {f"{series.name}.{name}" if name in (TIME, STAMP) else name: each for name, each in columns.items()}
+    return ValueTable(
+        series.name,
+        series.times_ns[wanted],
+        series.stamps_ns[wanted],
+        {name: column[wanted] for name, column in named.items()},
+    )
+
+
+def _joined(tables: Sequence[ValueTable]) -> ValueTable:
+    """All tables as one, by time; a row has values in the columns of its own table, whose names say which it is."""
+    import numpy
+
+    if len(tables) == 1:
+        return tables[0]
+    times = numpy.concatenate([table.times_ns for table in tables])
+    order = numpy.argsort(times, kind="stable")
+    columns: dict[str, NDArray[Any]] = {}
+    start = 0
+    for table in tables:
+        rows = slice(start, start + len(table.times_ns))
+        start = rows.stop
+        for name, column in table.columns.items():
+            cells = numpy.empty(len(times), object)
+            cells[rows] = column.tolist()
+            columns[name if name.startswith(f"{table.name}.") else f"{table.name}.{name}"] = cells[order]
+    stamps = numpy.concatenate([table.stamps_ns for table in tables])
+    return ValueTable("", times[order], stamps[order], columns)
+
+
+def _write_csv(file: str, table: ValueTable, arguments: argparse.Namespace) -> None:
+    if file == STDOUT:
+        _put_csv(arguments.stdout, table)
+        return
+    with writing(file, "--output"), open(file, "w", encoding="utf-8", errors="backslashreplace", newline="") as stream:
+        _put_csv(stream, table)
+
+
+def _put_csv(stream: TextIO, table: ValueTable) -> None:
+    rows = csv.writer(stream, lineterminator="\n")
+    rows.writerow([TIME, STAMP, *table.columns])
+    times = map(_exact, table.times_ns.tolist())
+    stamps = (_exact(stamp) if stamp else "" for stamp in table.stamps_ns.tolist())
+    rows.writerows(zip(times, stamps, *map(_cells, table.columns.values()), strict=True))
+
+
+def _exact(time_ns: int) -> str:
+    """A time in s, with all its digits."""
+    return f"{time_ns // NS_PER_S}.{time_ns % NS_PER_S:09d}"
+
+
+def _cells(column: NDArray[Any]) -> Iterable[Any]:
+    """What is written: nothing for a value that is missing, 0 and 1 for truth, hexadecimal digits for bytes."""
+    return map(_cell, column.tolist()) if column.dtype.kind in "Ofb" else column.tolist()
+
+
+def _cell(value: Any) -> Any:
+    if value is None or value != value:  # a number that is missing is not equal to itself
+        return ""
+    if isinstance(value, bool):
+        return int(value)
+    return value.hex() if isinstance(value, bytes) else value
+
+
+def _parquet() -> Any:
+    """The library's module for the format.
+
+    Raises:
+        UsageError: it is not installed.
+    """
+    try:
+        from pyarrow import parquet
+    except ImportError:
+        raise UsageError("Parquet needs the library pyarrow: pip install 'cfepy[parquet]'") from None
+    return parquet
+
+
+def _write_parquet(file: str, table: ValueTable, arguments: argparse.Namespace) -> None:
+    parquet = _parquet()
+    import pyarrow
+
+    if file == STDOUT:
+        raise UsageError("Parquet is no text; name a file", field="--output")
+    stamps = [stamp / NS_PER_S if stamp else None for stamp in table.stamps_ns.tolist()]
+    columns: dict[str, Any] = {TIME: table.times_ns / NS_PER_S, STAMP: pyarrow.array(stamps, pyarrow.float64())}
+    columns |= {name: pyarrow.array(column.tolist()) for name, column in table.columns.items()}
+    with writing(file, "--output"):
+        parquet.write_table(pyarrow.table(columns), file)

@@ -1,0 +1,67 @@
+"""The target of a ground command: a flight computer on the network, or a mission to be flown."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from cfepy.ground import Dictionary, dictionary_of
+from cfepy.mission import find_script, is_node, read_mission
+from cfepy.status import UsageError
+
+_HOST = re.compile(r"((?:\d{1,3}\.){3}\d{1,3}|localhost)(?::(\d+))?|([\w.-]+):(\d+)")
+LAST_PORT = 65535
+
+
+class RemoteHost(NamedTuple):
+    """A computer on the network and a UDP port of it."""
+
+    name: str
+    port: int
+
+    def __str__(self) -> str:
+        return f"{self.name}:{self.port}"
+
+
+def host_of(text: str, port: int) -> RemoteHost | None:
+    """The computer that a word means; None when it looks like something else.
+
+    Args:
+        text: an IPv4 address or "localhost", with or without a port, or any name with one.
+        port: taken when the word has none.
+
+    Raises:
+        UsageError: the port is none.
+    """
+    match = _HOST.fullmatch(text)
+    if match is None:
+        return None
+    given = match[2] or match[4]
+    if given is not None and not 0 < int(given) <= LAST_PORT:
+        raise UsageError(f"{given} is no port; give 1 to {LAST_PORT}", file=text)
+    return RemoteHost(match[1] or match[3], port if given is None else int(given))
+
+
+def check_is_mission(text: str) -> None:
+    """What is no computer must be a mission.
+
+    Raises:
+        UsageError: it is neither.
+    """
+    try:
+        if not is_node(text):
+            find_script(text)
+    except UsageError as error:
+        if text in dictionary_of(None).commands:
+            raise UsageError("is a command; say first where to: a mission, or a computer", file=text) from None
+        what = "an address such as 192.168.1.5, localhost, or NAME:PORT"
+        raise UsageError(f"{error.text}; a computer is {what}", file=text) from None
+
+
+def dictionary_for(mission: str | None) -> Dictionary:
+    """The dictionary of a mission that was named on the command line; None takes all that cfepy brings along.
+
+    Raises:
+        UsageError: there is no such mission.
+    """
+    return dictionary_of(None if mission is None else read_mission(mission))

@@ -1,0 +1,299 @@
+"""`cfepy tlm`: show telemetry by name, as it arrives over UDP or as a mission sends it in virtual time.
+
+It is shown a line each, as JSON lines, or on a terminal as a table of the newest packet of each kind.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, Protocol, TextIO
+
+from cfepy.cli.failures import tell
+from cfepy.cli.ground.target import RemoteHost, dictionary_for, host_of
+from cfepy.cli.json_output import json_lines
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.options import plan_of, refuse_run_options
+from cfepy.cli.table import show_paragraph
+from cfepy.ground import CI_PORT, TO_PORT, Decoded, Dictionary, dictionary_of, packet_of, topic_id, topics_of
+from cfepy.io import udp
+from cfepy.mission import MissionSpec, PacketWatch, Seen, find_script, is_node
+from cfepy.msg import TLM_HEADER_SIZE, get_header_size, get_msg_id
+from cfepy.pilot import LiveRun, RunPlan, never_struck, takeoff
+from cfepy.rtos import Stopwatch
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_MS, NS_PER_S
+
+ANY_ADDRESS = "0.0.0.0"
+PIECE_NS = 100 * NS_PER_MS
+REFRESH_S = 0.2
+
+
+class Output(Protocol):
+    """Shows packets."""
+
+    def show(self, packet: bytes, at_ns: int) -> None:
+        """A packet, and when it was sent in virtual ns, or arrived in ns since the start."""
+
+    def refresh(self) -> None:
+        """Some time has gone by: what was shown may be drawn."""
+
+    def close(self) -> None:
+        """Nothing more comes."""
+
+
+@contextmanager
+def output_for(dictionary: Dictionary, arguments: argparse.Namespace, is_live: bool) -> Iterator[Output]:
+    """Around a flight or an hour at a port, what shows packets as the command line says.
+
+    Args:
+        dictionary: names the packets and their fields.
+        arguments: of the command line.
+        is_live: packets come as time goes by, so on a terminal a table is worth while.
+
+    Raises:
+        UsageError: the file for JSON cannot be written.
+    """
+    shows_table = is_live and sys.stdout.isatty()
+    with json_lines(arguments) as lines:
+        text = LiveTable(dictionary, sys.stdout) if shows_table else TextLines(dictionary, sys.stdout)
+        output = Several([text] if lines is None else [text, JsonLines(dictionary, lines)])
+        try:
+            yield output
+        finally:
+            output.close()
+
+
+class Several:
+    """Shows packets in more than one way.
+
+    Args:
+        outputs: the ways.
+    """
+
+    def __init__(self, outputs: Sequence[Output]) -> None:
+        self._outputs = outputs
+
+    def show(self, packet: bytes, at_ns: int) -> None:
+        """See `Output.show`."""
+        for each in self._outputs:
+            each.show(packet, at_ns)
+
+    def refresh(self) -> None:
+        """See `Output.refresh`."""
+        for each in self._outputs:
+            each.refresh()
+
+    def close(self) -> None:
+        """See `Output.close`."""
+        for each in self._outputs:
+            each.close()
+
+
+class TextLines:
+    """`2.450 CFE_ES_HK_TLM CommandCounter=0 ...`"""
+
+    def __init__(self, dictionary: Dictionary, stream: TextIO) -> None:
+        self._dictionary = dictionary
+        self._stream = stream
+
+    def show(self, packet: bytes, at_ns: int) -> None:
+        """See `Output.show`."""
+        decoded = self._dictionary.decode(packet)
+        show_paragraph(f"{at_ns / NS_PER_S:.3f} {decoded.name} {content(decoded, packet)}", self._stream)
+
+    def refresh(self) -> None:
+        """See `Output.refresh`."""
+        self._stream.flush()
+
+    def close(self) -> None:
+        """See `Output.close`."""
+
+
+class JsonLines(TextLines):
+    """An object with name, msg_id, sequence, time (spacecraft time, s), at (s) and values."""
+
+    def show(self, packet: bytes, at_ns: int) -> None:
+        """See `Output.show`."""
+        decoded = self._dictionary.decode(packet)
+        record: dict[str, Any] = {
+            "name": decoded.name,
+            "msg_id": decoded.msg_id,
+            "sequence": decoded.sequence,
+            "time": decoded.time_s,
+            "at": at_ns / NS_PER_S,
+            "values": decoded.values,
+        }
+        if decoded.problem:
+            record |= {"problem": decoded.problem, "packet": packet.hex()}
+        self._stream.write(json.dumps(record, default=bytes.hex) + "\n")
+
+
+class LiveTable:
+    """A row for each kind of packet: how many came, when the newest came, what is in it."""
+
+    def __init__(self, dictionary: Dictionary, stream: TextIO) -> None:
+        from rich.console import Console
+        from rich.live import Live
+
+        self._dictionary = dictionary
+        self._rows: dict[int, tuple[int, int, bytes]] = {}
+        self._is_new = True
+        self._live = Live(console=Console(file=stream), auto_refresh=False)
+        self._live.start()
+
+    def show(self, packet: bytes, at_ns: int) -> None:
+        """See `Output.show`."""
+        msg_id = packet[0] << 8 | packet[1]
+        count = self._rows[msg_id][0] if msg_id in self._rows else 0
+        self._rows[msg_id] = (count + 1, at_ns, packet)
+        self._is_new = True
+
+    def refresh(self) -> None:
+        """See `Output.refresh`."""
+        if self._is_new:
+            self._is_new = False
+            self._live.update(self._table(), refresh=True)
+
+    def close(self) -> None:
+        """See `Output.close`."""
+        self.refresh()
+        self._live.stop()
+
+    def _table(self) -> Any:
+        from rich import box
+        from rich.table import Table
+        from rich.text import Text
+
+        table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+        for column in ("packet", "count", "at"):
+            table.add_column(column, justify="left" if column == "packet" else "right", no_wrap=True)
+        table.add_column("content")
+        for _, (count, at_ns, packet) in sorted(self._rows.items()):
+            decoded = self._dictionary.decode(packet)
+            cells = (decoded.name, f"{count:,}", f"{at_ns / NS_PER_S:.1f}", content(decoded, packet))
+            table.add_row(*(Text(cell) for cell in cells))
+        return table
+
+
+def content(decoded: Decoded, packet: bytes) -> str:
+    """The fields of a packet, or its bytes when they are not known."""
+    return f"{packet.hex()} ({decoded.problem})" if decoded.problem else decoded.line()
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Show telemetry.
+
+    Returns:
+        The exit status: 1 when nothing came.
+
+    Raises:
+        UsageError: no such mission, packet or address.
+    """
+    words: list[str] = list(arguments.words)
+    host = host_of(words[0], TO_PORT) if words else None
+    if host is None and words and _is_mission(words[0]):
+        if arguments.enable is not None:
+            raise UsageError("a mission in virtual time sends to no computer; leave it out", field="--enable")
+        return _fly(plan_of(arguments, words[:1]), words[1:], arguments)
+    refuse_run_options(arguments, "is for a mission, and none is named; leave it out", but=["seconds"])
+    names = words if host is None else words[1:]
+    dictionary = dictionary_for(arguments.mission)
+    wanted = {dictionary.telemetry_of(name).msg_id for name in names}
+    return _listen(host or RemoteHost(ANY_ADDRESS, TO_PORT), dictionary, wanted, arguments)
+
+
+def _is_mission(word: str) -> bool:
+    try:
+        return is_node(word) or bool(find_script(word))
+    except UsageError:
+        return False
+
+
+# -- over UDP ----------------------------------------------------------------------------------------------------------
+def _listen(host: RemoteHost, dictionary: Dictionary, wanted: set[int], arguments: argparse.Namespace) -> int:
+    with udp.UdpListener(host.name, host.port) as listener:
+        if arguments.enable is not None:
+            _enable(arguments.enable, dictionary)
+        with output_for(dictionary, arguments, is_live=True) as output:
+            shown = _take(listener, wanted, output, arguments)
+    if shown:
+        return ENDED_WELL
+    hint = "" if arguments.enable is not None else "; TO_LAB sends nothing before it is asked to, see --enable"
+    return _nothing(f"no such packet came to port {host.port} in {arguments.seconds:g} s{hint}")
+
+
+def _nothing(text: str) -> int:
+    tell([text])
+    return FOUND_PROBLEMS
+
+
+def _take(listener: udp.UdpListener, wanted: set[int], output: Output, arguments: argparse.Namespace) -> int:
+    """Show packets until there were enough or the time is over; how many there were."""
+    watch = Stopwatch()
+    shown = 0
+    while shown != arguments.count:
+        elapsed_s = watch.elapsed_ns() / NS_PER_S
+        if arguments.seconds is not None and elapsed_s >= arguments.seconds:
+            break
+        rest_s = REFRESH_S if arguments.seconds is None else min(REFRESH_S, arguments.seconds - elapsed_s)
+        packet = listener.receive(rest_s)
+        if packet is not None and _is_telemetry(packet) and (not wanted or get_msg_id(packet) in wanted):
+            output.show(packet, watch.elapsed_ns())
+            shown += 1
+        output.refresh()
+    return shown
+
+
+def _is_telemetry(packet: bytes) -> bool:
+    """Whether a datagram can be a telemetry packet: anything may arrive at a port."""
+    return len(packet) >= TLM_HEADER_SIZE and get_header_size(packet) == TLM_HEADER_SIZE
+
+
+def _enable(address: str, dictionary: Dictionary) -> None:
+    """Ask TO_LAB to send to this computer."""
+    host = host_of(address, CI_PORT) or RemoteHost(address, CI_PORT)
+    packet = packet_of(dictionary.command("TO_LAB_OUTPUT_ENABLE"), [f"dest_IP={udp.own_address(host.name)}"])
+    if not udp.send(host.name, host.port, packet):
+        raise UsageError("nobody listens there, so TO_LAB cannot be asked to send", file=str(host))
+
+
+# -- in virtual time ---------------------------------------------------------------------------------------------------
+def _fly(plan: RunPlan, names: list[str], arguments: argparse.Namespace) -> int:
+    spec = plan.spec()
+    dictionary = dictionary_of(spec)
+    wanted = {_msg_id(spec, dictionary, name) for name in names}
+    seen: list[Seen] = []
+    watch = PacketWatch(seen.append, lambda msg_id: msg_id in wanted if wanted else msg_id & 0x1800 == 0x0800)
+    with (
+        output_for(dictionary, arguments, is_live=False) as output,
+        takeoff(plan, spec=spec, attachments=[watch]) as run,
+    ):
+        tell(run.notes)
+        shown = _show_flight(run, seen, output, dictionary, arguments.count)
+        problems, end_s = [*run.mission.record.deaths(), *never_struck(run.mission)], run.mission.kernel.now / NS_PER_S
+    tell(problems)
+    is_topic = any(name.startswith("/") for name in names)
+    hint = "; a topic is sent when somebody subscribes, `cfepy topic echo` shows it in any case" if is_topic else ""
+    return ENDED_WELL if shown else _nothing(f"no such packet was sent in {end_s:g} virtual seconds{hint}")
+
+
+def _msg_id(spec: MissionSpec, dictionary: Dictionary, name: str) -> int:
+    return topic_id(spec, name) if name.startswith("/") else dictionary.telemetry_of(name).msg_id
+
+
+def _show_flight(run: LiveRun, seen: list[Seen], output: Output, dictionary: Dictionary, most: int | None) -> int:
+    """Show packets until there were enough or the time is over; how many there were."""
+    shown = 0
+    while run.course.goes_on and shown != most:
+        run.run_until(run.mission.kernel.now + PIECE_NS)
+        dictionary.learn(topics_of(run.mission))
+        packets = seen if most is None else seen[: most - shown]
+        for each in packets:
+            output.show(each.packet, each.at_ns)
+        shown += len(packets)
+        seen.clear()
+    return shown

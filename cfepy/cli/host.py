@@ -1,0 +1,223 @@
+"""The host's side of a run that a person watches: a display, Ctrl-C, the wall clock, this computer's ports.
+
+The run is cut into pieces for that. The pieces change nothing in it: its trace is that of a run in one piece.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from cfepy.cli.display import Display, SilentDisplay
+from cfepy.cli.main import FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.options import LONGEST_S
+from cfepy.console import Console
+from cfepy.garbage import no_collection
+from cfepy.pilot import Host, LiveRun
+from cfepy.rtos import Pacer, Stopwatch
+from cfepy.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from cfepy.io import HostNetwork
+
+FIRST_PIECE_NS = 10_000_000
+LEAST_PIECE_NS = 1_000_000
+PATIENCE_NS = 2 * NS_PER_S  # wall time after the second Ctrl-C in which no other has an effect
+STDERR = 2
+SHORT_NS, LONG_NS = 80_000_000, 250_000_000  # wall time that a piece should take
+
+MakeDisplay = Callable[[float], Display]
+
+
+def _to_stderr(note: str) -> None:
+    print(f"cfepy: {note}", file=sys.stderr, flush=True)
+
+
+def silent(seconds: float) -> Display:
+    """A display that shows nothing of a run of so many virtual seconds."""
+    return SilentDisplay()
+
+
+class WatchedHost(Host):
+    """Brings the display up to date between the pieces of a run; use as a context manager around it.
+
+    Args:
+        interrupts: says whether Ctrl-C was pressed.
+        make_display: makes what shows the run, of its length in virtual seconds.
+        realtime: pace it to the wall clock, so many times as fast, with the mission's ports open; None runs as fast as
+            it goes.
+        ports: ports of this computer by those of the mission.
+        pause: called between the pieces.
+        note: gets what the user should know before anything runs.
+
+    Attributes:
+        console: for the mission; its lines go to the display.
+    """
+
+    owns_process = True
+
+    def __init__(
+        self,
+        interrupts: Interrupts,
+        make_display: MakeDisplay = silent,
+        *,
+        realtime: float | None = None,
+        ports: Mapping[int, int] | None = None,
+        pause: Callable[[], object] = lambda: None,
+        note: Callable[[str], object] = _to_stderr,
+    ) -> None:
+        self.console = Console(sink=self._line)
+        self.longest_s = None if realtime is None else LONGEST_S
+        self._interrupts = interrupts
+        self._make_display = make_display
+        self._display: Display = SilentDisplay()
+        self._realtime = realtime
+        self._ports = ports or {}
+        self._pause = pause
+        self._note = note
+        self._piece_ns = FIRST_PIECE_NS
+        self._watch = Stopwatch()
+        self._go: Callable[[int], None] = self._free_piece
+        self._bridge = contextlib.ExitStack()
+        self._network: HostNetwork | None = None
+
+    @property
+    def asked(self) -> bool:
+        """See `Host.asked`."""
+        return self._interrupts.asked
+
+    def __enter__(self) -> WatchedHost:
+        no_collection.__enter__()  # once around all pieces: no look for garbage between them
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        self._display.close()
+        no_collection.__exit__(*error)
+
+    def begin(self, run: LiveRun) -> None:
+        """See `Host.begin`; what the user should know is said before anything runs."""
+        super().begin(run)
+        for note in run.notes:
+            self._note(note)
+        self._display = self._make_display(run.course.until_ns / NS_PER_S)
+        self._watch = Stopwatch()
+        if self._realtime is not None:
+            self._connect()
+            self.pace(self._realtime)
+
+    def step(self, until_ns: int) -> None:
+        """See `Host.step`."""
+        self._go(until_ns)
+        self._pause()
+        self._display.update(self._mission)
+
+    def wall_ns(self) -> int:
+        """See `Host.wall_ns`; from when it began."""
+        return self._watch.elapsed_ns()
+
+    def take_break(self) -> bool:
+        """See `Host.take_break`. It may be an application that raised it: what it looks like is what it is."""
+        self._interrupts.asked = True
+        return True
+
+    def give_up(self, why: BaseException) -> None:
+        """See `Host.give_up`; there is no report, since the thread that would write it does not come back."""
+        with contextlib.suppress(Exception):
+            sys.stdout.flush()
+        os.write(STDERR, f"cfepy: {why}\ncfepy: it cannot be ended; gave up\n".encode(errors="replace"))
+        os._exit(INTERRUPTED if self.asked else FOUND_PROBLEMS)
+
+    def end(self) -> None:
+        """See `Host.end`."""
+        self._bridge.close()
+
+    def _line(self, text: str) -> None:
+        self._display.line(text)
+
+    def _free_piece(self, until_ns: int) -> None:
+        """As fast as it goes."""
+        self._run_until(min(until_ns, self._mission.kernel.now + self._piece_ns))
+
+    def pace(self, factor: float | None) -> None:
+        """From here on, so many times as fast as the wall clock; None is as fast as it goes."""
+        kernel, network = self._mission.kernel, self._network
+        if factor is None:
+            self._go = self._free_piece
+            return
+        run = self._run_until
+        paced = Pacer(kernel, run, factor) if network is None else Pacer(kernel, run, factor, network.wait)
+        # One that falls behind would have ever more to catch up with in one piece.
+        self._go = lambda until_ns: paced.step(min(until_ns, kernel.now + self._piece_ns))
+
+    def _connect(self) -> None:
+        """Real ports for the mission's; only a run in real time has them, and only it imports what they need."""
+        from cfepy.io import HostNetwork
+
+        self._network = self._bridge.enter_context(HostNetwork(self._mission, dict(self._ports), self._line))
+
+    def _run_until(self, until_ns: int) -> None:
+        """A piece of the run; its length goes after what takes some 80 to 250 ms of wall time."""
+        watch, length_ns = Stopwatch(), until_ns - self._mission.kernel.now
+        self._mission.run_until(until_ns)
+        wall_ns = watch.elapsed_ns()
+        if wall_ns > LONG_NS:
+            self._piece_ns = max(LEAST_PIECE_NS, self._piece_ns // 2)
+        elif wall_ns < SHORT_NS and length_ns >= self._piece_ns:
+            self._piece_ns *= 2
+        if self._network is not None:
+            self._network.exchange()
+
+
+class Interrupts:
+    """What Ctrl-C and SIGTERM do while a mission runs and ends; use as a context manager.
+
+    The first one sets `asked`, for the run to end at the next occasion. The second one raises KeyboardInterrupt, for a
+    task that gives no occasion. Any more are ignored for a while: they would disturb the ending of tasks. After that
+    the next one ends the process, for a task that nothing can end, such as one that waits in a C library.
+    """
+
+    def __init__(self) -> None:
+        self.asked = False
+        self._count = 0
+        self._before: dict[signal.Signals, Any] = {}
+        self._since_second = Stopwatch()
+
+    def __enter__(self) -> Interrupts:
+        try:
+            for each in (signal.SIGINT, signal.SIGTERM):
+                self._before[each] = signal.signal(each, self._on_signal)
+        except ValueError:
+            pass  # not the main thread: signals do not come here
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        for each, handler in self._before.items():
+            signal.signal(each, handler)
+
+    def _on_signal(self, *_: object) -> None:
+        self.asked = True
+        self._count += 1
+        if self._count == 2:
+            self._since_second = Stopwatch()
+            raise KeyboardInterrupt
+        if self._count > 2 and self._since_second.elapsed_ns() > PATIENCE_NS:
+            os.write(STDERR, b"cfepy: a task does not end; gave up\n")
+            os._exit(INTERRUPTED)
+
+
+@contextlib.contextmanager
+def terminable() -> Iterator[None]:
+    """Around what ends with Ctrl-C and tells then what it has found: SIGTERM does the same."""
+    try:
+        before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    except ValueError:  # not the main thread: signals do not come here
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -1,0 +1,153 @@
+"""`cfepy diff`: the first difference between two runs, and what else they differ in."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import sys
+from collections import deque
+from collections.abc import Mapping
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any, TextIO
+
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.run.compared_run import ComparedRun
+from cfepy.cli.run.compared_runs import FirstDifference, facts_of, failure, show_sides, started
+from cfepy.journal import Journal, differences, is_journal, read_journal
+from cfepy.pilot.determinism import RunEndedError, first_parting
+from cfepy.pilot.determinism_look import Look
+from cfepy.status import UsageError
+
+MOST_FIELDS = 12
+
+
+def compare_texts(one: str, other: str, before: int, stream: TextIO) -> bool:
+    """Compare two traces.
+
+    Args:
+        one: path of the first.
+        other: path of the second.
+        before: lines that are shown before the first that differs.
+        stream: where what was found is written.
+
+    Returns:
+        Whether they are alike.
+
+    Raises:
+        UsageError: one is no text.
+    """
+    latest: deque[str] = deque(maxlen=before)
+    count = 0
+    try:
+        with open(one, encoding="utf-8") as first, open(other, encoding="utf-8") as second:
+            for mine, theirs in zip_longest(first, second, fillvalue=""):
+                count += 1
+                if mine != theirs:
+                    _show(count, latest, {one: mine, other: theirs}, stream)
+                    return False
+                latest.append(mine)
+    except UnicodeDecodeError:
+        raise UsageError("one of the two is neither a journal nor a trace", file=f"{one}, {other}") from None
+    print(f"the same run: all {count:,} lines are alike", file=stream)
+    return True
+
+
+def _show(number: int, before: deque[str], sides: dict[str, str], stream: TextIO) -> None:
+    print(f"the first {number - 1:,} lines are alike; line {number:,} differs", file=stream)
+    if before:
+        print("\nbefore it, in both:", file=stream)
+        stream.writelines(f"  {line}" for line in before)
+    for path, line in sides.items():
+        print(f"\n{path}\n  {line.rstrip() or 'the run is over'}", file=stream)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compare the two runs that the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: a file is neither a journal nor a trace, or one of each kind.
+    """
+    paths = (arguments.one, arguments.other)
+    if arguments.lines < 0:
+        raise UsageError(f"is {arguments.lines}; give 0 or more", field="--lines")
+    kinds = {_is_journal(path) for path in paths}
+    if len(kinds) > 1:
+        raise UsageError("one is a journal and the other is not; give two journals, or two files of --trace")
+    if not kinds.pop():
+        return ENDED_WELL if compare_texts(*paths, arguments.lines, sys.stdout) else FOUND_PROBLEMS
+    return _Comparison(read_journal(paths[0]), read_journal(paths[1]), arguments.lines).run()
+
+
+def _is_journal(path: str) -> bool:
+    try:
+        return is_journal(path)
+    except OSError as error:
+        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+
+
+class _Comparison:
+    """Compares two journals by replaying both."""
+
+    def __init__(self, one: Journal, other: Journal, lines: int) -> None:
+        self._journals = (one, other)
+        self._lines = lines
+
+    def run(self) -> int:
+        """Compare, and say what was found; the exit status."""
+        one, other = self._journals
+        for line in differences(one, other):
+            print(line)
+        if one.end is not None and other.end is not None and one.end.trace == other.end.trace:
+            print(f"the same run: all {one.end.records:,} records are alike\ntrace: {one.end.trace}")
+            return ENDED_WELL
+        index, agreed = self._first_difference()
+        if index is None:
+            print(f"all {agreed:,} records that can be replayed are alike")
+            return self._without_difference()
+        facts = [self._facts(each, index) for each in self._journals]
+        looks = (Look.from_dict(facts[0]), Look.from_dict(facts[1]))
+        print(f"\nthe first {index:,} records are alike; record {index:,} differs (counted from 0)")
+        show_sides(FirstDifference((one.path, other.path), index, looks), sys.stdout)
+        _show_fields(facts[0]["fields"], facts[1]["fields"])
+        return FOUND_PROBLEMS
+
+    def _first_difference(self) -> tuple[int | None, int]:
+        with contextlib.ExitStack() as stack:
+            runs = [stack.enter_context(started(_plan(each))) for each in self._journals]
+            try:
+                parting, agreed = first_parting([run.reader for run in runs])
+            except RunEndedError:
+                raise failure(runs) from None
+            return (None if parting is None else parting.index), agreed
+
+    def _facts(self, journal: Journal, index: int) -> dict[str, Any]:
+        """What there is to see at a record."""
+        with started(_plan(journal, index, self._lines)) as run:
+            return facts_of(run)
+
+    def _without_difference(self) -> int:
+        """The replays are alike: then the journals are, or one of the replays is not what was recorded."""
+        ends = [journal.end for journal in self._journals]
+        if None in ends:
+            return ENDED_WELL
+        print("and yet the recorded runs were not: a replay is not what was recorded; `cfepy replay` says where")
+        return FOUND_PROBLEMS
+
+
+def _show_fields(one: Mapping[str, str], other: Mapping[str, str]) -> None:
+    """The fields in which two packets differ; of two that have hardly one in common, none."""
+    names = [name for name in one if name in other and one[name] != other[name]]
+    if names:
+        print("\nfields that differ:")
+    for name in names[:MOST_FIELDS]:
+        print(f"  {name}: {one[name]}, {other[name]}")
+    if len(names) > MOST_FIELDS:
+        print(f"  and {len(names) - MOST_FIELDS} more")
+
+
+def _plan(journal: Journal, look_at: int | None = None, lines: int = 0) -> ComparedRun:
+    return ComparedRun(journal=str(Path(journal.path).resolve()), look_at=look_at, lines=lines)

@@ -1,0 +1,175 @@
+"""`cfepy replay`: do the run of a journal again, and say whether it was the same."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, TextIO
+
+from cfepy.attachment import Attachment
+from cfepy.cli.failures import tell
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.ros.node import NodeView
+from cfepy.cli.ros.view import NodesView
+from cfepy.cli.run.run import View, fly_again
+from cfepy.cli.trace_text import TraceText
+from cfepy.journal import Journal, Replay, ReplayVerdict, read_journal, staged
+from cfepy.mission import Mission
+from cfepy.pilot import LAUNCH, NODE, STALLED, SUDDEN
+from cfepy.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from cfepy.debugger import Debugger
+
+MOST_LINES = 12
+_FILES = ("json", "save_files", "bag", "trace")  # what a replay leaves behind
+
+
+def show_info(journal: Journal, stream: TextIO) -> None:
+    """Write it down, a line for each thing."""
+    header, end = journal.header, journal.end
+    carried = sum(each.packed is not None for each in journal.files.values())
+    events = sum(len(pause.events) for pause in journal.pauses) + len(journal.answers)
+    rows = {
+        "command": journal.plan.command_line(),
+        "mission": f"{header.mission}, from {header.startup}",
+        "recorded with": ", ".join(f"{name} {version}" for name, version in header.versions.items()),
+        "on": f"{header.host.get('system', '?')} {header.host.get('machine', '?')}, in {header.cwd}",
+        "files": f"{len(journal.files)}, of which the journal carries {carried}; hash {journal.mission_hash}",
+        "from outside": f"{events} events" + (f", paced {header.paced:g} times real time" if header.paced else ""),
+        "schedule": f"{len(journal.decisions):,} of {journal.decided:,} decisions were not fifo's",
+        "goes to": f"{journal.known_until_ns / NS_PER_S:g} s of virtual time",
+        "end": "none: its process came to a sudden end" if end is None else end.reason,
+    }
+    if end is not None:
+        rows["records"] = f"{end.records:,}"
+        rows["trace"] = end.trace
+    for name, value in rows.items():
+        print(f"{name + ':':<14} {value}", file=stream)
+
+
+class RecordLines(Attachment):
+    """Makes text of records, with the names that the mission has for things."""
+
+    def __init__(self) -> None:
+        self._mission: Mission | None = None
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._mission = mission
+
+    def describe(self, records: Sequence[bytes], now_ns: int) -> list[str]:
+        """The first lines of them."""
+        text = TraceText()
+        text.now_ns, text.task = now_ns, "?"
+        if self._mission is not None:
+            text.watch(self._mission)
+        return list(text.lines(records[: 3 * MOST_LINES]))[:MOST_LINES]
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Replay the journal that the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: it is no journal, or its mission cannot run.
+    """
+    journal = read_journal(arguments.journal)
+    if arguments.info:
+        show_info(journal, sys.stdout)
+        return ENDED_WELL
+    if journal.end is None:
+        known = f"the journal has no end, which was sudden; it goes to {_seconds(journal.known_until_ns)}"
+        print(f"cfepy: {known}: --until SECONDS goes on", file=sys.stderr)
+    elif journal.end.reason in SUDDEN:
+        how = "a task did not give up the CPU" if journal.end.reason == STALLED else "Ctrl-C came"
+        text = f"{how}, and the run was broken off in the middle of a task; its end is not compared"
+        print(f"cfepy: {text}", file=sys.stderr)
+    with replaying(arguments, journal) as replay:
+        status = _fly(arguments, replay)
+        _tell(replay, sys.stderr)
+    if status == INTERRUPTED:
+        return INTERRUPTED
+    return ENDED_WELL if replay.verdict.same and replay.stall is None else FOUND_PROBLEMS
+
+
+@contextlib.contextmanager
+def replaying(arguments: argparse.Namespace, journal: Journal) -> Iterator[Replay]:
+    """Around the replay of a journal: what makes it one, and where its files are."""
+    lines = RecordLines()
+    for name in _FILES:  # the working directory is about to change
+        path = getattr(arguments, name)
+        setattr(arguments, name, None if path is None else os.path.abspath(path))
+    with staged(journal, arguments.from_disk) as stage:
+        for note in stage.notes:
+            print(f"cfepy: {note}", file=sys.stderr, flush=True)
+        begins_there = (arguments.step or arguments.pdb is not None) and not arguments.stops
+        until_ns = None if arguments.until is None or begins_there else round(arguments.until * NS_PER_S)
+        tasks = arguments.tasks if arguments.pdb is None else "thread"  # only a thread has a debugger of its own
+        replay = Replay(journal, stage, tasks=tasks, until_ns=until_ns, describe=lines.describe)
+        replay.attachments.append(lines)
+        yield replay
+
+
+def _fly(arguments: argparse.Namespace, replay: Replay) -> int:
+    """Fly the mission of a replay, and report as its command does; the exit status of that.
+
+    Args:
+        arguments: of `cfepy replay`.
+        replay: the replay; it has a verdict afterwards.
+    """
+    debugger: Debugger | None = None
+    view = _view(replay.plan.command, arguments)
+    if arguments.stops or arguments.step or arguments.pdb is not None:
+        from cfepy.cli.journal.debugging import DebugView, debugger_of
+
+        debugger, view = debugger_of(arguments, replay), DebugView(view)
+        replay.attachments.append(debugger)
+    status = fly_again(arguments, replay, view)
+    tell(debugger.missed if debugger is not None else ())
+    return status
+
+
+def _view(command: str, arguments: argparse.Namespace) -> View:
+    """What is shown of a run, as the command shows it that it was recorded with."""
+    if command == NODE:
+        return NodeView(arguments.quiet)
+    return NodesView(arguments.quiet) if command == LAUNCH and not arguments.console else View(arguments.quiet)
+
+
+def _tell(replay: Replay, stream: TextIO) -> None:
+    """Say whether it was the same run."""
+    sys.stdout.flush()
+    journal, verdict = replay.journal, replay.verdict
+    agreed = verdict.agreed
+    if verdict.difference is None:
+        print(f"cfepy: {_same(journal, verdict)}", file=stream)
+        if verdict.other_results:
+            print("cfepy: and yet the numbers of the report are others: compare them (--json)", file=stream)
+        return
+    recorded = verdict.difference.before
+    text = f"not the run of {journal.path}: the same up to record {agreed.records:,} at {_seconds(agreed.now_ns)}"
+    print(f"cfepy: {text}, not up to record {recorded.records:,} at {_seconds(recorded.now_ns)}", file=stream)
+    print("cfepy: this is what the replay did next:", file=stream)
+    for line in verdict.difference.lines or ("nothing more",):
+        print(f"  {line}", file=stream)
+    for reason in replay.stage.reasons:
+        print(f"cfepy: {reason}", file=stream)
+
+
+def _same(journal: Journal, verdict: ReplayVerdict) -> str:
+    if verdict.whole and not verdict.other_results:
+        return f"the same run as {journal.path}"
+    if verdict.whole:
+        return f"the same trace as {journal.path}"
+    where = f"record {verdict.agreed.records:,} at {_seconds(verdict.agreed.now_ns)}"
+    return f"the same run as {journal.path} up to {where}, where it was compared for the last time"
+
+
+def _seconds(time_ns: int) -> str:
+    return f"{time_ns / NS_PER_S:.6f} s"

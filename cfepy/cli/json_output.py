@@ -1,0 +1,109 @@
+"""`--json FILE|-`: what a command found, for programs, in a file or alone on standard output.
+
+A command prints its text and writes its JSON; with `-` the text goes nowhere, so that no command needs to ask. It is
+the same with every other option that takes `FILE|-`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import sys
+from collections.abc import Iterator
+from typing import Any, Literal, TextIO
+
+from cfepy.status import UsageError
+
+STDOUT = "-"
+_MAY_BE_STDOUT = ("json", "yaml", "output", "dot", "svg")
+
+
+@contextlib.contextmanager
+def standard_output(arguments: argparse.Namespace) -> Iterator[None]:
+    """Around a command: standard output is for the option that takes it with `-`, and only for it.
+
+    Args:
+        arguments: of the command line; gets `stdout`, the standard output.
+    """
+    arguments.stdout = sys.stdout
+    if not any(getattr(arguments, name, None) == STDOUT for name in _MAY_BE_STDOUT):
+        yield
+        return
+    with open(os.devnull, "w", encoding="utf-8", errors="replace") as nowhere, contextlib.redirect_stdout(nowhere):
+        yield
+
+
+def check_json(arguments: argparse.Namespace) -> None:
+    """That the file can be written is better known before a run than after it.
+
+    Raises:
+        UsageError: it cannot.
+    """
+    if arguments.json is not None:
+        with _opened(arguments.json, "a", "--json", arguments):
+            pass
+
+
+def write_json(arguments: argparse.Namespace, value: Any, indent: int | None = 2) -> None:
+    """Write what a command found, if the command line asks for it.
+
+    Args:
+        arguments: of the command line.
+        value: plain data.
+        indent: of a level; None for all in one line.
+
+    Raises:
+        UsageError: the file could not be written.
+    """
+    if arguments.json is None:
+        return
+    import json
+
+    write_text(arguments.json, json.dumps(value, indent=indent) + "\n", "--json", arguments)
+
+
+def write_text(file: str, text: str, option: str, arguments: argparse.Namespace) -> None:
+    """Write a text.
+
+    Args:
+        file: its path, or `-` for standard output.
+        text: the text.
+        option: that named the file.
+        arguments: of the command line.
+
+    Raises:
+        UsageError: it could not be written.
+    """
+    with _opened(file, "w", option, arguments) as stream:
+        stream.write(text)
+
+
+@contextlib.contextmanager
+def json_lines(arguments: argparse.Namespace) -> Iterator[TextIO | None]:
+    """Around what writes a line of JSON again and again: where to; None when the command line does not ask for it.
+
+    Raises:
+        UsageError: the file could not be written.
+    """
+    if arguments.json is None:
+        yield None
+        return
+    with _opened(arguments.json, "w", "--json", arguments) as stream:
+        yield stream
+
+
+@contextlib.contextmanager
+def _opened(file: str, mode: Literal["w", "a"], option: str, arguments: argparse.Namespace) -> Iterator[TextIO]:
+    if file == STDOUT:
+        stream: TextIO = arguments.stdout
+        yield stream
+        stream.flush()
+        return
+    try:
+        with open(file, mode, encoding="utf-8") as opened:
+            yield opened
+    except BrokenPipeError:  # of standard output, to which the caller writes as well
+        raise
+    except OSError as error:
+        raise UsageError(f"cannot be written: {error.strerror}", file=file, field=option) from None

@@ -1,0 +1,420 @@
+"""Options that commands share. `RUN_OPTIONS` has one for each attribute of a `RunPlan`, so every command that flies a
+mission understands all of them; `plan_of` makes the plan from the command line. This module imports argparse only.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from cfepy.cli.parser import MissionAction
+
+if TYPE_CHECKING:
+    from cfepy.pilot import RunPlan
+
+Options = argparse._ActionsContainer  # a parser, or a group of its options
+LONGEST_S = 1e9  # virtual time is a signed 64-bit number of ns
+SLOWEST, FASTEST = 1e-3, 1e9  # times real time
+HIGHEST_PORT = 65_535
+DEFAULT_SEED, DEFAULT_TASKS, DEFAULT_SCHEDULE, DEFAULT_STALL_S = 0, "thread", "fifo", 10.0
+
+MISSION_HELP = (
+    "a startup script, a folder with a startup.scr, a shipped mission's name, a launch file (or PACKAGE FILE), or "
+    "a node's .py"
+)
+FOR_HELP = "virtual seconds to run (default: 10, or as long as the script takes; until Ctrl-C with --realtime)"
+STATUS_HELP = """exit status:
+  0    the run ended well
+  1    an application died or could not be started, a mission's own application sent an ERROR or CRITICAL event,
+       or a failure reset the processor; with --script, a step of the script failed and nothing else counts;
+       with --check-determinism, two runs differed, and nothing else counts
+  2    bad usage, or a mission that cannot boot
+  130  ended by Ctrl-C or SIGTERM (the report is still printed)"""
+
+# -- what decides a run ------------------------------------------------------------------------------------------------
+
+
+def _add_launch_args(parser: Options) -> None:
+    parser.add_argument(
+        "--arg",
+        dest="launch_args",
+        action="append",
+        type=launch_argument_of,
+        default=[],
+        metavar="NAME:=VALUE",
+        help="an argument of the launch file, if it is one",
+    )
+
+
+def _add_seconds(parser: Options) -> None:
+    parser.add_argument("--for", dest="seconds", type=seconds_of, metavar="SECONDS", help=FOR_HELP)
+
+
+def _add_seed(parser: Options) -> None:
+    text = f"of everything random in the mission (default: {DEFAULT_SEED})"
+    parser.add_argument("--seed", type=int, default=DEFAULT_SEED, metavar="N", help=text)
+
+
+def _add_board(parser: Options) -> None:
+    parser.add_argument("--board", metavar="NAME|FILE", help="run on this board instead of the mission's own")
+
+
+def _add_tasks(parser: Options) -> None:
+    text = f"what tasks run on (default: {DEFAULT_TASKS})"
+    parser.add_argument("--tasks", choices=("thread", "greenlet"), default=DEFAULT_TASKS, help=text)
+
+
+def _add_schedule(parser: Options) -> None:
+    parser.add_argument(
+        "--schedule",
+        default=DEFAULT_SCHEDULE,
+        metavar="TEXT",
+        help="who runs next where there is a choice: fifo (default), random[:SEED], pct:SEED:DEPTH[:STEPS] or at:42=1 "
+        "(at decision 42 candidate 1), these with :any (of any priority) or :hold=500us (tasks may be held up)",
+    )
+
+
+def _add_script(parser: Options) -> None:
+    parser.add_argument("--script", metavar="FILE", help="send commands and check what comes of them, as a script says")
+
+
+def _add_stop_on_failure(parser: Options) -> None:
+    parser.add_argument(
+        "--stop-on-failure", action="store_true", help="end the run with the script's first failed step"
+    )
+
+
+def _add_faults(parser: Options) -> None:
+    parser.add_argument(
+        "--faults",
+        metavar="FILE|seed:N",
+        help="let faults happen: those of a plan, or random ones (seed:N, or seed:N:low, :medium, :high); "
+        "cfepy faults has more",
+    )
+
+
+def _add_play(parser: Options) -> None:
+    parser.add_argument("--play", metavar="BAG", help="play a bag's topics into the mission, as rosbag play does")
+
+
+def _add_stall(parser: Options) -> None:
+    parser.add_argument(
+        "--stall",
+        type=stall_of,
+        default=DEFAULT_STALL_S,
+        metavar="SECONDS",
+        help="end the run as failed when a task computes for so many seconds of wall time without giving up the CPU "
+        f"(default: {DEFAULT_STALL_S:g}; 0: never)",
+    )
+
+
+RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
+    "launch_args": _add_launch_args,
+    "seconds": _add_seconds,
+    "seed": _add_seed,
+    "board": _add_board,
+    "tasks": _add_tasks,
+    "schedule": _add_schedule,
+    "script": _add_script,
+    "stop_on_failure": _add_stop_on_failure,
+    "faults": _add_faults,
+    "play": _add_play,
+    "stall": _add_stall,
+}
+"""What adds the option for each attribute of `RunPlan`, but for the words and the command, which are what is run."""
+
+
+def add_run_options(parser: argparse.ArgumentParser, without: Sequence[str] = ()) -> None:
+    """What decides a run.
+
+    Args:
+        parser: of the command.
+        without: attributes of `RunPlan` that the command says in another way.
+    """
+    group = parser.add_argument_group("what decides the run")
+    for name, add in RUN_OPTIONS.items():
+        if name not in without:
+            add(group)
+
+
+def plan_of(arguments: argparse.Namespace, words: Sequence[str], command: str | None = None) -> RunPlan:
+    """The run that a command line asks for.
+
+    Args:
+        arguments: of the command line; what its command says in another way is as usual.
+        words: what follows the command; those of a launch are `launch_words`.
+        command: as of `RunPlan`; None is that of a mission, or of a node, if they begin with one.
+
+    Raises:
+        UsageError: the schedule is none.
+    """
+    from cfepy.mission import is_node
+    from cfepy.pilot import LAUNCH, NODE, RUN, RunPlan
+    from cfepy.rtos import Schedule
+
+    said = {name: getattr(arguments, name) for name in RUN_OPTIONS if hasattr(arguments, name)}
+    if "schedule" in said:
+        said["schedule"] = Schedule.parse(said["schedule"], said["seed"])
+    if "launch_args" in said:
+        said["launch_args"] = () if command == LAUNCH else tuple(said["launch_args"])
+    if command is None:
+        command = NODE if is_node(words[0]) else RUN
+    return RunPlan(tuple(words), command, **said)
+
+
+def launch_words(arguments: argparse.Namespace) -> list[str]:
+    """The words of a command that takes a launch file and its arguments as roslaunch does, or with `--arg`."""
+    return [*arguments.words, *(f"{name}:={value}" for name, value in arguments.launch_args)]
+
+
+def refuse_run_options(arguments: argparse.Namespace, why: str, but: Sequence[str] = ()) -> None:
+    """What is no mission to be flown takes no option of a run.
+
+    Args:
+        arguments: of the command line.
+        why: why not: the end of a sentence that the option begins.
+        but: attributes of `RunPlan` that mean something all the same.
+
+    Raises:
+        UsageError: there is such an option.
+    """
+    from cfepy.status import UsageError
+
+    for name, (option, usual) in _USUAL.items():
+        if name not in but and getattr(arguments, name, usual) not in (usual, []):
+            raise UsageError(why, field=option)
+
+
+_USUAL: Mapping[str, tuple[str, object]] = {
+    "launch_args": ("--arg", None),
+    "seconds": ("--for", None),
+    "seed": ("--seed", DEFAULT_SEED),
+    "board": ("--board", None),
+    "tasks": ("--tasks", DEFAULT_TASKS),
+    "schedule": ("--schedule", DEFAULT_SCHEDULE),
+    "script": ("--script", None),
+    "stop_on_failure": ("--stop-on-failure", False),
+    "faults": ("--faults", None),
+    "play": ("--play", None),
+    "stall": ("--stall", DEFAULT_STALL_S),
+}
+"""The option for each attribute, and its value when nothing is said."""
+
+
+def add_mission(parser: argparse.ArgumentParser, name: str = "mission", **said: Any) -> None:
+    """The mission that a command is about.
+
+    Args:
+        parser: of the command.
+        name: of the argument.
+        said: what the command says in another way, as for `ArgumentParser.add_argument`.
+    """
+    parser.add_argument(name, action=MissionAction, **{"metavar": "MISSION", "help": MISSION_HELP, **said})
+
+
+LOOKED_AT_HELP = f"a journal that `cfepy run --record FILE` wrote, or what is flown: {MISSION_HELP}"
+VALUES_HELP = (
+    "a topic or packet, with a field behind it or not: /joint_states.position[0], /odom/pose/pose/position/x, "
+    "CFE_ES_HK_TLM.CommandCounter, '/arm/*'"
+)
+LOOK_STATUS = """exit status:
+  0    it was written
+  1    it was written, but the replay was not the run of the journal
+  2    bad usage, or a mission that cannot boot
+  130  ended by Ctrl-C"""
+
+
+def add_looked_at(parser: argparse.ArgumentParser, with_bags: bool = False) -> None:
+    """The run that a command shows, and what decides it."""
+    what, metavar = ("a bag, " if with_bags else ""), ("RUN" if with_bags else "FILE|MISSION")
+    add_mission(parser, "source", metavar=metavar, help=what + LOOKED_AT_HELP)
+    add_run_options(parser)
+    add_until(parser, "the run, or the replay of the journal,")
+    add_from_disk(parser)
+
+
+def add_from_disk(parser: argparse.ArgumentParser) -> None:
+    """Which files the mission of a journal is made of."""
+    parser.add_argument(
+        "--from-disk",
+        action="store_true",
+        help="take the mission's files as they are on this computer now, not those that the journal carries",
+    )
+
+
+# -- what a run leaves behind, and what it has to do with this computer ------------------------------------------------
+
+
+def add_json(parser: Options, what: str) -> None:
+    """What a command finds, for programs; see `cfepy.cli.json_output`.
+
+    Args:
+        parser: of the command.
+        what: is written.
+    """
+    text = f"write {what} as JSON to a file, or with - to standard output and nothing else there"
+    parser.add_argument("--json", metavar="FILE|-", help=text)
+
+
+def add_output(parser: argparse.ArgumentParser, text: str, default: str | None = None) -> None:
+    """The file or folder that a command makes.
+
+    Args:
+        parser: of the command.
+        text: what it is without this option.
+        default: its value then.
+    """
+    parser.add_argument("-o", "--output", metavar="PATH", default=default, help=f"where to write (default: {text})")
+
+
+def add_drawing(parser: argparse.ArgumentParser, kind: str, text: str) -> None:
+    """A file that is drawn or is to be drawn by others.
+
+    Args:
+        parser: of the command.
+        kind: its ending, which the option has as its name.
+        text: what it does.
+    """
+    parser.add_argument(f"--{kind}", metavar="FILE|-", help=f"{text} to a file, or with - to standard output")
+
+
+def add_count(parser: argparse.ArgumentParser, what: str) -> None:
+    """After how many messages or packets a command ends."""
+    parser.add_argument("-n", "--count", type=count_of, metavar="N", help=f"end after so many {what}")
+
+
+def add_until(parser: argparse.ArgumentParser, text: str) -> None:
+    """Where to end.
+
+    Args:
+        parser: of the command.
+        text: what ends.
+    """
+    parser.add_argument("--until", type=seconds_of, metavar="SECONDS", help=f"{text} ends at this virtual time")
+
+
+def add_perfetto(parser: argparse.ArgumentParser) -> None:
+    """A file for Perfetto instead of a text."""
+    text = "write a trace in the Trace Event Format, which ui.perfetto.dev opens, to this file"
+    parser.add_argument("--perfetto", metavar="FILE", help=text)
+
+
+def add_from(parser: argparse.ArgumentParser) -> None:
+    """What is shown begins there."""
+    parser.add_argument("--from", dest="from_s", type=seconds_of, metavar="SECONDS", help="begin at this virtual time")
+
+
+def add_outputs(parser: argparse.ArgumentParser) -> None:
+    """What the run leaves behind, and what it shows."""
+    run = parser.add_argument_group("what the run leaves behind")
+    add_json(run, "the report's numbers")
+    run.add_argument(
+        "--save-files",
+        metavar="DIR",
+        help="at the end write the files that the mission wrote, such as /ram/x.log, to this folder, as DIR/ram/x.log",
+    )
+    run.add_argument("--bag", metavar="FILE", help="record the ROS topics of the run into a bag (rosbag record -a)")
+    run.add_argument(
+        "--bag-topics",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="TOPIC",
+        help="record only these, such as /odom or '/arm/*' (default: all)",
+    )
+    run.add_argument("--trace", metavar="FILE", help="write everything that happened to a file, a line each")
+    run.add_argument("--quiet", action="store_true", help="no console and no status line, only the report")
+
+
+def add_recording(parser: argparse.ArgumentParser) -> None:
+    """The journal of the run."""
+    run = parser.add_argument_group("the journal of the run")
+    run.add_argument(
+        "--record", metavar="FILE", help="write a journal, from which `cfepy replay FILE` does the same run again"
+    )
+    run.add_argument(
+        "--record-no-files",
+        action="store_true",
+        help="leave the mission's files out of the journal; it still has their checksums",
+    )
+
+
+def add_pace(parser: argparse.ArgumentParser) -> None:
+    """The wall clock, and the ports that are open meanwhile."""
+    pace = parser.add_argument_group("the wall clock and this computer")
+    pace.add_argument(
+        "--realtime",
+        nargs="?",
+        type=factor_of,
+        const=1.0,
+        metavar="FACTOR",
+        help="pace virtual time to the wall clock, FACTOR times as fast (default: 1); the mission's UDP and TCP ports "
+        "are then open on 127.0.0.1",
+    )
+    pace.add_argument(
+        "--port",
+        action="append",
+        type=ports_of,
+        default=[],
+        metavar="PORT=HERE",
+        help="open the mission's port PORT, or send to it, as port HERE of this computer; 0 takes any free one",
+    )
+
+
+# -- types of arguments ------------------------------------------------------------------------------------------------
+
+
+def seconds_of(text: str) -> float:
+    """A time in s, for argparse: a number of seconds, or one with a unit, such as 600ms or 500us."""
+    number, per_s = next(((text.removesuffix(unit), per_s) for unit, per_s in _UNITS if text.endswith(unit)), (text, 1))
+    try:
+        seconds = float(number) / per_s
+    except ValueError:
+        seconds = 0.0
+    if not 0 < seconds <= LONGEST_S:
+        text = f"{text!r} is not a number of seconds; give more than 0 to {LONGEST_S:g}, or a time such as 600ms"
+        raise argparse.ArgumentTypeError(text)
+    return seconds
+
+
+_UNITS = (("ns", 1_000_000_000), ("us", 1_000_000), ("ms", 1_000), ("s", 1))
+
+
+def stall_of(text: str) -> float:
+    """A time in s or 0, for argparse."""
+    return 0.0 if text in ("0", "0.0") else seconds_of(text)
+
+
+def count_of(text: str) -> int:
+    """How many, at least one, for argparse."""
+    if not text.isdecimal() or int(text) == 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of them; give 1 or more")
+    return int(text)
+
+
+def launch_argument_of(text: str) -> tuple[str, str]:
+    """An argument of a launch file and its value, for argparse."""
+    name, mark, value = text.partition(":=")
+    if not mark or not name:
+        raise argparse.ArgumentTypeError(f"{text!r} is not like rate:=20")
+    return name, value
+
+
+def factor_of(text: str) -> float:
+    """How many times as fast as the wall clock, for argparse."""
+    try:
+        factor = float(text)
+    except ValueError:
+        factor = 0.0
+    if not SLOWEST <= factor <= FASTEST:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a factor; give {SLOWEST:g} to {FASTEST:g}")
+    return factor
+
+
+def ports_of(text: str) -> tuple[int, int]:
+    """A port of the mission and what it is on this computer, for argparse."""
+    inside, _, here = text.partition("=")
+    if not (inside.isdecimal() and here.isdecimal() and 0 < int(inside) <= HIGHEST_PORT >= int(here)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not like 1234=0 or 1234=5000")
+    return int(inside), int(here)

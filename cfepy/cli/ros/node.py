@@ -1,0 +1,96 @@
+"""`cfepy node`: run one ROS node and show what it prints, as rosrun does."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from typing import TextIO
+
+from cfepy.cli.display import Display, SilentDisplay
+from cfepy.cli.failures import tell
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.options import plan_of
+from cfepy.cli.run.outputs import Outputs
+from cfepy.cli.run.run import View, fly_and_tell
+from cfepy.mission import Mission
+from cfepy.pilot import BOOT_S, NODE, Flown
+
+FAULT = "cfepy fault "  # how lines about faults begin
+_OWN_LINE = re.compile(r"\[[\w/]+\] (.*)", re.DOTALL)  # as the console has what nodes print
+
+
+class NodeDisplay:
+    """Shows what the node prints, at once and as it is, and nothing of the flight computer's console.
+
+    Args:
+        stream: where to.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def line(self, text: str) -> None:
+        """A line of the console."""
+        own = _OWN_LINE.fullmatch(text)
+        if own is not None:
+            print(own[1], file=self._stream, flush=True)
+        elif text.startswith(FAULT):
+            print(text, file=sys.stderr, flush=True)
+
+    def update(self, mission: Mission) -> None:
+        """Nothing is drawn between pieces of the run."""
+
+    def close(self) -> None:
+        """Every line is shown already."""
+
+
+class NodeView(View):
+    """See `View`; this one is of a single node, with its exit status."""
+
+    longer = "--for runs longer"
+
+    def display(self, seconds: float) -> Display:
+        """What shows the node's output."""
+        return SilentDisplay() if self.quiet else NodeDisplay(sys.stdout)
+
+    def end(self, flown: Flown, outputs: Outputs, longer: str) -> int:
+        """Print what went wrong apart from the node, and return the node's exit status, or that of the run's script."""
+        outputs.save_files(flown)
+        tell(flown.results.never_struck)
+        if flown.outcome is not None:
+            print(flown.outcome.text())
+        tell([] if flown.stall is None else [flown.stall])
+        if flown.interrupted:
+            return INTERRUPTED
+        if flown.stall is not None:
+            return FOUND_PROBLEMS
+        if flown.outcome is not None:
+            return ENDED_WELL if flown.outcome.ok else FOUND_PROBLEMS
+        return _status(flown, longer)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the node that the command line names.
+
+    Returns:
+        Its exit status.
+
+    Raises:
+        UsageError: there is no such node, or it cannot run like this.
+    """
+    return fly_and_tell(arguments, plan_of(arguments, arguments.words, NODE), NodeView(arguments.quiet))
+
+
+def _status(flown: Flown, longer: str) -> int:
+    """The node's exit status; what went wrong apart from the node is printed."""
+    mission, results = flown.mission, flown.results
+    app = next(iter(mission.spec.ros.nodes))
+    statuses = {} if mission.ros is None else mission.ros.monitor.statuses
+    if app in statuses:
+        return int(statuses[app]) & 0xFF
+    tell((*results.script_problems, *results.problems))
+    if results.script_problems or results.problems:
+        return FOUND_PROBLEMS
+    tell([f"the node still runs after {results.virtual_s - BOOT_S:g} virtual seconds; {longer}"])
+    return ENDED_WELL

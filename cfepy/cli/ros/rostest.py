@@ -1,0 +1,232 @@
+"""`cfepy rostest`: run the tests of a launch file, each with the file's nodes in a mission of its own."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import tempfile
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+from cfepy.cli.display import Display, PlainDisplay, SilentDisplay
+from cfepy.cli.failures import tell, writing
+from cfepy.cli.host import Interrupts, WatchedHost
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.options import launch_words
+from cfepy.cli.options import plan_of as run_plan_of
+from cfepy.cli.ros.view import NodesDisplay
+from cfepy.mission import launch_file, spec_of
+from cfepy.nodes import NodeConfig
+from cfepy.pilot import LAUNCH, Flown, fly
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+from rospy_shim.roslaunch.plan import LaunchPlan, PlannedTest, plan_of
+
+FAILURE, ERROR = "failure", "error"
+BOARD = "workstation"  # where the calls of nodes take time, as tests of nodes that never rest expect
+LAST_LINES = 25  # of what a test printed, when it leaves no results
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Why a test did not pass: `kind` is FAILURE or ERROR, `text` what it says."""
+
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One test; `seconds` is virtual time."""
+
+    suite: str
+    name: str
+    seconds: float = 0.0
+    problems: tuple[Problem, ...] = ()
+
+
+@dataclass(slots=True)
+class TestResults:
+    """What came of one or more suites; the counts are those that the suites give."""
+
+    tests: int = 0
+    errors: int = 0
+    failures: int = 0
+    cases: list[Case] = field(default_factory=list)
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing went wrong."""
+        return not self.errors and not self.failures
+
+    def add(self, other: TestResults) -> None:
+        """Count another one's tests too."""
+        self.tests += other.tests
+        self.errors += other.errors
+        self.failures += other.failures
+        self.cases += other.cases
+
+    def text(self) -> str:
+        """A line for each test with what went wrong, and a summary as rostest has it."""
+        lines = [line for case in self.cases for line in _case_lines(case)]
+        verdict = "SUCCESS" if self.passed else "FAIL"
+        counts = [f" * TESTS: {self.tests}", f" * ERRORS: {self.errors}", f" * FAILURES: {self.failures}"]
+        return "\n".join([f"[ROSTEST]{'-' * 71}", "", *lines, "", "SUMMARY", f" * RESULT: {verdict}", *counts])
+
+    def xml(self, name: str) -> bytes:
+        """All of it as one JUnit suite called `name`."""
+        counts = {"tests": str(self.tests), "errors": str(self.errors), "failures": str(self.failures)}
+        suite = ElementTree.Element("testsuite", {"name": name, **counts})
+        for case in self.cases:
+            seconds = f"{case.seconds:.3f}"
+            tag = ElementTree.SubElement(suite, "testcase", classname=case.suite, name=case.name, time=seconds)
+            for problem in case.problems:
+                ElementTree.SubElement(tag, problem.kind, message=problem.text)
+        text: bytes = ElementTree.tostring(suite, encoding="utf-8", xml_declaration=True)
+        return text
+
+
+def broken(suite: str, name: str, text: str, kind: str = ERROR) -> TestResults:
+    """The result of a test program that did not run as it should."""
+    case = Case(suite, name, problems=(Problem(kind, text),))
+    return TestResults(1, int(kind == ERROR), int(kind == FAILURE), [case])
+
+
+def read_results(file: Path, suite: str) -> TestResults:
+    """The results that a test program wrote.
+
+    Args:
+        file: the XML file.
+        suite: package and name of the test.
+
+    Raises:
+        OSError: there is no such file.
+        ValueError: it is no XML, or has no suite.
+    """
+    try:
+        root = ElementTree.parse(file).getroot()
+    except ElementTree.ParseError as error:
+        raise ValueError(f"is not XML: {error}") from None
+    results = TestResults()
+    suites = [tag for tag in root.iter("testsuite") if tag.find("testcase") is not None or tag is root]
+    if not suites and root.tag != "testsuites":
+        raise ValueError(f"has <{root.tag}> where <testsuite> should be")
+    for tag in suites:
+        tests, errors, failures = (int(tag.get(name, 0)) for name in ("tests", "errors", "failures"))
+        results.add(TestResults(tests, errors, failures, list(_cases(tag, suite))))
+    return results
+
+
+def _cases(tag: ElementTree.Element, suite: str) -> Iterable[Case]:
+    for each in tag.findall("testcase"):
+        problems = [Problem(kind, _said(found)) for kind in (ERROR, FAILURE) for found in each.findall(kind)]
+        name = f"{each.get('classname', '')}/{each.get('name', '')}".lstrip("/")
+        yield Case(suite, name, float(each.get("time") or 0), tuple(problems))
+
+
+def _said(tag: ElementTree.Element) -> str:
+    return tag.get("message") or (tag.text or "").strip()
+
+
+def _case_lines(case: Case) -> Iterable[str]:
+    name = f"[{case.suite}.{case.name}]"
+    if not case.problems:
+        yield f"{name}[passed]"
+    for problem in case.problems:
+        yield f"{name}[{problem.kind.upper()}]"
+        yield from (f"    {line}" for line in problem.text.splitlines())
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the tests of the launch file that the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: there is no such file, something in it is wrong, or it has no test.
+    """
+    file, args = launch_file(launch_words(arguments))
+    with tempfile.TemporaryDirectory() as folder, Interrupts() as interrupts:
+        plan = plan_of(file, args, dict(os.environ), cwd=Path.cwd(), results=Path(folder))
+        if not plan.tests:
+            raise UsageError("has no <test>; `cfepy launch` runs what it has", file=file)
+        tell(plan.notes)
+        results = TestResults()
+        for test in plan.tests:
+            if not interrupts.asked:
+                results.add(_Runner(file, plan, arguments, interrupts).run(test))
+    print(results.text())
+    if arguments.results is not None:
+        with writing(arguments.results, "--results"):
+            Path(arguments.results).write_bytes(results.xml(file.stem))
+    if interrupts.asked:
+        return INTERRUPTED
+    return ENDED_WELL if results.passed else FOUND_PROBLEMS
+
+
+class _Runner:
+    """Runs the tests of one file.
+
+    Args:
+        file: the launch file.
+        plan: what is in it (`rospy_shim.roslaunch.plan.LaunchPlan`).
+        arguments: of the command line.
+        interrupts: says whether the user pressed Ctrl-C.
+    """
+
+    def __init__(self, file: Path, plan: LaunchPlan, arguments: argparse.Namespace, interrupts: Interrupts) -> None:
+        self._file = file
+        self._plan = plan
+        self._arguments = arguments
+        self._interrupts = interrupts
+
+    def run(self, test: PlannedTest) -> TestResults:
+        """Run a test (`rospy_shim.roslaunch.plan.PlannedTest`), again and again as long as it fails and may."""
+        results = self._once(test)
+        for _ in range(test.retry):
+            if results.passed or self._interrupts.asked:
+                break
+            test.results.unlink(missing_ok=True)
+            results = self._once(test)
+        return results
+
+    def _once(self, test: PlannedTest) -> TestResults:
+        suite = f"{test.package}.{test.test_name}"
+        if test.node is None:
+            return broken(suite, "can_run_here", test.problem)
+        node, seconds = test.node, test.time_limit_ns / NS_PER_S
+        run = replace(run_plan_of(self._arguments, [str(self._file)], LAUNCH), seconds=seconds)
+        nodes = {**self._plan.nodes, node.app: node}
+        spec = run.with_played_bag(replace(spec_of(self._file, nodes, self._plan.params), board=BOARD))
+        with WatchedHost(self._interrupts, self._display) as host:
+            flown = fly(run, spec=spec, console=host.console, host=host)
+        tell(flown.results.never_struck)
+        return self._judged(test, node, suite, flown)
+
+    def _display(self, seconds: float) -> Display:
+        return NodesDisplay(PlainDisplay(sys.stdout)) if self._arguments.text else SilentDisplay()
+
+    def _judged(self, test: PlannedTest, node: NodeConfig, suite: str, flown: Flown) -> TestResults:
+        """What the test wrote; without that, why it wrote nothing."""
+        ros = flown.mission.ros
+        if ros is None or node.app not in ros.monitor.statuses:
+            limit = f"{test.time_limit_ns / NS_PER_S:g} virtual seconds"
+            text = f"did not end in its {limit}; give it more (time-limit), or look why"
+            return broken(suite, "time_limit", f"{text}{_last_lines(node, flown)}", FAILURE)
+        try:
+            return read_results(test.results, suite)
+        except (OSError, ValueError) as error:
+            why = "wrote no results" if isinstance(error, OSError) else f"wrote results that cannot be read: {error}"
+            status = ros.monitor.statuses[node.app]
+            return broken(suite, "test_ran", f"the test node {why}, exit status {status}{_last_lines(node, flown)}")
+
+
+def _last_lines(node: NodeConfig, flown: Flown) -> str:
+    """The end of what the test node printed."""
+    begins = f"[{node.name}] "
+    lines = [line.removeprefix(begins) for line in flown.mission.console.lines if line.startswith(begins)]
+    return "".join(f"\n| {line}" for line in lines[-LAST_LINES:])

@@ -1,0 +1,91 @@
+"""`cfepy service`: rosservice's answers and calls, on a mission that is flown for them."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import Any
+
+from cfepy.cli.json_output import write_json
+from cfepy.cli.looked_at import flight_plan
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.ros.source import FlightSource
+from cfepy.console import Console
+from cfepy.ground import GroundConsole, is_bag, with_ground_node
+from cfepy.status import UsageError
+from cfepy.suggestions import did_you_mean
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do what the command line says.
+
+    Returns:
+        The exit status: 1 when nothing was found, or the call failed.
+
+    Raises:
+        UsageError: no such mission or service.
+    """
+    if is_bag(arguments.source):
+        raise UsageError("is a bag, which has no services; give a mission", file=arguments.source)
+    if arguments.action == "call":
+        return _call(arguments)
+    services = _services(arguments)
+    return _list(services, arguments) if arguments.action == "list" else _tell(services, arguments)
+
+
+def _services(arguments: argparse.Namespace) -> dict[str, dict[str, Any]]:
+    """What is offered when the mission has flown, by name."""
+    with FlightSource(flight_plan(arguments)) as source:
+        ros = source.fly().ros
+        found = {} if ros is None else dict(sorted(ros.graph.services.items()))
+        return {name: _described(name, entry.service) for name, entry in found.items()}
+
+
+def _described(name: str, service: Any) -> dict[str, Any]:
+    kind = service.service_class
+    fields = list(kind._request_class.__slots__)
+    return {"service": name, "node": service.node.names.name, "uri": service.uri, "type": kind._type, "args": fields}
+
+
+def _list(services: dict[str, dict[str, Any]], arguments: argparse.Namespace) -> int:
+    start = arguments.namespace.rstrip("/") + "/" if arguments.namespace else ""
+    chosen = [each for name, each in services.items() if name.startswith(start)]
+    write_json(arguments, chosen)
+    sys.stdout.writelines(f"{each['service']}\n" for each in chosen)
+    if not chosen:
+        sys.stdout.flush()
+        print(f"cfepy: no service in {start or '/'} in {arguments.source}", file=sys.stderr)
+    return ENDED_WELL if chosen else FOUND_PROBLEMS
+
+
+def _tell(services: dict[str, dict[str, Any]], arguments: argparse.Namespace) -> int:
+    name = arguments.service if arguments.service.startswith("/") else f"/{arguments.service}"
+    if name not in services:
+        raise UsageError(f"Unknown service [{name}]{did_you_mean(name, services, before='; ')}", file=arguments.source)
+    found = services[name]
+    write_json(arguments, found)
+    if arguments.action == "type":
+        print(found["type"])
+    elif arguments.action == "args":
+        print(" ".join(found["args"]))
+    else:
+        print(f"Node: {found['node']}\nURI: {found['uri']}\nType: {found['type']}\nArgs: {' '.join(found['args'])}")
+    return ENDED_WELL
+
+
+def _call(arguments: argparse.Namespace) -> int:
+    name = arguments.service if arguments.service.startswith("/") else f"/{arguments.service}"
+    plan = flight_plan(arguments)
+    spec = with_ground_node(plan.spec(), "ground_call", [name, arguments.values, arguments.at])
+    ground = GroundConsole()
+    with FlightSource(plan, spec, Console(sink=ground.line)) as source:
+        source.fly(lambda: bool(ground.said))
+    answer = ground.said[0] if ground.said else {"error": f"no answer from {name} until the run was over; see --for"}
+    write_json(arguments, {"service": name, **{key: answer[key] for key in answer if key != "text"}}, indent=None)
+    if "error" not in answer:
+        print(answer["text"])
+    sys.stdout.flush()
+    if "error" in answer:
+        print(f"cfepy: {answer['error']}", file=sys.stderr)
+        return FOUND_PROBLEMS
+    return ENDED_WELL

@@ -1,0 +1,89 @@
+"""The commands run, check, new and boards; here are their options.
+
+A command belongs here when it flies a mission once and reports the results, or makes or checks a mission before it
+flies. This module imports argparse only, for a quick start.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from cfepy.cli.options import (
+    RUN_OPTIONS,
+    STATUS_HELP,
+    add_json,
+    add_mission,
+    add_outputs,
+    add_pace,
+    add_recording,
+    add_run_options,
+)
+
+DEFAULT_RUNS, MOST_RUNS = 3, 64
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add these commands to the parser of `cfepy`."""
+    _add_run(commands)
+    _add_check(commands)
+    _add_new(commands)
+    boards = commands.add_parser("boards", help="list the boards and their main numbers")
+    boards.set_defaults(module="run.boards")
+
+
+def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    run = commands.add_parser(
+        "run",
+        help="run a mission",
+        description="Run a mission in virtual time, and report what happened.",
+        epilog=STATUS_HELP,
+    )
+    add_mission(run)
+    add_run_options(run)
+    add_pace(run)
+    add_outputs(run)
+    add_recording(run)
+    run.add_argument(
+        "--check-determinism",
+        nargs="?",
+        type=_runs_of,
+        const=DEFAULT_RUNS,
+        metavar="N",
+        help="run the mission N times side by side, each time under another hash seed and both on threads and on "
+        f"greenlets, and show the first thing that differs (default: {DEFAULT_RUNS} runs)",
+    )
+    run.set_defaults(module="run.run")
+
+
+def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    check = commands.add_parser(
+        "check",
+        help="find everything that is wrong with a mission before it boots",
+        description="Find what is wrong with a mission, a launch file or a node, and with all that it consists of; "
+        "nothing of it is executed.",
+        epilog="exit status: 0 nothing found but warnings, 1 something is wrong, 2 no such mission",
+    )
+    add_mission(check)
+    RUN_OPTIONS["launch_args"](check)
+    check.add_argument("--board", metavar="NAME|FILE", help="check against this board instead of the mission's own")
+    check.add_argument(
+        "--faults",
+        metavar="FILE|seed:N",
+        help="check a fault plan against the mission, too, which flies for 3 virtual seconds for that",
+    )
+    add_json(check, "what was found")
+    check.set_defaults(module="run.check")
+
+
+def _add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    new = commands.add_parser("new", help="start an application or a mission from a skeleton that runs at once")
+    new.add_argument("kind", choices=("app", "mission"), help="what to start")
+    new.add_argument("name", metavar="NAME", help="also the name of the folder that is made")
+    new.set_defaults(module="run.new")
+
+
+def _runs_of(text: str) -> int:
+    """How many runs to compare, for argparse."""
+    if not text.isdecimal() or not 2 <= int(text) <= MOST_RUNS:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of runs; give 2 to {MOST_RUNS}")
+    return int(text)

@@ -1,0 +1,78 @@
+"""`cfepy check`: print everything that is wrong with a mission, a line each: `file:line: what; what to do`.
+
+Warnings stand behind the errors, as `file:line: warning: what`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+
+from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.mission import read_mission
+from cfepy.pilot.check import MissionProblem, check_mission, problem_of
+from cfepy.status import UsageError
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Check the mission that the command line names.
+
+    Returns:
+        The exit status: 0 when nothing but warnings was found.
+
+    Raises:
+        UsageError: there is no such mission, or the JSON cannot be written.
+    """
+    check_json(arguments)
+    findings = check_mission(arguments.mission, arguments.board, dict(arguments.launch_args))
+    if arguments.faults is not None:
+        findings += _check_faults(arguments, flies=all(finding.is_warning for finding in findings))
+    errors = [finding for finding in findings if not finding.is_warning]
+    warnings = [finding for finding in findings if finding.is_warning]
+    for finding in (*errors, *warnings):
+        print(_line(finding))
+    counts = [_counted(len(errors), "problem"), _counted(len(warnings), "warning")]
+    print(f"{', '.join(filter(None, counts)) or 'nothing'} found")
+    write_json(arguments, _as_json(errors, warnings))
+    return FOUND_PROBLEMS if errors else ENDED_WELL
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}{'s' if number > 1 else ''}" if number else ""
+
+
+def _as_json(errors: list[MissionProblem], warnings: list[MissionProblem]) -> dict[str, object]:
+    found = [
+        {"file": str(each.file), "line": each.line or None, "text": each.text, "is_warning": each.is_warning}
+        for each in (*errors, *warnings)
+    ]
+    return {"problems": len(errors), "warnings": len(warnings), "found": found}
+
+
+def _check_faults(arguments: argparse.Namespace, flies: bool) -> list[MissionProblem]:
+    """What is wrong with a fault plan; a mission that cannot boot is not searched for targets."""
+    from cfepy.faults import check_plan, look_at, plan_of, read_plan
+
+    try:
+        spec = read_mission(arguments.mission, dict(arguments.launch_args))
+        plan = plan_of(arguments.faults, spec) if flies else read_plan(arguments.faults)
+        errors = check_plan(plan, spec, look_at(spec) if flies else None)
+    except UsageError as error:
+        errors = [error]
+    return [problem_of(error, Path(arguments.faults)) for error in errors]
+
+
+def _line(finding: MissionProblem) -> str:
+    place = _shown(finding.file)
+    text = ("warning: " if finding.is_warning else "") + finding.text.replace(f"{Path.cwd()}{os.sep}", "")
+    return f"{place}:{finding.line}: {text}" if finding.line else f"{place}: {text}"
+
+
+def _shown(path: Path) -> str:
+    """A path as short as it can be named from here."""
+    try:
+        return os.path.relpath(path) if path.is_relative_to(Path.cwd()) else str(path)
+    except OSError:
+        return str(path)

@@ -1,0 +1,139 @@
+"""`cfepy run --check-determinism`: the mission is flown several times, and the first difference is printed.
+
+The runs differ in what must not matter: the hash seed of the process, the addresses of its objects, the kind of tasks.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import dataclasses
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from typing import Any
+
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.run.compared_run import ComparedRun
+from cfepy.cli.run.compared_runs import FirstDifference, RunInProcess, facts_of, failure, show, started
+from cfepy.pilot import RunPlan
+from cfepy.pilot.determinism import RunEndedError, first_parting
+from cfepy.pilot.determinism_look import Look
+from cfepy.status import UsageError
+
+ATTEMPTS = 3  # runs that follow addresses or the host do not part at the same record twice
+_SETS = """with `ordered_sets: true` in the mission file these two agree: somewhere the order of a set decides;
+sort it in the code (for name in sorted(names)), or switch ordered sets on"""
+_OUTSIDE = """even two runs alike differ: something outside decides, such as the address of an object (id(), the order
+of objects in a frozenset), a file that changes, or a library written in C"""
+_HASHES = """it hangs on PYTHONHASHSEED, but ordered sets do not cure it: hash() of a text, a frozenset, a set that a
+library makes (d.keys() & e)"""
+_TASKS = "it hangs on --tasks; threads and greenlets must not differ, so this is a fault of cfepy: please report it"
+_NOT_TOGETHER = ("realtime", "json", "save_files", "trace", "record", "bag")
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """How a run differs from the others: PYTHONHASHSEED and `--tasks`."""
+
+    hash_seed: int
+    tasks: str
+
+    def __str__(self) -> str:
+        return f"PYTHONHASHSEED={self.hash_seed} --tasks {self.tasks}"
+
+
+def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
+    """Run and compare.
+
+    Args:
+        arguments: of `cfepy run`.
+        plan: what is run.
+
+    Returns:
+        The exit status: 0 when all runs made one trace, 1 otherwise.
+
+    Raises:
+        UsageError: the mission cannot run, or an option does not go with this one.
+    """
+    for name in _NOT_TOGETHER:
+        if getattr(arguments, name) is not None:
+            raise UsageError("does not go with --check-determinism", field=f"--{name.replace('_', '-')}")
+    variants = _variants(arguments.check_determinism, plan.tasks)
+    print(f"{len(variants)} runs: {'; '.join(map(str, variants))}", flush=True)
+    runs = Runs(plan)
+    for _ in range(ATTEMPTS):
+        found, facts = runs.compare(variants)
+        if found is None:
+            print(f"all made the same {facts['records']} records\ntrace: {facts['digest']}")
+            return ENDED_WELL
+        one, other, index = found
+        looks = (runs.look(one, index), runs.look(other, index))
+        if _is_first_difference(*looks):
+            show(FirstDifference((str(one), str(other)), index, looks), runs.cause(one, other), sys.stdout)
+            return FOUND_PROBLEMS
+    print(f"not deterministic: record {index} differs, but never in the same way twice; something outside the runs")
+    print("decides: a file that changes, an address (id()), a C library")
+    return FOUND_PROBLEMS
+
+
+def _variants(count: int, tasks: str) -> list[Variant]:
+    kinds = [tasks]
+    if find_spec("greenlet") is not None:
+        kinds.append("thread" if tasks == "greenlet" else "greenlet")
+    return [Variant(number, kinds[number % len(kinds)]) for number in range(count)]
+
+
+def _is_first_difference(one: Look, other: Look) -> bool:
+    return one.before == other.before and one.record != other.record
+
+
+class Runs:
+    """Makes runs of one mission.
+
+    Args:
+        plan: what is run.
+    """
+
+    def __init__(self, plan: RunPlan) -> None:
+        self._plan = plan
+
+    def compare(
+        self, variants: Sequence[Variant], ordered_sets: bool = False
+    ) -> tuple[tuple[Variant, Variant, int] | None, dict[str, Any]]:
+        """Run side by side.
+
+        Returns:
+            Two variants that part and the number of the record, None when there are none such; how the runs ended.
+        """
+        with contextlib.ExitStack() as stack:
+            runs = [stack.enter_context(self._started(each, ordered_sets=ordered_sets)) for each in variants]
+            try:
+                parting, agreed = first_parting([run.reader for run in runs])
+            except RunEndedError:
+                raise failure(runs) from None
+            if parting is not None:
+                return (variants[0], variants[parting.run], parting.index), {}
+            return None, {**(runs[0].reader.facts or {}), "records": agreed}
+
+    def look(self, variant: Variant, index: int) -> Look:
+        """Run again, up to a record, and look at it."""
+        with self._started(variant, look_at=index) as run:
+            return Look.from_dict(facts_of(run))
+
+    def cause(self, one: Variant, other: Variant) -> str:
+        """What the difference hangs on, found out by running again."""
+        if self.compare([one, other, one, other], ordered_sets=True)[0] is None:
+            return _SETS
+        if self.compare([one, one])[0] is not None:
+            return _OUTSIDE
+        if self.compare([one, dataclasses.replace(one, hash_seed=other.hash_seed)])[0] is not None:
+            return _HASHES
+        return _TASKS
+
+    def _started(
+        self, variant: Variant, look_at: int | None = None, ordered_sets: bool = False
+    ) -> contextlib.AbstractContextManager[RunInProcess]:
+        plan = dataclasses.replace(self._plan, tasks=variant.tasks)
+        return started(ComparedRun(plan, look_at=look_at, ordered_sets=ordered_sets), variant.hash_seed)

@@ -1,0 +1,209 @@
+"""A run in a process of its own whose trace another process reads: what `--check-determinism` starts.
+
+`python -m cfepy.cli.run.compared_run RUN`, where RUN is a `ComparedRun` as JSON. It writes to the pipe: all
+records, or, with `look_at`, a description of one of them.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import sys
+from dataclasses import dataclass
+from typing import NoReturn
+
+from cfepy.attachment import Recorder
+from cfepy.cli.host import Interrupts, WatchedHost
+from cfepy.cli.main import BAD_USAGE, ENDED_WELL
+from cfepy.cli.trace_text import TraceText
+from cfepy.ground import dictionary_of, flat, library_of, plain, text_of, topics_of
+from cfepy.journal import Replay, read_journal, staged
+from cfepy.mission import Mission, MissionSpec
+from cfepy.pilot import RunPlan, fly
+from cfepy.pilot.determinism import ComparedTrace, RecordWriter, comparing
+from cfepy.pilot.determinism_look import Look, LookingTrace
+from cfepy.sb import SoftwareBus
+from cfepy.status import CfeError, UsageError
+from cfepy.trace import UNSENT
+
+_FIRST_MARK = 0x20  # smaller first bytes begin packets
+LINES = 6  # records that are shown before the one that is looked at
+
+
+def fields_of(record: bytes, mission: Mission) -> dict[str, str]:
+    """Name and value of each field; none for a record of another kind, or of a type that is not known."""
+    if record[:1] == UNSENT:
+        return _of_message(record, mission)
+    if not record or record[0] >= _FIRST_MARK:
+        return {}
+    dictionary = dictionary_of(mission.spec)
+    dictionary.learn(topics_of(mission))
+    try:
+        decoded = dictionary.decode(record)
+    except CfeError:
+        return {}
+    time = {} if decoded.time_s is None else {"time of the header": f"{decoded.time_s:.6f}"}
+    return {"sequence": str(decoded.sequence), **time, **_texts(decoded.values)}
+
+
+def _of_message(record: bytes, mission: Mission) -> dict[str, str]:
+    """The facts of a message without a subscriber."""
+    name, _, data = record[1:].partition(b"\0")
+    topic = next((each for each in topics_of(mission) if each.name == name.decode()), None)
+    if topic is None or not topic.type:
+        return {}
+    try:
+        return _texts(plain(library_of(topic).message_class(topic.type)().deserialize(data)))
+    except Exception:  # whatever the generated code raises for bytes that are no such message
+        return {}
+
+
+def _texts(values: object) -> dict[str, str]:
+    return {path: text_of(value) for path, value in flat(values).items()}
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedRun:
+    """A run whose records another process reads, and what it is to write of them.
+
+    Attributes:
+        plan: the run; None for that of the journal.
+        journal: path of a journal that is replayed; None for none.
+        pipe: descriptor to write to.
+        look_at: number of the record to look at; None writes all records.
+        ordered_sets: all nodes get ordered sets, whatever the mission file says.
+        lines: records that are shown before the one that is looked at.
+    """
+
+    plan: RunPlan | None = None
+    journal: str | None = None
+    pipe: int = -1
+    look_at: int | None = None
+    ordered_sets: bool = False
+    lines: int = LINES
+
+    def to_json(self) -> str:
+        """Itself as text, for the command line of the process."""
+        plain = {each.name: getattr(self, each.name) for each in dataclasses.fields(self)}
+        return json.dumps({**plain, "plan": None if self.plan is None else self.plan.to_dict()})
+
+    @classmethod
+    def from_json(cls, text: str) -> ComparedRun:
+        """The other way round."""
+        plain = json.loads(text)
+        return cls(**{**plain, "plan": None if plain["plan"] is None else RunPlan.from_dict(plain["plan"])})
+
+
+class RecordPipe(Recorder):
+    """The recorder of a run that writes all records."""
+
+    def __init__(self, writer: RecordWriter) -> None:
+        self.trace = ComparedTrace(writer.write)
+        self._writer = writer
+
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
+        if kind is None:
+            self._writer.end({"digest": self.trace.digest()})
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """A bus that also records messages without a subscriber."""
+        return comparing(base, self.trace)
+
+
+class Lookout(Recorder):
+    """The recorder of a run that looks at one record, and ends the process then and there.
+
+    Args:
+        writer: gets what was seen.
+        index: number of the record.
+        lines: how many records before it are shown.
+        root: folder in which the files of a journal were unpacked for this run, if they were.
+    """
+
+    def __init__(self, writer: RecordWriter, index: int, lines: int, root: str = "") -> None:
+        self._before = lines
+        self._root = root
+        self.trace = self._looking = LookingTrace(index, self._lines, self._seen)
+        self._writer = writer
+        self._text = TraceText()
+        self._mission: Mission | None = None
+
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
+        if kind is None:
+            self._seen(self._looking.look(b""))
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `RecordPipe.bus`; the two must make the same records."""
+        return comparing(base, self.trace)
+
+    def begin(self, mission: Mission) -> None:
+        """Learn the names in this mission."""
+        self._mission = mission
+        self._text.watch(mission)
+
+    def _lines(self, records: list[bytes]) -> list[str]:
+        return list(self._text.lines(records))[-self._before - 1 :]
+
+    def _seen(self, look: Look) -> NoReturn:
+        """It is called from deep inside the simulation, where a run cannot be given up in an orderly way."""
+        fields = {} if self._mission is None else fields_of(look.record, self._mission)
+        self._writer.end({**look.without_root(self._root).to_dict(), "fields": fields})
+        os._exit(ENDED_WELL)
+
+
+def run(asked: ComparedRun) -> None:
+    """Fly the run that the command line describes.
+
+    Raises:
+        UsageError: the mission cannot run like this.
+    """
+    if asked.plan is None:
+        _run_again(asked)
+        return
+    spec = asked.plan.spec()
+    if asked.ordered_sets:
+        spec = _with_ordered_sets(spec)
+    with Interrupts() as interrupts, _recorder(asked) as recorder, WatchedHost(interrupts) as host:
+        fly(asked.plan, spec=spec, attachments=[recorder], console=host.console, trace=recorder.trace, host=host)
+
+
+def _run_again(asked: ComparedRun) -> None:
+    """Replay a journal with its own files.
+
+    Raises:
+        UsageError: its mission cannot run.
+    """
+    assert asked.journal is not None
+    journal = read_journal(asked.journal)
+    with (
+        staged(journal) as stage,
+        Interrupts() as interrupts,
+        _recorder(asked, stage.root) as recorder,
+        WatchedHost(interrupts) as host,
+    ):
+        Replay(journal, stage).fly([recorder], console=host.console, trace=recorder.trace, host=host)
+
+
+def _recorder(asked: ComparedRun, root: str = "") -> RecordPipe | Lookout:
+    writer = RecordWriter(open(asked.pipe, "wb"))  # noqa: SIM115  # as long as the process
+    return RecordPipe(writer) if asked.look_at is None else Lookout(writer, asked.look_at, asked.lines, root)
+
+
+def _with_ordered_sets(spec: MissionSpec) -> MissionSpec:
+    nodes = {app: dataclasses.replace(node, ordered_sets=True) for app, node in spec.ros.nodes.items()}
+    return dataclasses.replace(spec, ros=dataclasses.replace(spec.ros, nodes=nodes, ordered_sets=True))
+
+
+def main() -> int:
+    """Run the plan on the command line; the exit status."""
+    try:
+        run(ComparedRun.from_json(sys.argv[1]))
+    except (UsageError, OSError) as error:
+        print(error, file=sys.stderr)
+        return BAD_USAGE
+    return ENDED_WELL
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,162 @@
+"""Runs in processes of their own: their records are compared while they are made, and the first difference as text."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+from typing import IO, Any, TextIO
+
+from cfepy.cli.run.compared_run import ComparedRun
+from cfepy.pilot.determinism import RecordReader, RunEndedError
+from cfepy.pilot.determinism_look import Line, Look, suspects
+from cfepy.resources import import_path
+from cfepy.status import UsageError
+
+MOST_SUSPECTS = 8
+MOST_BYTES = 16
+
+
+@dataclass(frozen=True, slots=True)
+class RunInProcess:
+    """A run in its process: the reader of its records, and what it printed besides."""
+
+    process: subprocess.Popen[bytes]
+    reader: RecordReader
+    said: IO[bytes]
+
+
+@contextlib.contextmanager
+def started(asked: ComparedRun, hash_seed: int | None = None) -> Iterator[RunInProcess]:
+    """Around a run that is compared.
+
+    Args:
+        asked: what to run; its pipe is made here.
+        hash_seed: PYTHONHASHSEED of the process; None for that of this one.
+    """
+    out, into = os.pipe()
+    command = [sys.executable, "-m", "cfepy.cli.run.compared_run", dataclasses.replace(asked, pipe=into).to_json()]
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as said, open(out, "rb") as pipe:
+        environment = {**os.environ, "PYTHONPATH": import_path()}
+        if asked.journal is not None:  # it is killed in the end: what it unpacks goes with the folder
+            environment["TMPDIR"] = folder
+        if hash_seed is not None:
+            environment["PYTHONHASHSEED"] = str(hash_seed)
+        process = subprocess.Popen(command, pass_fds=[into], env=environment, stdout=said, stderr=said)
+        os.close(into)
+        try:
+            yield RunInProcess(process, RecordReader(pipe), said)
+        finally:
+            process.kill()
+            process.wait()
+
+
+def facts_of(run: RunInProcess) -> dict[str, Any]:
+    """What a run has to say that looks at one record.
+
+    Raises:
+        UsageError: it did not come to its end.
+    """
+    try:
+        run.reader.fill()
+    except RunEndedError:
+        raise failure([run]) from None
+    return run.reader.facts or {}
+
+
+def failure(runs: Sequence[RunInProcess]) -> UsageError:
+    """Why a run did not come to its end."""
+    for run in runs:
+        if run.process.poll() is None and run.reader.facts is None:
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                run.process.wait(1)
+        if run.process.poll():
+            run.said.seek(0)
+            text = run.said.read().decode("utf-8", "replace").strip()
+            return UsageError(text or f"a run ended with status {run.process.returncode}")
+    return UsageError("a run ended in the middle")
+
+
+@dataclass(frozen=True, slots=True)
+class FirstDifference:
+    """Two runs, the number of the first record that differs, and what was seen there in each."""
+
+    runs: tuple[str, str]
+    index: int
+    looks: tuple[Look, Look]
+
+
+def show(found: FirstDifference, cause: str, stream: TextIO) -> None:
+    """Write it down.
+
+    Args:
+        found: what was found.
+        cause: what it hangs on.
+        stream: where to.
+    """
+    print(f"\nnot deterministic: record {found.index} is the first that differs", file=stream)
+    show_sides(found, stream)
+    print(f"\n{cause}", file=stream)
+    _suspects(found, stream)
+
+
+def show_sides(found: FirstDifference, stream: TextIO) -> None:
+    """Write down what was before the record, and what each run did then."""
+    one, other = found.looks
+    if one.lines[:-1]:
+        print("\nbefore it, in both:", file=stream)
+        _indented(one.lines[: len(one.lines) - bool(one.record)], stream)
+    for run, look in zip(found.runs, found.looks, strict=True):
+        print(f"\n{run}", file=stream)
+        _side(look, stream)
+    if one.record and other.record:
+        _bytes(one.record, other.record, stream)
+
+
+def _side(look: Look, stream: TextIO) -> None:
+    if not look.record:
+        _indented(["the run is over"], stream)
+        return
+    _indented(look.lines[-1:], stream)
+    culprit = look.culprit
+    if culprit is not None:
+        _indented([f"made at {_place(culprit)}", f"    {culprit.source}"], stream)
+    elif not look.stack:
+        _indented(["made by the kernel or a cFE service, outside any program"], stream)
+    if len(look.stack) > 1:
+        _indented(["stack, outermost first:", *(f"    {_place(line)}: {line.source}" for line in look.stack)], stream)
+
+
+def _bytes(one: bytes, other: bytes, stream: TextIO) -> None:
+    """Records that read alike may differ in what they carry."""
+    at = next(place for place, (a, b) in enumerate(zip_longest(one, other)) if a != b)
+    parts = " and ".join(record[at : at + MOST_BYTES].hex(" ") or "nothing" for record in (one, other))
+    print(f"\nthe two records ({len(one)} and {len(other)} bytes) differ from byte {at} on: {parts}", file=stream)
+
+
+def _suspects(found: FirstDifference, stream: TextIO) -> None:
+    files = list(dict.fromkeys(file for look in found.looks for file in (*_files(look), *look.files)))
+    lines = [suspect for file in files for suspect in suspects(file)]
+    if lines:
+        print("\nlines worth a look:", file=stream)
+    _indented([f"{each.file}:{each.line}: {each.why}: {each.source}" for each in lines[:MOST_SUSPECTS]], stream)
+
+
+def _files(look: Look) -> list[str]:
+    """Files of the mission's own code that was being executed."""
+    return [line.file for line in look.stack if line == look.culprit]
+
+
+def _place(line: Line) -> str:
+    return f"{line.file}:{line.number} in {line.function}"
+
+
+def _indented(lines: tuple[str, ...] | list[str], stream: TextIO) -> None:
+    for line in lines:
+        print(f"  {line}", file=stream)

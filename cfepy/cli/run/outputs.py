@@ -1,0 +1,186 @@
+"""What a run leaves behind on this computer: its numbers, files, trace, bag and journal, as the command line asks.
+
+That a file can be written is found out before the run. A run itself never writes to the host, so that it cannot change
+the next: what it wrote on its virtual disks is saved after it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from cfepy.attachment import Attachment, Recorder
+from cfepy.cli.failures import writing
+from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.trace_text import TraceText
+from cfepy.mission import Mission
+from cfepy.osal import FileSystem
+from cfepy.pilot import Flown, RunPlan
+from cfepy.status import UsageError
+from cfepy.trace import Trace
+
+if TYPE_CHECKING:
+    from cfepy.journal import JournalRecorder
+
+SAVE_FILES = "--save-files"
+
+
+class TraceFile(Recorder):
+    """`--trace FILE`: writes the records of the trace as text; only a trace file makes this text.
+
+    Args:
+        path: the file.
+
+    Attributes:
+        trace: for the mission to record in.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+
+    def __init__(self, path: str) -> None:
+        with writing(path, "--trace"):
+            self._file = open(path, "w", encoding="utf-8")  # noqa: SIM115  # closed in __exit__
+        self.trace = Trace(self.write)
+        self._path = path
+        self._text = TraceText()
+        self._error: OSError | None = None
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self.trace.flush()
+        self._close()
+
+    def _close(self) -> None:
+        try:
+            self._file.close()
+        except OSError as error:
+            self._error = self._error or error
+        if self._error is not None:
+            raise UsageError(f"could not be written: {self._error.strerror}", file=self._path, field="--trace")
+
+    def begin(self, mission: Mission) -> None:
+        """Learn names of tasks, pipes and messages from this mission."""
+        self._text.watch(mission)
+
+    def write(self, records: list[bytes]) -> None:
+        """The sink of a `Trace`; it is called inside the simulation, where no error of the disk may be raised."""
+        if self._error is not None:
+            return
+        try:
+            self._file.writelines(f"{line}\n" for line in self._text.lines(records))
+        except OSError as error:
+            self._error = error
+
+
+class Outputs:
+    """What one run leaves behind; use as a context manager around the run.
+
+    Args:
+        arguments: of a command line with `add_outputs`.
+
+    Attributes:
+        attachments: what takes it down during the run.
+        trace: for the records; None when only their digest is wanted.
+
+    Raises:
+        UsageError: something cannot be written, or does not go together.
+    """
+
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        self.attachments: list[Attachment] = []
+        self.trace: Trace | None = None
+        self._open = contextlib.ExitStack()
+        self._arguments = arguments
+        check_json(arguments)
+        self._folder = None if arguments.save_files is None else _saving_to(arguments.save_files)
+        self._trace_file = TraceFile(arguments.trace) if arguments.trace else None
+        self._bag = arguments.bag
+        self._bag_topics = arguments.bag_topics
+        if self._bag is None and self._bag_topics:
+            raise UsageError("says what goes into a bag; give the bag, too: --bag FILE", field="--bag-topics")
+
+    def __enter__(self) -> Outputs:
+        recorder = self._trace_file
+        if recorder is not None:
+            self.trace = recorder.trace
+            self._open.enter_context(recorder)
+        if self._bag is not None:
+            from cfepy.ground import BagRecorder
+
+            self.attachments.append(self._open.enter_context(BagRecorder(self._bag, self._bag_topics)))
+        self.attachments += [] if recorder is None else [recorder]
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        self._open.__exit__(*error)
+
+    def write_numbers(self, flown: Flown) -> UsageError | None:
+        """Write the numbers; an error is returned, for the report of a long run must not be lost with them."""
+        numbers = flown.results.to_dict()
+        if flown.outcome is not None:
+            numbers["script"] = flown.outcome.to_dict()
+        try:
+            write_json(self._arguments, numbers)
+        except UsageError as error:
+            return error
+        return None
+
+    def save_files(self, flown: Flown) -> None:
+        """Write the files that the mission wrote, and say where they are.
+
+        Raises:
+            UsageError: one cannot be written.
+        """
+        if self._folder is not None:
+            _save(flown.mission.files, self._folder)
+
+
+def _saving_to(folder: str) -> Path:
+    """The folder to save to, made if it is not there."""
+    path = Path(folder)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(f"cannot be made: {error.strerror}", file=path, field=SAVE_FILES) from None
+    return path
+
+
+def _save(files: FileSystem, folder: Path) -> None:
+    """/ram/cfe_evs.log becomes DIR/ram/cfe_evs.log; a file of the same name is written over."""
+    written = files.written()
+    for name, data in written.items():
+        path = folder / name.lstrip("/")
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(data)
+        except OSError as error:
+            raise UsageError(f"could not be written: {error.strerror}", file=path, field=SAVE_FILES) from None
+    count = len(written)
+    print(f"saved to {folder}: {count} {'file' if count == 1 else 'files'}")
+
+
+@contextlib.contextmanager
+def recording(arguments: argparse.Namespace, plan: RunPlan) -> Iterator[JournalRecorder | None]:
+    """`--record FILE`: around reading a mission and running it, what writes its journal; None when none is asked for.
+
+    Args:
+        arguments: of a command line with `add_recording`.
+        plan: the run.
+
+    Raises:
+        UsageError: the journal cannot be written.
+    """
+    if arguments.record is None:
+        yield None
+        return
+    from cfepy.journal import CARRIED, JournalRecorder
+
+    carried = 0 if arguments.record_no_files else CARRIED
+    with JournalRecorder(arguments.record, plan, carried=carried, paced=arguments.realtime) as recorder:
+        yield recorder

@@ -1,0 +1,139 @@
+"""The report at the end of a run: what the numbers of `cfepy.pilot.results` look like to a person."""
+
+from __future__ import annotations
+
+from typing import TextIO
+
+from cfepy.cli.table import Table, show_paragraph, show_tables
+from cfepy.monitors import time_text
+from cfepy.pilot import Results
+from cfepy.units import NS_PER_S
+
+
+def show(results: Results, stream: TextIO) -> None:
+    """Print all tables and the line about speed."""
+    tables = [_topics(results), _apps(results), _events(results)]
+    more = [
+        *_resets(results),
+        *faults(results),
+        *_pipes(results),
+        *_deadlines(results),
+        *_invariants(results),
+        *_memory(results),
+    ]
+    show_tables([*tables, *more], stream)
+    show_speed(results, stream)
+
+
+def show_speed(results: Results, stream: TextIO) -> None:
+    """Print how long the run was, and what it was on."""
+    line = f"{results.virtual_s:.3f} virtual s in {results.wall_s:.3f} s: {results.speed:.1f} x real time"
+    stream.write("\n")
+    show_paragraph(f"{line}, board {results.board}, {results.tasks} tasks, seed {results.seed}", stream)
+
+
+def _topics(results: Results) -> Table:
+    table = Table(
+        "Messages", ("MsgId", "name", "sent", "delivered", "dropped", "why", "Hz"), right=(2, 3, 4, 6), least=(0, 3)
+    )
+    for topic in results.topics:
+        if not topic.sent:
+            continue
+        mark = " !" if topic.too_fast else ""
+        table.add(
+            f"0x{topic.msg_id:04X}",
+            topic.name,
+            topic.sent,
+            topic.delivered,
+            topic.dropped,
+            topic.why,
+            f"{topic.rate_hz:.1f}{mark}",
+        )
+    if any(topic.too_fast for topic in results.topics):
+        table.note = f"! more than the {results.max_publish_hz} Hz that {results.board} is made for"
+    return table
+
+
+def _apps(results: Results) -> Table:
+    table = Table("Applications", ("name", "state", "CPU", "restarts", "died of"), right=(2, 3))
+    for app in results.apps:
+        table.add(app.name, app.state, app.cpu_text, app.restarts, app.error or "")
+    return table
+
+
+def _events(results: Results) -> Table:
+    table = Table("Events", ("type", "number"), right=(1,))
+    for name, count in results.events.items():
+        table.add(name, count)
+    return table
+
+
+def _resets(results: Results) -> list[Table]:
+    table = Table("Resets", ("at, s", "type", "why"), right=(0,))
+    for reset in results.resets:
+        table.add(f"{reset.at_s:.3f}", reset.type, reset.reason)
+    return [table] if table.rows else []
+
+
+def faults(results: Results) -> list[Table]:
+    """The faults of the plan and how often each happened; no table without faults."""
+    table = Table(
+        "Faults", ("name", "what", "times", "first at, s", "last at, s", "what happened"), right=(2, 3, 4), least=(4, 3)
+    )
+    for row in results.faults:
+        times = [f"{row[key]:.3f}" for key in ("first_at_s", "last_at_s")] if row["times"] else ["", ""]
+        said = row["details"][0] if row["times"] else f"never happened: {row['never']}"
+        table.add(row["name"], row["what"], row["times"], *times, said)
+    return [table] if table.rows else []
+
+
+def _pipes(results: Results) -> list[Table]:
+    """Only pipes that were ever full, or lost something."""
+    table = Table("Pipes that were full", ("name", "application", "depth", "peak", "dropped"), right=(2, 3, 4))
+    for pipe in results.pipes:
+        if pipe.dropped or pipe.peak >= pipe.depth:
+            table.add(pipe.name, pipe.app, pipe.depth, pipe.peak, pipe.dropped)
+    return [table] if table.rows else []
+
+
+def _deadlines(results: Results) -> list[Table]:
+    """What the mission is held to, each deadline with its worst case."""
+    table = Table(
+        "Deadlines",
+        ("of", "what", "limit", "measured", "missed", "worst", "first at, s"),
+        right=(3, 4, 5, 6),
+        least=(3, 6),
+    )
+    for each in results.deadlines:
+        table.add(
+            each.owner,
+            each.kind,
+            each.limit_text,
+            each.checked,
+            each.overruns,
+            "" if each.worst_s is None else time_text(round(each.worst_s * NS_PER_S)),
+            "" if each.first_at_s is None else f"{each.first_at_s:.3f}",
+        )
+    return [table] if table.rows else []
+
+
+def _invariants(results: Results) -> list[Table]:
+    """What must hold of messages; one that was never judged says nothing."""
+    table = Table(
+        "Invariants", ("name", "judged", "violated", "first at, s", "what was wrong"), right=(1, 2, 3), least=(3, 1)
+    )
+    for each in results.invariants:
+        at = "" if each.first_at_s is None else f"{each.first_at_s:.3f}"
+        table.add(each.name, each.judged, each.violated, at, each.first or ("" if each.judged else "never judged"))
+    return [table] if table.rows else []
+
+
+def _memory(results: Results) -> list[Table]:
+    memory = results.memory
+    if memory.limit is None:
+        return []
+    table = Table("Memory, bytes", ("owner", "used"), right=(1,))
+    for owner, size in memory.by_owner.items():
+        table.add(owner, f"{size:,}")
+    table.note = f"peak {memory.peak:,} of {memory.limit:,} ({memory.peak / memory.limit:.1%})"
+    return [table]

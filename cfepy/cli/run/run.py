@@ -1,0 +1,172 @@
+"""`cfepy run`, and what it has in common with launch, node and replay: flying a plan, and reporting the run."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from cfepy.cli.display import Display, make_display
+from cfepy.cli.failures import tell
+from cfepy.cli.host import Interrupts, WatchedHost
+from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.options import plan_of
+from cfepy.cli.run import report
+from cfepy.cli.run.outputs import Outputs, recording
+from cfepy.pilot import Flown, RunPlan, fly
+from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from cfepy.journal import Replay
+
+
+class View:
+    """What a person sees of a run: the flight computer's console, and a report of all that is on it.
+
+    Args:
+        quiet: nothing while the mission runs.
+    """
+
+    longer = "run it for longer (--for)"
+
+    def __init__(self, quiet: bool = False) -> None:
+        self.quiet = quiet
+
+    def display(self, seconds: float) -> Display:
+        """What shows the console during a run of so many virtual seconds."""
+        return make_display(self.quiet, seconds)
+
+    def report(self, flown: Flown) -> None:
+        """Print what the run came to."""
+        report.show(flown.results, sys.stdout)
+
+    def end(self, flown: Flown, outputs: Outputs, longer: str) -> int:
+        """Print everything that there is to say after a run.
+
+        Args:
+            flown: the run.
+            outputs: saves the mission's files.
+            longer: what to do when it was too short.
+
+        Returns:
+            The exit status.
+        """
+        self.report(flown)
+        if flown.outcome is not None:
+            print(f"\n{flown.outcome.text()}")
+        _explain(flown, longer)
+        outputs.save_files(flown)
+        print(f"trace: {flown.trace or 'none, since the run was broken off'}", flush=True)
+        return _status(flown)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the mission that the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: it cannot run like this.
+    """
+    plan = plan_of(arguments, [arguments.mission])
+    if arguments.check_determinism is not None:
+        from cfepy.cli.run.check_determinism import check
+
+        return check(arguments, plan)
+    return fly_and_tell(arguments, plan, View(arguments.quiet))
+
+
+def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> int:
+    """Fly a plan as the command line says, and report.
+
+    Args:
+        arguments: with the options of `add_outputs`, `add_recording` and `add_pace`.
+        plan: what to fly.
+        view: what is shown of it.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: it cannot run like this.
+    """
+    if arguments.port and arguments.realtime is None:
+        raise UsageError("without --realtime no port is opened on this computer", field="--port")
+    with recording(arguments, plan) as journal, Interrupts() as interrupts, Outputs(arguments) as outputs:
+        spec = plan.spec()  # a journal has the files that are read for it
+        with WatchedHost(
+            interrupts,
+            view.display,
+            realtime=arguments.realtime,
+            ports=dict(arguments.port),
+            pause=_nothing if journal is None else journal.mark,
+        ) as host:
+            flown = fly(
+                plan,
+                spec=spec,
+                attachments=[*outputs.attachments, *([] if journal is None else [journal])],
+                console=host.console,
+                policy=None if journal is None else journal.policy,
+                trace=outputs.trace,
+                host=host,
+            )
+        if journal is not None:
+            journal.end(flown)
+    return _tell(flown, outputs, view, view.longer)
+
+
+def fly_again(arguments: argparse.Namespace, replay: Replay, view: View) -> int:
+    """Do the run of a journal again as the command line says, and report.
+
+    Args:
+        arguments: with the options of `add_outputs`.
+        replay: the replay; it has a verdict afterwards.
+        view: what is shown of it.
+
+    Returns:
+        The exit status of the run.
+
+    Raises:
+        UsageError: it cannot run.
+    """
+    with Interrupts() as interrupts, Outputs(arguments) as outputs, WatchedHost(interrupts, view.display) as host:
+        flown = replay.fly(outputs.attachments, console=host.console, trace=outputs.trace, host=host)
+    return _tell(flown, outputs, view, replay.why_over)
+
+
+def _tell(flown: Flown, outputs: Outputs, view: View, longer: str) -> int:
+    unwritten = outputs.write_numbers(flown)
+    status = view.end(flown, outputs, longer)
+    if unwritten is not None:
+        raise unwritten
+    return status
+
+
+def _nothing() -> None:
+    """What happens between two pieces of a run that is not recorded."""
+
+
+def _explain(flown: Flown, longer: str) -> None:
+    results, mission = flown.results, flown.mission
+    tell((*results.script_problems, *results.problems, *results.never_struck))
+    if results.script_problems:
+        script = mission.spec.script
+        tell([f'the console says why, and "cfepy check {script}" what can be seen without running it'])
+    if flown.interrupted:
+        tell([f"ended by Ctrl-C or SIGTERM after {results.virtual_s:g} virtual seconds"])
+    elif results.booted_s is None and not mission.over and flown.stall is None:
+        tell([f"not OPERATIONAL after {results.virtual_s:g} virtual seconds; {longer}"])
+
+
+def _status(flown: Flown) -> int:
+    results = flown.results
+    if flown.interrupted:
+        return INTERRUPTED
+    if flown.stall is not None:
+        return FOUND_PROBLEMS
+    if flown.outcome is not None:
+        return ENDED_WELL if flown.outcome.ok else FOUND_PROBLEMS
+    if results.script_problems or results.problems:
+        return FOUND_PROBLEMS
+    return ENDED_WELL if results.booted_s is not None or flown.mission.over else BAD_USAGE

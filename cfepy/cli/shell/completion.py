@@ -1,0 +1,185 @@
+"""`cfepy completion SHELL`: completion of commands, options and names in a shell, by argcomplete.
+
+The shell asks this command what a word may become. What it says comes from the parsers and from files: no mission is
+flown for it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+from cfepy.cli.parser import LAUNCH_FILES, CommandParser, MissionAction
+from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from cfepy.ground import Dictionary
+    from rospy_shim.msgs.packages import Packages
+
+NEEDS = "needs the library argcomplete: pip install 'cfepy[completion]'"
+_MISSIONS = (*LAUNCH_FILES, ".scr", ".py", ".bag", ".cfepy")
+_FILES = ("FILE", "FILE|-", "FILE|seed:N", "PATH", "BAG", "FILE.yaml", "FILE.tbl", "A", "B", "DIR", "FILE.tbl|DIR")
+_Complete = Callable[..., Iterable[str]]
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the script of the shell that the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: argcomplete is not installed.
+    """
+    try:
+        from argcomplete.shell_integration import shellcode
+    except ImportError:
+        raise UsageError(NEEDS, field="completion") from None
+    print(shellcode(["cfepy"], shell=arguments.shell))
+    return 0
+
+
+def complete(
+    make_parser: Callable[[list[str]], argparse.ArgumentParser],
+    stream: TextIO | None = None,
+    end: Callable[[int], object] = os._exit,
+) -> None:
+    """Tell the shell that asks what its word may become, and end the process.
+
+    Args:
+        make_parser: makes the parser for the words of a command line.
+        stream: where to; None is where the shell's script wants it.
+        end: ends the process.
+    """
+    try:
+        from argcomplete.finders import CompletionFinder, safe_actions
+    except ImportError:
+        sys.exit(1)  # its script was left in the shell; there is nobody to tell
+    safe_actions.add(MissionAction)
+    parser = make_parser(os.environ["COMP_LINE"].split()[1:])
+    for each in _all(parser):
+        each.mixes = False
+        for action in each._actions:
+            completer = _completer(action)
+            if completer is not None:
+                action.completer = completer  # type: ignore[attr-defined]  # argcomplete's
+
+    class Finder(CompletionFinder):
+        """As argcomplete's, but for a mission in two words."""
+
+        def _init_debug_stream(self) -> None:
+            """It would take descriptor 9, whosever that is."""
+
+        def collect_completions(self, active_parsers: Any, parsed_args: Any, cword_prefix: str) -> list[str]:
+            """After a package, also the launch files in it."""
+            found = super().collect_completions(active_parsers, parsed_args, cword_prefix)
+            return [*found, *_second_words(active_parsers[-1], parsed_args, cword_prefix)]
+
+    Finder()(parser, always_complete_options=False, exit_method=end, output_stream=stream)
+
+
+def _all(parser: argparse.ArgumentParser) -> Iterator[CommandParser]:
+    assert isinstance(parser, CommandParser)
+    yield parser
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for each in action.choices.values():
+                yield from _all(each)
+
+
+def _completer(action: argparse.Action) -> _Complete | None:
+    """What completes an argument; None for one of choices, and for a file."""
+    if isinstance(action, MissionAction):
+        return missions
+    if action.choices is not None or action.metavar in _FILES:
+        return None
+    by_name: dict[str, _Complete] = {"--board": boards, "--show": packets, "name": packets, "fields": fields}
+    return by_name.get(action.option_strings[0] if action.option_strings else action.dest, _nothing)
+
+
+def _nothing(**_: object) -> list[str]:
+    """A number, a time, a text of one's own."""
+    return []
+
+
+# -- names -------------------------------------------------------------------------------------------------------------
+
+
+def missions(prefix: str, parsed_args: argparse.Namespace, action: argparse.Action, **_: object) -> list[str]:
+    """Missions that cfepy brings along, packages, and files and folders that can be missions."""
+    from cfepy.mission import shipped_missions
+
+    if getattr(parsed_args, action.dest, None):  # the first of several words
+        return packets(prefix, parsed_args)
+    found = [*shipped_missions(), *(_packages().names() if "/" not in prefix else [])]
+    return [*found, *_paths(prefix, _MISSIONS)]
+
+
+def _second_words(parser: argparse.ArgumentParser, parsed_args: argparse.Namespace, prefix: str) -> list[str]:
+    """The launch files of a package that stands where a mission may."""
+    said = [getattr(parsed_args, each.dest, None) for each in parser._actions if isinstance(each, MissionAction)]
+    names = [name for each in said if each for name in (each if isinstance(each, list) else [each])]
+    folders = [folder for name in names[-1:] for folder in _packages().folders(name)] if prefix[:1] != "-" else []
+    return sorted({file.name for folder in folders for file in folder.rglob(f"{prefix}*.launch")})
+
+
+def boards(prefix: str, **_: object) -> list[str]:
+    """Boards by name, and files of one's own."""
+    from cfepy.psp import available_boards
+
+    return [*available_boards(), *_paths(prefix, (".yaml",))]
+
+
+def packets(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Commands for `cfepy cmd`, and telemetry for `cfepy tlm`, of a mission that is named before."""
+    module = getattr(parsed_args, "module", "")
+    if module not in ("ground.cmd", "ground.tlm"):
+        return []
+    dictionary = _dictionary(parsed_args)
+    return sorted(dictionary.commands if module == "ground.cmd" else dictionary.telemetry)
+
+
+def fields(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """The fields of a command, with the names that their values have."""
+    dictionary, name = _dictionary(parsed_args), getattr(parsed_args, "name", None)
+    if name not in dictionary.commands:
+        return []
+    cells = list(dictionary.commands[name].payload.cells())
+    named = [f"{cell.path}={value}" for cell in cells if cell.names is not None for value in cell.names.values]
+    return named if "=" in prefix else [f"{cell.path}=" for cell in cells]
+
+
+def _dictionary(parsed_args: argparse.Namespace) -> Dictionary:
+    """That of the mission which is named before, or of all that cfepy brings along."""
+    from cfepy.ground import dictionary_of
+    from cfepy.mission import read_mission
+
+    words = getattr(parsed_args, "words", None) or [None]
+    mission = getattr(parsed_args, "target", None) or getattr(parsed_args, "mission", None) or words[0]
+    try:
+        return dictionary_of(None if mission is None else read_mission(mission))
+    except UsageError:
+        return dictionary_of(None)
+
+
+def _packages() -> Packages:
+    """The packages that are seen from here."""
+    from rospy_shim.roslaunch.plan import packages_near
+
+    return packages_near(Path.cwd() / "here", os.environ)
+
+
+def _paths(prefix: str, suffixes: tuple[str, ...]) -> list[str]:
+    """Folders and files of some kinds that begin with a prefix."""
+    folder, _, name = prefix.rpartition("/")
+    start = f"{folder}/" if "/" in prefix else ""
+    try:
+        found = [each for each in Path(start or ".").iterdir() if each.name.startswith(name)]
+    except OSError:
+        return []
+    shown = [each for each in found if each.is_dir() or each.suffix in suffixes]
+    return [f"{start}{each.name}{'/' if each.is_dir() else ''}" for each in shown if name or each.name[0] != "."]

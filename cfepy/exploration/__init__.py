@@ -1,0 +1,80 @@
+"""Exploring schedules: a mission is flown under many, failures are told apart, and a failing schedule is made short.
+
+What belongs here works with many runs of one mission that differ in which task goes first: the choice of schedules
+(`search`), the processes that fly them (`campaign`, `crews`, `workers`), what counts as a failure (`trial`, `failures`,
+`stuck`, `result_watch`), and how a failing schedule is made short and shown (`shrink`, `timeline`). The policies that
+decide within one run belong to `cfepy.rtos`; what must hold of every run belongs to `cfepy.monitors`.
+
+The names below are loaded when they are first used.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.exploration.expedition import DEFAULT_PROBES, DEFAULT_SEEDS, Expedition, Report, Told
+    from cfepy.exploration.failures import TracebackReader
+    from cfepy.exploration.moves import Move
+    from cfepy.exploration.shrink import Shrinkable, Shrinker, Shrunk
+    from cfepy.exploration.timeline import TaskLook, columns, drawn
+    from cfepy.exploration.trial import Trial, Tried
+    from cfepy.exploration.verdict import Failure, Finding, Verdict
+
+__all__ = [
+    "DEFAULT_PROBES",
+    "DEFAULT_SEEDS",
+    "Expedition",
+    "Failure",
+    "Finding",
+    "Move",
+    "Report",
+    "Shrinkable",
+    "Shrinker",
+    "Shrunk",
+    "TaskLook",
+    "Told",
+    "TracebackReader",
+    "Trial",
+    "Tried",
+    "Verdict",
+    "columns",
+    "drawn",
+]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".expedition": (
+                "DEFAULT_PROBES",
+                "DEFAULT_SEEDS",
+                "Expedition",
+                "Report",
+                "Told",
+            ),
+            ".failures": ("TracebackReader",),
+            ".moves": ("Move",),
+            ".shrink": (
+                "Shrinkable",
+                "Shrinker",
+                "Shrunk",
+            ),
+            ".timeline": (
+                "TaskLook",
+                "columns",
+                "drawn",
+            ),
+            ".trial": (
+                "Trial",
+                "Tried",
+            ),
+            ".verdict": (
+                "Failure",
+                "Finding",
+                "Verdict",
+            ),
+        },
+    )

@@ -1,0 +1,242 @@
+"""An exploration from its beginning to its end: which schedules, what became of them, each failure shrunk and told.
+
+    expedition = Expedition(plan, seeds=200)
+    report = expedition.run()
+    for told in report.findings: print(told.finding.failure.title, told.timeline)
+
+The reference run, under fifo, comes first: what fails in it as well is told apart, and what other schedules come to is
+held against it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any, TextIO
+
+from cfepy.exploration.campaign import Campaign, Tally
+from cfepy.exploration.crews import make_crew
+from cfepy.exploration.progress import make_progress
+from cfepy.exploration.results_file import ResultsFile
+from cfepy.exploration.search import SeededSearch, SystematicSearch, make_search
+from cfepy.exploration.shipment import files_read, identity_of, ship
+from cfepy.exploration.shrink import Shrinker, Shrunk
+from cfepy.exploration.stuck import waits_of
+from cfepy.exploration.timeline import timeline_of
+from cfepy.exploration.trial import Trial
+from cfepy.exploration.verdict import STALLED, Finding, Findings, Verdict
+from cfepy.exploration.workers import LONGEST_S, PROCESS_DIED
+from cfepy.pilot import RunPlan
+from cfepy.rtos import Schedule
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+BASE = "at"  # fifo as a policy, which is asked, so that decisions can be counted and options count
+DEFAULT_SEEDS = 100
+DEFAULT_PROBES = 800
+POLICIES = ("all", "random", "pct", "dfs")
+EVENTS = ("error", "critical", "none")
+
+
+@dataclass(slots=True)
+class Told:
+    """A failure as it is told.
+
+    Attributes:
+        finding: the failure, and the schedules that showed it.
+        shrunk: its schedule with the fewest preemptions; None when it was not looked for, or has none.
+        timeline: what happens under that schedule, a line each.
+    """
+
+    finding: Finding
+    shrunk: Shrunk[Trial] | None = None
+    timeline: list[str] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Report:
+    """What an exploration came to.
+
+    Attributes:
+        trial: what was flown.
+        reference: the verdict on the default schedule.
+        tally: how many schedules there were.
+        troubles: verdicts that ended in an error of cfepy.
+        findings: each failure once.
+        notes: what its user should know.
+    """
+
+    trial: Trial
+    reference: Verdict
+    tally: Tally
+    troubles: list[Verdict]
+    findings: list[Told] = field(default_factory=list)
+    notes: tuple[str, ...] = ()
+
+    def schedule_of(self, told: Told) -> Schedule:
+        """The schedule that showed a failure first."""
+        return Schedule() if told.finding.in_reference else told.finding.verdict.schedule
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data."""
+        found = []
+        for told in self.findings:
+            command = self.trial.command(told.finding.verdict.schedule)
+            entry = told.finding.to_dict() | {"command": command, "timeline": told.timeline}
+            found.append(entry | {"shrunk": None if told.shrunk is None else _shrunk_numbers(told.shrunk)})
+        return {
+            "plan": self.trial.plan.to_dict(),
+            "reference": self.reference.to_dict(),
+            "schedules": self.tally.done,
+            "failed": self.tally.failed,
+            "troubled": self.tally.troubled,
+            "interrupted": self.tally.interrupted,
+            "failures": found,
+            "troubles": [{"schedule": each.schedule.text(), "text": each.trouble} for each in self.troubles],
+        }
+
+
+def _shrunk_numbers(shrunk: Shrunk[Trial]) -> dict[str, Any]:
+    return {
+        "schedule": shrunk.verdict.schedule.text(),
+        "command": shrunk.trial.command(shrunk.verdict.schedule),
+        "preemptions": shrunk.verdict.preemptions,
+        "moves": [move._asdict() for move in shrunk.moves],
+        "probes": shrunk.probes,
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class Expedition:
+    """What is to be explored, and how; each attribute but the first is an option of `cfepy explore`.
+
+    Attributes:
+        plan: what is flown; its own schedule does not matter.
+        seeds: how many schedules.
+        policy: where they come from: "random", "pct", "dfs" (every one with few preemptions), or "all".
+        depth: of the bugs that pct looks for; most preemptions of dfs.
+        first_seed: seed of the first schedule.
+        any_priority: less urgent tasks may run before more urgent ones.
+        hold_s: how long the running task may be held up, in virtual s.
+        from_s: virtual time until which all is fifo's.
+        until_failure: whether the first failure ends it.
+        events: which events are failures: "error", "critical" or "none".
+        stuck: whether a task that waits for ever, and does not by default, is a failure.
+        jobs: processes on this computer; None for one on each CPU.
+        cluster: address of a dask scheduler, or local:N.
+        longest_s: wall time that a schedule may take.
+        results: file that keeps the verdicts, and that it goes on from.
+        shrink: how many runs it may take to shrink a failure; 0 leaves it as it is.
+        progress: where it is shown how far it has come; None shows nothing.
+    """
+
+    plan: RunPlan
+    seeds: int = DEFAULT_SEEDS
+    policy: str = "all"
+    depth: int | None = None
+    first_seed: int = 0
+    any_priority: bool = False
+    hold_s: float | None = None
+    from_s: float | None = None
+    until_failure: bool = False
+    events: str = "error"
+    stuck: bool = True
+    jobs: int | None = None
+    cluster: str | None = None
+    longest_s: float = LONGEST_S
+    results: str | None = None
+    shrink: int = DEFAULT_PROBES
+    progress: TextIO | None = None
+
+    def run(self, tell: Callable[[tuple[str, ...]], object] = lambda notes: None) -> Report:
+        """Explore.
+
+        Args:
+            tell: gets what the user should know, before the campaign.
+
+        Raises:
+            UsageError: it cannot be explored like this.
+        """
+        options = self._options()
+        bare = Trial(self.plan, self.events, keep_widths=self.policy == "dfs")
+        reference, results, notes = bare.fly(options)
+        tell(notes)
+        has_stalled = any(failure.kind == STALLED for failure in reference.failures)  # and come to no results
+        trial = bare if has_stalled else bare.against(results)
+        if self.stuck and reference.end_ns and not has_stalled:
+            trial = replace(trial, waits=waits_of(self.plan, reference.end_ns, options.policy()))
+        findings = Findings(reference)
+        search = make_search(self.policy, self.depth, reference.decisions, options, self.first_seed)
+        tally = self._fly(trial, search, findings, reference)
+        report = Report(trial, reference, tally, findings.troubles, notes=notes)
+        for finding in findings.all():
+            report.findings.append(self._told(trial, finding, tally))
+        return report
+
+    def _options(self) -> Schedule:
+        """What the schedules have in common, as a schedule.
+
+        Raises:
+            UsageError: a time that cannot be.
+        """
+        words = [BASE]
+        words += ["any"] if self.any_priority else []
+        for option, time_s in (("hold", self.hold_s), ("from", self.from_s)):
+            words += [] if time_s is None else [f"{option}={round(time_s * NS_PER_S)}ns"]
+            try:
+                Schedule.parse(":".join(words))
+            except UsageError as error:
+                raise UsageError(error.text, field=f"--{option}") from None
+        return Schedule.parse(":".join(words))
+
+    def _fly(
+        self, trial: Trial, search: SeededSearch | SystematicSearch, findings: Findings, reference: Verdict
+    ) -> Tally:
+        """Run all schedules, or until the first failure."""
+        if self.until_failure and reference.failed:
+            return Tally()
+        files = files_read(trial.plan) if self.results is not None or self.cluster is not None else []
+        file = None if self.results is None else ResultsFile(self.results, self._identity(trial, files))
+        crew = make_crew(self.seeds, self.jobs, self.cluster, lambda: ship(trial.plan, files), self.longest_s)
+        progress = make_progress(self.progress, self.seeds, 0 if file is None else len(file))
+
+        def take(number: int, verdict: Verdict) -> bool:
+            return findings.take(number, verdict) and self.until_failure
+
+        return Campaign(trial, search, self.seeds, crew, file, progress).run(take)
+
+    def _identity(self, trial: Trial, files: list[str]) -> dict[str, Any]:
+        """What a results file goes on with only when it is the same, by the option's name."""
+        search = {name: getattr(self, name) for name in ("policy", "depth", "first_seed", "any_priority", "events")}
+        search |= {"hold": self.hold_s, "from": self.from_s, "no_stuck": not self.stuck}
+        return identity_of(trial.plan, files, search)
+
+    def _told(self, trial: Trial, finding: Finding, tally: Tally) -> Told:
+        """A failure, shrunk and with its timeline."""
+        told = Told(finding)
+        try:
+            if not tally.interrupted:
+                told.shrunk = self._shrunk(trial, finding)
+            if told.shrunk is not None:
+                told.timeline = _timeline(told.shrunk, finding)
+        except KeyboardInterrupt:  # what was found must not be lost with it
+            tally.interrupted = True
+        return told
+
+    def _shrunk(self, trial: Trial, finding: Finding) -> Shrunk[Trial] | None:
+        """The fewest preemptions; None for a failure that needs none, or ends the process that flies it."""
+        if not self.shrink or finding.in_reference or finding.failure.kind == PROCESS_DIED:
+            return None
+        if self.progress is not None and self.progress.isatty():
+            print("cfepy: shrinking", finding.failure.title, file=self.progress, flush=True)
+        probed = trial.probe() if finding.failure.kind == STALLED else trial
+        shrunk = Shrinker(probed, finding.simplest.schedule, finding.failure.group, self.shrink).run()
+        if shrunk is None:
+            return None
+        plan = replace(shrunk.trial.plan, stall=trial.plan.stall)
+        return replace(shrunk, trial=replace(shrunk.trial, plan=plan))
+
+
+def _timeline(shrunk: Shrunk[Trial], finding: Finding) -> list[str]:
+    failure = shrunk.verdict.failure(finding.failure.group)
+    return [] if failure is None else timeline_of(shrunk.trial, shrunk.verdict, failure, shrunk.moves)

@@ -1,0 +1,238 @@
+"""Many runs that differ from one instant on: what comes before is run once, and a process is forked for each.
+
+    this process  --schedules-->  template (has run up to the instant)  --fork-->  one child a schedule
+         ^------------------------------------ answers ------------------------------------'
+
+Only tasks on greenlets can be forked, since a fork takes one thread along; and only a system that has fork. A
+`ForkingJudge` flies the schedules of a trial this way when they differ from an instant on (`from=600ms`), and each by
+itself otherwise; the verdicts are those of whole flights.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import pickle
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from cfepy.exploration.campaign import Experiment, judge
+from cfepy.exploration.trial import Trial
+from cfepy.exploration.verdict import Verdict
+from cfepy.rtos import Decision, Policy, Schedule
+
+LENGTH_BYTES = 8
+
+
+class LateSchedule:
+    """In place of a `Schedule`: one that is only known when the run has come to the instant where schedules part."""
+
+    def __init__(self, server: ForkServer) -> None:
+        self._gate = _Gate(server)
+
+    @property
+    def decided(self) -> Schedule:
+        """The schedule; fifo as long as nothing was decided."""
+        return self._gate.schedule
+
+    def text(self) -> str:
+        """See `Schedule.text`."""
+        return self.decided.text()
+
+    def policy(self) -> Policy:
+        """See `Schedule.policy`."""
+        return self._gate
+
+
+class _Gate(Policy):
+    """Goes on as fifo until schedules part; then this process waits for schedules, and its children follow them."""
+
+    def __init__(self, server: ForkServer) -> None:
+        super().__init__(server.options.any_priority, server.options.hold_ns)
+        self._server = server
+        self._from_ns = server.options.from_ns
+        self._inner: Policy | None = None
+        self.schedule = Schedule()
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`."""
+        if self._inner is None:
+            if decision.now < self._from_ns:
+                return 0
+            self.schedule = self._server.wait_for_schedule()
+            self._inner = self.schedule.policy() or Policy()
+        return self._inner.choose(decision)
+
+
+class ForkServer:
+    """Runs a body under schedules that have everything up to an instant in common.
+
+    Args:
+        body: does the whole run with a schedule that is decided late, on greenlets; its value can be pickled.
+        options: a schedule whose options (`from`, `any`, `hold`) all schedules have.
+
+    Raises:
+        ValueError: `options` has no `from`, or this system has no fork.
+    """
+
+    def __init__(self, body: Callable[[LateSchedule], Any], options: Schedule) -> None:
+        if not options.from_ns:
+            raise ValueError("schedules part from an instant on: give one, such as from=600ms")
+        if not hasattr(os, "fork"):
+            raise ValueError("this system cannot fork a process: leave out what forks")
+        self.options = options.at({})
+        self._body = body
+        self._requests = _Channel()
+        self._answers = _Channel()
+        self._in_child = False
+        self._template = _fork()
+        if not self._template:
+            self._be_template()
+        self._requests.stop_receiving()  # so that the end of the template is seen as the end of its pipes
+        self._answers.stop_sending()
+
+    def run(self, schedule: Schedule) -> Any:
+        """What the body gives under a schedule; a run that does not end keeps this waiting.
+
+        Raises:
+            ValueError: the schedule has other options.
+            ChildProcessError: the process of this run ended without an answer.
+            Exception: what the body raised.
+        """
+        if schedule.at({}) != self.options:
+            raise ValueError(f"schedule {schedule} has other options than {self.options}")
+        try:
+            self._requests.send(schedule)
+            answer = self._answers.receive()
+        except BrokenPipeError:  # the template has ended
+            answer = None
+        if answer is None:
+            raise ChildProcessError(f"the run under schedule {schedule} ended without an answer")
+        value, error = answer
+        if error is not None:
+            raise error
+        return value
+
+    def close(self) -> None:
+        """End the template; `run` must not be called any more."""
+        self._requests.stop_sending()
+        os.waitpid(self._template, 0)
+        self._answers.stop_receiving()
+
+    # -- in the template and its children --------------------------------------------------------------------------
+
+    def _be_template(self) -> None:
+        """Run the body up to the instant and, in each child, to its end. This process and its children end here."""
+        status = 1
+        gc.disable()  # it would go through all objects at the end of each child, which is short of life
+        try:
+            self._requests.stop_sending()
+            answer = self._outcome()
+            if self._in_child:
+                self._answers.send(answer)
+            else:  # the run came to its end without a choice after the instant: so all do
+                while self._requests.receive() is not None:
+                    self._answers.send(answer)
+            status = 0
+        finally:
+            os._exit(status)
+
+    def _outcome(self) -> tuple[Any, BaseException | None]:
+        try:
+            return self._body(LateSchedule(self)), None
+        except BaseException as error:
+            return None, error
+
+    def wait_for_schedule(self) -> Schedule:
+        """The schedule of the child in which this returns; the template stays in here until the server is closed."""
+        gc.collect()
+        gc.freeze()  # a child that went through these objects would have to copy them
+        while (schedule := self._requests.receive()) is not None:
+            child = _fork()
+            if not child:
+                self._in_child = True
+                return schedule  # type: ignore[no-any-return]  # what `run` sent
+            _, status = os.waitpid(child, 0)
+            if status:
+                self._answers.send(None)
+        os._exit(0)
+
+
+class _Channel:
+    """One way between processes, for values that can be pickled."""
+
+    def __init__(self) -> None:
+        self._reader, self._writer = os.pipe()
+
+    def send(self, value: Any) -> None:
+        """Whole, or not at all."""
+        packed = pickle.dumps(value)
+        data = memoryview(len(packed).to_bytes(LENGTH_BYTES, "little") + packed)
+        while data:
+            data = data[os.write(self._writer, data) :]
+
+    def receive(self) -> Any:
+        """The next value; None when the other end is closed."""
+        head = self._read(LENGTH_BYTES)
+        return pickle.loads(self._read(int.from_bytes(head, "little"))) if head else None
+
+    def _read(self, count: int) -> bytes:
+        data = b""
+        while len(data) < count and (more := os.read(self._reader, count - len(data))):
+            data += more
+        return data
+
+    def stop_sending(self) -> None:
+        """This process only receives."""
+        os.close(self._writer)
+
+    def stop_receiving(self) -> None:
+        """This process only sends."""
+        os.close(self._reader)
+
+
+def _fork() -> int:
+    with warnings.catch_warnings():  # Python 3.12 warns of other threads: here they only watch, and hold no lock
+        warnings.simplefilter("ignore", DeprecationWarning)
+        return os.fork()
+
+
+class ForkingJudge:
+    """Gives verdicts; `close` ends the processes that it has.
+
+    Args:
+        trial: what is tried.
+    """
+
+    def __init__(self, trial: Experiment) -> None:
+        self._trial = trial
+        self._servers: dict[Schedule, ForkServer] = {}
+
+    def judge(self, schedule: Schedule) -> Verdict:
+        """The verdict on a schedule; see `cfepy.exploration.campaign.judge`."""
+        trial = self._trial
+        if schedule.from_ns and isinstance(trial, Trial) and trial.plan.tasks == "greenlet" and hasattr(os, "fork"):
+            return self._forked(trial, schedule)
+        return judge(trial, schedule)
+
+    def close(self) -> None:
+        """End the processes that wait for schedules, the last one first: it has copies of the pipes of the others."""
+        for server in reversed(self._servers.values()):
+            server.close()
+        self._servers.clear()
+
+    def _forked(self, trial: Trial, schedule: Schedule) -> Verdict:
+        options = schedule.at({})
+
+        def body(late: LateSchedule) -> Verdict:
+            return trial.fly(options, policy=late.policy()).verdict
+
+        if options not in self._servers:
+            self._servers[options] = ForkServer(body, options)
+        try:
+            verdict: Verdict = self._servers[options].run(schedule)
+        except ChildProcessError:
+            return judge(trial, schedule)  # whatever ended that process does it here, where it is looked at
+        return replace(verdict, schedule=schedule)

@@ -1,0 +1,149 @@
+"""The progress of a campaign: counts, rate and the time that is left, for a person or for a log."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol, TextIO
+
+from cfepy.rtos import Stopwatch
+from cfepy.units import NS_PER_S
+
+EVERY_NS = 10 * NS_PER_S  # wall time between two lines in a log
+SETTLE_NS = NS_PER_S  # wall time after which a rate means something
+
+
+class Progress(Protocol):
+    """Is told what a campaign does."""
+
+    def arrived(self, failed: bool) -> None:
+        """A verdict came in, in whatever order."""
+
+    def close(self) -> None:
+        """The campaign is over: nothing but finished lines may stay on the screen."""
+
+
+class NoProgress:
+    """Shows nothing."""
+
+    def arrived(self, failed: bool) -> None:
+        """See `Progress.arrived`."""
+
+    def close(self) -> None:
+        """See `Progress.close`."""
+
+
+class CampaignMeter:
+    """Counts verdicts against the wall clock.
+
+    Args:
+        total: schedules that there are, at most.
+        resumed: how many of them an earlier run has done; these do not count for the rate.
+        elapsed_ns: wall time since the start, in ns.
+
+    Attributes:
+        done, failed: so far.
+    """
+
+    def __init__(self, total: int, resumed: int = 0, elapsed_ns: Callable[[], int] | None = None) -> None:
+        self.total = total
+        self.done = self.failed = 0
+        self._resumed = min(resumed, total)
+        self.elapsed_ns = Stopwatch().elapsed_ns if elapsed_ns is None else elapsed_ns
+
+    def arrived(self, failed: bool) -> None:
+        """Count a verdict."""
+        self.done += 1
+        self.failed += failed
+
+    @property
+    def rate(self) -> float:
+        """Schedules per second of wall time; 0 as long as that cannot be told."""
+        fresh, elapsed = self.done - self._resumed, self.elapsed_ns()
+        return fresh * NS_PER_S / elapsed if fresh > 0 and elapsed >= SETTLE_NS else 0.0
+
+    @property
+    def left_s(self) -> float | None:
+        """Seconds of wall time until all schedules are done; None as long as that cannot be told."""
+        return (self.total - self.done) / self.rate if self.rate else None
+
+    def text(self) -> str:
+        """All of it in a line: `1200 of 5000 schedules, 3 failed, 85.0/s, 0:00:44 left`."""
+        parts = [f"{self.done} of {self.total} schedules", f"{self.failed} failed"]
+        if self.rate:
+            parts.append(f"{self.rate:.1f}/s")
+        if self.left_s is not None and self.done < self.total:
+            parts.append(f"{duration(self.left_s)} left")
+        return ", ".join(parts)
+
+
+def duration(seconds: float) -> str:
+    """Hours, minutes and seconds: `0:01:30`."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes // 60}:{minutes % 60:02}:{rest:02}"
+
+
+class PlainProgress:
+    """A line every ten seconds, for logs.
+
+    Args:
+        meter: counts.
+        stream: where to.
+    """
+
+    def __init__(self, meter: CampaignMeter, stream: TextIO) -> None:
+        self._meter = meter
+        self._stream = stream
+        self._due_ns = EVERY_NS
+
+    def arrived(self, failed: bool) -> None:
+        """See `Progress.arrived`."""
+        self._meter.arrived(failed)
+        if self._meter.elapsed_ns() >= self._due_ns:
+            print(self._meter.text(), file=self._stream, flush=True)
+            self._due_ns = self._meter.elapsed_ns() + EVERY_NS
+
+    def close(self) -> None:
+        """See `Progress.close`."""
+
+
+class BarProgress:
+    """A bar on a terminal; lines that are printed meanwhile appear above it.
+
+    Args:
+        meter: counts.
+        stream: the terminal.
+    """
+
+    def __init__(self, meter: CampaignMeter, stream: TextIO) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, TextColumn
+        from rich.progress import Progress as RichProgress
+
+        self._meter = meter
+        columns: tuple[Any, ...] = (BarColumn(), TextColumn("{task.description}"))
+        self._bar = RichProgress(*columns, console=Console(file=stream), transient=True)
+        self._task = self._bar.add_task(meter.text(), total=meter.total)
+        self._bar.start()
+
+    def arrived(self, failed: bool) -> None:
+        """See `Progress.arrived`."""
+        self._meter.arrived(failed)
+        self._bar.update(self._task, completed=self._meter.done, description=self._meter.text())
+
+    def close(self) -> None:
+        """See `Progress.close`."""
+        self._bar.stop()
+
+
+def make_progress(stream: TextIO | None, total: int, resumed: int = 0) -> Progress:
+    """A bar where there is a terminal, lines elsewhere.
+
+    Args:
+        stream: where it is shown; None shows nothing.
+        total: schedules that there are, at most.
+        resumed: how many of them an earlier run has done.
+    """
+    if stream is None:
+        return NoProgress()
+    meter = CampaignMeter(total, resumed)
+    return BarProgress(meter, stream) if stream.isatty() else PlainProgress(meter, stream)

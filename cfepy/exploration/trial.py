@@ -1,0 +1,150 @@
+"""A trial: one run of a mission under one schedule, and the verdict on it.
+
+A trial is plain data, so it goes to other processes; a verdict comes back.
+"""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from cfepy.attachment import Attachment
+from cfepy.exploration import verdict
+from cfepy.exploration.failures import FailureWatch
+from cfepy.exploration.result_watch import Result, ResultWatch, differences, digest_of
+from cfepy.exploration.stuck import Waits, WaitWatch, stuck_for_good
+from cfepy.exploration.verdict import Failure, Verdict
+from cfepy.pilot import BootError, RunPlan, fly
+from cfepy.rtos import NotingPolicy, Policy, Schedule
+from cfepy.status import StallError, UsageError
+from cfepy.units import NS_PER_S
+
+PROBE_S = 1.0  # wall time that a task gets at least, which is known to spin
+_LEAVES_OTHERS_WAITING = (verdict.DIED, verdict.RAISED, verdict.ENDED, verdict.RESET, verdict.DEADLOCK, verdict.STALLED)
+
+
+class Tried(NamedTuple):
+    """A trial that was flown: the verdict, the results themselves, and what the user of the plan should know."""
+
+    verdict: Verdict
+    results: tuple[Result, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What is flown, and what counts as a failure.
+
+    Attributes:
+        plan: the run; its own schedule does not matter.
+        events: which events are failures: "error" (ERROR and CRITICAL), "critical" or "none".
+        reference: the results of the run that others are held against; None holds them against nothing.
+        keep_widths: verdicts have the widths of decisions, which a systematic search needs.
+        waits: of the default schedule (`cfepy.exploration.stuck`), against which tasks that wait for ever are found;
+            None lets them wait.
+    """
+
+    plan: RunPlan
+    events: str = "error"
+    reference: tuple[Result, ...] | None = None
+    keep_widths: bool = False
+    waits: Waits | None = None
+
+    def run(self, schedule: Schedule, attachments: Sequence[Attachment] = ()) -> Verdict:
+        """Fly the mission in this process.
+
+        Args:
+            schedule: which task runs when.
+            attachments: what else watches the run.
+
+        Returns:
+            What became of it. An error of cfepy itself is told as `trouble` and is no failure of the mission.
+
+        Raises:
+            UsageError: the mission, its script or its faults cannot be read.
+            KeyboardInterrupt: the user pressed Ctrl-C.
+        """
+        return self.fly(schedule, attachments).verdict
+
+    def fly(self, schedule: Schedule, attachments: Sequence[Attachment] = (), policy: Policy | None = None) -> Tried:
+        """As `run`, with what else is known of the flight.
+
+        Args:
+            schedule: which task runs when.
+            attachments: what else watches the run.
+            policy: decides in the place of the schedule's own, of which the options count nevertheless.
+        """
+        recorded = NotingPolicy(schedule.policy() if policy is None else policy)
+        watch = FailureWatch(self.events)
+        spec = self.plan.spec()
+        results = ResultWatch(spec)
+        waits = [WaitWatch()] if self.waits is not None else []
+        failed: tuple[Failure, ...]
+        try:
+            flown = fly(self.plan, spec=spec, attachments=[*attachments, watch, results, *waits], policy=recorded)
+        except BootError as error:
+            return Tried(self._verdict(schedule, recorded, (Failure(verdict.PROBLEM, "", error.text),)))
+        except (UsageError, KeyboardInterrupt):
+            raise
+        except Exception:
+            return Tried(replace(self._verdict(schedule, recorded, ()), trouble=traceback.format_exc()))
+        if flown.stall is not None:
+            return Tried(self._stalled(schedule, recorded, watch, flown.stall), (), flown.notes)
+        found = results.results()
+        failed = (*watch.failures(flown.outcome), *self._differences(found))
+        if waits and not any(failure.kind in _LEAVES_OTHERS_WAITING for failure in failed):
+            failed += tuple(self._stuck(waits[0].waits, schedule, recorded, watch.end_ns))
+        told = self._verdict(schedule, recorded, failed)
+        trouble = "\n".join(watch.trouble)
+        told = replace(told, results=digest_of(found), trace=flown.trace, end_ns=watch.end_ns, trouble=trouble)
+        return Tried(told, found, flown.notes)
+
+    def _stalled(self, schedule: Schedule, policy: NotingPolicy, watch: FailureWatch, stall: StallError) -> Verdict:
+        """What went wrong until then, and the task that did not give up the CPU; results and digest there are none."""
+        where = f" ({stall.place})" if stall.place else ""
+        text = f"{stall.task} does not give up the CPU{where}"
+        last = Failure(verdict.STALLED, stall.app, text, stall.at_ns, "\n".join(stall.lines), stall.task)
+        told = self._verdict(schedule, policy, (*watch.failures(None), last))
+        return replace(told, end_ns=watch.end_ns)
+
+    def _stuck(self, found: Waits, schedule: Schedule, policy: NotingPolicy, end_ns: int) -> Iterator[Failure]:
+        assert self.waits is not None
+        return stuck_for_good(found, self.waits, self.plan, end_ns, schedule.at(policy.deviations).policy)
+
+    def against(self, reference: tuple[Result, ...]) -> Trial:
+        """The same trial, in which results that differ from these are failures."""
+        return replace(self, reference=reference)
+
+    def probe(self) -> Trial:
+        """The same trial for a stall that is known: a task that spins there again is not watched for as long."""
+        limit = self.plan.stall
+        return replace(self, plan=replace(self.plan, stall=min(limit, max(PROBE_S, limit / 10))))
+
+    def until(self, end_ns: int) -> Trial | None:
+        """The same trial in a run that ends at this virtual time; None for a run that ends with its script."""
+        if self.plan.script is not None:
+            return None
+        return replace(self, plan=replace(self.plan, seconds=end_ns / NS_PER_S))
+
+    def command(self, schedule: Schedule) -> str:
+        """The command that flies this mission under a schedule."""
+        return self.plan.command_line(schedule=schedule)
+
+    def _verdict(self, schedule: Schedule, policy: NotingPolicy, failed: tuple[Failure, ...]) -> Verdict:
+        deviations = tuple(sorted(policy.deviations.items())) if failed else ()
+        pairs = zip(policy.widths, policy.running, strict=True)
+        return Verdict(
+            schedule,
+            failed,
+            decisions=len(policy.choices),
+            deviations=deviations,
+            preemptions=policy.preemptions,
+            widths=tuple(-width if running else width for width, running in pairs) if self.keep_widths else (),
+        )
+
+    def _differences(self, found: tuple[Result, ...]) -> tuple[Failure, ...]:
+        if self.reference is None:
+            return ()
+        return tuple(Failure(verdict.RESULTS, name, text) for name, text in differences(self.reference, found))

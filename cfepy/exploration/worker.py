@@ -1,0 +1,62 @@
+"""A worker process: flies batches of schedules for the process that started it.
+
+`python -m cfepy.exploration.worker DESCRIPTOR`, where DESCRIPTOR is its end of a connection. First comes the trial,
+then batches; each is answered by its verdicts. A thread reads the connection, so that the worker ends at once, in the
+middle of a schedule too, when the process at the other end does.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import gc
+import os
+import signal
+import sys
+import threading
+from multiprocessing.connection import Connection
+from queue import SimpleQueue
+from typing import Any
+
+from cfepy.exploration.fork_server import ForkingJudge
+from cfepy.status import UsageError
+
+READY = "ready"
+
+
+def main() -> None:
+    """Serve until the other end closes the connection."""
+    faulthandler.enable()  # a worker that crashes, or is told to abort, says where it was
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started it
+    descriptor = int(sys.argv[1])
+    os.set_inheritable(descriptor, False)
+    connection: Connection[Any, Any] = Connection(descriptor)
+    os.register_at_fork(after_in_child=connection.close)  # whose end means that of this process alone
+    inbox: SimpleQueue[bytes] = SimpleQueue()
+    threading.Thread(target=_read, args=(connection, inbox), daemon=True).start()
+    _serve(connection, inbox)
+
+
+def _serve(connection: Connection[Any, Any], inbox: SimpleQueue[bytes]) -> None:
+    import pickle
+
+    pilot = ForkingJudge(pickle.loads(inbox.get()))
+    gc.freeze()
+    connection.send(READY)
+    while True:
+        jobs = pickle.loads(inbox.get())
+        try:
+            connection.send([(number, pilot.judge(schedule)) for number, schedule in jobs])
+        except UsageError as error:
+            connection.send(error)
+
+
+def _read(connection: Connection[Any, Any], inbox: SimpleQueue[bytes]) -> None:
+    try:
+        while True:
+            inbox.put(connection.recv_bytes())
+    except (EOFError, OSError):
+        os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,152 @@
+"""When faults happen: at occasions, as `When` says and a `Gate` counts, and at the times of an `Agenda`.
+
+An occasion is a message, a call or a tick. Faults that are due at a time are carried out by a task of priority 0, which
+exists only while some are left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
+from random import Random
+
+from cfepy.rtos import Kernel, WaitList
+from cfepy.status import CfeError
+
+PRIORITY = 0
+TASK_NAME = "FAULTS"
+
+
+@dataclass(frozen=True, slots=True)
+class When:
+    """At which occasions a fault happens; an occasion is a message, a call or a tick that matches the fault.
+
+    Attributes:
+        at_ns: virtual times in ns. A fault of occasions happens at the next one after each of them.
+        after_ns, until_ns: the window of virtual time, its end not included; None is the end of the run.
+        number: which occasions within the window, from 1; any when empty.
+        every: only every so many-th of them.
+        probability: of each that is left, 0 to 1.
+        count: most times that it happens; None for no limit.
+    """
+
+    at_ns: tuple[int, ...] = ()
+    after_ns: int = 0
+    until_ns: int | None = None
+    number: tuple[int, ...] = ()
+    every: int = 1
+    probability: float = 1.0
+    count: int | None = None
+
+
+class Gate:
+    """Decides for one fault, through all resets of the processor.
+
+    Args:
+        when: at which occasions.
+        random: the fault's own stream of random numbers, so that no other fault changes its draws.
+
+    Attributes:
+        seen: occasions so far, outside the window too.
+        fired: how often it happened.
+    """
+
+    def __init__(self, when: When, random: Random) -> None:
+        self.when = when
+        self.random = random
+        self.seen = self.fired = 0
+        self._inside = 0
+        self._waiting = sorted(when.at_ns)
+
+    def opens(self, now_ns: int) -> bool:
+        """Whether the fault happens at this occasion."""
+        self.seen += 1
+        if not self._is_due(now_ns):
+            return False
+        self.fired += 1
+        return True
+
+    def is_open(self, now_ns: int) -> bool:
+        """Whether it is within the window of time."""
+        when = self.when
+        return when.after_ns <= now_ns and (when.until_ns is None or now_ns < when.until_ns)
+
+    def _is_due(self, now_ns: int) -> bool:
+        when = self.when
+        if not self.is_open(now_ns) or (when.count is not None and self.fired >= when.count):
+            return False
+        if when.at_ns:
+            if not self._waiting or now_ns < self._waiting[0]:
+                return False
+            self._waiting.pop(0)
+            return True
+        self._inside += 1
+        if (when.number and self._inside not in when.number) or self._inside % when.every:
+            return False
+        return when.probability >= 1 or self.random.random() < when.probability
+
+    def why_not(self) -> str:
+        """Why it never happened, as far as its occasions can tell."""
+        if not self.seen:
+            return "nothing that it is about happened"
+        times = "1 time" if self.seen == 1 else f"{self.seen} times"
+        if not self._inside:
+            return f"matched {times}, but not in its window of time"
+        return f"matched {times}, but no time was one of those that it asks for"
+
+
+class Agenda:
+    """Actions by virtual time; it goes on over resets of the processor.
+
+    Args:
+        kernel: the simulated computer's.
+    """
+
+    def __init__(self, kernel: Kernel) -> None:
+        self._kernel = kernel
+        self._entries: list[tuple[int, int, bool, Callable[[], object]]] = []
+        self._serial = 0
+        self._waits = WaitList("the next fault")
+        self._is_running = self._is_up = False
+
+    def add(self, when_ns: int, action: Callable[[], object], survives: bool = False) -> None:
+        """Do something at a time, at once when that is over.
+
+        Args:
+            when_ns: virtual time.
+            action: called without arguments in the task of the faults.
+            survives: a reset of the processor before that time changes nothing; otherwise it is forgotten then.
+        """
+        self._serial += 1
+        heappush(self._entries, (when_ns, self._serial, survives, action))
+        if self._is_running:
+            self._kernel.wake_first(self._waits)
+        elif self._is_up:
+            self._start()
+
+    def power_up(self) -> None:
+        """A processor was made: what belonged to the one before is forgotten, the rest goes on."""
+        self._entries = [entry for entry in self._entries if entry[2]]
+        heapify(self._entries)
+        self._is_running, self._is_up = False, True
+        if self._entries:
+            self._start()
+
+    def _start(self) -> None:
+        self._is_running = True
+        self._waits = WaitList("the next fault")
+        self._kernel.spawn(TASK_NAME, self._serve, PRIORITY)
+
+    def _serve(self) -> None:
+        kernel = self._kernel
+        kernel.current.owner = None
+        while self._entries:
+            when_ns = self._entries[0][0]
+            if when_ns > kernel.now:
+                kernel.wait_on(self._waits, when_ns - kernel.now)
+            else:
+                with suppress(CfeError):  # a late message that finds no room; the bus has reported it
+                    heappop(self._entries)[3]()
+        self._is_running = False

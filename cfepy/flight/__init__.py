@@ -1,0 +1,71 @@
+"""A mission in the hands of a program: flown step by step, or looked at when it has flown.
+
+What belongs here is what a test, a notebook or a script does with a mission: let it run, send and publish, wait for
+what should come, and read what was sent. How a run is flown is in `cfepy.pilot`; what pytest adds is in
+`cfepy.testing`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.flight.explored import Explored, FoundFailure, explore
+    from cfepy.flight.flight import Flight
+    from cfepy.flight.log import Packet
+    from cfepy.flight.message_library import SECONDS, array_of, build, library_near, library_of_class
+    from cfepy.flight.notebook import Picture
+    from cfepy.flight.plans import SEED, Faults, MissionOptions, RunOptions, fault_attachments, fault_text, schedule_of
+    from cfepy.flight.run import App, ExpectationError, Run
+    from cfepy.flight.start import boot, replay
+
+__all__ = [
+    "SECONDS",
+    "SEED",
+    "App",
+    "ExpectationError",
+    "Explored",
+    "Faults",
+    "Flight",
+    "FoundFailure",
+    "MissionOptions",
+    "Packet",
+    "Picture",
+    "Run",
+    "RunOptions",
+    "array_of",
+    "boot",
+    "build",
+    "explore",
+    "fault_attachments",
+    "fault_text",
+    "library_near",
+    "library_of_class",
+    "replay",
+    "schedule_of",
+]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".explored": ("Explored", "FoundFailure", "explore"),
+            ".flight": ("Flight",),
+            ".message_library": ("SECONDS", "array_of", "build", "library_near", "library_of_class"),
+            ".log": ("Packet",),
+            ".notebook": ("Picture",),
+            ".plans": (
+                "SEED",
+                "Faults",
+                "MissionOptions",
+                "RunOptions",
+                "fault_attachments",
+                "fault_text",
+                "schedule_of",
+            ),
+            ".run": ("App", "ExpectationError", "Run"),
+            ".start": ("boot", "replay"),
+        },
+    )

@@ -1,0 +1,168 @@
+"""`explore`: a mission under many schedules, as `cfepy explore` does it, and what failed under some of them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, Unpack
+
+from cfepy.exploration import DEFAULT_PROBES, DEFAULT_SEEDS, Expedition, Report, Told
+from cfepy.flight.expectations import counted
+from cfepy.flight.plans import MissionWords, RunOptions, plan_of
+from cfepy.flight.run import Run
+from cfepy.flight.start import fly_plan
+from cfepy.markup import code, folded, headline, lines_of, trouble
+from cfepy.pilot import RunPlan
+from cfepy.rtos import Schedule
+from cfepy.units import NS_PER_S
+
+
+class FoundFailure:
+    """A failure that some schedules show.
+
+    Attributes:
+        title: what failed, in a line.
+        detail: more of it, such as a traceback.
+        at: virtual time in s of the first run that showed it; None when it has none.
+        schedules: how many of the schedules showed it.
+        under_fifo: whether the default schedule shows it as well.
+        schedule: the shortest schedule known that shows it.
+        preemptions: of that schedule; None when it was not shrunk.
+        timeline: what happens under it, a line each; empty when it was not shrunk.
+        plan: the shortest run that shows it.
+    """
+
+    def __init__(self, report: Report, told: Told) -> None:
+        finding, shrunk = told.finding, told.shrunk
+        failure = finding.failure
+        self.title, self.detail = failure.title, failure.detail
+        self.at = None if failure.at_ns is None else failure.at_ns / NS_PER_S
+        self.schedules, self.under_fifo = len(finding.numbers), finding.in_reference
+        self.schedule: Schedule = report.schedule_of(told) if shrunk is None else shrunk.verdict.schedule
+        self.preemptions = None if shrunk is None else shrunk.verdict.preemptions
+        self.timeline = list(told.timeline)
+        trial = report.trial if shrunk is None else shrunk.trial
+        self.plan: RunPlan = replace(trial.plan, schedule=self.schedule)
+
+    @property
+    def command(self) -> str:
+        """The command that shows it."""
+        return self.plan.command_line()
+
+    def replay(self) -> Run:
+        """Fly the shortest run that shows it; its `problems` and `console` have the failure."""
+        return fly_plan(self.plan)
+
+    @property
+    def about(self) -> str:
+        """How many schedules show it, and the shortest."""
+        default = ", the default one among them" if self.under_fifo else ""
+        shortest = "" if self.preemptions is None else f", {counted(self.preemptions, 'preemption')}"
+        return f"{counted(self.schedules, 'schedule')}{default}; the shortest is {self.schedule}{shortest}"
+
+    def __repr__(self) -> str:
+        return f"<{self.title}: {self.schedules} schedules, shortest {self.schedule}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        parts = [trouble(self.title), headline("shown by", self.about), code(self.command)]
+        parts.append(folded("What happens", lines_of(self.timeline), is_open=True))
+        parts.append(folded("More of it", lines_of(self.detail.splitlines())))
+        return f"<div style='margin-top: 0.5em'>{''.join(parts)}</div>"
+
+
+class Explored:
+    """What became of a mission under many schedules.
+
+    Attributes:
+        mission: what was explored, as it was given.
+        failures: each failure once, those of the default schedule first.
+        schedules: how many were flown.
+        failed: how many of them failed.
+        troubles: errors of cfepy itself, which are to be reported.
+        notes: what its user should know.
+    """
+
+    def __init__(self, mission: str, report: Report) -> None:
+        self.failures = [FoundFailure(report, told) for told in report.findings]
+        self.schedules, self.failed = report.tally.done, report.tally.failed
+        self.troubles = [each.trouble for each in report.troubles]
+        self.notes = report.notes
+        self.mission = mission
+        self._report = report
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, as `cfepy explore --json` writes it."""
+        return self._report.to_dict()
+
+    def __repr__(self) -> str:
+        titles = "".join(f"\n  {failure.title}" for failure in self.failures)
+        return f"<{self.schedules} schedules, {self.failed} failed{titles}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        failed = f"{self.failed} failed" if self.failed else "none failed"
+        parts = [headline(self.mission, f"{counted(self.schedules, 'schedule')}, {failed}")]
+        parts += [trouble(f"an error of cfepy itself: {each}") for each in self.troubles]
+        parts += [headline("note", note) for note in self.notes]
+        parts += [failure._repr_html_() for failure in self.failures]
+        return f"<div>{''.join(parts)}</div>"
+
+
+def explore(
+    mission: MissionWords,
+    *,
+    seeds: int = DEFAULT_SEEDS,
+    policy: str = "all",
+    until_failure: bool = False,
+    any_priority: bool = False,
+    hold: float | None = None,
+    start: float | None = None,
+    events: str = "error",
+    jobs: int | None = None,
+    results: str | os.PathLike[str] | None = None,
+    shrink: int = DEFAULT_PROBES,
+    **options: Unpack[RunOptions],
+) -> Explored:
+    """Fly a mission under many schedules, and find what fails under some of them.
+
+        for failure in cfepy.explore("my_mission", seeds=200, seconds=2).failures:
+            print(failure.title, failure.command)
+
+    Args:
+        mission: as of `run`.
+        seeds: how many schedules.
+        policy: where they come from: "random", "pct", "dfs", or "all".
+        until_failure: whether the first failure ends it.
+        any_priority: less urgent tasks may run before more urgent ones.
+        hold: how long the running task may be held up, in virtual s.
+        start: virtual time in s until which all is as by default.
+        events: which events of the mission's applications are failures: "error", "critical" or "none".
+        jobs: processes; None is one on each CPU.
+        results: file that keeps the verdicts, and that it goes on from.
+        shrink: how many runs it may take to shrink a failure; 0 leaves it as it is.
+        options: `seconds`, `seed`, `board`, `script`, `faults` and so on, see `RunOptions`. A schedule is none of them.
+
+    Raises:
+        TypeError: there is no such option.
+        UsageError: there is no such mission, something in it or in an option is wrong, or it cannot boot.
+    """
+    known = RunOptions.__annotations__.keys() - {"schedule"}
+    if isinstance(options.get("faults"), Mapping):
+        raise TypeError("faults are flown in other processes; give the file of a plan, or seed:N")
+    plan = plan_of(mission, options, known)
+    expedition = Expedition(
+        plan,
+        seeds=seeds,
+        policy=policy,
+        until_failure=until_failure,
+        any_priority=any_priority,
+        hold_s=hold,
+        from_s=start,
+        events=events,
+        jobs=jobs,
+        results=None if results is None else os.fspath(results),
+        shrink=shrink,
+    )
+    return Explored(" ".join(plan.words), expedition.run())

@@ -1,0 +1,105 @@
+"""The message types that a test can use, and messages made of plain data."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from rospy_shim.msgs import Library, MessageClass
+
+SECONDS = {"time": (0, 2**32 - 1), "duration": (-(2**31), 2**31 - 1)}
+"""The range of a ROS time's or duration's whole seconds."""
+
+
+def array_of(field_type: str) -> tuple[str, int | None]:
+    """The type of an array's items, and its length if it is fixed."""
+    base, _, length = field_type[:-1].partition("[")
+    return base, int(length) if length else None
+
+
+def build(library: Library, field_type: str, value: Any) -> Any:
+    """A message, or the value of a field, from plain data; what is a message already stays as it is.
+
+    Args:
+        library: knows the type.
+        field_type: the type.
+        value: as `MessageValues` makes it.
+    """
+    if field_type.endswith("]") and not isinstance(value, bytes):
+        return [build(library, array_of(field_type)[0], item) for item in value]
+    if not isinstance(value, Mapping):
+        return value
+    if field_type in SECONDS:
+        from rospy_shim.genpy import Duration, Time
+
+        return (Time if field_type == "time" else Duration)(value["secs"], value["nsecs"])
+    kind = library.message_class(field_type)
+    slots = dict(zip(kind.__slots__, kind._slot_types, strict=True))
+    return kind(**{name: build(library, slots[name], item) for name, item in value.items()})
+
+
+def library_near(place: str | os.PathLike[str] | None = None) -> Library:
+    """The message library of a program: ROS's common packages, those near it, those on ROS_PACKAGE_PATH.
+
+    Args:
+        place: a file or folder of the package; None for the working directory.
+    """
+    from rospy_shim.msgs import Library, OnDisk, Packages, shipped
+
+    path = Path.cwd() if place is None else Path(place).absolute()
+    packages = Packages(path / "any" if path.is_dir() else path, os.environ)
+    return Library([OnDisk(packages)], base=shipped())
+
+
+def library_of_class(kind: MessageClass) -> Library:
+    """The library that knows a class and what is nested in it.
+
+    Raises:
+        UsageError: it is no message class.
+    """
+    from rospy_shim.msgs import library_of
+
+    full_text = getattr(kind, "_full_text", None)
+    if full_text is None:
+        raise UsageError(f"{kind!r} is no ROS message class; give one, or a type such as 'std_msgs/String'")
+    return library_of(kind._type, full_text)
+
+
+def filled(library: Library, kind: str, fields: Mapping[str, Any]) -> Any:
+    """A message with fields from plain values; dictionaries stand for nested messages.
+
+    Args:
+        library: knows the type.
+        kind: the type.
+        fields: values by name.
+
+    Raises:
+        UsageError: there is no such field, or a value does not fit.
+    """
+    from rospy_shim.genpy.arguments import ArgumentFiller
+
+    message = library.message_class(kind)()
+    try:
+        ArgumentFiller(library.message_class).fill_message_args(message, [dict(fields)])
+    except Exception as error:  # whatever genpy raises for values that do not fit
+        raise UsageError(f"no {kind}: {error}") from None
+    return message
+
+
+def serialized(message: Any) -> bytes:
+    """The bytes of a message of whatever make.
+
+    Raises:
+        UsageError: it is no message.
+    """
+    if not hasattr(message, "serialize"):
+        raise UsageError(f"{message!r} is no ROS message; give one, or its fields by name")
+    buffer = io.BytesIO()
+    message.serialize(buffer)
+    return buffer.getvalue()

@@ -1,0 +1,123 @@
+"""What a notebook shows of a run: what is wrong first, then tables; and pictures of values over time."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cfepy.ground import DecodedEvent, SeriesSet
+from cfepy.markup import code, folded, headline, lines_of, rows_of, trouble
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from cfepy.pilot import Results
+
+LAST_LINES = 30  # of the console: the rest is in `Run.console`
+SERIOUS = ("ERROR", "CRITICAL")
+
+
+class Picture:
+    """A picture that a notebook shows by itself.
+
+    Attributes:
+        figure: of matplotlib, to be changed or saved.
+    """
+
+    def __init__(self, figure: Figure) -> None:
+        self.figure = figure
+
+    def __repr__(self) -> str:
+        return f"<Picture of {len(self.figure.axes)} axes>"
+
+    def _repr_png_(self) -> bytes:
+        """What a notebook shows."""
+        stream = io.BytesIO()
+        self.figure.savefig(stream, format="png")
+        return stream.getvalue()
+
+
+def picture(series: SeriesSet, words: Sequence[str], title: str, file: str | os.PathLike[str] | None) -> Picture:
+    """A picture of what words mean, as `cfepy plot` draws it; see `Run.plot`."""
+    from cfepy.reports import curves_of, picture_of, save
+
+    figure = picture_of([curves_of(series, word) for word in words], title=title)
+    if file is not None:
+        try:
+            save(figure, Path(file))
+        except (OSError, ValueError) as error:
+            raise UsageError(f"cannot be written: {error}", file=os.fspath(file)) from None
+    return Picture(figure)
+
+
+def page_of_run(
+    results: Results,
+    problems: Sequence[str],
+    notes: Sequence[str],
+    events: Sequence[DecodedEvent],
+    console: Sequence[str],
+) -> str:
+    """A run as HTML.
+
+    Args:
+        results: its numbers; without a trace as long as it flies.
+        problems: what is wrong.
+        notes: what its user should know.
+        events: all events.
+        console: all lines.
+    """
+    about = f"{results.virtual_s:.3f} virtual s, seed {results.seed}, board {results.board}, {results.tasks} tasks"
+    about += f", {results.speed:.1f} x real time" if results.trace else ", flies"
+    parts = [headline(results.mission, about), *map(trouble, problems)]
+    parts += [headline("note", note) for note in notes]
+    parts.append(code(f"trace {results.trace}") if results.trace else "")
+    parts += [_topics(results), _apps(results), _events(events, results), _console(console, bool(problems))]
+    return f"<div>{''.join(parts)}</div>"
+
+
+def _topics(results: Results) -> str:
+    """Those with most messages first: they are why one looks."""
+    topics = sorted((row for row in results.topics if row.sent), key=lambda row: (-row.sent, row.msg_id))
+    rows = [
+        (
+            f"0x{row.msg_id:04X}",
+            row.name,
+            row.type,
+            row.sent,
+            row.delivered,
+            row.dropped,
+            row.why,
+            f"{row.rate_hz:,.1f}",
+        )
+        for row in topics
+    ]
+    sent, dropped = sum(row.sent for row in topics), sum(row.dropped for row in topics)
+    table = rows_of(("MsgId", "name", "type", "sent", "delivered", "dropped", "why", "Hz"), rows)
+    return folded(f"Messages: {len(rows)} topics and packets, {sent:,} sent, {dropped:,} dropped", table, is_open=True)
+
+
+def _apps(results: Results) -> str:
+    """The mission's own; those that are not well first."""
+    apps = sorted((row for row in results.apps if not row.core), key=lambda row: row.state == "RUNNING")
+    rows = [(row.name, row.state, row.cpu_text, row.restarts, row.error or "") for row in apps]
+    states = ", ".join(f"{count} {state}" for state, count in Counter(row.state for row in apps).items())
+    return folded(f"Applications: {states}", rows_of(("name", "state", "CPU", "restarts", "died of"), rows))
+
+
+def _events(events: Sequence[DecodedEvent], results: Results) -> str:
+    """The serious ones first."""
+    serious = sorted(events, key=lambda event: event.type_name not in SERIOUS)
+    rows = [(f"{each.at_ns / NS_PER_S:.3f}", each.app, each.event_id, each.type_name, each.text) for each in serious]
+    counts = ", ".join(f"{count} {kind}" for kind, count in results.events.items() if count)
+    return folded(f"Events: {counts}", rows_of(("at, s", "of", "id", "type", "text"), rows))
+
+
+def _console(lines: Sequence[str], is_open: bool) -> str:
+    count = f"the last {LAST_LINES} of {len(lines):,}" if len(lines) > LAST_LINES else f"{len(lines)}"
+    return folded(f"Console: {count} lines", lines_of(lines[-LAST_LINES:]), is_open)

@@ -1,0 +1,120 @@
+"""What a program says of a run, as a `RunPlan`: a mission, and what decides the run, by name."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, TypedDict
+
+from cfepy.attachment import Attachment
+from cfepy.faults import FaultInjector, FaultPlan
+from cfepy.pilot import NODE, RUN, RunPlan
+from cfepy.rtos import Schedule
+from cfepy.suggestions import did_you_mean
+
+MissionWords = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
+"""A mission: the name of one that cfepy brings along, a folder, a startup script, a launch file, or a node's .py file;
+in a sequence with what follows it on the command line, such as `("talker.py", "_rate:=5")`."""
+
+Faults = str | os.PathLike[str] | Mapping[str, Any] | FaultPlan
+"""What goes wrong: a plan's file, "seed:N", a plan, or a dictionary of its form."""
+
+SEED = "seed:"
+_NODE_FILE = ".py"
+
+
+class MissionOptions(TypedDict, total=False):
+    """What decides how a mission flies. What is not given is as usual.
+
+    Attributes:
+        seed: of everything random.
+        board: name of a board, or its file.
+        tasks: "thread" or "greenlet".
+        schedule: which task goes first, such as "random:7".
+        faults: what goes wrong: a plan's file, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
+        play: a bag that is played into the mission.
+        args: of a launch file.
+        stall: seconds of wall time after which a task that does not give up the CPU ends the run; 0 waits for ever.
+    """
+
+    seed: int
+    board: str | os.PathLike[str] | None
+    tasks: str
+    schedule: str | Schedule
+    faults: Faults | None
+    play: str | os.PathLike[str] | None
+    args: Mapping[str, object] | None
+    stall: float
+
+
+class RunOptions(MissionOptions, total=False):
+    """What decides a run: `MissionOptions`, and how long it goes on.
+
+    Attributes:
+        seconds: virtual time to run, from the boot; of a node, from its start.
+        script: file of commands and expectations.
+        stop_on_failure: the run ends with the first step of the script that fails.
+    """
+
+    seconds: float | None
+    script: str | os.PathLike[str] | None
+    stop_on_failure: bool
+
+
+def plan_of(mission: MissionWords, options: Mapping[str, Any], known: Iterable[str]) -> RunPlan:
+    """The plan of a run.
+
+    Args:
+        mission: what is flown.
+        options: of the run, by name.
+        known: the names that there are.
+
+    Raises:
+        TypeError: an option that there is not.
+        UsageError: the schedule is none.
+    """
+    names = sorted(known)
+    for name in options:
+        if name not in names:
+            raise TypeError(f"there is no option {name!r}; {did_you_mean(name, names)}")
+    words = _words(mission)
+    said = {name: value for name, value in options.items() if value is not None}
+    for name in ("board", "script", "play"):
+        if name in said:
+            said[name] = os.fspath(said[name])
+    if "schedule" in said:
+        said["schedule"] = schedule_of(said["schedule"])
+    if "faults" in said:
+        said["faults"] = fault_text(said["faults"])
+    said["launch_args"] = tuple((name, str(value)) for name, value in said.pop("args", {}).items())
+    return RunPlan(words, NODE if words[0].endswith(_NODE_FILE) else RUN, **said)
+
+
+def _words(mission: MissionWords) -> tuple[str, ...]:
+    words = (mission,) if isinstance(mission, str | os.PathLike) else tuple(mission)
+    return tuple(os.fspath(word) for word in words)
+
+
+def schedule_of(given: str | Schedule) -> Schedule:
+    """A schedule, from its text or as it is.
+
+    Raises:
+        UsageError: the text is none.
+    """
+    return given if isinstance(given, Schedule) else Schedule.parse(given)
+
+
+def fault_text(faults: Faults | None) -> str | None:
+    """What a plan says of the faults; None for those that the program alone has, see `fault_attachments`."""
+    return None if faults is None or isinstance(faults, Mapping | FaultPlan) else os.fspath(faults)
+
+
+def fault_attachments(faults: Faults | None) -> list[Attachment]:
+    """What lets faults happen that the program alone has.
+
+    Raises:
+        UsageError: something in the plan is wrong.
+    """
+    if isinstance(faults, FaultPlan):
+        return [FaultInjector(faults)]
+    return [FaultInjector(FaultPlan.from_dict(faults))] if isinstance(faults, Mapping) else []

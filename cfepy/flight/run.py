@@ -1,0 +1,279 @@
+"""`Run`: a mission that flies or has flown, to be looked at: messages, packets, events, console, numbers.
+
+    run.topic("/joint_states").to_numpy("position")
+    run.trace, run.speed, run.topics, run.apps, run.events, run.console
+
+It finds what a `FlightLog` has kept by its name, and makes the errors of expectations that were not met.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from typing import Any
+
+from cfepy.es import STATE_NAMES
+from cfepy.exploration import TracebackReader
+from cfepy.flight.log import FlightLog, Packet
+from cfepy.flight.message_library import library_near
+from cfepy.flight.notebook import Picture, page_of_run, picture
+from cfepy.ground import DecodedEvent, Dictionary, Series, SeriesSet
+from cfepy.mission import Mission
+from cfepy.monitors import Heard
+from cfepy.pilot import AppResult, Flown, Results, RunPlan, TopicResult, mark
+from cfepy.units import NS_PER_S
+
+__tracebackhide__ = True  # pytest shows the line of the test
+LAST_LINES = 10  # of the console, in the text of a failure
+
+
+class ExpectationError(AssertionError):
+    """Something that a test waited for did not come, or something came that must not.
+
+    The text says what was expected and until when, what there was instead, and the command that does it again.
+    """
+
+
+@dataclass(frozen=True, slots=True)
+class App:
+    """An application: its state ("RUNNING", "GONE", ...), how often it was restarted and died, its last error."""
+
+    name: str
+    state: str
+    restarts: int
+    deaths: int
+    error: BaseException | None
+
+
+class Run:
+    """A mission that flies or has flown, to be looked at. A notebook shows it as tables.
+
+    The numbers of a run that still flies are those until now; those of its whole, `trace`, `speed` and `results`, end
+    it.
+
+    Args:
+        plan: of the run.
+        mission: that is flown.
+        log: attached to it.
+        flown: its end; None as long as it flies.
+
+    Attributes:
+        plan, mission, log: as given.
+    """
+
+    def __init__(self, plan: RunPlan, mission: Mission, log: FlightLog, flown: Flown | None = None) -> None:
+        self.plan = plan
+        self.mission = mission
+        self.log = log
+        self._flown = flown
+
+    @property
+    def dictionary(self) -> Dictionary:
+        """Its packets by name."""
+        return self.log.dictionary
+
+    @property
+    def now(self) -> float:
+        """Virtual time in s since the boot; when the results are there, that of the end without the nodes' shutdown."""
+        return self.mission.kernel.now / NS_PER_S if self._flown is None else self._flown.results.virtual_s
+
+    @property
+    def trace(self) -> str:
+        """The digest of the run, 32 hexadecimal digits: the same for the same run. Asking for it ends the run."""
+        return self.results.trace
+
+    @property
+    def speed(self) -> float:
+        """Virtual time by wall time. Asking for it ends the run."""
+        return self.results.speed
+
+    @property
+    def topics(self) -> list[TopicResult]:
+        """What became of the messages of each topic and packet, a row for each MsgId."""
+        return self._numbers.topics
+
+    @property
+    def apps(self) -> list[AppResult]:
+        """A row for each application: state, share of the CPU, restarts, deaths, error."""
+        return self._numbers.apps
+
+    @property
+    def _numbers(self) -> Results:
+        """Of the whole run, or until now."""
+        return self._flown.results if self._flown is not None else Results.of(self.mission, mark(self.mission, 0), "")
+
+    @property
+    def console(self) -> list[str]:
+        """All lines of the console: system log, events on the port, what nodes print and log."""
+        return self.log.lines
+
+    @property
+    def events(self) -> list[DecodedEvent]:
+        """All events."""
+        return self.log.events
+
+    @property
+    def series(self) -> SeriesSet:
+        """Values over time of everything that was sent until now; `Run.topic` gives one of them."""
+        return self.log.series()
+
+    def topic(self, name: str) -> Series:
+        """What was sent on a ROS topic, or as a cFE packet, with its values over time.
+
+        Args:
+            name: of the topic, or of the packet in the mission's dictionary, such as "CFE_ES_HK_TLM".
+
+        Returns:
+            The messages: `to_numpy(field)` gives times in s and values, `to_pandas()` a table.
+
+        Raises:
+            UsageError: nothing was sent under this name.
+        """
+        found = self.log.topics.get(name)
+        return self.series.series(name) if found is None else found
+
+    def plot(self, name: str, *fields: str, file: str | os.PathLike[str] | None = None) -> Picture:
+        """A picture of values over time, one axes below the other.
+
+        Args:
+            name: of a topic or a packet.
+            fields: their paths, such as "position" or "pose.position.x"; all when there are none.
+            file: where it is written, as PNG, SVG or PDF by its name; None writes nothing.
+
+        Raises:
+            UsageError: nothing was sent under this name, there is no such field, matplotlib is not installed, or the
+                file cannot be written.
+        """
+        words = [f"{name}.{field}" for field in fields] or [name]
+        return picture(self.series, words, self.mission.spec.name, file)
+
+    def __repr__(self) -> str:
+        state = "flies" if self._flown is None else f"{self._flown.results.speed:.1f} x real time, trace {self.trace}"
+        return f"<{self.mission.spec.name}: {self.now:.3f} virtual s, seed {self.plan.seed}, {state}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        notes = () if self._flown is None else self._flown.notes
+        return page_of_run(self._numbers, self.problems, notes, self.events, self.console)
+
+    def messages(self, topic: str) -> list[Any]:
+        """All messages on a ROS topic, also those without a subscriber."""
+        return [each.msg for each in self.history(topic)]
+
+    def history(self, topic: str) -> list[Heard]:
+        """The messages on a ROS topic: `msg` is the message, `sender` its sender, `t` its time in virtual s."""
+        return self.log.heard(topic)
+
+    def telemetry(self, name: str) -> Packet:
+        """The last packet of a kind.
+
+        Raises:
+            UsageError: there is no such packet in the dictionary.
+            ExpectationError: none was sent.
+        """
+        found = self.packets(name)
+        if not found:
+            names = self.log.telemetry_names()
+            instead = f"only {', '.join(names)}" if names else "no telemetry"
+            raise self._failure(f"telemetry {self.dictionary.telemetry_of(name).name} until now", instead)
+        return found[-1]
+
+    def packets(self, name: str) -> list[Packet]:
+        """All packets of a kind, by the name of the telemetry or its MsgId, also those without a subscriber.
+
+        Raises:
+            UsageError: there is no such packet in the dictionary.
+        """
+        msg_id = self.dictionary.telemetry_of(name).msg_id
+        return [self.log.packet(seen) for seen in self.log.packets.get(msg_id, ())]
+
+    def stdout(self, node: str) -> list[str]:
+        """The lines that a node has printed and logged, by the node's name, without the name in front.
+
+        Raises:
+            ExpectationError: there is no such node, and was none.
+        """
+        name = node.lstrip("/")
+        found = [line.removeprefix(f"[{name}] ") for line in self.log.lines if line.startswith(f"[{name}] ")]
+        ros = self.mission.ros
+        known = [] if ros is None else [*ros.graph.nodes, *(f"/{end.name}" for end in ros.ended.values())]
+        if not found and f"/{name}" not in known:
+            raise self._failure(f"a node {node}", ", ".join(dict.fromkeys(known)) or "no node")
+        return found
+
+    def app(self, name: str) -> App:
+        """An application, by its cFE name.
+
+        Raises:
+            ExpectationError: there is none, and was none.
+        """
+        es = self.mission.cfe.es
+        history = es.history.get(name)
+        if history is None:
+            raise self._failure(f"an application {name}", ", ".join(es.history))
+        state = next((STATE_NAMES[app.state] for app in es.apps if app.name == name), "GONE")
+        return App(name, state, history.restarts, history.deaths, history.last_error)
+
+    @property
+    def deaths(self) -> list[str]:
+        """A line for each application that has died of an exception."""
+        return self.mission.record.deaths()
+
+    @property
+    def problems(self) -> list[str]:
+        """A line for all that is wrong until now: what a run's report tells, exceptions in nodes, deadlocks.
+
+        An exception that ends only a thread, or that rospy catches behind a callback, is not in a run's report.
+        """
+        if self._flown is not None:
+            return [*self._flown.results.problems, *self._raised()]
+        circles = [", ".join(map(str, circle)) for circle in self.mission.kernel.deadlocked()]
+        return [*Results.of(self.mission, mark(self.mission, 0), "").problems, *self._raised(), *circles]
+
+    def _raised(self) -> list[str]:
+        """The exceptions whose tracebacks nodes have printed."""
+        reader = TracebackReader()
+        for line in self.log.lines:
+            reader.take(line, 0)
+        return list(dict.fromkeys(failure.title for failure in reader.found))
+
+    def message_class(self, kind: str) -> Any:
+        """The class of a ROS message type, such as "std_msgs/Float64", also of the mission's own packages.
+
+        Raises:
+            UsageError: there is no such type.
+        """
+        return library_near(self.mission.spec.folder).message_class(kind)
+
+    # -- the end -------------------------------------------------------------------------------------------------------
+
+    @property
+    def results(self) -> Results:
+        """The numbers of the whole run (`cfepy.pilot.Results`). Asking for them ends it: the nodes shut down."""
+        return self.flown().results
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What its user should know, such as a fault that never happened. Asking for it ends the run."""
+        return self.flown().notes
+
+    def flown(self) -> Flown:
+        """How it ended."""
+        assert self._flown is not None
+        return self._flown
+
+    # -- failures ------------------------------------------------------------------------------------------------------
+
+    def _failure(self, expected: str | None, instead: str) -> ExpectationError:
+        first = instead if expected is None else f"expected {expected}\ninstead: {instead}"
+        return ExpectationError("\n".join([first, *self.state_lines(), f"the same again: {self.command()}"]))
+
+    def state_lines(self) -> list[str]:
+        """What is wrong, and the end of the console, as failures have it."""
+        lines = [f"  {line}" for line in self.log.lines[-LAST_LINES:]]
+        problems = [f"problem: {each}" for each in self.problems]
+        return [*problems, f"console until {self.now:.3f}:", *lines]
+
+    def command(self) -> str:
+        """The command that does the same run again."""
+        return replace(self.plan, seconds=self.now).command_line()

@@ -1,0 +1,130 @@
+"""`run`, `boot` and `replay`: a mission by its name, flown to its end, step by step, or again.
+
+Each gets the mission as the command line does, and options by name. What they raise for a mission, an option or a file
+that is wrong is a `UsageError`, which says where and what to do.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Unpack
+
+from cfepy.attachment import Attachment
+from cfepy.console import Console
+from cfepy.flight.flight import Flight
+from cfepy.flight.log import FlightLog
+from cfepy.flight.plans import MissionOptions, MissionWords, RunOptions, fault_attachments, plan_of
+from cfepy.flight.run import Run
+from cfepy.journal import Replay, read_journal, record, staged
+from cfepy.pilot import Host, LiveRun, RunPlan, fly
+from cfepy.rtos import Stopwatch
+
+
+class TimedHost(Host):
+    """Measures the wall-clock time of a run."""
+
+    def begin(self, run: LiveRun) -> None:
+        """See `Host.begin`."""
+        super().begin(run)
+        self._watch = Stopwatch()
+
+    def wall_ns(self) -> int:
+        """See `Host.wall_ns`."""
+        return self._watch.elapsed_ns()
+
+
+def run(
+    mission: MissionWords,
+    *,
+    attachments: Sequence[Attachment] = (),
+    journal: str | os.PathLike[str] | None = None,
+    echo: bool = False,
+    **options: Unpack[RunOptions],
+) -> Run:
+    """Fly a mission to its end, as `cfepy run` does.
+
+        run = cfepy.run("capture", seconds=20, seed=3)
+        run.topic("/joint_states").to_numpy("position")
+
+    Args:
+        mission: the name of a mission that cfepy brings along, a folder, a startup script, a launch file or a node's
+            .py file; in a sequence with what follows it on the command line.
+        attachments: what else watches the run or changes it.
+        journal: file into which the run is recorded; None records none.
+        echo: whether the console's lines are printed.
+        options: `seconds`, `seed`, `board`, `tasks`, `schedule`, `script`, `stop_on_failure`, `faults`, `play`, `args`
+            and `stall`, see `RunOptions`.
+
+    Returns:
+        The run, with everything that was sent in it.
+
+    Raises:
+        TypeError: there is no such option.
+        UsageError: there is no such mission, something in it or in an option is wrong, or it cannot boot.
+    """
+    plan = plan_of(mission, options, RunOptions.__annotations__)
+    return fly_plan(plan, [*fault_attachments(options.get("faults")), *attachments], journal, echo)
+
+
+def fly_plan(
+    plan: RunPlan,
+    attachments: Sequence[Attachment] = (),
+    journal: str | os.PathLike[str] | None = None,
+    echo: bool = False,
+) -> Run:
+    """As `run`, of a plan."""
+    spec = plan.spec()
+    log = FlightLog(spec)
+    watching, console = [log, *attachments], Console(quiet=not echo)
+    if journal is None:
+        flown = fly(plan, spec=spec, attachments=watching, console=console, host=TimedHost())
+    else:
+        flown = record(plan, os.fspath(journal), watching, spec=spec, console=console, host=TimedHost())
+    return Run(plan, flown.mission, log, flown)
+
+
+def boot(mission: MissionWords, *, attachments: Sequence[Attachment] = (), **options: Unpack[MissionOptions]) -> Flight:
+    """Boot a mission, which stands at virtual time 0 and goes on when it is told.
+
+        with cfepy.boot("capture") as m:
+            m.run_for(2.0)
+            m.send("CFE_ES_NOOP")
+            m.expect_event("CFE_ES", 3)
+
+    Args:
+        mission: as of `run`.
+        attachments: what else watches the run or changes it.
+        options: `seed`, `board`, `tasks`, `schedule`, `faults`, `play`, `args` and `stall`, see `MissionOptions`.
+
+    Returns:
+        The flight, to be closed: use it as a context manager.
+
+    Raises:
+        TypeError: there is no such option.
+        UsageError: as of `run`.
+    """
+    plan = plan_of(mission, options, MissionOptions.__annotations__)
+    return Flight(plan, attachments=[*fault_attachments(options.get("faults")), *attachments])
+
+
+def replay(journal: str | os.PathLike[str], *, tasks: str | None = None) -> Run:
+    """Do the run of a journal again, as `cfepy replay` does.
+
+    Args:
+        journal: the file.
+        tasks: "thread" or "greenlet"; None is that of the journal.
+
+    Returns:
+        The run. Its trace is the journal's when it was the same.
+
+    Raises:
+        UsageError: it is no journal, or its mission cannot fly.
+    """
+    journal_of_run = read_journal(os.fspath(journal))
+    with staged(journal_of_run) as stage:
+        log = FlightLog(stage.spec())
+        again = Replay(journal_of_run, stage, tasks=tasks)
+        flown = again.fly([log], host=TimedHost())
+        assert log.dictionary  # made now: the files that it is read from are about to go
+        return Run(again.plan, flown.mission, log, flown)

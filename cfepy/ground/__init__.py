@@ -1,0 +1,181 @@
+"""What a ground system knows of a mission, and how it reaches it: names, dictionary, topics, values, link, bags, files.
+
+What belongs here works on packets, files and names as a ground system has them, with a mission that flies or without
+one. What judges a run is in `cfepy.monitors`; what decides how one is flown is in `cfepy.pilot`.
+
+The names below are loaded when they are first used: a run imports no more of this package than it needs.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.faces import face
+from cfepy.ground.names import ROS, LiveNames, kind_of, names_in, names_of
+
+if TYPE_CHECKING:
+    from cfepy.ground.bag import BagReader, BagRecorder, header_of, is_bag
+    from cfepy.ground.command_trial import CommandTrial
+    from cfepy.ground.dictionary import Decoded, Dictionary, dictionary_of, table_type, table_types
+    from cfepy.ground.events import EVENT_IDS, EVENT_TYPES, DecodedEvent
+    from cfepy.ground.fields import MessageDecoder, steps_of, value_at
+    from cfepy.ground.graph.drawing import graph_svg
+    from cfepy.ground.graph.model import MissionGraph, graph_of
+    from cfepy.ground.graph.texts import graph_dot, graph_text
+    from cfepy.ground.link import CI_PORT, TO_PORT, GroundLink
+    from cfepy.ground.node import GroundConsole, empty_mission, ground_node_ended, with_ground_node, with_player
+    from cfepy.ground.series import Samples, Series, SeriesRecorder, SeriesSet, bag_series, candidates, packet_series
+    from cfepy.ground.survey import LOOK_S, MidRow, Survey, lock_path, lock_text, locked, spread_out, surveyed_topics
+    from cfepy.ground.topics import Topic, library_of, plain, topic_id, topics_of
+    from cfepy.ground.values import flat, int_of, line_of, number_of, packet_of, text_of, unknown_field
+
+__all__ = [
+    "CI_PORT",
+    "EVENT_IDS",
+    "EVENT_TYPES",
+    "LOOK_S",
+    "ROS",
+    "TO_PORT",
+    "BagReader",
+    "BagRecorder",
+    "CommandTrial",
+    "Decoded",
+    "DecodedEvent",
+    "Dictionary",
+    "GroundConsole",
+    "GroundLink",
+    "LiveNames",
+    "MessageDecoder",
+    "MidRow",
+    "MissionGraph",
+    "Samples",
+    "Series",
+    "SeriesRecorder",
+    "SeriesSet",
+    "Survey",
+    "Topic",
+    "bag_series",
+    "candidates",
+    "dictionary_of",
+    "empty_mission",
+    "flat",
+    "graph_dot",
+    "graph_of",
+    "graph_svg",
+    "graph_text",
+    "ground_node_ended",
+    "header_of",
+    "int_of",
+    "is_bag",
+    "kind_of",
+    "library_of",
+    "line_of",
+    "lock_path",
+    "lock_text",
+    "locked",
+    "names_in",
+    "names_of",
+    "number_of",
+    "packet_of",
+    "packet_series",
+    "plain",
+    "spread_out",
+    "steps_of",
+    "surveyed_topics",
+    "table_type",
+    "table_types",
+    "text_of",
+    "topic_id",
+    "topics_of",
+    "unknown_field",
+    "value_at",
+    "with_ground_node",
+    "with_player",
+]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".bag": (
+                "BagReader",
+                "BagRecorder",
+                "header_of",
+                "is_bag",
+            ),
+            ".command_trial": ("CommandTrial",),
+            ".dictionary": (
+                "Decoded",
+                "Dictionary",
+                "dictionary_of",
+                "table_type",
+                "table_types",
+            ),
+            ".events": (
+                "EVENT_IDS",
+                "EVENT_TYPES",
+                "DecodedEvent",
+            ),
+            ".fields": (
+                "MessageDecoder",
+                "steps_of",
+                "value_at",
+            ),
+            ".graph.drawing": ("graph_svg",),
+            ".graph.model": (
+                "MissionGraph",
+                "graph_of",
+            ),
+            ".graph.texts": (
+                "graph_dot",
+                "graph_text",
+            ),
+            ".link": (
+                "CI_PORT",
+                "TO_PORT",
+                "GroundLink",
+            ),
+            ".node": (
+                "GroundConsole",
+                "empty_mission",
+                "ground_node_ended",
+                "with_ground_node",
+                "with_player",
+            ),
+            ".series": (
+                "Samples",
+                "Series",
+                "SeriesRecorder",
+                "SeriesSet",
+                "bag_series",
+                "packet_series",
+                "candidates",
+            ),
+            ".survey": (
+                "LOOK_S",
+                "MidRow",
+                "Survey",
+                "lock_path",
+                "lock_text",
+                "locked",
+                "spread_out",
+                "surveyed_topics",
+            ),
+            ".topics": (
+                "Topic",
+                "library_of",
+                "plain",
+                "topic_id",
+                "topics_of",
+            ),
+            ".values": (
+                "flat",
+                "int_of",
+                "line_of",
+                "number_of",
+                "packet_of",
+                "text_of",
+                "unknown_field",
+            ),
+        },
+    )

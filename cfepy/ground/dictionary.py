@@ -1,0 +1,264 @@
+"""Every command, telemetry packet and table of a mission by name: what its services and applications declare.
+
+Commands and telemetry are collected from the declarations (`cfepy.msg.Command` and `Telemetry`) of the five services
+and of the applications that the startup script names, tables from their `TABLES`. An application's module is executed
+for that, but not started; one that declares nothing is not executed, and a ROS node never. ROS topics are telemetry
+too: those that the mission file names are known from the start, with what they carry as soon as a mission runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cfepy import msg
+from cfepy.ground.names import CORE_PACKETS
+from cfepy.ground.topics import Topic
+from cfepy.ground.values import int_of, line_of, texts_of
+from cfepy.mission import NODE_SYMBOL, MissionSpec, described, read_mission, sources
+from cfepy.mission.python_code import ModuleNames, execute, find_code
+from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Command, Layout, Telemetry
+from cfepy.resources import shipped
+from cfepy.status import CfeError, UsageError
+from cfepy.suggestions import did_you_mean
+from cfepy.tbl import TableType
+
+DECLARATIONS = ("COMMANDS", "TELEMETRY")
+ROS_PACKETS = "rospy_shim.parameters.table"
+"""The code in which the application ROS declares its packets, as a loader finds it."""
+
+
+class Decoded(NamedTuple):
+    """A packet that was read.
+
+    `time_s` is the time in its header in s; None for a command. `problem` says why `values` is empty though there is a
+    payload.
+    """
+
+    name: str
+    msg_id: int
+    sequence: int
+    time_s: float | None
+    values: dict[str, Any]
+    problem: str = ""
+    layout: Layout | None = None
+
+    def line(self) -> str:
+        """Its values on one line, those of enumerations by their names."""
+        return line_of(self.values, self.layout)
+
+    def texts(self) -> dict[str, str]:
+        """As `line`, by path."""
+        return texts_of(self.values, self.layout)
+
+
+@dataclass(slots=True)
+class Dictionary:
+    """Commands and telemetry by name. `problems` says, a line each, what could not be read."""
+
+    commands: dict[str, Command] = field(default_factory=dict)
+    telemetry: dict[str, Telemetry | Topic] = field(default_factory=dict)
+    problems: list[str] = field(default_factory=list)
+    _by_id: dict[int, Telemetry | Topic] = field(default_factory=dict)
+    _by_code: dict[tuple[int, int], Command] = field(default_factory=dict)
+
+    def add(self, declarations: Iterable[Command | Telemetry | Topic]) -> None:
+        """Take declarations in; the first one of a name or MsgId stays."""
+        for each in declarations:
+            if isinstance(each, Command):
+                self.commands.setdefault(each.name, each)
+                self._by_code.setdefault((each.msg_id, each.code or 0), each)
+            else:
+                self.telemetry.setdefault(each.name, each)
+                self._by_id.setdefault(each.msg_id, each)
+
+    def learn(self, topics: Iterable[Topic]) -> None:
+        """Take in what a running mission knows of its topics; a packet that an application declares stays as it is."""
+        for topic in topics:
+            self.telemetry[topic.name] = topic
+            if not isinstance(self._by_id.get(topic.msg_id), Telemetry):
+                self._by_id[topic.msg_id] = topic
+
+    def command(self, name: str) -> Command:
+        """A command by its name.
+
+        Raises:
+            UsageError: there is none; the text names those that are like it.
+        """
+        if name not in self.commands:
+            raise self._unknown("command", name, self.commands)
+        return self.commands[name]
+
+    def telemetry_of(self, name: str) -> Telemetry | Topic:
+        """A telemetry packet by its name or MsgId ("0x0800", "2048"); one whose MsgId alone is known has no fields.
+
+        Raises:
+            UsageError: there is none of that name.
+        """
+        if name in self.telemetry:
+            return self.telemetry[name]
+        try:
+            msg_id = int_of(name)
+        except ValueError:
+            raise self._unknown("telemetry packet", name, self.telemetry) from None
+        return self._by_id.get(msg_id) or Telemetry(f"0x{msg_id:04X}", msg_id)
+
+    def decode(self, packet: bytes) -> Decoded:
+        """Name and fields of a packet: telemetry, or a command.
+
+        Raises:
+            CfeError: CFE_MSG_BAD_ARGUMENT when it has no primary header.
+        """
+        msg_id, header = msg.get_msg_id(packet), msg.get_header_size(packet)
+        decoded = Decoded(f"0x{msg_id:04X}", msg_id, msg.get_sequence_count(packet), None, {})
+        if len(packet) < header:
+            return decoded._replace(problem=f"{len(packet)} bytes are too few for a header of {header}")
+        version = msg.get_header_version(packet)
+        if version != 0:
+            return decoded._replace(problem=f"its header has the version {version}, not 0")
+        if header == TLM_HEADER_SIZE:
+            seconds, subseconds = msg.get_msg_time(packet)
+            return _read(self._by_id.get(msg_id), packet, decoded._replace(time_s=seconds + subseconds / 2**32))
+        code = msg.get_fcn_code(packet) if header == CMD_HEADER_SIZE else 0
+        return _read(self._by_code.get((msg_id, code)), packet, decoded._replace(name=f"{decoded.name}/{code}"))
+
+    def declared_as(self, packet: bytes) -> Command | Telemetry | None:
+        """What a packet is declared as, by its MsgId and function code; None for a ROS message, and what is unknown."""
+        msg_id, header = msg.get_msg_id(packet), msg.get_header_size(packet)
+        if header == TLM_HEADER_SIZE:
+            found = self._by_id.get(msg_id)
+            return found if isinstance(found, Telemetry) else None
+        return self._by_code.get((msg_id, msg.get_fcn_code(packet))) if len(packet) >= header else None
+
+    def fields_of(self, packet: bytes) -> dict[str, Any]:
+        """The fields of a packet; one whose layout is not declared has one, `data`, its bytes behind the header.
+
+        Raises:
+            UsageError: it is no such packet.
+        """
+        decoded = self.decode(packet)
+        if not decoded.problem:
+            return decoded.values
+        if decoded.name in self.telemetry or decoded.name in self.commands:
+            raise UsageError(f"{decoded.name}: {decoded.problem}")
+        return {"data": packet[msg.get_header_size(packet) :]}
+
+    def _unknown(self, what: str, name: str, known: Iterable[str]) -> UsageError:
+        unread = "".join(f"; {problem}" for problem in self.problems)
+        return UsageError(f"no {what} is called {name}{did_you_mean(name, known, before='; ', most=3)}{unread}")
+
+
+def _read(entry: Command | Telemetry | Topic | None, packet: bytes, decoded: Decoded) -> Decoded:
+    if entry is None:
+        return decoded._replace(problem="its layout is not known")
+    try:
+        layout = None if isinstance(entry, Topic) else entry.payload
+        return decoded._replace(name=entry.name, values=entry.read(packet), layout=layout)
+    except (CfeError, UsageError) as error:
+        return decoded._replace(name=entry.name, problem=str(error))
+
+
+def dictionary_of(spec: MissionSpec | None) -> Dictionary:
+    """The dictionary of a mission.
+
+    Args:
+        spec: the mission; None takes the services and every application that cfepy brings along.
+    """
+    found = Dictionary()
+    for packets in CORE_PACKETS.values():
+        found.add([*packets.COMMANDS, *packets.TELEMETRY])
+    found.add(declared(spec, DECLARATIONS, found.problems))
+    if spec is not None:
+        found.add(Topic(topic.name, topic.msg_id, raw=topic.raw) for topic in spec.ros.topics.values())
+    return found
+
+
+def declared(spec: MissionSpec | None, attributes: Sequence[str], problems: list[str]) -> list[Any]:
+    """Everything that the apps and libraries of a mission declare.
+
+    Args:
+        spec: the mission; None stands for all apps that cfepy brings along.
+        attributes: names of the tuples, such as "TABLES".
+        problems: gets a line for each app that could not be executed.
+    """
+    found: list[Any] = []
+    names = ModuleNames()
+    try:
+        for file, code in _codes(spec):
+            found += _of_app(file, code, attributes, names, problems)
+    finally:
+        names.forget()
+    return found
+
+
+def table_types(mission: str | None, problems: list[str]) -> dict[str, TableType]:
+    """The tables that are known, by full name: those of a mission before those of the apps that cfepy brings along.
+
+    Args:
+        mission: as `read_mission` takes it, or None.
+        problems: gets a line for each app that could not be executed.
+
+    Raises:
+        UsageError: there is no such mission.
+    """
+    own = declared(read_mission(mission), ("TABLES",), problems) if mission is not None else []
+    return {kind.name: kind for kind in [*declared(None, ("TABLES",), problems), *own]}
+
+
+def table_type(name: str, mission: str | None) -> TableType:
+    """The declaration of one table, by its full name, or by its own if no other one has it.
+
+    Args:
+        name: such as "HK.CopyTable", or "CopyTable".
+        mission: whose applications declare it, as of `table_types`.
+
+    Raises:
+        UsageError: there is none, or there are several of that name.
+    """
+    problems: list[str] = []
+    known = table_types(mission, problems)
+    if name in known:
+        return known[name]
+    found = [kind for kind in known.values() if kind.own_name == name]
+    if len(found) == 1:
+        return found[0]
+    which = (
+        f"did you mean {' or '.join(kind.name for kind in found)}?"
+        if found
+        else f"there are {', '.join(sorted(known))}"
+    )
+    raise UsageError("; ".join([f"no table is called {name!r}", which, *problems]))
+
+
+def _codes(spec: MissionSpec | None) -> Iterator[tuple[str, Path | str]]:
+    """(name, code) of apps and libraries, each once."""
+    if spec is None:
+        for package in sorted(shipped("apps").glob("*/__init__.py")):
+            yield package.parent.name, package
+        yield ROS_PACKETS, ROS_PACKETS
+        return
+    files = dict.fromkeys(entry.path for entry in spec.entries if entry.symbol != NODE_SYMBOL)
+    for file in files:
+        code = find_code(file, spec.folder)
+        if code is not None:
+            yield file, code
+    if spec.has_nodes:
+        yield ROS_PACKETS, ROS_PACKETS
+
+
+def _of_app(
+    file: str, code: Path | str, attributes: Sequence[str], names: ModuleNames, problems: list[str]
+) -> list[Any]:
+    source = sources.source_of(code)
+    if source is None or not any(sources.defines(source, name) for name in attributes):
+        return []
+    try:
+        module = execute(code, names.new(file))
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # also sys.exit(): the code is the mission's, and may do anything
+        problems.append(f"{source} could not be read: {described(error)}")
+        return []
+    return [item for name in attributes for item in getattr(module, name, ())]

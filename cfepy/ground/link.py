@@ -1,0 +1,72 @@
+"""The ground link: commands to a mission and telemetry from it as UDP would carry them, but inside the process.
+
+It stands for a ground system at the other end of CI_LAB's and TO_LAB's sockets. The host uses it between two pieces of
+a run; what it sends arrives at the virtual instant at which the run stands, and is noted in the trace with its bytes.
+So a run with a ground link is as deterministic as one without.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import TracebackType
+
+from cfepy.mission import Mission
+from cfepy.osal import Datagram, Place
+
+CI_PORT = 1234
+TO_PORT = 1235
+GROUND = Place("127.0.0.1", TO_PORT)
+
+
+class GroundLink:
+    """The way from the host to the virtual sockets of a mission, and back.
+
+    Args:
+        mission: the mission to talk to; also after it was reset.
+        on_datagram: called with everything that leaves the mission, at once; without it, `received` hands it out.
+    """
+
+    def __init__(self, mission: Mission, on_datagram: Callable[[Datagram], object] | None = None) -> None:
+        self._mission = mission
+        self._waiting: dict[int, list[tuple[int, bytes]]] = {}
+        self._outlet = self._keep if on_datagram is None else on_datagram
+        mission.network.outlets.append(self._outlet)
+
+    def send(self, packet: bytes, port: int = CI_PORT, source: Place = GROUND) -> bool:
+        """Send a datagram to a port of the mission; from the host only, while the run stands still.
+
+        Args:
+            packet: its bytes.
+            port: where CI_LAB listens: 1234 on processor 1.
+            source: its sender, as the receiver sees it.
+
+        Returns:
+            Whether it was taken: False when no socket is bound there, or the one that is has no room left.
+        """
+        return self._mission.outside.datagram(port, source, bytes(packet))
+
+    def received(self, port: int = TO_PORT) -> list[tuple[int, bytes]]:
+        """What has come down since the last call, in order.
+
+        Args:
+            port: where TO_LAB sends to.
+
+        Returns:
+            The virtual time of sending in ns and the bytes of each datagram, whatever the host it was sent to.
+        """
+        return self._waiting.pop(port, [])
+
+    def close(self) -> None:
+        """Take the link away; the mission goes on without."""
+        self._mission.network.outlets.remove(self._outlet)
+
+    def __enter__(self) -> GroundLink:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _keep(self, datagram: Datagram) -> None:
+        self._waiting.setdefault(datagram.target.port, []).append((self._mission.kernel.now, datagram.data))

@@ -1,0 +1,453 @@
+"""Values over time: the messages of a run on its ROS topics and of its cFE packets, as numpy arrays and tables.
+
+    recorder = SeriesRecorder(["/joint_states", "CFE_ES_HK_TLM"])  # an attachment; without names it takes everything
+    fly(RunPlan(("capture",), seconds=20), attachments=[recorder])  # or the replay of a journal
+    joints = recorder.series("/joint_states")  # a `Series`; `bag_series(file)` has those of a bag
+    times, positions = joints.to_numpy("position")  # seconds, and an array of shape (messages, 7)
+    joints.to_pandas("position", "header.stamp")  # where pandas is installed
+    recorder.found("/joint_states.position[0]")  # the series and the field that a word means
+
+What is sent is kept as it is, and decoded when somebody asks for its values. Recording changes nothing in the run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from cfepy.attachment import Attachment
+from cfepy.ground.bag import BagReader
+from cfepy.ground.dictionary import Dictionary, dictionary_of
+from cfepy.ground.fields import MessageDecoder, array_of, columns_of, names_in, path_of, steps_of, unit_at, values_at
+from cfepy.ground.topics import topics_of
+from cfepy.ground.values import unknown_field
+from cfepy.markup import headline, rows_of
+from cfepy.mission import Mission, PacketWatch, Seen, TopicMessage, TopicWatch, matches
+from cfepy.msg import TLM_HEADER_SIZE, Command, Telemetry, get_fcn_code, get_header_size, get_msg_time
+from cfepy.sb import SoftwareBus
+from cfepy.status import UsageError
+from cfepy.suggestions import like
+from cfepy.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+SHOWN_NAMES = 12
+HEADER_BITS, TELEMETRY_BITS = 0x1800, 0x0800  # of a MsgId: a command or not, a secondary header or not
+BYTES_OF_ONE = 8_192  # of messages that are larger fewer are kept, where not all are
+
+
+class Samples(NamedTuple):
+    """A field over time: virtual times in s, of shape (n,), and values, of shape (n,) or for arrays (n, k)."""
+
+    times: NDArray[Any]
+    values: NDArray[Any]
+
+
+class Series:
+    """The messages on a topic, or the packets of a name, in the order in which they were sent.
+
+    Args:
+        name: of the topic, or in the dictionary.
+        type: of the messages, such as "sensor_msgs/JointState"; "telemetry" or "command" of packets.
+        read: decodes one.
+        stamp: when it was sent by the clock that is told on board, in ns; None as long as there is no such time.
+
+    Attributes:
+        name, type: as given.
+        count: how many were sent.
+        most: how many are kept, fewer of large ones; None is all. When there are more, every second is dropped.
+        every: one of so many is kept.
+    """
+
+    def __init__(self, name: str, type: str, read: Callable[[Any], Any], stamp: Callable[[Any], int | None]) -> None:
+        self.name, self.type = name, type
+        self.count, self.every = 0, 1
+        self.most: int | None = None
+        self._bytes = 0
+        self._read, self._stamp = read, stamp
+        self._sent: list[Any] = []
+        self._messages: list[Any] = []
+
+    def add(self, sent: TopicMessage | Seen) -> None:
+        """Take the next one."""
+        self.count += 1
+        if (self.count - 1) % self.every:
+            return
+        self._sent.append(sent)
+        if self.most is not None:
+            self._bytes += len(sent.data if isinstance(sent, TopicMessage) else sent.packet)
+            if len(self._sent) > self.most or self._bytes > self.most * BYTES_OF_ONE:
+                self._drop_half()
+
+    def _drop_half(self) -> None:
+        self.every *= 2
+        self._bytes //= 2
+        self._sent, self._messages = self._sent[::2], self._messages[::2]
+
+    @property
+    def sent(self) -> Sequence[Any]:
+        """What was sent, as it is: `TopicMessage` or `Seen`."""
+        return self._sent
+
+    def __len__(self) -> int:
+        return len(self._sent)
+
+    def __repr__(self) -> str:
+        return f"<{self.name}: {len(self)} of {self.type}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: each field with its first and its last value."""
+        if not self._sent:
+            return headline(self.name, f"none of {self.type}")
+        ends = [self._read(self._sent[0]), self._read(self._sent[-1])]
+        rows = [(path, self.unit(path), *map(str, values)) for path, values in columns_of(ends)]
+        first, last = (f"at {self._sent[index].at_ns / NS_PER_S:.3f} s" for index in (0, -1))
+        table = rows_of(("field", "unit", first, last), rows)
+        count = f"{len(self):,} of {self.type}" if "/" in self.type else f"{len(self):,} packets of {self.type}"
+        return f"<div>{headline(self.name, count)}{table}</div>"
+
+    @property
+    def messages(self) -> Sequence[Any]:
+        """The messages as nodes get them, packets as mappings of their fields.
+
+        Raises:
+            UsageError: there is one whose bytes are none.
+        """
+        self._messages += map(self._read, self._sent[len(self._messages) :])
+        return self._messages
+
+    @property
+    def times_ns(self) -> NDArray[Any]:
+        """Virtual times of sending in ns, as int64."""
+        import numpy
+
+        return numpy.array([sent.at_ns for sent in self._sent], numpy.int64)
+
+    @property
+    def times(self) -> NDArray[Any]:
+        """Virtual times of sending in s, as float64."""
+        return self.times_ns / NS_PER_S
+
+    @property
+    def stamps_ns(self) -> NDArray[Any]:
+        """When they were sent by the clock on board, in ns, as int64: ROS time, of a telemetry packet the spacecraft
+        time in its header. 0 where there is no such time, as in a command and before a bag's /clock."""
+        import numpy
+
+        return numpy.array([self._stamp(sent) or 0 for sent in self._sent], numpy.int64)
+
+    def to_numpy(self, field: str) -> Samples:
+        """A field over time.
+
+        Numbers have the type that numpy gives them. Arrays of one length are rows. Times and durations are in s. Texts
+        and arrays of different lengths are objects, and a number that a message has not is NaN.
+
+        Args:
+            field: its path, see `cfepy.ground.fields`.
+
+        Raises:
+            UsageError: there is no such field, or it is a whole struct.
+        """
+        path, values = self._values(field)
+        inner = next((names_in(value) for value in values if value is not None), ())
+        if inner:
+            names = ", ".join(f"{path}.{name}" if path else name for name in inner)
+            raise UsageError(f"is made of fields; name one of them: {names}", file=self.name, field=path or None)
+        return Samples(self.times, array_of(values))
+
+    def columns(self, *fields: str) -> dict[str, NDArray[Any]]:
+        """Fields as columns, each number, time and text in them by its path, such as "position[0]".
+
+        Args:
+            fields: their paths; everything when there are none.
+
+        Raises:
+            UsageError: there is no such field.
+        """
+        found = [self._values(field) for field in fields or ("",)]
+        return {name: column for path, values in found for name, column in columns_of(values, path)}
+
+    def unit(self, field: str) -> str:
+        """The unit of a field as its message type defines it; "" when that is not known, as for cFE's packets."""
+        return unit_at(self.messages[0], steps_of(field)) if len(self) else ""
+
+    def to_pandas(self, *fields: str) -> Any:
+        """A `pandas.DataFrame`: a row for each message, with its virtual time in s for an index, and a column for each
+        of `columns(*fields)`.
+
+        Raises:
+            UsageError: there is no such field, or pandas is not installed.
+        """
+        try:
+            from pandas import DataFrame, Index
+        except ImportError:
+            raise UsageError("tables need the library pandas: pip install pandas") from None
+        return DataFrame(self.columns(*fields), index=Index(self.times, name="time"))
+
+    def _values(self, field: str) -> tuple[str, list[Any]]:
+        """The path of a field as it is shown, and its value in each message."""
+        messages = self.messages
+        try:
+            steps = steps_of(field)
+            return path_of(steps), values_at(messages, steps) if steps else list(messages)
+        except LookupError:
+            raise self._missing(field) from None
+
+    def _missing(self, field: str) -> UsageError:
+        paths = [path for path, _ in columns_of(self.messages)]
+        array, mark, _ = field.rpartition("[")
+        items = {path[len(array) :].split("]")[0] for path in paths if mark and path.startswith(f"{array}[")}
+        if not items:
+            return unknown_field(self.name, paths, field)
+        text = f"there is no such item; the last one is {array}[{len(items) - 1}]"
+        return UsageError(text, file=self.name, field=field)
+
+
+class SeriesSet:
+    """Series by name.
+
+    Args:
+        most: how many messages of each are kept, evenly spread over the run; None is all.
+    """
+
+    def __init__(self, most: int | None = None) -> None:
+        self._most = most
+        self._series: dict[str, Series] = {}
+        self._silent: list[str] = []  # names of topics that are there, and on which nothing was sent or taken
+        self._decoder = MessageDecoder()
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the topics and packets that were sent, sorted."""
+        return sorted(self._series)
+
+    def get(self, name: str) -> Series | None:
+        """The series of a topic or a packet; None when nothing was sent under this name."""
+        return self._series.get(name)
+
+    def series(self, name: str) -> Series:
+        """The series of a topic or a packet.
+
+        Raises:
+            UsageError: nothing was sent under this name; the text has those that are there.
+        """
+        if name in self._series:
+            return self._series[name]
+        raise self._unknown(name)
+
+    def found(self, word: str) -> tuple[Series, str]:
+        """The series and the path of the field that a word means; the path is empty for the whole message.
+
+        Args:
+            word: such as "/odom.pose.pose.position.x", "/odom/pose/pose/position/x", "CFE_ES_HK_TLM.PerfState",
+                "CFE_ES.HK_TLM.PerfState" or "0x0800.PerfState".
+
+        Raises:
+            UsageError: nothing was sent that it can mean.
+        """
+        for name, field in meanings(word):
+            if name in self._series:
+                return self._series[name], field
+        raise self._unknown(word)
+
+    def matching(self, word: str) -> list[tuple[Series, str]]:
+        """What a word means as by `found`, or all topics that fit a pattern such as "/arm/*".
+
+        Raises:
+            UsageError: nothing was sent that it can mean.
+        """
+        if not word.startswith("/") or "*" not in word:
+            return [self.found(word)]
+        names = [name for name in self.names if matches(name, [word])]
+        if not names:
+            raise self._unknown(word)
+        return [(self._series[name], "") for name in names]
+
+    def _unknown(self, word: str) -> UsageError:
+        names = [name for name, _ in meanings(word)]
+        if any(name in self._silent for name in names):
+            return UsageError("nothing was sent there", file=word)
+        known = sorted({*self._series, *self._silent})
+        if not known:
+            return UsageError("nothing is sent there, nor anywhere else", file=word)
+        near = like(names[0], known, likeness=0.5)
+        shown = [*near, *(name for name in known if name not in near)]
+        more = ", ..." if len(shown) > SHOWN_NAMES else ""
+        hint = f"did you mean {near[0]}? " if near else ""
+        return UsageError(
+            f"there is no such topic or packet; {hint}there are {', '.join(shown[:SHOWN_NAMES])}{more}", file=word
+        )
+
+    def add(self, series: Series) -> None:
+        """Take one more, in place of one with its name."""
+        self._series[series.name] = series
+
+    def take_message(self, message: TopicMessage) -> None:
+        """Take the next message of a topic."""
+        series = self._series.get(message.topic)
+        if series is None:
+            series = Series(message.topic, message.header["type"], self._decoder.decode, lambda sent: sent.stamp_ns)
+            series.most = self._most
+            self._series[message.topic] = series
+        series.add(message)
+
+
+def meanings(word: str) -> Iterator[tuple[str, str]]:
+    """(name, path of a field) that a word can mean, first the one with the longest name."""
+    if word.startswith("/"):
+        head, dot, rest = word.partition(".")
+        yield from ((name, (head.removeprefix(name) + dot + rest).strip("/.")) for name in candidates(head))
+        return
+    parts = word.split(".")
+    for count in range(len(parts), 0, -1):
+        yield "_".join(parts[:count]), ".".join(parts[count:])
+
+
+def candidates(name: str) -> list[str]:
+    """The topics that a name can mean: it, or what is before a field, as in /odom/pose/pose/position/x."""
+    parts = name.split("[")[0].strip("/").split("/")
+    return ["/" + "/".join(parts[:count]) for count in range(len(parts), 0, -1)]
+
+
+def bag_series(file: str, words: Sequence[str] = (), seconds: float | None = None) -> SeriesSet:
+    """The series of a bag.
+
+    Args:
+        file: the bag.
+        words: what is wanted of it, as `SeriesRecorder` takes them; everything when there are none.
+        seconds: how much of it; None is all.
+
+    Raises:
+        UsageError: there is no such bag, it is broken, or a word names no topic.
+    """
+    for word in words:
+        if not word.startswith("/"):
+            raise UsageError(f"{word} is no topic, which begins with /; a bag has nothing else", file=file)
+    found = SeriesSet()
+    with BagReader(file) as bag:
+        found._silent = [connection.topic for connection in bag.connections]
+        for message in bag.messages(_topics_of(words)):
+            if seconds is not None and message.at_ns > seconds * NS_PER_S:
+                break
+            found.take_message(message)
+    return found
+
+
+def _topics_of(words: Sequence[str]) -> list[str]:
+    return [name for word in words if word.startswith("/") for name in candidates(word.partition(".")[0])]
+
+
+class SeriesRecorder(SeriesSet, Attachment):
+    """Records what is sent in a run.
+
+    Args:
+        words: what is wanted: topics, patterns such as "/arm/*", packets of the mission's dictionary and MsgIds, with
+            fields behind them or not (`SeriesSet.found`). Without any it takes all topics and all telemetry that is
+            declared.
+        most: as of `SeriesSet`.
+
+    Raises:
+        UsageError: when the mission is made: it has no such packet.
+    """
+
+    def __init__(self, words: Sequence[str] = (), most: int | None = None) -> None:
+        super().__init__(most)
+        topics = _topics_of(words)
+        self._packets = [word for word in words if not word.startswith("/")]
+        self._wants_all = not words
+        self._names: dict[int, dict[int | None, str]] = {}
+        self._dictionary = Dictionary()
+        self._mission: Mission
+        self._is_over = False
+        self._watches: list[TopicWatch | PacketWatch] = []
+        self._all_topics = TopicWatch(self._take_in_time)
+        if topics:
+            self._watches.append(TopicWatch(self._take_in_time, topics))
+        if self._packets:
+            self._watches.append(PacketWatch(self._take_packet, self._names.__contains__))
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        if self._wants_all:  # one look at each packet, not one for topics and one for packets
+            return PacketWatch(self._take_any, _is_telemetry).bus(self._all_topics.hearing(base))
+        for each in self._watches:
+            base = each.bus(base)
+        return base
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._mission = mission
+        for each in (*self._watches, self._all_topics):
+            each.begin(mission)
+        if not self._packets and not self._wants_all:
+            return
+        self._dictionary = dictionary_of(mission.spec)
+        for word in self._packets:
+            self._want(self._declared(word))
+        if self._wants_all:
+            for packet in self._dictionary.telemetry.values():
+                if isinstance(packet, Telemetry):
+                    self._want(packet)
+
+    def conclude(self) -> None:
+        """See `Attachment.conclude`: how the nodes shut down is no part of the run's time."""
+        self._is_over = True
+        self._silent = [topic.name for topic in topics_of(self._mission)]
+        self._silent += (name for names in self._names.values() for name in names.values())
+
+    def _declared(self, word: str) -> Any:
+        known = {**self._dictionary.telemetry, **self._dictionary.commands}
+        names = [name for name, _ in meanings(word)]
+        found = next((known[name] for name in names if name in known), None)
+        return self._dictionary.telemetry_of(word.partition(".")[0]) if found is None else found
+
+    def _want(self, packet: Any) -> None:
+        code = packet.code if isinstance(packet, Command) else None
+        self._names.setdefault(packet.msg_id, {})[code] = packet.name
+
+    def _take_any(self, seen: Seen) -> None:
+        if seen.msg_id in self._names:
+            self._take_packet(seen)
+        self._all_topics.take_packet(seen)
+
+    def _take_in_time(self, message: TopicMessage) -> None:
+        if not self._is_over:
+            self.take_message(message)
+
+    def _take_packet(self, seen: Seen) -> None:
+        names = self._names[seen.msg_id]
+        is_command = get_header_size(seen.packet) != TLM_HEADER_SIZE
+        name = names.get(None) or names.get(get_fcn_code(seen.packet) if is_command else None)
+        if name is None or self._is_over:
+            return
+        series = self._series.get(name)
+        if series is None:
+            series = self._series[name] = packet_series(name, is_command, self._dictionary)
+            series.most = self._most
+        series.add(seen)
+
+
+def _is_telemetry(msg_id: int) -> bool:
+    return msg_id & HEADER_BITS == TELEMETRY_BITS
+
+
+def packet_series(name: str, is_command: bool, dictionary: Dictionary) -> Series:
+    """An empty series of packets.
+
+    Args:
+        name: in the dictionary.
+        is_command: whether they are commands, which have no time in their header.
+        dictionary: decodes them.
+    """
+    kind, stamp = ("command", _no_stamp) if is_command else ("telemetry", _spacecraft_time)
+    return Series(name, kind, lambda seen: dictionary.fields_of(seen.packet), stamp)
+
+
+def _spacecraft_time(seen: Seen) -> int:
+    seconds, subseconds = get_msg_time(seen.packet)
+    return seconds * NS_PER_S + (subseconds * NS_PER_S >> 32)
+
+
+def _no_stamp(seen: Seen) -> None:
+    """A command has no time in its header."""

@@ -1,0 +1,148 @@
+"""What a short flight shows of a mission: its MsgIds with senders and subscribers, its topics, and ids to keep.
+
+A mission runs for some virtual seconds with a Software Bus that notes the sender of each message. A sender that stays
+silent for that time is not seen; a ROS publisher is, since it registers. `lock` gives every topic and service a MsgId
+of its
+own: the file `topics.lock` in the mission's folder, made by `cfepy mids --lock`, belongs under version control. An id
+in it never moves; the mission file's `topics:` come before it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from cfepy.console import Console
+from cfepy.ground.names import kind_of, names_in
+from cfepy.ground.topics import Topic, topics_of
+from cfepy.mission import LOCK_FILE, NODE_SYMBOL, Mission, MissionSpec, PacketWatch, Seen
+from cfepy.nodes import RosConfig
+
+LOOK_S = 10.0
+_HEAD = "# MsgIds of ROS topics and services, written by `cfepy mids --lock`. Keep this file: ids in it never move.\n"
+
+
+@dataclass(frozen=True, slots=True)
+class MidRow:
+    """One MsgId; `type` is "command", "telemetry", or the type of a ROS topic's messages."""
+
+    msg_id: int
+    name: str
+    type: str
+    senders: list[str]
+    subscribers: list[str]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers and text."""
+        return asdict(self)
+
+
+class Survey(PacketWatch):
+    """Notes the senders of all messages in the mission that it is attached to.
+
+    Attributes:
+        senders: names of applications by MsgId.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(self._note)
+        self.senders: dict[int, set[str]] = {}
+        self._mission: Mission
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._mission = mission
+
+    def rows(self) -> list[MidRow]:
+        """The MsgIds that there are by now, in order."""
+        return rows_of(self._mission, self.senders)
+
+    def _note(self, seen: Seen) -> None:
+        self.senders.setdefault(seen.msg_id, set()).add(seen.sender)
+
+
+def rows_of(mission: Mission, senders_of: Mapping[int, set[str]]) -> list[MidRow]:
+    """The MsgIds of a mission, in order.
+
+    Args:
+        mission: the mission.
+        senders_of: names of the applications that were seen to send each.
+    """
+    bus = mission.cfe.sb
+    names = names_in(mission)
+    ros = {row.msg_id: row for row in mission.ros.topics()} if mission.ros is not None else {}
+    nodes = {entry.name for entry in mission.spec.entries if entry.symbol == NODE_SYMBOL}
+    found = []
+    for msg_id in sorted({*bus.routes, *senders_of, *ros}):
+        row, route = ros.get(msg_id), bus.routes.get(msg_id)
+        senders = set(senders_of.get(msg_id, ()))
+        subscribers = {each.pipe.app_name for each in route.destinations} if route is not None else set()
+        name, kind = names.get(msg_id, f"0x{msg_id:04X}"), kind_of(msg_id)
+        if row is not None:  # ROS knows the nodes by their own names
+            name, kind = row.name, row.type
+            senders = senders - nodes | set(row.publishers)
+            subscribers = subscribers - nodes | set(row.subscribers)
+        found.append(MidRow(msg_id, name, kind, sorted(senders), sorted(subscribers)))
+    return found
+
+
+def surveyed_topics(spec: MissionSpec) -> list[Topic]:
+    """The topics of a mission with their types; a mission with nodes runs for 10 virtual seconds to find them.
+
+    Raises:
+        CfeError: it cannot boot.
+    """
+    if all(entry.symbol != NODE_SYMBOL for entry in spec.entries):
+        return []
+    with Mission(spec, console=Console(quiet=True)) as mission:
+        mission.run_for(LOOK_S)
+        return topics_of(mission)
+
+
+def spread_out(spec: MissionSpec) -> MissionSpec:
+    """A mission whose topics take the next free MsgId where two want the same one."""
+    return replace(spec, ros=replace(spec.ros, spread=True))
+
+
+def locked(spec: MissionSpec, mission: Mission) -> RosConfig:
+    """Give every topic and service of a mission a MsgId of its own.
+
+    Args:
+        spec: the mission.
+        mission: the mission of `spread_out(spec)`, which has flown long enough to show its topics and services.
+
+    Returns:
+        The configuration of `spec` with `locked_topics` and `locked_services`.
+
+    Raises:
+        UsageError: there are more names than MsgIds.
+    """
+    from rospy_shim.graph import msg_ids
+
+    topics, services = ([], []) if mission.ros is None else mission.ros.graph.ids.claimed()
+    of_topics, of_services = msg_ids.locked(spec.ros, topics, services)
+    return replace(spec.ros, locked_topics=of_topics, locked_services=of_services)
+
+
+def lock_text(config: RosConfig) -> str:
+    """What stands in the lock file."""
+    return _HEAD + _section("topics", config.locked_topics) + _section("services", config.locked_services)
+
+
+def lock_path(spec: MissionSpec) -> Path:
+    """Where a mission's lock file is."""
+    return spec.folder / LOCK_FILE
+
+
+def _section(title: str, ids: Mapping[str, int]) -> str:
+    if not ids:
+        return f"{title}: {{}}\n"
+    return f"{title}:\n" + "".join(f"  {_quoted(name)}: 0x{ids[name]:04X}\n" for name in sorted(ids))
+
+
+def _quoted(name: str) -> str:
+    """A resolved name needs no quotes in YAML; one that breaks ROS's rules may."""
+    plain = all(letter.isalnum() or letter in "/_" for letter in name)
+    return name if plain else '"' + name.replace("\\", "\\\\").replace('"', '\\"') + '"'

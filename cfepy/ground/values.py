@@ -1,0 +1,216 @@
+"""Field values as people write and read them: `ValU32=0x10 PacketID.AppName=HK Masks=1,2,3`.
+
+A field is named by its path in the packet's layout, and a value of an enumeration by its name or its number.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+from cfepy.msg import Cell, Command, Layout, ValueNames, command
+from cfepy.status import UsageError
+from cfepy.suggestions import did_you_mean
+
+_TRUTH = {"true": 1, "false": 0, "1": 1, "0": 0}
+_INDICES = re.compile(r"(\[\d+\])+")
+
+
+def packet_of(declared: Command, words: Iterable[str]) -> bytes:
+    """The bytes of a command from `field=value` words; a field that is not given is zero.
+
+    Args:
+        declared: the command.
+        words: numbers as in Python (0x10, -3, 2.5), texts as they are, arrays with commas between their items.
+
+    Raises:
+        UsageError: no such field, or a value that does not fit it; `field` is the field's path.
+    """
+    payload = bytearray(declared.payload.size)
+    cells = {cell.path: cell for cell in declared.payload.cells()}
+    given: set[str] = set()
+    for word in words:
+        path, equals, text = word.partition("=")
+        if not equals:
+            raise UsageError(f"{word!r} is no value of a field; write field=value")
+        if path in given:
+            raise UsageError("is given twice", field=path)
+        given.add(path)
+        for cell, item in _targets(declared.name, cells, path, text):
+            payload[cell.offset : cell.offset + cell.size] = _packed(cell, item)
+    return bytes(command(declared.msg_id, declared.code or 0, bytes(payload)))
+
+
+def _targets(owner: str, cells: Mapping[str, Cell], path: str, text: str) -> Iterable[tuple[Cell, str]]:
+    """Which cells a word fills, and with what."""
+    if path in cells:
+        return [(cells[path], text)]
+    items = [cell for cell in cells.values() if _is_item(cell.path, path)]
+    if not items:
+        raise unknown_field(owner, cells, path)
+    texts = text.split(",") if text else []
+    if len(texts) > len(items):
+        raise UsageError(f"{len(texts)} items, there is room for {len(items)}", field=path)
+    return zip(items, texts, strict=False)
+
+
+def _is_item(path: str, array: str) -> bool:
+    return path.startswith(array + "[") and _INDICES.fullmatch(path, len(array)) is not None
+
+
+def unknown_field(owner: str, paths: Iterable[str], path: str) -> UsageError:
+    """The error of a field that is not there; it names those that are.
+
+    Args:
+        owner: of the fields.
+        paths: all of them.
+        path: what was asked for.
+    """
+    known = list(dict.fromkeys(re.sub(_INDICES, "", each) for each in paths))
+    if not known:
+        return UsageError(f"{owner} has no fields", field=path)
+    hint = did_you_mean(path, known, before="; ")
+    return UsageError(f"no such field{hint or ';'} {owner} has {', '.join(known)}", field=path)
+
+
+def _packed(cell: Cell, text: str) -> bytes:
+    value = parse_cell(cell, text)
+    try:
+        return Layout(cell.path, [("value", cell.type)]).pack(value=value)
+    except UsageError as error:
+        raise UsageError(error.text, field=cell.path) from None
+
+
+def parse_cell(cell: Cell, text: str) -> int | float | str:
+    """The value of a field from its text, which may be the name of one.
+
+    Args:
+        cell: the field.
+        text: as it was written.
+
+    Raises:
+        UsageError: the text is no such value.
+    """
+    if cell.names is None or text[:1].isdigit() or text[:1] in ("+", "-"):
+        return parse_value(cell.type, text, cell.path)
+    try:
+        return cell.names.number(text)
+    except UsageError as error:
+        raise UsageError(error.text, field=cell.path) from None
+
+
+def parse_value(kind: str, text: str, path: str) -> int | float | str:
+    """A value from its text.
+
+    Args:
+        kind: the type, such as "u16", "f32", "bool", "char[20]".
+        text: as it was written.
+        path: of the field, for the error.
+
+    Raises:
+        UsageError: the text is no such value.
+    """
+    if kind.startswith("char"):
+        return text
+    try:
+        if kind == "bool":
+            return _TRUTH[text.lower()]
+        return float(text) if kind in ("f32", "f64") else int_of(text)
+    except (ValueError, KeyError):
+        wanted = {"bool": "true or false", "f32": "a number", "f64": "a number"}.get(kind, "an integer")
+        raise UsageError(f"{text!r} is not {wanted}", field=path) from None
+
+
+def int_of(text: str) -> int:
+    """An integer written as 16, 0x10 or 0b10000; zeros in front of a decimal number mean nothing.
+
+    Raises:
+        ValueError: it is none.
+    """
+    return int(text, 10) if text.lstrip("+-").isdigit() else int(text, 0)
+
+
+def number_of(text: str) -> int | float:
+    """A number of any kind, or true or false.
+
+    Raises:
+        ValueError: it is none.
+    """
+    if text.lower() in _TRUTH:
+        return _TRUTH[text.lower()]
+    try:
+        return int_of(text)
+    except ValueError:
+        return float(text)
+
+
+def flat(values: Any, path: str = "") -> dict[str, Any]:
+    """Nested values by path: {"PacketID.AppName": "HK", "Counts[0]": 1}; a text or bytes are one value."""
+    if isinstance(values, Mapping):
+        inner = [(f"{path}.{key}" if path else str(key), value) for key, value in values.items()]
+    elif isinstance(values, Sequence) and not isinstance(values, str | bytes):
+        inner = [(f"{path}[{number}]", value) for number, value in enumerate(values)]
+    else:
+        return {path: values}
+    return {name: leaf for each, value in inner for name, leaf in flat(value, each).items()}
+
+
+def line_of(values: Mapping[str, Any], layout: Layout | None = None) -> str:
+    """Values on one line: `Count=3 PacketID.AppName=HK Masks=1,2,3`, without structs of zeros that end an array.
+
+    Args:
+        values: nested.
+        layout: theirs, for the names of values; None shows numbers.
+    """
+    return " ".join(f"{path}={text}" for path, text in texts_of(values, layout).items())
+
+
+def texts_of(values: Mapping[str, Any], layout: Layout | None = None) -> dict[str, str]:
+    """As `line_of`, the texts by path."""
+    names = {} if layout is None else named_fields(layout)
+    return {path: names[path].text(int(text)) if path in names else text for path, text in shown(values)}
+
+
+@lru_cache(maxsize=256)
+def named_fields(layout: Layout) -> Mapping[str, ValueNames]:
+    """The fields of a layout whose values have names, by path."""
+    return {cell.path: cell.names for cell in layout.cells() if cell.names is not None}
+
+
+def shown(values: Any, path: str = "") -> Iterable[tuple[str, str]]:
+    """Paths and texts of values as a person sees them: an array of numbers is one, structs of zeros at its end none.
+
+    Args:
+        values: nested.
+        path: of them all.
+    """
+    if isinstance(values, Mapping):
+        for key, value in values.items():
+            yield from shown(value, f"{path}.{key}" if path else str(key))
+    elif isinstance(values, list | tuple) and any(isinstance(item, Mapping | list | tuple) for item in values):
+        for number, item in enumerate(_without_zeros(values)):
+            yield from shown(item, f"{path}[{number}]")
+    elif isinstance(values, list | tuple):
+        yield path, ",".join(map(text_of, values))
+    else:
+        yield path, text_of(values)
+
+
+def _without_zeros(items: Sequence[Any]) -> Sequence[Any]:
+    """An array up to its last item that is not all zero."""
+    end = max((number for number, item in enumerate(items, 1) if any(flat(item).values())), default=0)
+    return items[:end]
+
+
+def text_of(value: Any) -> str:
+    """One value as it is shown: bytes as hexadecimal digits, a text in quotes where it would not be one word."""
+    if isinstance(value, bytes | bytearray):
+        return value.hex()
+    if isinstance(value, float):
+        return f"{value:.7g}"
+    if isinstance(value, str):
+        printable = value.encode("utf-8", "backslashreplace").decode()
+        return printable if printable and not re.search(r"[\s\"=,]", printable) else f'"{printable}"'
+    return str(int(value)) if isinstance(value, bool) else str(value)

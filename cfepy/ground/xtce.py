@@ -1,0 +1,418 @@
+"""A mission's packets in XTCE 1.2 (OMG, CCSDS 660.1-G-2), the XML in which ground systems learn what packets mean.
+
+One container for each telemetry packet, below those for the CCSDS primary header and cFE's telemetry header, told apart
+by APID; a MetaCommand for each command, with its header as fixed values and its payload as arguments. Sequence count
+and checksum of a command are zero: the sender may fill them in; cFE as it is delivered checks neither. Nested structs
+and arrays are laid flat, padding is there as binary parameters. C's numbers are little-endian, as the flight software
+stores them. Names are the dictionary's, with "_" where XTCE forbids a character: CFE_EVS_HK_TLM_AppData_0_AppID.
+
+Of ROS messages, numbers, texts with their length and arrays of numbers (as bytes) can be described. An array of texts
+or of messages ends what can be described: what follows it is one piece of bytes as long as its place in the packet is
+fixed, and is left out when it is not.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from cfepy import __version__
+from cfepy.ground.dictionary import Dictionary
+from cfepy.ground.topics import Topic, library_of
+from cfepy.msg import TLM_HEADER_SIZE, Cell, Command, Layout, Telemetry, ValueNames
+
+LITTLE = "leastSignificantByteFirst"
+UTF_8_NUL = "00"
+MAX_TEXT_BITS = 8 * 32768
+NAMESPACE = "http://www.omg.org/spec/XTCE/20180204"
+SCHEMA = f"{NAMESPACE} {NAMESPACE}/SpaceSystem.xsd"
+ROOT, TELEMETRY = "CCSDSPacket", "CCSDSTelemetry"
+APID_MASK = 0x7FF
+WHOLE = "3"  # sequence flags of a packet that is not segmented
+PRIMARY_HEADER = (
+    ("VERSION", 3),
+    ("TYPE", 1),
+    ("SEC_HDR_FLG", 1),
+    ("PKT_APID", 11),
+    ("SEQ_FLGS", 2),
+    ("SRC_SEQ_CTR", 14),
+    ("PKT_LEN", 16),
+)
+"""Names that CCSDS tools in Python expect, and bits."""
+NUMBERS = {
+    "bool": "bool", "char": "u8", "byte": "i8", "int8": "i8", "uint8": "u8", "int16": "i16", "uint16": "u16",
+    "int32": "i32", "uint32": "u32", "int64": "i64", "uint64": "u64", "float32": "f32", "float64": "f64",
+}  # fmt: skip
+"""ROS type to C type."""
+TIMES = {"time": ("u32", "u32"), "duration": ("i32", "i32")}
+BITS = {"bool": 8}
+
+LENGTH_OFFSET = 7  # PKT_LEN is the size of a packet less this
+UNSEGMENTED = 0xC000
+
+
+def xtce_name(path: str) -> str:
+    """A name without what XTCE forbids: "/arm_health/samples" becomes arm_health_samples, "Counts[3]" Counts_3."""
+    return re.sub(r"[./:\[\]\s]+", "_", path).strip("_")
+
+
+def cells_with_padding(layout: Layout) -> Iterator[Cell]:
+    """The cells of a layout, and one of type "padding" for every gap."""
+    at = 0
+    for cell in layout.cells():
+        if cell.offset > at:
+            yield Cell("", "padding", at, cell.offset - at)
+        yield cell
+        at = cell.offset + cell.size
+    if layout.size > at:
+        yield Cell("", "padding", at, layout.size - at)
+
+
+def add(parent: Element, tag: str, **attributes: str) -> Element:
+    """A new element below another; a value of "" leaves its attribute out."""
+    return SubElement(parent, tag, {name: value for name, value in attributes.items() if value})
+
+
+class TypeSet:
+    """A ParameterTypeSet or an ArgumentTypeSet.
+
+    Args:
+        parent: the element that gets the set.
+        what: "Parameter" or "Argument".
+    """
+
+    def __init__(self, parent: Element, what: str) -> None:
+        self._what = what
+        self._set = add(parent, f"{what}TypeSet")
+        self._known: set[str] = set()
+
+    def number(self, kind: str) -> str:
+        """A number or bool in C's representation, such as "u16", "i8", "f64"; the name of the type."""
+        if kind == "bool":
+            return self._integer("bool", 8, "unsigned", "Boolean")
+        bits = int(kind[1:])
+        if kind[0] == "f":
+            return self._float(kind, bits)
+        return self._integer(kind, bits, "unsigned" if kind[0] == "u" else "twosComplement")
+
+    def named(self, kind: str, names: ValueNames) -> str:
+        """An integer whose values have names; bits of a mask are a number, which XTCE cannot name together."""
+        if names.flags:
+            return self.number(kind)
+        name = "_".join([kind, *names.values])
+        if self._is_new(name):
+            found = self._type("Enumerated", name)
+            encoding = "unsigned" if kind[0] == "u" else "twosComplement"
+            add(found, "IntegerDataEncoding", sizeInBits=kind[1:], encoding=encoding, byteOrder=LITTLE)
+            values = add(found, "EnumerationList")
+            for label, number in names.values.items():
+                add(values, "Enumeration", value=str(number), label=label)
+        return name
+
+    def cell(self, cell: Cell) -> str:
+        """What a cell of a layout is; the name of the type."""
+        if cell.names is not None:
+            return self.named(cell.type, cell.names)
+        return self.text(cell.size) if cell.type.startswith("char") else self.number(cell.type)
+
+    def bits(self, count: int) -> str:
+        """An unsigned number of the packet header, big-endian."""
+        name = f"bits{count}"
+        if self._is_new(name):
+            kind = add(self._set, f"Integer{self._what}Type", name=name, signed="false", sizeInBits=str(count))
+            add(kind, "IntegerDataEncoding", sizeInBits=str(count), encoding="unsigned")
+        return name
+
+    def text(self, size: int) -> str:
+        """char[size]: a text up to its first NUL."""
+        name = f"char{size}"
+        if self._is_new(name):
+            encoding = add(self._type("String", name), "StringDataEncoding", encoding="UTF-8")
+            bits = add(encoding, "SizeInBits")
+            add(add(bits, "Fixed"), "FixedValue").text = str(8 * size)
+            add(bits, "TerminationChar").text = UTF_8_NUL
+        return name
+
+    def padding(self, size: int) -> str:
+        """Bytes that mean nothing."""
+        name = f"padding{size}"
+        if self._is_new(name):
+            encoding = add(self._type("Binary", name), "BinaryDataEncoding")
+            add(add(encoding, "SizeInBits"), "FixedValue").text = str(8 * size)
+        return name
+
+    def counted_text(self, count: str) -> str:
+        """A text whose number of bytes another parameter tells."""
+        name = f"text_of_{count}"
+        if self._is_new(name):
+            encoding = add(self._type("String", name), "StringDataEncoding", encoding="UTF-8")
+            variable = add(encoding, "Variable", maxSizeInBits=str(MAX_TEXT_BITS))
+            _dynamic(variable, count, 8, 0)
+        return name
+
+    def counted_bytes(self, count: str, slope: int, intercept: int = 0) -> str:
+        """Bytes whose number of bits is `slope` times what another parameter tells, plus `intercept`."""
+        name = f"bytes_of_{count}_{slope}" + (f"_{abs(intercept)}" if intercept else "")
+        if self._is_new(name):
+            encoding = add(self._type("Binary", name), "BinaryDataEncoding")
+            _dynamic(add(encoding, "SizeInBits"), count, slope, intercept)
+        return name
+
+    def time(self) -> str:
+        """The 48 bits of time in a telemetry header: seconds and 65536ths since cFE's epoch."""
+        name = "spacecraft_time"
+        if self._is_new(name):
+            kind = self._type("AbsoluteTime", name)
+            encoding = add(kind, "Encoding", units="seconds", scale=repr(2**-16))
+            add(encoding, "IntegerDataEncoding", sizeInBits="48", encoding="unsigned")
+            add(add(kind, "ReferenceTime"), "Epoch").text = "1980-01-01T00:00:00"
+        return name
+
+    def _is_new(self, name: str) -> bool:
+        is_new = name not in self._known
+        self._known.add(name)
+        return is_new
+
+    def _type(self, kind: str, name: str) -> Element:
+        return add(self._set, f"{kind}{self._what}Type", name=name)
+
+    def _integer(self, name: str, bits: int, encoding: str, kind: str = "Integer") -> str:
+        if self._is_new(name):
+            signed, size = ("", "") if kind == "Boolean" else (str(encoding != "unsigned").lower(), str(bits))
+            found = add(self._set, f"{kind}{self._what}Type", name=name, signed=signed, sizeInBits=size)
+            add(found, "IntegerDataEncoding", sizeInBits=str(bits), encoding=encoding, byteOrder=LITTLE)
+        return name
+
+    def _float(self, name: str, bits: int) -> str:
+        if self._is_new(name):
+            found = add(self._set, f"Float{self._what}Type", name=name, sizeInBits=str(bits))
+            add(found, "FloatDataEncoding", sizeInBits=str(bits), encoding="IEEE754_1985", byteOrder=LITTLE)
+        return name
+
+
+def _dynamic(size: Element, count: str, slope: int, intercept: int) -> None:
+    value = add(size, "DynamicValue")
+    add(value, "ParameterInstanceRef", parameterRef=count)
+    add(value, "LinearAdjustment", slope=str(slope), intercept=str(intercept))
+
+
+def xtce_of(name: str, dictionary: Dictionary) -> str:
+    """The XTCE document of a mission.
+
+    Args:
+        name: of the space system.
+        dictionary: its packets; topics of a type that is not known are left out.
+    """
+    system = Element("SpaceSystem", {"name": xtce_name(name), "xmlns": NAMESPACE})
+    system.set("xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance")
+    system.set("xsi:schemaLocation", SCHEMA)
+    add(system, "Header", version=__version__, validationStatus="Working")
+    _Telemetry(add(system, "TelemetryMetaData")).add_packets(dictionary.telemetry.values())
+    add_commands(add(system, "CommandMetaData"), dictionary.commands.values())
+    indent(system)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(system, encoding="unicode") + "\n"
+
+
+class _Telemetry:
+    """TelemetryMetaData while it is filled."""
+
+    def __init__(self, parent: Element) -> None:
+        self._types = TypeSet(parent, "Parameter")
+        self._parameters = add(parent, "ParameterSet")
+        self._containers = add(parent, "ContainerSet")
+        self._names: set[str] = set()
+        self._add_headers()
+
+    def _add_headers(self) -> None:
+        entries = self._container(ROOT, "the CCSDS primary header", is_abstract=True)
+        for name, bits in PRIMARY_HEADER:
+            self._entry(entries, name, self._types.bits(bits))
+        entries = self._container(TELEMETRY, "cFE's telemetry header", is_abstract=True)
+        self._entry(entries, "TIME", self._types.time())
+        self._padding(entries, 4)
+        self._base(ROOT, TYPE="0", SEC_HDR_FLG="1")
+
+    def add_packets(self, packets: Iterable[Telemetry | Topic]) -> None:
+        """Add a container for each packet."""
+        taken: set[int] = set()
+        for packet in sorted(packets, key=lambda each: (each.msg_id, isinstance(each, Topic))):
+            known = isinstance(packet, Telemetry) or (packet.type and not packet.raw)
+            if known and packet.msg_id not in taken:
+                taken.add(packet.msg_id)
+                self._add(packet)
+
+    def _add(self, packet: Telemetry | Topic) -> None:
+        name = self._unique(xtce_name(packet.name))
+        entries = self._container(name, packet.text)
+        apid = str(packet.msg_id & APID_MASK)
+        if isinstance(packet, Topic):
+            for part in topic_parts(packet, self._types, lambda path: f"{name}_{xtce_name(path)}"):
+                self._entry(entries, part.name, part.type)
+            self._base(TELEMETRY, PKT_APID=apid, SEQ_FLGS=WHOLE)
+            return
+        for cell in cells_with_padding(packet.payload):
+            if cell.type == "padding":
+                self._padding(entries, cell.size)
+            else:
+                self._entry(entries, self._unique(f"{name}_{xtce_name(cell.path)}"), self._types.cell(cell))
+        self._base(TELEMETRY, PKT_APID=apid)
+
+    def _unique(self, name: str) -> str:
+        """The name, with underscores behind it as long as another one is the same."""
+        while name in self._names:
+            name += "_"
+        self._names.add(name)
+        return name
+
+    def _container(self, name: str, text: str, is_abstract: bool = False) -> Element:
+        abstract = "true" if is_abstract else ""
+        self._current = add(self._containers, "SequenceContainer", name=name, shortDescription=text, abstract=abstract)
+        return add(self._current, "EntryList")
+
+    def _base(self, container: str, **conditions: str) -> None:
+        """What the current container builds on, and which values tell it apart."""
+        criteria = add(add(self._current, "BaseContainer", containerRef=container), "RestrictionCriteria")
+        comparisons = add(criteria, "ComparisonList")
+        for name, value in conditions.items():
+            add(comparisons, "Comparison", parameterRef=name, value=value)
+
+    def _entry(self, entries: Element, name: str, kind: str) -> None:
+        add(self._parameters, "Parameter", name=name, parameterTypeRef=kind)
+        add(entries, "ParameterRefEntry", parameterRef=name)
+
+    def _padding(self, entries: Element, size: int) -> None:
+        """Padding of each size is one parameter for all packets."""
+        kind = self._types.padding(size)
+        if kind not in self._names:
+            self._names.add(kind)
+            add(self._parameters, "Parameter", name=kind, parameterTypeRef=kind)
+        add(entries, "ParameterRefEntry", parameterRef=kind)
+
+
+class XtceParameter(NamedTuple):
+    """A parameter of a topic's container: its name, and the name of its type."""
+
+    name: str
+    type: str
+
+
+class _End(Exception):
+    """What follows cannot be described."""
+
+
+def topic_parts(topic: Topic, types: TypeSet, name: Callable[[str], str]) -> Iterator[XtceParameter]:
+    """The parameters of a topic's packets.
+
+    Args:
+        topic: of a known type.
+        types: where their types go.
+        name: makes a parameter's name of a field's path.
+    """
+    message = _Message(library_of(topic), types, name)
+    try:
+        yield from message.fields(topic.type, "")
+    except _End:
+        if message.fixed_bytes is not None:
+            intercept = 8 * (LENGTH_OFFSET - TLM_HEADER_SIZE - message.fixed_bytes)
+            yield XtceParameter(name("rest"), types.counted_bytes("PKT_LEN", 8, intercept))
+
+
+class _Message:
+    """The way through a message; `fixed_bytes` is how far it is into it, None behind something of variable length."""
+
+    def __init__(self, library: Any, types: TypeSet, name: Callable[[str], str]) -> None:
+        self.fixed_bytes: int | None = 0
+        self._library = library
+        self._types = types
+        self._name = name
+
+    def fields(self, kind: str, path: str) -> Iterator[XtceParameter]:
+        """The parameters of a message type."""
+        for field in self._library.spec(kind).fields:
+            inner = f"{path}.{field.name}" if path else field.name
+            if field.is_array and field.length is None:
+                yield from self._array(field.base, inner)
+            elif field.is_array:
+                for number in range(field.length):
+                    yield from self._value(field.base, f"{inner}[{number}]")
+            else:
+                yield from self._value(field.base, inner)
+
+    def _value(self, kind: str, path: str) -> Iterator[XtceParameter]:
+        if kind in NUMBERS:
+            yield self._number(NUMBERS[kind], path)
+        elif kind in TIMES:
+            for part, number in zip(("secs", "nsecs"), TIMES[kind], strict=True):
+                yield self._number(number, f"{path}.{part}")
+        elif kind == "string":
+            length = self._number("u32", f"{path}.length")
+            yield length
+            self.fixed_bytes = None
+            yield XtceParameter(self._name(path), self._types.counted_text(length.name))
+        else:
+            yield from self.fields(kind, path)
+
+    def _number(self, kind: str, path: str) -> XtceParameter:
+        if self.fixed_bytes is not None:
+            self.fixed_bytes += _bits(kind) // 8
+        return XtceParameter(self._name(path), self._types.number(kind))
+
+    def _array(self, kind: str, path: str) -> Iterator[XtceParameter]:
+        """An array of any length: its count, and its items as bytes."""
+        count = self._number("u32", f"{path}.count")
+        yield count
+        if kind not in NUMBERS:
+            raise _End
+        self.fixed_bytes = None
+        yield XtceParameter(self._name(path), self._types.counted_bytes(count.name, _bits(NUMBERS[kind])))
+
+
+def _bits(kind: str) -> int:
+    return BITS.get(kind) or int(kind[1:])
+
+
+def add_commands(parent: Element, commands: Iterable[Command]) -> None:
+    """Fill a CommandMetaData element.
+
+    Args:
+        parent: the element.
+        commands: the commands, in any order.
+    """
+    types = TypeSet(parent, "Argument")
+    metas = add(parent, "MetaCommandSet")
+    for command in sorted(commands, key=lambda each: (each.msg_id, each.code or 0, each.name)):
+        _add_command(metas, types, command)
+
+
+def _add_command(metas: Element, types: TypeSet, command: Command) -> None:
+    name = xtce_name(command.name)
+    meta = add(metas, "MetaCommand", name=name, shortDescription=command.text)
+    if command.payload.fields:
+        arguments = add(meta, "ArgumentList")
+        for cell in command.payload.cells():
+            add(arguments, "Argument", name=xtce_name(cell.path), argumentTypeRef=types.cell(cell))
+    entries = add(add(meta, "CommandContainer", name=name), "EntryList")
+    for field, value, size in _command_header(command):
+        _fixed(entries, value.to_bytes(size, "big"), field)
+    for cell in cells_with_padding(command.payload):
+        if cell.type == "padding":
+            _fixed(entries, bytes(cell.size))
+        else:
+            add(entries, "ArgumentRefEntry", argumentRef=xtce_name(cell.path))
+
+
+def _command_header(command: Command) -> Iterable[tuple[str, int, int]]:
+    """Name, value and bytes of each field of a command's headers."""
+    return (
+        ("PACKET_ID", command.msg_id, 2),
+        ("SEQUENCE", UNSEGMENTED, 2),
+        ("PKT_LEN", command.length - LENGTH_OFFSET, 2),
+        ("FUNCTION_CODE", command.code or 0, 1),
+        ("CHECKSUM", 0, 1),
+    )
+
+
+def _fixed(entries: Element, value: bytes, name: str = "") -> None:
+    add(entries, "FixedValueEntry", name=name, binaryValue=value.hex(), sizeInBits=str(8 * len(value)))

@@ -1,0 +1,228 @@
+"""YAML read so that every value knows its line, and an error about a file can give it.
+
+`load` gives a tree of `Marked`. A file is refused when it is not YAML, has a key twice, or a key that is no text.
+A reader of such a tree reports mistakes to `Mistakes`, which raises the first or keeps all. PyYAML is imported when a
+file is read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from cfepy.status import UsageError
+
+MOST = (1 << 62) - 1  # what times in ns can hold
+MOST_VALUES = 100_000
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Marked:
+    """A value of a file and its place.
+
+    Attributes:
+        value: a scalar, a list of Marked, or a dict of text to Marked.
+        file: the file it was read from.
+        line: line in it, from 1.
+        field: dotted path, "limits.sb_max_pipes"; "" for the whole file.
+    """
+
+    value: Any
+    file: Path
+    line: int
+    field: str
+
+    def fail(self, text: str) -> UsageError:
+        """The error to raise about this value; `text` says what is wrong and what to do."""
+        return UsageError(text, file=self.file, line=self.line, field=self.field or None)
+
+    def mapping(self, known: Iterable[str] | None = None) -> dict[str, Marked]:
+        """The value as a mapping, an empty one when nothing was written.
+
+        Args:
+            known: the keys it may have; any when None.
+
+        Raises:
+            UsageError: it is no mapping, or has another key.
+        """
+        if self.value is None:
+            return {}
+        if not isinstance(self.value, dict):
+            raise self.fail(f"is {self.plain()!r}, it must be a mapping of names to values")
+        allowed = None if known is None else tuple(known)
+        for name, item in self.value.items():
+            if allowed is not None and name not in allowed:
+                raise item.unknown(allowed)
+        return self.value
+
+    def unknown(self, known: Iterable[str]) -> UsageError:
+        """The error to raise about a key that is none of those that are known."""
+        return self.fail(f"is not known here; known are {', '.join(known)}")
+
+    def items(self) -> list[Marked]:
+        """The value as a list, an empty one when nothing was written.
+
+        Raises:
+            UsageError: it is no list.
+        """
+        if self.value is None:
+            return []
+        if not isinstance(self.value, list):
+            raise self.fail(f"is {self.plain()!r}, it must be a list")
+        return self.value
+
+    def integer(self, lowest: int = 0, highest: int = MOST) -> int:
+        """The value as a whole number from `lowest` to `highest`.
+
+        Raises:
+            UsageError: it is something else.
+        """
+        if not isinstance(self.value, int) or isinstance(self.value, bool) or self.value < lowest:
+            raise self.fail(f"is {self.plain()!r}, it must be a whole number of at least {lowest}")
+        if self.value > highest:
+            raise self.fail(f"is {self.value}, it must be at most {highest}")
+        return self.value
+
+    def text(self) -> str:
+        """The value as text.
+
+        Raises:
+            UsageError: it is something else.
+        """
+        if not isinstance(self.value, str):
+            raise self.fail(f"is {self.plain()!r}, it must be text; put it in quotes")
+        return self.value
+
+    def flag(self) -> bool:
+        """The value as true or false.
+
+        Raises:
+            UsageError: it is something else.
+        """
+        if not isinstance(self.value, bool):
+            raise self.fail(f"is {self.plain()!r}, it must be true or false")
+        return self.value
+
+    def plain(self) -> Any:
+        """The value without its marks."""
+        if isinstance(self.value, dict):
+            return {name: item.plain() for name, item in self.value.items()}
+        return [item.plain() for item in self.value] if isinstance(self.value, list) else self.value
+
+
+class Mistakes:
+    """Takes what is wrong with a file while it is read: the first mistake ends the reading, or all are kept.
+
+    Args:
+        keep: keep all, as a check of the file does; otherwise the first one is raised, as before a run.
+
+    Attributes:
+        errors: those that were kept.
+    """
+
+    def __init__(self, keep: bool = False) -> None:
+        self.errors: list[UsageError] = []
+        self._keep = keep
+
+    def add(self, error: UsageError) -> None:
+        """There is one.
+
+        Raises:
+            UsageError: the mistake, unless mistakes are kept.
+        """
+        if not self._keep:
+            raise error
+        self.errors.append(error)
+
+    def attempt(self, read: Callable[[], T]) -> T | None:
+        """What `read` returns; None when it fails. Errors as `add`."""
+        try:
+            return read()
+        except UsageError as error:
+            self.add(error)
+            return None
+
+    def mapping(self, entry: Marked) -> dict[str, Marked]:
+        """A value as a mapping with any keys, an empty one when it is none. Errors as `add`."""
+        return self.attempt(entry.mapping) or {}
+
+    def fields(self, entry: Marked, known: Iterable[str]) -> Iterator[tuple[str, Marked]]:
+        """Keys and values of a value that is a mapping, without keys that are not known. Errors as `add`."""
+        allowed = tuple(known)
+        for name, item in self.mapping(entry).items():
+            if name in allowed:
+                yield name, item
+            else:
+                self.add(item.unknown(allowed))
+
+
+def load(path: Path) -> Marked:
+    """Read a YAML file.
+
+    Raises:
+        UsageError: it cannot be read, or is not good YAML.
+    """
+    import yaml
+
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+    except UnicodeDecodeError:
+        raise UsageError("is no text in UTF-8", file=path) from None
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)
+    try:
+        node = loader.get_single_node()
+        if node is None:
+            return Marked(None, path, 1, "")
+        if _written_out(node, {}) > MOST_VALUES:
+            raise UsageError(f"has more than {MOST_VALUES:,} values when its aliases are written out", file=path)
+        return _mark(loader, node, path, "")
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line = None if mark is None else mark.line + 1
+        raise UsageError(f"is not YAML: {error.problem or error.context}", file=path, line=line) from None
+    except UsageError:
+        raise
+    except RecursionError:
+        raise UsageError("is nested too deeply, or has an alias of something inside itself", file=path) from None
+    except (yaml.YAMLError, ValueError) as error:
+        raise UsageError(f"is not YAML: {error}", file=path) from None
+    finally:
+        loader.dispose()
+
+
+def _written_out(node: Any, known: dict[int, int]) -> int:
+    """How many values a node has with its aliases written out; each node is counted once."""
+    if node.id == "scalar":
+        return 1
+    size = known.get(id(node))
+    if size is None:
+        inner = node.value if node.id == "sequence" else (each for pair in node.value for each in pair)
+        size = known[id(node)] = 1 + sum(_written_out(each, known) for each in inner)
+    return size
+
+
+def _mark(loader: Any, node: Any, path: Path, field: str) -> Marked:
+    """A composed node as Marked; the loader's own constructor turns scalars into Python values."""
+    line = node.start_mark.line + 1
+    if node.id == "mapping":
+        return Marked(dict(_pairs(loader, node, path, field)), path, line, field)
+    if node.id == "sequence":
+        items = [_mark(loader, item, path, f"{field}[{index}]") for index, item in enumerate(node.value)]
+        return Marked(items, path, line, field)
+    return Marked(loader.construct_object(node), path, line, field)
+
+
+def _pairs(loader: Any, node: Any, path: Path, field: str) -> Iterator[tuple[str, Marked]]:
+    seen: set[str] = set()
+    for key_node, value_node in node.value:
+        key = _mark(loader, key_node, path, field)
+        name = key.text()
+        if name in seen:
+            raise key.fail(f"{name!r} is there twice; remove one")
+        seen.add(name)
+        yield name, _mark(loader, value_node, path, f"{field}.{name}" if field else name)

@@ -1,0 +1,157 @@
+"""Finding the mission that a user means, and reading all that it is made of.
+
+That is a startup script with the mission file beside it (`mission.yaml`, or the script's name with `.yaml`) and the
+lock file of its MsgIds, both optional; or a launch file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from cfepy.marked_yaml import Mistakes, load
+from cfepy.mission.launch import LAUNCH_FILES, files_near, launch_file_of_package, read_launch, with_launch_files
+from cfepy.mission.mission_file import MissionSections, read_mission_file
+from cfepy.mission.spec import MissionSpec
+from cfepy.msg import HIGHEST_VALID_MSG_ID
+from cfepy.nodes import ROSCORE_PARAMS, RosConfig
+from cfepy.resources import shipped
+from cfepy.status import UsageError
+from cfepy.suggestions import did_you_mean
+
+STARTUP_SCRIPT = "startup.scr"
+MISSION_FILE = "mission.yaml"
+LOCK_FILE = "topics.lock"
+_MISSION_FILES = (".scr", *LAUNCH_FILES)
+_LONGEST_FIRST_LINE = 200
+
+
+def shipped_missions() -> list[str]:
+    """Names of the missions that cfepy brings along, sorted."""
+    return sorted(path.parent.name for path in shipped("missions").glob(f"*/{STARTUP_SCRIPT}"))
+
+
+def find_script(mission: str) -> Path:
+    """The startup script or launch file that a user means.
+
+    Args:
+        mission: a path of a script or launch file, a folder with a startup.scr, the name of a shipped mission, or a
+            package and the name of a launch file in it, with a blank between them.
+
+    Raises:
+        UsageError: nothing of the kind.
+    """
+    path = Path(mission)
+    if path.is_file():
+        _check_kind(path)
+        return path.resolve()
+    if (path / STARTUP_SCRIPT).is_file():
+        return (path / STARTUP_SCRIPT).resolve()
+    if mission in shipped_missions():
+        return shipped("missions") / mission / STARTUP_SCRIPT
+    file = launch_file_of_package(mission)
+    if file is not None:
+        return file
+    names = shipped_missions()
+    hint = did_you_mean(mission, [*names, *missions_near(path)], f"cfepy brings along {', '.join(names)}")
+    text = f"no startup script, launch file or folder with a {STARTUP_SCRIPT}, and no shipped mission"
+    raise UsageError(f"{text}; {hint}", file=mission)
+
+
+def missions_near(path: Path) -> list[str]:
+    """The missions in the folder of a path, as they would be written in its place."""
+    folders = [str(each.parent) for each in path.parent.glob(f"*/{STARTUP_SCRIPT}")]
+    return sorted([*folders, *files_near(path, _MISSION_FILES)])
+
+
+def is_node(mission: str) -> bool:
+    """Whether a text names a file that is a Python program: a ROS node by itself, which is flown as one."""
+    path = Path(mission)
+    if not path.is_file():
+        return False
+    with path.open("rb") as stream:
+        first = stream.readline(_LONGEST_FIRST_LINE)
+    return path.suffix == ".py" or (first.startswith(b"#!") and b"python" in first)
+
+
+def _check_kind(path: Path) -> None:
+    """What is neither a startup script nor a launch file must not boot as an empty mission.
+
+    Raises:
+        UsageError: it is something else.
+    """
+    data = path.read_bytes()
+    if path.suffix == ".py" or data.startswith(b"#!"):
+        raise UsageError("is a program and no mission; `cfepy node` runs a ROS node by itself", file=path)
+    is_text = b"\0" not in data and any(mark in data for mark in (b"!", b"CFE_"))
+    if path.suffix not in LAUNCH_FILES and data.strip() and not is_text:
+        raise UsageError("is neither a startup script nor a launch file", file=path)
+
+
+def mission_file_of(script: Path) -> Path | None:
+    """The mission file that belongs to a startup script; None when there is none."""
+    candidates = (script.with_suffix(".yaml"), script.parent / MISSION_FILE)
+    return next((path for path in candidates if path.is_file()), None)
+
+
+def read_mission(mission: str, args: Mapping[str, str] | None = None) -> MissionSpec:
+    """Find a mission and read its mission file, or the launch file that it is.
+
+    Args:
+        mission: see `find_script`.
+        args: arguments for a launch file.
+
+    Raises:
+        UsageError: there is no such mission, its mission file is wrong, or it takes no arguments.
+    """
+    script = find_script(mission)
+    if script.suffix in LAUNCH_FILES:
+        return read_launch(script, args)
+    if args:
+        raise UsageError("only a launch file takes arguments", file=mission, field="--arg")
+    path = mission_file_of(script)
+    said = MissionSections() if path is None else read_mission_file(path, Mistakes())
+    usual_name = script.parent.name if script.name == STARTUP_SCRIPT else script.stem
+    spec = MissionSpec(
+        name=usual_name if said.name is None else said.name,
+        folder=script.parent,
+        script=script,
+        mission_file=path,
+        board=said.board_in(script.parent),
+        ros=said.ros,
+        limits=said.limits,
+        demands=said.demands,
+    )
+    if said.launch:
+        spec = with_launch_files(spec, said.launch)
+    if spec.has_nodes:
+        spec = replace(spec, ros=replace(spec.ros, params={**ROSCORE_PARAMS, **spec.ros.params}))
+    lock = spec.folder / LOCK_FILE
+    return replace(spec, ros=read_lock(lock, spec.ros)) if lock.is_file() else spec
+
+
+def read_lock(path: Path, ros: RosConfig) -> RosConfig:
+    """The MsgIds of a lock file, with all else that is said about ROS.
+
+    Args:
+        path: the file; see `cfepy.ground.survey`.
+        ros: what the mission file says.
+
+    Raises:
+        UsageError: it is no such file, or gives a MsgId twice.
+    """
+    sections = load(path).mapping(("topics", "services"))
+    by_id = {topic.msg_id: topic.name for topic in ros.topics.values()}
+    found: dict[str, dict[str, int]] = {"topics": {}, "services": {}}
+    for title, section in sections.items():
+        for name, entry in section.mapping().items():
+            if title == "topics" and name in ros.topics:
+                continue  # the mission file has chosen another since
+            msg_id = entry.integer(1, HIGHEST_VALID_MSG_ID)
+            if msg_id in by_id:
+                text = f"has the MsgId 0x{msg_id:04X} of {by_id[msg_id]}; remove one, and lock the mission again"
+                raise entry.fail(text)
+            by_id[msg_id] = name
+            found[title][name] = msg_id
+    return replace(ros, locked_topics=found["topics"], locked_services=found["services"])

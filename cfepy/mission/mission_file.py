@@ -1,0 +1,221 @@
+"""The mission file: a table of its sections, and what reads each of them.
+
+The file is read once, by `read_mission_file`: before a run its first mistake is raised, `cfepy check` has all of them
+kept. docs/mission_file.md describes it. The sections that say what must hold of a run (`DEMANDS`) are kept as they
+stand; `cfepy.monitors.demands` reads them.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from cfepy.marked_yaml import Marked, Mistakes, load
+from cfepy.mission.limits import MissionLimits, read_limits
+from cfepy.mission.parameter_files import merged, read_files, read_tree
+from cfepy.msg import HIGHEST_VALID_MSG_ID
+from cfepy.nodes import NodeConfig, RosConfig, TopicConfig
+
+DEMANDS = ("invariants", "results", "deadlines")
+"""Sections that say what must hold of a run."""
+
+LaunchFile = tuple[Path, Mapping[str, str]]
+"""A launch file, and the arguments that it is given."""
+
+
+@dataclass(frozen=True, slots=True)
+class MissionSections:
+    """What a mission file says, as far as it could be read.
+
+    Attributes:
+        name, board, limits, nodes, topics, params, params_from, ordered_sets, launch: the sections of these names, as
+            their readers give them; `name` and `board` are None when nothing is said.
+        demands: the sections of `DEMANDS`, as they stand there.
+        places: all sections that are there and known, as they stand there.
+    """
+
+    name: str | None = None
+    board: str | None = None
+    limits: MissionLimits = field(default_factory=MissionLimits)
+    nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
+    topics: Mapping[str, TopicConfig] = field(default_factory=dict)
+    params: dict[str, Any] = field(default_factory=dict)
+    params_from: dict[str, Any] = field(default_factory=dict)
+    ordered_sets: bool = False
+    launch: tuple[LaunchFile, ...] = ()
+    demands: Mapping[str, Marked] = field(default_factory=dict)
+    places: Mapping[str, Marked] = field(default_factory=dict)
+
+    @property
+    def ros(self) -> RosConfig:
+        """All that is said about ROS, but for launch files."""
+        params = merged(self.params_from, self.params)
+        return RosConfig(nodes=self.nodes, topics=self.topics, params=params, ordered_sets=self.ordered_sets)
+
+    def board_in(self, folder: Path) -> str:
+        """The board: a file of the mission's folder, or else a name or path; "linux" when nothing is said."""
+        board = "linux" if self.board is None else self.board
+        return str(folder / board) if (folder / board).is_file() else board
+
+
+def read_mission_file(path: Path, mistakes: Mistakes) -> MissionSections:
+    """Read a mission file.
+
+    Args:
+        path: the file.
+        mistakes: takes what is wrong with it.
+    """
+    root = mistakes.attempt(partial(load, path))
+    places: dict[str, Marked] = {}
+    said: dict[str, Any] = {}
+    for name, section in () if root is None else mistakes.fields(root, SECTIONS):
+        places[name] = section
+        value = _READERS[name](section, mistakes) if name in _READERS else None
+        if value is not None:
+            said[name] = value
+    return MissionSections(**said, demands={name: places[name] for name in DEMANDS if name in places}, places=places)
+
+
+def read_launches(section: Marked, mistakes: Mistakes) -> tuple[LaunchFile, ...]:
+    """The launch files under `launch:`, each by its path, or as a mapping with its arguments.
+
+    Args:
+        section: the list; paths start at the folder of its file.
+        mistakes: takes a file that is not there, or an unknown key.
+    """
+    items = mistakes.attempt(section.items) or []
+    found = (mistakes.attempt(partial(_launch, item)) for item in items)
+    return tuple(each for each in found if each is not None)
+
+
+def _launch(item: Marked) -> LaunchFile:
+    fields = item.mapping(("file", "args")) if isinstance(item.value, dict) else {"file": item}
+    if "file" not in fields:
+        raise item.fail("needs a file, such as `file: demo.launch`")
+    path = Path(os.path.normpath(item.file.parent / fields["file"].text()))
+    if not path.is_file():
+        raise fields["file"].fail(f"is {path}, which is no file; give a launch file's path from the mission's folder")
+    return path, _texts(fields["args"]) if "args" in fields else {}
+
+
+# -- nodes and topics --------------------------------------------------------------------------------------------------
+
+
+def read_nodes(section: Marked, mistakes: Mistakes) -> dict[str, NodeConfig]:
+    """The section `nodes:`, without the nodes that are wrong.
+
+    Args:
+        section: its value.
+        mistakes: takes unknown keys, and values that cannot be.
+    """
+    nodes: dict[str, NodeConfig] = {}
+    for app, entry in mistakes.mapping(section).items():
+        before = len(mistakes.errors)
+        said: dict[str, Any] = {}
+        for name, value in mistakes.fields(entry, _NODE_FIELDS):
+            said[name] = mistakes.attempt(partial(_NODE_FIELDS[name], value))
+        if len(mistakes.errors) == before:
+            said["params"] = merged(said.pop("params_from", {}), said.get("params", {}))
+            nodes[app] = NodeConfig(app, **said)
+    return nodes
+
+
+def read_topics(section: Marked, mistakes: Mistakes) -> dict[str, TopicConfig]:
+    """The section `topics:`, without the topics that are wrong.
+
+    Args:
+        section: its value.
+        mistakes: takes an unknown key, a missing or impossible MsgId, one that is given twice, a name without "/".
+    """
+    topics: dict[str, TopicConfig] = {}
+    by_id: dict[int, str] = {}
+    for name, entry in mistakes.mapping(section).items():
+        topic = mistakes.attempt(partial(_topic, name, entry))
+        if topic is None:
+            continue
+        topics[name] = topic
+        other = by_id.setdefault(topic.msg_id, name)
+        if other != name:
+            mistakes.add(entry.fail(f"has the MsgId 0x{topic.msg_id:04X} of {other}; change one of them"))
+    return topics
+
+
+def _topic(name: str, entry: Marked) -> TopicConfig:
+    if not name.startswith("/"):
+        raise entry.fail(f'is the topic {name!r}; a topic name here begins with "/"')
+    fields = entry.mapping(["msg_id", "raw"])
+    if "msg_id" not in fields:
+        raise entry.fail("needs a msg_id, such as `msg_id: 0x0901`")
+    msg_id = fields["msg_id"].value
+    if not isinstance(msg_id, int) or not 0 < msg_id <= HIGHEST_VALID_MSG_ID:
+        raise fields["msg_id"].fail(f"is {msg_id!r}; a MsgId is a number from 1 to 0x{HIGHEST_VALID_MSG_ID:X}")
+    return TopicConfig(name, msg_id, _truth(fields["raw"]) if "raw" in fields else False)
+
+
+def _namespace(entry: Marked) -> str:
+    namespace = entry.text()
+    if not namespace.startswith("/"):
+        raise entry.fail(f'is {namespace!r}; a namespace begins with "/"')
+    return namespace
+
+
+def _keys(entry: Marked) -> tuple[str | float, ...]:
+    """What is typed at a node's terminal."""
+    keys = tuple(item.value for item in entry.items())
+    for item, key in zip(entry.items(), keys, strict=True):
+        if isinstance(key, bool) or not isinstance(key, str | int | float) or (not isinstance(key, str) and key < 0):
+            raise item.fail(f"is {key!r}; write a text that is typed, or a number of seconds to wait")
+    return keys
+
+
+def _truth(entry: Marked) -> bool:
+    """A value that is true or false."""
+    if not isinstance(entry.value, bool):
+        raise entry.fail(f"is {entry.value!r}; write true or false")
+    return entry.value
+
+
+def _texts(section: Marked) -> Mapping[str, str]:
+    return {key: str(value.value) for key, value in section.mapping().items()}
+
+
+# -- the tables --------------------------------------------------------------------------------------------------------
+
+_NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
+    "name": Marked.text,
+    "namespace": _namespace,
+    "remap": _texts,
+    "params": read_tree,
+    "params_from": read_files,
+    "args": lambda entry: tuple(str(item.value) for item in entry.items()),
+    "env": _texts,
+    "ordered_sets": _truth,
+    "keys": _keys,
+}
+"""What reads each field of a node; the results are those of `NodeConfig`."""
+
+
+def _single(read: Callable[[Marked], Any]) -> Callable[[Marked, Mistakes], Any]:
+    """What reads a section that can have one mistake only."""
+    return lambda section, mistakes: mistakes.attempt(partial(read, section))
+
+
+_READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
+    "name": _single(Marked.text),
+    "board": _single(Marked.text),
+    "limits": read_limits,
+    "nodes": read_nodes,
+    "topics": read_topics,
+    "params": _single(read_tree),
+    "params_from": _single(read_files),
+    "ordered_sets": _single(_truth),
+    "launch": read_launches,
+}
+"""What reads each section; the results are the attributes of `MissionSections`. None stands for nothing good."""
+
+SECTIONS = (*_READERS, *DEMANDS)
+"""All sections that a mission file may have."""

@@ -1,0 +1,102 @@
+"""A watch on the Software Bus of a mission, which sees every packet, also those without a subscriber.
+
+A watch changes nothing: no subscription, no virtual time, no record in the trace. It goes on over resets, since each
+processor gets a bus of the class that is made here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+from cfepy import msg
+from cfepy.attachment import Attachment
+from cfepy.msg import PRIMARY_HEADER_SIZE
+from cfepy.sb import SoftwareBus
+
+if TYPE_CHECKING:
+    from rospy_shim.client.link import Link
+
+HOST = "host"
+
+
+class Seen(NamedTuple):
+    """A packet on the bus: when in virtual ns, its bytes as subscribers get them, the application that sent it."""
+
+    at_ns: int
+    packet: bytes
+    sender: str
+
+    @property
+    def msg_id(self) -> int:
+        """The packet's MsgId."""
+        return self.packet[0] << 8 | self.packet[1]
+
+
+def hearing(base: type[SoftwareBus], note: Callable[[Link, bytes], object]) -> type[SoftwareBus]:
+    """A class of Software Bus that tells of messages which are never sent, since their topic has no subscriber.
+
+    Args:
+        base: the class to start from; whom that tells is told first.
+        note: gets the publisher's link and the message.
+    """
+    before = base.on_unsent
+
+    def tell(link: Link, message: bytes) -> None:
+        if before is not None:
+            before(link, message)
+        note(link, message)
+
+    return type("HeardBus", (base,), {"on_unsent": staticmethod(tell)})
+
+
+class PacketWatch(Attachment):
+    """Shows what is sent.
+
+    Args:
+        take: gets each packet before its subscribers do; called inside the simulation, so it must not wait.
+        wanted: which MsgIds it gets.
+    """
+
+    def __init__(self, take: Callable[[Seen], object], wanted: Callable[[int], bool] = lambda msg_id: True) -> None:
+        self._take = take
+        self._wanted = wanted
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        return _watched(base, self._take, self._wanted)
+
+
+def _watched(
+    base: type[SoftwareBus], take: Callable[[Seen], object], wanted: Callable[[int], bool]
+) -> type[SoftwareBus]:
+    class WatchedBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
+        """A Software Bus that is looked at."""
+
+        def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
+            """See `SoftwareBus.transmit_msg`."""
+            if self._is_packet(packet) and wanted(packet[0] << 8 | packet[1]):
+                owner = self.kernel.current.owner
+                name: str = HOST if owner is None else owner.name
+                take(Seen(self.kernel.now, self._as_sent(packet) if is_origination else bytes(packet), name))
+            super().transmit_msg(packet, is_origination)
+
+        def _is_packet(self, packet: bytes | bytearray) -> bool:
+            return bool(PRIMARY_HEADER_SIZE < len(packet) <= self.config.sb_max_msg_size)
+
+        def _as_sent(self, packet: bytes | bytearray) -> bytes:
+            """With what origination fills in."""
+            copy = bytearray(packet)
+            route = self.routes.get(copy[0] << 8 | copy[1])
+            msg.set_size(copy, len(copy))
+            msg.set_sequence_count(copy, 0 if route is None else route.sequence & msg.MAX_SEQUENCE_COUNT)
+            msg.origination_action(copy, self.ports.time.stamp())
+            return bytes(copy)
+
+    return WatchedBus
+
+
+def receivers(bus: SoftwareBus, msg_id: int) -> list[str]:
+    """Names of the applications that get a MsgId now."""
+    route = bus.routes.get(msg_id)
+    return [] if route is None else list(dict.fromkeys(each.pipe.app_name for each in route.active))

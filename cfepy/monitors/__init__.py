@@ -1,0 +1,66 @@
+"""What must hold of a run, and the attachments that check it: messages, observer, invariants, deadlines.
+
+What belongs here is an attachment that watches a run and changes nothing in it, or reads the section of the mission
+file that says what to check. Faults are in `cfepy.faults`, commands and the answers expected in `cfepy.script`.
+
+The names below are loaded when they are first used: a run imports no more of this package than it needs.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.faces import face
+from cfepy.monitors.deadlines import Check, DeadlineResult, Overrun, time_text
+
+if TYPE_CHECKING:
+    from cfepy.monitors.demands import Demands, demands_of, judges_of, read_demands
+    from cfepy.monitors.messages import Heard, MessageWatch
+    from cfepy.monitors.observer import Observer, Sent, app_of
+    from cfepy.monitors.predicate import Predicate, short, shortened
+
+__all__ = [
+    "Check",
+    "DeadlineResult",
+    "Demands",
+    "Heard",
+    "MessageWatch",
+    "Observer",
+    "Overrun",
+    "Predicate",
+    "Sent",
+    "app_of",
+    "demands_of",
+    "judges_of",
+    "read_demands",
+    "short",
+    "shortened",
+    "time_text",
+]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".demands": (
+                "Demands",
+                "demands_of",
+                "judges_of",
+                "read_demands",
+            ),
+            ".messages": (
+                "Heard",
+                "MessageWatch",
+            ),
+            ".observer": (
+                "Observer",
+                "Sent",
+                "app_of",
+            ),
+            ".predicate": (
+                "Predicate",
+                "short",
+                "shortened",
+            ),
+        },
+    )

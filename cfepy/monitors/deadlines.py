@@ -1,0 +1,254 @@
+"""Deadlines: how quick applications must answer, how fresh topics must be, and what was measured against that.
+
+The section `deadlines:` of a mission file says them; a `Check` counts how often each was measured, how often in vain,
+and keeps the worst there was. `cfepy.monitors.deadline_monitor` does the measuring.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+from cfepy.marked_yaml import Marked, Mistakes
+from cfepy.msg import is_valid_msg_id
+from cfepy.units import NS_PER_MS, NS_PER_S, NS_PER_US
+
+UNITS = {"ns": 1, "us": NS_PER_US, "ms": NS_PER_MS, "s": NS_PER_S}
+APP_FIELDS = ("response", "period", "jitter", "task")
+TOPIC_FIELDS = ("latency", "at_least_every", "at_most_every")
+LONGEST_NS = 1_000_000 * NS_PER_S
+_TIME = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(ns|us|ms|s|Hz)\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class AppDeadline:
+    """What is asked of an application.
+
+    Attributes:
+        app: its cFE name.
+        response_ns: longest time from the end of a wait of one of its tasks to the beginning of the next; None for any.
+        period_ns: time from one end of a wait to the next of its main task, or of `task`; None for any.
+        jitter_ns: how much more or less than the period is good.
+        task: name of the only task that is meant; None for all, as to the response, and the main one, as to the period.
+    """
+
+    app: str
+    response_ns: int | None = None
+    period_ns: int | None = None
+    jitter_ns: int = 0
+    task: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TopicDeadline:
+    """What is asked of a topic or another message.
+
+    Attributes:
+        name: the topic, a packet's name, or a MsgId as "0x0883".
+        latency_ns: longest time from its sending until a receiver has it; None for any.
+        longest_ns: longest time from one message to the next; None for any.
+        shortest_ns: shortest time from one message to the next; None for any.
+    """
+
+    name: str
+    latency_ns: int | None = None
+    longest_ns: int | None = None
+    shortest_ns: int | None = None
+
+    @property
+    def msg_id(self) -> int | None:
+        """The MsgId, where it is given as a number."""
+        return int(self.name, 16) if self.name.startswith("0x") else None
+
+
+@dataclass(frozen=True, slots=True)
+class Deadlines:
+    """All deadlines of a mission; false when there are none."""
+
+    apps: tuple[AppDeadline, ...] = ()
+    topics: tuple[TopicDeadline, ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.apps or self.topics)
+
+
+def read_deadlines(section: Marked, mistakes: Mistakes) -> Deadlines:
+    """The section `deadlines:`, without those that are wrong.
+
+    Args:
+        section: its value.
+        mistakes: takes an unknown key, or a value that cannot be.
+    """
+    parts = dict(mistakes.fields(section, ("apps", "topics")))
+    apps = mistakes.mapping(parts["apps"]) if "apps" in parts else {}
+    topics = mistakes.mapping(parts["topics"]) if "topics" in parts else {}
+    of_apps = [mistakes.attempt(partial(_app_deadline, name, entry)) for name, entry in apps.items()]
+    of_topics = [mistakes.attempt(partial(_topic_deadline, name, entry)) for name, entry in topics.items()]
+    return Deadlines(
+        tuple(each for each in of_apps if each is not None), tuple(each for each in of_topics if each is not None)
+    )
+
+
+def _app_deadline(app: str, entry: Marked) -> AppDeadline:
+    fields = entry.mapping(APP_FIELDS)
+    if "response" not in fields and "period" not in fields:
+        raise entry.fail("needs a response or a period, such as `response: 2 ms`")
+    if "jitter" in fields and "period" not in fields:
+        raise fields["jitter"].fail("says how much a period may vary; give the period, too, such as `period: 10 ms`")
+    if "period" in fields and "jitter" not in fields:
+        raise entry.fail("has a period without a jitter; say how much it may vary, such as `jitter: 1 ms`")
+    return AppDeadline(
+        app,
+        response_ns=_time(fields.get("response")),
+        period_ns=_time(fields.get("period")),
+        jitter_ns=_time(fields.get("jitter"), zero=True) or 0,
+        task=fields["task"].text() if "task" in fields else None,
+    )
+
+
+def _topic_deadline(name: str, entry: Marked) -> TopicDeadline:
+    fields = entry.mapping(TOPIC_FIELDS)
+    if not fields:
+        raise entry.fail(f"needs one of {', '.join(TOPIC_FIELDS)}, such as `latency: 5 ms`")
+    if name.startswith("0x"):
+        _check_msg_id(name, entry)
+    found = TopicDeadline(name, *(_time(fields.get(each)) for each in TOPIC_FIELDS))
+    if found.longest_ns is not None and found.shortest_ns is not None and found.longest_ns < found.shortest_ns:
+        raise fields["at_least_every"].fail("is shorter than at_most_every: no message can be in time for both")
+    return found
+
+
+def _check_msg_id(name: str, entry: Marked) -> None:
+    try:
+        is_good = is_valid_msg_id(int(name, 16))
+    except ValueError:
+        is_good = False
+    if not is_good:
+        raise entry.fail("is no MsgId; write one such as 0x0883, or the name of a topic or packet")
+
+
+def _time(entry: Marked | None, zero: bool = False) -> int | None:
+    """A time with its unit, in ns.
+
+    Raises:
+        UsageError: it is none.
+    """
+    if entry is None:
+        return None
+    match = _TIME.fullmatch(entry.value) if isinstance(entry.value, str) else None
+    if match is None:
+        raise entry.fail(f"is {entry.plain()!r}; write a time with its unit, such as 500 us, 2.5 ms, 1 s or 50 Hz")
+    number, unit = float(match[1]), match[2]
+    found = round(number * UNITS[unit]) if unit in UNITS else round(NS_PER_S / max(number, 1e-9))
+    if not (0 if zero else 1) <= found <= LONGEST_NS:
+        raise entry.fail(f"is {entry.value}, it must be from {0 if zero else 1} ns to {LONGEST_NS // NS_PER_S} s")
+    return found
+
+
+def time_text(duration_ns: int) -> str:
+    """A time as people write it: "2.5 ms"."""
+    unit = next((name for name in ("s", "ms", "us") if duration_ns >= UNITS[name]), "ns")
+    return f"{duration_ns / UNITS[unit]:.6g} {unit}"
+
+
+def limits_of(deadline: AppDeadline | TopicDeadline) -> Mapping[str, int]:
+    """The limits that a deadline sets, in ns, by the names that they have in the mission file."""
+    if isinstance(deadline, AppDeadline):
+        named = {"response": deadline.response_ns, "period": deadline.period_ns}
+    else:
+        named = dict(zip(TOPIC_FIELDS, (deadline.latency_ns, deadline.longest_ns, deadline.shortest_ns), strict=True))
+    return {name: limit for name, limit in named.items() if limit is not None}
+
+
+class Overrun(NamedTuple):
+    """A deadline that was missed: when in virtual ns, whose, which, and what happened."""
+
+    at_ns: int
+    owner: str
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class DeadlineResult:
+    """One deadline. Times in virtual s.
+
+    Attributes:
+        owner: an application, topic or packet.
+        kind: as in the mission file, such as "response".
+        limit_s: what it asks for; of a period, the period itself.
+        jitter_s: of a period; 0 for others.
+        checked: how many times it was measured.
+        overruns: how many times it was missed.
+        worst_s: the worst that was measured; None as long as nothing was.
+        first_at_s: when it was first missed; None when it never was.
+    """
+
+    owner: str
+    kind: str
+    limit_s: float
+    jitter_s: float
+    checked: int
+    overruns: int
+    worst_s: float | None
+    first_at_s: float | None
+
+    @property
+    def limit_text(self) -> str:
+        """The limit as people write it: "10 ms +- 1 ms"."""
+        limit = time_text(round(self.limit_s * NS_PER_S))
+        return f"{limit} +- {time_text(round(self.jitter_s * NS_PER_S))}" if self.kind == "period" else limit
+
+    @property
+    def problem(self) -> str | None:
+        """A line that says how it was missed; None when it was not."""
+        if not self.overruns or self.worst_s is None or self.first_at_s is None:
+            return None
+        times = f"{self.overruns} time{'s' if self.overruns > 1 else ''}"
+        worst = time_text(round(self.worst_s * NS_PER_S))
+        at = f"first at {self.first_at_s:g} s"
+        return f"{self.owner} missed its deadline {self.kind} {self.limit_text} {times}, at worst with {worst}, {at}"
+
+
+@dataclass(slots=True)
+class Check:
+    """One limit, and how it was kept so far; times in ns."""
+
+    owner: str
+    kind: str
+    limit_ns: int
+    jitter_ns: int = 0
+    checked: int = 0
+    worst_ns: int | None = None
+    overruns: int = 0
+    first_at_ns: int | None = None
+
+    def measure(self, measured_ns: int) -> bool:
+        """Take one measurement; whether it is good."""
+        self.checked += 1
+        self.saw(measured_ns)
+        if self.kind == "period":
+            return abs(measured_ns - self.limit_ns) <= self.jitter_ns
+        if self.kind == "at_most_every":
+            return measured_ns >= self.limit_ns
+        return measured_ns <= self.limit_ns
+
+    def saw(self, measured_ns: int) -> None:
+        """Keep the worst that there was."""
+        if self.worst_ns is None or self._badness(measured_ns) > self._badness(self.worst_ns):
+            self.worst_ns = measured_ns
+
+    def _badness(self, measured_ns: int) -> int:
+        if self.kind == "period":
+            return abs(measured_ns - self.limit_ns)
+        return -measured_ns if self.kind == "at_most_every" else measured_ns
+
+    def result(self) -> DeadlineResult:
+        """What came of it."""
+        worst = None if self.worst_ns is None else self.worst_ns / NS_PER_S
+        first = None if self.first_at_ns is None else self.first_at_ns / NS_PER_S
+        limit, jitter = self.limit_ns / NS_PER_S, self.jitter_ns / NS_PER_S
+        return DeadlineResult(self.owner, self.kind, limit, jitter, self.checked, self.overruns, worst, first)

@@ -1,0 +1,99 @@
+"""What a mission file demands of a run: its sections `invariants`, `results` and `deadlines`, and their monitors.
+
+The mission keeps these sections as they stand (`MissionSpec.demands`). Here is the table of their readers, for a run,
+which raises the first mistake, and for `cfepy check`, which keeps all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from cfepy.attachment import Attachment
+from cfepy.marked_yaml import Marked, Mistakes
+from cfepy.mission import MissionSpec
+from cfepy.monitors.deadlines import Deadlines, read_deadlines
+
+if TYPE_CHECKING:
+    from cfepy.monitors.invariants import Invariant
+    from cfepy.monitors.selected_results import SelectedResult
+
+
+@dataclass(frozen=True, slots=True)
+class Demands:
+    """What a mission file demands.
+
+    Attributes:
+        invariants: what must hold of messages.
+        results: those that must not depend on the schedule.
+        deadlines: how quick applications must answer, and how fresh topics must be.
+    """
+
+    invariants: tuple[Invariant, ...] = ()
+    results: tuple[SelectedResult, ...] = ()
+    deadlines: Deadlines = field(default_factory=Deadlines)
+
+
+def read_demands(sections: Mapping[str, Marked], mistakes: Mistakes) -> Demands:
+    """Read the sections of a mission file, without what is wrong in them.
+
+    Args:
+        sections: by name, those that there are.
+        mistakes: takes what is wrong.
+    """
+    return Demands(**{name: _READERS[name](section, mistakes) for name, section in sections.items()})
+
+
+def demands_of(spec: MissionSpec) -> Demands:
+    """What a mission demands.
+
+    Args:
+        spec: the mission.
+
+    Raises:
+        UsageError: something in its mission file is wrong.
+    """
+    return read_demands(spec.demands, Mistakes())
+
+
+def judges_of(spec: MissionSpec) -> list[Attachment]:
+    """What watches over the invariants and deadlines of a mission; only a mission that has some imports it.
+
+    Args:
+        spec: the mission.
+
+    Raises:
+        UsageError: something in its mission file is wrong, or an invariant names a packet that it does not have.
+    """
+    demands = demands_of(spec)
+    judges: list[Attachment] = []
+    if demands.invariants:
+        from cfepy.monitors.invariant_watch import InvariantWatch
+
+        judges.append(InvariantWatch(spec, demands.invariants))
+    if demands.deadlines:
+        from cfepy.monitors.deadline_monitor import DeadlineMonitor
+
+        judges.append(DeadlineMonitor(demands.deadlines))
+    return judges
+
+
+def _invariants(section: Marked, mistakes: Mistakes) -> tuple[Invariant, ...]:
+    from cfepy.monitors.invariants import read_invariants
+
+    return read_invariants(section, mistakes)
+
+
+def _results(section: Marked, mistakes: Mistakes) -> tuple[SelectedResult, ...]:
+    from cfepy.monitors.selected_results import read_selected_results
+
+    return read_selected_results(section, mistakes)
+
+
+_READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
+    "invariants": _invariants,
+    "results": _results,
+    "deadlines": read_deadlines,
+}
+"""What reads each section; the results are the attributes of `Demands`."""

@@ -1,0 +1,291 @@
+"""The monitor of the invariants of a mission: it judges each with every message that it is about, as that is sent.
+
+A violation is written on the console, noted in the trace, and listed in the report. A processor reset begins anew:
+what was remembered of earlier messages is forgotten. A mission without invariants never loads this module.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Any
+
+from cfepy.attachment import Attachment
+from cfepy.mission import Mission, MissionSpec, Processor, app_traceback, described, matches
+from cfepy.monitors.invariants import CAUSE, Answer, Invariant, Selection, code_of
+from cfepy.monitors.messages import Heard, MessageWatch
+from cfepy.monitors.predicate import LATEST, short
+from cfepy.monitors.record import InvariantRecord, InvariantRecords, Violation
+from cfepy.sb import SoftwareBus
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+Report = Callable[[str, int, str, str], None]
+"""Gets what does not hold: text, virtual time in ns, the sender of the message, more lines."""
+
+
+class Latest(dict[str, Any]):
+    """The latest message of each topic; None for one that had none yet."""
+
+    def __missing__(self, topic: str) -> None:
+        return None
+
+    def get(self, topic: str, default: Any = None) -> Any:
+        """As of a dict."""
+        message = super().get(topic)
+        return default if message is None else message
+
+
+class Judge:
+    """Judges one invariant; remembers what it needs for that since the last reset.
+
+    Args:
+        invariant: which one.
+        latest: of all topics.
+        report: gets what does not hold.
+    """
+
+    def __init__(self, invariant: Invariant, latest: Latest, report: Report) -> None:
+        self.invariant = invariant
+        self.report = report
+        self._latest = latest
+        self._last: dict[str, Any] = {}
+        self._counts: dict[str, int] = {}
+
+    def selects(self, topic: str) -> bool:
+        """Whether it wants the messages of a topic or the packets of a name."""
+        return _selects(self.invariant.selection, topic)
+
+    def take(self, heard: Heard) -> bool:
+        """Judge with a message; whether it was one that it is about."""
+        names = self._names(heard)
+        self._last[heard.topic] = heard.msg
+        when = self.invariant.when
+        if heard.at_ns < self.invariant.after_ns or (when is not None and not when.holds(names)):
+            return False
+        self._judge(heard, names)
+        return True
+
+    def end(self, now_ns: int) -> None:
+        """The time of the run is over."""
+
+    def _names(self, heard: Heard) -> dict[str, Any]:
+        """What its expressions can name."""
+        count = self._counts[heard.topic] = self._counts.get(heard.topic, 0) + 1
+        return {
+            "msg": heard.msg,
+            "last": self._last.get(heard.topic),
+            LATEST: self._latest,
+            "topic": heard.topic,
+            "sender": heard.sender,
+            "t": heard.t,
+            "count": count,
+        }
+
+    def _judge(self, heard: Heard, names: dict[str, Any]) -> None:
+        holds = self.invariant.holds
+        assert holds is not None
+        if not holds.holds(names):
+            values = holds.values(names)
+            text = f"{holds.source} does not hold{f'; {values}' if values else ''}"
+            self.report(text, heard.at_ns, heard.sender, f"{heard.topic}: {short(heard.msg)}")
+
+
+class FunctionJudge(Judge):
+    """Lets a function of the mission judge: False, a text or an AssertionError say that it does not hold."""
+
+    def __init__(self, invariant: Invariant, latest: Latest, report: Report) -> None:
+        super().__init__(invariant, latest, report)
+        self._code = code_of(invariant)
+
+    def end(self, now_ns: int) -> None:
+        """See `Judge.end`: an object that has a method of this name is asked once more."""
+        last_word = getattr(self._code, "end", None)
+        if last_word is not None:
+            self._ask(last_word, now_ns, "")
+
+    def _judge(self, heard: Heard, names: dict[str, Any]) -> None:
+        self._ask(lambda: self._code(heard), heard.at_ns, heard.sender, f"{heard.topic}: {short(heard.msg)}")
+
+    def _ask(self, code: Callable[[], Any], at_ns: int, sender: str, detail: str = "") -> None:
+        try:
+            said = code()
+        except AssertionError as error:
+            said = str(error) or "an assertion failed"
+            detail = f"{detail}\n{app_traceback(error)}".lstrip()
+        if said is False or isinstance(said, str):
+            self.report(said or f"{self.invariant.function} says no", at_ns, sender, detail)
+
+
+class AnswerJudge(Judge):
+    """Waits for the answer to each message, and reports those that did not come in time."""
+
+    def __init__(self, invariant: Invariant, latest: Latest, report: Report) -> None:
+        super().__init__(invariant, latest, report)
+        assert invariant.answer is not None
+        self._answer: Answer = invariant.answer
+        self._open: deque[Heard] = deque()
+
+    def selects(self, topic: str) -> bool:
+        """See `Judge.selects`: answers, too."""
+        return super().selects(topic) or _selects(self._answer.selection, topic)
+
+    def take(self, heard: Heard) -> bool:
+        """See `Judge.take`. A message that is both answers first."""
+        self._expire(heard.at_ns)
+        names = self._names(heard)
+        if self._open and _selects(self._answer.selection, heard.topic):
+            holds = self._answer.holds
+            self._open = deque(
+                each for each in self._open if holds is not None and not holds.holds({**names, CAUSE: each.msg})
+            )
+        when = self.invariant.when
+        is_cause = super().selects(heard.topic) and heard.at_ns >= self.invariant.after_ns
+        is_cause = is_cause and (when is None or when.holds(names))
+        if is_cause:
+            self._open.append(heard)
+        self._last[heard.topic] = heard.msg
+        return is_cause
+
+    def end(self, now_ns: int) -> None:
+        """See `Judge.end`; what still has time is not judged."""
+        self._expire(now_ns)
+
+    def _expire(self, now_ns: int) -> None:
+        within_ns = self._answer.within_ns
+        while self._open and now_ns > self._open[0].at_ns + within_ns:
+            cause = self._open.popleft()
+            what = self._answer.selection if self._answer.holds is None else self._answer.holds.source
+            text = f"no answer within {within_ns / NS_PER_S:g} s ({what}) to {cause.topic}"
+            self.report(text, cause.at_ns + within_ns, cause.sender, f"{cause.topic}: {short(cause.msg)}")
+
+
+class InvariantWatch(Attachment):
+    """Watches over all invariants of a mission.
+
+    Args:
+        spec: the mission.
+        invariants: its invariants.
+
+    Raises:
+        UsageError: one names a packet that the mission does not have, or its code cannot be executed.
+    """
+
+    def __init__(self, spec: MissionSpec, invariants: Sequence[Invariant]) -> None:
+        self._invariants = tuple(invariants)
+        self._latest = Latest()
+        self._judges: list[Judge] = []
+        self._wanting: dict[str, list[Judge]] = {}
+        self._broken: set[str] = set()
+        selections = [each for invariant in self._invariants for each in _selections(invariant)]
+        topics = tuple(dict.fromkeys(name for each in selections for name in each.topics or _all(each)))
+        packets = tuple(dict.fromkeys(name for each in selections for name in each.packets))
+        try:
+            self._messages = MessageWatch(spec, self._take, topics, packets)
+        except UsageError as error:
+            raise UsageError(error.text, file=spec.mission_file, field="invariants") from None
+        self._mission: Mission | None = None
+        self._records = InvariantRecords()
+        self._make_judges()
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        return self._messages.bus(base)
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._mission = mission
+        self._messages.begin(mission)
+        self._records = mission.record.part(InvariantRecords)
+        self._records.update((each.name, InvariantRecord(each.name, each.place)) for each in self._invariants)
+
+    def power_up(self, processor: Processor) -> None:
+        """See `Attachment.power_up`."""
+        assert self._mission is not None
+        if self._mission.record.resets:
+            self._latest.clear()
+            self._wanting.clear()
+            self._make_judges()
+
+    def conclude(self) -> None:
+        """See `Attachment.conclude`."""
+        assert self._mission is not None
+        for judge in self._judges:
+            self._ask(judge, partial(judge.end, self._mission.kernel.now))
+
+    def _make_judges(self) -> None:
+        self._judges = [self._judge_of(invariant) for invariant in self._invariants]
+
+    def _judge_of(self, invariant: Invariant) -> Judge:
+        kind = FunctionJudge if invariant.function else AnswerJudge if invariant.answer is not None else Judge
+
+        def report(text: str, at_ns: int, sender: str, detail: str) -> None:
+            self._report(invariant, Violation(text, at_ns, sender, detail))
+
+        return kind(invariant, self._latest, report)
+
+    def _take(self, heard: Heard) -> None:
+        judges = self._wanting.get(heard.topic)
+        if judges is None:
+            judges = self._wanting[heard.topic] = [each for each in self._judges if each.selects(heard.topic)]
+        for judge in judges:
+            self._ask(judge, partial(judge.take, heard))
+        self._latest[heard.topic] = _message(heard)
+
+    def _ask(self, judge: Judge, what: Callable[[], Any]) -> None:
+        """Let a judge do something; one whose code fails is told once, and judges no more."""
+        assert self._mission is not None
+        name = judge.invariant.name
+        if name in self._broken:
+            return
+        try:
+            self._records[name].judged += bool(what())
+        except Exception as error:
+            self._broken.add(name)
+            text = error.text if isinstance(error, UsageError) else described(error)
+            now_ns = self._mission.kernel.now
+            detail = app_traceback(error) if judge.invariant.function else ""
+            self._report(judge.invariant, Violation(f"could not be judged: {text}", now_ns, "", detail))
+
+    def _report(self, invariant: Invariant, violation: Violation) -> None:
+        assert self._mission is not None
+        record = self._records[invariant.name]
+        record.violated += 1
+        at = f"at {violation.at_ns / NS_PER_S:.6f} s"
+        line = f"invariant {invariant.name!r} ({invariant.place}) {at}: {violation.text}"
+        if record.first is None:
+            record.first = violation
+            self._mission.console.write(line)
+        else:
+            self._mission.trace.note(line)
+
+
+def _selections(invariant: Invariant) -> Iterator[Selection]:
+    yield invariant.selection
+    if invariant.answer is not None:
+        yield invariant.answer.selection
+    for predicate in invariant.predicates:
+        if predicate.topics:
+            yield Selection(
+                tuple(name for name in predicate.topics if name.startswith("/")),
+                tuple(name for name in predicate.topics if not name.startswith("/")),
+            )
+
+
+def _all(selection: Selection) -> tuple[str, ...]:
+    """The pattern of an empty selection."""
+    return () if selection.packets else ("*",)
+
+
+def _selects(selection: Selection, topic: str) -> bool:
+    if not topic.startswith("/"):
+        return topic in selection.packets
+    return bool(selection.topics or not selection.packets) and matches(topic, selection.topics)
+
+
+def _message(heard: Heard) -> Any:
+    try:
+        return heard.msg
+    except Exception:
+        return None  # the judges that want this message have reported it

@@ -1,0 +1,221 @@
+"""What must hold of the messages of a mission: the section `invariants` of a mission file.
+
+An invariant is an expression over a message, a function of the mission's own Python file, or an answer that has to come
+in time. Here they are read; `cfepy.monitors.invariant_watch` watches over them. docs/mission_file.md describes them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from cfepy.marked_yaml import Marked, Mistakes
+from cfepy.mission import sources
+from cfepy.monitors.predicate import LATEST, Predicate
+from cfepy.msg import HIGHEST_VALID_MSG_ID
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+NAMES = ("msg", "last", LATEST, "topic", "sender", "t", "count")
+CAUSE = "cause"
+SOURCE_FIELDS = ("topic", "packet")
+FIELDS = (*SOURCE_FIELDS, "holds", "when", "within", "then", "file", "function", "after")
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """Which messages: topics by name or pattern, packets by the dictionary's names or MsgIds. All topics when empty."""
+
+    topics: tuple[str, ...] = ()
+    packets: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return ", ".join((*self.topics, *self.packets)) or "any topic"
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What has to come after a message, at most so long after it."""
+
+    selection: Selection
+    holds: Predicate | None
+    within_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Invariant:
+    """Something that must hold.
+
+    Attributes:
+        name: its key in the mission file.
+        place: where it stands there, `file:line`.
+        selection: the messages that it is about.
+        when: it is about those for which this holds only.
+        holds: what must hold of each of them.
+        answer: what has to come after each of them.
+        file, function: the mission's own code that judges them.
+        after_ns: virtual time from which on it has to hold.
+    """
+
+    name: str
+    place: str
+    selection: Selection
+    when: Predicate | None = None
+    holds: Predicate | None = None
+    answer: Answer | None = None
+    file: Path | None = None
+    function: str = ""
+    after_ns: int = 0
+
+    @property
+    def predicates(self) -> tuple[Predicate, ...]:
+        """All its expressions."""
+        of_answer = None if self.answer is None else self.answer.holds
+        return tuple(each for each in (self.when, self.holds, of_answer) if each is not None)
+
+    @property
+    def packets(self) -> tuple[str, ...]:
+        """The names of all packets that it is about."""
+        return self.selection.packets + (() if self.answer is None else self.answer.selection.packets)
+
+
+def read_invariants(section: Marked, mistakes: Mistakes) -> tuple[Invariant, ...]:
+    """The section `invariants:`, without those that are wrong.
+
+    Args:
+        section: its value; files of functions are looked for in the folder of its file.
+        mistakes: takes an unknown field, one that is missing, or a value that cannot be.
+    """
+    entries = mistakes.mapping(section).items()
+    found = (mistakes.attempt(partial(_invariant, name, entry)) for name, entry in entries)
+    return tuple(each for each in found if each is not None)
+
+
+def _invariant(name: str, entry: Marked) -> Invariant:
+    fields = entry.mapping(FIELDS)
+    kinds = [each for each in ("holds", "function", "within") if each in fields]
+    if len(kinds) != 1:
+        said = f"has {' and '.join(kinds)}; write one of them" if kinds else "says nothing"
+        text = 'give `holds: "msg.data < 3"`, or `file` and `function`, or `within` and `then`'
+        raise entry.fail(f"{said}; {text}")
+    selection = read_selection(fields)
+    if selection == Selection() and "function" not in fields:
+        raise entry.fail("says of no message that it is about; add `topic: /name` or `packet: NAME`")
+    file, function = _function(entry, fields)
+    return Invariant(
+        name,
+        f"{entry.file.name}:{entry.line}",
+        selection,
+        when=Predicate.read(fields["when"], NAMES) if "when" in fields else None,
+        holds=Predicate.read(fields["holds"], NAMES) if "holds" in fields else None,
+        answer=_answer(entry, fields),
+        file=file,
+        function=function,
+        after_ns=read_seconds(fields["after"]) if "after" in fields else 0,
+    )
+
+
+def read_selection(fields: Mapping[str, Marked]) -> Selection:
+    """The messages that `topic` and `packet` name.
+
+    Raises:
+        UsageError: a topic without "/", or a MsgId that cannot be.
+    """
+    topics = [_topic(each) for each in _list(fields.get("topic"))]
+    return Selection(tuple(topics), tuple(_packet(each) for each in _list(fields.get("packet"))))
+
+
+def read_seconds(entry: Marked) -> int:
+    """A time in ns from a number of seconds, with or without a unit: 0.5, "0.5 s", "20 ms", "50 us".
+
+    Raises:
+        UsageError: it is no such time.
+    """
+    value = entry.value
+    number, unit = (value, "s") if not isinstance(value, str) else _split(value)
+    scale = {"s": NS_PER_S, "ms": NS_PER_S // 1000, "us": 1000, "ns": 1}.get(unit)
+    try:
+        if scale is None or isinstance(number, bool) or not 0 <= float(number) < 1e9:
+            raise ValueError
+        return round(float(number) * scale)
+    except (TypeError, ValueError):
+        raise entry.fail(f"is {value!r}, it must be a time such as 0.5, 0.5 s or 20 ms") from None
+
+
+def _split(text: str) -> tuple[str, str]:
+    number = text.rstrip("abcdefghijklmnopqrstuvwxyz ")
+    return number, text[len(number) :].strip() or "s"
+
+
+def _list(entry: Marked | None) -> list[Marked]:
+    if entry is None:
+        return []
+    return entry.items() if isinstance(entry.value, list) else [entry]
+
+
+def _topic(entry: Marked) -> str:
+    name = entry.text()
+    if not name.startswith(("/", "*")):
+        raise entry.fail(f'is {name!r}; a topic is named by its full name, which begins with "/", or by a pattern')
+    return name
+
+
+def _packet(entry: Marked) -> str:
+    if isinstance(entry.value, int) and not isinstance(entry.value, bool):
+        return f"0x{entry.integer(1, HIGHEST_VALID_MSG_ID):04X}"
+    return entry.text()
+
+
+def _answer(entry: Marked, fields: Mapping[str, Marked]) -> Answer | None:
+    if "within" not in fields:
+        if "then" in fields:
+            raise fields["then"].fail("says what has to come, but not how soon; add `within: 0.5 s`")
+        return None
+    if "then" not in fields:
+        raise entry.fail("says how soon, but not what has to come; add `then: {topic: /name}`")
+    then = fields["then"].mapping((*SOURCE_FIELDS, "holds"))
+    selection = read_selection(then)
+    if selection == Selection():
+        raise fields["then"].fail("names no message that has to come; add `topic: /name` or `packet: NAME`")
+    holds = Predicate.read(then["holds"], (*NAMES, CAUSE)) if "holds" in then else None
+    return Answer(selection, holds, read_seconds(fields["within"]))
+
+
+def _function(entry: Marked, fields: Mapping[str, Marked]) -> tuple[Path | None, str]:
+    """The file and the name of a function or class."""
+    if "function" not in fields:
+        if "file" in fields:
+            raise entry.fail("names a file but no function of it; add `function: NAME`")
+        return None, ""
+    if "file" not in fields:
+        raise entry.fail("names a function but not the file it is in; add `file: checks.py`")
+    file, name = entry.file.parent / fields["file"].text(), fields["function"].text()
+    if not file.is_file():
+        raise fields["file"].fail(f"is {file}, which is no file; give its path from the mission's folder")
+    broken = sources.syntax_error(file)
+    if broken is not None:
+        raise UsageError(f"is not Python: {broken[1]}", file=file, line=broken[0])
+    if not sources.defines(file, name):
+        functions = ", ".join(sources.functions_and_classes_of(file)) or "none"
+        raise fields["function"].fail(f"is {name!r}; {file.name} has no such function or class, it has {functions}")
+    return file, name
+
+
+def code_of(invariant: Invariant) -> Any:
+    """The function of an invariant, executed afresh; a class is called, and the object that comes of it judges.
+
+    Raises:
+        UsageError: executing its file failed.
+    """
+    assert invariant.file is not None
+    space: dict[str, Any] = {"__name__": invariant.file.stem, "__file__": str(invariant.file)}
+    try:
+        exec(compile(invariant.file.read_bytes(), str(invariant.file), "exec"), space)
+        found = space[invariant.function]
+        return found() if isinstance(found, type) else found
+    except Exception as error:
+        text = f"{invariant.function} cannot be had: {type(error).__name__}: {error}"
+        raise UsageError(text, file=invariant.file) from error

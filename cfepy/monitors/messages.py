@@ -1,0 +1,145 @@
+"""A watch on selected messages of a mission: ROS topics and cFE packets alike, decoded.
+
+It watches the Software Bus, so it changes nothing: no subscription, no virtual time, no record in the trace.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from cfepy.attachment import Attachment
+from cfepy.ground import Dictionary, MessageDecoder, dictionary_of
+from cfepy.mission import Mission, MissionSpec, PacketWatch, Seen, TopicMessage, TopicWatch
+from cfepy.msg import Command, get_fcn_code
+from cfepy.sb import SoftwareBus
+from cfepy.units import NS_PER_S
+
+
+class Fields(dict[str, Any]):
+    """The fields of a packet: `msg.PacketID.AppName`, and as a dict.
+
+    A packet whose layout is not declared has one field, `data`, its bytes behind the header.
+    """
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"the packet has no field {name!r}; it has {', '.join(self) or 'none'}") from None
+
+
+class Heard:
+    """A message that was sent.
+
+    Attributes:
+        topic: the topic's resolved name, or the packet's name in the dictionary.
+        sender: the cFE name of the application that sent it, "host" for one from outside the simulation.
+        at_ns: virtual time.
+    """
+
+    __slots__ = ("_message", "_read", "at_ns", "sender", "topic")
+
+    def __init__(self, topic: str, sender: str, at_ns: int, read: Callable[[], Any]) -> None:
+        self.topic, self.sender, self.at_ns = topic, sender, at_ns
+        self._read = read
+        self._message: Any = None
+
+    @classmethod
+    def of(cls, message: TopicMessage, decoder: MessageDecoder) -> Heard:
+        """A message on a topic.
+
+        Args:
+            message: as it was sent.
+            decoder: makes what nodes get of it, when that is asked for.
+        """
+        node = message.header.get("callerid", "")
+        return cls(message.topic, node, message.at_ns, lambda: decoder.decode(message))
+
+    @property
+    def t(self) -> float:
+        """Virtual time of its sending in s."""
+        return self.at_ns / NS_PER_S
+
+    @property
+    def msg(self) -> Any:
+        """The message, as a node gets it; of a packet its fields (`Fields`).
+
+        Raises:
+            UsageError: its type is not known, or its bytes are no such message.
+        """
+        if self._message is None:
+            self._message = self._read()
+        return self._message
+
+
+class MessageWatch(Attachment):
+    """Shows messages when they are sent.
+
+    Args:
+        spec: the mission.
+        take: gets each; called inside the simulation, so it must not wait.
+        topics: names and patterns of ROS topics; none when it is empty.
+        packets: names of the dictionary, or MsgIds.
+
+    Raises:
+        UsageError: the mission has no such packet.
+    """
+
+    def __init__(
+        self,
+        spec: MissionSpec,
+        take: Callable[[Heard], object],
+        topics: tuple[str, ...] = (),
+        packets: tuple[str, ...] = (),
+    ) -> None:
+        self._take = take
+        self._dictionary = dictionary_of(spec) if packets else Dictionary()
+        self._decoder = MessageDecoder()
+        self._names: dict[int, dict[int | None, str]] = {}
+        for name in packets:
+            msg_id, code = self._declared(name)
+            self._names.setdefault(msg_id, {})[code] = name
+        self._watches: list[TopicWatch | PacketWatch] = []
+        if topics:
+            self._watches.append(TopicWatch(self._take_message, topics))
+        if packets:
+            self._watches.append(PacketWatch(self._take_packet, self._names.__contains__))
+        self._mission: Mission | None = None
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        for each in self._watches:
+            base = each.bus(base)
+        return base
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._mission = mission
+        for each in self._watches:
+            each.begin(mission)
+
+    def _declared(self, name: str) -> tuple[int, int | None]:
+        """The MsgId of a packet, and the function code of a command."""
+        found: Any = self._dictionary.commands.get(name)
+        found = self._dictionary.telemetry_of(name) if found is None else found
+        return found.msg_id, found.code if isinstance(found, Command) else None
+
+    def _take_message(self, message: TopicMessage) -> None:
+        self._take(Heard.of(message, self._decoder))
+
+    def _take_packet(self, seen: Seen) -> None:
+        names = self._names[seen.msg_id]
+        name = names.get(None) or names.get(get_fcn_code(seen.packet) if seen.msg_id & 0x1000 else None)
+        if name is not None:
+            self._take(Heard(name, seen.sender, seen.at_ns, lambda: self._fields_of(seen.packet)))
+
+    def _fields_of(self, packet: bytes) -> Fields:
+        fields: Fields = _as_fields(self._dictionary.fields_of(packet))
+        return fields
+
+
+def _as_fields(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return Fields({name: _as_fields(item) for name, item in value.items()})
+    return [_as_fields(item) for item in value] if isinstance(value, list | tuple) else value

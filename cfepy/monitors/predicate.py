@@ -1,0 +1,146 @@
+"""A predicate over messages as a mission file has it: one Python expression, checked when it is read.
+
+The names that it may use are known, so a misspelt one is found before the mission boots; when one does not hold, the
+values that it used can be shown.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from types import CodeType
+from typing import Any
+
+from cfepy.marked_yaml import Marked
+from cfepy.suggestions import did_you_mean
+from cfepy.syntax_trees import parsed
+
+LATEST = "latest"
+MOST_SHOWN = 120  # characters of a value in a text
+_LIBRARY: dict[str, Any] = {"math": math}
+
+
+@dataclass(frozen=True, slots=True)
+class Predicate:
+    """An expression.
+
+    Attributes:
+        source: its text, on one line.
+        place: where it stands: `file:line: field`.
+        topics: the topics that it asks `latest` for.
+    """
+
+    source: str
+    place: str
+    topics: tuple[str, ...] = ()
+    _code: CodeType | None = field(default=None, repr=False, compare=False)
+    _shown: tuple[str, ...] = ()
+
+    @classmethod
+    def read(cls, entry: Marked, names: Iterable[str]) -> Predicate:
+        """The predicate in a mission file.
+
+        Args:
+            entry: its text.
+            names: what it may name besides Python's built-in functions and `math`.
+
+        Raises:
+            UsageError: it is no expression, or names something else.
+        """
+        source = _one_line(entry)
+        try:
+            tree = parsed(source, mode="eval")
+        except (SyntaxError, ValueError) as error:
+            what = error.msg if isinstance(error, SyntaxError) else str(error)
+            raise entry.fail(f"{source!r} is no Python expression: {what}") from None
+        _check_names(entry, tree, tuple(names))
+        place = f"{entry.file.name}:{entry.line}: {entry.field}"
+        code = compile(tree, place, "eval")
+        return cls(source, place, tuple(dict.fromkeys(_asked(tree))), code, tuple(dict.fromkeys(_looked_at(tree))))
+
+    def holds(self, names: Mapping[str, Any]) -> bool:
+        """Whether it holds.
+
+        Args:
+            names: the values of what it may name.
+
+        Raises:
+            Exception: whatever its evaluation raises.
+        """
+        assert self._code is not None
+        return bool(eval(self._code, {"__builtins__": builtins, **_LIBRARY, **names}))
+
+    def values(self, names: Mapping[str, Any]) -> str:
+        """What it looked at, for the text about one that did not hold: "msg.data is 5, last.data is 3"."""
+        found = []
+        for source in self._shown:
+            try:
+                value = eval(source, {"__builtins__": builtins, **_LIBRARY, **names})
+            except Exception:
+                continue  # a part that was not reached, such as last.data when last is None
+            found.append(f"{source} is {short(value)}")
+        return ", ".join(found)
+
+
+def short(value: Any) -> str:
+    """A value on one line, cut off when it is long."""
+    return shortened(" ".join(repr(value).split()))
+
+
+def shortened(text: str) -> str:
+    """A text, cut off when it is long."""
+    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."
+
+
+def _one_line(entry: Marked) -> str:
+    if isinstance(entry.value, bool | int | float):
+        return repr(entry.value)
+    return " ".join(entry.text().split("\n")).strip()
+
+
+def _check_names(entry: Marked, tree: ast.AST, names: tuple[str, ...]) -> None:
+    bound = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    bound |= {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
+    known = {*names, *_LIBRARY, *bound, *dir(builtins)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and node.id not in known:
+            known_here = f"known are {', '.join(names)} and what Python has built in"
+            hint = did_you_mean(node.id, [*names, *_LIBRARY, *sorted(bound)], known_here)
+            raise entry.fail(f"names {node.id!r}, which is not known here; {hint}")
+
+
+def _asked(tree: ast.AST) -> Iterator[str]:
+    """Topics in `latest["/name"]` and `latest.get("/name")`."""
+    for node in ast.walk(tree):
+        key: ast.expr | None = None
+        if isinstance(node, ast.Subscript) and _is_latest(node.value):
+            key = node.slice
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and _is_latest(node.func.value):
+            key = node.args[0] if node.args else None
+        if isinstance(key, ast.Constant) and isinstance(key.value, str):
+            yield key.value
+
+
+def _is_latest(node: ast.AST) -> bool:
+    return isinstance(node, ast.Name) and node.id == LATEST
+
+
+def _looked_at(tree: ast.Expression) -> Iterator[str]:
+    """The names, fields and items that an expression reads, outermost ones only, without variables of loops."""
+    loops = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    waiting: list[ast.AST] = [tree.body]
+    while waiting:
+        node = waiting.pop(0)
+        inner = [each.id for each in ast.walk(node) if isinstance(each, ast.Name)]
+        if isinstance(node, ast.Attribute | ast.Subscript | ast.Name):
+            is_value = bool(inner) and not loops & set(inner) and not set(inner) <= {*dir(builtins), *_LIBRARY}
+            if is_value and not any(isinstance(each, ast.Call) for each in ast.walk(node)):
+                yield ast.unparse(node)
+                continue
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and not _is_latest(node.func.value):
+            waiting = [node.func.value, *node.args, *waiting]
+            continue
+        waiting = [*ast.iter_child_nodes(node), *waiting]

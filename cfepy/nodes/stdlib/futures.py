@@ -1,0 +1,46 @@
+"""Futures of a node, of `concurrent.futures` and `asyncio`: they hash by a serial number instead of their address.
+
+The standard library goes through sets of futures and threads, in the order of their hashes. `asyncio` is the standard
+library's own, with an event loop on the node's `select` and `socket`: it waits in virtual time, and its transports and
+servers have a network when the node's sockets have one.
+"""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cfepy.nodes.universe import Universe
+
+
+def hash_by_serial(universe: Universe, cls: Any) -> None:
+    """Let the objects of a class of the node's hash by a number that counts up as they are first asked for it."""
+
+    def serial_hash(self: Any) -> int:
+        number = self.__dict__.get("_serial_hash")
+        if number is None:
+            universe.serial = number = universe.serial + 1
+            self.__dict__["_serial_hash"] = number
+        return int(number)
+
+    cls.__hash__ = serial_hash
+
+
+def fix_futures(universe: Universe, module: ModuleType) -> None:
+    """After `concurrent.futures._base` was loaded: `as_completed` and `wait` make sets of futures."""
+    hash_by_serial(universe, module.Future)
+
+
+def fix_asyncio(universe: Universe, module: ModuleType) -> None:
+    """After `asyncio` was loaded: its default event loop asks the host for neither processes nor signals."""
+
+    class KernelEventLoop(module.selector_events.BaseSelectorEventLoop):  # type: ignore[misc, name-defined]
+        """The loop of the node's own copy of asyncio."""
+
+    class KernelEventLoopPolicy(module.events.BaseDefaultEventLoopPolicy):  # type: ignore[misc, name-defined]
+        _loop_factory = KernelEventLoop
+
+    hash_by_serial(universe, module.Future)  # `asyncio.wait` and `as_completed` make sets of them, and of tasks
+    vars(module).update(DefaultEventLoopPolicy=KernelEventLoopPolicy, SelectorEventLoop=KernelEventLoop)
+    module.set_event_loop_policy(KernelEventLoopPolicy())

@@ -1,0 +1,298 @@
+"""`_thread.lock` and `_thread.RLock` on the kernel.
+
+A free lock is taken and given back without a kernel call. A contended one is handed to the most urgent waiter, first
+come first within a priority, so that it cannot be snatched in between. Locks hash by serial number, because the
+standard library keeps them in sets and iterates those.
+
+The classes are made per universe: their methods then reach the kernel through a cell, which is what keeps a
+lock-and-release near the price of a native one.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from cfepy.rtos import FOREVER, TIMEOUT, ExploringKernel, WaitList
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from cfepy.nodes.universe import Universe
+    from cfepy.rtos import Task
+
+POLLS = 16  # so many calls of an uncontended lock cost one charge: a loop that polls under a lock makes progress
+MAX_WAIT_S = 1e9
+_TAKING = ("acquire", "acquire_lock", "__enter__")
+_GIVING = ("release", "release_lock", "__exit__", "_release_save")
+_ANY_TASK = False  # holds a lock that is used as a signal
+
+
+class LockTypes(NamedTuple):
+    """The two lock classes of one universe."""
+
+    lock: type
+    rlock: type
+
+
+def wait_ns(seconds: float) -> int:
+    """A time to wait in ns, at least 1: a loop over the remaining time must not stand still at a rounding error."""
+    return int(min(seconds, MAX_WAIT_S) * 1e9 + 0.5) or 1
+
+
+def timeout_ns(blocking: bool, timeout: float) -> int:
+    """The wait that the arguments of `acquire` ask for: FOREVER, 0 for not at all, or ns.
+
+    Raises:
+        ValueError: arguments that Python's own locks refuse.
+    """
+    if timeout == -1:
+        return FOREVER if blocking else 0
+    if not blocking:
+        raise ValueError("can't specify a timeout for a non-blocking call")
+    if timeout < 0:
+        raise ValueError("timeout value must be a non-negative number")
+    return wait_ns(timeout) if timeout else 0
+
+
+def make_lock_types(universe: Universe) -> LockTypes:
+    """The lock classes of a universe."""
+    types = LockTypes(_make_lock(universe), _make_rlock(universe))
+    if isinstance(universe.kernel, ExploringKernel):
+        for each in types:
+            _explore(each, universe.kernel)
+    return types
+
+
+def _explore(lock: type, kernel: ExploringKernel) -> None:
+    """Make each call that takes or gives back a lock a scheduling point, and note the holder of a plain one."""
+
+    def taking(method: Callable[..., bool]) -> Callable[..., bool]:
+        def take(self: Any, *args: Any, **options: Any) -> bool:
+            kernel.point()
+            taken = method(self, *args, **options)
+            if taken and self.holder is not _ANY_TASK:
+                self.holder = kernel.current
+            return taken
+
+        return take
+
+    def pointed(method: Callable[..., Any]) -> Callable[..., Any]:
+        def call(self: Any, *args: Any) -> Any:
+            kernel.point()
+            return method(self, *args)
+
+        return call
+
+    plain = "holder" in vars(lock)
+    for name in _TAKING:
+        if name in vars(lock):
+            setattr(lock, name, (taking if plain else pointed)(vars(lock)[name]))
+    for name in _GIVING:
+        if name in vars(lock):
+            setattr(lock, name, pointed(vars(lock)[name]))
+
+
+def without_holder(lock: Any) -> Any:
+    """A plain lock that is a signal: the task that took it does not stand in the way of those that wait for it."""
+    lock.holder = _ANY_TASK
+    return lock
+
+
+def _wait_for(universe: Universe, waits: WaitList, wait: int, give_back: Any) -> bool:
+    """Wait to be handed a lock; a task that is ended at that very moment gives it back."""
+    kernel = universe.kernel
+    task = kernel.current
+    if task is kernel.host:
+        raise RuntimeError("a lock of a node is taken, and only its tasks can wait for it")
+    task.wake = None
+    try:
+        return kernel.wait_on(waits, wait) is not TIMEOUT
+    except BaseException:  # its end, or a signal's exception
+        if task.wake is waits:
+            give_back()
+        raise
+
+
+def _make_lock(universe: Universe) -> type:
+    kernel = universe.kernel
+    name = universe.name
+
+    class lock:
+        """A lock that any task may release."""
+
+        __slots__ = ("__weakref__", "_locked", "_polls", "_serial", "_waits", "holder")
+
+        def __init__(self) -> None:
+            self._locked = False
+            self._polls = POLLS
+            self._waits: WaitList | None = None
+            self.holder: Any = None  # the task, or `_ANY_TASK`; only known while schedules are explored
+            universe.serial = self._serial = universe.serial + 1
+
+        def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+            if not self._locked and timeout == -1:
+                self._locked = True
+                if self._polls:
+                    self._polls -= 1
+                else:
+                    self._polls = POLLS
+                    universe.charge()
+                return True
+            wait = timeout_ns(blocking, timeout)
+            if not self._locked:
+                self._locked = True
+                return True
+            if not wait:
+                universe.charge()
+                return False
+            if self._waits is None:
+                self._waits = WaitList(f"lock {self._serial} of {name}")
+                self._waits.owner = lambda: self.holder or None
+            return _wait_for(universe, self._waits, wait, self.release)
+
+        def release(self) -> None:
+            if not self._locked:
+                raise RuntimeError("release unlocked lock")
+            waits = self._waits
+            if waits:
+                kernel.wake_first(waits, waits)
+            else:
+                self._locked = False
+
+        def locked(self) -> bool:
+            return self._locked
+
+        _is_owned = locked  # what Condition wants to know of a plain lock, without a failed attempt to take it
+
+        def __hash__(self) -> int:
+            return self._serial
+
+        def __eq__(self, other: object) -> bool:
+            return self is other
+
+        def __enter__(self) -> bool:
+            if self._locked or not self._polls:
+                return self.acquire()
+            self._locked = True
+            self._polls -= 1
+            return True
+
+        def __exit__(self, *error: object) -> None:
+            if self._waits or not self._locked:
+                self.release()
+            else:
+                self._locked = False
+
+        def __repr__(self) -> str:
+            return f"<{'locked' if self._locked else 'unlocked'} _thread.lock object number {self._serial}>"
+
+        def _at_fork_reinit(self) -> None:
+            self._locked = False
+
+        acquire_lock, release_lock, locked_lock = acquire, release, locked
+
+    lock.__module__ = "_thread"
+    return lock
+
+
+def _make_rlock(universe: Universe) -> type:
+    kernel = universe.kernel
+    name = universe.name
+
+    class RLock:
+        """A lock that its owner may take again."""
+
+        __slots__ = ("__weakref__", "_count", "_owner", "_polls", "_serial", "_waits")
+
+        def __init__(self) -> None:
+            self._owner: Task | None = None
+            self._count = 0
+            self._polls = POLLS
+            self._waits: WaitList | None = None
+            universe.serial = self._serial = universe.serial + 1
+
+        def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+            current = kernel.current
+            owner = self._owner
+            if owner is None or owner is current:
+                if timeout != -1:
+                    timeout_ns(blocking, timeout)
+                self._owner = current
+                self._count += 1
+                if self._polls:
+                    self._polls -= 1
+                else:
+                    self._polls = POLLS
+                    universe.charge()
+                return True
+            wait = timeout_ns(blocking, timeout)
+            if not wait:
+                universe.charge()
+                return False
+            return self._take_over(wait, 1)
+
+        def _take_over(self, wait: int, count: int) -> bool:
+            if self._waits is None:
+                self._waits = WaitList(f"lock {self._serial} of {name}")
+                self._waits.owner = lambda: self._owner
+            if not _wait_for(universe, self._waits, wait, self._hand_on):
+                return False
+            self._owner, self._count = kernel.current, count
+            return True
+
+        def _hand_on(self) -> None:
+            """No other task may take it between here and the moment its next owner runs: `_owner` is set at once."""
+            waits = self._waits
+            if waits:
+                self._owner = waits[0]
+                kernel.wake_first(waits, waits)
+            else:
+                self._owner = None
+
+        def release(self) -> None:
+            if self._owner is not kernel.current:
+                raise RuntimeError("cannot release un-acquired lock")
+            self._count = count = self._count - 1
+            if not count:
+                if self._waits:
+                    self._hand_on()
+                else:
+                    self._owner = None
+
+        def __hash__(self) -> int:
+            return self._serial
+
+        def __eq__(self, other: object) -> bool:
+            return self is other
+
+        def __exit__(self, *error: object) -> None:
+            self.release()
+
+        def __repr__(self) -> str:
+            owner = self._owner.ident if self._owner is not None else 0
+            return f"<_thread.RLock object number {self._serial} owner={owner} count={self._count}>"
+
+        def _is_owned(self) -> bool:
+            return self._owner is kernel.current
+
+        def _recursion_count(self) -> int:
+            return self._count if self._owner is kernel.current else 0
+
+        def _release_save(self) -> int:
+            count, self._count = self._count, 0
+            self._hand_on()
+            return count
+
+        def _acquire_restore(self, count: int) -> None:
+            if self._owner is None:
+                self._owner, self._count = kernel.current, count
+            else:
+                self._take_over(FOREVER, count)
+
+        def _at_fork_reinit(self) -> None:
+            self._owner, self._count = None, 0
+
+        __enter__ = acquire
+
+    RLock.__module__ = "_thread"
+    return RLock

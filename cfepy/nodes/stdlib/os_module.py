@@ -1,0 +1,193 @@
+"""`os` of a node: its own environment, working directory, process number and entropy, over the host's files.
+
+Relative paths are relative to the node's working directory. What would start a process, or change the host's
+process, is refused or does nothing.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from cfepy.nodes.refused import PROCESS, RefusedError, refusal
+from cfepy.nodes.stdlib.streams import COLUMNS, ROWS, STDIN
+from cfepy.nodes.synth import rebind
+
+if TYPE_CHECKING:
+    from cfepy.nodes.universe import Universe
+
+# fmt: off
+_ONE_PATH = (
+    "access", "chflags", "chmod", "chown", "getxattr", "lchmod", "lchown", "listxattr", "lstat", "mkdir",
+    "mkfifo", "mknod", "open", "pathconf", "readlink", "remove", "removexattr", "rmdir", "setxattr",
+    "stat", "statvfs", "truncate", "unlink", "utime",
+)
+_TWO_PATHS = ("link", "rename", "replace")
+_PROCESSES = (
+    "execl", "execle", "execlp", "execlpe", "execv", "execve", "execvp", "execvpe", "fork", "forkpty", "popen",
+    "posix_spawn", "posix_spawnp", "spawnl", "spawnle", "spawnlp", "spawnlpe", "spawnv", "spawnve", "spawnvp",
+    "spawnvpe", "startfile", "system", "wait", "wait3", "wait4", "waitid", "waitpid", "chroot", "fchdir", "killpg",
+)
+_NO_EFFECT = (
+    "nice", "register_at_fork", "sched_setaffinity", "sched_setparam", "sched_setscheduler", "setpriority",
+    "setpgid", "setpgrp", "setsid", "umask",
+)
+# fmt: on
+
+
+LISTED = "cfepy.listing"  # Python's audit hooks are told of each folder that a node looks into, and what is in it
+
+
+class Environ(dict[str, str]):
+    """`os.environ`: changes stay in the node."""
+
+    def __setitem__(self, name: str, value: str) -> None:
+        if not isinstance(name, str) or not isinstance(value, str):
+            raise TypeError(f"str expected, not {type(value if isinstance(name, str) else name).__name__}")
+        super().__setitem__(name, value)
+
+    def setdefault(self, name: str, default: str = "") -> str:
+        if name not in self:
+            self[name] = default
+        return self[name]
+
+
+class Entries:
+    """`os.scandir`, sorted by name: the order of a directory is the file system's whim.
+
+    Args:
+        path: the directory.
+    """
+
+    def __init__(self, path: Any) -> None:
+        with os.scandir(path) as entries:
+            found = sorted(entries, key=lambda entry: entry.name)
+        sys.audit(LISTED, path, [entry.name for entry in found])
+        self._entries = iter(found)
+
+    def __iter__(self) -> Iterator[os.DirEntry[Any]]:
+        return self._entries
+
+    def __next__(self) -> os.DirEntry[Any]:
+        return next(self._entries)
+
+    def __enter__(self) -> Entries:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """`close` of a scandir iterator; all was read at once."""
+
+
+def os_module(universe: Universe) -> ModuleType:
+    """The module `os` of a universe."""
+    names: dict[str, Any] = {name: refusal(universe, f"os.{name}", PROCESS) for name in _PROCESSES if hasattr(os, name)}
+    names.update({name: lambda *args, **options: 0 for name in _NO_EFFECT if hasattr(os, name)})
+    names.update(_paths(universe))
+    names.update(_process(universe))
+    module = rebind(os, **names)
+    modules = universe.importer.modules
+    modules["os"] = module  # its own path functions import it
+    path = universe.importer.load(os.path.__name__)
+    vars(module)["path"] = modules["os.path"] = path
+    return module
+
+
+def _paths(universe: Universe) -> dict[str, Any]:
+    resolve = universe.resolve
+
+    def one(function: Callable[..., Any]) -> Callable[..., Any]:
+        def call(path: Any = ".", *args: Any, **options: Any) -> Any:
+            return function(path if options.get("dir_fd") is not None else resolve(path), *args, **options)
+
+        return call
+
+    def two(function: Callable[..., Any]) -> Callable[..., Any]:
+        def call(source: Any, target: Any, **options: Any) -> Any:
+            return function(resolve(source), resolve(target), **options)
+
+        return call
+
+    def symlink(target: Any, path: Any, target_is_directory: bool = False, **options: Any) -> None:
+        os.symlink(target, resolve(path), target_is_directory, **options)
+
+    def listdir(path: Any = ".") -> list[Any]:
+        place = resolve(path)
+        names = sorted(os.listdir(place))
+        sys.audit(LISTED, place, names)
+        return names
+
+    def scandir(path: Any = ".") -> Entries:
+        return Entries(resolve(path))
+
+    names = {name: one(getattr(os, name)) for name in _ONE_PATH if hasattr(os, name)}
+    names.update({name: two(getattr(os, name)) for name in _TWO_PATHS})
+    names.update(
+        symlink=symlink, listdir=listdir, scandir=scandir, getcwd=lambda: universe.cwd, chdir=universe.change_directory
+    )
+    names["getcwdb"] = lambda: os.fsencode(universe.cwd)
+    return names
+
+
+def _process(universe: Universe) -> dict[str, Any]:
+    environ = universe.environ
+
+    def kill(pid: int, number: int) -> None:
+        if pid not in (universe.pid, 0):
+            raise RefusedError("os.kill() of another process", PROCESS, universe.name)
+        universe.deliver_signal(number)
+
+    def write(fd: int, data: Any) -> int:
+        if fd not in (1, 2):
+            return os.write(fd, data)
+        stream = universe.stdout if fd == 1 else universe.stderr
+        return stream.buffer.write(data)
+
+    def read(fd: int, size: int) -> bytes:
+        if fd != STDIN:
+            return os.read(fd, size)
+        return b"" if universe.terminal is None else universe.terminal.read(size)
+
+    def isatty(fd: int) -> bool:
+        return universe.terminal is not None and fd in (0, 1, 2)
+
+    def get_terminal_size(fd: int = 1) -> os.terminal_size:
+        if not isatty(fd):
+            raise OSError(25, "Inappropriate ioctl for device")
+        return os.terminal_size((COLUMNS, ROWS))
+
+    def times() -> os.times_result:
+        return os.times_result((universe.cpu_ns / 1e9, 0.0, 0.0, 0.0, universe.kernel.now / 1e9))
+
+    def uname() -> os.uname_result:
+        real = os.uname()
+        return os.uname_result((real.sysname, universe.host_name, real.release, real.version, real.machine))
+
+    return {
+        "_exit": universe.exit_now,
+        "abort": lambda: universe.exit_now(134),
+        "cpu_count": lambda: 1,
+        "environ": environ,
+        "get_terminal_size": get_terminal_size,
+        "getloadavg": lambda: (0.0, 0.0, 0.0),
+        "getlogin": lambda: environ.get("USER", "node"),
+        "getpid": lambda: universe.pid,
+        "getppid": lambda: 1,
+        "getrandom": lambda size, flags=0: universe.rng.randbytes(size),
+        "isatty": isatty,
+        "kill": kill,
+        "putenv": environ.__setitem__,
+        "read": read,
+        "sched_getaffinity": lambda pid=0: {0},
+        "sched_yield": lambda: universe.clock.wait(0),
+        "times": times,
+        "uname": uname,
+        "unsetenv": environ.__delitem__,
+        "urandom": universe.rng.randbytes,
+        "write": write,
+    }

@@ -1,0 +1,462 @@
+"""`socket` of a node: sockets on the mission's virtual network (`cfepy.osal.network`), with virtual time-outs.
+
+A connection to a place where no program of the mission listens is asked of the bridge to this computer. In virtual time
+no program outside could answer, so a socket is refused there; `--realtime` joins the networks. The pair of `socketpair`
+needs no network and is always there.
+"""
+
+from __future__ import annotations
+
+import errno
+import socket
+from collections.abc import Callable, Sequence
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, Self
+
+from cfepy.nodes.refused import NETWORK, refusal
+from cfepy.nodes.stdlib.locks import wait_ns
+from cfepy.nodes.stdlib.socket_names import LOCAL, address_of, failure, name_functions, place_of, unreachable
+from cfepy.nodes.synth import rebind
+from cfepy.osal import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Mailbox, Network, Place, Stream
+from cfepy.rtos import FOREVER, TIMEOUT, WaitList
+
+if TYPE_CHECKING:
+    from cfepy.nodes.universe import Universe
+
+_OPTIONS_OF_TYPE = socket.SOCK_NONBLOCK | socket.SOCK_CLOEXEC
+_BUFFER_BYTES = 212_992
+_REFUSED = ("fromfd", "fromshare", "send_fds", "recv_fds", "sethostname")
+_REBOUND = ("create_connection", "create_server", "has_dualstack_ipv6")
+
+
+def await_endpoints(
+    universe: Universe,
+    endpoints: Sequence[Endpoint],
+    ready: Callable[[], bool],
+    seconds: float | None,
+    waits: WaitList | None = None,
+) -> bool:
+    """Wait until `ready` says so, which is asked again whenever an endpoint has changed.
+
+    Args:
+        universe: whose task waits.
+        endpoints: what to look at.
+        ready: whether the wait is over.
+        seconds: the longest time; None for ever.
+        waits: where to wait, if something else is to end the wait as well.
+
+    Returns:
+        False when the time was over first.
+    """
+    universe.charge()
+    if ready() or (seconds is not None and seconds <= 0):
+        return ready()
+    kernel = universe.kernel
+    waits = WaitList(f"a socket of {universe.name}") if waits is None else waits
+    until = FOREVER if seconds is None else kernel.now + wait_ns(seconds)
+    for endpoint in endpoints:
+        endpoint.watch(kernel, waits)
+    try:
+        while not ready():
+            left = FOREVER if until == FOREVER else until - kernel.now
+            if left == 0 or (kernel.wait_on(waits, left) is TIMEOUT and not ready()):
+                return False
+    finally:
+        for endpoint in endpoints:
+            endpoint.unwatch(kernel, waits)
+    return True
+
+
+class NodeSocket:
+    """A socket; the methods are those of `socket.socket`, and so are the errors.
+
+    Subclasses, one for each node, say which `universe` they belong to.
+
+    Args:
+        family: AF_INET or AF_INET6.
+        type: SOCK_STREAM or SOCK_DGRAM.
+        proto: any protocol.
+        fileno: descriptors cannot be passed on; must be None.
+    """
+
+    universe: Universe
+
+    def __init__(self, family: int = -1, type: int = -1, proto: int = -1, fileno: int | None = None) -> None:
+        self._network = self.universe.sockets.network("socket.socket")
+        if fileno is not None:
+            raise failure(errno.EBADF)
+        self._family = socket.AF_INET if family == -1 else family
+        kind = socket.SOCK_STREAM if type == -1 else type
+        self._kind = kind & ~_OPTIONS_OF_TYPE
+        if self._family not in (socket.AF_INET, socket.AF_INET6):
+            raise failure(errno.EAFNOSUPPORT)
+        if self._kind not in (socket.SOCK_STREAM, socket.SOCK_DGRAM):
+            raise failure(errno.EPERM)
+        self.proto = max(proto, 0)
+        self._timeout = 0.0 if kind & socket.SOCK_NONBLOCK else self.universe.sockets.default_timeout
+        self._open(Mailbox() if self._kind == socket.SOCK_DGRAM else Endpoint())
+
+    def _open(self, endpoint: Endpoint) -> None:
+        self.endpoint: Endpoint = endpoint
+        self._listener = Listener()  # holds the port of a stream socket
+        self._options: dict[tuple[int, int], Any] = {}
+        self._io_refs = 0  # files made by `makefile`, counted by socket.SocketIO
+        self._closed = False
+        self._fd = self._serial = self.universe.sockets.add(self)
+
+    @classmethod
+    def joined(cls, stream: Stream, network: Network, family: int) -> Self:
+        """The socket of a connection that is there already."""
+        made = cls.__new__(cls)
+        made._network, made._family, made._kind, made.proto = network, family, socket.SOCK_STREAM, 0
+        made._timeout = cls.universe.sockets.default_timeout
+        made._open(stream)
+        return made
+
+    # -- the life of a socket ----------------------------------------------------------------------------------------
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def __hash__(self) -> int:
+        return self._serial  # an address would show in the order of a set
+
+    def __repr__(self) -> str:
+        name = f"{type(self).__module__}.{type(self).__qualname__}"
+        state = " [closed]" if self._fd < 0 else ""
+        return f"<{name}{state} fd={self._fd}, family={self.family}, type={self.type}, proto={self.proto}>"
+
+    makefile = socket.socket.makefile
+    _decref_socketios = socket.socket._decref_socketios  # type: ignore[attr-defined]  # SocketIO calls it
+
+    def close(self) -> None:
+        """Close it, once the files made of it are closed too."""
+        self._closed = True
+        if self._io_refs <= 0:
+            self._real_close()
+
+    def detach(self) -> int:
+        """Give the descriptor away; nothing can be done with it here."""
+        fd, self._fd = self._fd, -1
+        self._closed = True
+        return fd
+
+    def _real_close(self) -> None:
+        if self._fd < 0:
+            return
+        self.universe.sockets.remove(self._fd)
+        self._fd = -1
+        endpoint = self.endpoint
+        if isinstance(endpoint, Mailbox):
+            self._network.datagrams.release(endpoint)
+        self._network.streams.release(self._listener)
+        self._listener.close()
+        if isinstance(endpoint, Stream):
+            endpoint.close()
+        endpoint.changed()
+
+    def shutdown(self, how: int) -> None:
+        """Read or write no more."""
+        stream = self._stream()
+        if how not in (socket.SHUT_RD, socket.SHUT_WR, socket.SHUT_RDWR):
+            raise failure(errno.EINVAL)
+        stream.shut(how != socket.SHUT_WR, how != socket.SHUT_RD)
+
+    # -- facts and settings ------------------------------------------------------------------------------------------
+
+    @property
+    def family(self) -> socket.AddressFamily:
+        """AF_INET or AF_INET6."""
+        return socket.AddressFamily(self._family)
+
+    @property
+    def type(self) -> socket.SocketKind:
+        """SOCK_STREAM or SOCK_DGRAM."""
+        return socket.SocketKind(self._kind)
+
+    @property
+    def timeout(self) -> float | None:
+        """As `gettimeout`."""
+        return self._timeout
+
+    def fileno(self) -> int:
+        """The descriptor, for `select`; -1 when it is closed."""
+        return self._fd
+
+    def gettimeout(self) -> float | None:
+        """Seconds that a call waits; None for ever."""
+        return self._timeout
+
+    def settimeout(self, value: float | None) -> None:
+        """Have calls wait so many seconds, None for ever, 0 not at all."""
+        if value is not None and value < 0:
+            raise ValueError("Timeout value out of range")
+        self._timeout = None if value is None else float(value)
+
+    def getblocking(self) -> bool:
+        """Whether calls wait at all."""
+        return self._timeout != 0
+
+    def setblocking(self, flag: bool) -> None:
+        """Have calls wait for ever, or not at all."""
+        self._timeout = None if flag else 0.0
+
+    def setsockopt(self, level: int, optname: int, value: Any, optlen: int | None = None) -> None:
+        """Options are kept; none has an effect on this network."""
+        self._alive()
+        self._options[level, optname] = value
+
+    def getsockopt(self, level: int, optname: int, buflen: int = 0) -> Any:
+        """An option as it was set, or as it is at the start."""
+        self._alive()
+        if level == socket.SOL_SOCKET and optname == socket.SO_TYPE:
+            return int(self._kind)
+        first = _BUFFER_BYTES if optname in (socket.SO_RCVBUF, socket.SO_SNDBUF) else 0
+        value = self._options.get((level, optname), first)
+        return value if not buflen or isinstance(value, bytes) else int(value).to_bytes(4, "little")[:buflen]
+
+    def getsockname(self) -> tuple[Any, ...]:
+        """Its own address."""
+        self._alive()
+        place = self.endpoint.place or self._listener.place
+        if place is not None and isinstance(self.endpoint, Mailbox) and self.endpoint.peer is not None:
+            place = place.reached()  # to be connected is to have chosen a way, and with it an address
+        return address_of(place or Place("::" if self._family == socket.AF_INET6 else "0.0.0.0", 0))
+
+    def getpeername(self) -> tuple[Any, ...]:
+        """The address of the other side."""
+        endpoint = self.endpoint
+        peer = endpoint.peer if isinstance(endpoint, Mailbox) else self._stream().remote
+        if peer is None:
+            raise failure(errno.ENOTCONN)
+        return address_of(peer)
+
+    # -- connections -------------------------------------------------------------------------------------------------
+
+    def bind(self, address: Any) -> None:
+        """Take an address."""
+        self._alive()
+        place = place_of(address, self._family, self.universe.host_name, "bind")
+        if self.endpoint.place is not None or self._listener.place is not None:
+            raise failure(errno.EINVAL)
+        if not place.is_here:
+            raise failure(errno.EADDRNOTAVAIL)
+        self._take(place)
+
+    def _take(self, place: Place) -> Place:
+        endpoint = self.endpoint
+        if isinstance(endpoint, Mailbox):
+            taken = self._network.datagrams.bind(endpoint, place)
+        else:
+            taken = self._network.streams.bind(self._listener, place)
+        if taken is None:
+            raise failure(errno.EADDRINUSE)
+        return taken
+
+    def _own_place(self, place: Place | None) -> Place:
+        any_host = "::" if self._family == socket.AF_INET6 else "0.0.0.0"
+        return place or self._take(Place(any_host, 0))
+
+    def listen(self, backlog: int = 0) -> None:
+        """Take connections."""
+        self._alive()
+        if isinstance(self.endpoint, (Mailbox, Stream)):
+            raise failure(errno.EOPNOTSUPP if isinstance(self.endpoint, Mailbox) else errno.EINVAL)
+        self._own_place(self._listener.place)
+        self._listener.listening = True
+        self.endpoint = self._listener
+
+    def accept(self) -> tuple[NodeSocket, tuple[Any, ...]]:
+        """Wait for a connection; its socket and the address of the other side."""
+        self._alive()
+        server = self.endpoint
+        if not isinstance(server, Listener):
+            raise failure(errno.EINVAL)
+        self._wait([server], lambda: server.readable)
+        stream = server.accept()
+        return self.joined(stream, self._network, self._family), address_of(stream.remote)
+
+    def connect(self, address: Any) -> None:
+        """Connect a stream, or say whom to exchange datagrams with."""
+        self._alive()
+        place = place_of(address, self._family, self.universe.host_name, "connect")
+        endpoint = self.endpoint
+        if isinstance(endpoint, Mailbox):
+            self._own_place(endpoint.place)
+            endpoint.peer = place.reached()
+            return
+        if isinstance(endpoint, Stream):
+            raise failure(errno.EISCONN)
+        if not place.is_here:
+            raise unreachable()
+        self.endpoint = self._connected(place.reached())
+
+    def _connected(self, target: Place) -> Stream:
+        server = self._network.streams.find(target)
+        if server is not None and server.listening:
+            self._wait([server], lambda: server.has_room or not server.listening)
+        source = self._own_place(self._listener.place).reached()
+        if server is not None and server.listening:
+            return server.connect(source, target)
+        outside = self._network.dial(source, target) if self._network.dial is not None else None
+        if outside is None:
+            raise failure(errno.ECONNREFUSED)
+        return outside
+
+    def connect_ex(self, address: Any) -> int:
+        """As `connect`, with the errno in place of an error."""
+        try:
+            self.connect(address)
+        except socket.gaierror:
+            raise
+        except TimeoutError:
+            return errno.EAGAIN
+        except OSError as error:
+            return error.errno or errno.EIO
+        return 0
+
+    # -- bytes -------------------------------------------------------------------------------------------------------
+
+    def recv(self, bufsize: int, flags: int = 0) -> bytes:
+        """Wait for bytes; b"" at the end of a stream."""
+        return self.recvfrom(bufsize, flags)[0]
+
+    def recvfrom(self, bufsize: int, flags: int = 0) -> tuple[bytes, Any]:
+        """Wait for bytes, and from whom they are."""
+        self._alive()
+        if bufsize < 0:
+            raise ValueError("negative buffersize in recvfrom")
+        endpoint = self.endpoint
+        if not isinstance(endpoint, Mailbox):
+            endpoint = self._stream()
+        self._wait([endpoint], lambda: endpoint.readable, bool(flags & socket.MSG_DONTWAIT))
+        if isinstance(endpoint, Mailbox):
+            datagram = endpoint.peek() if flags & socket.MSG_PEEK else endpoint.take()
+            return datagram.data[:bufsize], address_of(datagram.source)
+        return self._read(endpoint, bufsize, flags), None
+
+    def _read(self, stream: Stream, bufsize: int, flags: int) -> bytes:
+        if flags & socket.MSG_PEEK:
+            return stream.peek(bufsize)
+        data = stream.read(bufsize)
+        while flags & socket.MSG_WAITALL and data and len(data) < bufsize:
+            self._wait([stream], lambda: stream.readable)
+            more = stream.read(bufsize - len(data))
+            if not more:
+                break
+            data += more
+        return data
+
+    def recv_into(self, buffer: Any, nbytes: int = 0, flags: int = 0) -> int:
+        """As `recv`, into a buffer; how many bytes."""
+        return self.recvfrom_into(buffer, nbytes, flags)[0]
+
+    def recvfrom_into(self, buffer: Any, nbytes: int = 0, flags: int = 0) -> tuple[int, Any]:
+        """As `recvfrom`, into a buffer."""
+        view = memoryview(buffer).cast("B")
+        data, source = self.recvfrom(nbytes or len(view), flags)
+        view[: len(data)] = data
+        return len(data), source
+
+    def send(self, data: Any, flags: int = 0) -> int:
+        """Send as much as there is room for; how many bytes."""
+        self._alive()
+        raw = bytes(memoryview(data).cast("B"))
+        if isinstance(self.endpoint, Mailbox):
+            if self.endpoint.peer is None:
+                raise failure(errno.EDESTADDRREQ)
+            return self._send_datagram(self.endpoint, raw, self.endpoint.peer)
+        stream = self._stream()
+        self._wait([stream], lambda: stream.writable, bool(flags & socket.MSG_DONTWAIT))
+        count = stream.write(raw)
+        if count is None:
+            raise failure(errno.EPIPE)
+        return count
+
+    def sendall(self, data: Any, flags: int = 0) -> None:
+        """Send everything."""
+        raw = memoryview(data).cast("B")
+        sent = self.send(raw, flags)
+        while sent < len(raw):
+            sent += self.send(raw[sent:], flags)
+
+    def sendto(self, data: Any, *flags_and_address: Any) -> int:
+        """Send a datagram somewhere."""
+        self._alive()
+        place = place_of(flags_and_address[-1], self._family, self.universe.host_name, "sendto")
+        if not isinstance(self.endpoint, Mailbox):
+            raise failure(errno.EISCONN if isinstance(self.endpoint, Stream) else errno.ENOTCONN)
+        return self._send_datagram(self.endpoint, bytes(memoryview(data).cast("B")), place)
+
+    def _send_datagram(self, mailbox: Mailbox, data: bytes, target: Place) -> int:
+        if len(data) > LONGEST_DATAGRAM:
+            raise failure(errno.EMSGSIZE)
+        source = self._own_place(mailbox.place).reached()
+        self.universe.charge()
+        self._network.send(Datagram(source, target.reached(), data))
+        return len(data)
+
+    def sendfile(self, file: Any, offset: int = 0, count: int | None = None) -> int:
+        """Send what is in a file."""
+        file.seek(offset)
+        data = file.read() if count is None else file.read(count)
+        self.sendall(data)
+        return len(data)
+
+    # -- below -------------------------------------------------------------------------------------------------------
+
+    def _alive(self) -> None:
+        if self._fd < 0:
+            raise failure(errno.EBADF)
+
+    def _stream(self) -> Stream:
+        self._alive()
+        if not isinstance(self.endpoint, Stream):
+            raise failure(errno.ENOTCONN)
+        return self.endpoint
+
+    def _wait(self, endpoints: Sequence[Endpoint], ready: Callable[[], bool], at_once: bool = False) -> None:
+        timeout = 0.0 if at_once else self._timeout
+        if not await_endpoints(self.universe, endpoints, lambda: self._fd < 0 or ready(), timeout):
+            raise failure(errno.EAGAIN) if timeout == 0 else TimeoutError("timed out")
+        self._alive()
+
+
+def socket_module(universe: Universe) -> ModuleType:
+    """The modules `socket` and `_socket` of a universe."""
+    known = universe.importer.modules.get("socket")
+    if known is not None:
+        return known
+    table = universe.sockets
+    own = type("socket", (NodeSocket,), {"universe": universe, "__module__": "socket"})
+
+    def set_default(timeout: float | None) -> None:
+        table.default_timeout = timeout
+
+    def socketpair(family: Any = None, type: int = socket.SOCK_STREAM, proto: int = 0) -> tuple[Any, Any]:
+        near, far = _pair()
+        return tuple(own.joined(end, Network(), socket.AF_INET) for end in (near, far))  # type: ignore[attr-defined]
+
+    return rebind(
+        socket,
+        only=_REBOUND,
+        **name_functions(universe.host_name),
+        **{name: refusal(universe, f"socket.{name}", NETWORK) for name in _REFUSED if hasattr(socket, name)},
+        SocketType=own,
+        getdefaulttimeout=lambda: table.default_timeout,
+        if_nameindex=lambda: [(1, "lo")],
+        setdefaulttimeout=set_default,
+        socket=own,
+        socketpair=socketpair,
+    )
+
+
+def _pair() -> tuple[Stream, Stream]:
+    """Two streams that are connected with each other."""
+    place = Place(LOCAL, 0)
+    near, far = Stream(place, place), Stream(place, place)
+    near.other, far.other = far, near
+    return near, far

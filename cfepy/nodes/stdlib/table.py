@@ -1,0 +1,120 @@
+"""The modules that are made for each node, by name, and the changes to those that are executed afresh.
+
+Modules that few nodes import, or that not every system has, are made by code that is imported when one does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from cfepy.nodes.report import hide_in
+from cfepy.nodes.stdlib import (
+    futures,
+    lookup,
+    os_module,
+    random_module,
+    signal_module,
+    sys_module,
+    thread_module,
+    time_module,
+)
+
+if TYPE_CHECKING:
+    from cfepy.nodes.universe import Universe
+
+
+def _curses(universe: Universe) -> ModuleType:
+    from cfepy.nodes.stdlib.curses_module import curses_module
+
+    return curses_module(universe)
+
+
+def _fcntl(universe: Universe) -> ModuleType:
+    from cfepy.nodes.stdlib.terminal import fcntl_module
+
+    return fcntl_module(universe)
+
+
+def _gc(universe: Universe) -> ModuleType:
+    from cfepy.nodes.stdlib.process_modules import gc_module
+
+    return gc_module(universe)
+
+
+def _locale(universe: Universe) -> ModuleType:
+    from cfepy.nodes.stdlib.process_modules import locale_module
+
+    return locale_module(universe)
+
+
+def _psutil(universe: Universe) -> ModuleType:
+    from cfepy.nodes.stdlib.process_modules import psutil_module
+
+    return psutil_module(universe)
+
+
+def _resource(universe: Universe) -> ModuleType:
+    from cfepy.nodes.stdlib.process_modules import resource_module
+
+    return resource_module(universe)
+
+
+def _select(universe: Universe) -> ModuleType:
+    from cfepy.nodes.stdlib.select_module import select_module
+
+    return select_module(universe)
+
+
+def _socket(universe: Universe) -> ModuleType:
+    from cfepy.nodes.stdlib.socket_module import socket_module
+
+    return socket_module(universe)
+
+
+def _termios(universe: Universe) -> ModuleType:
+    from cfepy.nodes.stdlib.terminal import termios_module
+
+    return termios_module(universe)
+
+
+MADE: Mapping[str, Callable[[Universe], ModuleType]] = {
+    "_curses": _curses,
+    "_signal": signal_module.signal_module,
+    "_socket": _socket,
+    "_thread": thread_module.thread_module,
+    "atexit": signal_module.atexit_module,
+    "dataclasses": lookup.dataclasses_module,
+    "datetime": time_module.datetime_module,
+    "fcntl": _fcntl,
+    "functools": lookup.functools_module,
+    "gc": _gc,
+    "importlib": sys_module.importlib_module,
+    "importlib.util": sys_module.importlib_util_module,
+    "inspect": lookup.inspect_module,
+    "io": sys_module.io_module,
+    "locale": _locale,
+    "numpy": random_module.numpy_module,
+    "numpy.random": random_module.numpy_random_module,
+    "os": os_module.os_module,
+    "resource": _resource,
+    "select": _select,
+    "psutil": _psutil,
+    "signal": signal_module.signal_module,
+    "socket": _socket,
+    "sys": sys_module.sys_module,
+    "termios": _termios,
+    "time": time_module.time_module,
+    "typing": lookup.typing_module,
+}
+"""The factories of the modules that are made, by full name."""
+
+FIXES: Mapping[str, Callable[[Universe, ModuleType], None]] = {
+    "asyncio": futures.fix_asyncio,
+    "concurrent.futures._base": futures.fix_futures,
+    "random": random_module.fix_random,
+    "threading": thread_module.fix_threading,
+    "traceback": lambda universe, module: hide_in(module),
+}
+"""What is changed in modules of the standard library after their code has run for a node."""

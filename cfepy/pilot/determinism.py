@@ -1,0 +1,166 @@
+"""Comparing the traces of several runs of one mission while they are made, to find their first difference.
+
+A run that is compared writes its records to a pipe as frames; the comparison reads a frame at a time from each, so the
+memory it takes does not grow with the runs, and a run that is ahead waits for the others.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from array import array
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import accumulate, pairwise
+from typing import Any, BinaryIO
+
+from cfepy.mission import hearing
+from cfepy.sb import SoftwareBus
+from cfepy.trace import UNSENT, Trace
+
+_head = struct.Struct("<II")  # records, and bytes that follow; no records: the bytes are what ends the stream
+_LENGTH = "I"
+
+
+class ComparedTrace(Trace):
+    """A trace that also has messages without a subscriber. Its digest leaves them out, so it is as without them."""
+
+    __slots__ = ()
+
+    def flush(self) -> None:
+        """See `Trace.flush`."""
+        self._hash.update(b"".join(record for record in self.records if record[:1] != UNSENT))
+        if self._sink is not None:
+            self._sink(self.records)
+        self.records.clear()
+
+
+def comparing(bus: type[SoftwareBus], trace: Trace) -> type[SoftwareBus]:
+    """A class of Software Bus that records what is published without a subscriber, which is never sent.
+
+    Args:
+        bus: the class to begin with.
+        trace: where it is recorded.
+    """
+
+    return hearing(bus, lambda link, message: trace.append(UNSENT + link.name.encode() + b"\0" + message))
+
+
+class RunEndedError(Exception):
+    """A run that is compared ended without saying how."""
+
+
+class RecordWriter:
+    """Writes records as frames.
+
+    Args:
+        file: a pipe.
+    """
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+
+    def write(self, records: Sequence[bytes]) -> None:
+        """Write records; empty ones, which the host leaves for a moment, are no records."""
+        records = [record for record in records if record]
+        if records:
+            lengths = array(_LENGTH, map(len, records)).tobytes()
+            self._write(len(records), lengths + b"".join(records))
+
+    def end(self, facts: Mapping[str, Any]) -> None:
+        """The run is over; `facts` tell how."""
+        self._write(0, json.dumps(facts).encode())
+
+    def _write(self, count: int, body: bytes) -> None:
+        self._file.write(_head.pack(count, len(body)) + body)
+        self._file.flush()
+
+
+@dataclass(slots=True)
+class RecordReader:
+    """Reads what a `RecordWriter` wrote.
+
+    Attributes:
+        file: the other end of the pipe.
+        pending: records that were read and not yet compared.
+        facts: how the run ended; None before.
+    """
+
+    file: BinaryIO
+    pending: list[bytes] = field(default_factory=list)
+    facts: dict[str, Any] | None = None
+
+    def fill(self) -> None:
+        """Have a record pending, unless there are no more.
+
+        Raises:
+            RunEndedError: the pipe was closed in the middle.
+        """
+        if self.pending or self.facts is not None:
+            return
+        count, size = _head.unpack(self._exactly(_head.size))
+        body = self._exactly(size)
+        if count:
+            self.pending = _split(body, count)
+        else:
+            self.facts = json.loads(body)
+
+    def _exactly(self, size: int) -> bytes:
+        data = self.file.read(size)
+        if len(data) < size:
+            raise RunEndedError
+        return data
+
+
+def _split(body: bytes, count: int) -> list[bytes]:
+    start = count * array(_LENGTH).itemsize
+    ends = accumulate(array(_LENGTH, body[:start]), initial=start)
+    return [body[begin:end] for begin, end in pairwise(ends)]
+
+
+@dataclass(frozen=True, slots=True)
+class Parting:
+    """Where a run parts from the first one.
+
+    Attributes:
+        run: which one it is, from 1.
+        index: number of the first record that differs, from 0.
+    """
+
+    run: int
+    index: int
+
+
+def first_parting(runs: Sequence[RecordReader]) -> tuple[Parting | None, int]:
+    """Compare runs with the first of them, to their end or to where one differs.
+
+    Args:
+        runs: two or more.
+
+    Returns:
+        The earliest difference, None without one; the number of records that agree.
+
+    Raises:
+        RunEndedError: a run ended in the middle.
+    """
+    agreed = 0
+    while True:
+        for run in runs:
+            run.fill()
+        common = min(len(run.pending) for run in runs)
+        if not common:
+            longer = [number for number, run in enumerate(runs) if bool(run.pending) != bool(runs[0].pending)]
+            return (Parting(longer[0], agreed) if longer else None), agreed
+        ahead = [run.pending[:common] for run in runs]
+        found = [Parting(i, agreed + _prefix(ahead[0], other)) for i, other in enumerate(ahead) if other != ahead[0]]
+        if found:
+            earliest = min(found, key=lambda parting: parting.index)
+            return earliest, earliest.index
+        for run in runs:
+            del run.pending[:common]
+        agreed += common
+
+
+def _prefix(one: Sequence[bytes], other: Sequence[bytes]) -> int:
+    """How many records at the start are the same; there is one that is not."""
+    return next(at for at, (mine, theirs) in enumerate(zip(one, other, strict=True)) if mine != theirs)

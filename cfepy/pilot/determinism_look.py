@@ -1,0 +1,240 @@
+"""The first difference of two runs: a look at a run when it makes a certain record, and lines of source to suspect.
+
+A look gives the task that made the record, its line of source, and the records before. The lines to suspect are a
+guess from the text of one source file: those that may make two runs differ, such as iterated sets, addresses, hashes
+of texts.
+"""
+
+from __future__ import annotations
+
+import ast
+import linecache
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, replace
+from hashlib import blake2b
+from pathlib import Path
+from types import FrameType
+from typing import Any, NamedTuple
+
+from cfepy.mission import is_library, is_shown, is_standard
+from cfepy.nodes.sources import own_files
+from cfepy.syntax_trees import parsed
+from cfepy.trace import Trace
+
+_SET_MAKERS = frozenset({"set", "frozenset"})
+_SET_METHODS = frozenset({"union", "intersection", "difference", "symmetric_difference"})
+_IN_ORDER = frozenset({"list", "tuple", "enumerate", "iter", "map", "filter", "zip", "fromkeys", "join", "next"})
+_OF_THE_PROCESS = {"id": "an address", "hash": "the hash of a text, which follows PYTHONHASHSEED"}
+_OPERATORS = (ast.BitOr, ast.BitAnd, ast.Sub, ast.BitXor)
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A line of code that was being executed: file, number, function, and its text."""
+
+    file: str
+    number: int
+    function: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What was seen at a record.
+
+    Attributes:
+        record: its bytes; empty when the run was over before.
+        before: stands for all records before it.
+        lines: the last records before it and the record itself, as text.
+        stack: the lines of node, application and libraries that were being executed, outermost first.
+        files: the nodes' own source files.
+    """
+
+    record: bytes
+    before: str
+    lines: tuple[str, ...]
+    stack: tuple[Line, ...]
+    files: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Itself as plain data."""
+        return asdict(self) | {"record": self.record.hex()}
+
+    @classmethod
+    def from_dict(cls, plain: dict[str, Any]) -> Look:
+        """The other way round."""
+        stack = tuple(Line(**line) for line in plain["stack"])
+        record = bytes.fromhex(plain["record"])
+        return cls(record, plain["before"], tuple(plain["lines"]), stack, tuple(plain["files"]))
+
+    def without_root(self, root: str) -> Look:
+        """The same with the places that source files have when this folder is not their root."""
+        stack = tuple(replace(line, file=line.file.removeprefix(root)) for line in self.stack)
+        return replace(self, stack=stack, files=tuple(file.removeprefix(root) for file in self.files))
+
+    @property
+    def culprit(self) -> Line | None:
+        """The innermost line of the mission's own code, not of a library."""
+        own = [line for line in self.stack if not is_library(line.file)]
+        return own[-1] if own else None
+
+
+class _Counted(list[bytes]):
+    """A trace's list of records that calls `reached` with the record that has a certain number."""
+
+    def __init__(self, index: int, reached: Callable[[bytes], object]) -> None:
+        super().__init__()
+        self._left = index
+        self._reached = reached
+
+    def append(self, record: bytes) -> None:
+        """As of a list; the host's empty marks are not counted."""
+        if record:
+            if self._left == 0:
+                self._reached(record)
+            self._left -= 1
+        super().append(record)
+
+
+class LookingTrace(Trace):
+    """A trace that looks around when it gets a certain record.
+
+    Args:
+        index: number of the record, from 0.
+        describe: makes lines of text of records; it gets up to two batches that end with the record.
+        seen: gets what was seen, inside the simulation.
+    """
+
+    __slots__ = ("_before", "_describe", "_latest", "_seen")
+
+    def __init__(
+        self, index: int, describe: Callable[[list[bytes]], list[str]], seen: Callable[[Look], object]
+    ) -> None:
+        super().__init__(self._keep)
+        self._before = blake2b(digest_size=16)
+        self._latest: list[bytes] = []
+        self._describe = describe
+        self._seen = seen
+        self.records = _Counted(index, self._look)
+        self.append = self.records.append
+
+    def _keep(self, records: list[bytes]) -> None:
+        self._latest = [record for record in records if record]
+        self._before.update(b"".join(self._latest))
+
+    def _look(self, record: bytes) -> None:
+        self._seen(self.look(record, sys._getframe(2)))
+
+    def look(self, record: bytes, frame: FrameType | None = None) -> Look:
+        """What there is to see now.
+
+        Args:
+            record: the record that is about to be made; empty at the end of the run.
+            frame: of the code that makes it.
+        """
+        waiting = [each for each in self.records if each]
+        self._before.update(b"".join(waiting))
+        lines = self._describe([*self._latest, *waiting, record])
+        return Look(record, self._before.hexdigest(), tuple(lines), stack_of(frame), tuple(own_files()))
+
+
+def stack_of(frame: FrameType | None) -> tuple[Line, ...]:
+    """The lines of node, application and libraries that a frame and its callers execute, outermost first."""
+    found: list[Line] = []
+    while frame is not None:
+        code = frame.f_code
+        if is_shown(code.co_filename):
+            text = linecache.getline(code.co_filename, frame.f_lineno).strip()
+            found.append(Line(code.co_filename, frame.f_lineno, code.co_qualname, text))
+        frame = frame.f_back
+    return tuple(reversed(found))
+
+
+def place_text(frame: FrameType | None) -> str:
+    """The innermost line of the mission's own code in a stack: `arm.py:12: self.count += 1`.
+
+    In a thread that a library has for itself it is that library's, and where only Python's own code runs, empty.
+    """
+    shown: list[Line] = [line for line in stack_of(frame) if not is_standard(line.file)]
+    lines = [line for line in shown if not is_library(line.file)] or shown
+    if not lines:
+        return ""
+    source = " ".join(lines[-1].source.partition("  #")[0].split())
+    return f"{Path(lines[-1].file).name}:{lines[-1].number}: {source}"
+
+
+class Suspect(NamedTuple):
+    """A line that may be the cause, and why."""
+
+    file: str
+    line: int
+    why: str
+    source: str
+
+
+def suspects(file: str) -> list[Suspect]:
+    """The suspicious lines of a Python file, in order; none when it cannot be read."""
+    try:
+        text = Path(file).read_text(encoding="utf-8")
+        tree = parsed(text)
+    except (OSError, SyntaxError, ValueError):
+        return []
+    lines = text.splitlines()
+    found = sorted(set(_Reader(tree).found()))
+    return [Suspect(file, number, why, lines[number - 1].strip()) for number, why in found]
+
+
+class _Reader:
+    """Looks through a module; a name counts as a set when one is assigned to it anywhere.
+
+    Args:
+        tree: the module.
+    """
+
+    def __init__(self, tree: ast.Module) -> None:
+        self._tree = tree
+        self._sets: set[str] = set()
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Assign) and self._is_set(node.value):
+                self._sets.update(map(_name, node.targets))
+            elif isinstance(node, ast.AnnAssign) and self._is_set(node.value):
+                self._sets.add(_name(node.target))
+        self._sets.discard("")
+
+    def found(self) -> Iterator[tuple[int, str]]:
+        """Number of each suspicious line, and why it is one."""
+        for node in ast.walk(self._tree):
+            if isinstance(node, (ast.For, ast.comprehension)) and self._is_set(node.iter):
+                yield node.iter.lineno, "goes through a set"
+            elif isinstance(node, ast.Call):
+                yield from self._call(node)
+
+    def _call(self, node: ast.Call) -> Iterator[tuple[int, str]]:
+        name = _name(node.func).rpartition(".")[2]
+        if isinstance(node.func, ast.Name) and name in _OF_THE_PROCESS:
+            yield node.lineno, f"uses {_OF_THE_PROCESS[name]}"
+        if name in _IN_ORDER and any(map(self._is_set, node.args)):
+            yield node.lineno, "goes through a set"
+        if name == "pop" and isinstance(node.func, ast.Attribute) and self._is_set(node.func.value):
+            yield node.lineno, "takes any element of a set"
+
+    def _is_set(self, node: ast.expr | None) -> bool:
+        if isinstance(node, (ast.Set, ast.SetComp)):
+            return True
+        if isinstance(node, ast.Call):
+            if isinstance(node.func, ast.Attribute):
+                return node.func.attr in _SET_METHODS and self._is_set(node.func.value)
+            return _name(node.func) in _SET_MAKERS
+        if isinstance(node, ast.BinOp):
+            return isinstance(node.op, _OPERATORS) and (self._is_set(node.left) or self._is_set(node.right))
+        return node is not None and _name(node) in self._sets
+
+
+def _name(node: ast.AST) -> str:
+    """`name` or `self.name` as text; empty for anything else."""
+    if isinstance(node, ast.Name):
+        return node.id
+    if isinstance(node, ast.Attribute):
+        return f"{_name(node.value)}.{node.attr}"
+    return ""

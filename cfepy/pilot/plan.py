@@ -1,0 +1,153 @@
+"""`RunPlan`: everything that decides a run, apart from what comes from outside it.
+
+A plan is a plain value. Every command that flies a mission makes one, a journal holds one, and so does a trial of an
+exploration on another computer and a failing test; each can say the command that does the same run again.
+`cfepy.pilot.pilot` flies it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from shlex import join
+from typing import Any
+
+from cfepy.attachment import Attachment
+from cfepy.mission import MissionSpec, launch_file, node_script, read_launch, read_mission, spec_of_script
+from cfepy.pilot.course import BOOT_S, DEFAULT_S, NODE_S
+from cfepy.rtos import STALL_S, Schedule
+
+RUN, LAUNCH, NODE = "run", "launch", "node"
+
+
+@dataclass(frozen=True, slots=True)
+class RunPlan:
+    """What to run, and on what.
+
+    Attributes:
+        words: a mission for `run`, a launch file with its arguments for `launch`, a script with its own for `node`:
+            what follows these commands of `cfepy`.
+        command: one of these three.
+        launch_args: of a launch file that is given as a mission, NAME and VALUE.
+        seconds: virtual time to run, from the boot, or from the start of the nodes of a launch file and of a single
+            node; None is as long as the script takes, or what each command takes by itself.
+        seed: of everything random in the mission.
+        board: name or file; None takes the mission's own.
+        tasks: "thread" or "greenlet".
+        schedule: which task goes first among equals.
+        script: path of a mission script; None without one.
+        stop_on_failure: the run ends with the first step of the script that fails.
+        faults: what goes wrong: path of a fault plan, or seed:N; None for nothing.
+        play: path of a bag whose topics are played into the mission; None for nothing.
+        stall: seconds of wall time for which virtual time may stand still, because a task does not give up the CPU,
+            until the run is ended for that; 0 for any time. It decides only whether a run comes to its end, and none of
+            the trace of one that does.
+    """
+
+    words: tuple[str, ...]
+    command: str = RUN
+    launch_args: tuple[tuple[str, str], ...] = ()
+    seconds: float | None = None
+    seed: int = 0
+    board: str | None = None
+    tasks: str = "thread"
+    schedule: Schedule = field(default_factory=Schedule)
+    script: str | None = None
+    stop_on_failure: bool = False
+    faults: str | None = None
+    play: str | None = None
+    stall: float = STALL_S
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.schedule, Schedule):
+            raise TypeError(f"the schedule of a plan is a Schedule; write Schedule.parse({self.schedule!r})")
+
+    def spec(self) -> MissionSpec:
+        """The mission.
+
+        Raises:
+            UsageError: there is no such mission, or something in it is wrong.
+        """
+        return self.with_played_bag(self._spec())
+
+    def _spec(self) -> MissionSpec:
+        if self.command == LAUNCH:
+            return read_launch(*launch_file(self.words))
+        if self.command == NODE:
+            return spec_of_script(*node_script(self.words))
+        return read_mission(self.words[0], dict(self.launch_args))
+
+    def with_played_bag(self, spec: MissionSpec) -> MissionSpec:
+        """A mission into which the bag of the plan is played, if it has one.
+
+        Raises:
+            UsageError: there is no such bag, or it is broken.
+        """
+        if self.play is None:
+            return spec
+        from cfepy.ground import with_player
+
+        return with_player(spec, self.play)
+
+    def attachments(self) -> list[Attachment]:
+        """What the plan itself brings to its run: nothing, but for a plan whose files lie elsewhere than they did."""
+        return []
+
+    @property
+    def virtual_s(self) -> float | None:
+        """Virtual seconds from the boot; None is as long as the script takes, or 10 s without one."""
+        if self.command == RUN:
+            return self.seconds
+        if self.seconds is None and self.script is not None:
+            return None
+        usual_s = DEFAULT_S if self.command == LAUNCH else NODE_S
+        return BOOT_S + (usual_s if self.seconds is None else self.seconds)
+
+    def command_line(self, **changes: Any) -> str:
+        """The command that does this run again.
+
+        Args:
+            changes: values of other attributes, such as schedule.
+        """
+        plan = replace(self, **changes)
+        options: list[str] = []
+        for name, value in plan.launch_args:
+            options += ["--arg", f"{name}:={value}"]
+        if plan.seconds is not None:
+            options += ["--for", f"{plan.seconds:.12g}"]
+        for each in ("seed", "board", "tasks", "schedule", "script", "play", "faults"):
+            if getattr(plan, each) != getattr(_USUAL, each):
+                options += [f"--{each}", str(getattr(plan, each))]
+        if plan.stall != _USUAL.stall:
+            options += ["--stall", f"{plan.stall:g}"]
+        if plan.stop_on_failure:
+            options.append("--stop-on-failure")
+        return join(["cfepy", plan.command, *options, *plan.words])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Itself as plain values, for a file or another process."""
+        return {each.name: getattr(self, each.name) for each in fields(self)} | {"schedule": self.schedule.text()}
+
+    @classmethod
+    def from_dict(cls, plain: Mapping[str, Any]) -> RunPlan:
+        """The other way round; lists become tuples again.
+
+        Raises:
+            TypeError: an attribute that a plan does not have, or none where it needs one.
+            UsageError: its schedule is none.
+        """
+        known = {each.name for each in fields(cls)}
+        unknown = sorted(set(plain) - known)
+        if unknown:
+            raise TypeError(f"a plan of a run has no {', '.join(unknown)}")
+        return cls(
+            **{
+                **plain,
+                "words": tuple(plain["words"]),
+                "launch_args": tuple((str(name), str(value)) for name, value in plain.get("launch_args", ())),
+                "schedule": Schedule.parse(plain.get("schedule", Schedule().text())),
+            }
+        )
+
+
+_USUAL = RunPlan(())

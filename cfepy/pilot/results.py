@@ -1,0 +1,408 @@
+"""The results of a run: messages, applications, events, memory, as plain numbers for a table or a JSON file.
+
+`mark` is called when the time of the run is over, before the nodes are asked to shut down; `Results.of` after the
+mission was closed, when every task has ended and its CPU time is known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from cfepy.es import APP_ERROR, CFE_APP, CFE_LIB, STATE_NAMES, BadLine, StartupEntry, parse
+from cfepy.evs import CRITICAL, DEBUG, ERROR, INFORMATION
+from cfepy.ground import kind_of, names_in
+from cfepy.mission import CORE_APPS, Mission, Reset, Traffic, described
+from cfepy.monitors.record import DeadlineRecord, InvariantRecord, InvariantRecords
+from cfepy.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
+from cfepy.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from cfepy.monitors import DeadlineResult
+
+EVENT_TYPES = {DEBUG: "DEBUG", INFORMATION: "INFORMATION", ERROR: "ERROR", CRITICAL: "CRITICAL"}
+RESET_TYPES = {RST_TYPE_PROCESSOR: "PROCESSOR", RST_TYPE_POWERON: "POWERON"}
+NOT_STARTED = "NOT STARTED"
+ENDED = "ENDED"
+PERCENT_OF_FEW_DIGITS, LEAST_PERCENT = 0.1, 0.0001
+TOLERANCE = 1.1  # of a measured rate: what was sent shortly before the mission was operational counts too
+
+
+@dataclass(frozen=True, slots=True)
+class TopicResult:
+    """One MsgId.
+
+    `sent` counts transmissions, `delivered` packets taken out of pipes (several a transmission, where several
+    subscribe), `waiting` those that were not taken before the end. `dropped` is the sum of its three reasons: a
+    subscription's message limit, a full pipe, a long ROS message that lost a segment. `no_subscriber` counts messages
+    without a subscriber and `held_back` those that a ROS publisher could send only later, because the board publishes
+    no faster; neither are losses. `rate_hz` is what was sent in the time since the mission was operational; `too_fast`
+    says that it is more than the board's `max_publish_hz`.
+    """
+
+    name: str
+    msg_id: int
+    type: str
+    sent: int
+    delivered: int
+    waiting: int
+    dropped: int
+    dropped_limit: int
+    dropped_pipe_full: int
+    dropped_segment: int
+    no_subscriber: int
+    held_back: int
+    rate_hz: float
+    too_fast: bool
+
+    @property
+    def why(self) -> str:
+        """Why messages were not delivered, or not when their publisher wanted."""
+        reasons = (
+            ("message limit", self.dropped_limit),
+            ("pipe full", self.dropped_pipe_full),
+            ("segment lost", self.dropped_segment),
+            ("not taken yet", self.waiting),
+            ("held back", self.held_back),
+        )
+        said = [f"{count:,} {reason}" for reason, count in reasons if count]
+        if self.no_subscriber:
+            said.append("no subscriber")
+        return ", ".join(said)
+
+
+@dataclass(frozen=True, slots=True)
+class AppResult:
+    """One application. `state` is that at the end of the run's time; `cpu_share` is 0 to 1, of virtual time."""
+
+    name: str
+    state: str
+    cpu_share: float
+    restarts: int
+    deaths: int
+    error: str | None
+    core: bool
+
+    @property
+    def cpu_text(self) -> str:
+        """The share of the CPU in percent, with more digits when it is small: an idle application is not nothing."""
+        percent = 100 * self.cpu_share
+        if percent >= PERCENT_OF_FEW_DIGITS or not percent:
+            return f"{percent:.2f}%"
+        return f"{percent:.4f}%" if percent >= LEAST_PERCENT else f"<{LEAST_PERCENT:.4f}%"
+
+
+@dataclass(frozen=True, slots=True)
+class PipeResult:
+    """One pipe: how many messages it takes, how many ever waited, how many did not get in."""
+
+    name: str
+    app: str
+    depth: int
+    peak: int
+    dropped: int
+
+
+@dataclass(frozen=True, slots=True)
+class ResetResult:
+    """A reset of the processor: when in virtual s, "PROCESSOR" or "POWERON", why, and whether it was a failure."""
+
+    at_s: float
+    type: str
+    reason: str
+    fault: bool
+
+
+@dataclass(frozen=True, slots=True)
+class MemoryResult:
+    """The board's RAM in bytes; `limit` is None on a board without one."""
+
+    used: int
+    peak: int
+    limit: int | None
+    by_owner: dict[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class InvariantResult:
+    """What became of an invariant: `judged` and `violated` count messages; what was wrong first, and when in s."""
+
+    name: str
+    place: str
+    judged: int
+    violated: int
+    first_at_s: float | None
+    first: str
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """The state of a run when its time was over."""
+
+    now_ns: int
+    wall_ns: int
+    sent: dict[int, int]
+    states: dict[str, str]
+    pipes: list[PipeResult]
+    memory: MemoryResult
+    sb: dict[str, int]
+    deadlocks: list[str]
+
+
+def mark(mission: Mission, wall_ns: int) -> Mark:
+    """Take down what a shutdown of the nodes would change.
+
+    Args:
+        mission: after its run.
+        wall_ns: wall-clock time that the run took, in ns.
+    """
+    sb, memory = mission.cfe.sb, mission.memory
+    traffic = mission.record.traffic(sb, ())
+    return Mark(
+        mission.kernel.now,
+        wall_ns,
+        {msg_id: count.sent for msg_id, count in traffic.items()},
+        {app.name: STATE_NAMES[app.state] for app in mission.cfe.es.apps},
+        [PipeResult(pipe.name, pipe.app_name, pipe.depth, pipe.peak, pipe.dropped) for pipe in sb.pipes],
+        MemoryResult(memory.used, memory.peak, memory.limit, memory.by_owner()),
+        mission.processor.sb_task.housekeeping(),
+        ["; ".join(map(str, circle)) for circle in mission.kernel.deadlocked()],
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """The numbers of a run; `to_dict` gives the JSON form. Times in s, `speed` is virtual time by wall time.
+
+    `booted_s` is of the first boot, `resets` are in order; pipes, memory and `sb` are of the processor since the last
+    one. `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` says, a line each,
+    why the run did not end well, `faults` has a row for each fault that was to happen, `deadlines` one for each of the
+    mission file, `script_problems` what of the startup script could not be started.
+    """
+
+    mission: str
+    virtual_s: float
+    wall_s: float
+    speed: float
+    seed: int
+    board: str
+    tasks: str
+    trace: str
+    booted_s: float | None
+    resets: list[ResetResult]
+    max_publish_hz: int
+    topics: list[TopicResult]
+    apps: list[AppResult]
+    events: dict[str, int]
+    own_errors: dict[str, int]
+    sb: dict[str, int]
+    pipes: list[PipeResult]
+    memory: MemoryResult
+    deadlines: list[DeadlineResult]
+    faults: list[dict[str, Any]]
+    script_problems: list[str]
+    invariants: list[InvariantResult]
+    problems: list[str]
+
+    @classmethod
+    def of(cls, mission: Mission, at: Mark, trace: str) -> Results:
+        """The results of a mission that is closed.
+
+        Args:
+            mission: the mission.
+            at: what `mark` took down.
+            trace: the digest of the run, from before the tasks were ended.
+        """
+        virtual_s, wall_s = at.now_ns / NS_PER_S, at.wall_ns / NS_PER_S
+        record = mission.record
+        apps = _apps(mission, at)
+        return cls(
+            mission=mission.spec.name,
+            virtual_s=virtual_s,
+            wall_s=wall_s,
+            speed=virtual_s / wall_s if wall_s else 0.0,
+            seed=mission.seed,
+            board=mission.board.name,
+            tasks=mission.tasks,
+            trace=trace,
+            booted_s=None if mission.booted is None else mission.booted / NS_PER_S,
+            resets=[_reset(each) for each in mission.record.resets],
+            max_publish_hz=mission.board.max_publish_hz,
+            topics=_topics(mission, at),
+            apps=apps,
+            events={name: record.event_counts.get(kind, 0) for kind, name in EVENT_TYPES.items()},
+            own_errors=_own_errors(mission),
+            sb=at.sb,
+            pipes=at.pipes,
+            memory=at.memory,
+            deadlines=[check.result() for check in record.part(DeadlineRecord).checks],
+            faults=record.rows("faults"),
+            script_problems=_script_problems(mission, apps),
+            invariants=[_invariant(each) for each in record.part(InvariantRecords).values()],
+            problems=[
+                *(problem.text for problem in problems_in(mission)),
+                *(f"deadlock: {circle}" for circle in at.deadlocks),
+            ],
+        )
+
+    @property
+    def never_struck(self) -> list[str]:
+        """A line for each fault that was to happen and never did."""
+        return _never_struck(self.faults)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain dicts, lists, numbers and text."""
+        return asdict(self)
+
+
+def never_struck(mission: Mission) -> list[str]:
+    """See `Results.never_struck`; of a mission that may still fly."""
+    return _never_struck(mission.record.rows("faults"))
+
+
+def _never_struck(rows: list[dict[str, Any]]) -> list[str]:
+    unseen = (row for row in rows if not row["times"])
+    return [f"fault {row['name']} ({row['what']}) never happened: {row['never']}" for row in unseen]
+
+
+def _invariant(record: InvariantRecord) -> InvariantResult:
+    first = record.first
+    at_s = None if first is None else first.at_ns / NS_PER_S
+    text = "" if first is None else first.text
+    return InvariantResult(record.name, record.place, record.judged, record.violated, at_s, text)
+
+
+def _reset(reset: Reset) -> ResetResult:
+    return ResetResult(reset.at_ns / NS_PER_S, RESET_TYPES[reset.reset_type], reset.reason, reset.fault)
+
+
+def _topics(mission: Mission, at: Mark) -> list[TopicResult]:
+    names = names_in(mission)
+    rows = mission.record.topics | {row.msg_id: row for row in mission.processor.topics()}
+    found = []
+    for msg_id, count in mission.record.traffic(mission.cfe.sb, mission.processor.topics()).items():
+        row = rows.get(msg_id)
+        name = row.name if row is not None else names.get(msg_id, f"0x{msg_id:04X}")
+        kind = row.type if row is not None else kind_of(msg_id)
+        found.append(_topic(name, msg_id, kind, count, _rate(mission, at, msg_id), mission.board.max_publish_hz))
+    return found
+
+
+def _rate(mission: Mission, at: Mark, msg_id: int) -> float:
+    since_boot_ns = at.now_ns - (mission.booted or 0)
+    return at.sent.get(msg_id, 0) * NS_PER_S / since_boot_ns if since_boot_ns else 0.0
+
+
+def _topic(name: str, msg_id: int, kind: str, count: Traffic, rate_hz: float, limit_hz: int) -> TopicResult:
+    return TopicResult(
+        name=name,
+        msg_id=msg_id,
+        type=kind,
+        sent=count.sent,
+        delivered=count.delivered,
+        waiting=count.waiting,
+        dropped=count.dropped_limit + count.dropped_pipe_full + count.dropped_segment,
+        dropped_limit=count.dropped_limit,
+        dropped_pipe_full=count.dropped_pipe_full,
+        dropped_segment=count.dropped_segment,
+        no_subscriber=count.no_subscriber,
+        held_back=count.held_back,
+        rate_hz=round(rate_hz, 3),
+        too_fast=bool(limit_hz) and rate_hz > limit_hz * TOLERANCE,
+    )
+
+
+def _apps(mission: Mission, at: Mark) -> list[AppResult]:
+    found = []
+    end_ns = mission.kernel.now
+    for history in mission.cfe.es.history.values():
+        error = history.last_error
+        found.append(
+            AppResult(
+                name=history.name,
+                state=at.states.get(history.name, ENDED),
+                cpu_share=history.cpu_ns / end_ns if end_ns else 0.0,
+                restarts=history.restarts,
+                deaths=history.deaths,
+                error=None if error is None else described(error),
+                core=history.name in CORE_APPS,
+            )
+        )
+    known = {app.name for app in found}
+    for entry in mission.spec.entries:
+        if entry.kind == CFE_APP and entry.name not in known:
+            known.add(entry.name)
+            found.append(AppResult(entry.name, NOT_STARTED, 0.0, 0, 0, None, False))
+    return found
+
+
+def _script_problems(mission: Mission, apps: list[AppResult]) -> list[str]:
+    if mission.booted is None:
+        return []  # the startup script was not read to its end
+    script = mission.spec.script
+    bad = (line for line in parse(mission.spec.startup_script) if isinstance(line, BadLine))
+    loaded = {library.name for library in mission.cfe.es.libs}
+    return [
+        *(f"{script}:{line.line}: {line.explanation}" for line in bad),
+        *(f"library {each.name} could not be loaded" for each in _libraries(mission) if each.name not in loaded),
+        *(f"{app.name} could not be started" for app in apps if app.state == NOT_STARTED),
+    ]
+
+
+class RunProblem(NamedTuple):
+    """A line about what went wrong, and when in virtual ns; None when it has no time of its own."""
+
+    text: str
+    at_ns: int | None
+
+
+def problems_in(mission: Mission) -> list[RunProblem]:
+    """What went wrong in a run, but for deadlocks and what the startup script could not start."""
+    history = mission.record.history
+    stall = mission.stall
+    found = [] if stall is None else [RunProblem(str(stall), stall.at_ns)]
+    found += [RunProblem(text, history[name].failed_ns) for name, text in mission.record.deaths_by_app().items()]
+    for name in ended_badly(mission):
+        found.append(RunProblem(f"{name} ended with {end_of(mission, name)}", history[name].failed_ns))
+    for name, count in _own_errors(mission).items():
+        found.append(RunProblem(f"{name} sent {count} ERROR or CRITICAL event{'s' if count > 1 else ''}", None))
+    for reset in mission.record.resets:
+        if reset.fault:
+            text = f"the processor was reset at {reset.at_ns / NS_PER_S:g} s: {reset.reason}"
+            found.append(RunProblem(text, reset.at_ns))
+    for each in mission.record.part(InvariantRecords).values():
+        if each.first is not None:
+            at_ns = each.first.at_ns
+            text = f"invariant {each.name!r} ({each.place}) at {at_ns / NS_PER_S:g} s: {each.first.text}"
+            found.append(RunProblem(text, at_ns))
+    for check in mission.record.part(DeadlineRecord).checks:
+        result = check.result()
+        if result.problem is not None:
+            first_s = result.first_at_s
+            found.append(RunProblem(result.problem, None if first_s is None else round(first_s * NS_PER_S)))
+    return found
+
+
+def _own_errors(mission: Mission) -> dict[str, int]:
+    """ERROR and CRITICAL events of the mission's own applications."""
+    return {name: count for name, count in sorted(mission.record.errors_by_app.items()) if name not in CORE_APPS}
+
+
+def end_of(mission: Mission, name: str) -> str:
+    """What an application has ended with: of a node, its program's exit status."""
+    end = None if mission.ros is None else mission.ros.ended.get(name)
+    if end is None or not end.status:
+        return "CFE_ES_RunStatus_APP_ERROR"
+    return f"exit status {end.status} (node /{end.name})"
+
+
+def ended_badly(mission: Mission) -> list[str]:
+    """Applications that ended themselves because of an error."""
+    es = mission.cfe.es
+    ended = [history.name for history in es.history.values() if history.error_exits]
+    ending = [app.name for app in es.apps if app.control_request == APP_ERROR]
+    return list(dict.fromkeys(ended + ending))
+
+
+def _libraries(mission: Mission) -> list[StartupEntry]:
+    return [entry for entry in mission.spec.entries if entry.kind == CFE_LIB]

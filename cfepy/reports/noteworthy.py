@@ -1,0 +1,39 @@
+"""Noteworthy things of a run: events in packets of the bus, and lines about deadlines, faults and invariants.
+
+An event is read from the packet that carries it; a line comes from the console, or from the trace alone.
+"""
+
+from __future__ import annotations
+
+from cfepy.ground import EVENT_IDS, DecodedEvent
+from cfepy.mission import Seen
+from cfepy.monitors.deadline_monitor import PREFIX
+from cfepy.status import CfeError, UsageError
+
+DEADLINE, FAULT, INVARIANT = "deadline", "fault", "invariant"
+_PREFIXES = {PREFIX: DEADLINE, "cfepy fault ": FAULT, "invariant ": INVARIANT}
+
+
+def event_in(msg_id: int, packet: bytes | bytearray, at_ns: int) -> DecodedEvent | None:
+    """The event that a packet carries; None when it carries none.
+
+    Args:
+        msg_id: of the packet.
+        packet: with its header.
+        at_ns: when it was sent.
+    """
+    if msg_id not in EVENT_IDS:
+        return None
+    try:
+        return DecodedEvent.of(Seen(at_ns, bytes(packet), ""))
+    except (CfeError, UsageError, ValueError):
+        return None  # another application sends other packets under this MsgId
+
+
+def mark_of(line: str) -> tuple[str, str] | None:
+    """What kind of line it is, and what it says without the time; None for any other."""
+    for prefix, kind in _PREFIXES.items():
+        if line.startswith(prefix):
+            text = line.removeprefix(prefix)
+            return kind, text.partition(" ")[2] if kind == DEADLINE else text
+    return None

@@ -1,0 +1,409 @@
+"""What a mission script can expect: an application's state, a file, a line of the console, an event, telemetry.
+
+A condition keeps no state: it judges the mission as it is, or a packet from the Software Bus, and describes what it
+found instead.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple, Protocol
+
+from cfepy.es import STATE_NAMES
+from cfepy.ground import (
+    EVENT_IDS,
+    DecodedEvent,
+    Dictionary,
+    Topic,
+    flat,
+    number_of,
+    text_of,
+    topics_of,
+    unknown_field,
+)
+from cfepy.mission import Mission, Seen, receivers
+from cfepy.msg import get_msg_id
+from cfepy.osal import FileNode
+from cfepy.status import CfeError, OsalError, UsageError
+from cfepy.units import NS_PER_S
+
+GONE = "GONE"
+APP_STATES = (*STATE_NAMES.values(), GONE)
+OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+NEAR = 3  # things that are told of those that came instead
+
+
+class Since(NamedTuple):
+    """From where on an expectation looks: the first packet and console line that count."""
+
+    packets: int
+    lines: int
+
+
+@dataclass(slots=True)
+class Collected:
+    """The packets that were sent so far, by number from 0.
+
+    Attributes:
+        most: how many are kept at least; None for all. Older ones are forgotten.
+    """
+
+    most: int | None = None
+    _kept: list[Seen] = field(default_factory=list)
+    _gone: int = 0
+
+    def append(self, packet: Seen) -> None:
+        """One more was sent."""
+        self._kept.append(packet)
+        if self.most is not None and len(self._kept) > 2 * self.most:
+            self._gone += len(self._kept) - self.most
+            del self._kept[: -self.most]
+
+    def __len__(self) -> int:
+        return self._gone + len(self._kept)
+
+    def since(self, number: int) -> list[Seen]:
+        """Those from a number on, as far as they are kept."""
+        return self._kept[max(0, number - self._gone) :]
+
+
+class Scene:
+    """What conditions look at and steps act upon: a mission, its dictionary, and the packets that it sent so far.
+
+    Args:
+        mission: None stands for a computer elsewhere, of which packets alone are known.
+        dictionary: names the packets.
+        packets: collects them.
+
+    Attributes:
+        mark_ns, since: when a script last did something, and what counts from there on.
+    """
+
+    def __init__(self, mission: Mission | None, dictionary: Dictionary, packets: Collected) -> None:
+        self.dictionary = dictionary
+        self.packets = packets
+        self.mark_ns = 0
+        self.since = Since(0, 0)
+        self._mission = mission
+
+    @property
+    def mission(self) -> Mission:
+        """The mission.
+
+        Raises:
+            UsageError: there is none at hand.
+        """
+        if self._mission is None:
+            raise UsageError("a computer elsewhere shows its packets alone: expect events and telemetry")
+        return self._mission
+
+    @property
+    def has_mission(self) -> bool:
+        """Whether there is a mission at hand."""
+        return self._mission is not None
+
+    @property
+    def now_ns(self) -> int:
+        """The virtual time in ns."""
+        return self.mission.kernel.now
+
+    def here(self) -> Since:
+        """Where things begin that are still to come."""
+        return Since(len(self.packets), len(self.mission.console.lines))
+
+    def set_mark(self) -> None:
+        """A script does something now."""
+        self.mark_ns, self.since = self.now_ns, self.here()
+
+    def send(self, packet: bytes, must_arrive: bool) -> str:
+        """Put a packet on the bus.
+
+        Args:
+            packet: its bytes.
+            must_arrive: it is wrong that nobody subscribes to it.
+
+        Returns:
+            What was wrong; "" when all was well.
+        """
+        detail = ""
+        if must_arrive and not receivers(self.mission.cfe.sb, get_msg_id(packet)):
+            detail = f"nobody subscribes to MsgId 0x{get_msg_id(packet):04X} at this time"
+        try:
+            self.transmit(packet)
+        except CfeError as error:
+            detail = str(error)
+        return detail
+
+    def transmit(self, packet: bytes) -> None:
+        """Put a packet on the bus as it is.
+
+        Raises:
+            CfeError: the bus refuses it.
+        """
+        self.mission.cfe.sb.transmit_msg(packet, is_origination=False)
+
+    def learn_topics(self) -> None:
+        """The dictionary gets what the mission knows of its topics by now."""
+        self.dictionary.learn(topics_of(self.mission))
+
+
+class Condition(Protocol):
+    """Something that can be expected. `lasts` says that it is a state, which is judged at once, and no occurrence."""
+
+    lasts: bool
+
+    @property
+    def msg_ids(self) -> frozenset[int]:
+        """MsgIds of the packets that can meet it; none when the mission as it is meets it."""
+
+    def met_by(self, scene: Scene, packet: Seen) -> bool:
+        """Whether this packet meets it."""
+
+    def holds(self, scene: Scene, since: Since) -> bool:
+        """Whether the mission as it is meets it."""
+
+    def instead(self, scene: Scene, since: Since) -> str:
+        """What there was instead; for something that must not be, what there was."""
+
+
+class StateCondition:
+    """A condition on the mission as it is."""
+
+    lasts = True
+    msg_ids: frozenset[int] = frozenset()
+
+    def met_by(self, scene: Scene, packet: Seen) -> bool:
+        """See `Condition.met_by`."""
+        return False
+
+
+def seconds(ns: int) -> str:
+    """A virtual time as verdicts show it."""
+    return f"{ns / NS_PER_S:.3f}"
+
+
+@dataclass(frozen=True)
+class AppCondition(StateCondition):
+    """An application in a state; GONE stands for one that does not exist, None for any that does."""
+
+    name: str
+    state: str | None = None
+
+    def holds(self, scene: Scene, since: Since) -> bool:
+        """See `Condition.holds`."""
+        state = self._state(scene)
+        return state != GONE if self.state is None else state == self.state
+
+    def instead(self, scene: Scene, since: Since) -> str:
+        """See `Condition.instead`."""
+        state = self._state(scene)
+        if state != GONE:
+            return f"it is {state}"
+        return f"there are {', '.join(app.name for app in scene.mission.cfe.es.apps)}"
+
+    def _state(self, scene: Scene) -> str:
+        app = next((app for app in scene.mission.cfe.es.apps if app.name == self.name), None)
+        return GONE if app is None else STATE_NAMES[app.state]
+
+
+@dataclass(frozen=True)
+class ResetCondition(StateCondition):
+    """The processor has been reset more than so many times in this run."""
+
+    times: int
+
+    def holds(self, scene: Scene, since: Since) -> bool:
+        """See `Condition.holds`."""
+        return len(scene.mission.record.resets) > self.times
+
+    def instead(self, scene: Scene, since: Since) -> str:
+        """See `Condition.instead`."""
+        return "the processor was not reset"
+
+
+@dataclass(frozen=True)
+class FileCondition(StateCondition):
+    """A file of the mission, with a size in bytes if that matters."""
+
+    path: str
+    sign: str = ">="
+    size: int = 0
+
+    def holds(self, scene: Scene, since: Since) -> bool:
+        """See `Condition.holds`."""
+        node = self._node(scene)
+        return node is not None and OPERATORS[self.sign](len(node.data), self.size)
+
+    def instead(self, scene: Scene, since: Since) -> str:
+        """See `Condition.instead`."""
+        node = self._node(scene)
+        if node is not None:
+            return f"it has {len(node.data)} bytes"
+        folder = self.path.rpartition("/")[0] or "/"
+        try:
+            names: Sequence[str] = scene.mission.files.list_dir(folder)
+        except OsalError:
+            return f"there is no folder {folder}"
+        return f"{folder} has {', '.join(names) or 'no files'}"
+
+    def _node(self, scene: Scene) -> FileNode | None:
+        try:
+            return scene.mission.files.find(self.path)
+        except OsalError:
+            return None
+
+
+@dataclass(frozen=True)
+class ConsoleCondition(StateCondition):
+    """A line of the console that contains a text."""
+
+    lasts = False
+
+    text: str
+
+    def holds(self, scene: Scene, since: Since) -> bool:
+        """See `Condition.holds`."""
+        return any(self.text in line for line in scene.mission.console.lines[since.lines :])
+
+    def instead(self, scene: Scene, since: Since) -> str:
+        """See `Condition.instead`."""
+        lines = scene.mission.console.lines[since.lines :]
+        found = [line for line in lines if self.text in line]
+        if found:
+            return f'there was "{found[0]}"'
+        return f'the last line was "{lines[-1]}"' if lines else "there was no line"
+
+
+class PacketCondition:
+    """A condition that packets meet."""
+
+    lasts = False
+
+    def holds(self, scene: Scene, since: Since) -> bool:
+        """See `Condition.holds`."""
+        return False
+
+
+@dataclass(frozen=True)
+class EventCondition(PacketCondition):
+    """An event; None stands for any."""
+
+    app: str | None = None
+    event_id: int | None = None
+    event_type: int | None = None
+    text: str | None = None
+
+    @property
+    def msg_ids(self) -> frozenset[int]:
+        """See `Condition.msg_ids`."""
+        return EVENT_IDS
+
+    def met_by(self, scene: Scene, packet: Seen) -> bool:
+        """See `Condition.met_by`."""
+        event = DecodedEvent.of(packet)
+        return (
+            self.app in (None, event.app)
+            and self.event_id in (None, event.event_id)
+            and self.event_type in (None, event.event_type)
+            and (self.text is None or self.text in event.text)
+        )
+
+    def instead(self, scene: Scene, since: Since) -> str:
+        """See `Condition.instead`."""
+        events = [DecodedEvent.of(seen) for seen in scene.packets.since(since.packets) if seen.msg_id in EVENT_IDS]
+        own = [event for event in events if self.app in (None, event.app)]
+        if own:
+            return "there was " + "; ".join(map(str, own[-NEAR:]))
+        others = ", ".join(dict.fromkeys(event.app for event in events))
+        return f"there was no event of {self.app}, only of {others}" if others else "there was no event at all"
+
+
+class Comparison(NamedTuple):
+    """`path sign value` of a field; a text is compared as it stands, a number as a number."""
+
+    path: str
+    sign: str
+    value: str
+
+    def holds(self, actual: Any) -> bool:
+        """Whether a field's value is as wanted."""
+        if isinstance(actual, str | bytes):
+            return OPERATORS[self.sign](actual if isinstance(actual, str) else actual.hex(), self.value)
+        try:
+            return OPERATORS[self.sign](actual, number_of(self.value))
+        except ValueError:
+            return False
+
+    def __str__(self) -> str:
+        return f"{self.path} {self.sign} {self.value}"
+
+
+@dataclass(frozen=True)
+class TelemetryCondition(PacketCondition):
+    """A telemetry packet with certain values.
+
+    Args:
+        name: as the dictionary has it.
+        msg_id: its MsgId.
+        comparisons: all have to hold.
+    """
+
+    name: str
+    msg_id: int
+    comparisons: tuple[Comparison, ...] = ()
+
+    @property
+    def msg_ids(self) -> frozenset[int]:
+        """See `Condition.msg_ids`."""
+        return frozenset((self.msg_id,))
+
+    def met_by(self, scene: Scene, packet: Seen) -> bool:
+        """See `Condition.met_by`."""
+        if not self.comparisons:
+            return True
+        values = self._values(scene, packet)
+        return all(each.path in values and each.holds(values[each.path]) for each in self.comparisons)
+
+    def instead(self, scene: Scene, since: Since) -> str:
+        """See `Condition.instead`."""
+        packets = [seen for seen in scene.packets.since(since.packets) if seen.msg_id == self.msg_id]
+        if not packets:
+            return f"there was no {self.name}"
+        values = self._values(scene, packets[-1])
+        try:
+            shown = ", ".join(f"{each.path} was {_field(self.name, values, each.path)}" for each in self.comparisons)
+        except UsageError as error:
+            return str(error)
+        count = "1 packet" if len(packets) == 1 else f"{len(packets)} packets"
+        return f"{shown} in the last of {count}, at {seconds(packets[-1].at_ns)}"
+
+    def _values(self, scene: Scene, packet: Seen) -> Mapping[str, Any]:
+        entry = scene.dictionary.telemetry.get(self.name)
+        if isinstance(entry, Topic) and not entry.type:
+            scene.learn_topics()
+        return flat(scene.dictionary.decode(packet.packet).values)
+
+
+def _field(owner: str, values: Mapping[str, Any], path: str) -> str:
+    if path not in values:
+        raise unknown_field(owner, values, path)
+    return text_of(values[path])
+
+
+def seen_text(condition: Condition, scene: Scene, packet: Seen | None, since: Since) -> str:
+    """What met a condition that was not to be met."""
+    if packet is None:
+        return condition.instead(scene, since)
+    if packet.msg_id in EVENT_IDS:
+        return f"there was {DecodedEvent.of(packet)}"
+    decoded = scene.dictionary.decode(packet.packet)
+    return f"there was {decoded.name} {decoded.line()} at {seconds(packet.at_ns)}"

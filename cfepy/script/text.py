@@ -1,0 +1,381 @@
+"""The text of a mission script, read into steps; docs/ground_tools.md describes the language.
+
+One step a line, of words, texts in quotes and numbers of seconds. Everything that can be known before the run is
+checked here: names, fields, values, times. A mistake is a UsageError with file and line.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from cfepy.ground import EVENT_TYPES, Dictionary, Topic, int_of, number_of, packet_of, topic_id, unknown_field
+from cfepy.mission import MissionSpec
+from cfepy.msg import Telemetry
+from cfepy.script.conditions import (
+    APP_STATES,
+    OPERATORS,
+    AppCondition,
+    Comparison,
+    Condition,
+    ConsoleCondition,
+    EventCondition,
+    FileCondition,
+    TelemetryCondition,
+)
+from cfepy.status import UsageError
+from cfepy.suggestions import did_you_mean
+from cfepy.units import NS_PER_S
+
+LONGEST_S = 1e9
+LONGEST_SIGN = 2  # one sign is like any other
+_TOKEN = re.compile(r'\s*((?:[^\s"#]|"[^"]*")+)')
+DEFAULT_WITHIN_NS = 5 * NS_PER_S
+RESET_TYPES = {"processor": 1, "power-on": 2}
+ANY = "*"
+
+
+class Word(NamedTuple):
+    """A word of a line; one that begins with a quote is a text."""
+
+    text: str
+    is_text: bool
+
+
+class Words:
+    """The words of a line that are still to be read.
+
+    Args:
+        line: a `#` outside of quotes begins a comment.
+
+    Attributes:
+        source: the line without its comment.
+
+    Raises:
+        UsageError: a quote is opened and not closed.
+    """
+
+    def __init__(self, line: str) -> None:
+        self._words: list[Word] = []
+        at = 0
+        while match := _TOKEN.match(line, at):
+            self._words.append(Word(match[1].replace('"', ""), match[1].startswith('"')))
+            at = match.end()
+        self.source = line[:at].strip()
+        rest = line[at:].strip()
+        if rest and not rest.startswith("#"):
+            raise UsageError(f"a quote is opened and not closed: {rest}")
+
+    def __bool__(self) -> bool:
+        return bool(self._words)
+
+    def take(self, what: str) -> str:
+        """The next word.
+
+        Args:
+            what: it stands for, for the error.
+
+        Raises:
+            UsageError: there is none.
+        """
+        if not self._words:
+            raise UsageError(f"{what} is missing at the end of the line")
+        return self._words.pop(0).text
+
+    def peek(self) -> Word:
+        """The next word without taking it; an empty one at the end."""
+        return self._words[0] if self._words else Word("", False)
+
+    def take_if(self, *texts: str) -> str:
+        """The next word if it is one of these, else ""."""
+        word = self.peek()
+        return self._words.pop(0).text if word.text in texts and not word.is_text else ""
+
+    def rest(self) -> list[str]:
+        """All that is left."""
+        words, self._words = self._words, []
+        return [word.text for word in words]
+
+
+def seconds_ns(text: str) -> int:
+    """A number of seconds in ns.
+
+    Raises:
+        UsageError: it is none.
+    """
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not 0 <= number <= LONGEST_S:
+        raise UsageError(f"{text!r} is not a number of seconds; give 0 to {LONGEST_S:g}")
+    return round(number * NS_PER_S)
+
+
+def choice(text: str, choices: Iterable[str], what: str) -> str:
+    """The word itself, when it is one of several.
+
+    Args:
+        text: the word.
+        choices: what it may be.
+        what: the choices are, for the error.
+
+    Raises:
+        UsageError: it is none of them.
+    """
+    known = list(choices)
+    if text in known:
+        return text
+    hint = did_you_mean(text, known if len(text) > LONGEST_SIGN else (), f"there are {', '.join(known)}", likeness=0.5)
+    raise UsageError(f"{text!r} is no {what}; {hint}")
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One line of a script. Times in ns.
+
+    `at_ns` is when it is to happen, `after_ns` how long after the step before; without both it happens at once. A step
+    sends a packet, or expects something (`condition`), or neither: "end". A packet with `must_arrive` fails when no
+    pipe subscribes to it; after one with `is_reset` the script waits for the reset. `within_ns` counts from the last
+    packet sent or time waited for, `until_ns` from the start of the run; without both, an expectation of a state is
+    judged at once, and what must not come must not come until the script ends.
+    """
+
+    line: int
+    text: str
+    at_ns: int | None = None
+    after_ns: int | None = None
+    packet: bytes | None = None
+    must_arrive: bool = False
+    is_reset: bool = False
+    condition: Condition | None = None
+    must_not: bool = False
+    within_ns: int | None = None
+    until_ns: int | None = None
+
+    def deadline_ns(self, mark_ns: int, now_ns: int) -> int | None:
+        """When an expectation is decided at the latest, in virtual ns; None for the end of the script.
+
+        Args:
+            mark_ns: when the script last did something.
+            now_ns: when the expectation begins.
+        """
+        if self.is_reset:
+            return now_ns + DEFAULT_WITHIN_NS
+        if self.until_ns is not None:
+            return self.until_ns
+        if self.within_ns is not None:
+            return mark_ns + self.within_ns
+        if self.condition is None or self.condition.lasts:
+            return now_ns
+        return None if self.must_not else mark_ns + DEFAULT_WITHIN_NS
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """A script that is free of mistakes, for one mission. `longest_ns` is the virtual time that it takes at most."""
+
+    file: str
+    steps: tuple[Step, ...]
+    dictionary: Dictionary
+    longest_ns: int
+
+
+def read_script(path: str | Path, spec: MissionSpec, dictionary: Dictionary) -> Script:
+    """Read a script.
+
+    Args:
+        path: the file, UTF-8.
+        spec: the mission that it is for.
+        dictionary: of that mission.
+
+    Raises:
+        UsageError: it cannot be read, or has a mistake.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+    except UnicodeError:
+        raise UsageError("is no text in UTF-8", file=path) from None
+    return parse_script(text, path, spec, dictionary)
+
+
+def parse_script(text: str, path: str | Path, spec: MissionSpec | None, dictionary: Dictionary) -> Script:
+    """`read_script` for the text of a file; `path` is for messages. Without a mission, it names no new topics."""
+    reader = _Reader(spec, dictionary)
+    steps: list[Step] = []
+    for number, line in enumerate(text.split("\n"), 1):
+        try:
+            words = Words(line)
+            if words:
+                steps.append(reader.step(number, words))
+        except UsageError as error:
+            raise UsageError(error.text, file=path, line=number, field=error.field) from None
+    if not steps:
+        raise UsageError("has no steps", file=path)
+    return Script(str(path), tuple(steps), dictionary, reader.longest_ns)
+
+
+class _Reader:
+    """Reads steps one after the other; keeps track of the time they take at most."""
+
+    def __init__(self, spec: MissionSpec | None, dictionary: Dictionary) -> None:
+        self._spec = spec
+        self._dictionary = dictionary
+        self._now_ns = self._mark_ns = self._latest_at_ns = 0
+        self.longest_ns = 0
+        self._conditions: dict[str, Callable[[Words], Condition]] = {
+            "event": _event,
+            "tlm": self._telemetry,
+            "app": _app,
+            "file": _file,
+            "console": lambda words: ConsoleCondition(words.take("the text")),
+        }
+
+    def step(self, line: int, words: Words) -> Step:
+        """The step of one line."""
+        at_ns, after_ns = self._when(words)
+        packet: bytes | None = None
+        condition: Condition | None = None
+        must_arrive = is_reset = must_not = False
+        verb = choice(words.take("what to do"), ["send", "expect", "reset", "end"], "step")
+        if verb == "send":
+            must_arrive = words.peek().text != "raw"
+            packet = self._packet(words)
+        elif verb == "reset":
+            must_arrive = is_reset = True
+            kind = choice(words.take("the kind of reset"), RESET_TYPES, "kind of reset")
+            packet = self._command("CFE_ES_RESTART", [f"RestartType={RESET_TYPES[kind]}"])
+        elif verb == "expect":
+            must_not = bool(words.take_if("no"))
+            what = choice(words.take("what to expect"), self._conditions, "thing to expect")
+            condition = self._conditions[what](words)
+        within_ns = until_ns = None
+        if condition is not None:
+            within_ns, until_ns = _limits(words)
+        if words:
+            raise UsageError(f"{words.peek().text!r} is too much; the line should end before it")
+        doing = (packet, must_arrive, is_reset)
+        step = Step(line, words.source, at_ns, after_ns, *doing, condition, must_not, within_ns, until_ns)
+        self._pass_time(step)
+        return step
+
+    def _when(self, words: Words) -> tuple[int | None, int | None]:
+        if words.take_if("at"):
+            at_ns = seconds_ns(words.take("the time"))
+            if at_ns < self._latest_at_ns:
+                text = f"at {at_ns / NS_PER_S:g} is earlier than a step before, at {self._latest_at_ns / NS_PER_S:g}"
+                raise UsageError(f"{text}; steps stand in the order of their times")
+            self._latest_at_ns = at_ns
+            return at_ns, None
+        if words.take_if("after"):
+            return None, seconds_ns(words.take("the time"))
+        return None, None
+
+    def _pass_time(self, step: Step) -> None:
+        """What the step adds to the longest time that the script can take."""
+        if step.at_ns is not None:
+            self._now_ns = max(self._now_ns, step.at_ns)
+        self._now_ns += step.after_ns or 0
+        if step.condition is None or step.at_ns is not None or step.after_ns is not None:
+            self._mark_ns = self._now_ns
+        deadline = step.deadline_ns(self._mark_ns, self._now_ns)
+        if deadline is not None:
+            self.longest_ns = max(self.longest_ns, deadline, self._now_ns)
+            if not step.must_not:
+                self._now_ns = max(self._now_ns, deadline)
+
+    def _packet(self, words: Words) -> bytes:
+        name = words.take("the command's name")
+        if name != "raw":
+            return self._command(name, words.rest())
+        digits = "".join(words.rest())
+        try:
+            return bytes.fromhex(digits)
+        except ValueError:
+            raise UsageError(f"{digits!r} are no bytes; write two hexadecimal digits for each") from None
+
+    def _command(self, name: str, assignments: list[str]) -> bytes:
+        return packet_of(self._dictionary.command(name), assignments)
+
+    def _telemetry(self, words: Words) -> Condition:
+        name = words.take("the packet's name")
+        if name.startswith("/") and self._spec is not None:
+            declared: Telemetry | Topic = Topic(name, topic_id(self._spec, name))
+            self._dictionary.add([declared])
+        else:
+            declared = self._dictionary.telemetry_of(name)
+        comparisons = []
+        while words.peek().text not in ("", "within", "until"):
+            comparisons.append(_comparison(words, declared))
+            words.take_if("and")
+        return TelemetryCondition(declared.name, declared.msg_id, tuple(comparisons))
+
+
+def _limits(words: Words) -> tuple[int | None, int | None]:
+    if words.take_if("within"):
+        return seconds_ns(words.take("the time")), None
+    if words.take_if("until"):
+        return None, seconds_ns(words.take("the time"))
+    return None, None
+
+
+def _event(words: Words) -> Condition:
+    app = words.take("the application's name")
+    event_id = event_type = text = None
+    if words.peek().text.isdigit() and not words.peek().is_text:
+        event_id = int_of(words.take("the event's number"))
+    else:
+        words.take_if(ANY)
+    kind = words.take_if(*EVENT_TYPES)
+    if kind:
+        event_type = EVENT_TYPES[kind]
+    if words.peek().is_text:
+        text = words.take("the text")
+    elif words.peek().text not in ("", "within", "until"):
+        choice(words.peek().text, EVENT_TYPES, "type of event")
+    return EventCondition(None if app == ANY else app, event_id, event_type, text)
+
+
+def _app(words: Words) -> Condition:
+    name = words.take("the application's name")
+    if words.peek().text in ("", "within", "until"):
+        return AppCondition(name)
+    return AppCondition(name, choice(words.take("the state"), APP_STATES, "state of an application"))
+
+
+def _file(words: Words) -> Condition:
+    path = words.take("the file's path")
+    if not path.startswith("/"):
+        raise UsageError(f"{path!r} is no path of the mission's file system; it begins with /cf, /ram or the like")
+    if not words.take_if("size"):
+        return FileCondition(path)
+    sign = words.take_if(*OPERATORS) or "=="
+    size = words.take("the size")
+    if not size.isdigit():
+        raise UsageError(f"{size!r} is no number of bytes")
+    return FileCondition(path, sign, int(size))
+
+
+def _comparison(words: Words, declared: Telemetry | Topic) -> Comparison:
+    path = words.take("the field")
+    cells = {cell.path: cell for cell in declared.payload.cells()} if isinstance(declared, Telemetry) else {}
+    if isinstance(declared, Telemetry) and path not in cells:
+        raise unknown_field(declared.name, cells, path)
+    sign = choice(words.take("a sign such as =="), OPERATORS, "sign")
+    value = words.take("the value")
+    names = cells[path].names if path in cells else None
+    if names is not None and value.upper() in names.values:
+        value = str(names.number(value))
+    if path in cells and not cells[path].type.startswith("char"):
+        try:
+            number_of(value)
+        except ValueError:
+            hint = "" if names is None else did_you_mean(value, names.values, f"there are {names}", before="; ")
+            raise UsageError(f"{value!r} is not a number{hint}", field=path) from None
+    return Comparison(path, sign, value)

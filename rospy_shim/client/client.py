@@ -1,0 +1,176 @@
+"""What a node calls once: `init_node`, command line, topics of the graph, `wait_for_message` (rospy.client)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from cfepy.rtos import FOREVER, WaitList
+from rospy_shim.client.exceptions import ROSException, ROSInitException, ROSInterruptException
+from rospy_shim.client.logs import LoggerServices
+from rospy_shim.client.names import SEP, command_line_params, program_arguments
+from rospy_shim.client.rostime import nanoseconds
+
+if TYPE_CHECKING:
+    from rospy_shim.client.node import Node
+
+
+class Client:
+    """The client functions of one node.
+
+    Args:
+        node: the node.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._arguments: tuple[Any, ...] | None = None
+        self._uri: str | None = None
+
+    def init_node(
+        self,
+        name: str,
+        argv: Sequence[str] | None = None,
+        anonymous: bool = False,
+        log_level: int | None = None,
+        disable_rostime: bool = False,
+        disable_rosout: bool = False,
+        disable_signals: bool = False,
+        xmlrpc_port: int = 0,
+        tcpros_port: int = 0,
+    ) -> None:
+        """Make this program a node of the graph.
+
+        Args:
+            name: without a namespace; `__name:=` on the command line wins over it.
+            argv: command line to take remappings from instead of sys.argv.
+            anonymous: make the name unique.
+            log_level: rospy.DEBUG to rospy.FATAL.
+            disable_rostime: do not follow /clock, whatever the parameter /use_sim_time says.
+            disable_rosout: do not publish on /rosout.
+            disable_signals: leave SIGINT and SIGTERM alone.
+            xmlrpc_port: accepted.
+            tcpros_port: accepted.
+
+        Raises:
+            ValueError: an empty name, or one with a namespace.
+            ROSException: called before with other arguments.
+        """
+        node = self._node
+        if argv is None:
+            argv = node.argv()
+        else:
+            node.names.reload_mappings(argv)
+        if not name:
+            raise ValueError("name must not be empty")
+        if SEP in name:
+            raise ValueError("namespaces are not allowed in node names")
+        arguments = (name, argv, anonymous, log_level, disable_rostime, disable_signals)
+        if self._arguments is not None:
+            if self._arguments != arguments:
+                raise ROSException(
+                    f"rospy.init_node() has already been called with different arguments: {self._arguments}"
+                )
+            return
+        self._arguments = arguments
+        node.names.give(self._base_name(name, anonymous))
+        self._uri = f"http://{node.universe.host_name}:{node.universe.pid}/"
+        if not disable_signals:
+            node.life.register_signals()
+        node.clock.set_rostime_initialized(True)
+        self._load_params(argv)
+        node.logs.configure(log_level, not disable_rosout)
+        node.go_on_graph()
+        LoggerServices(node).offer()
+        if not disable_rostime:
+            node.clock.init_simtime()
+
+    def _base_name(self, name: str, anonymous: bool) -> str:
+        insisted = self._node.names.insisted_name
+        if insisted is not None:
+            return insisted
+        if not anonymous:
+            return name
+        universe = self._node.universe
+        return f"{name}_{universe.pid}_{(universe.clock.epoch_ns + universe.kernel.now) // 1_000_000}"
+
+    def _load_params(self, argv: Sequence[str]) -> None:
+        """Private parameters of the mission file, then those of the command line."""
+        self._node.params.give(self._node.config.params)
+        for name, value in self.load_command_line_node_params(argv).items():
+            self._node.params.set_param(f"~{name}", value)
+
+    def load_command_line_node_params(self, argv: Sequence[str]) -> dict[str, Any]:
+        """The private parameters that stand on a command line as `_name:=value`, the value in YAML.
+
+        Raises:
+            ROSInitException: an argument that has ":=" twice, or whose value is not YAML.
+        """
+        try:
+            found = command_line_params(argv)
+            if not found:
+                return {}
+            import yaml
+
+            return {name: yaml.safe_load(text) for name, text in found.items()}
+        except Exception as error:
+            raise ROSInitException(f"invalid command-line parameters: {error}") from error
+
+    def myargv(self, argv: Sequence[str] | None = None) -> list[str]:
+        """The command line without remappings and parameters."""
+        return program_arguments(self._node.argv() if argv is None else argv)
+
+    def get_node_uri(self) -> str | None:
+        """An address that is unique to the node; None before `init_node`."""
+        return self._uri
+
+    def set_node_uri(self, uri: str | None) -> None:
+        """Give the node another address."""
+        self._uri = uri
+
+    def is_initialized(self) -> bool:
+        """Whether `init_node` has run."""
+        return self._node.initialized
+
+    def set_initialized(self, initialized: bool) -> None:
+        """Say whether `init_node` has run."""
+        self._node.initialized = initialized
+
+    def get_published_topics(self, namespace: str = SEP) -> list[list[str]]:
+        """[topic, type] of all topics below a namespace that have a publisher."""
+        return self._node.graph.published(namespace)
+
+    def wait_for_message(self, topic: str, topic_type: Any, timeout: Any = None) -> Any:
+        """The next message of a topic, or its latched one.
+
+        Args:
+            topic: its name.
+            topic_type: its message class.
+            timeout: longest time, seconds or a Duration; None waits for as long as it takes.
+
+        Raises:
+            ROSException: no message came in time.
+            ROSInterruptException: the node is shut down.
+        """
+        life, kernel = self._node.life, self._node.kernel
+        waits = WaitList(f"a message on {topic}")
+        found: list[Any] = []
+
+        def keep(message: Any) -> None:
+            if not found:
+                found.append(message)
+                kernel.wake_all(waits)
+
+        deadline = None if timeout is None else kernel.now + nanoseconds(timeout)
+        subscriber = self._node.Subscriber(topic, topic_type, keep)
+        try:
+            while not found and not life.is_shutdown():
+                left = FOREVER if deadline is None else deadline - kernel.now
+                if deadline is not None and left <= 0:
+                    raise ROSException(f"timeout exceeded while waiting for message on topic {topic}")
+                life.wait(waits, left)
+        finally:
+            subscriber.unregister()
+        if not found:
+            raise ROSInterruptException("rospy shutdown")
+        return found[0]

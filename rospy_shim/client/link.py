@@ -1,0 +1,313 @@
+"""`Link`: the publishing side of one node on one topic, shared by all of its handles (CFE_SB_TransmitMsg).
+
+The hot path is `Link.send`: one serialisation, one call of the bus. A message that does not fit in a packet goes out in
+segments, one without a subscriber is not even serialised. In a run that is recorded the link is a `TappedLink`, which
+shows such messages to the recorder all the same, without virtual time, sequence number or trace record.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from cfepy.status import CfeError
+from rospy_shim.client.exceptions import ROSSerializationException
+from rospy_shim.client.message import args_kwds_to_message, packer
+from rospy_shim.client.topic_side import OUTBOUND, TopicConnection, TopicSide
+from rospy_shim.client.transport import HEADER_BYTES, segments, whole_header
+from rospy_shim.genpy import SerializationError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from cfepy.sb import Route
+    from rospy_shim.client.node import Node
+    from rospy_shim.client.subscription import Subscription
+    from rospy_shim.graph.graph import Header
+    from rospy_shim.msgs import MessageClass
+
+PACE_NS = 100_000  # between two looks whether a subscriber has room for the next segment
+PATIENCE = 100  # looks, before a segment is sent to a full queue and lost there
+FULL = 1 << 16  # more packets than any pipe holds
+
+
+class SubscribeListener:
+    """Base class of listeners for the subscribers of a publisher (rospy.SubscribeListener)."""
+
+    __module__ = "rospy.topics"
+
+    def peer_subscribe(self, topic_name: str, topic_publish: Callable[..., None], peer_publish: Any) -> None:
+        """A subscriber came; `topic_publish` sends to all, `peer_publish` to the new one only."""
+
+    def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
+        """A subscriber left, `num_peers` remain."""
+
+
+class Link(TopicSide):
+    """The publishing side of one node on one topic (rospy.topics._PublisherImpl).
+
+    Args:
+        node: the node.
+        name: resolved name of the topic.
+        data_class: message class.
+    """
+
+    def __init__(self, node: Node, name: str, data_class: MessageClass) -> None:
+        super().__init__(node, name, data_class)
+        self.has_header = bool(getattr(data_class, "_has_header", False))
+        self._pack = packer(data_class)
+        self.seq = 0
+        self.message_data_sent = 0  # bytes
+        self.is_latch = False
+        self.latch: Any = None  # the last message
+        self.subscriber_listeners: list[SubscribeListener] = []
+        self.header: Header = {}
+        self.shared = False  # with publishers of other nodes
+        self.raw = False
+        self.connected = False
+        self.msg_id = 0
+        bus = node.cfe.sb
+        self._bus = bus
+        self._routes: dict[int, Route] = bus.routes
+        self._transmit = bus.transmit_msg
+        self._head = b""
+        self._charge = node.kernel.charge
+        self._call_ns = node.call_ns
+        self._count_items = getattr(data_class, "_count_items", None) if node.call_ns else None
+        self._slot_ns = node.publish_slot_ns
+        self._slot = -1  # in which the last message went out
+        self._room = bus.config.sb_max_msg_size - HEADER_BYTES
+
+    def connect(self) -> None:
+        """The node is initialised: go on the graph.
+
+        Raises:
+            UsageError: the topic's MsgId belongs to another topic.
+        """
+        self.connected = True
+        self.header |= self._own_header()
+        topic = self.node.topic_for(self.name, self.data_class)
+        if topic is None:
+            self._routes = {}
+            return
+        self.topic = topic
+        self.raw = topic.raw
+        self.msg_id = topic.msg_id
+        self._head = whole_header(topic.msg_id)
+        topic.add_link(self)
+        for subscription in topic.subscriptions:
+            self.peer_joined(subscription)
+
+    def _own_header(self) -> Header:
+        return {
+            "callerid": self.node.names.name,
+            "latching": "1" if self.is_latch else "0",
+            "md5sum": self.data_class._md5sum,
+            "message_definition": getattr(self.data_class, "_full_text", ""),
+            "topic": self.name,
+            "type": self.data_class._type,
+        }
+
+    def enable_latch(self) -> None:
+        """Keep the last message for subscribers to come."""
+        self.is_latch = True
+        self.header["latching"] = "1"
+        if self.topic is not None:
+            self.topic.latching = True
+
+    def add_subscriber_listener(self, listener: SubscribeListener) -> None:
+        """Tell one more listener of subscribers that come and go."""
+        self.subscriber_listeners.append(listener)
+
+    def close(self) -> None:
+        """Leave the graph; messages that are published later reach no subscriber."""
+        self.closed = True
+        self._routes = {}
+        if self.node.links.get(self.name) is self:
+            del self.node.links[self.name]
+        if self.topic is not None:
+            self.topic.remove_link(self)
+            self.topic.leave()
+            self.topic = None
+
+    def get_num_connections(self) -> int:
+        """How many pipes get the topic's messages: subscribing nodes, and cFE applications."""
+        route = self._routes.get(self.msg_id)
+        return len(route.active) if route is not None else 0
+
+    @property
+    def connections(self) -> list[TopicConnection]:
+        """The nodes that subscribe."""
+        subscriptions = self.topic.subscriptions if self.topic is not None else []
+        return [self.connection(each.node, OUTBOUND) for each in subscriptions]
+
+    def get_stats(self) -> tuple[str, int, list[tuple[int, int, int, bool]]]:
+        """The side as getBusStats gives it: topic, bytes, and for each connection number, bytes, messages, state."""
+        sent = self.message_data_sent
+        return self.name, sent, [(each.id, sent, self.seq, True) for each in self.connections]
+
+    def send(self, message: Any) -> None:
+        """Publish a message.
+
+        Raises:
+            ROSSerializationException: a field holds what its type cannot carry.
+        """
+        if self._call_ns:
+            self._charge(self._call_ns)
+        if self.is_latch:
+            self.latch = message
+        route = self._routes.get(self.msg_id)
+        if route is None or not route.active:
+            return
+        if self._slot_ns:
+            self._hold_back()
+        payload = self.serialize(message)
+        if self._count_items is not None:
+            self._charge(self._call_ns * self._count_items(message))
+        try:
+            if self.raw:
+                self._send_packet(message)
+            elif len(payload) > self._room:
+                self._send_segments(payload)
+            else:
+                if self.shared:
+                    self._note(0)
+                self._transmit(self._head + payload)
+        except CfeError as error:
+            self.node.logs.logerr("publish on %s: %s", self.name, error)
+
+    def _hold_back(self) -> None:
+        """On a board with a highest publishing rate: wait for a slot of time in which nothing went out yet."""
+        kernel = self.node.kernel
+        slot = kernel.now // self._slot_ns
+        while slot <= self._slot:
+            if self.topic is not None:
+                self.topic.held_back += 1
+            kernel.delay((self._slot + 1) * self._slot_ns - kernel.now)
+            slot = kernel.now // self._slot_ns
+        self._slot = slot
+
+    def serialize(self, message: Any) -> bytes:
+        """The bytes of a message, with the next sequence number in its header.
+
+        Raises:
+            ROSSerializationException: a field holds what its type cannot carry.
+        """
+        self.seq = seq = self.seq + 1
+        if self.has_header:
+            header = message.header
+            header.seq = seq
+            if header.frame_id is None:
+                header.frame_id = "0"
+        try:
+            payload = self._pack(message)
+        except SerializationError as error:
+            raise ROSSerializationException(str(error)) from error
+        self.message_data_sent += len(payload)
+        return payload
+
+    def _send_packet(self, message: Any) -> None:
+        """A raw topic: the message's data are a whole packet."""
+        packet = bytes(message.data)
+        msg_id = int.from_bytes(packet[:2], "big")
+        if msg_id != self.msg_id:
+            raise ROSSerializationException(
+                f"{self.name} carries packets of MsgId 0x{self.msg_id:04X}, and these bytes begin with 0x{msg_id:04X}"
+            )
+        self._bus.transmit_msg(packet)
+
+    def _send_segments(self, payload: bytes) -> None:
+        """One long message; as with a socket that is full, the caller waits while a subscriber's queue is."""
+        count = -(-len(payload) // self._room)
+        for subscription in self.topic.subscriptions if self.topic is not None else ():
+            subscription.expect_segments(count)
+        self.acquire()
+        try:
+            for index, packet in enumerate(segments(self.msg_id, payload, self._room)):
+                self._wait_for_room(packet, count)
+                self._note(index)
+                self._bus.transmit_msg(packet)
+        finally:
+            self.release()
+
+    def _note(self, index: int) -> None:
+        """Remember the sender of the next packet of the topic, since a packet cannot say."""
+        route = self._routes.get(self.msg_id)
+        if self.topic is not None and route is not None:
+            self.topic.notes[(route.sequence + 1) & 0x3FFF] = (self.header, index)
+
+    def _wait_for_room(self, packet: bytes, count: int) -> None:
+        """Give subscribers time to take their messages; one that is busy with a callback then loses old ones."""
+        if self._has_room(packet):
+            return
+        kernel = self.node.kernel
+        kernel.yield_cpu()
+        for look in range(PATIENCE):
+            if self._has_room(packet, count if look else FULL):
+                return
+            kernel.delay(PACE_NS)
+
+    def _has_room(self, packet: bytes, count: int = FULL) -> bool:
+        """Whether the bus and every pipe take a packet, or drop old messages for one of `count` packets."""
+        route = self._routes.get(self.msg_id)
+        return route is None or (
+            self._bus.has_room(packet)
+            and all(
+                (each.puts - each.gets < each.limit and len(each.pipe.items) < each.pipe.depth)
+                or (each.pipe.keeps_newest and count <= each.pipe.depth)
+                for each in route.active
+            )
+        )
+
+    # -- subscribers that come and go --------------------------------------------------------------------------------
+
+    def give_latched(self, subscription: Subscription) -> None:
+        """Give a new subscriber the latched message, if there is one."""
+        if self.is_latch and self.latch is not None and not self.raw:
+            subscription.deliver(self.serialize(self.latch), self.header)
+            if self.topic is not None:
+                self.topic.latched += 1
+
+    def peer_joined(self, subscription: Subscription) -> None:
+        """Tell the listeners of a new subscriber."""
+        for listener in self.subscriber_listeners:
+            self.node.start_task(self.name, lambda each=listener: self._tell(each, subscription))  # type: ignore[misc]
+
+    def _tell(self, listener: SubscribeListener, subscription: Subscription) -> None:
+        def peer_publish(*args: Any, **kwds: Any) -> None:
+            message = args_kwds_to_message(self.data_class, args, kwds)
+            subscription.deliver(self.serialize(message), self.header)
+
+        def topic_publish(*args: Any, **kwds: Any) -> None:
+            self.send(args_kwds_to_message(self.data_class, args, kwds))
+
+        listener.peer_subscribe(self.name, topic_publish, peer_publish)
+
+    def peer_left(self, remaining: int) -> None:
+        """Tell the listeners."""
+        for listener in self.subscriber_listeners:
+            body = lambda each=listener: each.peer_unsubscribe(self.name, remaining)  # noqa: E731
+            self.node.start_task(self.name, body)
+
+
+class TappedLink(Link):
+    """A link that shows messages without a subscriber to `on_unsent` of the bus."""
+
+    def __init__(self, node: Node, name: str, data_class: MessageClass) -> None:
+        super().__init__(node, name, data_class)
+        on_unsent: Any = node.cfe.sb.on_unsent  # a static method, which binds no bus
+        self._on_unsent: Callable[[Link, bytes], object] | None = on_unsent
+
+    def send(self, message: Any) -> None:
+        """See `Link.send`."""
+        route = self._routes.get(self.msg_id)
+        if self.topic is not None and self._on_unsent is not None and (route is None or not route.active):
+            try:
+                self._on_unsent(self, self._pack(message))
+            except Exception:  # whatever a generated class raises
+                pass  # as `Link.send`, which does not look at a message without a subscriber
+        super().send(message)
+
+
+def link_class(node: Node) -> type[Link]:
+    """The class of a node's links."""
+    return Link if node.cfe.sb.on_unsent is None else TappedLink

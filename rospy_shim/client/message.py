@@ -1,0 +1,232 @@
+"""What rospy adds to messages: arguments of `publish`, `AnyMsg`, numpy arrays (rospy.msg, rospy.numpy_msg)."""
+
+from __future__ import annotations
+
+import codecs
+import io
+import struct
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, BinaryIO, ClassVar
+
+from rospy_shim.client.exceptions import ROSException
+from rospy_shim.genpy import DeserializationError, Message
+
+if TYPE_CHECKING:
+    from rospy_shim.msgs import MessageClass
+
+
+class AnyMsg(Message):
+    """Subscribes to any type: `_buff` holds the serialised message, `_connection_header` says what it is."""
+
+    __module__ = "rospy.msg"
+    _md5sum = "*"
+    _type = "*"
+    _has_header: ClassVar[bool] = False
+    _full_text = ""
+    _slot_types: ClassVar[list[str]] = []
+    __slots__ = ["_buff"]
+
+    def __init__(self, *args: Any) -> None:
+        """Make one without data.
+
+        Raises:
+            ROSException: any argument is given.
+        """
+        if args:
+            raise ROSException("AnyMsg does not accept arguments")
+        self._buff: bytes | None = None
+
+    def _pack(self) -> bytes:
+        if self._buff is None:
+            raise ROSException("AnyMsg is not initialized")
+        return self._buff
+
+    @classmethod
+    def _unpack(cls, data: bytes, at: int = 0) -> AnyMsg:
+        message = cls()
+        message._buff = data[at:]
+        return message
+
+    def serialize(self, buff: BinaryIO) -> None:
+        """Write the bytes.
+
+        Raises:
+            ROSException: there are none.
+        """
+        buff.write(self._pack())
+
+    def deserialize(self, str_: bytes) -> AnyMsg:
+        """Take the bytes."""
+        self._buff = str_
+        return self
+
+
+def packer(data_class: MessageClass) -> Callable[[Any], bytes]:
+    """What serialises the messages of a class: its own fast function, or `serialize` of a class that genpy made."""
+    if data_class is AnyMsg:
+        return lambda message: packer(type(message))(message) if type(message) is not AnyMsg else message._pack()
+    own: Callable[[Any], bytes] | None = getattr(data_class, "_pack", None)
+    return own if own is not None else _serialized
+
+
+def unpacker(data_class: MessageClass) -> Callable[[bytes, int], Any]:
+    """What makes a message of a class from bytes at an offset; the counterpart of `packer`."""
+    own: Callable[[bytes, int], Any] | None = getattr(data_class, "_unpack", None)
+    if own is not None:
+        return own
+    _register_text_errors()
+    return lambda data, at: data_class().deserialize(data[at:])
+
+
+class _TextErrors:
+    """What code that genpy generated asks of the error handler "rosmsg": bytes that are no UTF-8 become U+FFFD."""
+
+    msg_type = ""  # set by that code
+
+    def __call__(self, error: UnicodeError) -> tuple[str, int]:
+        if not isinstance(error, UnicodeDecodeError):
+            raise error
+        return "\ufffd", error.end
+
+
+def _register_text_errors() -> None:
+    """Give Python's codecs the handler that genpy gives them when it is imported."""
+    try:
+        codecs.lookup_error("rosmsg")
+    except LookupError:
+        codecs.register_error("rosmsg", _TextErrors())
+
+
+def _serialized(message: Any) -> bytes:
+    buffer = io.BytesIO()
+    message.serialize(buffer)
+    return buffer.getvalue()
+
+
+def args_kwds_to_message(data_class: MessageClass, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
+    """The message that the arguments of `publish` mean.
+
+    Args:
+        data_class: type of the topic.
+        args: one message, or the values of its fields.
+        kwds: fields by name.
+
+    Raises:
+        TypeError: both kinds of arguments, a message of another type, or a wrong number of values.
+    """
+    if args and kwds:
+        raise TypeError("publish() can be called with arguments or keywords, but not both.")
+    if kwds:
+        return data_class(**kwds)
+    if len(args) != 1:
+        return data_class(*args)
+    value = args[0]
+    if isinstance(value, data_class) or (data_class is AnyMsg and isinstance(value, Message)):
+        return value
+    if isinstance(value, Message):
+        return _same_type(data_class, value)
+    return data_class(*args)
+
+
+def _same_type(data_class: MessageClass, value: Any) -> Any:
+    """A message whose class is another one of the same type; or the one field of a type that holds a message."""
+    if value._type == data_class._type:
+        if value._md5sum != data_class._md5sum:
+            raise TypeError(f"expected [{data_class._slot_types[0]}] but got [{value._type}]")
+        return data_class(*(getattr(value, name) for name in data_class.__slots__))
+    if len(data_class._slot_types) == 1 and data_class._slot_types[0] in (value._type, value._type.split("/")[-1]):
+        return data_class(value)
+    raise TypeError(f"expected [{', '.join(data_class._slot_types)}] but got [{value._type}]")
+
+
+def serialize_message(b: BinaryIO, seq: int, msg: Any) -> None:
+    """Write a message the way ROS puts it on a wire: its length, then its bytes.
+
+    Args:
+        b: where to.
+        seq: for the header, if the message has one.
+        msg: the message.
+    """
+    if getattr(type(msg), "_has_header", False):
+        msg.header.seq = seq
+        if msg.header.frame_id is None:
+            msg.header.frame_id = "0"
+    payload = packer(type(msg))(msg)
+    b.write(struct.pack("<I", len(payload)) + payload)
+
+
+def deserialize_messages(
+    b: BinaryIO,
+    msg_queue: list[Any],
+    data_class: MessageClass,
+    queue_size: int | None = None,
+    max_msgs: int | None = None,
+    start: int = 0,
+) -> None:
+    """Read the messages that `serialize_message` wrote; what is left of one that is not complete stays.
+
+    Args:
+        b: bytes up to its position.
+        msg_queue: where the messages are added.
+        data_class: their class.
+        queue_size: messages that the queue keeps, the last ones; None for all.
+        max_msgs: messages to read at most; None for all.
+        start: where in `b` they begin.
+
+    Raises:
+        DeserializationError: the bytes are no messages of the class.
+    """
+    try:
+        found = _cut(b, start, max_msgs)
+        kept = found if queue_size is None else found[-queue_size:]
+        msg_queue.extend(data_class().deserialize(each) for each in kept)
+        if queue_size is not None:
+            del msg_queue[:-queue_size]
+    except Exception as error:
+        raise DeserializationError(f"cannot deserialize: {error}") from error
+
+
+def _cut(b: BinaryIO, start: int, most: int | None) -> list[bytes]:
+    """Take complete messages out of a buffer."""
+    end, at = b.tell(), start
+    b.seek(start)
+    data = b.read(end - start)
+    found: list[bytes] = []
+    while len(data) - (at - start) >= 4 and (not most or len(found) < most):
+        begin = at - start + 4
+        (size,) = struct.unpack_from("<I", data, begin - 4)
+        if begin + size > len(data):
+            break
+        found.append(data[begin : begin + size])
+        at += 4 + size
+    b.seek(start)
+    b.write(data[at - start :])
+    b.truncate()
+    return found
+
+
+def numpy_msg(msg_type: Any) -> Any:
+    """A class of the same message type whose number arrays are numpy arrays.
+
+    Args:
+        msg_type: a message class.
+    """
+    import numpy
+
+    def unpack(cls: Any, data: bytes, at: int = 0) -> Any:
+        return cls().deserialize_numpy(data[at:], numpy)
+
+    def deserialize(self: Any, data: bytes) -> Any:
+        return self.deserialize_numpy(data, numpy)
+
+    def serialize(self: Any, buff: BinaryIO) -> None:
+        buff.write(self._pack_numpy(numpy))
+
+    names = {
+        "__slots__": msg_type.__slots__,
+        "_pack": lambda self: self._pack_numpy(numpy),
+        "_unpack": classmethod(unpack),
+        "deserialize": deserialize,
+        "serialize": serialize,
+    }
+    return type(msg_type)(f"Numpy_{msg_type._type.replace('/', '__')}", (msg_type,), names)

@@ -1,0 +1,237 @@
+"""One ROS node: the object behind the functions and classes of its own `rospy`.
+
+Every node of a mission has one; nothing is shared between two nodes but the graph.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from itertools import count
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cfepy.rtos import Task
+from cfepy.status import CfeError
+from rospy_shim.client.client import Client
+from rospy_shim.client.exceptions import ROSInitException
+from rospy_shim.client.life import Life
+from rospy_shim.client.link import Link, link_class
+from rospy_shim.client.logs import Logs
+from rospy_shim.client.names import Names, is_legal_name
+from rospy_shim.client.params import Params
+from rospy_shim.client.rostime import RosClock
+from rospy_shim.client.service import Service, make_service
+from rospy_shim.client.service_proxy import AnswerPipes, make_service_proxy, wait_for_service
+from rospy_shim.client.subscription import Subscription
+from rospy_shim.client.timer import make_rate, make_timer
+from rospy_shim.client.topics import make_publisher, make_subscriber
+from rospy_shim.msgs import Library, OnDisk, Packages, shipped
+
+if TYPE_CHECKING:
+    from cfepy.app import Cfe
+    from cfepy.nodes import NodeConfig, Universe
+    from rospy_shim.client.tasks import NodeTasks
+    from rospy_shim.graph.graph import Graph, TopicEntry
+    from rospy_shim.msgs import MessageClass
+
+
+class Node:
+    """A node.
+
+    Args:
+        cfe: the handle of cFE's services.
+        graph: the mission's ROS graph.
+        universe: the module universe that the node's program runs in.
+        config: what the mission file says about it.
+        tasks: starts tasks in the name of the node's application.
+        call_ns: virtual CPU time of a call.
+        publish_slot_ns: a publisher sends at most one message in each stretch of so many ns; 0 for no limit.
+    """
+
+    def __init__(
+        self,
+        cfe: Cfe,
+        graph: Graph,
+        universe: Universe,
+        config: NodeConfig,
+        tasks: NodeTasks,
+        call_ns: int,
+        publish_slot_ns: int = 0,
+    ) -> None:
+        self.cfe = cfe
+        self.graph = graph
+        self.universe = universe
+        self.config = config
+        self.kernel = universe.kernel
+        self.call_ns = call_ns
+        self.publish_slot_ns = publish_slot_ns
+        self.initialized = False
+        self.links: dict[str, Link] = {}
+        self.subscriptions: dict[str, Subscription] = {}
+        self.services: list[Service] = []
+        self.connection_numbers = count(1)
+        self._tasks = tasks
+        self._timer: type | None = None
+        self.place = config.near or (Path(universe.resolve(universe.script)) if universe.script else None)
+        self.packages = Packages(self.place, universe.environ, universe.resolve)
+        self.library = Library([OnDisk(self.packages)], base=shipped())
+        self.names = Names(universe.argv, universe.environ)
+        self.life = Life(self)
+        self.clock = RosClock(self)
+        self.params = Params(self, graph.params)
+        self.logs = Logs(self)
+        self.client = Client(self)
+        self.Publisher = make_publisher(self)
+        self.Subscriber = make_subscriber(self)
+        self.Service = make_service(self)
+        self.ServiceProxy = make_service_proxy(self)
+        self.answer_pipes = AnswerPipes(self)
+        self.Rate = make_rate(self)
+
+    @property
+    def Timer(self) -> type:  # rospy's name
+        """The node's class `rospy.Timer`, made at first use because it needs `threading`."""
+        if self._timer is None:
+            self._timer = make_timer(self)
+        return self._timer
+
+    def argv(self) -> list[str]:
+        """The node's `sys.argv` as it is now."""
+        return list(self.universe.importer.modules["sys"].argv)
+
+    # -- the graph ---------------------------------------------------------------------------------------------------
+
+    def go_on_graph(self) -> None:
+        """`init_node`: register the node, and what was made before."""
+        self.initialized = True
+        self.universe.name = self.names.name.lstrip("/")
+        self.graph.register_node(self)
+        for service in self.services:
+            service.connect()
+        for link in list(self.links.values()):
+            link.connect()
+        for subscription in list(self.subscriptions.values()):
+            subscription.connect()
+
+    def leave_graph(self) -> None:
+        """Shutdown: close all publishers and subscribers."""
+        for subscription in list(self.subscriptions.values()):
+            subscription.close()
+        for link in list(self.links.values()):
+            link.close()
+        for service in self.services[:]:
+            service.shutdown()
+        self.graph.forget_node(self)
+
+    def abandon(self) -> None:
+        """The program has ended, whatever way: nothing of it stays on the graph or on the bus."""
+        holders: list[Subscription | Service] = [*self.subscriptions.values(), *self.services]
+        self.leave_graph()
+        for holder in holders:
+            try:
+                holder.give_back()
+            except CfeError:
+                pass  # ES has cleaned up before
+
+    def link(self, name: str, data_class: MessageClass) -> Link:
+        """The publishing side of a topic, made when first asked for."""
+        link = self.links.get(name)
+        if link is None or link.data_class._md5sum != data_class._md5sum:
+            link = self.links[name] = link_class(self)(self, name, data_class)
+            if self.initialized:
+                link.connect()
+        return link
+
+    def subscription(self, name: str, data_class: MessageClass) -> Subscription:
+        """The subscribing side of a topic, made when first asked for."""
+        found = self.subscriptions.get(name)
+        if found is None or found.data_class is not data_class:
+            found = Subscription(self, name, data_class)
+            if self.initialized:
+                found.connect()
+            self.subscriptions.setdefault(name, found)
+        return found
+
+    def topic_for(self, name: str, data_class: MessageClass) -> TopicEntry | None:
+        """The topic to connect to; None when the node is shut down, or when the topic's type is another one.
+
+        The latter is logged as an error, and the rest of the graph goes on.
+
+        Raises:
+            UsageError: the topic's MsgId belongs to another topic.
+        """
+        if self.life.over:
+            return None
+        topic = self.graph.topic(name)
+        if topic.join(data_class):
+            return topic
+        self.logs.logerr(
+            "[%s] has the type %s [%s] for topic %s, which is %s [%s] on the graph: not connected",
+            self.names.name,
+            data_class._type,
+            data_class._md5sum,
+            topic.name,
+            topic.type,
+            topic.md5sum,
+        )
+        return None
+
+    def wait_for_service(self, service: str, timeout: Any = None) -> None:
+        """See `rospy_shim.client.service_proxy.wait_for_service`."""
+        wait_for_service(self, service, timeout)
+
+    def require_initialized(self) -> None:
+        """Check that `init_node` has run.
+
+        Raises:
+            ROSInitException: it has not.
+        """
+        if not self.initialized:
+            raise ROSInitException("client code must call rospy.init_node() first")
+
+    # -- warnings ----------------------------------------------------------------------------------------------------
+
+    def warn(self, text: str, category: type[Warning]) -> None:
+        """Warn through the node's own `warnings`, at the line of the node that called."""
+        self.universe.importer.load("warnings").warn(text, category, stacklevel=_depth_of_rospy() + 1)
+
+    def warn_of_illegal(self, name: str) -> None:
+        """Warn of a name that breaks ROS's rules."""
+        if not is_legal_name(name):
+            text = f"'{name}' is not a legal ROS graph resource name. This may cause problems with other ROS tools"
+            self.warn(text, UserWarning)
+
+    # -- tasks -------------------------------------------------------------------------------------------------------
+
+    def task_name(self, label: str) -> str:
+        """A name for a task or a pipe that nothing else in the mission has."""
+        return self._tasks.name(label)
+
+    def start_child(self, name: str, body: Callable[[], None]) -> None:
+        """Start a child task of the node's application, with a name from `task_name`."""
+        self._tasks.child(self, name, body)
+
+    def start_task(self, label: str, body: Callable[[], None]) -> Task:
+        """Start a task of the node from whatever task, or from the host."""
+        return self._tasks.helper(self, label, body)
+
+    def ask_to_shut_down(self, reason: str) -> None:
+        """Shut the node down from outside; its hooks run in a task of its own."""
+        if not self.life.is_shutdown_requested():
+            self.start_task("shutdown", lambda: self.life.interrupt(reason))
+
+    def give_way(self) -> None:
+        """Another node has taken the name: what ROS's master then asks of this one."""
+        request = f"[{self.names.name}] Reason: new node registered with same name"
+        self.universe.stdout.write(f"shutdown request: {request}\n")
+        reason = f"external shutdown request from [/master]: [{request}]"
+        self.start_task("shutdown", lambda: self.life.signal_shutdown(reason))
+
+
+def _depth_of_rospy() -> int:
+    """How many of the innermost frames are rospy's own, this function's aside."""
+    frame, depth = sys._getframe(1), 0
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("rospy_shim."):
+        frame, depth = frame.f_back, depth + 1
+    return depth

@@ -1,0 +1,116 @@
+"""Parameters: the functions through which a node reads and writes the mission's tree (`rospy_shim.parameters.tree`).
+
+Values are what XML-RPC can carry (`rospy_shim.parameters.values`): tuples become lists, bytes become Binary, None and
+big integers are refused with the same errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from rospy_shim.client.exceptions import ROSException
+from rospy_shim.client.names import SEP, is_legal_name
+from rospy_shim.parameters.tree import ParameterTree
+from rospy_shim.parameters.values import DateTime, marshalled
+
+if TYPE_CHECKING:
+    from rospy_shim.client.node import Node
+
+_MISSING = ParameterTree.MISSING
+
+
+class Params:
+    """The parameter functions of one node (rospy.get_param and its kin).
+
+    Args:
+        node: whose names they resolve.
+        tree: the mission's parameters.
+    """
+
+    def __init__(self, node: Node, tree: ParameterTree) -> None:
+        self._node = node
+        self._tree = tree
+
+    def get_param(self, param_name: str, default: Any = _MISSING) -> Any:
+        """The value of a parameter, or a namespace as a dictionary.
+
+        Args:
+            param_name: global, relative or private.
+            default: given back when there is none; also None counts.
+
+        Raises:
+            KeyError: there is none, and no default; it holds the name as it was asked for.
+        """
+        self._node.universe.charge()
+        key = self._node.names.resolve_name(param_name)
+        value = self._tree.find(key)
+        if value is not _MISSING:
+            return self._unpacked(value)
+        if default is _MISSING:
+            raise KeyError(param_name)
+        return default
+
+    def get_param_cached(self, param_name: str, default: Any = _MISSING) -> Any:
+        """As `get_param`; the tree is as near as a cache would be."""
+        return self.get_param(param_name, default)
+
+    def has_param(self, param_name: str) -> bool:
+        """Whether a parameter or namespace exists."""
+        self._node.universe.charge()
+        return self._tree.find(self._node.names.resolve_name(param_name)) is not _MISSING
+
+    def set_param(self, param_name: str, param_value: Any) -> None:
+        """Set a parameter; a dictionary replaces a whole namespace.
+
+        Raises:
+            TypeError, OverflowError: XML-RPC cannot carry the value.
+            ParametersFull: ROS's tables have no room for it; a ROSException.
+        """
+        self._node.universe.charge()
+        self._node.warn_of_illegal(param_name)
+        self._tree.set(self._node.names.resolve_name(param_name), marshalled(param_value))
+
+    def give(self, values: Mapping[str, Any]) -> None:
+        """Set the private parameters that the mission file has for the node; see `ParameterTree.give`."""
+        self._tree.give(self._node.names.get_name(), {name: marshalled(value) for name, value in values.items()})
+
+    def delete_param(self, param_name: str) -> None:
+        """Remove a parameter or namespace.
+
+        Raises:
+            KeyError: there is none.
+        """
+        try:
+            self._tree.delete(self._node.names.resolve_name(param_name))
+        except KeyError:
+            raise KeyError(param_name) from None
+
+    def search_param(self, param_name: str) -> str | None:
+        """The full name of the nearest parameter of that name, from the node's namespace upwards, or None.
+
+        Raises:
+            ROSException: a private name.
+        """
+        key = self._node.names.get_mappings().get(param_name, param_name)
+        if not is_legal_name(key) or key.startswith("~"):
+            raise ROSException("cannot search for parameter: Internal failure: invalid key")
+        if key.startswith(SEP):
+            return key if self._tree.find(key) is not _MISSING else None
+        return self._tree.search(self._node.names.get_name(), key)
+
+    def get_param_names(self) -> list[str]:
+        """The full names of all parameters."""
+        return self._tree.names()
+
+    def _unpacked(self, value: Any) -> Any:
+        """A copy for the node; bytes and dates as its own xmlrpc.client has them."""
+        if type(value) is dict:
+            return {key: self._unpacked(item) for key, item in value.items()}
+        if type(value) is list:
+            return [self._unpacked(item) for item in value]
+        if type(value) is bytes:
+            return self._node.universe.importer.load("xmlrpc.client").Binary(value)
+        if type(value) is DateTime:
+            return self._node.universe.importer.load("xmlrpc.client").DateTime(value.value)
+        return value

@@ -1,0 +1,244 @@
+"""`rospy.Time`, `rospy.Duration` and the functions that read the clock (rospy.rostime).
+
+The values are genpy's, under rospy's class names. ROS time is the mission's clock plus the epoch of the run or, when
+the parameter /use_sim_time is true, what the topic /clock says. Each node has classes of its own, because `Time.now`
+belongs to one simulated computer.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from cfepy.rtos import WaitList
+from cfepy.units import NS_PER_S
+from rospy_shim import genpy
+from rospy_shim.client.exceptions import ROSInitException, ROSInterruptException, ROSTimeMovedBackwardsException
+from rospy_shim.client.life import SPIN_NS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rospy_shim.client.node import Node
+
+
+def nanoseconds(duration: Any) -> int:
+    """A duration as rospy accepts it, in ns.
+
+    Args:
+        duration: a genpy Duration, or seconds as a number.
+    """
+    if isinstance(duration, genpy.Duration):
+        return duration.secs * NS_PER_S + duration.nsecs
+    return round(float(duration) * NS_PER_S) if not isinstance(duration, int) else duration * NS_PER_S
+
+
+class Duration(genpy.Duration):
+    """rospy.Duration: a signed span of time."""
+
+    __module__ = "rospy.rostime"
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return f"rospy.Duration[{self.to_nsec()}]"
+
+
+class Time(genpy.Time):
+    """rospy.Time: an instant of ROS time; `now` is added for each node."""
+
+    __module__ = "rospy.rostime"
+    __slots__ = ()
+
+    @classmethod
+    def from_seconds(cls, float_secs: float) -> Time:
+        """The old name of `from_sec`."""
+        return cls.from_sec(float_secs)
+
+    @staticmethod
+    def now() -> Time:
+        """The present ROS time; the class that a node gets has a working one.
+
+        Raises:
+            ROSInitException: always, outside a mission.
+        """
+        _not_ready()
+
+    def __repr__(self) -> str:
+        return f"rospy.Time[{self.to_nsec()}]"
+
+
+class RosClock:
+    """ROS time of one node: the mission's clock, or simulated time, which a node sets through /clock (rospy.rostime).
+
+    Args:
+        node: whose clock it is.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._kernel = node.kernel
+        self._epoch_ns = node.universe.clock.epoch_ns
+        self._ready = False
+        self._set: Time | None = None  # simulated time
+        self._plain = False  # ready, and the mission's clock counts: the one question of the fast path
+        self._cond: Any = None
+        self._changed = WaitList("a change of ROS time")
+        self.Duration = Duration
+        self.Time: type[Time] = type("Time", (Time,), {"__module__": "rospy.rostime", "__slots__": ()})
+        self.get_rostime = self._make_now()
+        self.Time.now = staticmethod(self.get_rostime)  # type: ignore[method-assign]  # each node has its own class
+
+    def _make_now(self) -> Callable[[], Time]:
+        kernel, epoch_ns, charge, cost = self._kernel, self._epoch_ns, self._kernel.charge, self._node.call_ns
+        new: Callable[[type[Time]], Time] = object.__new__
+        kind = self.Time
+
+        def shift(by_ns: int) -> None:
+            """The mission's clock was set, by so many ns."""
+            nonlocal epoch_ns
+            epoch_ns += by_ns
+            self._epoch_ns = epoch_ns
+
+        def get_rostime() -> Time:
+            """The present ROS time.
+
+            Raises:
+                ROSInitException: before `init_node`.
+            """
+            if cost:
+                charge(cost)
+            if not self._plain:
+                return self.at(self.now_ns())
+            value = new(kind)
+            value.secs, value.nsecs = divmod(epoch_ns + kernel.now, NS_PER_S)
+            return value
+
+        self.shift = shift
+        return get_rostime
+
+    def get_time(self) -> float:
+        """The present ROS time in seconds."""
+        return self.get_rostime().to_sec()
+
+    def now_ns(self) -> int:
+        """The present ROS time in ns.
+
+        Raises:
+            ROSInitException: before `init_node`.
+        """
+        if not self._ready:
+            _not_ready()
+        return self.wall_ns() if self._set is None else self._set.to_nsec()
+
+    def wall_ns(self) -> int:
+        """What a clock on the wall shows, in ns: the mission's clock."""
+        return self._epoch_ns + self._kernel.now
+
+    def at(self, when_ns: int) -> Time:
+        """An instant as a Time of this node."""
+        return self.Time(*divmod(when_ns, NS_PER_S))
+
+    def is_rostime_initialized(self) -> bool:
+        """Whether `init_node` has run."""
+        return self._ready
+
+    def set_rostime_initialized(self, val: bool) -> None:
+        """What `init_node` calls."""
+        self._ready = val
+        self._plain = bool(val) and self._set is None
+
+    # -- simulated time ----------------------------------------------------------------------------------------------
+
+    def is_wallclock(self) -> bool:
+        """Whether ROS time is the mission's clock, which is the wall clock to a node."""
+        return self._set is None
+
+    def _set_rostime(self, t: Any) -> None:
+        """Set simulated time, which stands still until it is set again.
+
+        Raises:
+            ValueError: `t` is no Time.
+        """
+        if not isinstance(t, genpy.Time):
+            raise ValueError(f"simulated time is a Time, not {t.__class__}")
+        self._change(self.Time(t.secs, t.nsecs))
+
+    def switch_to_wallclock(self) -> None:
+        """Simulated time is over."""
+        self._change(None)
+
+    def _change(self, value: Time | None) -> None:
+        self._set = value
+        self._plain = self._ready and value is None
+        self._kernel.wake_all(self._changed)
+        if self._cond is not None:
+            with self._cond:
+                self._cond.notify_all()
+
+    def get_rostime_cond(self) -> Any:
+        """A `threading.Condition` that is notified at every change of simulated time."""
+        if self._cond is None:
+            self._cond = self._node.universe.importer.load("threading").Condition()
+        return self._cond
+
+    def init_simtime(self) -> bool:
+        """`init_node`: from now on time is what /clock says, if the parameter /use_sim_time is true; 0 before."""
+        self.set_rostime_initialized(True)
+        if self._set is None and self._node.params.get_param("/use_sim_time", False):
+            clock_message = self._node.library.message_class("rosgraph_msgs/Clock")
+            self._node.Subscriber("/clock", clock_message, lambda tick: self._set_rostime(tick.clock), queue_size=1)
+            self._set_rostime(self.Time())
+        return True
+
+    # -- sleeping ----------------------------------------------------------------------------------------------------
+
+    def wallsleep(self, duration: Any) -> None:
+        """Sleep on the mission's clock.
+
+        Args:
+            duration: seconds.
+
+        Raises:
+            ValueError: it is negative.
+            TypeError: it is no number.
+        """
+        self._node.universe.importer.load("time").sleep(duration)
+
+    def sleep(self, duration: Any) -> None:
+        """rospy.sleep: let a time pass; on the mission's clock, shutdown does not cut it short.
+
+        Args:
+            duration: seconds or a Duration; nothing happens when it is negative.
+
+        Raises:
+            TypeError: neither.
+            ROSTimeMovedBackwardsException: simulated time was set back.
+            ROSInterruptException: simulated time is used, and the node is shut down.
+        """
+        if self._set is not None:
+            self._sleep_until(duration)
+            return
+        if not isinstance(duration, genpy.Duration) and duration < 0:
+            return
+        wait = nanoseconds(duration)
+        if wait > 0:
+            self._kernel.delay(wait)
+        elif wait == 0:
+            self._node.universe.charge()
+            self._kernel.yield_cpu()
+
+    def _sleep_until(self, duration: Any) -> None:
+        """Sleep on simulated time; before the first /clock it has not begun."""
+        wait, life = nanoseconds(duration), self._node.life
+        self._node.universe.charge()
+        while (begin := self.now_ns()) == 0 and not life.is_shutdown():
+            life.wait(self._changed, SPIN_NS)
+        while begin <= self.now_ns() < begin + wait and not life.is_shutdown():
+            life.wait(self._changed, SPIN_NS)
+        if self.now_ns() < begin:
+            raise ROSTimeMovedBackwardsException((begin - self.now_ns()) / NS_PER_S)
+        if life.is_shutdown():
+            raise ROSInterruptException("ROS shutdown request")
+
+
+def _not_ready() -> NoReturn:
+    raise ROSInitException("time is not initialized. Have you called init_node()?")

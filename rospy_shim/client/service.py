@@ -1,0 +1,372 @@
+"""`rospy.Service`: a node offers a service, whose requests and answers are packets on the Software Bus.
+
+A service is a command MsgId for requests and a telemetry MsgId for answers. Behind the header stands the number of the
+call; in an answer also 1 for success, 0 for an error; then the serialised request or response, or the error's text, cut
+into segments when it is long. One task handles requests. When one comes while all of the service's tasks are in the
+handler, it gets another task until no request waits, so that handlers run side by side as in rospy.
+"""
+
+from __future__ import annotations
+
+import struct
+import sys
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from cfepy.nodes.report import traceback_text
+from cfepy.rtos import TIMEOUT, WaitList
+from cfepy.status import CfeError
+from rospy_shim.client.exceptions import ROSInterruptException, ServiceException
+from rospy_shim.client.message import packer, unpacker
+from rospy_shim.client.subscription import DEFAULT_BUFF_SIZE, NO_PIPE
+from rospy_shim.client.transport import FIRST, LAST, MIDDLE, WHOLE
+from rospy_shim.genpy import Message, SerializationError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from cfepy.sb import Pipe
+    from rospy_shim.client.node import Node
+    from rospy_shim.graph.graph import ServiceEntry
+    from rospy_shim.msgs import MessageClass, ServiceClass
+
+REQUEST_LEAD = 8 + 4  # command header (function code 0), call number
+ANSWER_LEAD = 16 + 5  # telemetry header, call number, success
+_request = struct.Struct(">HBBHBB").pack
+_answer = struct.Struct(">HBBH10x").pack
+_call = struct.Struct("<I")
+_outcome = struct.Struct("<IB")
+SERVE_TIMEOUT_NS = 500_000_000
+POLL = 0
+FOREVER_MS = -1
+PACE_NS = 100_000  # between two looks whether the callers have room for the next segment of an answer
+PATIENCE = 100  # looks
+WINDOW = 4  # packets of long requests and answers that may wait
+
+
+def request_packets(msg_id: int, number: int, body: bytes, most: int) -> Iterator[bytes]:
+    """The packets of a request; the bus fills in sequence count, length and checksum.
+
+    Args:
+        msg_id: of the service's requests.
+        number: of the call.
+        body: the serialised request.
+        most: bytes that a packet may have.
+    """
+    lead = _call.pack(number)
+    for flags, piece in _pieces(body, most - REQUEST_LEAD):
+        yield _request(msg_id, flags, 0, len(piece) + REQUEST_LEAD - 7, 0, 0) + lead + piece
+
+
+def answer_packets(msg_id: int, number: int, good: bool, body: bytes, most: int) -> Iterator[bytes]:
+    """The packets of an answer; the bus fills in sequence count, length and time.
+
+    Args:
+        msg_id: of the service's answers.
+        number: of the call.
+        good: whether it succeeded.
+        body: the serialised response, or the error's text.
+        most: bytes that a packet may have.
+    """
+    lead = _outcome.pack(number, good)
+    for flags, piece in _pieces(body, most - ANSWER_LEAD):
+        yield _answer(msg_id, flags, 0, len(piece) + ANSWER_LEAD - 7) + lead + piece
+
+
+def call_of_request(packet: bytes) -> int:
+    """The number of the call that a request belongs to."""
+    number: int = _call.unpack_from(packet, REQUEST_LEAD - 4)[0]
+    return number
+
+
+def call_of_answer(packet: bytes) -> tuple[int, bool]:
+    """The number of the call that an answer belongs to, and whether the call succeeded."""
+    number, good = _outcome.unpack_from(packet, ANSWER_LEAD - 5)
+    return number, bool(good)
+
+
+class Pieces:
+    """Puts segments together, those of each call for themselves.
+
+    Args:
+        lead: bytes of a packet in front of the piece.
+    """
+
+    def __init__(self, lead: int) -> None:
+        self._lead = lead
+        self._parts: dict[int, list[bytes]] = {}
+
+    def add(self, number: int, packet: bytes) -> bytes | None:
+        """Take a packet of a call; the whole request or answer if it is the last one."""
+        flags, piece = packet[2] & WHOLE, packet[self._lead :]
+        if flags == WHOLE:
+            return piece
+        if flags == FIRST:
+            self._parts[number] = [piece]
+            return None
+        parts = self._parts.get(number)
+        if parts is None:
+            return None  # its beginning came before this side was there
+        parts.append(piece)
+        return b"".join(self._parts.pop(number)) if flags == LAST else None
+
+
+def _pieces(body: bytes, room: int) -> Iterator[tuple[int, bytes]]:
+    """What goes into each packet, with its sequence flags."""
+    size = len(body)
+    if size <= room:
+        yield WHOLE, body
+        return
+    for start in range(0, size, room):
+        yield FIRST if start == 0 else LAST if start + room >= size else MIDDLE, body[start : start + room]
+
+
+def response_of(response: Any, response_class: MessageClass) -> Any:
+    """The response that a handler's return value means.
+
+    Args:
+        response: a response, or what it is made of: a list or tuple, a dictionary, or the value of its only field.
+        response_class: its class.
+
+    Raises:
+        ServiceException: the value does not fit.
+    """
+    if isinstance(response, Message) and response._type == response_class._type:
+        return response
+    if response is None:
+        raise ServiceException("service handler returned None")
+    try:
+        if isinstance(response, dict):
+            return response_class(**response)
+        if isinstance(response, (list, tuple)):
+            return response_class(*response)
+        return response_class(response)
+    except (TypeError, AttributeError) as error:
+        what = "wrong number of values" if isinstance(response, (list, tuple)) else "invalid value"
+        raise ServiceException(f"handler returned {what}: {error}") from None
+
+
+def room_of(pipe: Pipe, packet: bytes) -> int:
+    """How many packets may wait in a pipe when another is sent; of long messages only a few, as they fill the bus."""
+    return pipe.depth if packet[2] & WHOLE == WHOLE else min(pipe.depth, WINDOW)
+
+
+class Service:
+    """Offers a service; each node has a subclass that knows the node."""
+
+    __module__ = "rospy.impl.tcpros_service"
+    _node: ClassVar[Node]
+
+    def __init__(
+        self,
+        name: str,
+        service_class: ServiceClass,
+        handler: Callable[[Any], Any],
+        buff_size: int = DEFAULT_BUFF_SIZE,
+        error_handler: Callable[..., Any] | None = None,
+    ) -> None:
+        """Offer a service.
+
+        Args:
+            name: of the service.
+            service_class: its type.
+            handler: takes the request and returns what `response_of` understands.
+            buff_size: accepted.
+            error_handler: takes (error, type, value, traceback) of an exception in the handler; None logs it.
+
+        Before `init_node`, it is offered from then on.
+
+        Raises:
+            ServiceException: the node offers it already.
+            ValueError: an empty name.
+        """
+        node = self._node
+        if not name or not isinstance(name, str):
+            raise ValueError("service name is not a non-empty string")
+        self.resolved_name = node.names.resolve_name(name)
+        self.service_class = service_class
+        self.request_class = service_class._request_class
+        self.response_class = service_class._response_class
+        self.type = service_class._type
+        self.handler = handler
+        self.buff_size = buff_size
+        if error_handler is not None:
+            self.error_handler = error_handler  # type: ignore[method-assign]  # as in rospy, an instance's own
+        self.uri = f"rosrpc://{node.universe.host_name}:{node.universe.pid}"
+        self._done = False
+        self._pipe = NO_PIPE
+        self._tasks = 0  # that serve
+        self._busy = 0  # of them in the handler
+        self._pieces = Pieces(REQUEST_LEAD)
+        self._unpack = unpacker(self.request_class)
+        self._pack = packer(self.response_class)
+        self._entry: ServiceEntry
+        if node.initialized:
+            self._entry = node.graph.register_service(self)
+        elif any(each.resolved_name == self.resolved_name for each in node.services):
+            raise ServiceException(f"service [{self.resolved_name}] already registered")
+        node.services.append(self)
+        if node.initialized:
+            self._begin()
+
+    def connect(self) -> None:
+        """The node is initialised: offer the service that was made before."""
+        self._entry = self._node.graph.register_service(self)
+        self._begin()
+
+    @property
+    def node(self) -> Node:
+        """The node that offers it."""
+        return self._node
+
+    def _begin(self) -> None:
+        name = self._node.task_name(self.resolved_name)
+        self._open(name)
+        self._node.start_child(name, self._serve)
+
+    def _open(self, name: str) -> None:
+        if self._pipe == NO_PIPE:
+            bus = self._node.cfe.sb
+            depth = bus.config.os_queue_max_depth
+            self._pipe = bus.create_pipe(depth, name)
+            bus.subscribe_ex(self._entry.request_id, self._pipe, 0, depth)
+
+    def error_handler(self, error: Exception, exc_type: Any, exc_value: Any, tb: Any) -> None:
+        """Log an exception in the handler."""
+        self._node.logs.logerr("Error processing request: %s\n%s", error, traceback_text(error))
+
+    def shutdown(self, reason: str = "") -> None:
+        """Offer the service no longer; callers whose requests wait get an error."""
+        if self._done:
+            return
+        self._done = True
+        self._node.graph.forget_service(self)
+        if self in self._node.services:
+            self._node.services.remove(self)
+        if not self._node.initialized:
+            return
+        callers = [call.pipe for call in self._entry.calls.values()]
+        for pipe in map(self._node.cfe.sb.find_pipe, [self._pipe, *callers]):
+            if pipe is not None:
+                self._node.kernel.wake_all(pipe.waits, TIMEOUT)
+
+    def spin(self) -> None:
+        """Wait until the service or the node is shut down."""
+        waits = WaitList(f"the end of service {self.resolved_name}")
+        try:
+            while not self._node.life.is_shutdown() and not self._done:
+                self._node.life.wait(waits, SERVE_TIMEOUT_NS)
+        except KeyboardInterrupt:
+            self._node.life.signal_shutdown("keyboard interrupt")
+
+    # -- in its tasks ------------------------------------------------------------------------------------------------
+
+    def attend(self) -> None:
+        """A request waits: see to it that a task is free for it."""
+        if self._busy >= self._tasks and not self._done:
+            self._tasks += 1
+            self._node.start_task(self.resolved_name, self._help)
+
+    def has_room(self, packet: bytes) -> bool:
+        """Whether a packet of a request may be sent; none before the first task has made the pipe."""
+        pipe = self._node.cfe.sb.find_pipe(self._pipe)
+        return pipe is not None and len(pipe.items) < room_of(pipe, packet)
+
+    def _serve(self) -> None:
+        """The first task: it stays as long as the service is offered."""
+        self._tasks += 1
+        self._work(FOREVER_MS)
+        self.give_back()
+
+    def _help(self) -> None:
+        """Another task: it ends when no request waits."""
+        self._open(self._node.kernel.current.name)
+        self._work(POLL)
+
+    def _work(self, timeout_ms: int) -> None:
+        receive = self._node.cfe.sb.receive_buffer
+        try:
+            while not self._done:
+                packet = receive(self._pipe, timeout_ms)
+                if packet is not None and not self._done:
+                    self._take(packet)
+                elif timeout_ms == POLL:
+                    return
+        except CfeError as error:
+            if not self._done:
+                self._node.logs.logerr("service %s ends: %s", self.resolved_name, error)
+        finally:
+            self._tasks -= 1
+            self._attend_waiting()
+
+    def _attend_waiting(self) -> None:
+        pipe = self._node.cfe.sb.find_pipe(self._pipe)
+        if pipe is not None and pipe.items:
+            self.attend()
+
+    def give_back(self) -> None:
+        """Give the pipe back."""
+        pipe, self._pipe = self._pipe, NO_PIPE
+        if pipe != NO_PIPE and self._node.cfe.sb.find_pipe(pipe) is not None:
+            self._node.cfe.sb.delete_pipe(pipe)
+
+    def _take(self, packet: bytes) -> None:
+        number = call_of_request(packet)
+        request = self._pieces.add(number, packet)
+        if request is None:
+            return
+        self._busy += 1
+        try:
+            self._attend_waiting()
+            good, body = self._result(number, request)
+        finally:
+            self._busy -= 1
+        self._answer(number, good, body)
+
+    def _result(self, number: int, data: bytes) -> tuple[bool, bytes]:
+        """Call the handler: whether it went well, and the serialised response or the error's text."""
+        try:
+            request = self._unpack(data, 0)
+        except SerializationError as error:
+            return False, f"service cannot process request: {error}".encode()
+        call = self._entry.calls.get(number)
+        request._connection_header = call.header if call is not None else {}
+        try:
+            return True, self._pack(response_of(self.handler(request), self.response_class))
+        except (ServiceException, ROSInterruptException) as error:
+            return False, f"service cannot process request: {error}".encode()
+        except Exception as error:
+            self.error_handler(error, *sys.exc_info())
+            return False, f"error processing request: {error}".encode()
+
+    def _answer(self, number: int, good: bool, body: bytes) -> None:
+        bus, answer_id = self._node.cfe.sb, self._entry.answer_id
+        for packet in answer_packets(answer_id, number, good, body, bus.config.sb_max_msg_size):
+            self._wait_for_room(packet)
+            bus.transmit_msg(packet)
+
+    def _wait_for_room(self, packet: bytes) -> None:
+        """Let the callers take what they have; each of them reads the answers to all."""
+        find = self._node.cfe.sb.find_pipe
+        for _ in range(PATIENCE):
+            pipes = [find(call.pipe) for call in list(self._entry.calls.values())]  # they come and go
+            if all(pipe is None or len(pipe.items) < room_of(pipe, packet) for pipe in pipes):
+                return
+            self._node.kernel.delay(PACE_NS)
+
+
+class QuietService(Service):
+    """A service that every node has and few call: it costs no pipe, task or MsgId before the first call."""
+
+    def _begin(self) -> None:
+        """Nothing; `attend` starts a task at the first call."""
+
+
+def make_service(node: Node) -> type[Service]:
+    """The class `rospy.Service` of a node."""
+    return type("Service", (Service,), {"__module__": Service.__module__, "_node": node})
+
+
+def make_quiet_service(node: Node) -> type[QuietService]:
+    """The class of a node's services that wait for their first call."""
+    return type("Service", (QuietService,), {"__module__": Service.__module__, "_node": node})

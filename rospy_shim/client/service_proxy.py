@@ -1,0 +1,222 @@
+"""`rospy.ServiceProxy` and `rospy.wait_for_service`: calling a service over the Software Bus.
+
+The caller waits for the answer in a pipe of its node that has subscribed to the service's answers.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from cfepy.status import CfeError
+from rospy_shim.client.exceptions import ROSException, ROSInterruptException, ServiceException
+from rospy_shim.client.message import args_kwds_to_message, packer, unpacker
+from rospy_shim.client.rostime import nanoseconds
+from rospy_shim.client.service import ANSWER_LEAD, Pieces, call_of_answer, request_packets
+from rospy_shim.graph.graph import ServiceCall
+
+if TYPE_CHECKING:
+    from rospy_shim.client.node import Node
+    from rospy_shim.graph.graph import Header, ServiceEntry
+    from rospy_shim.msgs import ServiceClass
+
+LOOK_MS = 500  # how often a caller looks whether the service is still there
+POLL_NS = 20_000_000  # how often wait_for_service looks
+PACE_NS = 100_000  # how often a caller looks whether the service has room for its request
+NO_LIMIT = 0xFFFF
+POLL = 0
+
+
+class AnswerPipes:
+    """The pipes in which a node waits for answers. One is kept from call to call, ready for the same service.
+
+    Args:
+        node: the node.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._spare: tuple[int, int] | None = None  # pipe, and the MsgId that it has subscribed to
+
+    def open(self, answer_id: int) -> int:
+        """A pipe that gets the answers of a service.
+
+        Raises:
+            CfeError: the bus has no room for another pipe or subscriber.
+        """
+        bus = self._node.cfe.sb
+        spare, self._spare = self._spare, None
+        if spare is not None and spare[1] == answer_id:
+            while bus.receive_buffer(spare[0], POLL) is not None:
+                pass  # answers to others
+            return spare[0]
+        if spare is not None:
+            bus.delete_pipe(spare[0])
+        pipe: int = bus.create_pipe(bus.config.os_queue_max_depth, self._node.task_name("answers"))
+        made = bus.find_pipe(pipe)
+        if made is not None:
+            made.keeps_newest = True
+        bus.subscribe_ex(answer_id, pipe, 0, NO_LIMIT)
+        return pipe
+
+    def close(self, answer_id: int, pipe: int) -> None:
+        """The call is over. A pipe is kept as long as the service has room for callers on the bus."""
+        bus = self._node.cfe.sb
+        if bus.find_pipe(pipe) is None:
+            return
+        if self._spare is None and 2 * len(bus.routes[answer_id].destinations) <= bus.config.sb_max_dest_per_pkt:
+            self._spare = pipe, answer_id
+        else:
+            bus.delete_pipe(pipe)
+
+
+class ServiceProxy:
+    """Calls a service; each node has a subclass that knows the node."""
+
+    __module__ = "rospy.impl.tcpros_service"
+    _node: ClassVar[Node]
+
+    def __init__(
+        self, name: str, service_class: ServiceClass, persistent: bool = False, headers: dict[str, str] | None = None
+    ) -> None:
+        """Prepare to call a service.
+
+        Args:
+            name: of the service.
+            service_class: its type.
+            persistent: told to the service; the bus needs no connection that stays.
+            headers: added to the `_connection_header` of the requests.
+        """
+        self.resolved_name = self._node.names.resolve_name(name)
+        self.service_class = service_class
+        self.request_class = service_class._request_class
+        self.response_class = service_class._response_class
+        self.persistent = persistent
+        self._header: Header = {
+            "callerid": "",
+            "md5sum": service_class._md5sum,
+            "service": self.resolved_name,
+            **(headers or {}),
+            **({"persistent": "1"} if persistent else {}),
+        }
+        self._pack = packer(self.request_class)
+        self._unpack = unpacker(self.response_class)
+
+    def __call__(self, *args: Any, **kwds: Any) -> Any:
+        """See `call`."""
+        return self.call(*args, **kwds)
+
+    def call(self, *args: Any, **kwds: Any) -> Any:
+        """Call the service with a request, or with its fields; the response.
+
+        Raises:
+            TypeError, AttributeError: the arguments do not make a request.
+            SerializationError: a field holds what its type cannot carry.
+            ServiceException: there is no such service, or it failed.
+            ROSInterruptException: the node was shut down meanwhile.
+        """
+        node = self._node
+        node.universe.charge()
+        request = args_kwds_to_message(self.request_class, args, kwds)
+        entry = node.graph.services.get(self.resolved_name)
+        if entry is None:
+            raise ServiceException(f"service [{self.resolved_name}] unavailable")
+        self._check_type(entry)
+        body = self._pack(request)
+        try:
+            good, answer = self._exchange(entry, body)
+        except CfeError as error:
+            raise ServiceException(f"service [{self.resolved_name}]: {error}") from error
+        if not good:
+            raise ServiceException(f"service [{self.resolved_name}] responded with an error: {answer!r}")
+        response = self._unpack(answer, 0)
+        response._connection_header = {
+            "callerid": entry.service.node.names.name,
+            "md5sum": self.service_class._md5sum,
+            "service": self.resolved_name,
+            "type": self.service_class._type,
+        }
+        return response
+
+    def _check_type(self, entry: ServiceEntry) -> None:
+        ours, theirs = self.service_class._md5sum, entry.service.service_class._md5sum
+        if ours not in (theirs, "*"):
+            raise ServiceException(
+                f"unable to connect to service: remote error reported: request from [{self._node.names.name}]:"
+                f" md5sums do not match: [{ours}] vs. [{theirs}]"
+            )
+
+    def _exchange(self, entry: ServiceEntry, body: bytes) -> tuple[bool, bytes]:
+        """Send a request and wait for the answer that carries its number."""
+        pipes, answer_id = self._node.answer_pipes, entry.answer_id
+        pipe = pipes.open(answer_id)
+        number = entry.begin(ServiceCall(pipe, {**self._header, "callerid": self._node.names.name}))
+        try:
+            self._send(entry, number, body)
+            return self._await(entry, number, pipe)
+        finally:
+            entry.calls.pop(number, None)
+            pipes.close(answer_id, pipe)
+
+    def _send(self, entry: ServiceEntry, number: int, body: bytes) -> None:
+        bus = self._node.cfe.sb
+        for packet in request_packets(entry.request_id, number, body, bus.config.sb_max_msg_size):
+            while not entry.service.has_room(packet):
+                self._check_both(entry)
+                entry.service.attend()
+                self._node.kernel.delay(PACE_NS)
+            bus.transmit_msg(packet)
+            entry.service.attend()
+
+    def _await(self, entry: ServiceEntry, number: int, pipe: int) -> tuple[bool, bytes]:
+        receive, pieces = self._node.cfe.sb.receive_buffer, Pieces(ANSWER_LEAD)
+        while True:
+            packet = receive(pipe, LOOK_MS)
+            if packet is None:
+                self._check_both(entry)
+                continue
+            answered, good = call_of_answer(packet)
+            answer = pieces.add(answered, packet) if answered == number else None
+            if answer is not None:
+                return good, answer
+
+    def _check_both(self, entry: ServiceEntry) -> None:
+        """Whether both nodes are still there to go on with a call."""
+        if self._node.life.over:
+            raise ROSInterruptException("node shutdown interrupted service call")
+        if self._node.graph.services.get(self.resolved_name) is not entry:
+            raise ServiceException("transport error completing service call: the service has ended")
+
+    def close(self) -> None:
+        """End a persistent connection, of which the bus has none."""
+
+    def wait_for_service(self, timeout: Any = None) -> None:
+        """Wait until the service is there; see the function of that name."""
+        wait_for_service(self._node, self.resolved_name, timeout)
+
+
+def wait_for_service(node: Node, service: str, timeout: Any = None) -> None:
+    """Wait until a node offers a service.
+
+    Args:
+        node: the caller.
+        service: its name.
+        timeout: longest time, seconds or a Duration; None waits for as long as it takes.
+
+    Raises:
+        ROSException: no node offered it in time.
+        ROSInterruptException: the node is shut down.
+    """
+    name, kernel = node.names.resolve_name(service), node.kernel
+    deadline = None if timeout is None else kernel.now + nanoseconds(timeout)
+    while not node.life.is_shutdown():
+        if name in node.graph.services:
+            return
+        if deadline is not None and kernel.now >= deadline:
+            raise ROSException(f"timeout exceeded while waiting for service {name}")
+        kernel.delay(POLL_NS if deadline is None else min(POLL_NS, deadline - kernel.now))
+    raise ROSInterruptException("rospy shutdown")
+
+
+def make_service_proxy(node: Node) -> type[ServiceProxy]:
+    """The class `rospy.ServiceProxy` of a node."""
+    return type("ServiceProxy", (ServiceProxy,), {"__module__": ServiceProxy.__module__, "_node": node})

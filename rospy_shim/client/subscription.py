@@ -1,0 +1,312 @@
+"""`Subscription`: from a packet in a pipe to a node's callbacks; what all handles of a node on one topic share.
+
+It has one pipe and one child task, which calls the callbacks in the order in which they were registered, all with the
+same message object, as rospy's receiving thread does. With a queue size, a full pipe loses the oldest message; without,
+it loses the newest, and the bus reports it.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+from cfepy.nodes.report import traceback_text
+from cfepy.rtos import TIMEOUT
+from cfepy.status import CfeError
+from rospy_shim.client.exceptions import ROSException
+from rospy_shim.client.message import packer, unpacker
+from rospy_shim.client.topic_side import INBOUND, TopicConnection, TopicSide
+from rospy_shim.client.transport import HEADER_BYTES, Assembler, sequence_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rospy_shim.client.node import Node
+    from rospy_shim.graph.graph import Header, TopicEntry
+    from rospy_shim.msgs import MessageClass
+
+DEFAULT_BUFF_SIZE = 65536
+WHOLE = 0xC0
+NO_PIPE = -1
+NO_LIMIT = 0xFFFF
+POLL = 0
+_ADDRESS = re.compile(r"0x[0-9a-f]+")
+
+
+class Subscription(TopicSide):
+    """The subscribing side of one node on one topic (rospy.topics._SubscriberImpl).
+
+    Args:
+        node: the node.
+        name: resolved name of the topic.
+        data_class: message class.
+    """
+
+    def __init__(self, node: Node, name: str, data_class: MessageClass) -> None:
+        super().__init__(node, name, data_class)
+        self._unpack = self._paid(unpacker(data_class))
+        self.queue_size: int | None = None  # messages that may wait; None is as many as the platform allows
+        self.buff_size = DEFAULT_BUFF_SIZE
+        self.tcp_nodelay = False
+        self.callbacks: list[tuple[Callable[..., Any], Any]] = []
+        self._calls: list[tuple[Callable[..., Any], Any]] = []  # those, behind one that measures; replaced, not changed
+        self.connected = False
+        self.latest: Any = None  # kept while a latching publisher is there
+        self._backlog: list[tuple[bytes, Header]] = []
+        self._attention = False  # the task has other work than receiving
+        self._segments = 1  # packets of the longest message so far
+        self._pipe = NO_PIPE
+        self._assembler = Assembler()
+
+    def _paid(self, unpack: Callable[[bytes, int], Any]) -> Callable[[bytes, int], Any]:
+        """`unpack` with the virtual time of a call for each message in arrays, which genpy makes one by one."""
+        count, cost, charge = getattr(self.data_class, "_count_items", None), self.node.call_ns, self.node.kernel.charge
+        if count is None or not cost:
+            return unpack
+
+        def unpack_and_pay(data: bytes, at: int) -> Any:
+            message = unpack(data, at)
+            charge(cost * count(message))
+            return message
+
+        return unpack_and_pay
+
+    def set_queue_size(self, queue_size: int | None) -> None:
+        """Let so many messages wait, and drop the oldest one when another comes.
+
+        Args:
+            queue_size: messages; -1 or None is as many as the platform allows.
+
+        Raises:
+            ROSException: it is 0, or no integer.
+        """
+        if queue_size is not None and type(queue_size) is not int:
+            raise ROSException("queue size must be an integer")
+        if queue_size == 0:
+            raise ROSException("queue size may not be set to zero")
+        self.queue_size = None if queue_size == -1 else queue_size
+        self._size_pipe()
+
+    def expect_segments(self, count: int) -> None:
+        """A message of so many packets comes: the queue is to hold as many messages as before."""
+        if count > self._segments:
+            self._segments = count
+            self._size_pipe()
+
+    def _size_pipe(self) -> None:
+        pipe = self.node.cfe.sb.find_pipe(self._pipe) if self._pipe != NO_PIPE else None
+        if pipe is not None:
+            pipe.depth, pipe.keeps_newest = self._depth(), self.queue_size is not None
+
+    def _depth(self) -> int:
+        """Packets that the pipe holds."""
+        most: int = self.node.cfe.sb.config.os_queue_max_depth
+        return most if self.queue_size is None else min(self.queue_size * self._segments, most)
+
+    def set_buff_size(self, buff_size: int) -> None:
+        """Check a buffer size; a packet is always read as a whole.
+
+        Raises:
+            ROSException: it is no positive integer.
+        """
+        if not isinstance(buff_size, int) or buff_size <= 0:
+            raise ROSException("buffer size must be a positive integer")
+        self.buff_size = buff_size
+
+    def set_tcp_nodelay(self, tcp_nodelay: bool) -> None:
+        """Remember the wish; the bus never delays."""
+        self.tcp_nodelay = tcp_nodelay
+
+    def add_callback(self, callback: Callable[..., Any], argument: Any) -> None:
+        """Call this too, at once with a latched message that has come already.
+
+        Raises:
+            ROSException: the subscription is closed.
+        """
+        if self.closed:
+            raise ROSException(f"subscriber [{self.name}] has been closed")
+        self.callbacks = [*self.callbacks, (callback, argument)]
+        self._calls = [*self._calls, (callback, argument)]
+        if self.latest is not None:
+            self._call(callback, argument, self.latest)
+
+    def remove_callback(self, callback: Callable[..., Any], argument: Any) -> None:
+        """Do not call this any more."""
+        for each in ("callbacks", "_calls"):
+            kept = list(getattr(self, each))
+            if (callback, argument) in kept:
+                kept.remove((callback, argument))
+            setattr(self, each, kept)
+
+    def connect(self) -> None:
+        """The node is initialised: go on the graph.
+
+        Raises:
+            UsageError: the topic's MsgId belongs to another topic.
+        """
+        self.connected = True
+        topic = self.topic = self.node.topic_for(self.name, self.data_class)
+        if topic is not None:
+            if self.node.params.get_param("/enable_statistics", False):
+                self._measure()
+            name = self.node.task_name(self.name)
+            self._open(topic, name)
+            self.node.start_child(name, lambda: self._serve(topic))
+
+    def _open(self, topic: TopicEntry, name: str) -> None:
+        """Make the pipe and join the topic; what comes from now on waits for the task."""
+        bus = self.node.cfe.sb
+        self._pipe = bus.create_pipe(self._depth(), name)
+        self._size_pipe()
+        bus.subscribe_ex(topic.msg_id, self._pipe, 0, NO_LIMIT)  # the pipe's depth is the limit, and can be changed
+        topic.add_subscription(self)
+        for link in list(topic.links):
+            link.peer_joined(self)
+
+    def _measure(self) -> None:
+        """Have each message go through the statistics first (rospy.impl.statistics)."""
+        statistics = self.node.universe.importer.load("rospy.impl.statistics").SubscriberStatisticsLogger(self)
+        pack = packer(self.data_class)
+        received: dict[str, int] = {}  # bytes by sender
+
+        def count(message: Any) -> None:
+            sender = message._connection_header["callerid"]
+            received[sender] = received.get(sender, 0) + len(pack(message))
+            statistics.callback(message, sender, received[sender])
+
+        self._calls = [(count, None), *self._calls]
+
+    def close(self) -> None:
+        """Leave the graph. The task that serves it ends when it is back from its callbacks."""
+        self.closed = True
+        if self.node.subscriptions.get(self.name) is self:
+            del self.node.subscriptions[self.name]
+        if self.topic is not None:
+            self.topic.remove_subscription(self)
+            self.topic.leave()
+            if self._pipe != NO_PIPE:
+                self.node.cfe.sb.unsubscribe(self.topic.msg_id, self._pipe)
+            self.topic = None
+        self._call_attention()
+
+    @property
+    def connections(self) -> list[TopicConnection]:
+        """The nodes that publish."""
+        if self.topic is None or self not in self.topic.subscriptions:
+            return []
+        return [self.connection(each.node, INBOUND) for each in self.topic.links]
+
+    def get_stats(self) -> tuple[str, list[tuple[int, int, int, int, bool]]]:
+        """The side as getBusStats gives it: topic, and for each connection number, bytes, messages, drops, state."""
+        rows = zip(self.connections, self.topic.links if self.topic is not None else (), strict=False)
+        return self.name, [(each.id, link.message_data_sent, link.seq, -1, True) for each, link in rows]
+
+    def deliver(self, payload: bytes, header: Header) -> None:
+        """Give this subscriber alone a message: a latched one, or one of a SubscribeListener."""
+        self._backlog.append((payload, header))
+        self._call_attention()
+
+    def _call_attention(self) -> None:
+        self._attention = True
+        pipe = self.node.cfe.sb.find_pipe(self._pipe) if self._pipe != NO_PIPE else None
+        if pipe is not None:
+            self.node.kernel.wake_all(pipe.waits, TIMEOUT)
+
+    # -- in the task -------------------------------------------------------------------------------------------------
+
+    def _serve(self, topic: TopicEntry) -> None:
+        try:
+            self._take_latched(topic)
+            self._receive(topic)
+        except CfeError as error:
+            if self._pipe != NO_PIPE:
+                self.node.logs.logerr("subscription of %s ends: %s", self.name, error)
+        finally:
+            self.give_back()
+
+    def _take_latched(self, topic: TopicEntry) -> None:
+        """As for a new subscriber of a latching publisher in ROS: of all that came before, only the last counts."""
+        if topic.latching and not self.closed:
+            while self.node.cfe.sb.receive_buffer(self._pipe, POLL) is not None:
+                pass
+            for link in topic.links:
+                link.give_latched(self)
+
+    def give_back(self) -> None:
+        """Give the pipe back."""
+        pipe, self._pipe = self._pipe, NO_PIPE
+        if pipe != NO_PIPE and self.node.cfe.sb.find_pipe(pipe) is not None:
+            self.node.cfe.sb.delete_pipe(pipe)
+
+    def _receive(self, topic: TopicEntry) -> None:
+        """Packet after packet; the loop that every received message passes through."""
+        receive, pipe = self.node.cfe.sb.receive_buffer, self._pipe
+        unpack = self._unpack if not topic.raw else self._packet_as_message
+        while True:
+            if self._attention and not self._attend():
+                return
+            packet = receive(pipe)
+            if packet is None:
+                continue
+            if packet[2] < WHOLE and not topic.raw:
+                packet = self._assemble(packet, topic)
+                if packet is None:
+                    continue
+            try:
+                message = unpack(packet, HEADER_BYTES)
+            except Exception as error:
+                self.node.logs.logerr("cannot read a message on %s: %s", self.name, error)
+                continue
+            message._connection_header = topic.header or topic.sender_of(packet)
+            if topic.latching:
+                self.latest = message
+            for callback, argument in self._calls:
+                try:
+                    if argument is None:
+                        callback(message)
+                    else:
+                        callback(message, argument)
+                except Exception as error:
+                    self._bad_callback(callback, error)
+
+    def _attend(self) -> bool:
+        """Handle what came up between two messages; False when the task is to end."""
+        self._attention = False
+        while self._backlog and not self.closed:
+            payload, header = self._backlog.pop(0)
+            message = self._unpack(payload, 0)
+            message._connection_header = header
+            if header.get("latching") == "1":
+                self.latest = message
+            for callback, argument in self._calls:
+                self._call(callback, argument, message)
+        return not self.closed
+
+    def _assemble(self, packet: bytes, topic: TopicEntry) -> bytes | None:
+        header, index = topic.notes.get(sequence_of(packet), (None, None))
+        before = self._assembler.lost
+        whole = self._assembler.add(packet, header["callerid"] if header is not None else "", index)
+        topic.lost += self._assembler.lost - before
+        return whole
+
+    def _packet_as_message(self, packet: bytes, at: int) -> Any:
+        """A raw topic: the message's data are the whole packet."""
+        message = self.data_class()
+        message.data = packet
+        return message
+
+    def _call(self, callback: Callable[..., Any], argument: Any, message: Any) -> None:
+        try:
+            if argument is None:
+                callback(message)
+            else:
+                callback(message, argument)
+        except Exception as error:
+            self._bad_callback(callback, error)
+
+    def _bad_callback(self, callback: Callable[..., Any], error: Exception) -> None:
+        """An exception in a callback is logged, and the next message comes all the same."""
+        where = error.__traceback__
+        text = traceback_text(error.with_traceback(where.tb_next if where is not None else None))
+        name = _ADDRESS.sub("0x0", str(callback))  # an address would be another one in each run
+        self.node.logs.logerr("bad callback: %s\n%s", name, text)

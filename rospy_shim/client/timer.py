@@ -1,0 +1,175 @@
+"""`rospy.Rate` and `rospy.Timer`: a loop pacer that keeps to its grid, and a thread that calls back at a period.
+
+A loop that is late catches up; one that is more than two periods late starts a new grid, all in integers. A timer is a
+`threading.Thread` of the node's own `threading`, so that an exception in the callback ends it the way Python shows it,
+and nodes can join it (rospy.timer).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+from cfepy.units import NS_PER_S
+from rospy_shim.client.exceptions import ROSInterruptException, ROSTimeMovedBackwardsException
+from rospy_shim.client.rostime import Duration, Time
+
+if TYPE_CHECKING:
+    from rospy_shim.client.node import Node
+
+
+class TimerEvent(NamedTuple):
+    """What a timer tells its callback; the three `last_` values are None the first time."""
+
+    last_expected: Time | None
+    last_real: Time | None
+    current_expected: Time
+    current_real: Time
+    last_duration: float | None
+
+
+TimerEvent.__module__ = "rospy.timer"
+
+
+def make_timer(node: Node) -> type:
+    """The class `rospy.Timer` of a node."""
+    threading = node.universe.importer.load("threading")
+    base: Any = threading.Thread
+
+    class Timer(base):  # type: ignore[misc]  # the base exists in the node's module universe only
+        """Calls a function periodically in a thread of its own.
+
+        Args:
+            period: a Duration.
+            callback: takes a TimerEvent.
+            oneshot: call it once.
+            reset: go on when simulated time is set back; without it the timer then ends with the exception.
+        """
+
+        def __init__(self, period: Duration, callback: Any, oneshot: bool = False, reset: bool = False) -> None:
+            super().__init__()
+            self._period = period
+            self._callback = callback
+            self._oneshot = oneshot
+            self._reset = reset
+            self._shutdown = False
+            self.daemon = True
+            self.start()
+
+        def shutdown(self) -> None:
+            """No further call."""
+            self._shutdown = True
+
+        def run(self) -> None:
+            """The thread."""
+            clock, life = node.clock, node.life
+            rate = node.Rate(NS_PER_S / self._period.to_nsec(), reset=self._reset)
+            expected = clock.get_rostime() + self._period
+            last_expected = last_real = last_duration = None
+            while not life.is_shutdown() and not self._shutdown:
+                try:
+                    rate.sleep()
+                except ROSInterruptException:
+                    if life.is_shutdown():
+                        break
+                    raise
+                if self._shutdown or life.is_shutdown():
+                    break
+                real, began = clock.get_rostime(), clock.wall_ns()
+                self._callback(TimerEvent(last_expected, last_real, expected, real, last_duration))
+                if self._oneshot:
+                    break
+                last_duration = (clock.wall_ns() - began) / NS_PER_S
+                last_expected, last_real = expected, real
+                expected += self._period
+
+    Timer.__module__ = "rospy.timer"
+    Timer.__qualname__ = "Timer"
+    return Timer
+
+
+class Rate:
+    """Sleeps so that a loop runs at a given rate; each node has a subclass that knows the node."""
+
+    __module__ = "rospy.timer"
+    _node: ClassVar[Node]
+
+    def __init__(self, hz: float, reset: bool = False) -> None:
+        """Start the first period now.
+
+        Args:
+            hz: rate in Hz; a negative one never sleeps.
+            reset: when simulated time is set back during a sleep, start a new period instead of raising.
+
+        Raises:
+            ROSInitException: before `init_node`.
+            ZeroDivisionError: a rate of 0.
+        """
+        node = self._node
+        self._last_ns = node.clock.now_ns()
+        self._period_ns = int(1e9 / hz)
+        self._reset = reset
+        self._kernel = node.kernel
+        self._clock = node.clock
+        self._charge = node.universe.charge
+
+    @property
+    def sleep_dur(self) -> Duration:
+        """The period."""
+        return Duration(0, self._period_ns)
+
+    @sleep_dur.setter
+    def sleep_dur(self, value: Any) -> None:
+        self._period_ns = value.to_nsec()
+
+    @property
+    def last_time(self) -> Time:
+        """The beginning of the present period."""
+        return self._node.clock.at(self._last_ns)
+
+    @last_time.setter
+    def last_time(self, value: Any) -> None:
+        self._last_ns = value.to_nsec()
+
+    def remaining(self) -> Duration:
+        """The time that is left of the present period."""
+        now = self._node.clock.now_ns()
+        return Duration(0, self._period_ns - (now - min(now, self._last_ns)))
+
+    def sleep(self) -> None:
+        """Sleep until the present period ends.
+
+        Raises:
+            ROSTimeMovedBackwardsException: simulated time was set back, and the Rate was made without `reset`.
+            ROSInterruptException: simulated time is used, and the node is shut down.
+        """
+        if not self._clock.is_wallclock():
+            self._sleep_on_simulated_time()
+            return
+        kernel = self._kernel
+        now = self._clock.wall_ns()
+        period = self._period_ns
+        end = min(now, self._last_ns) + period  # the clock may have been set back
+        if end > now:
+            kernel.delay(end - now)
+        else:
+            self._charge()
+        self._last_ns = end if now - end <= 2 * period else now
+
+    def _sleep_on_simulated_time(self) -> None:
+        """As `sleep`, on a clock that others set, also back."""
+        clock, now = self._clock, self._clock.now_ns()
+        self._last_ns = min(now, self._last_ns)
+        try:
+            clock.sleep(Duration(0, self._last_ns + self._period_ns - now))
+        except ROSTimeMovedBackwardsException:
+            if not self._reset:
+                raise
+            self._last_ns = clock.now_ns()
+            return
+        end = self._last_ns + self._period_ns
+        self._last_ns = end if now - end <= 2 * self._period_ns else now
+
+
+def make_rate(node: Node) -> type[Rate]:
+    """The class `rospy.Rate` of a node."""
+    return type("Rate", (Rate,), {"__module__": Rate.__module__, "_node": node})

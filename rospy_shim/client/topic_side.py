@@ -1,0 +1,98 @@
+"""What the two sides of a topic have in common: the handles that share one, its connections and its lock
+(rospy.topics._TopicImpl).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from cfepy.rtos import Mutex
+
+if TYPE_CHECKING:
+    from rospy_shim.client.node import Node
+    from rospy_shim.graph.graph import TopicEntry
+    from rospy_shim.msgs import MessageClass
+
+INBOUND, OUTBOUND, BIDIRECTIONAL = "i", "o", "b"  # rospy.impl.transport
+
+
+class TopicConnection(NamedTuple):
+    """A node at the other side, under the names by which libraries such as actionlib look for it."""
+
+    id: int
+    endpoint_id: str  # a subscriber's name, or a publisher's URI
+    callerid_pub: str
+    direction: str  # "o" or "i"
+    name: str  # of the topic
+    type: str
+    md5sum: str
+    transport_type: str = "TCPROS"
+    done: bool = False
+
+    def get_transport_info(self) -> str:
+        """What rosnode prints of a connection."""
+        return f"TCPROS connection on port {self.id} to [cfepy:{self.id} on socket {self.id}]"
+
+
+class TopicSide:
+    """One side of one node on one topic, which all handles share (rospy.topics._TopicImpl).
+
+    Args:
+        node: the node.
+        name: resolved name of the topic.
+        data_class: message class.
+    """
+
+    def __init__(self, node: Node, name: str, data_class: MessageClass) -> None:
+        self.node = node
+        self.name = self.resolved_name = name
+        self.data_class = data_class
+        self.ref_count = 0  # handles
+        self.closed = False
+        self.topic: TopicEntry | None = None  # None until connected, and when the node is shut down or the types differ
+        self._mutex = Mutex(node.kernel, name)
+        self._ids: dict[str, int] = {}
+
+    @property
+    def type(self) -> str:
+        """The message type."""
+        return str(self.data_class._type)
+
+    @property
+    def connections(self) -> list[TopicConnection]:
+        """The nodes at the other side."""
+        return []
+
+    def connection(self, peer: Node, direction: str) -> TopicConnection:
+        """The connection to another node; its number stays the same."""
+        name, message = peer.names.name, self.data_class
+        number = self._ids.get(name) or self._ids.setdefault(name, next(self.node.connection_numbers))
+        endpoint = name if direction == OUTBOUND else str(peer.client.get_node_uri())
+        return TopicConnection(number, endpoint, name, direction, self.name, message._type, message._md5sum)
+
+    def get_num_connections(self) -> int:
+        """How many are at the other side."""
+        return len(self.connections)
+
+    def has_connections(self) -> bool:
+        """Whether any node is at the other side."""
+        return self.get_num_connections() > 0
+
+    def has_connection(self, endpoint_id: str) -> bool:
+        """Whether a node is at the other side: a subscriber by its name, a publisher by its URI."""
+        return any(each.endpoint_id == endpoint_id for each in self.connections)
+
+    def get_stats_info(self) -> list[tuple[int, str, str, str, str, bool, str]]:
+        """The connections as getBusInfo gives them: number, other side, direction, transport, topic, state, text."""
+        return [
+            (each.id, each.endpoint_id, each.direction, each.transport_type, self.name, True, each.get_transport_info())
+            for each in self.connections
+        ]
+
+    def acquire(self) -> None:
+        """Take the lock that serialises publishing."""
+        self._mutex.take()
+
+    def release(self) -> None:
+        """Give that lock back."""
+        self._mutex.give()

@@ -1,0 +1,236 @@
+"""The ROS graph of a mission: nodes, topics with their MsgIds, who publishes and who subscribes (ROS's master).
+
+A topic has one MsgId (`rospy_shim.graph.msg_ids`).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from cfepy.cached import CachedProperty
+from rospy_shim.client.exceptions import ServiceException
+from rospy_shim.client.transport import sequence_of
+from rospy_shim.graph.msg_ids import COMMAND_BIT, MsgIds
+from rospy_shim.parameters.tree import ParameterTree
+
+if TYPE_CHECKING:
+    from cfepy.nodes import RosConfig
+    from rospy_shim.client.link import Link
+    from rospy_shim.client.node import Node
+    from rospy_shim.client.service import Service
+    from rospy_shim.client.subscription import Subscription
+    from rospy_shim.msgs import MessageClass
+
+Header = dict[str, str]
+"""What ROS tells the two ends of a connection: caller, type, md5sum, topic, ..."""
+
+
+class TopicRow(NamedTuple):
+    """A topic in the mission's tables.
+
+    `dropped` counts long messages that lost a segment in a full pipe; the bus itself counts the other losses.
+    `held_back` counts messages that had to wait because the board publishes no faster. `definition` is the type's full
+    text. `latched` counts messages that were given to one new subscriber alone.
+    """
+
+    name: str
+    msg_id: int
+    type: str
+    publishers: tuple[str, ...]
+    subscribers: tuple[str, ...]
+    dropped: int
+    held_back: int = 0
+    definition: str = ""
+    latched: int = 0
+
+
+class TopicEntry:
+    """One topic: the MsgId and both sides."""
+
+    def __init__(self, name: str, msg_id: int, raw: bool) -> None:
+        self.name = name
+        self.msg_id = msg_id
+        self.raw = raw
+        self.type = ""  # of the node that came first, as long as any is there
+        self.md5sum = ""
+        self.definition = ""
+        self._members = 0
+        self.links: list[Link] = []
+        self.subscriptions: list[Subscription] = []
+        self.publisher_names: list[str] = []  # all publishers that there ever were, for the tables
+        self.subscriber_names: list[str] = []
+        self.header: Header | None = None  # of the only publisher; None when a message must be looked up in `notes`
+        self._shared = False  # there were two publishers at a time; packets of one that left may still wait in pipes
+        self.latching = False
+        self.latched = 0  # messages that one new subscriber got, which came after they were published
+        self.held_back = 0  # messages that waited for the board's publishing rate
+        self.lost = 0  # long messages of which a segment is missing, once per subscriber
+        self.notes: dict[int, tuple[Header, int]] = {}  # by sequence count: publisher, and number of the segment
+
+    def join(self, data_class: MessageClass) -> bool:
+        """A node wants to connect: whether the message class is the topic's. The first one that comes decides."""
+        if self._members == 0 or not self.type:
+            concrete = data_class._type != "*"
+            self.type, self.md5sum = (data_class._type, data_class._md5sum) if concrete else (self.type, "")
+            self.definition = data_class._full_text if concrete else self.definition
+        elif data_class._type != "*" and self.md5sum not in ("", data_class._md5sum):
+            return False
+        self._members += 1
+        return True
+
+    def leave(self) -> None:
+        """A node that joined is gone."""
+        self._members -= 1
+
+    def add_link(self, link: Link) -> None:
+        """A publisher came."""
+        self.links.append(link)
+        _remember(self.publisher_names, link.node.names.name)
+        self._refresh()
+
+    def remove_link(self, link: Link) -> None:
+        """A publisher left."""
+        if link in self.links:
+            self.links.remove(link)
+            self._refresh()
+
+    def add_subscription(self, subscription: Subscription) -> None:
+        """A subscriber came."""
+        self.subscriptions.append(subscription)
+        _remember(self.subscriber_names, subscription.node.names.name)
+
+    def remove_subscription(self, subscription: Subscription) -> None:
+        """A subscriber left."""
+        if subscription in self.subscriptions:
+            self.subscriptions.remove(subscription)
+            for link in self.links:
+                link.peer_left(len(self.subscriptions))
+
+    def _refresh(self) -> None:
+        self._shared = shared = self._shared or len(self.links) > 1
+        for link in self.links:
+            link.shared = shared
+        self.header = None if shared else self.links[0].header if self.links else self.header
+        self.latching = any(link.is_latch for link in self.links)
+
+    def sender_of(self, packet: bytes) -> Header:
+        """The connection header of the publisher that sent a packet."""
+        if self.header is not None:
+            return self.header
+        note = self.notes.get(sequence_of(packet))
+        if note is not None:
+            return note[0]
+        return {"callerid": "", "latching": "0", "md5sum": self.md5sum, "topic": self.name, "type": self.type}
+
+
+class ServiceCall(NamedTuple):
+    """A service call under way: the caller's pipe for the answer, and what the request says of it."""
+
+    pipe: int
+    header: Header
+
+
+class ServiceEntry:
+    """A service that is offered.
+
+    Args:
+        service: handles its requests.
+        ids: gives it its MsgIds when they are first asked for.
+    """
+
+    def __init__(self, service: Service, ids: MsgIds) -> None:
+        self.service = service
+        self.calls: dict[int, ServiceCall] = {}  # by number
+        self._ids = ids
+        self._count = 0
+
+    @CachedProperty
+    def answer_id(self) -> int:
+        """MsgId of its answers."""
+        return self._ids.of_service(self.service.resolved_name)
+
+    @property
+    def request_id(self) -> int:
+        """MsgId of its requests: that of its answers with the command bit."""
+        return self.answer_id | COMMAND_BIT
+
+    def begin(self, call: ServiceCall) -> int:
+        """The number of a new call."""
+        self._count = number = self._count + 1
+        self.calls[number] = call
+        return number
+
+
+class Graph:
+    """All nodes and topics of one mission.
+
+    Args:
+        config: what the mission file says about ROS.
+    """
+
+    def __init__(self, config: RosConfig) -> None:
+        self._config = config
+        self.topics: dict[str, TopicEntry] = {}
+        self.nodes: dict[str, Node] = {}
+        self.services: dict[str, ServiceEntry] = {}
+        self.params = ParameterTree(config.params)
+        self.ids = MsgIds(config)
+
+    def topic(self, name: str) -> TopicEntry:
+        """The topic of a resolved name.
+
+        Raises:
+            UsageError: its MsgId belongs to another topic.
+        """
+        topic = self.topics.get(name)
+        if topic is None:
+            pinned = self._config.topics.get(name)
+            topic = self.topics[name] = TopicEntry(name, self.ids.of_topic(name), pinned is not None and pinned.raw)
+        return topic
+
+    def register_node(self, node: Node) -> None:
+        """A node has its name; one that has the same name already is shut down, as ROS does it."""
+        name = node.names.name
+        former = self.nodes.get(name)
+        self.nodes[name] = node
+        if former is not None and former is not node:
+            former.give_way()
+
+    def forget_node(self, node: Node) -> None:
+        """A node is gone."""
+        if self.nodes.get(node.names.name) is node:
+            del self.nodes[node.names.name]
+
+    def register_service(self, service: Service) -> ServiceEntry:
+        """A node offers a service; one of another node under that name is shut down, as ROS forgets it.
+
+        Raises:
+            ServiceException: the same node offers it already.
+        """
+        name = service.resolved_name
+        former = self.services.get(name)
+        if former is not None and former.service.node is service.node:
+            raise ServiceException(f"service [{name}] already registered")
+        entry = ServiceEntry(service, self.ids)
+        if former is not None:
+            former.service.shutdown("another node offers the service")
+        self.services[name] = entry
+        return entry
+
+    def forget_service(self, service: Service) -> None:
+        """A service is offered no longer."""
+        entry = self.services.get(service.resolved_name)
+        if entry is not None and entry.service is service:
+            del self.services[service.resolved_name]
+
+    def published(self, namespace: str) -> list[list[str]]:
+        """[name, type] of the topics below a namespace that a node publishes."""
+        prefix = namespace.rstrip("/") + "/"
+        return [
+            [topic.name, topic.type] for topic in self.topics.values() if topic.links and topic.name.startswith(prefix)
+        ]
+
+
+def _remember(names: list[str], name: str) -> None:
+    if name not in names:
+        names.append(name)

@@ -1,0 +1,177 @@
+"""The registrations of the master: the mission's nodes as they are, and entries that programs made themselves.
+
+A program may tell the master of publishers, subscribers and services of any URI (registerPublisher and its kin). The
+master keeps such an entry, as ROS's does, but it brings no messages: no node answers at that URI.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from rospy_shim.client.names import ANYTYPE
+
+if TYPE_CHECKING:
+    from rospy_shim.client.node import Node
+    from rospy_shim.graph.graph import Graph
+
+Entries = dict[str, dict[str, str]]
+"""By topic or service, or by parameter: names of nodes and their URIs."""
+
+
+def uri_of(node: Node) -> str:
+    """The URI at which a node answers."""
+    return node.client.get_node_uri() or ""
+
+
+class Registrations:
+    """What the master of a mission knows.
+
+    Args:
+        graph: the mission's ROS graph.
+    """
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        self._publishers: Entries = {}
+        self._subscribers: Entries = {}
+        self._providers: Entries = {}
+        self._service_uris: dict[str, str] = {}
+        self._types: dict[str, str] = {}
+        self._uris: dict[str, str] = {}  # of nodes that were named by hand
+        self.param_subscribers: Entries = {}
+
+    # -- questions ---------------------------------------------------------------------------------------------------
+
+    def publishers(self) -> Entries:
+        """Topics that nodes publish, with the nodes."""
+        found = self._of_nodes(
+            (name, node) for node in self._nodes() for name, link in node.links.items() if link.topic
+        )
+        return _merged(found, self._publishers)
+
+    def subscribers(self) -> Entries:
+        """Topics that nodes subscribe to, with the nodes."""
+        pairs = ((name, node) for node in self._nodes() for name, each in node.subscriptions.items() if each.topic)
+        return _merged(self._of_nodes(pairs), self._subscribers)
+
+    def providers(self) -> Entries:
+        """Services that nodes offer, with the nodes."""
+        pairs = ((name, entry.service.node) for name, entry in self._graph.services.items())
+        return {**self._providers, **self._of_nodes(pairs)}
+
+    def topic_types(self) -> dict[str, str]:
+        """Types of all topics that ever had one."""
+        found = {topic.name: topic.type for topic in self._graph.topics.values() if topic.type}
+        for name in self.publishers():
+            found.setdefault(name, self._types.get(name, ANYTYPE))
+        return {**self._types, **found}
+
+    def node_uri(self, name: str) -> str | None:
+        """Where a node answers; None for one that is unknown."""
+        node = self._graph.nodes.get(name)
+        return self._uris.get(name) if node is None else uri_of(node)
+
+    def service_uri(self, name: str) -> str | None:
+        """Where a service is called; None for one that is unknown."""
+        entry = self._graph.services.get(name)
+        return self._service_uris.get(name) if entry is None else entry.service.uri
+
+    def _nodes(self) -> Iterator[Node]:
+        yield from self._graph.nodes.values()
+
+    def _of_nodes(self, pairs: Iterator[tuple[str, Node]]) -> Entries:
+        found: Entries = {}
+        for name, node in pairs:
+            found.setdefault(name, {})[node.names.name] = uri_of(node)
+        return found
+
+    # -- registrations by hand ---------------------------------------------------------------------------------------
+
+    def register_publisher(self, topic: str, kind: str, caller: str, uri: str) -> None:
+        """A node publishes a topic."""
+        self._enter(self._publishers, topic, caller, uri)
+        if kind != ANYTYPE or topic not in self._types:
+            self._types[topic] = kind
+
+    def register_subscriber(self, topic: str, kind: str, caller: str, uri: str) -> None:
+        """A node subscribes to a topic."""
+        self._enter(self._subscribers, topic, caller, uri)
+        if kind != ANYTYPE:
+            self._types.setdefault(topic, kind)
+
+    def register_service(self, service: str, service_uri: str, caller: str, uri: str) -> None:
+        """A node offers a service; it is the only one from now on."""
+        self._providers.pop(service, None)
+        self._enter(self._providers, service, caller, uri)
+        self._service_uris[service] = service_uri
+
+    def register_param_subscriber(self, key: str, caller: str, uri: str) -> None:
+        """A node wants to be told of changes of a parameter."""
+        self._enter(self.param_subscribers, key, caller, uri)
+
+    def _enter(self, entries: Entries, name: str, caller: str, uri: str) -> None:
+        """Note it; a living node of that name with another URI is replaced, and shut down as ROS does it."""
+        entries.setdefault(name, {})[caller] = uri
+        node = self._graph.nodes.get(caller)
+        if node is None:
+            self._uris[caller] = uri
+        elif uri_of(node).rstrip("/") != uri.rstrip("/"):
+            self._uris[caller] = uri
+            node.give_way()
+
+    # -- the end of registrations ------------------------------------------------------------------------------------
+
+    def unregister_publisher(self, topic: str, caller: str, uri: str) -> bool:
+        """A node publishes a topic no longer; whether it did."""
+        node = self._living(caller, uri)
+        link = node.links.get(topic) if node is not None else None
+        if link is not None:
+            link.close()
+        return self._leave(self._publishers, topic, caller, uri) or link is not None
+
+    def unregister_subscriber(self, topic: str, caller: str, uri: str) -> bool:
+        """A node subscribes to a topic no longer; whether it did."""
+        node = self._living(caller, uri)
+        subscription = node.subscriptions.get(topic) if node is not None else None
+        if subscription is not None:
+            subscription.close()
+        return self._leave(self._subscribers, topic, caller, uri) or subscription is not None
+
+    def unregister_service(self, service: str, caller: str) -> None:
+        """A node offers a service no longer."""
+        entry = self._graph.services.get(service)
+        if entry is not None and entry.service.node.names.name == caller:
+            entry.service.shutdown("unregistered at the master")
+        self._leave(self._providers, service, caller, None)
+        self._service_uris.pop(service, None)
+
+    def unregister_param_subscriber(self, key: str, caller: str, uri: str) -> bool:
+        """A node wants to be told of a parameter no longer; whether it did."""
+        return self._leave(self.param_subscribers, key, caller, uri)
+
+    def _living(self, caller: str, uri: str) -> Node | None:
+        """A living node, if the URI is the node's."""
+        node = self._graph.nodes.get(caller)
+        if node is None or uri_of(node).rstrip("/") != uri.rstrip("/"):
+            return None
+        return node
+
+    def _leave(self, entries: Entries, name: str, caller: str, uri: str | None) -> bool:
+        held = entries.get(name, {})
+        if caller not in held or (uri is not None and held[caller] != uri):
+            return False
+        del held[caller]
+        if not held:
+            del entries[name]
+        everything = (self._publishers, self._subscribers, self._providers, self.param_subscribers)
+        if not any(caller in held for entries in everything for held in entries.values()):
+            self._uris.pop(caller, None)
+        return True
+
+
+def _merged(first: Entries, second: Entries) -> Entries:
+    merged = {name: dict(who) for name, who in first.items()}
+    for name, who in second.items():
+        merged[name] = {**who, **merged.get(name, {})}
+    return merged

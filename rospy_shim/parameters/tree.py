@@ -1,0 +1,178 @@
+"""The parameter server: one tree for the mission.
+
+The tree is what is read, as quick as a dictionary. What changes in it also changes in cFE tables of the application ROS
+(`rospy_shim.parameters.app`), which outlive a processor reset.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from rospy_shim.client.names import SEP, join, namespace_of
+from rospy_shim.parameters.rows import ParameterRows, name_of
+
+_MISSING = object()
+
+
+class ParameterTree:
+    """Parameters of all nodes, by resolved name; a namespace is a dictionary.
+
+    Args:
+        initial: the tree to begin with.
+    """
+
+    def __init__(self, initial: Mapping[str, Any] | None = None) -> None:
+        self._root: dict[str, Any] = {}
+        self._rows: ParameterRows | None = None
+        self._save: Callable[[], object] = _nothing
+        self._started: set[str] = set()
+        self._survived = False
+        for name, value in (initial or {}).items():
+            self.set(join(SEP, name), _plain(value))
+
+    # -- what keeps it -----------------------------------------------------------------------------------------------
+
+    def keep_in(self, rows: ParameterRows, save: Callable[[], object], former: dict[str, Any]) -> None:
+        """Let rows of tables hold the parameters from now on.
+
+        Args:
+            rows: of all tables.
+            save: called when the tables are to be written.
+            former: the parameters that they hold now.
+
+        Raises:
+            ParametersFull: there is no room for the present parameters.
+        """
+        rows.replace("", self._root, former)
+        self._rows, self._save = rows, save
+
+    def restore(self, root: dict[str, Any], rows: ParameterRows, save: Callable[[], object]) -> None:
+        """Take over the parameters that tables hold, in place of what is here; arguments as `keep_in`."""
+        if self._rows is None:
+            self._survived = True  # nothing was set in these tables since the processor started
+        self._root, self._rows, self._save = root, rows, save
+
+    def let_go(self) -> None:
+        """The tables are gone; the parameters stay as long as the processor runs."""
+        self._rows, self._save = None, _nothing
+
+    def give(self, node: str, values: Mapping[str, Any]) -> None:
+        """The private parameters that a mission file has for a node that starts.
+
+        They are set once, as roslaunch does it: a node that starts again, also after a processor reset, finds what it
+        has made of them; only what is missing is set then.
+
+        Args:
+            node: its full name.
+            values: as XML-RPC carries them.
+
+        Raises:
+            ParametersFull: there is no room.
+        """
+        again = self._survived or node in self._started
+        self._started.add(node)
+        for name, value in values.items():
+            key = join(node, name)
+            if not again or self.find(key) is _MISSING:
+                self._set(key, value)
+        self._save()
+
+    # -- what is in it -----------------------------------------------------------------------------------------------
+
+    def find(self, key: str) -> Any:
+        """The value or namespace of a resolved name, or `ParameterTree.MISSING`."""
+        value: Any = self._root
+        for part in _parts(key):
+            if type(value) is not dict or part not in value:
+                return _MISSING
+            value = value[part]
+        return value
+
+    MISSING = _MISSING
+
+    def set(self, key: str, value: Any) -> None:
+        """Give a name a value; a dictionary replaces the whole namespace.
+
+        Raises:
+            TypeError: the root can only be a dictionary.
+            ParametersFull: the tables have no room for it.
+        """
+        self._set(key, value)
+        self._save()
+
+    def _set(self, key: str, value: Any) -> None:
+        parts = _parts(key)
+        if not parts and type(value) is not dict:
+            raise TypeError("cannot set root of parameter tree to non-dictionary")
+        if self._rows is not None:
+            former = self.find(key)
+            self._rows.replace(name_of(parts), value, {} if former is _MISSING else former)
+        if not parts:
+            self._root = dict(value)
+            return
+        place = self._root
+        for part in parts[:-1]:
+            inner = place.get(part)
+            if type(inner) is not dict:
+                inner = place[part] = {}
+            place = inner
+        place[parts[-1]] = value
+
+    def delete(self, key: str) -> None:
+        """Remove a name.
+
+        Raises:
+            KeyError: there is no such name.
+        """
+        *path, last = _parts(key) or [""]
+        place = self.find(SEP.join(path))
+        if type(place) is not dict or last not in place:
+            raise KeyError(key)
+        if self._rows is not None:
+            above = name_of(_parts(SEP.join(path)))
+            self._rows.remove(f"{above}{name_of([last])}", place[last], above if above and len(place) == 1 else None)
+        del place[last]
+        self._save()
+
+    def search(self, namespace: str, key: str) -> str | None:
+        """The name that has the first part of `key` in the namespace or one above it, or None."""
+        first, slash, rest = key.partition(SEP)
+        while True:
+            candidate = join(namespace, first)
+            if self.find(candidate) is not _MISSING:
+                return candidate + slash + rest
+            if namespace == SEP:
+                return None
+            namespace = namespace_of(namespace)
+
+    def names(self) -> list[str]:
+        """All names that have a value."""
+        found: list[str] = []
+        _collect("", self._root, found)
+        return found
+
+
+def _nothing() -> None:
+    """Do nothing: the parameters are not kept over a reset."""
+
+
+def _parts(key: str) -> list[str]:
+    return [part for part in key.split(SEP) if part]
+
+
+def _plain(value: Any) -> Any:
+    """Mappings and sequences of a mission file as dictionaries and lists."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return value
+
+
+def _collect(prefix: str, place: dict[str, Any], found: list[str]) -> None:
+    for name, value in place.items():
+        if type(value) is dict:
+            _collect(f"{prefix}/{name}", value, found)
+        else:
+            found.append(f"{prefix}/{name}")

@@ -1,0 +1,217 @@
+"""The values of parameters, which are those that XML-RPC carries, and their text in ROS's parameter tables.
+
+They are plain Python values; bytes stand for XML-RPC's base64, a `DateTime` for its dateTime.iso8601. As text a value
+is JSON: `10`, `2.5`, `true`, `[1, 2]`, `{}` for an empty namespace. A text needs quotes only where it would be read as
+something else: `hello`, but `"10"`. Bytes are `{"!!binary": "aGVsbG8="}`, a date and time is `{"!!timestamp":
+"20261121T18:50:00"}`. A name is the full one, its parts as they are but for characters that no ROS name has, which are
+`%XX` as in a URL.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+_INT_MAX = 2**31 - 1
+_INT_MIN = -(2**31)
+_BUILT_IN = (int, float, str, bytes, list, tuple, dict)
+_BINARY, _TIME, _ESCAPED = "!!binary", "!!timestamp", "!!map"
+_MARKS = (_BINARY, _TIME, _ESCAPED)
+_BRACKETS = ("[", "{", '"')
+_ODD = re.compile(rb"[^!-~]|[%/]")
+_ESCAPE = re.compile(r"%([0-9A-F]{2})")
+_DATE_TIME = re.compile(r"\d{8}T\d\d:\d\d:\d\d")
+_NO_NAME = "%"  # the part of a name that has no characters
+
+
+@dataclass(frozen=True)
+class DateTime:
+    """A date and time.
+
+    Args:
+        value: as in XML-RPC, "20261121T18:50:00".
+    """
+
+    value: str
+
+    def encode(self, out: Any) -> None:
+        """Write it into a request, as the values that xmlrpc.client knows do; `out` is a file of text."""
+        out.write(f"<value><dateTime.iso8601>{self.value}</dateTime.iso8601></value>\n")
+
+
+def marshalled(value: Any) -> Any:
+    """A copy of a value as it looks after a trip over XML-RPC; bytes stay bytes.
+
+    Raises:
+        TypeError: None, a dictionary key that is no string, or an object that XML-RPC cannot carry.
+        OverflowError: an integer of more than 32 bits.
+    """
+    kind = type(value)
+    if kind in (bool, float, str, bytes, DateTime):
+        return value
+    if kind is int:
+        if not _INT_MIN <= value <= _INT_MAX:
+            raise OverflowError("int exceeds XML-RPC limits")
+        return value
+    if kind in (list, tuple):
+        return [marshalled(item) for item in value]
+    if kind is dict:
+        if any(not isinstance(key, str) for key in value):
+            raise TypeError("dictionary key must be string")
+        return {key: marshalled(item) for key, item in value.items()}
+    return _of_object(value)
+
+
+def _of_object(value: Any) -> Any:
+    kind = type(value)
+    if value is None:
+        raise TypeError("cannot marshal None unless allow_none is enabled")
+    if kind is bytearray:
+        return bytes(value)
+    if (wrapped := _wrapped(value)) is not None:
+        return wrapped
+    if not hasattr(value, "__dict__") or isinstance(value, _BUILT_IN) or kind.__module__ == "datetime":
+        raise TypeError(f"cannot marshal {kind} objects")
+    return marshalled(dict(vars(value)))
+
+
+def _wrapped(value: Any) -> bytes | DateTime | None:
+    """What a date and time, or a value of xmlrpc.client, stands for; every node has classes of its own for these."""
+    match (type(value).__module__, type(value).__name__):
+        case ("datetime", "datetime"):
+            return DateTime(value.strftime("%Y%m%dT%H:%M:%S"))
+        case ("xmlrpc.client", "DateTime"):
+            return DateTime(value.value)
+        case ("xmlrpc.client", "Binary"):
+            return bytes(value.data)
+    return None
+
+
+def leaves_of(name: str, value: Any) -> Iterator[tuple[str, str]]:
+    """(name, text) of every parameter in a value; an empty namespace is one of its own, but for the root.
+
+    Args:
+        name: where the value is, "" for the root; written as in a table.
+        value: a parameter's, or a dictionary of them.
+    """
+    if type(value) is not dict or not value:
+        if name:
+            yield name, text_of(value)
+        return
+    for key, inner in value.items():
+        yield from leaves_of(f"{name}/{written(key)}", inner)
+
+
+def written(part: str) -> str:
+    """One part of a name, as it stands in a table."""
+    if not part:
+        return _NO_NAME
+    raw = part.encode("utf-8", "surrogatepass")
+    return _ODD.sub(lambda match: b"%%%02X" % match[0][0], raw).decode("ascii")
+
+
+def parts_of(name: str) -> list[str]:
+    """The parts of a name that stands in a table.
+
+    Raises:
+        ValueError: it is no full name.
+    """
+    first, *parts = name.split("/")
+    if first or not parts or "" in parts:
+        raise ValueError(f"{name!r} is no full name, such as /robot/rate")
+    return ["" if part == _NO_NAME else _read_part(part) for part in parts]
+
+
+def _read_part(part: str) -> str:
+    if "%" in _ESCAPE.sub("", part):
+        raise ValueError(f"{part!r} has a % that is none of %00 to %FF")
+    raw = re.sub(rb"%([0-9A-F]{2})", lambda match: bytes([int(match[1], 16)]), part.encode("ascii"))
+    return raw.decode("utf-8", "surrogatepass")
+
+
+def text_of(value: Any) -> str:
+    """The text of a value; ASCII in one line."""
+    if type(value) is str and _is_plain(value):
+        return value
+    return json.dumps(_portable(value))
+
+
+def value_of(text: str) -> Any:
+    """The value that a text stands for.
+
+    Raises:
+        ValueError: it begins as JSON does and is not, or is nothing that ROS can carry.
+    """
+    try:
+        found = json.loads(text)
+    except ValueError:
+        if text.startswith(_BRACKETS) or not text:
+            raise ValueError(f"{text!r} is no JSON; a text that begins like that needs quotes") from None
+        return text
+    except RecursionError:
+        raise ValueError("is nested too deeply") from None
+    return _restored(found)
+
+
+def _is_plain(text: str) -> bool:
+    """Whether a text can stand without quotes."""
+    if not text or not (text.isascii() and text.isprintable()) or text != text.strip() or text.startswith(_BRACKETS):
+        return False
+    try:
+        json.loads(text)
+    except ValueError:
+        return True
+    return False
+
+
+def _portable(value: Any) -> Any:
+    """A value in the terms of JSON."""
+    if type(value) is bytes:
+        return {_BINARY: base64.b64encode(value).decode("ascii")}
+    if type(value) is DateTime:
+        return {_TIME: value.value}
+    if type(value) is list:
+        return [_portable(item) for item in value]
+    if type(value) is not dict:
+        return value
+    plain = {key: _portable(item) for key, item in value.items()}
+    return {_ESCAPED: plain} if _is_marked(value) else plain
+
+
+def _restored(value: Any) -> Any:
+    if type(value) is list:
+        return [_restored(item) for item in value]
+    if type(value) is dict:
+        if not _is_marked(value):
+            return {key: _restored(item) for key, item in value.items()}
+        ((mark, inner),) = value.items()
+        if mark == _ESCAPED:
+            return {key: _restored(item) for key, item in dict(inner).items()}
+        return _bytes(inner) if mark == _BINARY else _date_time(inner)
+    if value is None:
+        raise ValueError("null is no value of a ROS parameter")
+    if type(value) is int and not _INT_MIN <= value <= _INT_MAX:
+        raise ValueError(f"{value} has more than 32 bits")
+    return value
+
+
+def _is_marked(value: dict[str, Any]) -> bool:
+    return len(value) == 1 and next(iter(value)) in _MARKS
+
+
+def _date_time(text: Any) -> DateTime:
+    if not isinstance(text, str) or not _DATE_TIME.fullmatch(text):
+        raise ValueError(f"{text!r} is no date and time, such as 20261121T18:50:00")
+    return DateTime(text)
+
+
+def _bytes(text: Any) -> bytes:
+    try:
+        return base64.b64decode(text, validate=True)
+    except (binascii.Error, TypeError, ValueError) as error:
+        raise ValueError(f"{text!r} is no base 64: {error}") from None

@@ -1,0 +1,27 @@
+"""All parsers of the command: one for each subcommand and action, by its words."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+
+from cfepy.cli.main import parser_for
+
+
+def parsers() -> dict[str, argparse.ArgumentParser]:
+    """The parsers that have no subcommands, such as `run` and `topic echo`."""
+    return dict(_leaves("", parser_for([])))
+
+
+def _leaves(words: str, parser: argparse.ArgumentParser) -> Iterator[tuple[str, argparse.ArgumentParser]]:
+    below = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
+    if not below:
+        yield words, parser
+    for action in below:
+        for name, each in action.choices.items():
+            yield from _leaves(f"{words} {name}".strip(), each)
+
+
+def options(parser: argparse.ArgumentParser) -> list[argparse.Action]:
+    """Its options, without --help and what is handed to a tool of ROS as it is."""
+    return [action for action in parser._actions if action.option_strings and action.dest not in ("help", "handed")]

@@ -1,0 +1,211 @@
+"""`cfepy console` without a terminal: lines piped in, a mission in virtual time, a computer elsewhere over UDP."""
+
+from __future__ import annotations
+
+import io
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.ground.console import remote
+from cfepy.cli.main import main
+from cfepy.evs.packets import LONG_EVENT
+from cfepy.msg import get_fcn_code, get_msg_id, telemetry
+from tests.cli.conftest import Write
+
+EVENT = bytes(
+    telemetry(0x0808, LONG_EVENT.pack(PacketID={"AppName": "APP", "EventID": 3, "EventType": 2}, Message="all is well"))
+)
+Console = Callable[..., tuple[int, str]]
+
+
+@pytest.fixture
+def console(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Console:
+    """A session: words of the command line, then the lines that are typed; status and output."""
+
+    def run(*words: str, lines: str) -> tuple[int, str]:
+        monkeypatch.setattr(sys, "stdin", io.StringIO(lines))
+        status = main(["console", *words])
+        captured = capsys.readouterr()
+        return status, captured.out + captured.err
+
+    return run
+
+
+def trace_of(output: str) -> str:
+    return next(line for line in output.splitlines() if line.startswith("trace: "))
+
+
+SESSION = """
+run 1
+# a comment
+SAMPLE_APP_DISPLAY_PARAM ValU32=7 ValStr="two words"
+expect event SAMPLE_APP * INFORMATION "ValU32=7"
+run 20ms
+sample_app_noop
+until event SAMPLE_APP
+run 0.1
+expect app SAMPLE_APP RUNNING
+send raw 1806c00000010000
+expect no event * CRITICAL
+step 3
+reset processor
+run 0.7
+hk
+page SAMPLE_APP_HK_TLM
+"""
+
+
+def test_the_saved_script_repeats_the_run(console: Console, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    script = tmp_path / "session.txt"
+    status, output = console("lab", "--save-script", str(script), lines=SESSION)
+    assert status == 0, output
+    assert "SAMPLE_APP 6 INFORMATION: SAMPLE: ValU32=7, " in output or "ValU32=7" in output
+    assert f"again: cfepy run --script {script} lab" in output
+    saved = script.read_text()
+    assert 'at 1 send SAMPLE_APP_DISPLAY_PARAM ValU32=7 ValStr="two words"\n        expect event' in saved
+    assert "send CFE_ES_RESTART RestartType=1" in saved
+    assert main(["run", "lab", "--script", str(script), "--quiet"]) == 0
+    again = capsys.readouterr().out
+    assert trace_of(again) == trace_of(output)
+    assert "FAILED" not in again
+
+
+def test_what_is_wrong_is_told_and_the_session_goes_on(console: Console) -> None:
+    status, output = console(
+        "lab", lines="CFE_ES_NOPE\nrun 0\nuntil\npage NO_SUCH\nload none.txt\nspeed x\nexpect bus\nrun 0.7\nevents HK\n"
+    )
+    assert status == 1
+    for text in (
+        "no command is called CFE_ES_NOPE; did you mean CFE_ES_NOOP or ",
+        "'0' is not a number of seconds; give more than 0 ",
+        "until what? as in: until event CFE_ES 3",
+        "no telemetry packet is called NO_SUCH",
+        "cannot be read: No such file or directory",
+        "'x' is not a factor",
+        "'bus' is no thing to expect; there are event, tlm, app, file, console",
+    ):
+        assert f"FAILED {text}" in output
+    assert "OPERATIONAL" in output
+
+
+def test_stop_on_failure_ends_the_session(console: Console) -> None:
+    status, output = console("lab", "--stop-on-failure", lines="run 0.7\nexpect app NOBODY\nrun 5\n")
+    assert status == 1
+    assert "FAILED 0.700 expect app NOBODY: there are CFE_EVS, " in output
+    assert "> run 5" not in output
+
+
+def test_a_file_is_done_step_by_step(console: Console, tmp_path: Path) -> None:
+    script = tmp_path / "steps.txt"
+    script.write_text("at 1.25 send CFE_ES_NOOP\nexpect event CFE_ES 3\nafter 0.5 end\n")
+    status, output = console("lab", lines=f"load {script}\nhelp CFE_EVS_ADD_EVENT_FILTER\n")
+    assert status == 0
+    assert f"1.250 {script}:1: at 1.25 send CFE_ES_NOOP" in output
+    assert f"1.760 {script}:3: after 0.5 end" in output
+    assert "CFE_EVS_ADD_EVENT_FILTER AppName:char[20] EventID:u16" in output
+    assert console("lab", "--script", str(script), lines="")[1].count("CFE_ES 3 INFORMATION") == 1
+
+
+def test_the_run_ends_with_its_time_and_an_application_that_died_is_told(console: Console, make_mission: Write) -> None:
+    status, output = console(str(make_mission("Dies")), "--for", "2", lines="run\nrun 1\n")
+    assert status == 1
+    assert "the run is over" in output
+    assert "DIES died: ValueError: boom" in output
+
+
+def test_a_journal_has_what_was_typed(console: Console, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    journal = tmp_path / "run.cfepy"
+    status, output = console("lab", "--record", str(journal), lines="run 1\nSAMPLE_APP_NOOP\nrun 0.5\n")
+    assert status == 0
+    assert main(["replay", str(journal), "--quiet"]) == 0
+    assert trace_of(capsys.readouterr().out) == trace_of(output)
+
+
+def test_a_paced_session_is_repeated_by_its_script(
+    console: Console, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = str(tmp_path / "session.txt")
+    lines = "until app SCH RUNNING\nCFE_ES_NOOP\nexpect event CFE_ES 3\nCFE_SB_NOOP\nrun 0.2\nspeed max\nCFE_TBL_NOOP\n"
+    paced = console("sched", "--realtime", "200", "--port", "1234=0", "--save-script", script, lines=lines)[1]
+    main(["run", "sched", "--script", script, "--quiet"])
+    assert trace_of(capsys.readouterr().out) == trace_of(paced)
+
+
+class Sky:
+    """Stands for the port at which telemetry arrives, and the one to which commands are sent."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *datagrams: bytes) -> None:
+        self.left = list(datagrams)
+        self.sent: list[tuple[str, int, bytes]] = []
+        self.port = 1235
+        monkeypatch.setattr(remote, "UdpListener", self)
+        monkeypatch.setattr(remote, "send_datagram", self.send)
+
+    def __call__(self, host: str, port: int) -> Sky:
+        self.port = port
+        return self
+
+    def __enter__(self) -> Sky:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        pass
+
+    def receive(self, timeout_s: float | None = None) -> bytes | None:
+        return self.left.pop(0) if self.left and self.sent else None
+
+    def send(self, host: str, port: int, data: bytes) -> bool:
+        self.sent.append((host, port, data))
+        return port != 9
+
+
+def test_a_computer_elsewhere(console: Console, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    sky = Sky(monkeypatch, b"no packet", EVENT, bytes(telemetry(0x0999, b"\x01\x02")))
+    script = tmp_path / "session.txt"
+    lines = "CFE_ES_NOOP\nexpect event APP 3 within 60\npage 0x0999\nexpect app HK\npause\nreset processor\n"
+    words = ("--udp", "127.0.0.1:5000", "--listen", "7000", "--save-script", str(script))
+    status, output = console(*words, lines=lines)
+    assert status == 1
+    assert "commands go to 127.0.0.1:5000, telemetry comes to port 7000" in output
+    assert "as by TO_LAB_OUTPUT_ENABLE dest_IP=127.0.0.1" in output
+    assert [(host, port, get_msg_id(packet), get_fcn_code(packet)) for host, port, packet in sky.sent] == [
+        ("127.0.0.1", 5000, 0x1806, 0)
+    ]
+    assert "APP 3 INFORMATION: all is well" in output
+    assert "expect event APP 3 within 60\n" in output
+    assert "0x0999  n=1" in output
+    assert output.count("a computer elsewhere shows its packets alone") == 2
+    assert "a computer elsewhere does not stand still" in output
+    assert " send CFE_ES_NOOP\n" in script.read_text()
+
+
+def test_nobody_listens_and_to_lab_is_asked(console: Console, monkeypatch: pytest.MonkeyPatch) -> None:
+    sky = Sky(monkeypatch)
+    status, output = console("--udp", "127.0.0.1:9", "--enable", lines="")
+    assert status == 1
+    assert len(sky.sent) == 1
+    assert "send TO_LAB_OUTPUT_ENABLE dest_IP=127.0.0.1: 127.0.0.1:9: nobody listens there" in output
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ([], "say what it is for: cfepy console MISSION, or cfepy console --udp HOST:PORT"),
+        (["lab", "--udp", "127.0.0.1"], "say what it is for"),
+        (["lab", "--listen", "7000"], "--listen: is for a computer elsewhere"),
+        (["lab", "--mission", "lab"], "--mission: a mission has names of its own"),
+        (["lab", "--port", "1234=0"], "--port: without --realtime"),
+        (["--udp", "127.0.0.1", "--seed", "7"], "--seed: 127.0.0.1 is a computer, which is not flown"),
+        (["--udp", "127.0.0.1", "--realtime"], "--realtime: 127.0.0.1 is a computer"),
+        (["--udp", "127.0.0.1", "--listen", "no place"], "--listen: 'no place' is no address of this computer"),
+        (["no_such_mission"], "no_such_mission"),
+        (["lab", "--save-script", "/none/x"], "--save-script: "),
+    ],
+)
+def test_bad_usage(console: Console, words: list[str], why: str) -> None:
+    status, output = console(*words, lines="")
+    assert status == 2
+    assert why in output

@@ -1,0 +1,51 @@
+"""`--json -`: JSON and nothing else on standard output, whatever a command prints; with a file, both."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from tests.cli.parsers import options, parsers
+
+DATA = Path(__file__).parents[1] / "data"
+LAB = ["lab", "--for", "0.7"]
+LINES = ("tlm", "topic echo")  # an object a line
+COMMANDS: dict[str, list[str]] = {
+    "run": ["run", *LAB],
+    "explore": ["explore", *LAB, "--seeds", "1", "--jobs", "1", "--no-stuck"],
+    "mids": ["mids", *LAB],
+    "check": ["check", "lab"],
+    "graph": ["graph", *LAB],
+    "tlm": ["tlm", *LAB],
+    "log": ["log", "{data}/cfe_evs.log"],
+    "tbl show": ["tbl", "show", "{data}/sample_app_tbl.tbl"],
+    "topic list": ["topic", "list", *LAB],
+    "service list": ["service", "list", *LAB],
+}
+FLOWN_ALIKE = ("launch", "node", "replay", "topic ", "service ")  # of nodes; they print and write as those above
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_nothing_else_is_on_standard_output(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    main([word.format(data=DATA) for word in COMMANDS[command]] + ["--json", "-"])
+    out = capsys.readouterr().out
+    for text in out.splitlines() if command in LINES else [out]:
+        json.loads(text)
+
+
+@pytest.mark.parametrize("command", ["tlm", "log", "mids"])
+def test_with_a_file_the_text_is_shown_as_well(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "found.json"
+    main([word.format(data=DATA) for word in COMMANDS[command]] + ["--json", str(file)])
+    assert json.loads(file.read_text().splitlines()[0] if command in LINES else file.read_text())
+    assert capsys.readouterr().out
+
+
+def test_every_command_that_writes_json_is_here() -> None:
+    writers = {words for words, parser in parsers().items() if any(each.dest == "json" for each in options(parser))}
+    assert {words for words in writers if not words.startswith(FLOWN_ALIKE)} <= set(COMMANDS)

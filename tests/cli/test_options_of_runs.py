@@ -1,0 +1,251 @@
+"""Each option of a run against each command that flies: it gets into the plan, and what is wrong with it is said."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import MISSING, fields
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cfepy.cli.main import main
+from cfepy.cli.options import RUN_OPTIONS
+from cfepy.exploration.trial import Trial
+from cfepy.flight.flight import Flight
+from cfepy.journal.recorder import record
+from cfepy.pilot import pilot
+from cfepy.pilot.plan import RunPlan
+from cfepy.rtos.schedule import Schedule
+from tests.cli.ros_packages import Launch, demo, write_launch
+
+__all__ = ["demo", "write_launch"]  # fixtures
+
+NODES = '<node pkg="demo" type="talker.py" name="talker"/>'
+TEST = '<test pkg="demo" type="check.py" test-name="check"><param name="begins" value="hello"/></test>'
+APP = "def main(cfe):\n    while cfe.es.run_loop():\n        cfe.os.task_delay(100)\n"
+
+
+class TookOffError(BaseException):
+    """Raised in place of a flight; no command catches it."""
+
+    def __init__(self, plan: RunPlan) -> None:
+        super().__init__(plan)
+        self.plan = plan
+
+
+@pytest.fixture
+def words(tmp_path: Path, demo: Path, write_launch: Launch) -> dict[str, list[str]]:
+    """The command lines of the commands that fly, by what they are called here; options may be added at the end."""
+    (tmp_path / "startup.scr").write_text("CFE_APP, app, main, APP, 50, 16384, 0x0, 0;\n!\n")
+    (tmp_path / "app.py").write_text(APP)
+    (tmp_path / "script.txt").write_text("send CFE_ES_NOOP\n")
+    mission = str(tmp_path)
+    launch, node = write_launch(NODES + TEST), str(demo / "scripts" / "talker.py")
+    return {
+        "run": ["run", mission],
+        "run --check-determinism": ["run", mission, "--check-determinism", "2"],
+        "run --record": ["run", mission, "--record", str(tmp_path / "run.cfepy")],
+        "launch": ["launch", launch],
+        "node": ["node", node],
+        "rostest": ["rostest", launch],
+        "topic list": ["topic", "list", mission],
+        "topic echo": ["topic", "echo", mission, "/chatter"],
+        "topic pub": ["topic", "pub", mission, "/chatter", "std_msgs/String", "hi"],
+        "service list": ["service", "list", mission],
+        "service call": ["service", "call", mission, "/add"],
+        "rosnode list": ["rosnode", "list", mission],
+        "tf echo": ["tf", "echo", mission, "a", "b"],
+        "param": ["param", "list", mission, "--for", "1"],
+        "cmd": ["cmd", mission, "CFE_ES_NOOP"],
+        "tlm": ["tlm", mission],
+        "console": ["console", mission],
+        "mids": ["mids", mission],
+        "graph": ["graph", mission],
+        "explore": ["explore", mission],
+        "trace": ["trace", mission],
+        "report": ["report", mission, "-o", str(tmp_path / "report.html")],
+        "plot": ["plot", mission, "/chatter.data", "-o", str(tmp_path / "plot.png")],
+        "export csv": ["export", "csv", mission, "/chatter", "-o", str(tmp_path / "values.csv")],
+        "export parquet": ["export", "parquet", mission, "/chatter", "-o", str(tmp_path / "values.parquet")],
+    }
+
+
+COMMANDS = (
+    *("run", "run --check-determinism", "run --record", "launch", "node", "rostest", "topic list", "topic echo"),
+    *("topic pub", "service list", "service call", "rosnode list", "tf echo", "param", "cmd", "tlm", "console"),
+    *("mids", "graph", "explore", "trace", "report"),
+    *("plot", "export csv", "export parquet"),
+)
+OPTIONS: dict[str, tuple[list[str], Any]] = {
+    "launch_args": (["--arg", "rate:=20"], (("rate", "20"),)),
+    "seconds": (["--for", "1.5"], 1.5),
+    "seed": (["--seed", "7"], 7),
+    "board": (["--board", "workstation"], "workstation"),
+    "tasks": (["--tasks", "greenlet"], "greenlet"),
+    "schedule": (["--schedule", "random:3"], Schedule.parse("random:3")),
+    "script": (["--script", "script.txt"], "script.txt"),
+    "stop_on_failure": (["--stop-on-failure"], True),
+    "faults": (["--faults", "plan.yaml"], "plan.yaml"),
+    "play": (["--play", "drive.bag"], "drive.bag"),
+    "stall": (["--stall", "2.5"], 2.5),
+}
+SAID_OTHERWISE = {
+    ("launch", "launch_args"): "its words have them, as for roslaunch",
+    ("rostest", "launch_args"): "its words have them, as for rostest",
+    ("node", "launch_args"): "a node has none",
+    ("rostest", "seconds"): "each test has a time limit of its own",
+    ("rosnode list", "seconds"): "is when it is asked; the run may take as long as the answer",
+    ("cmd", "seconds"): "counts from the command on; the run may take as long as its boot",
+    ("explore", "schedule"): "is what it explores",
+    ("console", "script"): "its lines are taken before those that are typed",
+}
+"""Options that a command has in another way."""
+
+
+def test_each_attribute_of_a_plan_has_an_option() -> None:
+    named = {
+        each.name for each in fields(RunPlan) if each.default is not MISSING or each.default_factory is not MISSING
+    }
+    assert named - {"command"} == set(RUN_OPTIONS) == set(OPTIONS)
+
+
+def plan_that_takes_off(words: list[str], monkeypatch: pytest.MonkeyPatch) -> RunPlan:
+    """The plan that a command line hands to the pilot."""
+
+    def caught(plan: RunPlan, *_: object) -> object:
+        raise TookOffError(plan)
+
+    def compared(asked: Any, *_: object) -> object:
+        raise TookOffError(asked.plan)
+
+    monkeypatch.setattr(pilot, "_mission", caught)
+    monkeypatch.setattr(pilot, "_faults", lambda plan, spec: ([], []))
+    monkeypatch.setattr("cfepy.cli.run.check_determinism.started", compared)
+    monkeypatch.setattr(RunPlan, "with_played_bag", lambda plan, spec: spec)
+    with pytest.raises(TookOffError) as took_off:
+        main(words)
+    return took_off.value.plan
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_hands_every_option_to_the_pilot(
+    command: str,
+    option: str,
+    words: dict[str, list[str]],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    if (command, option) in SAID_OTHERWISE:
+        return
+    assert list(words) == list(COMMANDS)
+    said, expected = OPTIONS[option]
+    if option == "launch_args":  # which only a launch file takes, and reading it comes before the flight
+        monkeypatch.setattr("cfepy.pilot.plan.read_mission", lambda word, args: read_mission_of(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    assert getattr(plan_that_takes_off([*words[command], *said], monkeypatch), option) == expected
+
+
+def read_mission_of(folder: Path) -> object:
+    from cfepy.mission import read_mission
+
+    return read_mission(str(folder))
+
+
+# -- what is wrong is said by all --------------------------------------------------------------------------------------
+
+
+def trial_of(plan: RunPlan) -> object:
+    return Trial(plan).run(Schedule())
+
+
+def flight_of(plan: RunPlan) -> object:
+    with Flight(plan) as flight:
+        return flight.results
+
+
+def journal_of(plan: RunPlan) -> object:
+    return record(plan, Path(plan.words[0], "recorded.cfepy"))
+
+
+LIBRARY: dict[str, Callable[[RunPlan], object]] = {
+    "fly": pilot.fly,
+    "a trial, as workers of explore fly it": trial_of,
+    "a mission under test": flight_of,
+    "a journal": journal_of,
+}
+
+
+@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "run --check-determinism"])
+def test_greenlet_that_is_not_installed(
+    command: str,
+    words: dict[str, list[str]],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setitem(sys.modules, "greenlet", None)
+    assert main([*words[command], "--tasks", "greenlet"]) == 2
+    assert "--tasks: greenlet tasks need the library greenlet: pip install 'cfepy[fast]'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("way", LIBRARY)
+def test_greenlet_that_is_not_installed_in_the_library(
+    way: str, words: dict[str, list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "greenlet", None)
+    with pytest.raises(pilot.UsageError, match="greenlet tasks need the library greenlet"):
+        LIBRARY[way](RunPlan((str(tmp_path),), tasks="greenlet"))
+
+
+@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "run --check-determinism"])
+def test_faults_that_do_not_fit_or_never_strike(
+    command: str,
+    words: dict[str, list[str]],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    plan = tmp_path / "plan.yaml"
+    plan.write_text("faults:\n  - drop: /nothing\n    name: lost\n  - crash: NOBODY\n    name: gone\n    at: 0.1\n")
+    short = [] if command in ("rostest", "param") else ["--for", "1"]
+    quick = ["--seeds", "1", "--jobs", "1", "--no-stuck"] if command == "explore" else []
+    main([*words[command], *short, *quick, "--faults", str(plan)])
+    said = capsys.readouterr().err
+    assert "no application is called NOBODY" in said
+    assert "fault lost (" in said
+    assert ") never happened: " in said
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_script_with_a_mistake(
+    command: str,
+    words: dict[str, list[str]],
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    script = tmp_path / "wrong.txt"
+    script.write_text("send NO_SUCH_COMMAND\n")
+    assert main([*words[command], "--script", str(script)]) == 2
+    assert f"{script}:1" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (["topic", "list", "drive.bag"], "--seed: drive.bag is a bag, which is not flown"),
+        (["cmd", "127.0.0.1", "CFE_ES_NOOP"], "--seed: 127.0.0.1:1234 is a computer, which is not flown"),
+        (["tlm", "127.0.0.1"], "--seed: is for a mission, and none is named"),
+        (["console", "--udp", "127.0.0.1"], "--seed: 127.0.0.1 is a computer, which is not flown"),
+        (["param", "list", "capture"], "--seed: is for a mission that flies; say how long"),
+        (["trace", "run.cfepy"], "--seed: run.cfepy is a journal, which says that itself"),
+    ],
+)
+def test_what_is_not_flown_takes_no_option_of_a_run(
+    words: list[str], why: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "drive.bag").write_bytes(b"#ROSBAG V2.0\n")
+    record(RunPlan(("lab",), seconds=0.1), tmp_path / "run.cfepy")
+    monkeypatch.chdir(tmp_path)
+    assert main([*words, "--seed", "7"]) == 2
+    assert why in capsys.readouterr().err

@@ -1,0 +1,125 @@
+"""One spelling for one thing: what each option is called and means, in every subcommand that has it.
+
+A new subcommand takes the options that are here for what they mean. A new option gets a row here once a second command
+has it; until then its own help says what it is. What is handed to one of ROS's own tools, such as `cfepy rosbag`, is
+called as ROS calls it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+from argparse import Action
+
+import pytest
+
+from tests.cli.parsers import options, parsers
+
+MEANINGS: dict[str, tuple[str | None, str]] = {
+    "--arg": ("NAME:=VALUE", "an argument of the launch file"),
+    "--at": ("SECONDS", "virtual time of the run"),
+    "--bag": ("FILE", "record the ROS topics of the run into a bag"),
+    "--bag-topics": ("TOPIC", "record only these"),
+    "--board": ("NAME|FILE", "board instead of the mission's own"),
+    "--console": (None, "show the flight computer's console"),
+    "-n --count": ("N", "end after so many"),
+    "--dot": ("FILE|-", "for graphviz"),
+    "--enable": ("HOST[:PORT]", "ask TO_LAB there to begin to send"),
+    "--faults": ("FILE|seed:N", "fault"),
+    "--for": ("SECONDS", "seconds"),
+    "--from": ("SECONDS", "begin at this virtual time"),
+    "--from-disk": (None, "take the mission's files as they are on this computer now"),
+    "--json": ("FILE|-", "as JSON to a file, or with - to standard output and nothing else there"),
+    "--layout": ("FILE.yaml", "takes a table's layout from a YAML file"),
+    "--mission": ("MISSION", "(names|tables)"),
+    "-o --output": ("PATH", "where to write (default: "),
+    "--perfetto": ("FILE", "write a trace in the Trace Event Format"),
+    "--play": ("BAG", "play a bag's topics into the mission"),
+    "--port": ("PORT=HERE", "open the mission's port PORT"),
+    "--quiet": (None, "no "),
+    "-r --rate": ("HZ", "how often"),
+    "--realtime": ("FACTOR", "pace virtual time to the wall clock"),
+    "--record": ("FILE", "write a journal"),
+    "--record-no-files": (None, "leave the mission's files out of the journal"),
+    "--results": ("FILE", "write the result of every (schedule|test) to a file"),
+    "--save-files": ("DIR", "at the end write the files that the mission wrote"),
+    "--schedule": ("TEXT", "who runs next where there is a choice"),
+    "--script": ("FILE", "send commands and check what comes of them"),
+    "--seed": ("N", "of everything random in"),
+    "--stall": ("SECONDS", "end the run as failed when a task computes for so many seconds of wall time"),
+    "--stop-on-failure": (None, "end the run with the script's first failed step"),
+    "--tasks": (None, "what tasks run on"),
+    "--trace": ("FILE", "write everything that happened to a file"),
+    "--until": ("SECONDS", "ends at this virtual time"),
+    "-w --window": ("N", "the newest N messages count"),
+}
+"""Of each option that more than one command has: the name of its value, and what its help says everywhere."""
+
+OTHER_NAMES = {
+    "--count": ("--number", "--num", "--limit", "--max", "--messages", "--packets"),
+    "--for": ("--duration", "--seconds", "--time", "--length"),
+    "--from": ("--start", "--since", "--begin", "--after"),
+    "--json": ("--as-json", "--format", "--json-file"),
+    "--output": ("--out", "--file", "--to-file", "--out-file", "--save"),
+    "--quiet": ("--silent", "-q"),
+    "--results": ("--results-file", "--result"),
+    "--seeds": ("--schedules", "--runs"),
+    "--until": ("--to", "--end", "--stop", "--before"),
+    "--arg": ("--args", "--launch-arg", "--define"),
+    "--jobs": ("--processes", "--workers", "--parallel", "-j"),
+}
+"""Other names that tools have for what an option here means; no command has them."""
+
+
+def key(action: Action) -> str:
+    return " ".join(action.option_strings)
+
+
+def pattern(core: str) -> str:
+    """A core of a help as a regular expression: `(a|b)` is a choice, all else is as it stands."""
+    parts = re.split(r"(\([\w ]+(?:\|[\w ]+)+\))", core)
+    return "".join(part if number % 2 else re.escape(part) for number, part in enumerate(parts))
+
+
+AS_ROS_HAS_THEM = ("rosbag ", "rosmsg ", "rossrv ", "rosnode ")
+"""Commands whose options are those of ROS's tools, which get them as they are."""
+
+
+def own_parsers() -> dict[str, argparse.ArgumentParser]:
+    return {words: parser for words, parser in parsers().items() if not words.startswith(AS_ROS_HAS_THEM)}
+
+
+@pytest.mark.parametrize("words", own_parsers())
+def test_an_option_means_one_thing(words: str) -> None:
+    for action in options(parsers()[words]):
+        if key(action) not in MEANINGS:
+            continue
+        metavar, core = MEANINGS[key(action)]
+        assert action.metavar == metavar, key(action)
+        assert re.search(pattern(core), action.help or ""), f"{key(action)}: {action.help}"
+
+
+def test_an_option_of_two_commands_has_a_row_here() -> None:
+    users: dict[str, set[str]] = {}
+    for words, parser in own_parsers().items():
+        for action in options(parser):
+            for name in action.option_strings:
+                users.setdefault(name, set()).add(words)
+    known = {name for row in MEANINGS for name in row.split()}
+    assert {name for name, commands in users.items() if len(commands) > 1} == known
+
+
+def test_an_option_has_the_same_short_form_everywhere() -> None:
+    forms: dict[str, set[str]] = {}
+    for parser in own_parsers().values():
+        for action in options(parser):
+            for name in action.option_strings:
+                forms.setdefault(name, set()).add(key(action))
+    assert {name: keys for name, keys in forms.items() if len(keys) > 1} == {}
+
+
+@pytest.mark.parametrize("words", own_parsers())
+def test_one_thing_has_one_name(words: str) -> None:
+    wrong = {other: name for name, others in OTHER_NAMES.items() for other in others}
+    named = {name for action in options(parsers()[words]) for name in action.option_strings}
+    assert {f"{name} is {wrong[name]} elsewhere" for name in named & wrong.keys()} == set()

@@ -1,0 +1,76 @@
+"""A forked flight has the verdict of a whole one, and what ends its process is found out all the same."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from cfepy.exploration.campaign import Campaign
+from cfepy.exploration.fork_server import ForkingJudge
+from cfepy.exploration.trial import Trial
+from cfepy.exploration.verdict import Verdict
+from cfepy.exploration.workers import PROCESS_DIED, Processes
+from cfepy.pilot.plan import RunPlan
+from cfepy.rtos import Schedule
+from tests.exploration.fake_trials import Seeds
+
+CRASH = """
+import ctypes
+def Main(cfe):
+    cfe.es.run_loop()
+    cfe.os.task_delay(100)
+    ctypes.string_at(0)
+"""
+STARTUP = "CFE_APP, crash.py, Main, CRASH, 100, 16384, 0x0, 0;\n!\n"
+
+BOOTED_NS = 600_000_000  # when the mission is up
+
+
+class LateSeeds(Seeds):
+    """Schedules that part when the mission is up."""
+
+    def next(self) -> Schedule | None:
+        schedule = super().next()
+        return None if schedule is None else replace(schedule, from_ns=BOOTED_NS)
+
+
+@pytest.fixture
+def crash(tmp_path: Path) -> Trial:
+    """A mission whose process is killed by the operating system."""
+    (tmp_path / "startup.scr").write_text(STARTUP)
+    (tmp_path / "crash.py").write_text(CRASH)
+    return Trial(RunPlan((str(tmp_path),), seconds=1.0, tasks="greenlet"))
+
+
+def test_a_forked_flight_has_the_verdict_of_a_whole_one() -> None:
+    trial = Trial(RunPlan(("capture",), seconds=0.605, tasks="greenlet"))
+    with closing(ForkingJudge(trial)) as pilot:
+        for text in ("random:1:from=600ms", "random:2:from=600ms", "pct:3:2:200:from=600ms:hold=1ms"):
+            schedule = Schedule.parse(text)
+            assert pilot.judge(schedule) == trial.run(schedule)
+    thread = Trial(replace(trial.plan, tasks="thread"))
+    with closing(ForkingJudge(thread)) as pilot:
+        schedule = Schedule("random", 1, from_ns=BOOTED_NS)
+        assert pilot.judge(schedule).trace == trial.run(schedule).trace
+
+
+def test_schedules_that_would_part_after_the_end() -> None:
+    trial = Trial(RunPlan(("capture",), seconds=0.1, tasks="greenlet"))
+    with closing(ForkingJudge(trial)) as pilot:
+        schedules = [Schedule("random", seed, from_ns=BOOTED_NS) for seed in range(2)]
+        verdicts = [pilot.judge(schedule) for schedule in schedules]
+    assert verdicts == [trial.run(schedule) for schedule in schedules]
+
+
+@pytest.mark.slow
+def test_a_crash_in_a_forked_flight(crash: Trial) -> None:
+    told: list[Verdict] = []
+    tally = Campaign(crash, LateSeeds(), 2, Processes(1)).run(lambda _, verdict: told.append(verdict))
+    assert tally.failed == 2
+    for verdict in told:
+        failure = verdict.failures[0]
+        assert (failure.kind, failure.text) == (PROCESS_DIED, "the process died: killed by SIGSEGV")
+        assert "crash.py" in failure.detail

@@ -1,0 +1,105 @@
+"""Shrinking ends at a schedule with few preemptions that fails in the same way."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.exploration.moves import Move, MovePolicy
+from cfepy.exploration.shrink import Shrinker
+from cfepy.exploration.timeline import timeline_of
+from cfepy.exploration.trial import Trial
+from cfepy.exploration.verdict import INVARIANT
+from cfepy.pilot.plan import RunPlan
+from cfepy.rtos import Schedule
+from tests.exploration import missions
+
+PAID = 'invariants: {all paid: {topic: /total, holds: "msg.data == 6"}}\n'
+
+
+@pytest.fixture(scope="module")
+def bank(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return missions.write(tmp_path_factory.mktemp("bank"), {"BANK": missions.LOST_UPDATE}, PAID)
+
+
+def first_failing(trial: Trial, options: str = "") -> Schedule:
+    """The first seed under which a trial fails."""
+    schedules = (Schedule.parse(f"random:{seed}{options}") for seed in range(500))
+    return next(schedule for schedule in schedules if trial.run(schedule).failed)
+
+
+def test_it_ends_with_few_preemptions_and_the_same_failure(tmp_path: Path) -> None:
+    trial = Trial(RunPlan((str(missions.write_late(tmp_path)),), seconds=1.5, tasks="greenlet"))
+    schedule = first_failing(trial)
+    verdict = trial.run(schedule)
+    shrunk = Shrinker(trial, schedule, verdict.groups[0]).run()
+    assert shrunk is not None
+    assert len(verdict.deviations) > 3
+    assert len(shrunk.verdict.deviations) == len(shrunk.moves) == 1
+    assert shrunk.verdict.schedule.kind == "at"
+    assert shrunk.verdict.groups[0] == verdict.groups[0]
+    assert shrunk.trial.plan.seconds == 0.7
+    assert shrunk.trial.run(shrunk.verdict.schedule) == shrunk.verdict
+    assert Shrinker(trial, schedule, verdict.groups[0]).run() == shrunk
+
+
+def test_a_schedule_that_does_not_fail_is_not_shrunk(bank: Path) -> None:
+    trial = Trial(RunPlan((str(bank),), seconds=0.7))
+    assert Shrinker(trial, Schedule(), f"{INVARIANT}|all paid|x").run() is None
+
+
+def test_another_failure_that_is_always_there_does_not_end_it_early(tmp_path: Path) -> None:
+    folder = missions.write_late(tmp_path)
+    with (folder / "apps.py").open("a") as apps:
+        apps.write("\n\ndef Grumbler(cfe):\n    cfe.evs.register()\n    cfe.evs.send_err(9, 'as always')\n")
+    startup = (folder / "startup.scr").read_text()
+    (folder / "startup.scr").write_text(f"CFE_APP, apps, Grumbler, GRUMBLER, 40, 8192, 0, 0;\n{startup}")
+    late = Trial(RunPlan((str(folder),), seconds=0.7, tasks="greenlet"))
+    (always,) = late.run(Schedule()).failures
+    verdict = next(found for seed in range(30) if len((found := late.run(Schedule("random", seed))).failures) > 1)
+    (other,) = (failure for failure in verdict.failures if failure.group != always.group)
+    shrunk = Shrinker(late, verdict.schedule, other.group).run()
+    assert shrunk is not None
+    assert shrunk.moves
+    assert other.group in late.run(shrunk.verdict.schedule).groups
+
+
+def test_it_keeps_to_its_number_of_runs(bank: Path) -> None:
+    trial = Trial(RunPlan((str(bank),), seconds=0.7))
+    schedule = Schedule.parse("at:5=1,16=1,24=2")
+    (group,) = trial.run(schedule).groups
+    shrunk = Shrinker(trial, schedule, group, most_probes=10).run()
+    assert shrunk is not None
+    assert shrunk.probes <= 10 + 2  # and the two that make sure of the result
+
+
+def test_the_timeline_shows_both_tasks_up_to_the_failure(bank: Path) -> None:
+    trial = Trial(RunPlan((str(bank),), seconds=0.7))
+    schedule = Schedule.parse("at:16=1,25=2")
+    (group,) = trial.run(schedule).groups
+    shrunk = Shrinker(trial, schedule, group, most_probes=0).run()
+    assert shrunk is not None
+    failure = shrunk.verdict.failure(group)
+    assert failure is not None
+    lines = timeline_of(shrunk.trial, shrunk.verdict, failure, shrunk.moves)
+    golden = Path(__file__).with_name("golden_timeline.txt").read_text().splitlines()
+    assert lines == golden
+    assert max(map(len, lines)) <= 100
+
+
+def test_a_move_that_is_not_possible_is_left_out(bank: Path) -> None:
+    trial = Trial(RunPlan((str(bank),), seconds=0.7))
+    policy = MovePolicy([Move("NOBODY", 0, "BANK"), Move("BANK", 1, "NOBODY")])
+    verdict = trial.fly(Schedule("at"), policy=policy).verdict
+    assert not verdict.failed
+    assert verdict.preemptions == 0
+
+
+def test_options_of_the_schedule_stay(tmp_path: Path) -> None:
+    trial = Trial(RunPlan((str(missions.write_late(tmp_path)),), seconds=0.7, tasks="greenlet"))
+    schedule = first_failing(trial, ":from=500ms")
+    shrunk = Shrinker(trial, schedule, trial.run(schedule).groups[0]).run()
+    assert shrunk is not None
+    assert shrunk.verdict.schedule.from_ns == 500_000_000
+    assert len(shrunk.verdict.deviations) == 1

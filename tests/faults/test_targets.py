@@ -1,0 +1,28 @@
+"""What random faults are chosen from: looked at once, and again when the mission's files have changed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.faults import plan_of, targets
+from cfepy.mission import MissionSpec, read_mission
+
+
+def test_a_mission_is_flown_once_as_long_as_its_files_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "startup.scr").write_text("!\n")
+    looked: list[MissionSpec] = []
+    look_at = targets.look_at
+
+    def counted(spec: MissionSpec) -> targets.Found:
+        looked.append(spec)
+        return look_at(spec)
+
+    monkeypatch.setattr(targets, "look_at", counted)
+    first = plan_of("seed:7", read_mission(str(tmp_path)))
+    assert plan_of("seed:7", read_mission(str(tmp_path))) == first
+    assert len(looked) == 1
+    (tmp_path / "startup.scr").write_text("! changed\n")
+    plan_of("seed:7", read_mission(str(tmp_path)))
+    assert len(looked) == 2

@@ -1,0 +1,219 @@
+"""Missions fly the same wherever a program flies them: threads, asyncio, forked and spawned processes.
+
+What could hang is done in a process of its own, or on a thread that nobody has to wait for, so that a test fails.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import multiprocessing
+import os
+import pickle
+import select
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+
+import cfepy
+
+pytest.importorskip("greenlet")
+
+# Python 3.12 warns of other threads in a process that forks: they are what is tried out
+pytestmark = pytest.mark.filterwarnings("ignore:.*multi-threaded, use of fork:DeprecationWarning")
+
+LONGEST_S = 60.0  # kills what hangs; nothing is decided by it
+SECONDS = 0.8  # from the boot
+TASKS = ("thread", "greenlet")
+NODE = """
+import rospy
+from std_msgs.msg import Int32
+
+rospy.init_node("counter")
+publisher = rospy.Publisher("count", Int32, queue_size=10)
+rospy.Subscriber("count", Int32, lambda message: None)
+for number in range(1000):
+    publisher.publish(number)
+    rospy.sleep(0.01)
+"""
+
+each_kind_of_task = pytest.mark.parametrize("tasks", TASKS)
+needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+
+
+def digest(mission: str, tasks: str) -> str:
+    """A small run: what it was, in 32 digits."""
+    return cfepy.run(mission, seconds=SECONDS, seed=7, tasks=tasks).trace
+
+
+@pytest.fixture(scope="module")
+def counter(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A mission of one node that talks to itself."""
+    folder = tmp_path_factory.mktemp("where")
+    (folder / "counter.py").write_text(NODE)
+    (folder / "startup.scr").write_text("CFE_APP, counter.py, __main__, COUNTER, 100, 65536, 0x0, 0;\n!\n")
+    return str(folder)
+
+
+@pytest.fixture(scope="module")
+def usual(counter: str) -> str:
+    """The digest that all of them must have."""
+    return digest(counter, "thread")
+
+
+def in_thread(work: Callable[..., Any], *args: Any) -> Future[Any]:
+    """Begin something in another thread, which ends with the process at the latest."""
+    result: Future[Any] = Future()
+
+    def run() -> None:
+        try:
+            result.set_result(work(*args))
+        except BaseException as error:
+            result.set_exception(error)
+
+    threading.Thread(target=run, daemon=True).start()
+    return result
+
+
+def in_fork(work: Callable[..., Any], *args: Any) -> Any:
+    """What a function returns in a forked process, or the exception that it ends with; it is killed if it hangs."""
+    reader, writer = os.pipe()
+    child = os.fork()
+    if not child:
+        answer: Any = None
+        try:
+            answer = work(*args)
+        except BaseException as error:
+            answer = error
+        finally:
+            os.write(writer, pickle.dumps(answer))
+            os._exit(0)
+    os.close(writer)
+    try:
+        if not select.select([reader], [], [], LONGEST_S)[0]:
+            os.kill(child, signal.SIGKILL)
+            pytest.fail("the forked process hangs")
+        with open(reader, "rb") as answers:
+            return pickle.load(answers)
+    finally:
+        os.waitpid(child, 0)
+
+
+@contextmanager
+def flying(mission: str, tasks: str) -> Iterator[cfepy.Flight]:
+    """A mission that has begun to fly."""
+    with cfepy.boot(mission, seed=7, tasks=tasks) as flight:
+        flight.run_for(SECONDS / 2)
+        yield flight
+
+
+# -- threads -----------------------------------------------------------------------------------------------------------
+
+
+@each_kind_of_task
+def test_in_the_first_thread_another_and_two_at_once(tasks: str, counter: str, usual: str) -> None:
+    assert digest(counter, tasks) == usual
+    runs = [in_thread(digest, counter, tasks) for _ in range(2)]
+    assert [run.result(LONGEST_S) for run in runs] == [usual] * 2
+
+
+def test_a_mission_on_threads_goes_on_in_another_thread(counter: str, usual: str) -> None:
+    def go_on() -> str:
+        flight.run_until(SECONDS)
+        return flight.trace
+
+    with flying(counter, "thread") as flight:
+        assert in_thread(go_on).result(LONGEST_S) == usual
+
+
+def test_greenlets_of_another_thread_say_so(counter: str) -> None:
+    with flying(counter, "greenlet") as flight:
+        for touch in (lambda: flight.run_for(0.1), flight.close, lambda: flight.trace):
+            with pytest.raises(RuntimeError, match="greenlets of the thread that booted it"):
+                in_thread(touch).result(LONGEST_S)
+        flight.run_for(0.1)  # nothing has happened to it
+
+
+# -- asyncio -----------------------------------------------------------------------------------------------------------
+
+
+@each_kind_of_task
+def test_inside_asyncio(tasks: str, counter: str, usual: str) -> None:
+    async def fly() -> list[str]:
+        first = digest(counter, tasks)  # in the loop itself, which stands still as long
+        two = await asyncio.gather(*(asyncio.to_thread(digest, counter, tasks) for _ in range(2)))
+        return [first, *two]
+
+    assert asyncio.run(fly()) == [usual] * 3
+
+
+# -- processes ---------------------------------------------------------------------------------------------------------
+
+
+@needs_fork
+@each_kind_of_task
+def test_after_a_fork(tasks: str, counter: str, usual: str) -> None:
+    digest(counter, tasks)  # so that there are threads that the child does not have
+    assert in_fork(digest, counter, tasks) == usual
+
+
+@needs_fork
+@each_kind_of_task
+def test_after_a_fork_beside_a_mission_that_flies(tasks: str, counter: str, usual: str) -> None:
+    """The other thread may be anywhere in its run at the moment of the fork."""
+    over = threading.Event()
+
+    def fly_on() -> None:
+        while not over.is_set():
+            digest(counter, tasks)
+
+    other = in_thread(fly_on)
+    try:
+        assert [in_fork(digest, counter, tasks) for _ in range(3)] == [usual] * 3
+    finally:
+        over.set()
+        other.result(LONGEST_S)
+
+
+@needs_fork
+def test_a_mission_on_threads_does_not_come_along_into_a_forked_process(counter: str, usual: str) -> None:
+    with flying(counter, "thread") as flight:
+        for touch in (lambda: flight.run_for(0.1), flight.close, lambda: flight.trace):
+            error = in_fork(touch)
+            assert isinstance(error, RuntimeError)
+            assert "threads of another process" in str(error)
+        assert in_fork(digest, counter, "thread") == usual  # another one can fly beside it
+        flight.run_until(SECONDS)
+        assert flight.trace == usual
+
+
+@needs_fork
+def test_a_mission_on_greenlets_goes_on_in_a_forked_process(counter: str, usual: str) -> None:
+    def go_on() -> str:
+        flight.run_until(SECONDS)
+        return flight.trace
+
+    with flying(counter, "greenlet") as flight:
+        assert in_fork(go_on) == usual
+        assert go_on() == usual
+
+
+@pytest.mark.slow
+@each_kind_of_task
+@pytest.mark.parametrize("method", multiprocessing.get_all_start_methods())
+def test_in_a_pool_of_processes(method: str, tasks: str, counter: str, usual: str) -> None:
+    context = multiprocessing.get_context(method)
+    with context.Pool(2) as pool:  # which ends by killing them
+        results = pool.starmap_async(digest, [(counter, tasks)] * 4)
+        assert results.get(LONGEST_S) == [usual] * 4
+
+
+@pytest.mark.slow
+def test_in_a_pool_of_threads_many_at_once(counter: str, usual: str) -> None:
+    with ThreadPoolExecutor(8) as pool:
+        runs = [pool.submit(digest, counter, TASKS[number % 2]) for number in range(40)]
+        assert {run.result(LONGEST_S) for run in runs} == {usual}

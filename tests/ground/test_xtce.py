@@ -1,0 +1,227 @@
+"""The XTCE export, against a library that knows nothing of cfepy: it reads real packets as our own decoding does."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from space_packet_parser.xtce.definitions import XtcePacketDefinition
+from space_packet_parser.xtce.validation import validate_xtce
+
+from cfepy.console import Console
+from cfepy.ground.dictionary import Dictionary, dictionary_of
+from cfepy.ground.topics import Topic, topics_of
+from cfepy.ground.values import flat, named_fields
+from cfepy.ground.xtce import NAMESPACE, cells_with_padding, xtce_name, xtce_of
+from cfepy.mission import Mission, read_mission
+from cfepy.mission.packet_watch import PacketWatch, Seen
+from cfepy.msg import Command, Layout, MsgType, Telemetry, get_type, telemetry
+from tests.mission.flights import write_mission
+
+STARTUP = """
+    CFE_APP, sample_app,    SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;
+    CFE_APP, hk,        HK_AppMain,      HK,         90, 16384, 0x0, 0;
+    CFE_APP, talker.py, __main__,        TALKER,     60, 16384, 0x0, 0;
+    !
+"""
+TALKER = """
+    import rospy
+    from geometry_msgs.msg import PoseStamped
+    from sensor_msgs.msg import JointState
+    from std_msgs.msg import Float32, Float64MultiArray, Header, String
+
+    rospy.init_node("talker")
+    messages = {
+        "value": Float32(2.5),
+        "text": String("from a node"),
+        "numbers": Float64MultiArray(data=[1.0, 2.0]),
+        "pose": PoseStamped(header=Header(frame_id="base")),
+        "joints": JointState(name=["one", "two"], position=[1.0, 2.0]),
+    }
+    messages["pose"].pose.position.x = -1.5
+    publishers = {}
+    for name, message in messages.items():
+        publishers[name] = rospy.Publisher(name, type(message), queue_size=1)
+        rospy.Subscriber(name, type(message), lambda message: None)
+    rate = rospy.Rate(10)
+    while not rospy.is_shutdown():
+        for name, message in messages.items():
+            publishers[name].publish(message)
+        rate.sleep()
+"""
+
+
+class Export:
+    """A mission's XTCE, the library's reading of it, and packets taken off the mission's bus."""
+
+    def __init__(self, folder: Path) -> None:
+        spec = read_mission(write_mission(folder, STARTUP, talker=TALKER))
+        self.dictionary = dictionary_of(spec)
+        self.packets: dict[int, bytes] = {}
+        self.events: list[bytes] = []
+        with Mission(spec, console=Console(quiet=True), attachments=[PacketWatch(self._take)]) as mission:
+            mission.run_for(2)
+            for command in self.dictionary.commands.values():
+                if command.name.endswith("_SEND_HK"):
+                    mission.cfe.sb.transmit_msg(command.packet(), is_origination=False)
+            mission.run_for(2)
+            self.dictionary.learn(topics_of(mission))
+        self.text = xtce_of(spec.name, self.dictionary)
+        self.file = folder / "mission.xml"
+        self.file.write_text(self.text)
+        self.definition = XtcePacketDefinition.from_xtce(self.file)
+
+    def _take(self, seen: Seen) -> None:
+        if get_type(seen.packet) == MsgType.TLM:
+            self.packets[seen.msg_id] = seen.packet
+            if seen.msg_id == 0x0808:
+                self.events.append(seen.packet)
+
+    def read(self, packet: bytes) -> dict[str, Any]:
+        """What the library makes of a packet; a packet that it does not read to its end is an error."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            return dict(self.definition.parse_bytes(packet))
+
+
+@pytest.fixture(scope="module")
+def export(tmp_path_factory: pytest.TempPathFactory) -> Export:
+    return Export(tmp_path_factory.mktemp("xtce"))
+
+
+SERVICES = ("CFE_ES_HK_TLM", "CFE_EVS_HK_TLM", "CFE_SB_HK_TLM", "CFE_TBL_HK_TLM", "CFE_TIME_HK_TLM")
+
+
+def assert_same(export: Export, packet: bytes) -> None:
+    """Every field, header included, is what our own decoding says."""
+    ours, theirs = export.dictionary.decode(packet), export.read(packet)
+    assert theirs["PKT_APID"] == ours.msg_id & 0x7FF
+    assert theirs["SRC_SEQ_CTR"] == ours.sequence
+    assert theirs["PKT_LEN"] == len(packet) - 7
+    assert theirs["TIME"] == ours.time_s
+    names = {} if ours.layout is None else named_fields(ours.layout)
+    fields = {
+        f"{ours.name}_{xtce_name(path)}": names[path].text(value) if path in names and not names[path].flags else value
+        for path, value in flat(ours.values).items()
+    }
+    assert fields
+    assert {name: theirs[name] for name in fields} == fields
+    assert {name for name in theirs if name.startswith(ours.name)} == set(fields)
+
+
+@pytest.mark.parametrize("name", [*SERVICES, "SAMPLE_APP_HK_TLM"])
+def test_housekeeping_of_a_running_mission_is_read_field_by_field(export: Export, name: str) -> None:
+    assert_same(export, export.packets[export.dictionary.telemetry_of(name).msg_id])
+
+
+def test_events_are_read_field_by_field(export: Export) -> None:
+    assert len(export.events) > 20
+    for packet in export.events:
+        assert_same(export, packet)
+
+
+def test_every_declared_packet_is_read_field_by_field(export: Export) -> None:
+    """Also those that this mission did not send: with a different value in each byte."""
+    for declared in export.dictionary.telemetry.values():
+        if isinstance(declared, Telemetry) and declared.payload.fields:
+            assert_same(export, bytes(telemetry(declared.msg_id, _filled(declared.payload))))
+
+
+def _filled(layout: Layout) -> bytes:
+    """A payload of different bytes; texts are texts, and bools are true."""
+    payload = bytearray(number * 7 % 61 + 1 for number in range(layout.size))
+    for cell in layout.cells():
+        if cell.type.startswith("char"):
+            payload[cell.offset : cell.offset + cell.size] = b"text"[: cell.size - 1].ljust(cell.size, b"\0")
+        elif cell.type == "bool":
+            payload[cell.offset] = 1
+        elif cell.names is not None:  # a reader knows no others
+            value = next(reversed(cell.names.values.values()))
+            payload[cell.offset : cell.offset + cell.size] = value.to_bytes(cell.size, "little", signed=value < 0)
+    return bytes(payload)
+
+
+def test_messages_of_ros_are_read_as_far_as_xtce_can_say_them(export: Export) -> None:
+    values: dict[str, Any] = {}
+    for topic in export.dictionary.telemetry.values():
+        if isinstance(topic, Topic) and topic.msg_id in export.packets and topic.name != "/joints":
+            values |= export.read(export.packets[topic.msg_id])
+    assert values["value_data"] == 2.5
+    assert values["text_data"] == "from a node"
+    assert values["pose_header_frame_id"] == "base"
+    assert values["pose_pose_position_x"] == -1.5
+    assert values["numbers_layout_dim_count"] == 0
+    assert len(values["numbers_rest"]) == 24  # data_offset, the count, two numbers
+
+
+def test_what_follows_an_array_of_texts_behind_a_text_is_left_out(export: Export) -> None:
+    packet = export.packets[export.dictionary.telemetry["/joints"].msg_id]
+    with pytest.warns(UserWarning, match="Number of bits parsed"):
+        values = export.definition.parse_bytes(packet)
+    assert values["joints_name_count"] == 2
+    assert not [name for name in values if name.startswith("joints_position")]
+
+
+def test_the_document_is_valid_xtce(export: Export) -> None:
+    result = validate_xtce(export.file, level="all", raise_on_error=False)
+    assert result.valid, [str(error) for error in result.errors[:5]]
+
+
+def test_names_are_unique_and_allowed(export: Export) -> None:
+    root = ElementTree.fromstring(export.text)
+    for kind in ("Parameter", "SequenceContainer", "MetaCommand"):
+        names = [each.attrib["name"] for each in root.iter(f"{{{NAMESPACE}}}{kind}")]
+        assert len(set(names)) == len(names)
+        assert not [name for name in names if re.search(r"[./:\[\]\s]", name)]
+
+
+def test_names_that_become_alike_stay_apart() -> None:
+    found = Dictionary()
+    found.add([Telemetry("APP_TLM", 0x0890, Layout("L", [("A", "u8[2]"), ("A_1", "u8")]))])
+    root = ElementTree.fromstring(xtce_of("m", found))
+    names = [each.attrib["name"] for each in root.iter(f"{{{NAMESPACE}}}Parameter")]
+    assert names[-3:] == ["APP_TLM_A_0", "APP_TLM_A_1", "APP_TLM_A_1_"]
+
+
+def test_padding_fills_every_gap() -> None:
+    layout = Layout("L", [("A", "u8"), ("B", "u32"), ("C", "u16")])
+    found = list(cells_with_padding(layout))
+    assert [(cell.type, cell.offset, cell.size) for cell in found] == [
+        ("u8", 0, 1), ("padding", 1, 3), ("u32", 4, 4), ("u16", 8, 2), ("padding", 10, 2),
+    ]  # fmt: skip
+    assert sum(cell.size for cell in found) == layout.size
+
+
+# -- commands ----------------------------------------------------------------------------------------------------------
+
+
+def entries_of(export: Export, command: Command) -> Iterator[ElementTree.Element]:
+    root = ElementTree.fromstring(export.text)
+    meta = next(
+        each for each in root.iter(f"{{{NAMESPACE}}}MetaCommand") if each.attrib["name"] == xtce_name(command.name)
+    )
+    container = meta.find(f"{{{NAMESPACE}}}CommandContainer/{{{NAMESPACE}}}EntryList")
+    assert container is not None
+    yield from container
+
+
+def test_a_command_put_together_from_the_document_is_ours(export: Export) -> None:
+    """What a ground system would send, with a different byte in every argument; the checksum it may leave zero."""
+    for command in export.dictionary.commands.values():
+        payload = _filled(command.payload)
+        cells = {xtce_name(cell.path): cell for cell in command.payload.cells()}
+        packet = b""
+        for entry in entries_of(export, command):
+            if "argumentRef" in entry.attrib:
+                cell = cells[entry.attrib["argumentRef"]]
+                packet += payload[cell.offset : cell.offset + cell.size]
+            else:
+                packet += bytes.fromhex(entry.attrib["binaryValue"])
+        ours = bytearray(command.packet(command.payload.unpack(payload)))
+        ours[7] = 0
+        assert packet == bytes(ours), command.name

@@ -1,0 +1,105 @@
+"""The table of sections: one reading for a run, which ends with the first mistake, and for a check, which goes on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.marked_yaml import Mistakes
+from cfepy.mission import MissionSpec, read_mission
+from cfepy.mission.mission_file import DEMANDS, SECTIONS, MissionSections, read_mission_file
+from cfepy.mission.record import RunRecord
+from cfepy.nodes.config import RosConfig
+from cfepy.status import UsageError
+
+WRONG = """\
+name: [a]
+board: 3
+bord: linux
+limits: {sb_max_pipes: many, nodes: 0, os_max_tasks: 70}
+nodes:
+  A: {namespace: robot, args: x, keys: [-1]}
+  B: {name: b}
+topics:
+  /a: {msg_id: 0x0901}
+  b: {msg_id: 0x0902}
+  /c: {msg_id: 0x0901}
+params: {x: }
+params_from: nothing.yaml
+ordered_sets: maybe
+launch: [nothing.launch, {args: {}}]
+invariants: 3
+"""
+
+
+def read(folder: Path, text: str, mistakes: Mistakes) -> MissionSections:
+    (folder / "mission.yaml").write_text(text)
+    return read_mission_file(folder / "mission.yaml", mistakes)
+
+
+def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
+    mistakes = Mistakes(keep=True)
+    said = read(tmp_path, WRONG, mistakes)
+    fields = "name board bord limits.sb_max_pipes limits.nodes nodes.A.namespace nodes.A.args nodes.A.keys[0] topics.b "
+    fields += "topics./c params.x params_from ordered_sets launch[0] launch[1]"
+    assert [error.field for error in mistakes.errors] == fields.split()
+    assert (said.name, said.board, said.ordered_sets, said.launch) == (None, None, False, ())
+    assert (dict(said.limits.values), list(said.nodes), list(said.topics)) == (
+        {"os_max_tasks": 70},
+        ["B"],
+        ["/a", "/c"],
+    )
+    assert list(said.demands) == ["invariants"]
+    assert set(said.places) == set(SECTIONS) - {"results", "deadlines"}
+
+
+def test_a_run_ends_with_the_first_mistake_of_the_file(tmp_path: Path) -> None:
+    lines = WRONG.splitlines()
+    for first in (0, 2, 4, 7, 12, 14):
+        text = "\n" * first + "\n".join(lines[first:])
+        kept = Mistakes(keep=True)
+        read(tmp_path, text, kept)
+        with pytest.raises(UsageError) as caught:
+            read(tmp_path, text, Mistakes())
+        assert str(caught.value) == str(kept.errors[0])
+
+
+def test_what_is_no_mapping_at_all(tmp_path: Path) -> None:
+    for text in ("[1]", "a: {", "nodes: 3", "topics: 3", "limits: 3", "launch: 3"):
+        mistakes = Mistakes(keep=True)
+        read(tmp_path, text, mistakes)
+        assert len(mistakes.errors) == 1, text
+    assert read(tmp_path, "", Mistakes()) == MissionSections()
+
+
+def test_demands_are_kept_as_they_stand(tmp_path: Path) -> None:
+    (tmp_path / "startup.scr").write_text("!")
+    text = "invariants: {a: 1}\nresults: {b: 2}\ndeadlines: {c: 3}\n"
+    (tmp_path / "mission.yaml").write_text(text)
+    demands = read_mission(str(tmp_path)).demands
+    assert {name: section.plain() for name, section in demands.items()} == dict(
+        zip(DEMANDS, ({"a": 1}, {"b": 2}, {"c": 3}), strict=True)
+    )
+
+
+def test_the_startup_script_is_read_once(tmp_path: Path) -> None:
+    script = tmp_path / "startup.scr"
+    script.write_text("CFE_APP, a, Main, A, 50, 8192, 0, 0;\nCFE_APP, n, __main__, N, 50, 8192, 0, 0;!")
+    spec = MissionSpec("m", tmp_path, script, None, "linux", RosConfig())
+    assert [entry.name for entry in spec.entries] == ["A", "N"]
+    script.unlink()
+    assert spec.has_nodes
+    assert spec.entries is spec.entries
+
+
+def test_a_record_has_a_part_for_each_attachment() -> None:
+    class Count(list[int]):
+        """What an attachment counts."""
+
+    record, other = RunRecord(), RunRecord()
+    record.part(Count).append(1)
+    assert (record.part(Count), other.part(Count)) == ([1], [])
+    assert record.rows("faults") == []
+    record.tables["faults"] = lambda: [{"name": "a"}]
+    assert record.rows("faults") == [{"name": "a"}]

@@ -1,0 +1,97 @@
+"""Comparing streams of trace records, looking at one of them, and guessing at lines of source."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cfepy.pilot.determinism import Parting, RecordReader, RecordWriter, RunEndedError, first_parting
+from cfepy.pilot.determinism_look import Look, LookingTrace, suspects
+
+records = st.lists(st.binary(max_size=4), max_size=12)
+
+
+def stream(batches: Sequence[Sequence[bytes]], facts: dict[str, int] | None = None) -> RecordReader:
+    file = io.BytesIO()
+    writer = RecordWriter(file)
+    for batch in batches:
+        writer.write(batch)
+    if facts is not None:
+        writer.end(facts)
+    file.seek(0)
+    return RecordReader(file)
+
+
+@given(st.lists(records, max_size=4), st.lists(records, max_size=4), records)
+def test_the_first_parting_is_that_of_the_lists(
+    one: list[list[bytes]], other: list[list[bytes]], common: list[bytes]
+) -> None:
+    flat = [[record for batch in (common, *batches) for record in batch if record] for batches in (one, other)]
+    expected = next((i for i, (a, b) in enumerate(zip(*flat, strict=False)) if a != b), min(map(len, flat)))
+    found, agreed = first_parting([stream([common, *one], {}), stream([common, *other], {})])
+    assert agreed == expected
+    assert found == (None if flat[0] == flat[1] else Parting(1, expected))
+
+
+def test_the_earliest_of_several_runs() -> None:
+    runs = [stream([[b"a", b"b", b"c"]], {"n": 3}) for _ in range(2)]
+    runs += [stream([[b"a", b"b"], [b"x"]], {}), stream([[b"a"], [b"x"]], {})]
+    assert first_parting(runs) == (Parting(3, 1), 1)
+
+
+def test_how_a_run_ended_is_known_or_missed() -> None:
+    runs = [stream([[b"a"]], {"n": 1}), stream([[b"a"]], {"n": 2})]
+    assert first_parting(runs) == (None, 1)
+    assert [run.facts for run in runs] == [{"n": 1}, {"n": 2}]
+    with pytest.raises(RunEndedError):
+        first_parting([stream([[b"a"]], {}), stream([[b"a"]])])
+
+
+def test_a_look_at_a_record() -> None:
+    seen: list[Look] = []
+    trace = LookingTrace(3, lambda records: [record.decode() for record in records], seen.append)
+    for record in (b"a", b"", b"b"):
+        trace.append(record)
+    trace.flush()
+    for record in (b"c", b"", b"d", b"e"):
+        trace.append(record)
+    (look,) = seen
+    assert look.record == b"d"
+    assert look.lines == ("a", "b", "c", "d")
+    assert look.stack[-1].source == "trace.append(record)"
+    assert look.stack[-1].file == __file__
+    assert look.culprit == look.stack[-1]
+    assert Look.from_dict(look.to_dict()) == look
+    assert LookingTrace(9, lambda records: [], seen.append).look(b"").stack == ()
+
+
+def test_suspicious_lines(tmp_path: Path) -> None:
+    file = tmp_path / "node.py"
+    file.write_text(
+        "names: set = {'a', 'b'}\n"
+        "class Node:\n"
+        "    def __init__(self):\n"
+        "        self.seen = set()\n"
+        "        self.other = {n: 1 for n in names}\n"
+        "    def go(self):\n"
+        "        if 'a' in self.seen: self.seen.pop()\n"
+        "        for name in sorted(self.seen): print(name, len(self.seen))\n"
+        "        for name in self.seen - {'c'}: print(name)\n"
+        "        return ','.join(names), [x for x in self.other], id(self), self.id(3), hash('a')\n"
+    )
+    found = [(each.line, each.why) for each in suspects(str(file))]
+    assert found == [
+        (5, "goes through a set"),
+        (7, "takes any element of a set"),
+        (9, "goes through a set"),
+        (10, "goes through a set"),
+        (10, "uses an address"),
+        (10, "uses the hash of a text, which follows PYTHONHASHSEED"),
+    ]
+    file.write_text("this is = no program")
+    assert suspects(str(file)) == suspects(str(tmp_path / "none.py")) == []

@@ -1,0 +1,20 @@
+"""A node that asks rospy at each stage of its life prints what it printed on a ROS 1 master (rospy 1.15.15)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.nodes.config import NodeConfig
+from tests.rospy_shim.missions import run_nodes
+
+DATA = Path(__file__).parents[2] / "data"
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_same_answers_as_on_ros(tmp_path: Path, tasks: str) -> None:
+    config = NodeConfig("PROBE", args=("_own:=7", "old:=new"))
+    run = run_nodes(tmp_path, {"PROBE": DATA / "rospy_stages.py"}, seconds=60, nodes={"PROBE": config}, tasks=tasks)
+    answers = [*run.printed["PROBE"], *run.printed["stages"]]
+    assert answers == (DATA / "rospy_stages.txt").read_text().splitlines()

@@ -1,0 +1,90 @@
+"""Missions whose node sets parameters, and which the ground resets or sends tables to."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from cfepy.attachment import Attachment
+from cfepy.console import Console
+from cfepy.mission import Mission, MissionSpec
+from cfepy.mission.limits import MissionLimits
+from cfepy.msg import command
+from cfepy.nodes.config import NodeConfig, RosConfig
+from cfepy.tbl import build
+from cfepy.tbl.packets import ACTIVATE, ACTIVE_BUFFER, DUMP, LOAD, VALIDATE
+from rospy_shim.parameters.table import TABLES, Row, rows_for, unpack
+
+PROCESSOR_RESET, POWERON_RESET = 1, 2
+
+
+def fly(
+    folder: Path,
+    node: str,
+    *,
+    params: Mapping[str, Any] | None = None,
+    private: Mapping[str, Any] | None = None,
+    limits: Mapping[str, Any] | None = None,
+    board: str = "linux",
+    tasks: str = "thread",
+    attachments: Sequence[Attachment] = (),
+) -> Mission:
+    """A mission with one node, N; it has not run yet."""
+    (folder / "n.py").write_text(textwrap.dedent(node))
+    script = folder / "startup.scr"
+    script.write_text("CFE_APP, n, __main__, N, 100, 16384, 0x0, 0;\n!\n")
+    ros = RosConfig({"N": NodeConfig("N", params=private or {})}, params=params or {})
+    spec = MissionSpec("test", folder, script, None, board, ros, limits=MissionLimits(limits or {}))
+    return Mission(spec, tasks=tasks, console=Console(quiet=True), attachments=attachments)
+
+
+def printed(mission: Mission) -> list[str]:
+    """What the node, which calls itself n, has printed."""
+    return [line.removeprefix("[n] ") for line in mission.console.lines if line.startswith("[n] ")]
+
+
+def events(mission: Mission) -> list[str]:
+    """The texts of ROS's events."""
+    return [line.partition("/ROS ")[2] for line in mission.console.lines if "/ROS " in line]
+
+
+def reset(mission: Mission, kind: int) -> None:
+    """What the ground commands with CFE_ES_RESTART."""
+    mission.cfe.sb.transmit_msg(command(0x1806, 2, bytes([kind, 0])), is_origination=False)
+    mission.run_for(2)
+
+
+def load(mission: Mission, number: int, values: Mapping[str, str]) -> None:
+    """Load a table of parameters, whose texts are given, from a file, have it validated, and activate it."""
+    rows = [row for name, text in values.items() for row in rows_for(name, text)]
+    table = TABLES[number]
+    image = table.image([{"Name": name, "Value": value} for name, value in rows])
+    mission.files.write_file("/ram/params.tbl", build(image))
+    for packet in (
+        LOAD.packet(LoadFilename="/ram/params.tbl"),
+        VALIDATE.packet(ActiveTableFlag=0, TableName=table.name),
+        ACTIVATE.packet(TableName=table.name),
+    ):
+        mission.cfe.sb.transmit_msg(packet, is_origination=False)
+        mission.run_for(1.5)
+
+
+def dump(mission: Mission, number: int) -> bytes:
+    """The file that the ground gets when it dumps a table of parameters."""
+    packet = DUMP.packet(ActiveTableFlag=ACTIVE_BUFFER, TableName=TABLES[number].name, DumpFilename="/ram/dump.tbl")
+    mission.cfe.sb.transmit_msg(packet, is_origination=False)
+    mission.cfe.sb.transmit_msg(command(0x180C, 0), is_origination=False)  # CFE_TBL writes with its housekeeping
+    mission.run_for(1)
+    node = mission.files.find("/ram/dump.tbl")
+    assert node is not None
+    return bytes(node.data)
+
+
+def rows_of(mission: Mission) -> list[Row]:
+    """The rows that are not free, of all tables that there are."""
+    names = [table.name for table in TABLES if mission.cfe.tbl.registry.find(table.name) is not None]
+    tables = [mission.cfe.tbl.registry.by_name(name) for name in names]
+    rows = [row for table in tables if table.active is not None for row in unpack(table.active.view())]
+    return [row for row in rows if row != ("", "")]

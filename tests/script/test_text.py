@@ -1,0 +1,163 @@
+"""The language of mission scripts: what is understood, and what is said about mistakes before anything runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cfepy.ground.dictionary import dictionary_of
+from cfepy.mission import MissionSpec, read_mission
+from cfepy.script.text import Script, Words, parse_script, read_script
+from cfepy.status import UsageError
+from tests.mission.flights import write_mission
+
+STARTUP = "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
+
+
+def script(folder: Path, text: str) -> Script:
+    spec = read_mission(write_mission(folder, STARTUP))
+    path = folder / "script.txt"
+    path.write_text(text)
+    return read_script(path, spec, dictionary_of(spec))
+
+
+def test_words_texts_and_comments() -> None:
+    words = Words('expect event  APP 3 "a # b" Name="x y" # the rest')
+    assert words.source == 'expect event  APP 3 "a # b" Name="x y"'
+    assert words.rest() == ["expect", "event", "APP", "3", "a # b", "Name=x y"]
+    assert not Words("   # nothing")
+
+
+def test_every_kind_of_step_is_understood(tmp_path: Path) -> None:
+    found = script(
+        tmp_path,
+        """
+        # comments and empty lines are no steps
+
+        at 2.0  send CFE_ES_NOOP
+        expect event CFE_ES 3 "No-op command" within 1
+        expect event CFE_ES
+        expect event * * ERROR
+        at 5 send SAMPLE_APP_DISPLAY_PARAM ValU32=10 ValStr="a b"   # with a text
+        expect tlm SAMPLE_APP_HK_TLM CommandCounter == 1 and CommandErrorCounter < 2 within 2
+        expect tlm 0x0883
+        expect tlm /joint_states position[2] >= -0.5
+        expect no event * ERROR until 20
+        expect app SAMPLE_APP RUNNING
+        expect no app OTHER
+        expect app SAMPLE_APP GONE within 3
+        expect file /ram/x.log size 1000
+        expect file /ram/x.log size >= 1000 until 30
+        expect no file /ram/y
+        expect console "OPERATIONAL"
+        after 1.5 send raw 1806c00000010020
+        after 1 reset processor
+        reset power-on
+        at 45 end
+        """,
+    )
+    assert len(found.steps) == 20
+    assert found.steps[0].packet == bytes.fromhex("1806c00000010020")
+    assert found.steps[4].packet is not None
+    assert found.steps[4].packet[8:12] == bytes([10, 0, 0, 0])
+    assert found.steps[16].packet == bytes.fromhex("1806c00000010020")
+    assert [step.at_ns for step in found.steps if step.at_ns is not None] == [2 * 10**9, 5 * 10**9, 45 * 10**9]
+    assert found.steps[0].line == 4
+    assert found.longest_ns == 45 * 10**9
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("sned CFE_ES_NOOP", "'sned' is no step; did you mean send?"),
+        ("at noon send CFE_ES_NOOP", "'noon' is not a number of seconds; give 0 to 1e+09"),
+        ("at 2", "what to do is missing at the end of the line"),
+        ("send", "the command's name is missing at the end of the line"),
+        ("send CFE_ES_NOP", "no command is called CFE_ES_NOP; did you mean CFE_ES_NOOP"),
+        ("send CFE_ES_NOOP X=1", "X: CFE_ES_NOOP has no fields"),
+        ("send SAMPLE_APP_DISPLAY_PARAM ValU32=-1", "ValU32: -1 does not fit u32"),
+        ("send raw 18zz", "'18zz' are no bytes"),
+        ("reset warm", "'warm' is no kind of reset; there are processor, power-on"),
+        ("expect evnt CFE_ES", "'evnt' is no thing to expect; did you mean event?"),
+        ("expect event", "the application's name is missing"),
+        ("expect event CFE_ES 3 EROR", "'EROR' is no type of event; did you mean ERROR?"),
+        ('expect event CFE_ES 3 "No-op', 'a quote is opened and not closed: "No-op'),
+        ("expect tlm SAMPLE_APP_HK", "no telemetry packet is called SAMPLE_APP_HK; did you mean SAMPLE_APP_HK_TLM?"),
+        ("expect tlm SAMPLE_APP_HK_TLM Counter == 1", "Counter: no such field; "),
+        ("expect tlm SAMPLE_APP_HK_TLM CommandCounter = 1", "'=' is no sign; there are ==, !=, <, <=, >, >="),
+        ("expect tlm SAMPLE_APP_HK_TLM CommandCounter ==", "the value is missing"),
+        ("expect tlm SAMPLE_APP_HK_TLM CommandCounter == x", "CommandCounter: 'x' is not a number"),
+        ("expect app SAMPLE_APP RUNING", "'RUNING' is no state of an application; did you mean RUNNING?"),
+        ("expect file x.log", "'x.log' is no path of the mission's file system"),
+        ("expect file /ram/x size big", "'big' is no number of bytes"),
+        ("expect console", "the text is missing"),
+        ("expect app SAMPLE_APP within", "the time is missing"),
+        ("expect app SAMPLE_APP within 1 2", "'2' is too much"),
+        ("end now", "'now' is too much"),
+    ],
+)
+def test_a_mistake_is_told_with_its_place(tmp_path: Path, line: str, said: str) -> None:
+    with pytest.raises(UsageError) as error:
+        script(tmp_path, f"# first line\n{line}\n")
+    assert str(error.value).startswith(f"{tmp_path / 'script.txt'}:2: {said}")
+
+
+def test_times_do_not_go_back(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="at 2 is earlier than a step before, at 3"):
+        script(tmp_path, "at 3 send CFE_ES_NOOP\nat 2 send CFE_ES_NOOP\n")
+
+
+def test_a_file_that_is_no_script(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="has no steps"):
+        script(tmp_path, "# nothing\n")
+    spec = read_mission(write_mission(tmp_path, STARTUP))
+    with pytest.raises(UsageError, match="cannot be read"):
+        read_script(tmp_path / "no_such_file", spec, dictionary_of(spec))
+
+
+@pytest.mark.parametrize(
+    ("text", "longest_s"),
+    [
+        ("send CFE_ES_NOOP", 0),
+        ("at 2 send CFE_ES_NOOP\nexpect event CFE_ES within 1", 3),
+        ("at 2 send CFE_ES_NOOP\nexpect event CFE_ES", 7),
+        ("at 2 send CFE_ES_NOOP\nexpect event CFE_ES until 4\nafter 3 send CFE_ES_NOOP", 7),
+        ("expect no event * ERROR until 9\nat 2 send CFE_ES_NOOP", 9),
+        ("at 2 expect no event * ERROR\nafter 1 end", 3),
+        ("at 2 expect app SAMPLE_APP RUNNING", 2),
+    ],
+)
+def test_the_longest_time_that_a_script_takes(tmp_path: Path, text: str, longest_s: float) -> None:
+    assert script(tmp_path, text).longest_ns == longest_s * 10**9
+
+
+DICTIONARY = dictionary_of(None)
+WORDS = [
+    "at", "after", "send", "raw", "reset", "expect", "no", "event", "tlm", "app", "file", "console", "end", "within",
+    "until", "size", "and", "==", ">=", "*", "1", "2.5", "-1", "0x10", '"text"', '"', "#", "ERROR", "RUNNING", "GONE",
+    "CFE_ES", "CFE_ES_NOOP", "SAMPLE_APP_HK_TLM", "CommandCounter", "/topic", "/ram/x", "processor", "ValU32=1", "=",
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def spec(tmp_path_factory: pytest.TempPathFactory) -> MissionSpec:
+    return read_mission(write_mission(tmp_path_factory.mktemp("words"), STARTUP))
+
+
+@given(st.lists(st.lists(st.sampled_from(WORDS), max_size=8), min_size=1, max_size=4))
+@settings(max_examples=300, deadline=None)
+def test_any_words_are_a_script_or_a_mistake_with_its_place(spec: MissionSpec, lines: list[list[str]]) -> None:
+    text = "\n".join(" ".join(words) for words in lines)
+    said = [line for line in (line.partition("#")[0].strip() for line in text.split("\n")) if line]
+    try:
+        script = parse_script(text, "words.txt", spec, DICTIONARY)
+    except UsageError as error:
+        is_placed = error.line is not None
+    else:
+        is_placed = True
+        assert [step.text for step in script.steps] == said
+        assert script.longest_ns >= max(step.at_ns or 0 for step in script.steps)
+    assert is_placed or not said

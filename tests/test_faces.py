@@ -1,0 +1,51 @@
+"""Faces of packages: what they offer is what type checkers see, and nothing is loaded before it is used."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import subprocess
+import sys
+
+import pytest
+
+from tests.house.tree import Tree, the_tree
+
+
+@pytest.fixture(scope="module")
+def tree() -> Tree:
+    return the_tree()
+
+
+def packages_with_faces() -> list[str]:
+    return sorted(name for name, module in the_tree().modules.items() if module.is_package and "= face(" in module.text)
+
+
+@pytest.mark.parametrize("name", packages_with_faces())
+def test_names_of_all_kinds_agree(name: str) -> None:
+    package = importlib.import_module(name)
+    module = the_tree().modules[name]
+    offered = {each.name.rpartition(".")[2] for each in module.imports if each.when == "for types"}
+    later = set(_later(module.tree))
+    assert later == offered - {""}, "what is loaded later is what type checkers are told"
+    assert offered <= set(package.__all__)
+    for each in package.__all__:
+        assert getattr(package, each) is not None
+    assert set(package.__all__) <= set(dir(package))
+
+
+def _later(tree: ast.Module) -> list[str]:
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and ast.unparse(node.func) == "face"]
+    return [name for value in ast.literal_eval(calls[0].args[1]).values() for name in value]
+
+
+def test_a_name_that_is_not_there() -> None:
+    package = importlib.import_module("cfepy.reports")
+    with pytest.raises(AttributeError, match=r"cfepy\.reports.*'Pages'"):
+        package.Pages  # noqa: B018
+
+
+def test_nothing_is_loaded_before_it_is_used() -> None:
+    code = "import sys, cfepy.reports; print([name for name in sys.modules if 'cfepy.reports.' in name])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
