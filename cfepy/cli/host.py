@@ -17,6 +17,7 @@ from cfepy.cli.main import FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import LONGEST_S
 from cfepy.console import Console
 from cfepy.garbage import no_collection
+from cfepy.mission import PieceLength
 from cfepy.pilot import Host, LiveRun
 from cfepy.rtos import Pacer, Stopwatch
 from cfepy.units import NS_PER_S
@@ -24,11 +25,8 @@ from cfepy.units import NS_PER_S
 if TYPE_CHECKING:
     from cfepy.io import HostNetwork
 
-FIRST_PIECE_NS = 10_000_000
-LEAST_PIECE_NS = 1_000_000
 PATIENCE_NS = 2 * NS_PER_S  # wall time after the second Ctrl-C in which no other has an effect
 STDERR = 2
-SHORT_NS, LONG_NS = 80_000_000, 250_000_000  # wall time that a piece should take
 
 MakeDisplay = Callable[[float], Display]
 
@@ -79,7 +77,7 @@ class WatchedHost(Host):
         self._ports = ports or {}
         self._pause = pause
         self._note = note
-        self._piece_ns = FIRST_PIECE_NS
+        self._piece = PieceLength()
         self._watch = Stopwatch()
         self._go: Callable[[int], None] = self._free_piece
         self._bridge = contextlib.ExitStack()
@@ -140,7 +138,7 @@ class WatchedHost(Host):
 
     def _free_piece(self, until_ns: int) -> None:
         """As fast as it goes."""
-        self._run_until(min(until_ns, self._mission.kernel.now + self._piece_ns))
+        self._run_until(min(until_ns, self._mission.kernel.now + self._piece.ns))
 
     def pace(self, factor: float | None) -> None:
         """From here on, so many times as fast as the wall clock; None is as fast as it goes."""
@@ -151,7 +149,7 @@ class WatchedHost(Host):
         run = self._run_until
         paced = Pacer(kernel, run, factor) if network is None else Pacer(kernel, run, factor, network.wait)
         # One that falls behind would have ever more to catch up with in one piece.
-        self._go = lambda until_ns: paced.step(min(until_ns, kernel.now + self._piece_ns))
+        self._go = lambda until_ns: paced.step(min(until_ns, kernel.now + self._piece.ns))
 
     def _connect(self) -> None:
         """Real ports for the mission's; only a run in real time has them, and only it imports what they need."""
@@ -163,11 +161,7 @@ class WatchedHost(Host):
         """A piece of the run; its length goes after what takes some 80 to 250 ms of wall time."""
         watch, length_ns = Stopwatch(), until_ns - self._mission.kernel.now
         self._mission.run_until(until_ns)
-        wall_ns = watch.elapsed_ns()
-        if wall_ns > LONG_NS:
-            self._piece_ns = max(LEAST_PIECE_NS, self._piece_ns // 2)
-        elif wall_ns < SHORT_NS and length_ns >= self._piece_ns:
-            self._piece_ns *= 2
+        self._piece.took(length_ns, watch.elapsed_ns())
         if self._network is not None:
             self._network.exchange()
 

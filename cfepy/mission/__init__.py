@@ -35,6 +35,7 @@ from cfepy.mission.mission import Mission
 from cfepy.mission.mission_file import MissionSections, read_mission_file
 from cfepy.mission.outside import Arrival, OutsideStream
 from cfepy.mission.packet_watch import HOST, PacketWatch, Seen, hearing, receivers
+from cfepy.mission.pieces import FIRST_PIECE_NS, PieceLength
 from cfepy.mission.processor import CORE_APPS, Processor
 from cfepy.mission.python_code import find_code, find_node
 from cfepy.mission.record import Reset, Traffic
@@ -46,6 +47,7 @@ __all__ = [
     "CALL",
     "CORE_APPS",
     "FILE",
+    "FIRST_PIECE_NS",
     "HOST",
     "KEPT_ENVIRONMENT",
     "LAUNCH_FILES",
@@ -62,6 +64,7 @@ __all__ = [
     "MissionSpec",
     "OutsideStream",
     "PacketWatch",
+    "PieceLength",
     "Processor",
     "Reset",
     "Seen",

@@ -6,7 +6,7 @@ boot on it. Nothing in the parts knows of this module.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -18,6 +18,7 @@ from cfepy.mission.acts import HostActs
 from cfepy.mission.finding import read_mission
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.outside import Outside
+from cfepy.mission.pieces import HeldBack, PieceLength
 from cfepy.mission.processor import Machine, Processor
 from cfepy.mission.python_code import find_code
 from cfepy.mission.record import Reset, RunRecord
@@ -25,7 +26,7 @@ from cfepy.mission.spec import MissionSpec
 from cfepy.mission.tracebacks import app_traceback, is_own_code, reason
 from cfepy.osal import FileSystem, Network
 from cfepy.psp import EEPROM_BYTES, BoardProfile, MemoryBudget, PanicError, Retained, load_profile
-from cfepy.rtos import Policy, StallWatch, Task, make_kernel
+from cfepy.rtos import Policy, StallWatch, Stopwatch, Task, make_kernel
 from cfepy.sb import SoftwareBus
 from cfepy.status import StallError
 from cfepy.trace import Trace
@@ -184,14 +185,41 @@ class Mission:
         self.run_until(self.kernel.now + round(seconds * NS_PER_S))
 
     def run_until(self, until_ns: int) -> None:
-        """Run until a virtual time in ns, through every reset that is asked for on the way."""
+        """Run until a virtual time in ns, through every reset that is asked for on the way.
+
+        Raises:
+            StallError: a task does not give up the CPU.
+            KeyboardInterrupt: Ctrl-C; the run can go on after it, if each task gave up the CPU soon.
+        """
+        with HeldBack() as signals:
+            if not signals.is_first:
+                self._run(until_ns, self.kernel.run)
+                return
+            watch = self.stall_watch
+            wanted = watch.wanted
+            watch.wanted = lambda: signals.asked or wanted()
+            try:
+                self._run(until_ns, lambda end_ns: self._run_in_pieces(end_ns, signals))
+            finally:
+                watch.wanted = wanted
+
+    def _run(self, until_ns: int, run: Callable[[int], None]) -> None:
         self.stall_watch.begin()
         self.outside.begin_piece(until_ns)
         self._reset_if_asked()
-        self.kernel.run(until_ns)
+        run(until_ns)
         while self._resetting:
             self._reset_if_asked()
-            self.kernel.run(until_ns)
+            run(until_ns)
+
+    def _run_in_pieces(self, until_ns: int, signals: HeldBack) -> None:
+        kernel, length = self.kernel, PieceLength()
+        while not signals.asked:
+            watch, start_ns = Stopwatch(), kernel.now
+            kernel.run(min(until_ns, start_ns + length.ns))
+            if kernel.now >= until_ns or kernel.is_stopped:
+                return
+            length.took(kernel.now - start_ns, watch.elapsed_ns())
 
     def conclude(self) -> None:
         """Say that the time of the run is over; what comes now is the shutdown."""
@@ -222,9 +250,10 @@ class Mission:
             RuntimeError: the caller is in another process than the tasks, or for greenlets in another thread.
         """
         self.kernel.check_caller()
-        self.processor.end()
-        self.kernel.shutdown(tidy=True)
-        self.stall_watch.end()
+        with HeldBack():
+            self.processor.end()
+            self.kernel.shutdown(tidy=True)
+            self.stall_watch.end()
         for each in self._attachments:
             each.close()
 

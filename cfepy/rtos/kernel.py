@@ -266,6 +266,11 @@ class Kernel(Scheduler):
                 return
             self.now = max(self.now, self._until)
 
+    @property
+    def is_stopped(self) -> bool:
+        """Whether the last run ended before its time, because it was stopped."""
+        return self._stopped
+
     def stop(self) -> None:
         """End the run: `run` returns as soon as the current task reaches its next wait, or at once from the host."""
         self._stopped = True

@@ -12,10 +12,10 @@ from cfepy.cli.ground.console.completion import Completer
 from cfepy.cli.ground.console.pages import CHANGED, PacketBoard, Row
 from cfepy.cli.ground.console.plain import text_of_row
 from cfepy.cli.ground.console.saved import SavedScript, time_text, without_when
-from cfepy.cli.host import FIRST_PIECE_NS, Interrupts, WatchedHost
+from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.es.packets import HK_TLM
 from cfepy.ground import dictionary_of, packet_of
-from cfepy.mission import Seen
+from cfepy.mission import FIRST_PIECE_NS, Seen
 from cfepy.pilot import RunPlan, takeoff
 from cfepy.rtos import ENDLESS
 from cfepy.script import Step, StepVerdict
