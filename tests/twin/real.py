@@ -1,0 +1,147 @@
+"""Boots NASA's cFE: its Linux executable, in a private copy of its folder and in namespaces of its own.
+
+Message queues, shared memory, the RAM disk, UDP ports and process ids are private, so many can run at once, and
+nothing of one outlives it. A processor reset ends NASA's process; it is started again, and finds its retained memory.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import select
+import shutil
+import socket
+import subprocess
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+
+VARIABLE = "CFEPY_REAL_CFE"
+EXECUTABLE = "core-cpu1"
+CI_PORT, TO_PORT = 1234, 1235
+RAM_DISK = "dev/shm/osal:RAM"
+OPERATIONAL = b"entering OPERATIONAL state"
+CLONE_NEWNET = 0x40000000
+BOOT_LIMIT_S = 60.0
+INSIDE = """
+mount -t tmpfs none /dev/shm
+mount -t mqueue none /dev/mqueue
+echo 1000 > /proc/sys/fs/mqueue/msg_max
+echo 10000 > /proc/sys/fs/mqueue/msgsize_max
+ip link set lo up
+ulimit -q unlimited
+while true; do "$@"; echo "process ended with $?"; done
+"""
+
+
+def installed() -> Path | None:
+    """The folder of NASA's executable, as the environment variable CFEPY_REAL_CFE says.
+
+    Raises:
+        FileNotFoundError: the variable is set, and no executable is there.
+    """
+    folder = os.environ.get(VARIABLE)
+    if not folder:
+        return None
+    if not (Path(folder) / EXECUTABLE).exists():
+        raise FileNotFoundError(f"{VARIABLE}: no {EXECUTABLE} in {folder}")
+    return Path(folder)
+
+
+class RealCfe:
+    """NASA's cFE while it runs, as a context manager. Needs Linux and the rights of root for the namespaces.
+
+    Args:
+        built: the folder of the executable and of its `cf`.
+        folder: where its private copy goes.
+        files: what to write over files of the copy, by virtual path ("/cf/x").
+    """
+
+    def __init__(self, built: Path, folder: Path, files: Mapping[str, bytes]) -> None:
+        self._folder = folder
+        shutil.copytree(built / "cf", folder / "cf")
+        shutil.copy(built / EXECUTABLE, folder)
+        for path, content in files.items():
+            (folder / path.lstrip("/")).write_bytes(content)
+        self._log = folder / "console.log"
+
+    def __enter__(self) -> RealCfe:
+        spaces = ["unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"]
+        with self._log.open("wb") as log:
+            self._process = subprocess.Popen(
+                [*spaces, "bash", "-c", INSIDE, "-", f"./{EXECUTABLE}"], cwd=self._folder, stdout=log, stderr=log
+            )
+        try:
+            self.wait(lambda: OPERATIONAL in self.console(), "boot", BOOT_LIMIT_S)
+            self._inside = int(Path(f"/proc/{self._process.pid}/task/{self._process.pid}/children").read_text())
+            with _in_network_of(self._inside):
+                self._up = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+                self._down = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+                self._down.bind(("127.0.0.1", TO_PORT))
+        except BaseException:
+            self._end()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self._up.close()
+        self._down.close()
+        self._end()
+
+    def _end(self) -> None:
+        self._process.kill()  # the first process of its space: all others go with it
+        self._process.wait()
+
+    def send(self, packet: bytes) -> None:
+        """Send a datagram to CI_LAB."""
+        self._up.sendto(packet, ("127.0.0.1", CI_PORT))
+
+    def receive(self, timeout_s: float) -> bytes | None:
+        """The next datagram of TO_LAB; None when none comes in so many seconds of the host."""
+        if not select.select([self._down], [], [], max(0.0, timeout_s))[0]:
+            return None
+        return self._down.recv(65536)
+
+    def console(self) -> bytes:
+        """All that was printed since the start."""
+        return self._log.read_bytes()
+
+    def files(self) -> dict[str, bytes]:
+        """Content of every file in /ram, by virtual path."""
+        disk = Path(f"/proc/{self._inside}/root/{RAM_DISK}")
+        return {f"/ram/{each.name}": each.read_bytes() for each in disk.iterdir() if each.is_file()}
+
+    @property
+    def folder(self) -> Path:
+        """Where the private copy is; /cf is its `cf`."""
+        return self._folder
+
+    def wait(self, done: Callable[[], bool], what: str, limit_s: float) -> None:
+        """Wait until something is so.
+
+        Raises:
+            TimeoutError: it was not so within the limit, in s of the host.
+        """
+        end = time.monotonic() + limit_s
+        while not done():
+            if time.monotonic() > end or self._process.poll() is not None:
+                last = self.console()[-2000:].decode(errors="replace")
+                raise TimeoutError(f"NASA's cFE: no {what} within {limit_s} s; its console ends with:\n{last}")
+            time.sleep(0.02)
+
+
+@contextmanager
+def _in_network_of(pid: int) -> Iterator[None]:
+    """Sockets that are made here belong to the network of another process; they keep belonging to it."""
+    enter = ctypes.CDLL(None, use_errno=True).setns
+    with Path("/proc/self/ns/net").open() as own, Path(f"/proc/{pid}/ns/net").open() as other:
+        if enter(other.fileno(), CLONE_NEWNET):
+            raise OSError(ctypes.get_errno(), "setns")
+        try:
+            yield
+        finally:
+            enter(own.fileno(), CLONE_NEWNET)
