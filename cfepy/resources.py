@@ -33,3 +33,11 @@ def shipped(kind: str) -> Path:
 def import_path() -> str:
     """PYTHONPATH of a process that is to find cfepy, however this process found it."""
     return os.pathsep.join(path for path in sys.path if path) or os.curdir
+
+
+def python_command() -> tuple[str, ...]:
+    """The start of a command line that runs a module of cfepy in another Python; give it `import_path`.
+
+    The working directory is kept off its path (-P): a file there may have the name of a module of Python's.
+    """
+    return (sys.executable, "-P")

@@ -11,6 +11,7 @@ import logging
 import pickle
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
+from importlib import import_module
 from queue import Empty, SimpleQueue
 from typing import Any
 
@@ -136,7 +137,9 @@ class Cluster:
         if not count.isdecimal() or int(count) == 0:
             raise UsageError(f"{LOCAL}{count} is no number of processes; write {LOCAL}4", field=OPTION)
         options = {"threads_per_worker": 1, "processes": True, "dashboard_address": None}
-        return self._distributed.LocalCluster(n_workers=int(count), **options)
+        safe_path = {"distributed.nanny.pre-spawn-environ.PYTHONSAFEPATH": "1"}  # see `python_command`
+        with import_module("dask").config.set(safe_path):
+            return self._distributed.LocalCluster(n_workers=int(count), **options)
 
     def _set_up(self, trial: Experiment) -> None:
         """Bring the trial and its files to all workers, and to those that come later."""

@@ -13,7 +13,6 @@ import os
 import pickle
 import signal
 import subprocess
-import sys
 import tempfile
 from collections import Counter, deque
 from collections.abc import Iterator, Mapping, Sequence
@@ -24,7 +23,7 @@ from pathlib import Path
 from cfepy.exploration.campaign import Experiment, Job, NumberedVerdict, Take
 from cfepy.exploration.verdict import Failure, Verdict
 from cfepy.exploration.worker import READY
-from cfepy.resources import import_path
+from cfepy.resources import import_path, python_command
 from cfepy.rtos import Schedule, Stopwatch
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -68,7 +67,7 @@ class Worker:
         self.connection, theirs = Pipe()
         with theirs:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", __package__ + ".worker", str(theirs.fileno())],
+                [*python_command(), "-m", __package__ + ".worker", str(theirs.fileno())],
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
                 stdout=self._said,

@@ -13,6 +13,7 @@ import os
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -62,18 +63,29 @@ def staged(journal: Journal, from_disk: bool = False) -> Iterator[Stage]:
     """
     changed = [each for each in journal.files.values() if not each.same_on_disk()]
     left_out = [each for each in changed if each.packed is None and each.sha256]
-    warnings = tuple(_warnings(journal))
-    reasons = (*warnings, *_host_changes(journal))
+    plan, on_threads = _on_tasks_here(journal.plan)
+    changes = tuple(_warnings(journal))
+    warnings = (*changes, *on_threads)
+    reasons = (*changes, *_host_changes(journal))
     with contextlib.ExitStack() as stack:
         if from_disk or left_out or not any(each.packed for each in journal.files.values()):
             other = f"other files than then: {_named(changed)}"
-            stage = Stage(journal.plan, "", (_note(changed, from_disk, left_out), *warnings), (other, *reasons))
+            stage = Stage(plan, "", (_note(changed, from_disk, left_out), *warnings), (other, *reasons))
         else:
             root = stack.enter_context(_unpacked(journal))
             notes = (f"with the recorded files; on this computer others are now: {_named(changed)}",) if changed else ()
-            stage = Stage(moved_plan(journal.header, root), root, (*notes, *warnings), reasons)
+            moved = replace(moved_plan(journal.header, root), tasks=plan.tasks)
+            stage = Stage(moved, root, (*notes, *warnings), reasons)
         stack.enter_context(_in_place_of(journal.header, stage.root))
         yield stage
+
+
+def _on_tasks_here(plan: RunPlan) -> tuple[RunPlan, tuple[str, ...]]:
+    """The plan with tasks that this Python has, since all kinds make the same run; what to say of the change."""
+    if plan.tasks != "greenlet" or find_spec("greenlet") is not None:
+        return plan, ()
+    note = "recorded on greenlets, and greenlet is not installed here: replayed on threads, which make the same run"
+    return replace(plan, tasks="thread"), (note,)
 
 
 def _note(changed: Sequence[MissionFile], from_disk: bool, left_out: Sequence[MissionFile]) -> str:

@@ -161,3 +161,12 @@ def test_impossible_numbers_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["run", "lab", "--check-determinism", "1"])
     assert "'1' is not a number of runs; give 2 to 64" in capsys.readouterr().err
+
+
+def test_a_file_in_the_working_directory_is_no_module_of_the_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "random.py").write_text("open('executed', 'w').close()\n")
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "lab", "--for", "0.01", "--check-determinism", "2"]) == 0
+    assert not (tmp_path / "executed").exists()

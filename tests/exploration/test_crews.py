@@ -69,3 +69,17 @@ class Same:
 
     def tell(self, number: int, verdict: Verdict) -> None:
         """Nothing to learn."""
+
+
+def test_a_file_in_the_working_directory_is_no_module_of_a_worker(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "random.py").write_text("open('executed', 'w').close()\n")
+    monkeypatch.chdir(tmp_path)
+    told: list[Verdict] = []
+    search = make_search("all", None, 100, Schedule())
+    Campaign(Trial(RunPlan(("lab",), seconds=0.01)), search, 1, Processes(1)).run(
+        lambda _, verdict: told.append(verdict)
+    )
+    assert [verdict.failures for verdict in told] == [()]
+    assert not (tmp_path / "executed").exists()

@@ -6,7 +6,6 @@ import contextlib
 import dataclasses
 import os
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -16,7 +15,7 @@ from typing import IO, Any, TextIO
 from cfepy.cli.run.compared_run import ComparedRun
 from cfepy.pilot.determinism import RecordReader, RunEndedError
 from cfepy.pilot.determinism_look import Line, Look, suspects
-from cfepy.resources import import_path
+from cfepy.resources import import_path, python_command
 from cfepy.status import UsageError
 
 MOST_SUSPECTS = 8
@@ -41,7 +40,8 @@ def started(asked: ComparedRun, hash_seed: int | None = None) -> Iterator[RunInP
         hash_seed: PYTHONHASHSEED of the process; None for that of this one.
     """
     out, into = os.pipe()
-    command = [sys.executable, "-m", "cfepy.cli.run.compared_run", dataclasses.replace(asked, pipe=into).to_json()]
+    module = "cfepy.cli.run.compared_run"
+    command = [*python_command(), "-m", module, dataclasses.replace(asked, pipe=into).to_json()]
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as said, open(out, "rb") as pipe:
         environment = {**os.environ, "PYTHONPATH": import_path()}
         if asked.journal is not None:  # it is killed in the end: what it unpacks goes with the folder

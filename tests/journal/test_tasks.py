@@ -1,0 +1,27 @@
+"""A journal's kind of tasks, where it is not installed."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from cfepy.journal import read_journal, record, replay
+from tests.journal.replays import plan_for
+
+
+def test_a_run_on_greenlets_is_replayed_on_threads_where_there_are_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    journal = tmp_path / "run.cfepy"
+    flown = record(plan_for("lab", 0.1, tasks="greenlet"), journal)
+    monkeypatch.setitem(sys.modules, "greenlet", None)
+    again = replay(read_journal(journal))
+    assert again.verdict.same
+    assert (again.flown.mission.tasks, again.flown.trace) == ("thread", flown.trace)
+    assert main(["replay", str(journal), "--quiet"]) == 0
+    assert "greenlet is not installed here: replayed on threads" in capsys.readouterr().err
+    assert main(["replay", str(journal), "--quiet", "--tasks", "greenlet"]) == 2
+    assert "pip install 'cfepy[fast]'" in capsys.readouterr().err
