@@ -136,7 +136,8 @@ class Cluster:
     def _started(self, count: str) -> Any:
         if not count.isdecimal() or int(count) == 0:
             raise UsageError(f"{LOCAL}{count} is no number of processes; write {LOCAL}4", field=OPTION)
-        options = {"threads_per_worker": 1, "processes": True, "dashboard_address": None}
+        # Port 0 is any free one: None would be the well-known 8787, which another cluster may have.
+        options = {"threads_per_worker": 1, "processes": True, "host": "127.0.0.1", "dashboard_address": "127.0.0.1:0"}
         safe_path = {"distributed.nanny.pre-spawn-environ.PYTHONSAFEPATH": "1"}  # see `python_command`
         with import_module("dask").config.set(safe_path):
             return self._distributed.LocalCluster(n_workers=int(count), **options)

@@ -24,7 +24,7 @@ from cfepy.exploration.campaign import Experiment, Job, NumberedVerdict, Take
 from cfepy.exploration.verdict import Failure, Verdict
 from cfepy.exploration.worker import READY
 from cfepy.resources import import_path, python_command
-from cfepy.rtos import Schedule, Stopwatch
+from cfepy.rtos import Schedule, Stopwatch, allowed_cpus
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -41,7 +41,7 @@ ABORT_S = 5.0  # wall time to write down the stacks
 
 def usable_cpus() -> int:
     """How many CPUs this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return len(allowed_cpus())
 
 
 class Worker:

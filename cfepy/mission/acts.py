@@ -5,6 +5,7 @@ Acts are plain values that go through `cfepy.mission.outside`, so a journal has 
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -60,11 +61,11 @@ class HostActs:
     """Does acts.
 
     Args:
-        mission: the mission, also after it was reset.
+        mission: the mission, also after it was reset; it is not kept.
     """
 
     def __init__(self, mission: ActedOn) -> None:
-        self._mission = mission
+        self._reference = weakref.ref(mission)
         self._acts: dict[str, Callable[..., Any]] = {
             PACKET: self._packet,
             PUBLISH: self._publish,
@@ -87,6 +88,12 @@ class HostActs:
             CfeError: the bus refuses a packet.
         """
         return self._acts[name](*values)
+
+    @property
+    def _mission(self) -> ActedOn:
+        mission = self._reference()
+        assert mission is not None  # who acts on it has it
+        return mission
 
     @property
     def _ros(self) -> RosRuntime:

@@ -6,10 +6,14 @@ boot on it. Nothing in the parts knows of this module.
 
 from __future__ import annotations
 
+import sys
+import warnings
+import weakref
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 from cfepy.app import Cfe
 from cfepy.attachment import Attachment
@@ -35,8 +39,27 @@ from cfepy.units import NS_PER_MS, NS_PER_S
 if TYPE_CHECKING:
     from rospy_shim.runtime import RosRuntime
 
+P = ParamSpec("P")
+T = TypeVar("T")
+
 SHUTDOWN_NS = 2_000_000_000  # virtual time that nodes get at the end of a run for their shutdown hooks
 RESTART_NS = 10 * NS_PER_MS  # from a reset until the board comes up; also keeps time going when every boot fails
+
+
+def _while_there_is_one(method: Callable[P, T], otherwise: T) -> Callable[P, T]:
+    """A method of the mission, for its tasks: who keeps it does not keep the mission, which its user may forget.
+
+    Args:
+        method: bound.
+        otherwise: what comes of a call when there is no mission any more.
+    """
+    reference = weakref.WeakMethod(method)
+
+    def call(*args: P.args, **kwargs: P.kwargs) -> T:
+        bound = reference()
+        return otherwise if bound is None else bound(*args, **kwargs)
+
+    return call
 
 
 class Mission:
@@ -90,10 +113,10 @@ class Mission:
         self.kernel = make_kernel(tasks, self.trace, policy, self.board.tick_ns, switch_ns, seed)
         self.outside = Outside(self.kernel, self.network, self.trace)
         self.outside.do = HostActs(self).do
-        self.kernel.on_task_error = self._task_failed
+        self.kernel.on_task_error = _while_there_is_one(self._task_failed, False)
         self.stall_watch = StallWatch(self.kernel, is_own=is_own_code)
         self._first_boot: int | None = None
-        self._resetting = False
+        self._resetting = self._is_closed = False
         self._attachments = tuple(attachments)
         self._provide_tables()
         self._machine = self._make_machine()
@@ -123,7 +146,7 @@ class Mission:
             retained=Retained(cds_bytes=self.config.es_cds_size, eeprom_bytes=eeprom_bytes),
             record=self.record,
             bus=bus,
-            on_restart=self._on_restart,
+            on_restart=_while_there_is_one(self._on_restart, None),
         )
 
     def _provide_tables(self) -> None:
@@ -190,7 +213,10 @@ class Mission:
         Raises:
             StallError: a task does not give up the CPU.
             KeyboardInterrupt: Ctrl-C; the run can go on after it, if each task gave up the CPU soon.
+            RuntimeError: the mission was closed.
         """
+        if self._is_closed:
+            raise RuntimeError("this mission was closed: its tasks have ended, and it cannot go on; boot another one")
         with HeldBack() as signals:
             if not signals.is_first:
                 self._run(until_ns, self.kernel.run)
@@ -250,6 +276,7 @@ class Mission:
             RuntimeError: the caller is in another process than the tasks, or for greenlets in another thread.
         """
         self.kernel.check_caller()
+        self._is_closed = True
         with HeldBack():
             self.processor.end()
             self.kernel.shutdown(tidy=True)
@@ -264,6 +291,17 @@ class Mission:
         self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
     ) -> None:
         self.close()
+
+    def __del__(self) -> None:
+        """One that nobody has closed, and that nobody can any more: its threads must not outlive it.
+
+        At the end of Python there is nothing to do any more, and its threads do not run.
+        """
+        if getattr(self, "_is_closed", True) or sys.is_finalizing():
+            return
+        warnings.warn(f"mission {self.spec.folder.name} was not closed", ResourceWarning, source=self, stacklevel=2)
+        with suppress(RuntimeError):  # greenlets of another thread, or tasks of another process: no threads of ours
+            self.close()
 
     # -- failures and resets ---------------------------------------------------------------------------------------
 

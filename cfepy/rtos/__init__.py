@@ -1,13 +1,14 @@
 """The simulated real-time kernel: virtual time, tasks with priorities, and the objects tasks wait for.
 
 What belongs here makes tasks run or wait, decides which task runs next, or charges virtual time for it. OSAL's tasks,
-queues and mutexes do not: OSAL builds them on the names below. The host's threads and clock are touched in `context`,
-`realtime` and `watchdog`, and in no package above.
+queues and mutexes do not: OSAL builds them on the names below. The host's threads, CPUs and clock are touched in
+`context`, `cpus`, `realtime` and `watchdog`, and in no package above.
 """
 
 from __future__ import annotations
 
 from cfepy.rtos.costs import CpuCosts
+from cfepy.rtos.cpus import allowed_cpus
 from cfepy.rtos.errors import DeadlockError, InjectedCrash
 from cfepy.rtos.exploring import ExploringKernel, make_kernel
 from cfepy.rtos.kernel import ENDLESS, Kernel
@@ -54,5 +55,6 @@ __all__ = [
     "TaskExit",
     "Wait",
     "WaitList",
+    "allowed_cpus",
     "make_kernel",
 ]

@@ -20,6 +20,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any, Protocol
 
+from cfepy.rtos.cpus import Seat, current_cpu, pin, process_seat
 from cfepy.rtos.task import Task, TaskExit
 from cfepy.status import UsageError
 
@@ -30,7 +31,6 @@ BLOWS_S = 0.5  # how long it is struck in quick succession, when it swallows the
 BLOW_S = 1e-5
 LOOK_UP_S = 0.25  # how long a signal may wait for the host in the worst case
 EACH_STEP_S = 1e-6  # for `sys.setswitchinterval`: another thread may get in after each step of a loop
-_HAS_AFFINITY = hasattr(os, "sched_setaffinity")
 _HAS_BATCH = hasattr(os, "SCHED_BATCH")
 
 
@@ -51,6 +51,9 @@ class Context(Protocol):
 
     def prepare_run(self, tasks: list[Task]) -> None:
         """A run begins, on whatever CPU the host is now."""
+
+    def end_run(self) -> None:
+        """No task is left; give back what a run has of this computer."""
 
     def enter(self, host: Task, is_lost: Callable[[], bool]) -> None:
         """Wait in the host until the baton comes back, or is lost; the kernel handed it out before."""
@@ -109,8 +112,8 @@ class _Carrier:
             main, task = self.main, self.task
             if main is None or task is None:
                 break
-            if _HAS_AFFINITY and self.cpu >= 0:
-                os.sched_setaffinity(0, {self.cpu})
+            if self.cpu >= 0:
+                pin(0, self.cpu)
             _trace_as_threads_are()
             following = contextvars.Context().run(main, task)  # context variables are a thread's own, and die with it
             self.main = self.task = task = main = None
@@ -170,16 +173,17 @@ class ThreadContext:
 
     One raw lock a task is the baton, handed straight from the task that yields to the next. Measured ways to be slower:
     a central dispatcher thread (twice the switches), Condition or Event (two to ten times), and threads on several CPUs
-    (up to fifteen times: an idle CPU must be woken for every hand-over). So all threads of a run are pinned to the CPU
-    the run starts on and, where there is such a thing, run as SCHED_BATCH: a woken thread then does not preempt its
-    waker, and a hand-over costs exactly one switch.
+    (up to fifteen times: an idle CPU must be woken for every hand-over). So all threads of a run are pinned to one CPU
+    (`cfepy.rtos.cpus`) and, where there is such a thing, run as SCHED_BATCH: a woken thread then does not preempt its
+    waker, and a hand-over costs exactly one switch. Which CPU that is, `cfepy.rtos.cpus` says.
     """
 
     name = "thread"
     interrupts: tuple[type[BaseException], ...] = (KeyboardInterrupt,)
 
     def __init__(self) -> None:
-        self._cpu = _current_cpu()
+        self._cpu = -1
+        self._seat: Seat | None = None
         self._process = os.getpid()
 
     def bind_host(self, host: Task) -> None:
@@ -202,14 +206,19 @@ class ThreadContext:
         task.resume, task.park = carrier.lock.release, carrier.lock.acquire
 
     def prepare_run(self, tasks: list[Task]) -> None:
-        """Move the run to the CPU that the host is on now; another program may keep the former one busy."""
-        self._cpu = cpu = _current_cpu()
+        """Move the run to the CPU of its process, which follows the host's where it can."""
+        if self._seat is None:
+            self._seat = process_seat()
+        self._cpu = cpu = self._seat.choose(current_cpu())
         for task in tasks:
             carrier = task.carrier
             if not task.done and carrier.cpu != cpu and cpu >= 0:
                 carrier.cpu = cpu
                 if carrier.native_id:
-                    _pin(carrier.native_id, cpu)
+                    pin(carrier.native_id, cpu)
+
+    def end_run(self) -> None:
+        self._seat = None
 
     def enter(self, host: Task, is_lost: Callable[[], bool]) -> None:
         assert host.park is not None
@@ -297,23 +306,6 @@ def take_back() -> None:
         pass
 
 
-def _current_cpu() -> int:
-    """The CPU this thread runs on, -1 where that cannot be told or pinning is not possible."""
-    if not _HAS_AFFINITY:
-        return -1
-    try:
-        with open("/proc/thread-self/stat", "rb") as stat:
-            cpu = int(stat.read().rpartition(b")")[2].split()[36])
-    except (OSError, ValueError, IndexError):
-        return -1
-    return cpu if cpu in os.sched_getaffinity(0) else -1
-
-
-def _pin(native_id: int, cpu: int) -> None:
-    if _HAS_AFFINITY:
-        os.sched_setaffinity(native_id, {cpu})
-
-
 def _be_batch() -> None:
     try:
         os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
@@ -368,6 +360,9 @@ class GreenletContext:
         self._starter.switch(carrier)
 
     def prepare_run(self, tasks: list[Task]) -> None:
+        pass
+
+    def end_run(self) -> None:
         pass
 
     def enter(self, host: Task, is_lost: Callable[[], bool]) -> None:

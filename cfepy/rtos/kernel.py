@@ -369,6 +369,7 @@ class Kernel(Scheduler):
                 while tasks run.
         """
         self.unwind()
+        self.context.end_run()
         if tidy and gc.isenabled():
             with self._letting_run():
                 self._collect(_tidy)

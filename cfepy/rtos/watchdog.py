@@ -96,11 +96,16 @@ class StallWatch:
         A forked process has none of its parent's threads: it begins anew.
         """
         self._host_ident = threading.get_ident()
-        if self._thread is None or not self._thread.is_alive():
+        if not self.is_on:
             self._arm()
             self._over = threading.Event()
             self._thread = threading.Thread(target=self._look_on, name="cfepy stall watch", daemon=True)
             self._thread.start()
+
+    @property
+    def is_on(self) -> bool:
+        """Whether its thread looks."""
+        return self._thread is not None and self._thread.is_alive()
 
     def end(self) -> None:
         """Look no more."""

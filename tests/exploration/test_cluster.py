@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
@@ -164,6 +164,37 @@ def test_a_cluster_of_this_computer() -> None:
     told: list[int] = []
     tally = Campaign(FakeTrial(fails=(2,)), Seeds(), 20, Cluster("local:2")).run(lambda number, _: told.append(number))
     assert (told, tally.failed) == (list(range(20)), 1)
+
+
+def open_ports() -> list[tuple[str, int]]:
+    """Address (hexadecimal) and number of each TCP port that this process listens at."""
+    sockets = set()
+    for descriptor in Path("/proc/self/fd").iterdir():
+        with suppress(OSError):
+            sockets.add(os.readlink(descriptor))
+    found = []
+    for table in ("tcp", "tcp6"):
+        for line in Path(f"/proc/self/net/{table}").read_text().splitlines()[1:]:
+            _, local, _, state, *_, inode = line.split()[:10]
+            if state == "0A" and f"socket:[{inode}]" in sockets:
+                address, _, port = local.rpartition(":")
+                found.append((address, int(port, 16)))
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux tells the ports")
+def test_a_cluster_of_this_computer_opens_no_well_known_port() -> None:
+    first_of_any = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text().split()[0])
+    before = set(open_ports())
+    crew = Cluster("local:1")
+    try:
+        opened = set(open_ports()) - before
+    finally:
+        crew.close()
+    assert opened
+    assert {address for address, _ in opened} == {"0100007F"}  # 127.0.0.1
+    assert [port for _, port in opened if port < first_of_any] == []
 
 
 @pytest.mark.slow

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import subprocess
+import sys
 from collections import Counter
 from collections.abc import Iterator
 
@@ -71,3 +73,27 @@ def test_who_has_turned_the_collector_off_keeps_it_off() -> None:
         assert gc.get_stats()[-1]["collections"] == looks
     finally:
         gc.enable()
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_one_that_nobody_closed_ends_when_nobody_has_it(tasks: str) -> None:
+    mission = Mission(read_mission("capture"), console=Console(quiet=True), tasks=tasks)
+    mission.run_for(SECONDS)
+    kernel, watch = mission.kernel, mission.stall_watch
+    assert len(kernel.tasks) > 10
+    with pytest.warns(ResourceWarning, match="mission capture was not closed"):
+        del mission
+    assert not kernel.tasks
+    assert not watch.is_on
+
+
+def test_a_closed_one_does_not_go_on() -> None:
+    mission = fly(0.1)
+    with pytest.raises(RuntimeError, match="this mission was closed"):
+        mission.run_for(0.1)
+
+
+def test_python_ends_with_one_open() -> None:
+    code = f"from cfepy.mission import Mission\nmission = Mission('capture')\nmission.run_for({SECONDS})"
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    assert (ended.returncode, ended.stderr) == (0, "")

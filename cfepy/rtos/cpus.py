@@ -1,0 +1,186 @@
+"""Which CPU of the host the threads of a run share.
+
+Only one of them runs at a time, and a hand-over between two CPUs costs up to fifteen times as much, so all of them are
+pinned to one. Two processes that pinned themselves to the same CPU would keep each other waiting for as long as they
+run, for the scheduler cannot part them. So each process takes a seat: a CPU that no other cfepy process sits on, as
+long as there is one, and then one with the fewest on it. The seat is given back when the process has no run any more.
+
+A seat is the name of a socket that nothing is ever sent to, in Linux's abstract namespace: only one process can have
+it, there is no file to leave behind, and the system takes it back from a process that ends in whatever way.
+
+    CFEPY_PIN=auto    the default
+    CFEPY_PIN=3       the runs of this process are pinned to CPU 3
+    CFEPY_PIN=off     they are not pinned
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import weakref
+
+from cfepy.status import UsageError
+
+VARIABLE = "CFEPY_PIN"
+NAME = "cfepy on CPU"
+MOST_ON_ONE = 64  # processes that sit on one CPU before counting ends
+_CAN_PIN = hasattr(os, "sched_setaffinity")
+_CAN_CLAIM = sys.platform == "linux"
+
+
+def allowed_cpus() -> list[int]:
+    """Numbers of the CPUs that the calling thread may use."""
+    return sorted(os.sched_getaffinity(0)) if _CAN_PIN else list(range(os.cpu_count() or 1))
+
+
+def current_cpu() -> int:
+    """The CPU that the calling thread runs on, -1 where that cannot be told or pinning is not possible."""
+    if not _CAN_PIN:
+        return -1
+    try:
+        with open("/proc/thread-self/stat", "rb") as stat:
+            cpu = int(stat.read().rpartition(b")")[2].split()[36])
+    except (OSError, ValueError, IndexError):
+        return -1
+    return cpu if cpu in os.sched_getaffinity(0) else -1
+
+
+def pin(native_id: int, cpu: int) -> None:
+    """Let a thread of this process run on one CPU only; 0 is the calling thread."""
+    if _CAN_PIN:
+        os.sched_setaffinity(native_id, {cpu})
+
+
+class _Claim:
+    """One of the places on a CPU, for as long as this object lives; use `_claim`."""
+
+    __slots__ = ("_socket", "cpu", "others")
+
+    def __init__(self, cpu: int, others: int) -> None:
+        from _socket import AF_UNIX, SOCK_DGRAM, socket  # `socket` itself would be a tenth of the time of a boot
+
+        self.cpu, self.others = cpu, others
+        self._socket = socket(AF_UNIX, SOCK_DGRAM)
+        try:
+            self._socket.bind(f"\0{NAME} {cpu}, {others}")
+        except OSError:
+            self._socket.close()
+            raise
+
+    def give_back(self) -> None:
+        self._socket.close()
+
+
+def _claim(cpu: int, others: int) -> _Claim | None:
+    """The place on a CPU that is taken when so many others are; None when another process has it."""
+    try:
+        return _Claim(cpu, others)
+    except OSError:
+        return None
+
+
+class Seat:
+    """The CPU of this process's runs; `process_seat` gives it.
+
+    It is given back when nothing refers to it any more.
+
+    Attributes:
+        lock: runs may be made in several threads.
+    """
+
+    def __init__(self) -> None:
+        self._claimed: _Claim | None = None
+        self.lock = threading.Lock()
+
+    def __del__(self) -> None:
+        self.leave()
+
+    @property
+    def cpu(self) -> int:
+        """The CPU; -1 before the first choice."""
+        return -1 if self._claimed is None else self._claimed.cpu
+
+    def leave(self) -> None:
+        """Give it back."""
+        claimed, self._claimed = self._claimed, None
+        if claimed is not None:
+            claimed.give_back()
+
+    def choose(self, here: int) -> int:
+        """The CPU for a run that is about to go on, -1 for any.
+
+        Args:
+            here: the CPU that the host's thread is on. The system chose it, and may have left one for it that another
+                program keeps busy: it is taken unless more of ours sit there.
+
+        Raises:
+            UsageError: CFEPY_PIN is no such thing, or a CPU that this process may not use.
+        """
+        wanted = os.environ.get(VARIABLE, "auto")
+        if wanted != "auto":
+            return _chosen_by_user(wanted)
+        if here < 0 or not _CAN_CLAIM:
+            return here
+        with self.lock:
+            found = self._better(here)
+            if found is not None:
+                self.leave()
+                self._claimed = found
+            return here if self._claimed is None else self._claimed.cpu
+
+    def _better(self, here: int) -> _Claim | None:
+        """A place with fewer others than ours has; or with as many, if it is where the host is."""
+        now = self._claimed
+        if now is not None and now.cpu == here and not now.others:
+            return None
+        cpus = allowed_cpus()
+        cpus.sort(key=lambda cpu: cpu != here)
+        for others in range(MOST_ON_ONE if now is None else now.others + 1):
+            for cpu in cpus:
+                is_as_good = now is not None and others == now.others
+                if is_as_good and cpu != here:
+                    break
+                found = _claim(cpu, others)
+                if found is not None:
+                    return found
+        return None
+
+
+def _chosen_by_user(wanted: str) -> int:
+    if wanted == "off":
+        return -1
+    cpus = allowed_cpus()
+    if not wanted.isdecimal() or int(wanted) not in cpus:
+        known = ", ".join(map(str, cpus))
+        raise UsageError(f"{VARIABLE}={wanted} is not auto, off or a CPU that this process may use: {known}")
+    return int(wanted)
+
+
+_shared: weakref.ref[Seat] | None = None
+_asking = threading.Lock()
+
+
+def process_seat() -> Seat:
+    """The seat that all runs of this process share, since Python runs one thread of a process at a time."""
+    global _shared
+    with _asking:
+        seat = None if _shared is None else _shared()
+        if seat is None:
+            seat = Seat()
+            _shared = weakref.ref(seat)
+        return seat
+
+
+def _in_forked_process() -> None:
+    """The seat is the parent's: the child's copy of the socket must not outlive it, and the child takes its own."""
+    global _asking
+    _asking = threading.Lock()
+    seat = None if _shared is None else _shared()
+    if seat is not None:
+        seat.leave()
+        seat.lock = threading.Lock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_in_forked_process)
