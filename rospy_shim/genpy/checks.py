@@ -6,7 +6,6 @@ on the hot path.
 
 from __future__ import annotations
 
-import numbers
 from typing import Any
 
 from rospy_shim.genpy.errors import SerializationError
@@ -17,6 +16,9 @@ _BITS = {
     "char": 8, "uint8": 8, "uint16": 16, "uint32": 32, "uint64": 64,
 }  # fmt: skip
 _HEADERS = ("Header", "std_msgs/Header", "roslib/Header")  # roslib's is an older name
+_NUMPY_FLOATS = frozenset(
+    ("float32", "float64", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64")
+)
 _SIGNED = frozenset(("byte", "int8", "int16", "int32", "int64"))
 
 
@@ -50,8 +52,9 @@ def check_type(field_name: str, field_type: str, field_val: Any) -> None:
 
 
 def _is_float(value: Any) -> bool:
-    # numpy's scalars are numbers to struct too; `numbers` knows them, without numpy being loaded for it.
-    return type(value) in (int, float) or (type(value).__module__ == "numpy" and isinstance(value, numbers.Real))
+    # genpy has a list of numpy's kinds, which is known by name here, without numpy being loaded for it.
+    kind = type(value)
+    return kind in (int, float) or (kind.__module__ == "numpy" and kind.__name__ in _NUMPY_FLOATS)
 
 
 def _require(fits: bool, text: str) -> None:
@@ -71,17 +74,17 @@ def _check_integer(name: str, kind: str, value: Any) -> None:
 
 
 def _check_string(name: str, value: Any) -> None:
-    _require(isinstance(value, (str, bytes)), f"field {name} must be of type bytes or an ascii string")
-    _require(isinstance(value, bytes) or value.isascii(), f"field {name} is a non-ascii string")
+    _require(type(value) in (str, bytes), f"field {name} must be of type bytes or an ascii string")
+    _require(type(value) is bytes or value.isascii(), f"field {name} is a non-ascii string")
 
 
 def _check_array(name: str, field_type: str, value: Any) -> None:
     base = field_type[: field_type.index("[")]
-    if isinstance(value, (str, bytes)):
+    if type(value) in (str, bytes):
         if base in ("uint8", "char"):
             return
         raise SerializationError(f"field {name} must be a list or tuple type. Only uint8[] can be a string")
-    _require(isinstance(value, (list, tuple)), f"field {name} must be a list or tuple type")
+    _require(type(value) in (list, tuple), f"field {name} must be a list or tuple type")
     for item in value:
         check_type(name + "[]", base, item)
 

@@ -122,7 +122,7 @@ class Message:
                 mine, theirs = getattr(self, name), getattr(other, name)
             except AttributeError:
                 return False
-            if isinstance(mine, list | tuple) and isinstance(theirs, list | tuple):
+            if type(mine) in (list, tuple) and type(theirs) in (list, tuple):
                 # Decoding makes tuples where a constructor makes lists.
                 mine, theirs = tuple(mine), tuple(theirs)
             if not mine == theirs:

@@ -66,7 +66,7 @@ class TVal:
 
     def to_nsec(self) -> int:
         """The value in nanoseconds."""
-        return int(self.secs * _NS) + self.nsecs
+        return self.secs * _NS + self.nsecs
 
     def __getstate__(self) -> list[int]:
         return [self.secs, self.nsecs]

@@ -106,16 +106,30 @@ def bytes_as_list(val: Any) -> Any:
 def _quoted(val: str) -> str:
     if not val:
         return "''"
-    if len(val) < _PLAIN_LIMIT and val.isascii() and val.isprintable() and '"' not in val and "\\" not in val:
+    if (
+        type(val) is str
+        and len(val) < _PLAIN_LIMIT
+        and val.isascii()
+        and val.isprintable()
+        and '"' not in val
+        and "\\" not in val
+    ):
         return f'"{val}"'
     import yaml
 
     text: str = yaml.dump(val, default_style='"')
-    return text.removesuffix("\n")
+    return text.rstrip("\n")
 
 
 def _string_list(val: Any, indent: str) -> str:
+    """Strings as YAML.
+
+    Raises:
+        AssertionError: they are in a tuple, for which YAML has another notation: genpy cannot print a message with one.
+    """
+    if type(val) is tuple:
+        raise AssertionError
     import yaml
 
-    text: str = yaml.dump(list(val), default_flow_style=False)
-    return "\n" + "\n".join(indent + line for line in text.removesuffix("\n").split("\n"))
+    text: str = yaml.dump(val, default_flow_style=False)
+    return "\n" + "\n".join(indent + line for line in text.rstrip("\n").splitlines())

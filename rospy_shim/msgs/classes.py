@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from io import BytesIO
 from typing import Any, Protocol, cast
 
 from rospy_shim.genpy.message import Message
+from rospy_shim.msgs import reference, reference_decoder
 from rospy_shim.msgs.decoder import Form, unpack_source
 from rospy_shim.msgs.encoder import pack_source
 from rospy_shim.msgs.namespace import CodeLines, Namespace
-from rospy_shim.msgs.reference import explain
 from rospy_shim.msgs.spec import PRIMITIVES, Field, Spec, hash_text
 
 MessageClass = type[Message]
@@ -79,7 +80,9 @@ def build_class(spec: Spec, table: TypeTable, restore: Callable[[str], Message] 
         module: value of `__module__`, e.g. "std_msgs.msg._String".
     """
     names = Namespace()
-    names.globals["_explain"] = partial(explain, spec, table.spec)
+    write = partial(reference.write, spec, table.spec)
+    names.globals["_write_again"] = partial(_written, write)
+    names.globals["_read_again"] = partial(reference_decoder.read, spec, table.spec, table.message_class)
     types = [field.type for field in spec.fields]
     name = spec.full_name.rpartition("/")[2]
     body: dict[str, Any] = {constant.attribute: constant.value for constant in spec.constants}
@@ -93,8 +96,7 @@ def build_class(spec: Spec, table: TypeTable, restore: Callable[[str], Message] 
         "_full_text": table.full_text(spec.full_name),
         "_get_types": lambda self: types,
         "__init__": _constructor(spec, table, names),
-        "serialize": serialize,
-        "serialize_numpy": serialize_numpy,
+        **_writers(write),
         "_pack": _function(spec, names, pack_source(spec, table.spec, names), "_pack"),
         "_count_items": _counter(spec, table, names),
     }
@@ -104,22 +106,40 @@ def build_class(spec: Spec, table: TypeTable, restore: Callable[[str], Message] 
     return cls
 
 
-def serialize(self: Message, buff: Any) -> None:
-    """Write the message to a file-like object.
-
-    Raises:
-        SerializationError: a field holds what its type cannot carry.
-    """
-    buff.write(self._pack())
+def _written(write: Callable[..., None], message: Message, numpy: Any = None) -> bytes:
+    buff = BytesIO()
+    write(message, buff, numpy)
+    return buff.getvalue()
 
 
-def serialize_numpy(self: Message, buff: Any, numpy: Any) -> None:
-    """Write a message whose number arrays are numpy arrays; `numpy` is the module.
+def _writers(write: Callable[..., None]) -> dict[str, Callable[..., None]]:
+    """`serialize` and `serialize_numpy`: the fast code, and where that fails `write`, which leaves what it can."""
 
-    Raises:
-        SerializationError: a field holds what its type cannot carry.
-    """
-    buff.write(self._pack_numpy(numpy))
+    def serialize(self: Message, buff: Any) -> None:
+        """Write the message to a file-like object.
+
+        Raises:
+            SerializationError: a field holds what its type cannot carry; the fields before it are written, as in genpy.
+        """
+        try:
+            octets = self._pack()
+        except Exception:
+            octets = None
+        write(self, buff) if octets is None else buff.write(octets)
+
+    def serialize_numpy(self: Message, buff: Any, numpy: Any) -> None:
+        """Write a message whose number arrays are numpy arrays; `numpy` is the module.
+
+        Raises:
+            SerializationError: a field holds what its type cannot carry; the fields before it are written, as in genpy.
+        """
+        try:
+            octets = self._pack_numpy(numpy)
+        except Exception:
+            octets = None
+        write(self, buff, numpy) if octets is None else buff.write(octets)
+
+    return {"serialize": serialize, "serialize_numpy": serialize_numpy}
 
 
 def _function(spec: Spec, names: Namespace, lines: list[str], name: str) -> Callable[..., Any]:

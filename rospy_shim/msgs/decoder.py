@@ -20,6 +20,7 @@ _HEADS = (
     "def deserialize(self, str):",
     "def deserialize_numpy(self, str, numpy):",
 )
+_AGAIN = ("_read_again(cls(), data[at:])", "_read_again(self, str)", "_read_again(self, str, numpy)")
 
 
 class Form(Enum):
@@ -39,18 +40,20 @@ def unpack_source(
         spec: the type.
         lookup: specs of nested types.
         class_of: classes of nested types.
-        names: receives what the source refers to.
+        names: receives what the source refers to; `_read_again`, which does what genpy does with data that the fast
+            code cannot read, must be added by the caller.
         form: which function.
     """
     out = CodeLines(depth=2)
     decoder = _Decoder(out, lookup, class_of, names, form)
     decoder.fields(spec, "self")
     decoder.flush()
+    again = _AGAIN[form.value]
     first = ["    self = _new(cls)"]
     if form is not Form.UNPACK:
-        first = ["    data = str if type(str) is bytes else bytes(str)", "    at = 0"]
-    tail = ["    except _struct_error as error:", "        raise _too_short(error) from None", "    return self"]
-    return [_HEADS[form.value], *first, "    try:", *(out.lines or ["        pass"]), *tail]
+        first = ["    if type(str) is not bytes:", f"        return {again}", "    data = str", "    at = 0"]
+    tail = ["        return self", "    except Exception:", "        pass", f"    return {again}"]
+    return [_HEADS[form.value], *first, "    try:", *out.lines, *tail]
 
 
 class _Decoder:
@@ -128,6 +131,8 @@ class _Decoder:
         kind, code = _TIMES[base]
         time = self.instance(kind, target)
         self.fixed(2 * code, f"{time}.secs", f"{time}.nsecs")
+        if not target.startswith("self."):
+            return  # genpy normalises the times that are fields of the message itself, and no others
         # Whole seconds are carried out of nsecs, which other programs may send unnormalised.
         beyond = f"{time}.nsecs > 999999999" if code == "I" else f"not 0 <= {time}.nsecs <= 999999999"
         self.later += [f"if {beyond}:", f"    {time}.canon()"]

@@ -15,7 +15,6 @@ from rospy_shim.msgs.spec import PRIMITIVES, Field, Spec
 
 _TIME_CODES = {"time": "II", "duration": "ii"}
 _OCTETS = ("uint8", "char")
-_FAILURES = "(_struct_error, TypeError, ValueError, AttributeError)"
 
 
 def pack_source(spec: Spec, lookup: Callable[[str], Spec], names: Namespace, *, with_numpy: bool = False) -> list[str]:
@@ -24,7 +23,8 @@ def pack_source(spec: Spec, lookup: Callable[[str], Spec], names: Namespace, *, 
     Args:
         spec: the type.
         lookup: specs of nested types.
-        names: receives what the source refers to; `_explain` must be added by the caller.
+        names: receives what the source refers to; `_write_again`, which does what genpy does with a message that the
+            fast code cannot write, must be added by the caller.
         with_numpy: write `_pack_numpy(self, numpy)`, where number arrays are numpy's.
     """
     out = CodeLines(depth=2)
@@ -32,13 +32,8 @@ def pack_source(spec: Spec, lookup: Callable[[str], Spec], names: Namespace, *, 
     encoder.fields(spec, "self")
     head = "def _pack_numpy(self, numpy):" if with_numpy else "def _pack(self):"
     out.add(f"return {encoder.result()}")
-    return [
-        head,
-        "    try:",
-        *out.lines,
-        f"    except {_FAILURES} as error:",
-        "        raise _explain(self, error) from None",
-    ]
+    again = "_write_again(self, numpy)" if with_numpy else "_write_again(self)"
+    return [head, "    try:", *out.lines, "    except Exception:", "        pass", f"    return {again}"]
 
 
 class _Encoder:
@@ -149,11 +144,11 @@ class _Encoder:
 
     def numbers(self, field: Field, value: str) -> None:
         code = PRIMITIVES[field.base]
-        if self.with_numpy and field.base != "bool":
+        if self.with_numpy:
             numbers = self.local(value)
             if field.length is None:
                 self.fixed("I", f"len({numbers})")
-            self.part(f"_array_bytes(numpy, {numbers}, '<{code}', {field.length})")
+            self.part(f"_raw_array({numbers})")
         elif field.length is None:
             numbers = self.local(value)
             self.variable(code, self.local(f"len({numbers})", "n"), f"*{numbers}")

@@ -6,7 +6,6 @@ result, so a cache never changes what a message encodes or decodes to.
 
 from __future__ import annotations
 
-import re
 import struct
 from collections.abc import Callable
 from functools import cache
@@ -14,14 +13,13 @@ from struct import Struct
 from types import CodeType
 from typing import Any
 
-from rospy_shim.genpy.errors import DeserializationError
 from rospy_shim.genpy.rostime import Duration, Time
+from rospy_shim.msgs.reference import raw_array
 
 _LENGTHS_KEPT = 256
 _STRINGS_KEPT = 64
 _BYTES_KEPT = 4096
 _COUNT = Struct("<I")
-_NEEDED = re.compile(r"for unpacking (\d+) bytes")
 StringSite = list[Any]
 """[list of str, its encoded form]: the last list of strings that one place in a message held."""
 
@@ -108,28 +106,14 @@ def read_strings(site: StringSite, data: bytes, start: int, length: int | None) 
 
 
 def read_times(kind: type[Time] | type[Duration], code: str, data: bytes, at: int, count: int) -> list[Any]:
-    """Decode an array of times or durations."""
+    """Decode an array of times or durations, which are left as they came."""
     flat = Struct(f"<{2 * count}{code}").unpack_from(data, at)
-    return [kind(secs, nsecs) for secs, nsecs in zip(flat[::2], flat[1::2], strict=True)]
-
-
-def too_short(error: Exception) -> DeserializationError:
-    """genpy's error for bytes that end too early, from the one that struct raised."""
-    match = _NEEDED.search(str(error))
-    return DeserializationError(f"unpack requires a buffer of {match[1]} bytes" if match else str(error))
-
-
-def array_bytes(numpy: Any, value: Any, dtype: str, length: int | None) -> bytes:
-    """Wire form of a number array for `serialize_numpy`.
-
-    Raises:
-        TypeError: a fixed array of another length.
-    """
-    array = numpy.ascontiguousarray(value, dtype=dtype)
-    if length is not None and array.size != length:
-        raise TypeError("a fixed array has the wrong length")
-    encoded: bytes = array.tobytes()
-    return encoded
+    values = []
+    for secs, nsecs in zip(flat[::2], flat[1::2], strict=True):
+        value = object.__new__(kind)
+        value.secs, value.nsecs = secs, nsecs
+        values.append(value)
+    return values
 
 
 def _worth_keeping(values: list[str], raw: bytes) -> bool:
@@ -143,12 +127,10 @@ class Namespace:
         self.globals: dict[str, Any] = {
             "_new": object.__new__,
             "_join": b"".join,
-            "_struct_error": struct.error,
-            "_too_short": too_short,
             "_write_strings": write_strings,
             "_read_strings": read_strings,
             "_read_times": read_times,
-            "_array_bytes": array_bytes,
+            "_raw_array": raw_array,
             "_Time": Time,
             "_Duration": Duration,
         }

@@ -59,6 +59,8 @@ def test_genpy_interface(message: dict[str, Any]) -> None:
         assert again.deserialize(golden) is again
         assert again._pack() == golden
         with_numpy.deserialize_numpy(golden, numpy)
+        if any(kind.startswith("bool[") for kind in cls._slot_types):
+            continue  # genpy reads a list there, and cannot write one
         buff = io.BytesIO()
         with_numpy.serialize_numpy(buff, numpy)
         assert buff.getvalue() == golden
