@@ -13,9 +13,11 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from cfepy.status import UsageError
+from cfepy.units import TIME_UNITS
 
 MOST = (1 << 62) - 1  # what times in ns can hold
 MOST_VALUES = 100_000
+MOST_SECONDS = 1e9
 T = TypeVar("T")
 
 
@@ -106,11 +108,31 @@ class Marked:
             raise self.fail(f"is {self.plain()!r}, it must be true or false")
         return self.value
 
+    def time(self) -> int:
+        """The value as a time in ns, from a number of seconds, with or without a unit: 0.5, "0.5 s", "20 ms", "50 us".
+
+        Raises:
+            UsageError: it is no such time.
+        """
+        number, unit = (self.value, "s") if not isinstance(self.value, str) else _split(self.value)
+        try:
+            if isinstance(number, bool) or not 0 <= float(number) < MOST_SECONDS:
+                raise ValueError
+            return round(float(number) * TIME_UNITS[unit])
+        except (TypeError, ValueError, KeyError):
+            raise self.fail(f"is {self.plain()!r}, it must be a time such as 0.5, 0.5 s or 20 ms") from None
+
     def plain(self) -> Any:
         """The value without its marks."""
         if isinstance(self.value, dict):
             return {name: item.plain() for name, item in self.value.items()}
         return [item.plain() for item in self.value] if isinstance(self.value, list) else self.value
+
+
+def _split(text: str) -> tuple[str, str]:
+    """A number and its unit."""
+    number = text.rstrip("abcdefghijklmnopqrstuvwxyz ")
+    return number, text[len(number) :].strip() or "s"
 
 
 class Mistakes:

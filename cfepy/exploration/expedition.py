@@ -118,6 +118,7 @@ class Expedition:
         first_seed: seed of the first schedule.
         any_priority: less urgent tasks may run before more urgent ones.
         hold_s: how long the running task may be held up, in virtual s.
+        connect_s: how long a connection between two ROS nodes may take, in virtual s.
         from_s: virtual time until which all is fifo's.
         until_failure: whether the first failure ends it.
         events: which events are failures: "error", "critical" or "none".
@@ -137,6 +138,7 @@ class Expedition:
     first_seed: int = 0
     any_priority: bool = False
     hold_s: float | None = None
+    connect_s: float | None = None
     from_s: float | None = None
     until_failure: bool = False
     events: str = "error"
@@ -181,7 +183,7 @@ class Expedition:
         """
         words = [BASE]
         words += ["any"] if self.any_priority else []
-        for option, time_s in (("hold", self.hold_s), ("from", self.from_s)):
+        for option, time_s in (("hold", self.hold_s), ("connect", self.connect_s), ("from", self.from_s)):
             words += [] if time_s is None else [f"{option}={round(time_s * NS_PER_S)}ns"]
             try:
                 Schedule.parse(":".join(words))
@@ -208,7 +210,7 @@ class Expedition:
     def _identity(self, trial: Trial, files: list[str]) -> dict[str, Any]:
         """What a results file goes on with only when it is the same, by the option's name."""
         search = {name: getattr(self, name) for name in ("policy", "depth", "first_seed", "any_priority", "events")}
-        search |= {"hold": self.hold_s, "from": self.from_s, "no_stuck": not self.stuck}
+        search |= {"hold": self.hold_s, "connect": self.connect_s, "from": self.from_s, "no_stuck": not self.stuck}
         return identity_of(trial.plan, files, search)
 
     def _told(self, trial: Trial, finding: Finding, tally: Tally) -> Told:

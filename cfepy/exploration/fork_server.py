@@ -50,7 +50,7 @@ class _Gate(Policy):
     """Goes on as fifo until schedules part; then this process waits for schedules, and its children follow them."""
 
     def __init__(self, server: ForkServer) -> None:
-        super().__init__(server.options.any_priority, server.options.hold_ns)
+        super().__init__(server.options.any_priority, server.options.hold_ns, server.options.connect_ns)
         self._server = server
         self._from_ns = server.options.from_ns
         self._inner: Policy | None = None
@@ -71,7 +71,7 @@ class ForkServer:
 
     Args:
         body: does the whole run with a schedule that is decided late, on greenlets; its value can be pickled.
-        options: a schedule whose options (`from`, `any`, `hold`) all schedules have.
+        options: a schedule whose options (`from`, `any`, `hold`, `connect`) all schedules have.
 
     Raises:
         ValueError: `options` has no `from`, or this system has no fork.

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from cfepy.rtos import HOLD, Decision, Policy
+from cfepy.rtos import Decision, Policy, Schedule
 from cfepy.units import NS_PER_MS
 
 DECISIONS_PER_MS = 1_000_000  # more than there ever are
@@ -21,26 +21,33 @@ class Move(NamedTuple):
     """Not what fifo would do.
 
     Attributes:
-        task: name of the task that fifo would run.
+        task: name of the task that fifo would run, or of a connection.
         number: which of the decisions in which it is that task; see `_Numbers`.
-        chosen: name of the task that runs, or HOLD.
+        chosen: name of the task that runs, or HOLD, or how long the connection takes.
         preempts: the task was running, and could have gone on.
+        connects: it is about a connection.
     """
 
     task: str
     number: int
     chosen: str
     preempts: bool = True
+    connects: bool = False
 
 
 class Choice(NamedTuple):
-    """A decision of a run: when in virtual ns, the task of fifo, its number as of `Move`, the other candidates."""
+    """A decision of a run: when in virtual ns, and as of `Move`; `others` are the answers that are not fifo's."""
 
     now: int
     task: str
     number: int
     others: tuple[str, ...]
     preempts: bool
+    connects: bool = False
+
+    def move(self, chosen: str) -> Move:
+        """The move that another answer is."""
+        return Move(self.task, self.number, chosen, self.preempts, self.connects)
 
 
 class MoveNotingPolicy(Policy):
@@ -52,7 +59,7 @@ class MoveNotingPolicy(Policy):
     """
 
     def __init__(self, inner: Policy) -> None:
-        super().__init__(inner.any_priority, inner.hold_ns)
+        super().__init__(inner.any_priority, inner.hold_ns, inner.connect_ns)
         self._inner = inner
         self._numbers = _Numbers()
         self.moves: list[Move] = []
@@ -61,12 +68,13 @@ class MoveNotingPolicy(Policy):
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
         choice = self._inner.choose(decision)
-        names = _names(decision)
-        task = names[0]
+        answers, task = decision.answers, decision.subject
         number = self._numbers.next(decision.now, task)
-        self.choices.append(Choice(decision.now, task, number, tuple(names[1:]), decision.running))
+        connects = decision.connection is not None
+        made = Choice(decision.now, task, number, tuple(answers[1:]), decision.running, connects)
+        self.choices.append(made)
         if choice:
-            self.moves.append(Move(task, number, names[choice], decision.running))
+            self.moves.append(made.move(answers[choice]))
         return choice
 
 
@@ -75,20 +83,19 @@ class MovePolicy(Policy):
 
     Args:
         moves: which ones.
-        any_priority: see `Policy`.
-        hold_ns: see `Policy`.
+        options: a schedule whose options it has.
     """
 
-    def __init__(self, moves: Iterable[Move], any_priority: bool = False, hold_ns: int = 0) -> None:
-        super().__init__(any_priority, hold_ns)
+    def __init__(self, moves: Iterable[Move], options: Schedule) -> None:
+        super().__init__(options.any_priority, options.hold_ns, options.connect_ns)
         self._chosen = {(_plain(move.task), move.number): move.chosen for move in moves}
         self._numbers = _Numbers()
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
-        names = _names(decision)
-        chosen = self._chosen.get((_plain(names[0]), self._numbers.next(decision.now, names[0])))
-        return 0 if chosen is None else _index(names, chosen)
+        task = decision.subject
+        chosen = self._chosen.get((_plain(task), self._numbers.next(decision.now, task)))
+        return 0 if chosen is None else _index(decision.answers, chosen)
 
 
 class _Numbers:
@@ -106,11 +113,6 @@ class _Numbers:
         number = max(self._following.get(name, 0), now_ns // NS_PER_MS * DECISIONS_PER_MS)
         self._following[name] = number + 1
         return number
-
-
-def _names(decision: Decision) -> list[str]:
-    """The possible answers by name."""
-    return [*(task.name for task in decision.tasks), *([HOLD] if decision.hold else [])]
 
 
 def _plain(name: str) -> str:

@@ -1,8 +1,8 @@
 """Shrinking: the shortest schedule that still gives the same failure, found by flying shorter ones.
 
 First moves are left out, in halves, quarters, and one by one (Zeller's delta debugging). Then one preemption is tried
-in the place of several, also one to another task, and those that are left are moved towards the failure. The result is
-an `at:` schedule.
+in the place of several, also one to another task, and those that are left are moved towards the failure; connections
+that must be slow get the shortest delay. The result is an `at:` schedule.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ class Shrinker(Generic[T]):
         best = self._without_tail(best)
         best = self._with_less(best, self._most // 2)
         best = self._with_one(best)
-        best = self._later(self._redirected(self._merged(best)))
+        best = self._sooner(self._later(self._redirected(self._merged(best))))
         return self._finish(best)
 
     # -- steps -------------------------------------------------------------------------------------------------------
@@ -137,7 +137,7 @@ class Shrinker(Generic[T]):
         """One move in the place of all, tried in the run of fifo, where it stands closest to the failure first."""
         if len(best.moves) < 2 or self.probes >= self._most:
             return best
-        fifo = self._fly(MovePolicy((), self._schedule.any_priority, self._schedule.hold_ns))
+        fifo = self._fly(MovePolicy((), self._schedule))
         at_ns = best.verdict.end_ns if (failure := best.verdict.failure(self._group)) is None else failure.at_ns
         ones = islice(_single_moves(fifo, at_ns, _names(best)), SINGLES)
         return next(self._tries(((move,) for move in ones), best), best)
@@ -148,7 +148,7 @@ class Shrinker(Generic[T]):
             kept = (*best.moves[:at], *best.moves[at + 2 :])
             if self.probes >= self._most:
                 break
-            without = self._fly(MovePolicy(kept, self._schedule.any_priority, self._schedule.hold_ns))
+            without = self._fly(MovePolicy(kept, self._schedule))
             candidates = ((*kept[:at], move, *kept[at:]) for move in _between(best, without, at))
             found = without if without.fails else next(self._tries(candidates, best), None)
             if found is not None:
@@ -160,8 +160,10 @@ class Shrinker(Generic[T]):
 
         Without these the same place in the task's own work may be a decision earlier or later.
         """
-        names = sorted(_names(best))
+        names = sorted({name for move in best.moves if not move.connects for name in (move.task, move.chosen)})
         for at, move in enumerate(best.moves):
+            if move.connects:
+                continue
             targets = [name for name in names if name not in (move.task, move.chosen)]
             candidates = (
                 (*best.moves[: at - before], move._replace(chosen=name, number=number), *best.moves[at + 1 + behind :])
@@ -179,13 +181,26 @@ class Shrinker(Generic[T]):
         """Move each towards the failure, as far as it still fails: what is left happens close together."""
         for at in range(len(best.moves)):
             step = 1
-            while step <= REACH and at < len(best.moves):
+            while step <= REACH and at < len(best.moves) and not best.moves[at].connects:
                 move = best.moves[at]
                 moved = (*best.moves[:at], move._replace(number=move.number + step), *best.moves[at + 1 :])
                 found = self._try(moved)
                 if found is None or found.cost > best.cost:
                     break
                 best, step = found, step * 2
+        return best
+
+    def _sooner(self, best: _Flight) -> _Flight:
+        """Connections come as soon as they may, for it to fail."""
+        for at, move in enumerate(best.moves):
+            if not move.connects:
+                continue
+            delays = best.choices[_place(best, move)].others
+            shorter = delays[: delays.index(move.chosen)]
+            candidates = ((*best.moves[:at], move._replace(chosen=each), *best.moves[at + 1 :]) for each in shorter)
+            found = next(self._tries(candidates, best), None)
+            if found is not None and len(found.moves) == len(best.moves):
+                best = found
         return best
 
     def _finish(self, best: _Flight) -> Shrunk[T] | None:
@@ -223,7 +238,7 @@ class Shrinker(Generic[T]):
         if moves in self._tried or self.probes >= self._most:
             return None
         self._tried.add(moves)
-        found = self._fly(MovePolicy(moves, self._schedule.any_priority, self._schedule.hold_ns))
+        found = self._fly(MovePolicy(moves, self._schedule))
         return found if found.fails else None
 
     def _fly(self, policy: Policy) -> _Flight:
@@ -245,7 +260,7 @@ def _single_moves(fifo: _Flight, at_ns: int | None, names: set[str]) -> Iterator
     for choice in reversed(fifo.choices):
         if choice.task in names and (at_ns is None or choice.now <= at_ns):
             others = [name for name in choice.others if name in names]
-            yield from (Move(choice.task, choice.number, name, choice.preempts) for name in others)
+            yield from map(choice.move, others)
 
 
 def _between(best: _Flight, without: _Flight, at: int) -> Iterator[Move]:
@@ -256,7 +271,7 @@ def _between(best: _Flight, without: _Flight, at: int) -> Iterator[Move]:
     for choice in without.choices[max(least, places[0] - AROUND) : places[1] + AROUND]:
         for other in choice.others:
             if choice.task in names and other in names:
-                yield Move(choice.task, choice.number, other, choice.preempts)
+                yield choice.move(other)
 
 
 def _names(best: _Flight) -> set[str]:

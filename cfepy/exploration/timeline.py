@@ -33,7 +33,7 @@ AROUND = 5  # rows that are shown before and after each move
 LAST = 10  # rows that are shown before the failure
 BEFORE = 50  # decisions before the first move, from which on rows are kept
 GAP = 2
-AT, WAITS, SENDS, PREEMPTED, ORDERED = "at", "waits", "sends", "preempted", "ordered"
+AT, WAITS, SENDS, PREEMPTED, ORDERED, CONNECTS = "at", "waits", "sends", "preempted", "ordered", "connects"
 
 
 def timeline_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[Move]) -> list[str]:
@@ -60,15 +60,16 @@ def timeline_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequenc
 def columns(rows: Sequence[Row], moves: Sequence[Move], culprit: str = "") -> tuple[str, ...]:
     """The tasks that have a column, in the order in which they appear.
 
-    These are the one in which the failure showed and those of the last moves. When these are not two, or a task was
-    held up and others ran in the meantime, it is also who did something last.
+    These are the one in which the failure showed, those of the last moves, and those that connect. When these are not
+    two, or a task was held up and others ran in the meantime, it is also who did something last.
 
     Args:
         rows: what all tasks did.
         moves: what the schedule does.
         culprit: the task in which the failure showed; empty when that is not known.
     """
-    moved = [name for move in moves for name in (move.task, move.chosen)]
+    moved = [name for move in moves if not move.connects for name in (move.task, move.chosen)]
+    moved += [row.task for row in rows if row.kind == CONNECTS]
     wanted = list(dict.fromkeys([culprit, *reversed(moved)]))
     at_least = MOST_COLUMNS if HOLD in moved else 2
     wanted = [name for name in wanted if name not in ("", HOLD)]
@@ -113,12 +114,14 @@ def _without_file(rows: Sequence[Row]) -> tuple[str, Sequence[Row]]:
 
 def _shown(rows: Sequence[Row]) -> list[int]:
     """The rows that are shown."""
-    moves = [at for at, row in enumerate(rows) if row.kind in (PREEMPTED, ORDERED)]
+    moves = [at for at, row in enumerate(rows) if row.kind in (PREEMPTED, ORDERED, CONNECTS)]
     near = {each for at in moves for each in range(at - AROUND, at + AROUND + 1)}
     return [at for at in range(len(rows)) if at in near or at >= len(rows) - LAST]
 
 
 def _text(row: Row, width: int) -> str:
+    if row.kind == CONNECTS:
+        return f"=== {row.text} ==="
     if row.kind not in (PREEMPTED, ORDERED):
         return row.text
     if row.text == HOLD:
@@ -151,7 +154,7 @@ class Row:
         at_ns: virtual time.
         task: its name.
         kind: AT a line of source, WAITS for something, SENDS a message, is PREEMPTED by `text`, or `text` is ORDERED
-            before it.
+            before it, or it CONNECTS a topic as late as the schedule has it.
         text: what.
     """
 
@@ -207,6 +210,11 @@ class TaskLook(Attachment):
         if self._goes_on():
             self._keep(task, kind, text)
 
+    def connects(self, text: str) -> None:
+        """Keep that the running task, which may be of a node that only just begins, connects a topic."""
+        if self._mission is not None:
+            self.add(self._mission.kernel.current.name, CONNECTS, text)
+
     def look(self, frame: FrameType | None) -> None:
         """Keep where the running task is."""
         task = self._watched()
@@ -261,7 +269,7 @@ class TaskLook(Attachment):
 
 class _LookingPolicy(Policy):
     def __init__(self, inner: Policy, look: TaskLook) -> None:
-        super().__init__(inner.any_priority, inner.hold_ns)
+        super().__init__(inner.any_priority, inner.hold_ns, inner.connect_ns)
         self._inner = inner
         self._look = look
 
@@ -270,8 +278,9 @@ class _LookingPolicy(Policy):
         choice = self._inner.choose(decision)
         self._look.reached(decision.number)
         self._look.look(sys._getframe(1))
-        if choice:
-            first = decision.tasks[0].name
-            chosen = decision.tasks[choice].name if choice < len(decision.tasks) else HOLD
-            self._look.add(first, PREEMPTED if decision.running else ORDERED, chosen)
+        if choice and decision.connection is not None:
+            self._look.connects(f"{decision.connection.topic} connects in {decision.answers[choice]}")
+        elif choice:
+            kind = PREEMPTED if decision.running else ORDERED
+            self._look.add(decision.subject, kind, decision.answers[choice])
         return choice

@@ -118,6 +118,7 @@ def explore(
     until_failure: bool = False,
     any_priority: bool = False,
     hold: float | None = None,
+    connect: float | None = None,
     start: float | None = None,
     events: str = "error",
     jobs: int | None = None,
@@ -137,6 +138,7 @@ def explore(
         until_failure: whether the first failure ends it.
         any_priority: less urgent tasks may run before more urgent ones.
         hold: how long the running task may be held up, in virtual s.
+        connect: how long a connection between two ROS nodes may take, in virtual s.
         start: virtual time in s until which all is as by default.
         events: which events of the mission's applications are failures: "error", "critical" or "none".
         jobs: processes; None is one on each CPU.
@@ -159,6 +161,7 @@ def explore(
         until_failure=until_failure,
         any_priority=any_priority,
         hold_s=hold,
+        connect_s=connect,
         from_s=start,
         events=events,
         jobs=jobs,

@@ -32,8 +32,8 @@ class MissionSections:
     """What a mission file says, as far as it could be read.
 
     Attributes:
-        name, board, limits, nodes, topics, params, params_from, ordered_sets, launch: the sections of these names, as
-            their readers give them; `name` and `board` are None when nothing is said.
+        name, board, limits, nodes, topics, params, params_from, ordered_sets, connection_delay, launch: the sections
+            of these names, as their readers give them; `name` and `board` are None when nothing is said.
         demands: the sections of `DEMANDS`, as they stand there.
         places: all sections that are there and known, as they stand there.
     """
@@ -46,6 +46,7 @@ class MissionSections:
     params: dict[str, Any] = field(default_factory=dict)
     params_from: dict[str, Any] = field(default_factory=dict)
     ordered_sets: bool = False
+    connection_delay: int = 0
     launch: tuple[LaunchFile, ...] = ()
     demands: Mapping[str, Marked] = field(default_factory=dict)
     places: Mapping[str, Marked] = field(default_factory=dict)
@@ -54,7 +55,13 @@ class MissionSections:
     def ros(self) -> RosConfig:
         """All that is said about ROS, but for launch files."""
         params = merged(self.params_from, self.params)
-        return RosConfig(nodes=self.nodes, topics=self.topics, params=params, ordered_sets=self.ordered_sets)
+        return RosConfig(
+            nodes=self.nodes,
+            topics=self.topics,
+            params=params,
+            ordered_sets=self.ordered_sets,
+            connection_delay_ns=self.connection_delay,
+        )
 
     def board_in(self, folder: Path) -> str:
         """The board: a file of the mission's folder, or else a name or path; "linux" when nothing is said."""
@@ -213,6 +220,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "params": _single(read_tree),
     "params_from": _single(read_files),
     "ordered_sets": _single(_truth),
+    "connection_delay": _single(Marked.time),
     "launch": read_launches,
 }
 """What reads each section; the results are the attributes of `MissionSections`. None stands for nothing good."""

@@ -14,9 +14,8 @@ from typing import NamedTuple
 
 from cfepy.marked_yaml import Marked, Mistakes
 from cfepy.msg import is_valid_msg_id
-from cfepy.units import NS_PER_MS, NS_PER_S, NS_PER_US
+from cfepy.units import NS_PER_S, TIME_UNITS
 
-UNITS = {"ns": 1, "us": NS_PER_US, "ms": NS_PER_MS, "s": NS_PER_S}
 APP_FIELDS = ("response", "period", "jitter", "task")
 TOPIC_FIELDS = ("latency", "at_least_every", "at_most_every")
 LONGEST_NS = 1_000_000 * NS_PER_S
@@ -142,7 +141,7 @@ def _time(entry: Marked | None, zero: bool = False) -> int | None:
     if match is None:
         raise entry.fail(f"is {entry.plain()!r}; write a time with its unit, such as 500 us, 2.5 ms, 1 s or 50 Hz")
     number, unit = float(match[1]), match[2]
-    found = round(number * UNITS[unit]) if unit in UNITS else round(NS_PER_S / max(number, 1e-9))
+    found = round(number * TIME_UNITS[unit]) if unit in TIME_UNITS else round(NS_PER_S / max(number, 1e-9))
     if not (0 if zero else 1) <= found <= LONGEST_NS:
         raise entry.fail(f"is {entry.value}, it must be from {0 if zero else 1} ns to {LONGEST_NS // NS_PER_S} s")
     return found
@@ -150,8 +149,8 @@ def _time(entry: Marked | None, zero: bool = False) -> int | None:
 
 def time_text(duration_ns: int) -> str:
     """A time as people write it: "2.5 ms"."""
-    unit = next((name for name in ("s", "ms", "us") if duration_ns >= UNITS[name]), "ns")
-    return f"{duration_ns / UNITS[unit]:.6g} {unit}"
+    unit = next((name for name in ("s", "ms", "us") if duration_ns >= TIME_UNITS[name]), "ns")
+    return f"{duration_ns / TIME_UNITS[unit]:.6g} {unit}"
 
 
 def limits_of(deadline: AppDeadline | TopicDeadline) -> Mapping[str, int]:

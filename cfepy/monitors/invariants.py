@@ -17,7 +17,6 @@ from cfepy.mission import sources
 from cfepy.monitors.predicate import LATEST, Predicate
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.status import UsageError
-from cfepy.units import NS_PER_S
 
 NAMES = ("msg", "last", LATEST, "topic", "sender", "t", "count")
 CAUSE = "cause"
@@ -114,7 +113,7 @@ def _invariant(name: str, entry: Marked) -> Invariant:
         answer=_answer(entry, fields),
         file=file,
         function=function,
-        after_ns=read_seconds(fields["after"]) if "after" in fields else 0,
+        after_ns=fields["after"].time() if "after" in fields else 0,
     )
 
 
@@ -126,28 +125,6 @@ def read_selection(fields: Mapping[str, Marked]) -> Selection:
     """
     topics = [_topic(each) for each in _list(fields.get("topic"))]
     return Selection(tuple(topics), tuple(_packet(each) for each in _list(fields.get("packet"))))
-
-
-def read_seconds(entry: Marked) -> int:
-    """A time in ns from a number of seconds, with or without a unit: 0.5, "0.5 s", "20 ms", "50 us".
-
-    Raises:
-        UsageError: it is no such time.
-    """
-    value = entry.value
-    number, unit = (value, "s") if not isinstance(value, str) else _split(value)
-    scale = {"s": NS_PER_S, "ms": NS_PER_S // 1000, "us": 1000, "ns": 1}.get(unit)
-    try:
-        if scale is None or isinstance(number, bool) or not 0 <= float(number) < 1e9:
-            raise ValueError
-        return round(float(number) * scale)
-    except (TypeError, ValueError):
-        raise entry.fail(f"is {value!r}, it must be a time such as 0.5, 0.5 s or 20 ms") from None
-
-
-def _split(text: str) -> tuple[str, str]:
-    number = text.rstrip("abcdefghijklmnopqrstuvwxyz ")
-    return number, text[len(number) :].strip() or "s"
 
 
 def _list(entry: Marked | None) -> list[Marked]:
@@ -181,7 +158,7 @@ def _answer(entry: Marked, fields: Mapping[str, Marked]) -> Answer | None:
     if selection == Selection():
         raise fields["then"].fail("names no message that has to come; add `topic: /name` or `packet: NAME`")
     holds = Predicate.read(then["holds"], (*NAMES, CAUSE)) if "holds" in then else None
-    return Answer(selection, holds, read_seconds(fields["within"]))
+    return Answer(selection, holds, fields["within"].time())
 
 
 def _function(entry: Marked, fields: Mapping[str, Marked]) -> tuple[Path | None, str]:

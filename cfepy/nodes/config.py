@@ -69,7 +69,8 @@ class RosConfig:
     name, from the mission's `topics.lock`, for what `topics` does not pin. With `spread` a topic whose MsgId is taken
     gets the next free one, in order of registration; otherwise that is an error, since the id may be another in the
     next run. `ends_with_nodes`: the run is over when all its nodes have ended. `root` is a folder that stands for the
-    computer's root, for a mission that was brought from elsewhere (`Universe`).
+    computer's root, for a mission that was brought from elsewhere (`Universe`). `connection_delay_ns` is how long
+    it takes until a publisher and a subscriber are connected, in virtual ns.
     """
 
     nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
@@ -81,3 +82,4 @@ class RosConfig:
     locked_services: Mapping[str, int] = field(default_factory=dict)
     spread: bool = False
     root: str = ""
+    connection_delay_ns: int = 0

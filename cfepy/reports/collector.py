@@ -196,7 +196,7 @@ class _SwitchNotes(Policy):
     """Asks another policy, and tells of what is not fifo's answer, with the line that was about to go on."""
 
     def __init__(self, inner: Policy, note: Callable[[Moment, str], None]) -> None:
-        super().__init__(inner.any_priority, inner.hold_ns)
+        super().__init__(inner.any_priority, inner.hold_ns, inner.connect_ns)
         self._inner, self._note = inner, note
 
     def choose(self, decision: Decision) -> int:
@@ -211,6 +211,8 @@ class _SwitchNotes(Policy):
 def _switch_text(moment: Moment, place: str) -> str:
     at = f" at {place}" if place else ""
     number = f"(decision at:{moment.decision}={moment.choice})"
+    if moment.connects:
+        return f"{moment.instead_of} takes {moment.chosen} {number}"
     if moment.chosen == HOLD:
         return f"{moment.instead_of} is held up{at} {number}"
     if moment.preemption:

@@ -12,9 +12,11 @@ from typing import Any
 
 from cfepy import trace as tr
 from cfepy.rtos.kernel import Kernel
-from cfepy.rtos.policy import Decision, Policy
+from cfepy.rtos.policy import Connection, Decision, Policy
 from cfepy.rtos.scheduler import SLICE_NS
 from cfepy.rtos.task import Task
+
+CONNECTION_DELAYS = 8  # of a connection that are tried, at even distances up to the longest, besides the usual one
 
 
 def make_kernel(
@@ -160,6 +162,21 @@ class ExploringKernel(Kernel):
         """The tasks of the same application that could start now instead of later."""
         owner = task.owner
         return [each for each in self.tasks if each.timer and each.owner is owner and each.name in self._early]
+
+    # -- connections ---------------------------------------------------------------------------------------------------
+
+    def connection_delay(self, publisher: str, subscriber: str, topic: str, usual_ns: int) -> int:
+        """See `Scheduler.connection_delay`; the policy chooses, if connections are open to it."""
+        assert self.policy is not None
+        longest_ns = self.policy.connect_ns
+        if not longest_ns:
+            return usual_ns
+        tried = (longest_ns * step // CONNECTION_DELAYS for step in range(CONNECTION_DELAYS + 1))
+        connection = Connection(publisher, subscriber, topic, tuple(dict.fromkeys((usual_ns, *tried))))
+        number = self._decisions
+        self._decisions = number + 1
+        choice = self.policy.choose(Decision(number, self.now, (), False, False, None, connection))
+        return connection.delays[choice]
 
     # -- choosing --------------------------------------------------------------------------------------------------
 

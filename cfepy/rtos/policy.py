@@ -1,8 +1,9 @@
 """Policies: they decide which task runs next, where there is a choice.
 
 Without a policy the kernel goes on with the running task, or takes the one that has been ready for longest (fifo). A
-policy is asked at every scheduling point of an `ExploringKernel` that has more than one candidate: these decisions,
-counted from 0, are what a schedule is made of. Giving the same answers again gives the same run.
+policy is asked at every scheduling point of an `ExploringKernel` that has more than one candidate, and how long each
+connection between two nodes takes, if that is open: these decisions, counted from 0, are what a schedule is made of.
+Giving the same answers again gives the same run.
 """
 
 from __future__ import annotations
@@ -13,9 +14,30 @@ from random import Random
 from typing import NamedTuple
 
 from cfepy.rtos.task import Task
+from cfepy.units import time_word
 
 HOLD_ODDS = 16  # one in so many chances to hold a task up is taken: time would else run away from the work
 HOLD = "hold"  # in place of a task's name: no task runs until the next timer
+
+
+class Connection(NamedTuple):
+    """A publisher and a subscriber that are about to be connected.
+
+    Attributes:
+        publisher, subscriber: the names of the nodes.
+        topic: its resolved name.
+        delays: how many ns it may take; the first one is as without a policy.
+    """
+
+    publisher: str
+    subscriber: str
+    topic: str
+    delays: tuple[int, ...]
+
+    @property
+    def name(self) -> str:
+        """What it is called in moves and reports."""
+        return f"connection of {self.publisher} to {self.subscriber} on {self.topic}"
 
 
 @dataclass(slots=True)
@@ -29,6 +51,8 @@ class Decision:
         running: whether `tasks[0]` is the running task, which could go on: another answer than 0 preempts it.
         hold: whether there is one more answer, `len(tasks)`: the running task is held up until the next timer is due.
         left: the task that gave up its turn just now, as it yields or used the CPU for a whole time slice, or None.
+        connection: not who runs is asked, but which of its delays this connection has; None for all other decisions,
+            and `tasks` are empty when there is one.
     """
 
     number: int
@@ -37,11 +61,24 @@ class Decision:
     running: bool
     hold: bool
     left: Task | None
+    connection: Connection | None = None
 
     @property
     def width(self) -> int:
         """The number of possible answers, 2 or more; 1 where a policy (`From`) leaves no choice."""
-        return len(self.tasks) + self.hold
+        return len(self.tasks) + self.hold if self.connection is None else len(self.connection.delays)
+
+    @property
+    def subject(self) -> str:
+        """What it is about: the task that fifo would run, or the connection."""
+        return self.tasks[0].name if self.connection is None else self.connection.name
+
+    @property
+    def answers(self) -> list[str]:
+        """The possible answers in words: tasks by name, `HOLD`, or delays such as 25ms."""
+        if self.connection is not None:
+            return [time_word(delay) for delay in self.connection.delays]
+        return [*(task.name for task in self.tasks), *([HOLD] if self.hold else [])]
 
 
 class Policy:
@@ -50,11 +87,13 @@ class Policy:
     Args:
         any_priority: candidates are all ready tasks, not only those of the most urgent priority.
         hold_ns: a task may be held up until the next timer is due, if that is within so many ns; 0 for never.
+        connect_ns: a connection between two nodes may take up to so many ns; 0 leaves it as the mission has it.
     """
 
-    def __init__(self, any_priority: bool = False, hold_ns: int = 0) -> None:
+    def __init__(self, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0) -> None:
         self.any_priority = any_priority
         self.hold_ns = hold_ns
+        self.connect_ns = connect_ns
 
     def choose(self, decision: Decision) -> int:
         """The answer, from 0 to below `decision.width`."""
@@ -64,13 +103,13 @@ class Policy:
 class SeededRandom(Policy):
     """Any of the candidates, the same ones for the same seed; the other arguments are those of `Policy`."""
 
-    def __init__(self, seed: int, any_priority: bool = False, hold_ns: int = 0) -> None:
-        super().__init__(any_priority, hold_ns)
+    def __init__(self, seed: int, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0) -> None:
+        super().__init__(any_priority, hold_ns, connect_ns)
         self._random = Random(seed).random
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
-        width = len(decision.tasks)
+        width = decision.width - decision.hold
         if decision.hold and self._random() * HOLD_ODDS < 1:
             return width
         return int(self._random() * width)
@@ -85,16 +124,21 @@ class PCT(Policy):
     (depth - 1)). A task that gives up its turn, as one that polls does at the end of each slice, falls below all
     others too: the paper's guarantee assumes that no task waits for another by polling.
 
+    Connections are no tasks: each draws its delay.
+
     Args:
         seed: of ranks and places.
         depth: of the bugs that are looked for, at least 1.
         steps: how many decisions a run has, about.
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
+        connect_ns: see `Policy`.
     """
 
-    def __init__(self, seed: int, depth: int, steps: int, any_priority: bool = False, hold_ns: int = 0) -> None:
-        super().__init__(any_priority, hold_ns)
+    def __init__(
+        self, seed: int, depth: int, steps: int, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0
+    ) -> None:
+        super().__init__(any_priority, hold_ns, connect_ns)
         self._random = random = Random(seed)
         self._changes = frozenset(random.sample(range(steps), min(depth - 1, steps)))
         self._ranks: dict[Task, float] = {}
@@ -104,6 +148,8 @@ class PCT(Policy):
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
         self._count += 1
+        if decision.connection is not None:
+            return int(self._random.random() * decision.width)
         if decision.left is not None:
             self._demote(decision.left)
         best = self._best(decision.tasks)
@@ -133,10 +179,13 @@ class Deviations(Policy):
         choices: the answer by number of the decision; one that is not possible becomes the last that is.
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
+        connect_ns: see `Policy`.
     """
 
-    def __init__(self, choices: Mapping[int, int], any_priority: bool = False, hold_ns: int = 0) -> None:
-        super().__init__(any_priority, hold_ns)
+    def __init__(
+        self, choices: Mapping[int, int], any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0
+    ) -> None:
+        super().__init__(any_priority, hold_ns, connect_ns)
         self._choices = dict(choices)
 
     def choose(self, decision: Decision) -> int:
@@ -153,7 +202,7 @@ class From(Policy):
     """
 
     def __init__(self, inner: Policy, from_ns: int) -> None:
-        super().__init__(inner.any_priority, inner.hold_ns)
+        super().__init__(inner.any_priority, inner.hold_ns, inner.connect_ns)
         self._inner = inner
         self._from_ns = from_ns
 
@@ -162,6 +211,8 @@ class From(Policy):
         if decision.now >= self._from_ns:
             return self._inner.choose(decision)
         decision.tasks, decision.hold = decision.tasks[:1], False
+        if decision.connection is not None:
+            decision.connection = decision.connection._replace(delays=decision.connection.delays[:1])
         return 0
 
 
@@ -172,9 +223,10 @@ class Moment(NamedTuple):
         decision: its number.
         choice: the answer.
         now: virtual ns.
-        instead_of: name of the task that fifo would have run.
-        chosen: name of the task that ran, or `HOLD`.
+        instead_of: name of the task that fifo would have run, or of the connection.
+        chosen: name of the task that ran, or `HOLD`, or the delay.
         preemption: whether the one that fifo would have run was running, and could have gone on.
+        connects: whether it is the delay of a connection.
     """
 
     decision: int
@@ -183,13 +235,14 @@ class Moment(NamedTuple):
     instead_of: str
     chosen: str
     preemption: bool
+    connects: bool = False
 
     @classmethod
     def of(cls, decision: Decision, choice: int) -> Moment:
         """What a decision and its answer were, which is not 0."""
-        tasks = decision.tasks
-        chosen = tasks[choice].name if choice < len(tasks) else HOLD
-        return cls(decision.number, choice, decision.now, tasks[0].name, chosen, decision.running)
+        chosen = decision.answers[choice]
+        connects = decision.connection is not None
+        return cls(decision.number, choice, decision.now, decision.subject, chosen, decision.running, connects)
 
 
 class NotingPolicy(Policy):
@@ -207,7 +260,7 @@ class NotingPolicy(Policy):
 
     def __init__(self, inner: Policy | None = None) -> None:
         self._inner = inner or Policy()
-        super().__init__(self._inner.any_priority, self._inner.hold_ns)
+        super().__init__(self._inner.any_priority, self._inner.hold_ns, self._inner.connect_ns)
         self.choices: list[int] = []
         self.widths: list[int] = []
         self.running: list[bool] = []

@@ -6,9 +6,10 @@
     pct:7:3:5000            the same for runs of about 5000 decisions
     at:42=1,97=2            fifo, but at decision 42 candidate 1, and at decision 97 candidate 2
 
-Every kind but fifo takes options at its end: `any` (tasks of less urgent priority may run before more urgent ones) and
-`hold=500us` (the running task may be held up until the next timer is due, if that is within 500 us), and `from=600ms`
-(fifo up to 600 ms after the start of the run; what comes before still counts as decisions).
+Every kind but fifo takes options at its end: `any` (tasks of less urgent priority may run before more urgent ones),
+`hold=500us` (the running task may be held up until the next timer is due, if that is within 500 us), `connect=50ms`
+(a connection between two ROS nodes may take up to 50 ms), and `from=600ms` (fifo up to 600 ms after the start of the
+run; what comes before still counts as decisions).
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ from typing import Any
 
 from cfepy.rtos.policy import PCT, Deviations, From, Policy, SeededRandom
 from cfepy.status import UsageError
+from cfepy.units import TIME_UNITS, time_word
 
 DEPTH = 3  # of PCT, where the text gives none
 STEPS = 1000
-_UNITS = {"ns": 1, "us": 1000, "ms": 1_000_000, "s": 1_000_000_000}
 _TIME = re.compile(r"(\d+)(ns|us|ms|s)")
 _FORMS = (
-    "fifo, random:SEED, pct:SEED:DEPTH[:STEPS] or at:DECISION=CHOICE,..., the last three with :any, :hold=500us or "
-    ":from=600ms"
+    "fifo, random:SEED, pct:SEED:DEPTH[:STEPS] or at:DECISION=CHOICE,..., the last three with :any, :hold=500us, "
+    ":connect=50ms or :from=600ms"
 )
 
 
@@ -43,6 +44,7 @@ class Schedule:
         deviations: pairs of decision and choice of at, in order.
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
+        connect_ns: see `Policy`.
         from_ns: virtual ns up to which it is fifo.
     """
 
@@ -53,6 +55,7 @@ class Schedule:
     deviations: tuple[tuple[int, int], ...] = ()
     any_priority: bool = False
     hold_ns: int = 0
+    connect_ns: int = 0
     from_ns: int = 0
 
     @classmethod
@@ -90,8 +93,9 @@ class Schedule:
         if self.deviations:
             words.append(",".join(f"{decision}={choice}" for decision, choice in self.deviations))
         words += ["any"] if self.any_priority else []
-        words += [f"hold={_time_text(self.hold_ns)}"] if self.hold_ns else []
-        words += [f"from={_time_text(self.from_ns)}"] if self.from_ns else []
+        words += [f"hold={time_word(self.hold_ns)}"] if self.hold_ns else []
+        words += [f"connect={time_word(self.connect_ns)}"] if self.connect_ns else []
+        words += [f"from={time_word(self.from_ns)}"] if self.from_ns else []
         return ":".join(words)
 
     def __str__(self) -> str:
@@ -105,11 +109,12 @@ class Schedule:
         return From(policy, self.from_ns) if self.from_ns else policy
 
     def _policy(self) -> Policy:
+        options = self.any_priority, self.hold_ns, self.connect_ns
         if self.kind == "random":
-            return SeededRandom(self.seed, self.any_priority, self.hold_ns)
+            return SeededRandom(self.seed, *options)
         if self.kind == "pct":
-            return PCT(self.seed, self.depth, self.steps, self.any_priority, self.hold_ns)
-        return Deviations(dict(self.deviations), self.any_priority, self.hold_ns)
+            return PCT(self.seed, self.depth, self.steps, *options)
+        return Deviations(dict(self.deviations), *options)
 
     def at(self, deviations: Mapping[int, int]) -> Schedule:
         """The schedule that takes some decisions otherwise than fifo, with this one's options.
@@ -129,12 +134,12 @@ def _option(field: str) -> dict[str, Any] | None:
     if field == "any":
         return {"any_priority": True}
     name, _, time = field.partition("=")
-    if name not in ("hold", "from"):
+    if name not in ("hold", "connect", "from"):
         return None
     match = _TIME.fullmatch(time)
     if match is None or not int(match[1]):
         raise UsageError(f"{field!r} wants a time in ns, us, ms or s, such as {name}=500us", field="--schedule")
-    return {f"{name}_ns": int(match[1]) * _UNITS[match[2]]}
+    return {f"{name}_ns": int(match[1]) * TIME_UNITS[match[2]]}
 
 
 def _numbers(text: str, fields: list[str]) -> dict[str, Any]:
@@ -162,8 +167,3 @@ def _deviations(text: str, field: str) -> tuple[tuple[int, int], ...]:
 
 def _wrong(text: str) -> UsageError:
     return UsageError(f"no schedule is called {text!r}; write {_FORMS}", field="--schedule")
-
-
-def _time_text(time_ns: int) -> str:
-    unit, size = max(((unit, size) for unit, size in _UNITS.items() if time_ns % size == 0), key=lambda each: each[1])
-    return f"{time_ns // size}{unit}"

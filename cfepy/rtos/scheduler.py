@@ -85,6 +85,17 @@ class Scheduler:
     def has_started(self) -> None:
         """That delay of the current task is over."""
 
+    def connection_delay(self, publisher: str, subscriber: str, topic: str, usual_ns: int) -> int:
+        """How long it takes until two nodes are connected.
+
+        Args:
+            publisher: name of the node.
+            subscriber: name of the node.
+            topic: its resolved name.
+            usual_ns: as the mission has it, in virtual ns.
+        """
+        return usual_ns
+
     def wait_on(self, waits: WaitList, timeout_ns: int = FOREVER) -> Any:
         """Wait in a list until `wake_first` or `wake_all`.
 

@@ -24,7 +24,7 @@ from cfepy.sb import packets as pk
 from cfepy.sb.buffers import BUFFER_BYTES, DESTINATION_BYTES, BufferServices
 from cfepy.sb.core import BusCore
 from cfepy.sb.pipe import Pipe
-from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE, PipeServices
+from cfepy.sb.pipes import PipeServices
 from cfepy.sb.routing import GLOBAL, LOCAL, SECONDARY, Destination, Route
 from cfepy.status import (
     CFE_SB_BAD_ARGUMENT,
@@ -289,7 +289,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         failures: list[tuple[int, Destination]] | None = None
         for destination in route.active:
             pipe = destination.pipe
-            if pipe.opts and pipe.opts & PIPEOPTS_IGNOREMINE and pipe.owner is kernel.current.owner:
+            if pipe.unheard and kernel.current.owner in pipe.unheard:
                 continue
             puts = destination.puts
             if puts - destination.gets >= destination.limit:

@@ -11,6 +11,8 @@ class Pipe(Queue):
 
     `send_errors` counts what a message limit kept out, as NASA's SendErrors does; `overflows` what did not fit in. One
     that `keeps_newest` makes room for a message by dropping the oldest one, as the queue of a ROS subscriber does.
+    Messages of the applications in `unheard` do not come in: its own, by an option of the pipe, and those of ROS nodes
+    that are not connected with it yet.
 
     Args:
         kernel: where its readers wait.
@@ -31,6 +33,7 @@ class Pipe(Queue):
         "pipe_id",
         "receive_mark",
         "send_errors",
+        "unheard",
     )
 
     def __init__(self, kernel: Kernel, depth: int, name: str, owner: object) -> None:
@@ -40,10 +43,20 @@ class Pipe(Queue):
         self.app_id: int = getattr(owner, "app_id", 0)
         self.app_name: str = getattr(owner, "name", "host")
         self.opts = 0
+        self.unheard: tuple[object, ...] = ()
         self.keeps_newest = False
         self.send_errors = self.overflows = 0
         self.claim = 0
         self.identify(0)
+
+    def ignore(self, sender: object) -> None:
+        """Messages of this application do not come in from now on."""
+        if sender not in self.unheard:
+            self.unheard = (*self.unheard, sender)
+
+    def heed(self, sender: object) -> None:
+        """They come in again."""
+        self.unheard = tuple(each for each in self.unheard if each is not sender)
 
     def identify(self, pipe_id: int) -> None:
         """Give the pipe the id under which its table keeps it."""

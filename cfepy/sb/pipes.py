@@ -107,6 +107,10 @@ class PipeServices(BufferServices):
             text = f"Pipe Opts Set Error: Caller({self.caller_name()}) is not the owner of pipe {pipe_id}"
             raise self._opts_error(ev.SETPIPEOPTS_OWNER_ERR_EID, text)
         pipe.opts = opts & 0xFF  # C takes 8 bits
+        if pipe.opts & PIPEOPTS_IGNOREMINE:
+            pipe.ignore(pipe.owner)
+        else:
+            pipe.heed(pipe.owner)
         text = f"Pipe opts set:id {pipe_id},owner {pipe.app_name}, opts=0x{pipe.opts:02x}"
         self.report(ev.SETPIPEOPTS_EID, ev.DEBUG, text)
 

@@ -49,6 +49,7 @@ def explore(
     steps: int = STEPS,
     any_priority: bool = False,
     hold: str = "",
+    connect: str = "",
     start: str = "",
     shrink: int = MOST_PROBES,
 ) -> pytest.MarkDecorator:
@@ -65,6 +66,7 @@ def explore(
         steps: how many decisions pct expects of a run.
         any_priority: tasks of less urgent priority may go before more urgent ones.
         hold: how long the running task may be held up, such as "500us"; empty for not at all.
+        connect: how long a connection between two ROS nodes may take, such as "50ms"; empty for what the mission has.
         start: virtual time from the boot until which all is as with fifo, such as "600ms"; empty for none.
         shrink: how many runs it may take to shrink a schedule; 0 leaves it as it is.
 
@@ -80,6 +82,7 @@ def explore(
     if seeds < 1 or not policies:
         raise UsageError("there is nothing to run; give at least one", field="seeds" if policies else "policy")
     options = (":any" if any_priority else "") + (f":hold={hold}" if hold else "")
+    options += f":connect={connect}" if connect else ""
     options += f":from={start}" if start else ""
     numbers = {"random": "", "pct": f":{depth}:{steps}"}
     kinds = [Schedule.parse(f"{each}:{seed}{numbers[each]}{options}") for seed, each in enumerate(policies, 1)]

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from cfepy.status import CfeError
+from rospy_shim.client import connecting
 from rospy_shim.client.exceptions import ROSSerializationException
 from rospy_shim.client.message import args_kwds_to_message, packer
 from rospy_shim.client.topic_side import OUTBOUND, TopicConnection, TopicSide
@@ -64,6 +65,7 @@ class Link(TopicSide):
         self.shared = False  # with publishers of other nodes
         self.raw = False
         self.connected = False
+        self.expected: list[Subscription] = []  # those whose connection still takes some time
         self.msg_id = 0
         bus = node.cfe.sb
         self._bus = bus
@@ -94,8 +96,8 @@ class Link(TopicSide):
         self.msg_id = topic.msg_id
         self._head = whole_header(topic.msg_id)
         topic.add_link(self)
-        for subscription in topic.subscriptions:
-            self.peer_joined(subscription)
+        for subscription in topic.subscriptions[:]:
+            connecting.begin(self, subscription, connecting.delay_of(self, subscription))
 
     def _own_header(self) -> Header:
         return {
@@ -122,6 +124,9 @@ class Link(TopicSide):
         """Leave the graph; messages that are published later reach no subscriber."""
         self.closed = True
         self._routes = {}
+        for subscription in self.expected:
+            subscription.heed(self)
+        self.expected = []
         if self.node.links.get(self.name) is self:
             del self.node.links[self.name]
         if self.topic is not None:
@@ -132,13 +137,20 @@ class Link(TopicSide):
     def get_num_connections(self) -> int:
         """How many pipes get the topic's messages: subscribing nodes, and cFE applications."""
         route = self._routes.get(self.msg_id)
-        return len(route.active) if route is not None else 0
+        if route is None or not self.expected:
+            return len(route.active) if route is not None else 0
+        return sum(self.node.owner not in each.pipe.unheard for each in route.active)
+
+    @property
+    def peers(self) -> list[Subscription]:
+        """The subscribing sides that are connected."""
+        subscriptions = self.topic.subscriptions if self.topic is not None else []
+        return [each for each in subscriptions if each not in self.expected]
 
     @property
     def connections(self) -> list[TopicConnection]:
         """The nodes that subscribe."""
-        subscriptions = self.topic.subscriptions if self.topic is not None else []
-        return [self.connection(each.node, OUTBOUND) for each in subscriptions]
+        return [self.connection(each.node, OUTBOUND) for each in self.peers]
 
     def get_stats(self) -> tuple[str, int, list[tuple[int, int, int, bool]]]:
         """The side as getBusStats gives it: topic, bytes, and for each connection number, bytes, messages, state."""
@@ -156,7 +168,7 @@ class Link(TopicSide):
         if self.is_latch:
             self.latch = message
         route = self._routes.get(self.msg_id)
-        if route is None or not route.active:
+        if route is None or not route.active or (self.expected and not self.get_num_connections()):
             return
         if self._slot_ns:
             self._hold_back()
@@ -218,7 +230,7 @@ class Link(TopicSide):
     def _send_segments(self, payload: bytes) -> None:
         """One long message; as with a socket that is full, the caller waits while a subscriber's queue is."""
         count = -(-len(payload) // self._room)
-        for subscription in self.topic.subscriptions if self.topic is not None else ():
+        for subscription in self.peers:
             subscription.expect_segments(count)
         self.acquire()
         try:
@@ -254,6 +266,7 @@ class Link(TopicSide):
             and all(
                 (each.puts - each.gets < each.limit and len(each.pipe.items) < each.pipe.depth)
                 or (each.pipe.keeps_newest and count <= each.pipe.depth)
+                or self.node.owner in each.pipe.unheard
                 for each in route.active
             )
         )
@@ -267,8 +280,21 @@ class Link(TopicSide):
             if self.topic is not None:
                 self.topic.latched += 1
 
+    def expect_peer(self, subscription: Subscription) -> None:
+        """A subscriber is about to connect; until then nothing that is published reaches it."""
+        self.expected.append(subscription)
+        subscription.ignore(self)
+
+    def peer_connected(self, subscription: Subscription) -> None:
+        """It has connected: the listeners are told, and it gets the latched message."""
+        self.expected.remove(subscription)
+        subscription.heed(self)
+        for listener in self.subscriber_listeners[:]:
+            self._tell(listener, subscription)
+        self.give_latched(subscription)
+
     def peer_joined(self, subscription: Subscription) -> None:
-        """Tell the listeners of a new subscriber."""
+        """Tell the listeners of a new subscriber, which is connected at once."""
         for listener in self.subscriber_listeners:
             self.node.start_task(self.name, lambda each=listener: self._tell(each, subscription))  # type: ignore[misc]
 
@@ -282,8 +308,12 @@ class Link(TopicSide):
 
         listener.peer_subscribe(self.name, topic_publish, peer_publish)
 
-    def peer_left(self, remaining: int) -> None:
-        """Tell the listeners."""
+    def peer_left(self, subscription: Subscription) -> None:
+        """Tell the listeners, unless it was not connected yet."""
+        if subscription in self.expected:
+            self.expected.remove(subscription)
+            return
+        remaining = len(self.peers)
         for listener in self.subscriber_listeners:
             body = lambda each=listener: each.peer_unsubscribe(self.name, remaining)  # noqa: E731
             self.node.start_task(self.name, body)
@@ -299,8 +329,7 @@ class TappedLink(Link):
 
     def send(self, message: Any) -> None:
         """See `Link.send`."""
-        route = self._routes.get(self.msg_id)
-        if self.topic is not None and self._on_unsent is not None and (route is None or not route.active):
+        if self.topic is not None and self._on_unsent is not None and not self.get_num_connections():
             try:
                 self._on_unsent(self, self._pack(message))
             except Exception:  # whatever a generated class raises

@@ -72,6 +72,7 @@ class Node:
         self.services: list[Service] = []
         self.connection_numbers = count(1)
         self._tasks = tasks
+        self.owner = tasks.owner
         self._timer: type | None = None
         self.place = config.near or (Path(universe.resolve(universe.script)) if universe.script else None)
         self.packages = Packages(self.place, universe.environ, universe.resolve)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from cfepy.nodes.report import traceback_text
 from cfepy.rtos import TIMEOUT
 from cfepy.status import CfeError
+from rospy_shim.client import connecting
 from rospy_shim.client.exceptions import ROSException
 from rospy_shim.client.message import packer, unpacker
 from rospy_shim.client.topic_side import INBOUND, TopicConnection, TopicSide
@@ -21,6 +22,8 @@ from rospy_shim.client.transport import HEADER_BYTES, Assembler, sequence_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from cfepy.sb import Pipe
+    from rospy_shim.client.link import Link
     from rospy_shim.client.node import Node
     from rospy_shim.graph.graph import Header, TopicEntry
     from rospy_shim.msgs import MessageClass
@@ -53,6 +56,7 @@ class Subscription(TopicSide):
         self.connected = False
         self.latest: Any = None  # kept while a latching publisher is there
         self._backlog: list[tuple[bytes, Header]] = []
+        self._late: list[Link] = []  # publishers whose connection took some time, which give their latched message then
         self._attention = False  # the task has other work than receiving
         self._segments = 1  # packets of the longest message so far
         self._pipe = NO_PIPE
@@ -94,9 +98,12 @@ class Subscription(TopicSide):
             self._size_pipe()
 
     def _size_pipe(self) -> None:
-        pipe = self.node.cfe.sb.find_pipe(self._pipe) if self._pipe != NO_PIPE else None
+        pipe = self._find_pipe()
         if pipe is not None:
             pipe.depth, pipe.keeps_newest = self._depth(), self.queue_size is not None
+
+    def _find_pipe(self) -> Pipe | None:
+        return self.node.cfe.sb.find_pipe(self._pipe) if self._pipe != NO_PIPE else None
 
     def _depth(self) -> int:
         """Packets that the pipe holds."""
@@ -158,10 +165,14 @@ class Subscription(TopicSide):
         bus = self.node.cfe.sb
         self._pipe = bus.create_pipe(self._depth(), name)
         self._size_pipe()
+        delays = {link: connecting.delay_of(link, self) for link in topic.links}
+        for link in delays:
+            if delays[link]:
+                self.ignore(link)  # before the first message may come
         bus.subscribe_ex(topic.msg_id, self._pipe, 0, NO_LIMIT)  # the pipe's depth is the limit, and can be changed
         topic.add_subscription(self)
         for link in list(topic.links):
-            link.peer_joined(self)
+            connecting.begin(link, self, delays.get(link, 0))
 
     def _measure(self) -> None:
         """Have each message go through the statistics first (rospy.impl.statistics)."""
@@ -192,13 +203,32 @@ class Subscription(TopicSide):
     @property
     def connections(self) -> list[TopicConnection]:
         """The nodes that publish."""
+        return [self.connection(each.node, INBOUND) for each in self.peers]
+
+    @property
+    def peers(self) -> list[Link]:
+        """The publishing sides that are connected."""
         if self.topic is None or self not in self.topic.subscriptions:
             return []
-        return [self.connection(each.node, INBOUND) for each in self.topic.links]
+        return [each for each in self.topic.links if self not in each.expected]
+
+    def ignore(self, link: Link) -> None:
+        """This publisher is not connected yet."""
+        if link not in self._late:
+            self._late.append(link)
+        pipe = self._find_pipe()
+        if pipe is not None:
+            pipe.ignore(link.node.owner)
+
+    def heed(self, link: Link) -> None:
+        """Now it is."""
+        pipe = self._find_pipe()
+        if pipe is not None:
+            pipe.heed(link.node.owner)
 
     def get_stats(self) -> tuple[str, list[tuple[int, int, int, int, bool]]]:
         """The side as getBusStats gives it: topic, and for each connection number, bytes, messages, drops, state."""
-        rows = zip(self.connections, self.topic.links if self.topic is not None else (), strict=False)
+        rows = zip(self.connections, self.peers, strict=True)
         return self.name, [(each.id, link.message_data_sent, link.seq, -1, True) for each, link in rows]
 
     def deliver(self, payload: bytes, header: Header) -> None:
@@ -208,7 +238,7 @@ class Subscription(TopicSide):
 
     def _call_attention(self) -> None:
         self._attention = True
-        pipe = self.node.cfe.sb.find_pipe(self._pipe) if self._pipe != NO_PIPE else None
+        pipe = self._find_pipe()
         if pipe is not None:
             self.node.kernel.wake_all(pipe.waits, TIMEOUT)
 
@@ -226,10 +256,11 @@ class Subscription(TopicSide):
 
     def _take_latched(self, topic: TopicEntry) -> None:
         """As for a new subscriber of a latching publisher in ROS: of all that came before, only the last counts."""
-        if topic.latching and not self.closed:
+        at_once = [link for link in topic.links if link.is_latch and link not in self._late]
+        if at_once and not self.closed:
             while self.node.cfe.sb.receive_buffer(self._pipe, POLL) is not None:
                 pass
-            for link in topic.links:
+            for link in at_once:
                 link.give_latched(self)
 
     def give_back(self) -> None:

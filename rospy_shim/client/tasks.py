@@ -28,6 +28,9 @@ class NodeTasks:
         cfe: the handle of cFE's services.
         kernel: the simulated computer's.
         number: gives a number that no task of the mission has yet.
+
+    Attributes:
+        owner: the application, as found in `Task.owner`.
     """
 
     def __init__(self, cfe: Cfe, kernel: Kernel, number: Callable[[], int]) -> None:
@@ -39,7 +42,7 @@ class NodeTasks:
         self._stack_size: int = info.stack_size
         self.priority: int = info.priority
         self._main = kernel.current
-        self._owner = self._main.owner
+        self.owner = self._main.owner
 
     def name(self, label: str) -> str:
         """A name of at most 19 characters that nothing else in the mission has."""
@@ -88,7 +91,7 @@ class NodeTasks:
     def helper(self, node: Node, label: str, body: Callable[[], None]) -> Task:
         """Start a short task from outside the application; ES ends it with the application."""
         entry = _in_universe(node.universe, body)
-        return self._kernel.spawn(self.name(label), entry, self.priority, owner=self._owner)
+        return self._kernel.spawn(self.name(label), entry, self.priority, owner=self.owner)
 
 
 def _in_universe(universe: Universe, body: Callable[[], None]) -> Callable[[], None]:

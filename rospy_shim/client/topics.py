@@ -113,9 +113,8 @@ class Publisher(TopicHandle):
             link.header.update(headers)
         if subscriber_listener is not None:
             link.subscriber_listeners.append(subscriber_listener)
-            if link.topic is not None:
-                for subscription in link.topic.subscriptions:
-                    link.peer_joined(subscription)
+            for subscription in link.peers:
+                link.peer_joined(subscription)
 
     def publish(self, *args: Any, **kwds: Any) -> None:
         """Send a message, given as such or by its fields.

@@ -104,7 +104,7 @@ class TopicEntry:
         if subscription in self.subscriptions:
             self.subscriptions.remove(subscription)
             for link in self.links:
-                link.peer_left(len(self.subscriptions))
+                link.peer_left(subscription)
 
     def _refresh(self) -> None:
         self._shared = shared = self._shared or len(self.links) > 1
@@ -170,6 +170,7 @@ class Graph:
 
     def __init__(self, config: RosConfig) -> None:
         self._config = config
+        self.connection_delay_ns = config.connection_delay_ns
         self.topics: dict[str, TopicEntry] = {}
         self.nodes: dict[str, Node] = {}
         self.services: dict[str, ServiceEntry] = {}

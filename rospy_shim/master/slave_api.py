@@ -99,12 +99,11 @@ class SlaveApi:
 
     def _connections(self) -> Iterable[tuple[str, str, str, str, bool, str]]:
         for name, link in self._node.links.items():
-            for each in link.topic.subscriptions if link.topic is not None else ():
+            for each in link.peers:
                 text = f"{TRANSPORT} connection on MsgId 0x{link.msg_id:04X} to [{each.node.names.name}]"
                 yield each.node.names.name, "o", TRANSPORT, name, True, text
         for name, subscription in self._node.subscriptions.items():
-            topic = subscription.topic
-            for publisher in topic.links if topic is not None and subscription in topic.subscriptions else ():
+            for publisher in subscription.peers:
                 text = f"{TRANSPORT} connection on MsgId 0x{publisher.msg_id:04X} to [{uri_of(publisher.node)}]"
                 yield uri_of(publisher.node), "i", TRANSPORT, name, True, text
 

@@ -40,6 +40,7 @@ def test_the_command_has_its_defaults() -> None:
         assert getattr(parsed, name) == getattr(usual, name), name
     assert (parsed.seeds, parsed.shrink, parsed.longest) == (usual.seeds, usual.shrink, usual.longest_s)
     assert (parsed.hold, getattr(parsed, "from"), parsed.no_stuck) == (usual.hold_s, usual.from_s, not usual.stuck)
+    assert parsed.connect is usual.connect_s
 
 
 def test_a_failure_is_shrunk_and_told_with_its_timeline() -> None:

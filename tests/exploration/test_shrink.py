@@ -90,7 +90,7 @@ def test_the_timeline_shows_both_tasks_up_to_the_failure(bank: Path) -> None:
 
 def test_a_move_that_is_not_possible_is_left_out(bank: Path) -> None:
     trial = Trial(RunPlan((str(bank),), seconds=0.7))
-    policy = MovePolicy([Move("NOBODY", 0, "BANK"), Move("BANK", 1, "NOBODY")])
+    policy = MovePolicy([Move("NOBODY", 0, "BANK"), Move("BANK", 1, "NOBODY")], Schedule())
     verdict = trial.fly(Schedule("at"), policy=policy).verdict
     assert not verdict.failed
     assert verdict.preemptions == 0

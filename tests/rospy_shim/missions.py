@@ -33,6 +33,7 @@ def run_nodes(
     params: Mapping[str, Any] | None = None,
     tasks: str = "thread",
     priorities: Mapping[str, int] | None = None,
+    connection_delay_ns: int = 0,
 ) -> Run:
     """Run scripts as nodes; keys are their cFE names.
 
@@ -45,6 +46,7 @@ def run_nodes(
         params: global parameters.
         tasks: "thread" or "greenlet".
         priorities: of the applications, 100 by default.
+        connection_delay_ns: until a publisher and a subscriber are connected.
     """
     script_lines = []
     for app, source in scripts.items():
@@ -57,7 +59,7 @@ def run_nodes(
         script_lines.append(f"CFE_APP, {name}, __main__, {app}, {priority}, 16384, 0x0, 1;\n")
     startup = folder / "startup.scr"
     startup.write_text("".join(script_lines) + "!\n")
-    ros = RosConfig(nodes or {}, topics or {}, params or {})
+    ros = RosConfig(nodes or {}, topics or {}, params or {}, connection_delay_ns=connection_delay_ns)
     console = Console(quiet=True)
     with Mission(MissionSpec("test", folder, startup, None, "linux", ros), tasks=tasks, console=console) as mission:
         mission.run_for(seconds)

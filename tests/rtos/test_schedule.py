@@ -39,6 +39,7 @@ def test_the_text_of_a_schedule_means_it(schedule: Schedule) -> None:
         ("at:42=0,97=2", Schedule("at", deviations=((97, 2),))),
         ("at", Schedule("at")),
         ("random:1:from=600ms", Schedule("random", 1, from_ns=600_000_000)),
+        ("at:3=1:any:connect=50ms", Schedule("at", deviations=((3, 1),), any_priority=True, connect_ns=50_000_000)),
         ("at:3=1:hold=500us", Schedule("at", deviations=((3, 1),), hold_ns=500_000)),
     ],
 )
@@ -60,6 +61,7 @@ def test_what_a_person_writes(text: str, schedule: Schedule) -> None:
         ("at:3", "'3' is not DECISION=CHOICE"),
         ("at:1=1,1=2", "decision 1 comes twice"),
         ("random:1:hold=500", "such as hold=500us"),
+        ("random:1:connect=never", "such as connect=500us"),
         ("random:1:hold=0s", "such as hold=500us"),
     ],
 )

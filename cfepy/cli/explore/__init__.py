@@ -80,6 +80,12 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
         help="the running task may be held up until the next timer is due, if that is within a time such as 500us",
     )
     explore.add_argument(
+        "--connect",
+        type=seconds_of,
+        metavar="SECONDS",
+        help="a connection between two ROS nodes may take any time up to this, such as 50ms",
+    )
+    explore.add_argument(
         "--from",
         type=seconds_of,
         metavar="SECONDS",

@@ -62,6 +62,9 @@ def _about(report: Report, told: Told) -> Iterator[str]:
     if shrunk is not None:
         yield f"shrunk: {shrunk.trial.command(shrunk.verdict.schedule)}"
         yield f"        {_moves_text(shrunk)}, found in {shrunk.probes} runs"
+        for move in shrunk.moves:
+            if move.connects:
+                yield f"        the {move.task} takes {move.chosen}"
     if told.timeline:
         yield ""
         yield from told.timeline
@@ -78,10 +81,13 @@ def _how_often(report: Report, finding: Finding) -> Iterator[str]:
 
 def _moves_text(shrunk: Shrunk[Trial]) -> str:
     preemptions = shrunk.verdict.preemptions
-    others = len(shrunk.verdict.deviations) - preemptions
+    connections = sum(move.connects for move in shrunk.moves)
+    others = len(shrunk.verdict.deviations) - preemptions - connections
     parts = [f"{preemptions} {'preemption' if preemptions == 1 else 'preemptions'}"]
     if others:
         parts.append(f"{others} {'change' if others == 1 else 'changes'} of order")
+    if connections:
+        parts.append(f"{connections} slow {'connection' if connections == 1 else 'connections'}")
     return " and ".join(parts)
 
 
@@ -111,6 +117,7 @@ def _expedition(arguments: argparse.Namespace) -> Expedition:
         _plan(arguments),
         **{name: getattr(arguments, name) for name in (*names, "results", "shrink")},
         hold_s=arguments.hold,
+        connect_s=arguments.connect,
         from_s=getattr(arguments, "from"),
         stuck=not arguments.no_stuck,
         longest_s=arguments.longest,

@@ -1,0 +1,49 @@
+"""How a publisher and a subscriber come together: at once, or after the time that a connection takes.
+
+On ROS the master tells the subscriber of the publisher, and the subscriber connects to it, in a thread
+(rospy.impl.tcpros_pubsub). Until then neither counts the other, and what is published does not reach the subscriber.
+Then the publisher's side counts the connection, tells its listeners, and hands over its latched message, in this order.
+How long it takes is in the mission file (`connection_delay`), or open to the schedule (`connect=`). Only nodes connect:
+what cFE applications send and get on a topic goes over the bus at any time.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rospy_shim.client.link import Link
+    from rospy_shim.client.subscription import Subscription
+
+
+def delay_of(link: Link, subscription: Subscription) -> int:
+    """How long it takes until these two are connected, in virtual ns."""
+    node = link.node
+    publisher, subscriber = node.names.name, subscription.node.names.name
+    return node.kernel.connection_delay(publisher, subscriber, link.name, node.graph.connection_delay_ns)
+
+
+def begin(link: Link, subscription: Subscription, delay_ns: int) -> None:
+    """Both are on the graph: connect them.
+
+    Args:
+        link: the publishing side.
+        subscription: the subscribing side.
+        delay_ns: virtual ns until they are connected; 0 connects them at once.
+    """
+    if not delay_ns:
+        link.peer_joined(subscription)
+        return
+    link.expect_peer(subscription)
+    link.node.start_task("connect", lambda: _finish(link, subscription, delay_ns))
+
+
+def _finish(link: Link, subscription: Subscription, delay_ns: int) -> None:
+    """Connect them, unless one has left or the whole node is about to; a long message on its way is not cut."""
+    link.node.kernel.delay(delay_ns)
+    link.acquire()
+    try:
+        if subscription in link.expected and not link.closed:
+            link.peer_connected(subscription)
+    finally:
+        link.release()
