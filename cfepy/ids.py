@@ -19,6 +19,7 @@ from cfepy.status import (
     CfeError,
     OsalError,
 )
+from cfepy.texts import to_bytes
 
 OS_TASK_BASE = 0x01
 OS_QUEUE_BASE = 0x02
@@ -106,7 +107,7 @@ def to_index(resource_id: int, base: int, capacity: int) -> int:
 
 def name_size(name: str) -> int:
     """Bytes that a name takes in C, without the NUL at its end: what the limits of names count."""
-    return len(name.encode("utf-8", "replace"))
+    return len(to_bytes(name))
 
 
 def find_next(start_id: int, capacity: int, is_used: Callable[[int], bool]) -> int:

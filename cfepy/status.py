@@ -246,7 +246,7 @@ _NAMES = _names()
 
 
 def to_signed(status: int) -> int:
-    """A status as a signed 32-bit integer, whichever way round it came (0xCA000003 and -905969661 are the same)."""
+    """A number of 32 bits as a C int, whichever way round it came (0xCA000003 and -905969661 are the same)."""
     return _signed(status & 0xFFFFFFFF)
 
 

@@ -38,11 +38,13 @@ from cfepy.status import (
     CFE_ES_FILE_IO_ERR,
     CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
     CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
+    OS_ERR_NAME_TAKEN,
     CfeError,
     OsalError,
 )
 
 MAX_NAME = OS_MAX_API_NAME - 1
+NO_SYMBOLS = ("", "NULL")
 Loaded = TypeVar("Loaded")
 # What was asked for, to the words of its event, the id when it is done and when starting again failed.
 _REPORTS = {
@@ -54,8 +56,8 @@ _REPORTS = {
 }
 
 
-def _not_loaded() -> None:
-    """Stands for the main function of an application until its module is loaded."""
+def _no_init(lib_id: int) -> None:
+    """Stands for the init function of a library without one."""
 
 
 class SymbolError(OsalError):
@@ -71,7 +73,7 @@ class AppServices(ResetApi):
         """Load and start an application (CFE_ES_AppCreate).
 
         Args:
-            name: 1 to 19 characters.
+            name: at most 19 characters.
             params: the rest of its line in the startup script.
             entry: for a core application, its main function; otherwise the loader finds it.
 
@@ -83,11 +85,11 @@ class AppServices(ResetApi):
                 CFE_STATUS_EXTERNAL_RESOURCE_FAIL (the module cannot be loaded).
         """
         self._check_new_app(name)
-        record = AppRecord(name, params, entry or _not_loaded, is_core=entry is not None)
+        record = AppRecord(name, params, entry, is_core=entry is not None)
         record.app_id = self.apps.create(record)  # first of all: as in C the id of one that fails is used up
         try:
             if entry is None:
-                record.entry = self._load(params.file, lambda: self.loader.load(params.file, params.symbol, name))
+                record.entry = self._load_app(name, params)
             record.main_task_id = self.start_task(
                 record, name, self._main_of(record), params.stack_size, params.priority
             )
@@ -98,9 +100,19 @@ class AppServices(ResetApi):
         self.history_of(name)
         return record.app_id
 
+    def _load_app(self, name: str, params: StartParams) -> Entry | None:
+        """The main function of an application; None when no symbol names it, which NASA's takes."""
+        if any(lib.name == name for lib in self.libs):  # OSAL's modules have the names of what they are loaded for
+            taken = f"CFE_ES_LoadModule: Could not load file:{params.file}. EC = {OS_ERR_NAME_TAKEN}"
+            self.write_to_sys_log(taken)
+            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"a library is called {name!r}")
+        return self._load(
+            params.file, params.symbol, lambda: self.loader.load(params.file, params.symbol, name), lambda: None
+        )
+
     def _check_new_app(self, name: str) -> None:
-        if not 0 < name_size(name) <= MAX_NAME:
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"application name {name!r}: 1 to {MAX_NAME} characters")
+        if name_size(name) > MAX_NAME:
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"application name {name!r}: at most {MAX_NAME} characters")
         if self.app_named(name) is not None:
             self.write_to_sys_log(f"CFE_ES_AppCreate: Duplicate app name '{name}'")
             raise CfeError(CFE_ES_ERR_DUPLICATE_NAME, f"application {name!r} runs already")
@@ -134,8 +146,8 @@ class AppServices(ResetApi):
         return record.lib_id
 
     def _check_new_library(self, name: str) -> None:
-        if not 0 < name_size(name) <= MAX_NAME:
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"library name {name!r}: 1 to {MAX_NAME} characters")
+        if name_size(name) > MAX_NAME:
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"library name {name!r}: at most {MAX_NAME} characters")
         if any(lib.name == name for lib in self.libs) or self.app_named(name) is not None:
             self.write_to_sys_log(f"CFE_ES_LoadLibrary: Duplicate Lib name '{name}'")
             raise CfeError(CFE_ES_ERR_DUPLICATE_NAME, f"there is a library or an application {name!r} already")
@@ -144,16 +156,20 @@ class AppServices(ResetApi):
             raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"{self.libs.capacity} libraries are loaded already")
 
     def _init_library(self, lib: LibRecord) -> None:
-        init = self._load(lib.file, lambda: self.loader.load_library(lib.file, lib.symbol))
+        init = self._load(
+            lib.file, lib.symbol, lambda: self.loader.load_library(lib.file, lib.symbol), lambda: _no_init
+        )
         result = init(lib.lib_id)
         if isinstance(result, int) and result != 0:
             self.write_to_sys_log(f"CFE_ES_LoadLibrary: Load Shared Library Init Error = 0x{result & 0xFFFFFFFF:08x}")
             raise CfeError(result, f"init function of library {lib.name!r} returned {result}")
 
-    def _load(self, file: str, load: Callable[[], Loaded]) -> Loaded:
+    def _load(self, file: str, symbol: str, load: Callable[[], Loaded], nameless: Callable[[], Loaded]) -> Loaded:
         try:
             return load()
         except SymbolError as missing:
+            if symbol in NO_SYMBOLS:  # they are not looked up
+                return nameless()
             self.write_to_sys_log(f"CFE_ES_LoadModule: Could not find symbol:{missing.text}. EC = {missing.status}")
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(missing)) from missing
         except OsalError as missing:
@@ -185,6 +201,9 @@ class AppServices(ResetApi):
 
     def _main_of(self, app: AppRecord) -> Entry:
         def main() -> None:
+            if app.entry is None:  # NASA's task waits for its function, and ends without a word
+                self.osal.task_delay(self.config.es_startup_script_timeout_ms)
+                return
             app.entry()
             self.exit_app(APP_EXIT)  # in C the task would end and ES never know
 

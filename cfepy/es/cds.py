@@ -36,6 +36,7 @@ from cfepy.status import (
     CFE_SUCCESS,
     CfeError,
 )
+from cfepy.texts import from_bytes, to_bytes
 
 RECORD = struct.Struct("<IIQQ40s?7x")
 FULL_NAME_SIZE = 40
@@ -74,7 +75,7 @@ class CdsBlock:
 
 def pack(block: CdsBlock) -> bytes:
     """The record of a block."""
-    name = block.name.encode("utf-8", "surrogateescape")[: FULL_NAME_SIZE - 1]
+    name = to_bytes(block.name)[: FULL_NAME_SIZE - 1]
     record = RECORD.pack(block.handle, 0, block.offset, block.size, name, block.is_table)
     return _with_check(record, crc16(record))
 
@@ -88,7 +89,7 @@ def is_sound(record: bytes) -> bool:
 def unpack(record: bytes) -> CdsBlock:
     """The block that a record tells of."""
     handle, _, offset, size, name, is_table = RECORD.unpack(record)
-    return CdsBlock(handle, offset, size, name.partition(b"\0")[0].decode("utf-8", "surrogateescape"), is_table)
+    return CdsBlock(handle, offset, size, from_bytes(name), is_table)
 
 
 def _with_check(record: bytes, check: int) -> bytes:

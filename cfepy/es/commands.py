@@ -36,6 +36,7 @@ from cfepy.status import (
     CFE_ES_ERR_NAME_NOT_FOUND,
     CFE_STATUS_REQUEST_ALREADY_PENDING,
     CfeError,
+    to_signed,
 )
 
 Handlers = tuple[tuple[Command, Handler], ...]
@@ -114,7 +115,8 @@ class AppControlCommands(CommandGroup):
 
     def _start(self, packet: bytes) -> None:
         fields = pk.START_APP.read(packet)
-        name = fields["Application"]
+        name = fields["Application"] = pk.START_APP.read_name(packet, "Application")
+        fields["AppEntryPoint"] = pk.START_APP.read_name(packet, "AppEntryPoint")
         refusal = _why_not_start(fields)
         if refusal is not None:
             self._replies.reject(*refusal)
@@ -130,11 +132,11 @@ class AppControlCommands(CommandGroup):
         self._replies.accept(ev.START_INF_EID, f"Started {name} from {file}, AppID = {app_id}")
 
     def _stop(self, packet: bytes) -> None:
-        name = pk.STOP_APP.read(packet)["Application"]
+        name = pk.STOP_APP.read_name(packet, "Application")
         self._control(name, "Stop", self._es.delete_app, ev.STOP_DBG_EID, ev.STOP_ERR1_EID, ev.STOP_ERR2_EID)
 
     def _restart(self, packet: bytes) -> None:
-        name = pk.RESTART_APP.read(packet)["Application"]
+        name = pk.RESTART_APP.read_name(packet, "Application")
         ids = ev.RESTART_APP_DBG_EID, ev.RESTART_APP_ERR1_EID, ev.RESTART_APP_ERR2_EID
         self._control(name, "Restart", self._es.restart_app, *ids)
 
@@ -145,7 +147,7 @@ class AppControlCommands(CommandGroup):
             self._es.reload_app(app_id, parse_input_file_name(fields["AppFileName"], FileCategory.DYNAMIC_MODULE))
 
         ids = ev.RELOAD_APP_DBG_EID, ev.RELOAD_APP_ERR1_EID, ev.RELOAD_APP_ERR2_EID
-        self._control(fields["Application"], "Reload", reload, *ids)
+        self._control(pk.RELOAD_APP.read_name(packet, "Application"), "Reload", reload, *ids)
 
     def _control(
         self, name: str, action: str, call: Callable[[int], None], begun: int, failed: int, unknown: int
@@ -197,7 +199,7 @@ class QueryCommands(CommandGroup):
         )
 
     def _query_one(self, packet: bytes) -> None:
-        name = pk.QUERY_ONE.read(packet)["Application"]
+        name = pk.QUERY_ONE.read_name(packet, "Application")
         try:
             info = self._es.get_module_info(self._find_module(name))
         except CfeError as missing:
@@ -304,12 +306,12 @@ class LogCommands(CommandGroup):
     def _set_sys_log_mode(self, packet: bytes) -> None:
         mode = pk.OVER_WRITE_SYS_LOG.read(packet)["Mode"]
         try:
-            self._es.syslog.set_mode(mode)
+            self._es.syslog.set_mode(mode & 0xFF)  # CFE_ES_LogMode_Enum_t has 8 bits, the field 32
         except CfeError:
-            text = f"Set OverWriteSysLog Command: Invalid Mode setting = {mode}"
+            text = f"Set OverWriteSysLog Command: Invalid Mode setting = {to_signed(mode)}"
             self._replies.reject(ev.ERR_SYSLOGMODE_EID, text)
             return
-        text = f"Set OverWriteSysLog Command Received with Mode setting = {mode}"
+        text = f"Set OverWriteSysLog Command Received with Mode setting = {to_signed(mode)}"
         self._replies.accept(ev.SYSLOGMODE_EID, text, ev.DEBUG)
 
     # -- the exception and reset log -------------------------------------------------------------------------------
@@ -380,7 +382,7 @@ class PerfCommands(CommandGroup):
         if self._dump.is_busy:
             self._replies.reject(ev.PERF_STARTCMD_ERR_EID, f"{what}perf data write in progress")
         elif mode > TRIGGER_END:
-            text = f"{what} trigger mode ({mode}) out of range ({TRIGGER_START} to {TRIGGER_END})"
+            text = f"{what} trigger mode ({to_signed(mode)}) out of range ({TRIGGER_START} to {TRIGGER_END})"
             self._replies.reject(ev.PERF_STARTCMD_TRIG_ERR_EID, text)
         else:
             self._log.start(mode)
@@ -434,7 +436,7 @@ class CdsCommands(CommandGroup):
         return (pk.DELETE_CDS, self._delete), (pk.DUMP_CDS_REGISTRY, self._dump_registry)
 
     def _delete(self, packet: bytes) -> None:
-        name = pk.DELETE_CDS.read(packet)["CdsName"]
+        name = pk.DELETE_CDS.read_name(packet, "CdsName")
         try:
             self._es.delete_cds(name)
         except CfeError as error:

@@ -8,6 +8,7 @@ from cfepy.es.packets import ER_LOG_FILE_ENTRY
 from cfepy.es.reset_data import ErLogEntry, ResetData
 from cfepy.msg import sys_time_fields
 from cfepy.ports import Ports
+from cfepy.texts import to_bytes
 
 CORE, APPLICATION = 1, 2
 """Types of entries (CFE_ES_LogEntryType_*)."""
@@ -86,6 +87,6 @@ class ExceptionResetLog:
             "ProcessorResetCount": entry.processor_reset_count,
             "MaxProcessorResetCount": entry.max_processor_reset_count,
             "TimeCode": sys_time_fields(entry.time),
-            "Description": entry.description.encode("utf-8", "replace")[:MAX_DESCRIPTION],
+            "Description": to_bytes(entry.description)[:MAX_DESCRIPTION],
         }
         return ER_LOG_FILE_ENTRY.pack(BaseInfo=base, ContextSize=len(context), AppID=entry.app_id, Context=context)

@@ -19,6 +19,7 @@ from cfepy.osal import Nobody
 from cfepy.psp import RST_SUBTYPE_EXCEPTION, RST_TYPE_POWERON, RST_TYPE_PROCESSOR, ExceptionSummary
 from cfepy.rtos import Task
 from cfepy.status import CfeError
+from cfepy.texts import to_bytes
 
 
 class TaskExceptionApi(EsCore):
@@ -63,7 +64,7 @@ def _places(error: BaseException) -> bytes:
     while trace is not None:
         places.insert(0, f"{PurePath(trace.tb_frame.f_code.co_filename).name}:{trace.tb_lineno}")
         trace = trace.tb_next
-    return " ".join(places).encode("utf-8", "replace")[:MAX_CONTEXT]
+    return to_bytes(" ".join(places))[:MAX_CONTEXT]
 
 
 class ExceptionScan:

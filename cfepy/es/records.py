@@ -81,7 +81,7 @@ class AppRecord:
 
     name: str
     params: StartParams
-    entry: Entry
+    entry: Entry | None  # None until its module is loaded, and when no symbol names it
     is_core: bool = False
     app_id: int = 0
     state: int = EARLY_INIT

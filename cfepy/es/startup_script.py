@@ -254,6 +254,11 @@ def _remarks(raw: _Raw) -> Iterator[str]:
     if not isinstance(entry, StartupEntry):
         return
     fields = raw.text.split(",")
+    what = "application" if entry.kind == CFE_APP else "library"
+    if not entry.name:
+        yield f"the {what} has no name; cFE starts it, and no command can name it"
+    if entry.kind == CFE_APP and entry.symbol in ("", "NULL"):
+        yield f"the symbol is {entry.symbol!r}: the application never runs, and the start waits for it"
     if len(fields[2]) >= MAX_NAME_LEN:
         yield f"the symbol {fields[2]!r} is cut to {entry.symbol!r}"
     for what, field in (("priority", fields[4]), ("stack size", fields[5]), ("exception action", fields[7])):

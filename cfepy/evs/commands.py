@@ -25,7 +25,6 @@ from cfepy.versions import version_string
 
 Fields = Mapping[str, Any]
 Handler = Callable[[AppEvents, str, Fields], bool]
-_NAME_SIZE = 20
 _NOT_FOUND_PREFIX = {
     pk.DISABLE_APP_EVENTS_CC: "Disable App Events Command: ",
     pk.RESET_APP_COUNTER_CC: "Reset Event Counter Command: ",
@@ -257,7 +256,7 @@ class AppEventCommands:
 
         def find_and_handle(packet: bytes) -> bool:
             fields = command.read(packet)
-            name = fields["AppName"][: _NAME_SIZE - 1]
+            name = command.read_name(packet, "AppName")
             app = self._find(name, code)
             return app is not None and handler(app, name, fields)
 

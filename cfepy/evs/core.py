@@ -15,6 +15,7 @@ from cfepy.msg import PRIMARY_HEADER_SIZE, TLM_HEADER_SIZE, Layout, init
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
 from cfepy.status import CFE_EVS_APP_SQUELCHED, CFE_SUCCESS
+from cfepy.texts import shown, to_bytes
 
 TRUNCATED = b"$"
 PORTS = (1, 2, 3, 4)
@@ -136,14 +137,14 @@ class EventCore:
 
     def _fit(self, text: str) -> tuple[bytes, bool]:
         """The bytes of a text as a C string that fits the packet, and whether it had to be cut."""
-        data = text.encode("utf-8", "replace").partition(b"\0")[0]
+        data = to_bytes(text).partition(b"\0")[0]
         room = self.config.evs_max_message_length - 1
         if len(data) <= room:
             return data, False
         return data[: room - 1] + TRUNCATED, True
 
     def _write_ports(self, time: str, app_name: str, event_id: int, message: bytes) -> None:
-        origin = f"{self.config.spacecraft_id}/{self.config.processor_id}/{app_name}"
+        origin = f"{self.config.spacecraft_id}/{self.config.processor_id}/{shown(app_name)}"
         line = f"{time} {origin} {event_id}: {message.decode('utf-8', 'replace')}"
         for port in PORTS:
             if self.ports_mask >> port - 1 & 1:

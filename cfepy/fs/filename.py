@@ -9,6 +9,7 @@ import re
 from enum import IntEnum
 
 from cfepy.status import CFE_FS_BAD_ARGUMENT, CFE_FS_FNAME_TOO_LONG, CFE_FS_INVALID_PATH, CfeError
+from cfepy.texts import from_bytes, to_bytes
 
 MAX_PATH_LEN = 64
 """OS_MAX_PATH_LEN and CFE_MISSION_MAX_PATH_LEN, the NUL included."""
@@ -61,6 +62,14 @@ def _directory(parts: list[str], default_path: str | None) -> str:
     return re.sub("/+", "/", "/".join([*parts, ""]))
 
 
+class FileNameError(CfeError):
+    """A file name that cannot be; `made` is what was made of it, as NASA's code leaves it in the buffer."""
+
+    def __init__(self, status: int, text: str, made: str) -> None:
+        super().__init__(status, text)
+        self.made = made
+
+
 def parse_input_file_name_ex(
     name: str,
     default_name: str | None = None,
@@ -78,8 +87,8 @@ def parse_input_file_name_ex(
         max_len: size of the C buffer the result must fit, its NUL included.
 
     Raises:
-        CfeError: CFE_FS_INVALID_PATH when there is no name before the extension, CFE_FS_FNAME_TOO_LONG,
-            CFE_FS_BAD_ARGUMENT for a `max_len` of 0.
+        FileNameError: CFE_FS_INVALID_PATH when there is no name before the extension, CFE_FS_FNAME_TOO_LONG.
+        CfeError: CFE_FS_BAD_ARGUMENT for a `max_len` of 0.
     """
     if max_len <= 0:
         raise CfeError(CFE_FS_BAD_ARGUMENT, "a buffer of no bytes holds no file name")
@@ -89,10 +98,12 @@ def parse_input_file_name_ex(
     if not dot and default_extension is not None:
         dot, extension = ".", default_extension
     complete = _directory(parts, default_path) + stem + dot + extension.lstrip(".")
-    if len(complete) >= max_len:
-        raise CfeError(CFE_FS_FNAME_TOO_LONG, f"{complete!r} has {len(complete)} characters, at most {max_len - 1} fit")
+    size = len(to_bytes(complete))
+    if size >= max_len:
+        text = f"{complete!r} has {size} characters, at most {max_len - 1} fit"
+        raise FileNameError(CFE_FS_FNAME_TOO_LONG, text, from_bytes(to_bytes(complete)[: max_len - 1]))
     if not stem:
-        raise CfeError(CFE_FS_INVALID_PATH, f"{text!r} has no file name")
+        raise FileNameError(CFE_FS_INVALID_PATH, f"{text!r} has no file name", complete)
     return complete
 
 

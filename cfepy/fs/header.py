@@ -19,6 +19,7 @@ from cfepy.status import (
     CfeError,
     UsageError,
 )
+from cfepy.texts import from_bytes, to_bytes
 
 CONTENT_ID = 0x63464531
 """The bytes "cFE1" (CFE_FS_FILE_CONTENT_ID)."""
@@ -48,12 +49,12 @@ _TABLE = struct.Struct(">3I40s")
 
 
 def _text(data: bytes) -> str:
-    return data.partition(b"\0")[0].decode("latin-1")
+    return from_bytes(data)
 
 
 def _fixed(text: str, size: int) -> bytes:
     """Text for a field of `size` bytes; the last byte stays NUL, as strncpy(size - 1) leaves it."""
-    return text.encode("latin-1", "replace")[: size - 1]
+    return to_bytes(text)[: size - 1]
 
 
 @dataclass(frozen=True, slots=True)

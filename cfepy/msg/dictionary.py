@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from cfepy.msg.header import CMD_HEADER_SIZE, TLM_HEADER_SIZE
-from cfepy.msg.layout import Layout
+from cfepy.msg.layout import Layout, message_string_get
 from cfepy.msg.secondary import command, telemetry
+from cfepy.texts import to_bytes
 
 NO_PAYLOAD = Layout("no payload", [])
 
@@ -55,6 +56,17 @@ class Command:
             CfeError: CFE_STATUS_WRONG_MSG_LENGTH when the packet is too short.
         """
         return self.payload.unpack(packet, CMD_HEADER_SIZE)
+
+    def read_name(self, packet: bytes | bytearray | memoryview, field: str) -> str:
+        """A name as a service takes it from the payload: into a C buffer of the field's size.
+
+        A name that fills its field has no NUL, and loses its last character to the one of the buffer
+        (CFE_SB_MessageStringGet).
+
+        Raises:
+            CfeError: CFE_STATUS_WRONG_MSG_LENGTH when the packet is too short.
+        """
+        return message_string_get(to_bytes(self.read(packet)[field]), self.payload.sizes[field])
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from cfepy.msg.dictionary import Command
-from cfepy.msg.header import CMD_HEADER_SIZE, Packet, get_msg_id
+from cfepy.msg.header import PRIMARY_HEADER_SIZE, Packet, get_msg_id
 from cfepy.status import CFE_MSG_BAD_ARGUMENT, CfeError
 
 Handler = Callable[[bytes], object]
@@ -129,4 +129,4 @@ class CommandTable:
 
 def _fcn_code(packet: Packet) -> int:
     """The function code where there is one, else 0, as CFE_MSG_GetFcnCode leaves it."""
-    return packet[6] & 0x7F if len(packet) >= CMD_HEADER_SIZE and packet[0] & 0x18 == 0x18 else 0
+    return packet[6] & 0x7F if len(packet) > PRIMARY_HEADER_SIZE and packet[0] & 0x18 == 0x18 else 0

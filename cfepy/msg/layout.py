@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 from cfepy.msg.header import Packet
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_STATUS_WRONG_MSG_LENGTH, CfeError, UsageError
 from cfepy.suggestions import did_you_mean
+from cfepy.texts import from_bytes, to_bytes
 
 _SCALARS = {
     "u8": ("B", 1),
@@ -136,14 +137,14 @@ class _Text:
     def flatten(self, value: Any, path: str) -> Iterator[Any]:
         if not isinstance(value, (str, bytes, bytearray)):
             raise UsageError(f"{value!r} is not a text", field=path)
-        data = value.encode("utf-8", "surrogateescape") if isinstance(value, str) else bytes(value)
+        data = to_bytes(value) if isinstance(value, str) else bytes(value)
         if len(data) > self.size:
             raise UsageError(f"{value!r} has {len(data)} bytes, there is room for {self.size}", field=path)
         yield data
 
     def build(self, leaves: Iterator[Any]) -> Any:
         text: bytes = next(leaves)
-        return text.partition(b"\0")[0].decode("utf-8", "surrogateescape")
+        return from_bytes(text)
 
     def cells(self, path: str, at: int) -> Iterator[Cell]:
         yield Cell(path, f"char[{self.size}]", at, self.size)
@@ -372,7 +373,7 @@ def message_string_set(text: str, size: int) -> bytes:
     """
     if size < 0:
         raise CfeError(CFE_SB_BAD_ARGUMENT, f"a text field of {size} bytes")
-    return text.encode("utf-8", "surrogateescape")[:size].ljust(size, b"\0")
+    return to_bytes(text)[:size].ljust(size, b"\0")
 
 
 def message_string_get(field: Packet, size: int, default: str | None = None) -> str:
@@ -390,5 +391,5 @@ def message_string_get(field: Packet, size: int, default: str | None = None) -> 
         raise CfeError(CFE_SB_BAD_ARGUMENT, "a buffer of no bytes holds no text")
     data = bytes(field).partition(b"\0")[0]
     if not data and default is not None:
-        data = default.encode("utf-8", "surrogateescape")
-    return data[: size - 1].decode("utf-8", "surrogateescape")
+        data = to_bytes(default)
+    return from_bytes(data[: size - 1])

@@ -51,8 +51,8 @@ def get_fcn_code(packet: Packet) -> int:
     Raises:
         CfeError: CFE_MSG_WRONG_MSG_TYPE when it is no command with a secondary header.
     """
-    _check_kind(packet, _CMD_KIND, CMD_HEADER_SIZE, "function code")
-    return packet[6] & _FCN_CODE_MASK
+    _check_kind(packet, _CMD_KIND, PRIMARY_HEADER_SIZE + 1, "function code")
+    return packet[PRIMARY_HEADER_SIZE] & _FCN_CODE_MASK
 
 
 def set_fcn_code(packet: bytearray, fcn_code: int) -> None:

@@ -28,6 +28,7 @@ from cfepy.status import (
     OS_FS_ERR_PATH_TOO_LONG,
     OsalError,
 )
+from cfepy.texts import to_bytes
 
 RAM_DEVICE = "/ramdev0"
 UNLIMITED_BLOCKS = 0xFFFFFFFF
@@ -234,7 +235,7 @@ class DiskApi(Core):
         return f"{physical}/{place.path}" if place.path else physical
 
     def _check(self, name: str, limit: int) -> None:
-        if len(name.encode("utf-8", "replace")) >= limit:
+        if len(to_bytes(name)) >= limit:
             raise OsalError(OS_FS_ERR_PATH_TOO_LONG, f"{name!r} has {limit} characters or more")
 
     def _disk(self, devname: str) -> OsDisk:

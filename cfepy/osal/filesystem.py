@@ -19,6 +19,7 @@ from cfepy.status import (
     OS_FS_ERR_PATH_TOO_LONG,
     OsalError,
 )
+from cfepy.texts import to_bytes
 
 RAM_BLOCK_BYTES = 512  # CFE_PLATFORM_ES_RAM_DISK_SECTOR_SIZE
 RAM_BLOCKS = 4096  # CFE_PLATFORM_ES_RAM_DISK_NUM_SECTORS
@@ -104,9 +105,9 @@ class FileSystem:
             OsalError: OS_FS_ERR_PATH_TOO_LONG (64 characters or more), OS_FS_ERR_NAME_TOO_LONG (a last part of 20 or
                 more), OS_FS_ERR_PATH_INVALID (not absolute, not below a mount point, or with "..").
         """
-        if len(path.encode("utf-8", "replace")) >= OS_MAX_PATH_LEN:
+        if len(to_bytes(path)) >= OS_MAX_PATH_LEN:
             raise OsalError(OS_FS_ERR_PATH_TOO_LONG, f"{path!r} has {OS_MAX_PATH_LEN} characters or more")
-        if "/" in path and len(path.rpartition("/")[2].encode("utf-8", "replace")) >= OS_MAX_FILE_NAME:
+        if "/" in path and len(to_bytes(path.rpartition("/")[2])) >= OS_MAX_FILE_NAME:
             raise OsalError(OS_FS_ERR_NAME_TOO_LONG, f"the name in {path!r} has {OS_MAX_FILE_NAME} characters or more")
         if not path.startswith("/") or ".." in path:
             raise OsalError(OS_FS_ERR_PATH_INVALID, f'{path!r} must begin with "/" and be without ".."')

@@ -47,6 +47,7 @@ from cfepy.osal.tasks import OsTask, TaskApi
 from cfepy.osal.timers import TimerApi
 from cfepy.rtos import CpuCosts, Kernel, WaitList
 from cfepy.status import OS_ERR_NOT_IMPLEMENTED, OS_ERROR, OS_INVALID_POINTER, OS_SUCCESS, OsalError
+from cfepy.texts import to_bytes
 
 EXIT_SUCCESS, EXIT_FAILURE = 0, 1
 
@@ -243,7 +244,7 @@ class ApplicationApi(CleanupApi):
         """
         check_size(name_len, "host name")
         name = self.config.processor_name
-        if len(name.encode("utf-8", "replace")) >= name_len:
+        if len(to_bytes(name)) >= name_len:
             raise OsalError(OS_ERROR, f"the host name {name} does not fit in {name_len} bytes")
         return name
 

@@ -15,8 +15,8 @@ from cfepy.sb.pipe import Pipe
 
 COMMAND = 0x1000  # bits of a MsgId: the packet type, and whether a secondary header follows
 SECONDARY = 0x0800
-GLOBAL = 1  # scope of a subscription: other processors are told of it
-LOCAL = 0
+GLOBAL = 0  # scope of a subscription: other processors are told of it
+LOCAL = 1
 INVALID_ROUTE_ID = 0
 INVALID_MSG_ID = 0
 

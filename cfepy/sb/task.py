@@ -14,6 +14,7 @@ from cfepy.fs import (
     SUBTYPE_SB_MAPDATA,
     SUBTYPE_SB_PIPEDATA,
     SUBTYPE_SB_ROUTEDATA,
+    FileNameError,
     FileWriteEvent,
     FileWriteMetaData,
     dump_file_name,
@@ -252,7 +253,8 @@ class BusFiles:
         except CfeError as error:
             counters.command_error += 1
             last = self._last if error.status == CFE_STATUS_REQUEST_ALREADY_PENDING else None
-            self._report_failure(name if last is None else last.file_name, error.status)
+            made = error.made if isinstance(error, FileNameError) else name
+            self._report_failure(made if last is None else last.file_name, error.status)
         else:
             counters.command += 1
 

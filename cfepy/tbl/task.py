@@ -206,7 +206,7 @@ class TableCommands:
 
     def load(self, packet: bytes) -> bool:
         """Read a table file into the inactive image of its table (CFE_TBL_LoadCmd)."""
-        file = LoadFile(pk.LOAD.read(packet)["LoadFilename"], self._config)
+        file = LoadFile(pk.LOAD.read_name(packet, "LoadFilename"), self._config)
         table = None
         try:
             self._loads.open(file)
@@ -234,13 +234,14 @@ class TableCommands:
     def dump(self, packet: bytes) -> bool:
         """Begin to write an image of a table to a file (CFE_TBL_DumpCmd)."""
         values = pk.DUMP.read(packet)
-        table = self._table(values["TableName"])
+        path = pk.DUMP.read_name(packet, "DumpFilename")
+        table = self._table(pk.DUMP.read_name(packet, "TableName"))
         if table is None:
             return False
         try:
-            self._dumps.request(table, values["ActiveTableFlag"], values["DumpFilename"])
+            self._dumps.request(table, values["ActiveTableFlag"], path)
         except DumpRefused as refused:
-            where = f"dump,table={table.name},app={APP_NAME},file={values['DumpFilename']}"
+            where = f"dump,table={table.name},app={APP_NAME},file={path}"
             self._error(refused.event_id, f"{where}:{refused.text}")
             return False
         self._notify(table)
@@ -249,7 +250,7 @@ class TableCommands:
     def validate(self, packet: bytes) -> bool:
         """Have an image of a table validated (CFE_TBL_ValidateCmd)."""
         values = pk.VALIDATE.read(packet)
-        table = self._table(values["TableName"])
+        table = self._table(pk.VALIDATE.read_name(packet, "TableName"))
         if table is None:
             return False
         buffer = select_buffer(table, values["ActiveTableFlag"])
@@ -315,7 +316,7 @@ class TableCommands:
 
     def delete_cds(self, packet: bytes) -> bool:
         """Delete the CDS of a critical table that is not registered any more (CFE_TBL_DeleteCDSCmd)."""
-        name = pk.DELETE_CDS.read(packet)["TableName"]
+        name = pk.DELETE_CDS.read_name(packet, "TableName")
         if self._registry.find(name) is not None:
             text = f"'{name}' found in Table Registry. CDS cannot be deleted until table is unregistered"
             self._error(ev.IN_REGISTRY_ERR_EID, text)
@@ -349,7 +350,7 @@ class TableCommands:
         return True
 
     def _named(self, packet: bytes) -> TableRecord | None:
-        return self._table(pk.ACTIVATE.read(packet)["TableName"])
+        return self._table(pk.ACTIVATE.read_name(packet, "TableName"))
 
     def _table(self, name: str) -> TableRecord | None:
         table = self._registry.find(name)

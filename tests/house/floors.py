@@ -13,7 +13,7 @@ from tests.house.tree import Tree
 
 FLOORS: tuple[tuple[str, ...], ...] = (
     (
-        *("status", "ids", "units", "trace", "console", "config", "config_api", "ports", "core_app", "versions"),
+        *("status", "ids", "units", "texts", "trace", "console", "config", "config_api", "ports", "core_app", "versions"),
         *("resources", "marked_yaml", "suggestions", "faces", "cached", "markup", "garbage", "syntax_trees"),
     ),
     ("rtos",),

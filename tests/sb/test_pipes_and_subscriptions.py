@@ -144,6 +144,6 @@ def test_a_subscription_that_the_pool_has_no_room_for() -> None:
 def test_local_and_global_scope_in_the_event(bench: Bench) -> None:
     pipe = bench.do("A", lambda: bench.bus.create_pipe(5, "P"))
     assert isinstance(pipe, int)
-    for call, scope in ((bench.bus.unsubscribe, 1), (bench.bus.unsubscribe_local, 0)):
+    for call, scope in ((bench.bus.unsubscribe, 0), (bench.bus.unsubscribe_local, 1)):
         assert status(bench.do("A", lambda: call(0, pipe))) == CFE_SB_BAD_ARGUMENT  # noqa: B023  # called at once
         assert bench.events.sent[-1][1] == f"Unsubscribe Err:Bad Arg,MsgId 0x0,PipeId {pipe},app A,scope {scope}"
