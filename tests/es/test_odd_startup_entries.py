@@ -47,8 +47,11 @@ CASES = {
         app("APP") + LIB.replace("LIB, 0", "APP, 0"),
         [LOAD_APP + "APP", LOAD_LIB, "CFE_ES_LoadLibrary: Duplicate Lib name 'APP'", *READY],
     ),
-    "no name": (app(""), [LOAD_APP, *READY]),
-    "no name twice": (app("") * 2, [LOAD_APP, LOAD_APP, "CFE_ES_AppCreate: Duplicate app name ''", *READY]),
+    "no name": (app(""), [LOAD_APP.rstrip(), *READY]),
+    "no name twice": (
+        app("") * 2,
+        [LOAD_APP.rstrip(), LOAD_APP.rstrip(), "CFE_ES_AppCreate: Duplicate app name ''", *READY],
+    ),
     "libraries without a name": (
         LIB.replace("LIB, 0", ", 0") * 2,
         [LOAD_LIB, LOAD_LIB, "CFE_ES_LoadLibrary: Duplicate Lib name ''", *READY],
