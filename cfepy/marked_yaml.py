@@ -1,8 +1,8 @@
 """YAML read so that every value knows its line, and an error about a file can give it.
 
-`load` gives a tree of `Marked`. A file is refused when it is not YAML, has a key twice, or a key that is no text.
-A reader of such a tree reports mistakes to `Mistakes`, which raises the first or keeps all. PyYAML is imported when a
-file is read.
+`load` gives a tree of `Marked`. A file is refused when it is not YAML, is too much (`cfepy.plain_yaml`), has a key
+twice, or a key that is no text. A reader of such a tree reports mistakes to `Mistakes`, which raises the first or keeps
+all.
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from cfepy.input_limits import YAML_BYTES, read_limited
+from cfepy.plain_yaml import YamlError, constructed, opened
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS
 
 MOST = (1 << 62) - 1  # what times in ns can hold
-MOST_VALUES = 100_000
 MOST_SECONDS = 1e9
 T = TypeVar("T")
 
@@ -187,45 +188,18 @@ def load(path: Path) -> Marked:
     Raises:
         UsageError: it cannot be read, or is not good YAML.
     """
-    import yaml
-
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_limited(path, YAML_BYTES).decode("utf-8")
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
     except UnicodeDecodeError:
         raise UsageError("is no text in UTF-8", file=path) from None
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)
     try:
-        node = loader.get_single_node()
-        if node is None:
-            return Marked(None, path, 1, "")
-        if _written_out(node, {}) > MOST_VALUES:
-            raise UsageError(f"has more than {MOST_VALUES:,} values when its aliases are written out", file=path)
-        return _mark(loader, node, path, "")
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = None if mark is None else mark.line + 1
-        raise UsageError(f"is not YAML: {error.problem or error.context}", file=path, line=line) from None
-    except UsageError:
-        raise
-    except RecursionError:
-        raise UsageError("is nested too deeply, or has an alias of something inside itself", file=path) from None
-    except (yaml.YAMLError, ValueError) as error:
-        raise UsageError(f"is not YAML: {error}", file=path) from None
-    finally:
-        loader.dispose()
-
-
-def _written_out(node: Any, known: dict[int, int]) -> int:
-    """How many values a node has with its aliases written out; each node is counted once."""
-    if node.id == "scalar":
-        return 1
-    size = known.get(id(node))
-    if size is None:
-        inner = node.value if node.id == "sequence" else (each for pair in node.value for each in pair)
-        size = known[id(node)] = 1 + sum(_written_out(each, known) for each in inner)
-    return size
+        with opened(text) as loader:
+            node = loader.get_single_node()
+            return Marked(None, path, 1, "") if node is None else _mark(loader, node, path, "")
+    except YamlError as error:
+        raise UsageError(error.text, file=path, line=error.line) from None
 
 
 def _mark(loader: Any, node: Any, path: Path, field: str) -> Marked:
@@ -236,7 +210,7 @@ def _mark(loader: Any, node: Any, path: Path, field: str) -> Marked:
     if node.id == "sequence":
         items = [_mark(loader, item, path, f"{field}[{index}]") for index, item in enumerate(node.value)]
         return Marked(items, path, line, field)
-    return Marked(loader.construct_object(node), path, line, field)
+    return Marked(constructed(loader, node), path, line, field)
 
 
 def _pairs(loader: Any, node: Any, path: Path, field: str) -> Iterator[tuple[str, Marked]]:

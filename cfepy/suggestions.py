@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 LIKENESS = 0.6  # of 1, as difflib counts
+_LONGEST, _MOST = 100, 2_000  # characters of a name, and names, that are looked at; more would take long
 
 
 def like(name: str, known: Iterable[str], most: int = 1, likeness: float = LIKENESS) -> list[str]:
@@ -19,7 +20,7 @@ def like(name: str, known: Iterable[str], most: int = 1, likeness: float = LIKEN
     from difflib import get_close_matches
 
     by_folded: dict[str, str] = {}
-    for each in known:
+    for each in [each for each in known if len(each) <= _LONGEST][: _MOST if len(name) <= _LONGEST else 0]:
         by_folded.setdefault(each.casefold(), each)
     return [by_folded[each] for each in get_close_matches(name.casefold(), by_folded, most, likeness)]
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from rospy_shim.angles import degrees, radians
 from rospy_shim.msgs.packages import Packages, crawl, name_of
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ def library_parts(node: Node) -> dict[str, Factory]:
         "importlib.metadata": _metadata,
         "pkg_resources": _pkg_resources,
         "rosmsg._definitions": _factory(definitions),
+        "rosparam._angles": _factory({"degrees": degrees, "radians": radians}),
         "rospkg._places": _factory(places),
     }
 

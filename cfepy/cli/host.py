@@ -9,7 +9,7 @@ import contextlib
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from cfepy.cli.display import Display, SilentDisplay
@@ -201,17 +201,3 @@ class Interrupts:
         if self._count > 2 and self._since_second.elapsed_ns() > PATIENCE_NS:
             os.write(STDERR, b"cfepy: a task does not end; gave up\n")
             os._exit(INTERRUPTED)
-
-
-@contextlib.contextmanager
-def terminable() -> Iterator[None]:
-    """Around what ends with Ctrl-C and tells then what it has found: SIGTERM does the same."""
-    try:
-        before = signal.signal(signal.SIGTERM, signal.default_int_handler)
-    except ValueError:  # not the main thread: signals do not come here
-        yield
-        return
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)

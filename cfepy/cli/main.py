@@ -11,8 +11,9 @@ import gc
 import importlib
 import io
 import os
+import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from cfepy import __version__
@@ -75,7 +76,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         _command("shell.completion").complete(parser_for)
     chosen = parser_for(words).parse_args(words)
     try:
-        with standard_output(chosen):
+        with terminable(), standard_output(chosen):
             status: int = _command(chosen.module).run(chosen)
         sys.stdout.flush()
         return status
@@ -95,6 +96,20 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         print(f"cfepy: {error}", file=sys.stderr)
         return BAD_USAGE
+
+
+@contextlib.contextmanager
+def terminable() -> Iterator[None]:
+    """Around what ends with Ctrl-C: SIGTERM does the same, so findings are told and temporary folders taken away."""
+    try:
+        before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    except ValueError:  # not the main thread: signals do not come here
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _command(module: str) -> Any:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.attachment import Attachment
+from cfepy.contained_files import make_folder, write_contained
 from cfepy.exploration.verdict import Failure, Verdict
 from cfepy.journal import (
     Carrier,
@@ -131,13 +132,8 @@ class Shipment:
             root: the folder.
         """
         for file in self.files:
-            target = Path(f"{root}{file.path}")
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(file.data or b"")
-            target.chmod(0o755)  # roslaunch starts executable files only
-        inside = Unpacked(root, Path(f"{root}{self.folder}"))
-        inside.folder.mkdir(parents=True, exist_ok=True)
-        return inside
+            write_contained(root, file.path, file.data or b"", 0o777)  # roslaunch starts executable files only
+        return Unpacked(root, make_folder(root, self.folder))
 
     def plan_in(self, inside: Unpacked) -> PlanElsewhere:
         """The run, with the files where they were unpacked."""

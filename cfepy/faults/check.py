@@ -24,6 +24,7 @@ from cfepy.faults.targets import INTENSITIES, MEDIUM, Found, look_at, random_pla
 from cfepy.ground import ROS
 from cfepy.mission import CORE_APPS, HOST, MissionSpec
 from cfepy.osal import FileSystem
+from cfepy.plain_yaml import plain_yaml
 from cfepy.status import OsalError, UsageError
 from cfepy.suggestions import did_you_mean
 
@@ -77,9 +78,7 @@ def plan_of(text: str, spec: MissionSpec) -> FaultPlan:
         seed, intensity = seed_of(text)
         return random_plan(seed, targets_of(spec), intensity)
     if "\n" in text:
-        import yaml
-
-        return FaultPlan.from_dict(yaml.safe_load(text))
+        return FaultPlan.from_dict(plain_yaml(text))
     return read_plan(text)
 
 

@@ -16,6 +16,8 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from cfepy.input_limits import JOURNAL_FRAME_BYTES
+from cfepy.journal.frame_check import check_values, problem_of
 from cfepy.journal.mission_files import MissionFile, hash_of
 from cfepy.mission import Arrival
 from cfepy.pilot import STALLED, SUDDEN, Results, RunPlan
@@ -24,7 +26,6 @@ from cfepy.status import UsageError
 FORMAT = 1
 HEADER, FILE, FOLDER, PAUSE, ANSWER, CHECK, END = "header", "file", "folder", "pause", "answer", "check", "end"
 MARK = b"cfepy journal\r\n\x1a"
-LARGEST = 1 << 30  # bytes of a frame; a length beyond is no length
 _head = struct.Struct("<II")
 _NOT_OF_THE_RUN = ("wall_s", "speed", "tasks", "trace")
 
@@ -289,12 +290,19 @@ def read_frames(path: str | Path) -> Iterator[tuple[str, dict[str, Any]]]:
         while len(head := file.read(_head.size)) == _head.size:
             size, checksum = _head.unpack(head)
             at = file.tell()
-            data = file.read(min(size, LARGEST))
-            if len(data) < size <= LARGEST:
+            data = file.read(min(size, JOURNAL_FRAME_BYTES))
+            if len(data) < size <= JOURNAL_FRAME_BYTES:
                 return
-            if size > LARGEST or zlib.crc32(data) != checksum:
+            if size > JOURNAL_FRAME_BYTES or zlib.crc32(data) != checksum:
                 raise JournalError(f"is damaged at byte {at}: the checksum is wrong; copy it again", file=path)
-            kind, body = msgpack.unpackb(data, strict_map_key=False)
+            try:
+                check_values(data)
+                kind, body = msgpack.unpackb(data, strict_map_key=False)
+            except (ValueError, TypeError, RecursionError, msgpack.UnpackException) as error:
+                raise JournalError(f"is damaged at byte {at}: {error or type(error).__name__}", file=path) from None
+            problem = problem_of(kind, body) if isinstance(kind, str) else f"a frame has the kind {kind!r}"
+            if problem is not None:
+                raise JournalError(f"is no journal that cfepy wrote: at byte {at}, {problem}", file=path)
             yield kind, body
 
 

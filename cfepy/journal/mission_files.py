@@ -17,7 +17,7 @@ import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from hashlib import sha256
+from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ from cfepy.journal.facts import own_places
 from cfepy.mission import MissionSpec
 from cfepy.nodes.sources import AGAIN
 from cfepy.nodes.stdlib.os_module import LISTED
+from cfepy.status import UsageError
 
 CARRIED = 32 << 20  # bytes of files that a journal carries, before they are compressed
 MOST_FILES = 5_000  # of a folder
@@ -51,15 +52,35 @@ class MissionFile:
 
     @property
     def data(self) -> bytes | None:
-        """Its content, if the journal carries it."""
-        return None if self.packed is None else zlib.decompress(self.packed)
+        """Its content, if the journal carries it.
+
+        Raises:
+            UsageError: what is packed is not the file.
+        """
+        if self.packed is None:
+            return None
+        unpacker = zlib.decompressobj()
+        try:
+            content = unpacker.decompress(self.packed, self.size + 1)
+        except zlib.error as error:
+            raise UsageError(f"the journal's {self.path} is damaged: {error}") from None
+        if len(content) != self.size or sha256(content).hexdigest() != self.sha256:
+            raise UsageError(f"the journal's {self.path} is not the file that it says; record the run again")
+        return content
 
     def same_on_disk(self) -> bool:
         """Whether the file at its path has this content now."""
         try:
-            return sha256(Path(self.path).read_bytes()).hexdigest() == self.sha256
-        except OSError:
+            if not self.sha256:
+                return not (os.path.isfile(self.path) and os.access(self.path, os.R_OK))
+            is_like = os.path.isfile(self.path) and os.path.getsize(self.path) == self.size
+            return is_like and self._digest_on_disk() == self.sha256
+        except (OSError, ValueError):
             return not self.sha256
+
+    def _digest_on_disk(self) -> str:
+        with open(self.path, "rb") as file:
+            return file_digest(file, "sha256").hexdigest()
 
 
 class Carrier:

@@ -18,12 +18,15 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.attachment import Attachment
+from cfepy.contained_files import link_contained, make_folder, write_contained
+from cfepy.input_limits import JOURNAL_FILES_BYTES
 from cfepy.journal.facts import host_facts, versions
-from cfepy.journal.journal import Header, Journal
+from cfepy.journal.journal import Header, Journal, JournalError
 from cfepy.journal.mission_files import MissionFile
 from cfepy.mission import LAUNCH_FILES, Mission, MissionSpec
 from cfepy.nodes import NodeConfig
 from cfepy.pilot import LAUNCH, NODE, RUN, RunPlan
+from cfepy.status import UsageError
 
 MOST_NAMED = 8
 
@@ -103,10 +106,17 @@ def _unpacked(journal: Journal) -> Iterator[str]:
     """A folder with files at the paths that they had; tracebacks show their lines, not those of other files there."""
     with tempfile.TemporaryDirectory(prefix="cfepy-replay-") as folder:
         root = os.path.realpath(folder)
-        for each in journal.files.values():
-            _unpack(each, Path(root + each.path))
-        for path, names in journal.folders.items():
-            _fill(Path(root + path), names)
+        try:
+            carried = sum(each.size for each in journal.files.values() if each.packed is not None)
+            if carried > JOURNAL_FILES_BYTES:
+                raise UsageError(f"they have {carried:,} bytes, more than {JOURNAL_FILES_BYTES:,}; use --from-disk")
+            for each in journal.files.values():
+                _unpack(each, Path(root))
+            for path, names in journal.folders.items():
+                _fill(Path(root), path, names)
+        except (OSError, UsageError) as error:
+            why = error.strerror if isinstance(error, OSError) else error
+            raise JournalError(f"its files cannot be unpacked: {why}", file=journal.path) from None
         lines = _show_lines(journal.files.values())
         try:
             yield root
@@ -115,26 +125,23 @@ def _unpacked(journal: Journal) -> Iterator[str]:
                 linecache.cache.pop(name, None)
 
 
-def _unpack(file: MissionFile, path: Path) -> None:
+def _unpack(file: MissionFile, root: Path) -> None:
     """Put a file where it is expected; what the journal does not carry is on this computer, as it was."""
-    path.parent.mkdir(parents=True, exist_ok=True)
     data = file.data
     if data is None:
-        path.symlink_to(file.path)
-        return
-    path.write_bytes(data)
-    path.chmod(0o755)  # roslaunch starts executable files only
+        link_contained(root, file.path)
+    else:
+        write_contained(root, file.path, data, 0o777)  # roslaunch starts executable files only
 
 
-def _fill(folder: Path, names: Mapping[str, bool]) -> None:
+def _fill(root: Path, path: str, names: Mapping[str, bool]) -> None:
     """Give a folder the names that it had; a file that is missing here was never opened, so it may be empty."""
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = make_folder(root, path)
     for name, is_folder in names.items():
-        path = folder / name
         if is_folder:
-            path.mkdir(exist_ok=True)
-        elif not path.exists():
-            path.touch()
+            make_folder(root, os.path.join(path, name))
+        elif not os.path.lexists(folder / name):
+            write_contained(root, os.path.join(path, name), b"")
 
 
 def _show_lines(files: Iterable[MissionFile]) -> list[str]:
@@ -152,9 +159,7 @@ def _show_lines(files: Iterable[MissionFile]) -> list[str]:
 @contextlib.contextmanager
 def _in_place_of(header: Header, root: str) -> Iterator[None]:
     here, environ = os.getcwd(), dict(os.environ)
-    cwd = root + header.cwd
-    if root:
-        os.makedirs(cwd, exist_ok=True)
+    cwd = str(make_folder(Path(root), header.cwd)) if root else header.cwd
     try:
         if os.path.isdir(cwd):
             os.chdir(cwd)

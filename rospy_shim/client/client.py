@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from cfepy.plain_yaml import plain_yaml
 from cfepy.rtos import FOREVER, WaitList
 from rospy_shim.client.exceptions import ROSException, ROSInitException, ROSInterruptException
 from rospy_shim.client.logs import LoggerServices
@@ -107,12 +108,7 @@ class Client:
             ROSInitException: an argument that has ":=" twice, or whose value is not YAML.
         """
         try:
-            found = command_line_params(argv)
-            if not found:
-                return {}
-            import yaml
-
-            return {name: yaml.safe_load(text) for name, text in found.items()}
+            return {name: plain_yaml(text) for name, text in command_line_params(argv).items()}
         except Exception as error:
             raise ROSInitException(f"invalid command-line parameters: {error}") from error
 

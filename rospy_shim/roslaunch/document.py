@@ -9,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from cfepy.input_limits import XML_BYTES, XML_DEPTH, XML_ENTITY, XML_TAGS, read_limited
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
 from rospy_shim.roslaunch.model import LaunchRemark
 from rospy_shim.roslaunch.scope import Scope
 from rospy_shim.roslaunch.substitution import SubstitutionError, UnknownArgument, UnsetArgument, arguments_in
 from rospy_shim.roslaunch.values import truth
-
-DEEPEST_TAG = 100
 
 
 class Tag:
@@ -69,8 +68,8 @@ def unused_arguments(launch: Tag) -> list[Tag]:
         if given.get("pass_all_args", "false").lower() != "false" or {"file", "subst_value"} <= set(given):
             return []
     used = set().union(*(arguments_in(text) for tag in tags for text in (tag.text, *tag.attributes.values())))
-    passed = [tag for include in tags if include.name == "include" for tag in include.walk()]
-    declared = [tag for tag in tags if tag.name == "arg" and tag not in passed and tag.attributes.get("name")]
+    passed = {id(tag) for include in tags if include.name == "include" for tag in include.walk()}
+    declared = [tag for tag in tags if tag.name == "arg" and id(tag) not in passed and tag.attributes.get("name")]
     return [tag for tag in declared if tag.attributes["name"] not in used]
 
 
@@ -91,18 +90,24 @@ def _parse(file: Path) -> Tag:
     from xml.parsers import expat
 
     try:
-        data = file.read_bytes()
+        data = read_limited(file, XML_BYTES)
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=file) from None
     parser = expat.ParserCreate()
     parser.buffer_text = True
     top = Tag("", {}, file, 1)
     open_tags = [top]
+    texts: dict[int, tuple[Tag, list[str]]] = {}
+    count = 0
 
     def start(name: str, attributes: dict[str, str]) -> None:
         tag = Tag(name, attributes, file, parser.CurrentLineNumber)
-        if len(open_tags) > DEEPEST_TAG:
-            raise tag.fail(f"is inside {DEEPEST_TAG} other tags, which is too deep; is an end tag missing?")
+        nonlocal count
+        count += 1
+        if len(open_tags) > XML_DEPTH:
+            raise tag.fail(f"is inside {XML_DEPTH} other tags, which is too deep; is an end tag missing?")
+        if count > XML_TAGS:
+            raise tag.fail(f"is the {XML_TAGS + 1:,}th tag, which is too many for a file; split it")
         open_tags[-1].children.append(tag)
         open_tags.append(tag)
 
@@ -110,8 +115,16 @@ def _parse(file: Path) -> Tag:
         open_tags.pop()
 
     def text(data: str) -> None:
-        open_tags[-1].text += data
+        texts.setdefault(id(open_tags[-1]), (open_tags[-1], []))[1].append(data)
 
+    def entity(name: str, *declared: object) -> None:
+        value = declared[1]
+        if isinstance(value, str) and len(value) <= XML_ENTITY and not set(value) & {"&", "%", "<"}:
+            return
+        what = f"declares the entity {name!r}, which is not a short text; write the text where it is used"
+        raise UsageError(what, file=file, line=parser.CurrentLineNumber)
+
+    parser.EntityDeclHandler = entity
     parser.StartElementHandler, parser.EndElementHandler, parser.CharacterDataHandler = start, end, text
     try:
         parser.Parse(data, True)
@@ -120,6 +133,12 @@ def _parse(file: Path) -> Tag:
         if len(open_tags) > 1:
             what += f"; the <{open_tags[-1].name}> of line {open_tags[-1].line} is open there"
         raise UsageError(what, file=file, line=error.lineno) from None
+    except (LookupError, ValueError) as error:  # of the encoding that the file names
+        if isinstance(error, UsageError):
+            raise
+        raise UsageError(f"is not XML: {error}", file=file, line=1) from None
+    for tag, parts in texts.values():
+        tag.text = "".join(parts)
     return top.children[0]
 
 

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from cfepy.input_limits import LAUNCH_FILE_BYTES, LAUNCH_NAME, read_limited
 from rospy_shim.client.names import PRIV_NAME, SEP, canonicalize_name
 from rospy_shim.parameters.values import marshalled
 from rospy_shim.roslaunch.document import Attributes, Tag
@@ -49,7 +50,16 @@ def output_of(command: str) -> str:
 
 
 def _cat(arguments: list[str]) -> str:
-    return "".join(Path(file).read_text(encoding="utf-8") for file in arguments)
+    found = ""
+    for file in arguments:
+        found += _read_text(file)
+        if len(found) > LAUNCH_FILE_BYTES:
+            raise ValueError(f"prints more than {LAUNCH_FILE_BYTES:,} characters; print less")
+    return found
+
+
+def _read_text(file: str) -> str:
+    return read_limited(file, LAUNCH_FILE_BYTES).decode("utf-8")
 
 
 def _xacro(arguments: list[str]) -> str:
@@ -87,6 +97,9 @@ def add_param(launch: Launch, name: str, value: Any, attributes: Attributes) -> 
         attributes: of the tag that says so.
     """
     name, tag = canonicalize_name(name), attributes.tag
+    if len(name) > LAUNCH_NAME:
+        attributes.wrong(f"makes the name of a parameter of more than {LAUNCH_NAME:,} characters; write a shorter one")
+        return
     if name in ("", SEP):
         attributes.wrong("has a name that stands for all parameters; write a parameter's name")
         return
@@ -134,10 +147,10 @@ def _value(attributes: Attributes, source: str) -> Any:
         return None
     try:
         if source == "binfile":
-            return Path(text).read_bytes()
+            return read_limited(text, LAUNCH_FILE_BYTES)
         found = text.strip()
         if source == "textfile":
-            found = Path(text).read_text(encoding="utf-8")
+            found = _read_text(text)
         elif source == "command":
             found = output_of(text)
         return converted(found, (attributes.tag.attributes.get("type") or "auto").strip())
@@ -182,10 +195,12 @@ def _text_of(file: str | None, attributes: Attributes) -> str | None:
     if file is None:
         return attributes.tag.text
     try:
-        return Path(file).read_text(encoding="utf-8")
+        return _read_text(file)
     except (OSError, UnicodeDecodeError) as error:
         why = error.strerror if isinstance(error, OSError) else "is no text in UTF-8"
         attributes.wrong(f"{file} cannot be read: {why}", "file")
+    except ValueError as error:
+        attributes.wrong(str(error), "file")
     return None
 
 
@@ -208,7 +223,9 @@ def _leaves(name: str, value: Any, attributes: Attributes, named: bool) -> Itera
             attributes.wrong(text)
         return
     for key, inner in value.items():
-        if isinstance(key, str):
+        if isinstance(key, str) and len(key) > LAUNCH_NAME:
+            attributes.wrong(f"has a name of more than {LAUNCH_NAME:,} characters; write a shorter one")
+        elif isinstance(key, str):
             yield from _leaves(joined(name, key), inner, attributes, True)
         else:
             attributes.wrong(f"has the name {key!r}, which is no text; put it in quotes")

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 
+from cfepy.input_limits import LAUNCH_INCLUDES_DEEP, LAUNCH_NAME, LAUNCH_WORK
 from cfepy.marked_yaml import Mistakes
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
@@ -48,12 +49,19 @@ _IGNORED = {
 ARG = ("name", "value", "default", "doc")
 GROUP = ("ns", "clear_params")
 INCLUDE = ("file", "ns", "clear_params", "pass_all_args")
-DEEPEST = 64  # includes in each other; a file that includes itself would go on for ever
+_TOO_MUCH = (
+    "is where the launch becomes too large: the tags that were read until here, each counted with the arguments,"
+    f" variables and remappings that hold there, are more than {LAUNCH_WORK:,}; include fewer files, or fewer times"
+)
+_TOO_LONG = f"makes a name of more than {LAUNCH_NAME:,} characters; write a shorter one"
 
 
-def namespace_of(attributes: Attributes) -> str | None:
-    """The attribute `ns` of a tag; None when it is not there, or wrong, as one is that is empty or private."""
+def namespace_of(attributes: Attributes, scope: Scope) -> str | None:
+    """The attribute `ns` of a tag; None when it is not there, or wrong: empty, private or too long."""
     namespace = attributes.optional("ns")
+    if namespace is not None and len(scope.namespace) + len(namespace) > LAUNCH_NAME:
+        attributes.wrong(_TOO_LONG, "ns")
+        return None
     if namespace is None or (namespace and not namespace.startswith(PRIV_NAME)):
         return namespace
     attributes.wrong(f"is {namespace!r}; write a namespace such as arm", "ns")
@@ -118,8 +126,11 @@ def _node(launch: Launch, attributes: Attributes, scope: Scope, name: str | None
         name = None
     elif name is not None and not is_legal_name(name):
         attributes.remark(f"{name!r} is not a legal name of a node")
+    if name is not None and len(scope.namespace) + len(name) > LAUNCH_NAME:
+        attributes.wrong(_TOO_LONG, "name")
+        name = None
     before = attributes.failed
-    namespace = as_namespace(joined(scope.namespace, namespace_of(attributes) or ""))
+    namespace = as_namespace(joined(scope.namespace, namespace_of(attributes, scope) or ""))
     place = None if name is None or (attributes.failed and not before) else namespace + name
     _take_clear_params(attributes)
     inner = scope.inside()
@@ -231,10 +242,11 @@ class _Reader:
 
     def __init__(self, packages: Packages, environ: Mapping[str, str], findings: LaunchFindings) -> None:
         self._environ = environ
-        self._world = World(environ, lambda name: packages.path(name) or STOOD_IN.get(name), self._anonymous)
+        self._world = World(environ, lambda name: packages.path(name) or STOOD_IN.get(name), self._anonymous, [0])
         self._names_made = 0
         self._depth = 0
-        self._too_deep = False
+        self._too_deep = self._too_much = False
+        self._work = 0
         self._findings = findings
         self._launch = Launch(remarks=findings.remarks)
         self._tags: dict[str, Callable[[Tag, Scope], None]] = {
@@ -287,6 +299,12 @@ class _Reader:
 
     def _read_all(self, tags: Iterable[Tag], scope: Scope) -> None:
         for tag in tags:
+            self._work += 1 + scope.size
+            if self._work > LAUNCH_WORK:
+                if not self._too_much:
+                    self._too_much = True
+                    self._findings.mistakes.add(tag.fail(_TOO_MUCH))
+                return
             read_tag, attributes = self._tags.get(tag.name), Attributes(tag, scope)
             if read_tag is None:
                 hint = did_you_mean(tag.name, self._tags, before=", ", form="<{}>")
@@ -325,7 +343,7 @@ class _Reader:
     def _group(self, tag: Tag, scope: Scope) -> None:
         attributes = Attributes(tag, scope)
         attributes.tell_unknown(GROUP)
-        namespace = namespace_of(attributes)
+        namespace = namespace_of(attributes, scope)
         self._check_clear_params(attributes, namespace)
         self._read_all(tag.children, scope.inside(namespace))
 
@@ -339,13 +357,15 @@ class _Reader:
         attributes = Attributes(tag, scope)
         attributes.tell_unknown(INCLUDE)
         name = attributes.required("file")
-        passes_all, namespace = attributes.flag("pass_all_args"), namespace_of(attributes)
+        passes_all, namespace = attributes.flag("pass_all_args"), namespace_of(attributes, scope)
         self._check_clear_params(attributes, namespace)
         if self._too_deep:  # a file that includes itself twice would not come to an end
             return
-        if self._depth == DEEPEST:
+        if self._depth == LAUNCH_INCLUDES_DEEP:
             self._too_deep = True
-            attributes.wrong(f"is the {DEEPEST}th include inside another; does a file include itself?", "file")
+            attributes.wrong(
+                f"is the {LAUNCH_INCLUDES_DEEP}th include inside another; does a file include itself?", "file"
+            )
             return
         file = Path(name or "")
         inner = scope.of_included(file, namespace, dict(scope.args) if passes_all else {})

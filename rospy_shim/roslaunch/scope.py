@@ -132,6 +132,12 @@ class Scope:
             found[source] = target
         return found
 
+    @property
+    def size(self) -> int:
+        """How much holds here: arguments, variables, parameters and remappings, which a tag inside takes over."""
+        own = len(self.args) + len(self.declared) + len(self.env) + len(self.params) + len(self._remaps)
+        return own + (self._parent.size if self._parent else 0)
+
     def declare_arg(self, name: str, value: str | None, default: str | None) -> None:
         """An <arg> tag.
 

@@ -1,27 +1,23 @@
 """Substitution arguments of launch files: $(arg x), $(find pkg), $(eval ...) (wiki.ros.org/roslaunch/XML).
 
-The expression of $(eval ...) is Python's; it can reach arguments, numbers and texts, and nothing of the computer.
+The expression of $(eval ...) is evaluated by `rospy_shim.expression`; it can reach arguments, numbers and texts, and
+nothing of the computer.
 """
 
 from __future__ import annotations
 
-import builtins
-import math
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from cfepy.input_limits import SUBSTITUTED_CHARACTERS, SUBSTITUTED_IN_ALL
+from rospy_shim.expression import MATH, ExpressionError, plain_text, value_of
 from rospy_shim.roslaunch.values import converted
 
-# fmt: off
-_FUNCTIONS = (
-    "abs", "all", "any", "bool", "dict", "divmod", "enumerate", "filter", "float", "int", "len", "list", "map", "max",
-    "min", "pow", "range", "repr", "reversed", "round", "set", "sorted", "str", "sum", "tuple", "zip",
-)
-# fmt: on
-_SAFE = {name: getattr(builtins, name) for name in _FUNCTIONS}
-_MATH = {name: value for name, value in vars(math).items() if not name.startswith("_")}
+_SHORTER = "does an argument hold itself several times? Make it shorter"
+_TOO_LONG = f"the text becomes longer than {SUBSTITUTED_CHARACTERS:,} characters; {_SHORTER}"
+_SHOWN = 200  # characters of an expression in an error
 _WORDS = {"true": True, "false": False}
 COMMANDS = ("find", "env", "optenv", "dirname", "anon", "arg")
 _OPEN = re.compile(r"\$\(([^$()]*)(.?)", re.DOTALL)
@@ -45,15 +41,17 @@ def evaluate(text: str, functions: Mapping[str, Any], arguments: Mapping[str, An
     Raises:
         SubstitutionError: it is no expression, looks at names with two underscores, or fails.
     """
+    shown = text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
     if "__" in text:
-        raise SubstitutionError(f"$(eval {text}) has two underscores in a row, which are not allowed there")
-    names = {**arguments, **_MATH, **_WORDS, **functions, "__builtins__": _SAFE}
+        raise SubstitutionError(f"$(eval {shown}) has two underscores in a row, which are not allowed there")
     try:
-        return str(eval(text.strip(), names))
+        return plain_text(value_of(text.strip(), {**arguments, **MATH, **_WORDS, **functions}))
+    except ExpressionError as error:
+        raise SubstitutionError(f"$(eval {shown}) {error}") from None
     except SubstitutionError:
         raise
     except Exception as error:
-        raise SubstitutionError(f"$(eval {text}) has no value: {type(error).__name__}: {error}") from None
+        raise SubstitutionError(f"$(eval {shown}) has no value: {type(error).__name__}: {error}") from None
 
 
 UNKNOWN = "\0unknown"
@@ -81,12 +79,13 @@ class World(NamedTuple):
     """What substitutions of all files of a launch look at.
 
     `environ` is the environment; `find` gives the folder of a package, or None; `anonymous` makes a name that no other
-    node has.
+    node has; `made` has how many characters substitutions have made.
     """
 
     environ: Mapping[str, str]
     find: Callable[[str], Path | None]
     anonymous: Callable[[str], str]
+    made: list[int]
 
 
 class Substitutions:
@@ -114,12 +113,31 @@ class Substitutions:
         if "$" not in text:
             return text
         if text.startswith(_EVAL) and text.endswith(_EVAL_END):
-            return self._eval(text[len(_EVAL) : -len(_EVAL_END)])
+            return self._counted(self._eval(text[len(_EVAL) : -len(_EVAL_END)]))
         return self._pass(self._pass(text, ("env", "optenv", "dirname", "anon", "arg")), ("find",))
 
     def _pass(self, text: str, commands: tuple[str, ...]) -> str:
         """One look through a text; $(find) has one of its own, for what other substitutions bring."""
-        return _OPEN.sub(lambda match: self._replace(match, text, commands), text)
+        size = len(text)
+
+        def replaced(match: re.Match[str]) -> str:
+            nonlocal size
+            made = self._replace(match, text, commands)
+            size += len(made)
+            if size > SUBSTITUTED_CHARACTERS:
+                raise SubstitutionError(_TOO_LONG)
+            return made
+
+        return self._counted(_OPEN.sub(replaced, text))
+
+    def _counted(self, text: str) -> str:
+        """A text that was made, if it and all others of the launch are not too long."""
+        self.world.made[0] += len(text)
+        if len(text) > SUBSTITUTED_CHARACTERS:
+            raise SubstitutionError(_TOO_LONG)
+        if self.world.made[0] > SUBSTITUTED_IN_ALL:
+            raise SubstitutionError(f"more than {SUBSTITUTED_IN_ALL:,} characters are made by the launch; {_SHORTER}")
+        return text
 
     def _replace(self, match: re.Match[str], text: str, commands: tuple[str, ...]) -> str:
         inside, end = match.groups()

@@ -5,13 +5,13 @@ PyYAML is imported when there is YAML to read.
 
 from __future__ import annotations
 
-import ast
-import math
 import re
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
-from cfepy.syntax_trees import parsed
+from cfepy.plain_yaml import YamlError, plain_yaml, safe_loader
+from rospy_shim.angles import degrees, radians
 
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
 TYPES = ("str", "string", "int", "double", "bool", "boolean", "yaml", "auto")
@@ -54,66 +54,33 @@ def from_yaml(text: str) -> Any:
     """The value of a YAML text, with ROS's angles: deg(90), rad(pi/2), !degrees 90, !radians pi.
 
     Raises:
-        ValueError: it is not YAML.
+        ValueError: it is not YAML, or too much.
     """
-    import yaml
-
-    try:
-        return yaml.load(text, _angle_loader())
-    except yaml.MarkedYAMLError as error:
-        line = "" if error.problem_mark is None else f", line {error.problem_mark.line + 1} of it"
-        raise ValueError(f"is not YAML: {error.problem or error.context}{line}") from None
-    except yaml.YAMLError as error:
-        raise ValueError(f"is not YAML: {error}") from None
+    return plain_yaml(text, _angle_loader())
 
 
+@cache
 def _angle_loader() -> type[Any]:
     """YAML's safe loader, and what the tool rosparam adds to it."""
-    import yaml
-
-    class Loader(yaml.SafeLoader):
-        """A class of its own: resolvers are kept in the class."""
-
-    for name, unit in (("deg", math.radians(1)), ("rad", 1.0)):
-        Loader.add_implicit_resolver(f"!{name}", re.compile(rf"^{name}\([^\)]*\)$"), None)
-        for tag in (f"!{name}", {"deg": "!degrees", "rad": "!radians"}[name]):
-            Loader.add_constructor(tag, _angle(name, unit))
-    return Loader
+    loader = type("AngleLoader", (safe_loader(),), {})  # a class of its own: resolvers are kept in the class
+    for name, tag, value in (("deg", "!degrees", degrees), ("rad", "!radians", radians)):
+        pattern = re.compile(rf"^{name}\([^\)]*\)$")
+        loader.add_implicit_resolver(tag, pattern, [name[0]])  # type: ignore[attr-defined]
+        loader.add_constructor(tag, _angle(name, value))  # type: ignore[attr-defined]
+    return loader
 
 
-def _angle(name: str, unit: float) -> Callable[[Any, Any], float]:
+def _angle(name: str, value: Callable[[str], float]) -> Callable[[Any, Any], float]:
     def construct(loader: Any, node: Any) -> float:
-        text = str(loader.construct_scalar(node)).strip()
-        inside = text[len(name) + 1 : -1] if text.startswith(f"{name}(") else text
+        text = str(loader.construct_scalar(node))
         try:
-            return _arithmetic(parsed(inside.strip(), mode="eval").body) * unit
-        except SyntaxError:
-            raise ValueError(f"{text!r} is no angle; write {name}(NUMBER)") from None
+            return value(text)
+        except Exception as error:
+            what = error.msg if isinstance(error, SyntaxError) else str(error)
+            told = f"has {text[:60]!r}, which is no angle: {what}; write {name}(NUMBER)"
+            raise YamlError(told, node.start_mark.line + 1) from None
 
     return construct
-
-
-def _arithmetic(node: ast.AST) -> float:
-    """A number, pi, or what + - * / ** make of them."""
-    if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)):
-        return float(node.value)
-    if isinstance(node, ast.Name) and node.id == "pi":
-        return math.pi
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
-        value = _arithmetic(node.operand)
-        return -value if isinstance(node.op, ast.USub) else value
-    if isinstance(node, ast.BinOp) and type(node.op) in _OPERATIONS:
-        return _OPERATIONS[type(node.op)](_arithmetic(node.left), _arithmetic(node.right))
-    raise ValueError(f"{ast.unparse(node)!r} is no angle; write a number, or arithmetic with pi")
-
-
-_OPERATIONS: dict[type[ast.AST], Callable[[float, float], float]] = {
-    ast.Add: lambda left, right: left + right,
-    ast.Sub: lambda left, right: left - right,
-    ast.Mult: lambda left, right: left * right,
-    ast.Div: lambda left, right: left / right,
-    ast.Pow: lambda left, right: math.pow(left, right),
-}
 
 
 def _auto(text: str) -> Any:

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from typing import TextIO
 
 from cfepy.cli.failures import tell
-from cfepy.cli.host import terminable
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of
@@ -101,8 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: it cannot be explored like this.
     """
     check_json(arguments)
-    with terminable():
-        report = _expedition(arguments).run(tell)
+    report = _expedition(arguments).run(tell)
     show(report, sys.stdout)
     write_json(arguments, report.to_dict())
     if report.tally.interrupted:

@@ -14,6 +14,7 @@ from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import plan_of, refuse_run_options
 from cfepy.ground.parameters import Parameters, at_start, changed, is_source_of_files, of_files, present, table_files
 from cfepy.pilot import never_struck, takeoff
+from cfepy.plain_yaml import YamlError, plain_yaml
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
 
@@ -136,15 +137,12 @@ def _folder(name: str) -> Path:
 
 def _value(text: str) -> Any:
     """A value as `rosparam set` reads it."""
-    import yaml
-
     from cfepy.mission.parameter_files import checked
 
     try:
-        value = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        raise UsageError(f"{text!r} is not YAML: {error}", field="VALUE") from None
-    return checked(value)
+        return checked(plain_yaml(text))
+    except YamlError as error:
+        raise UsageError(f"{text!r} {error}", field="VALUE") from None
 
 
 def _write(path: Path, data: bytes) -> None:

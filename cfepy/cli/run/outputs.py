@@ -17,6 +17,7 @@ from cfepy.attachment import Attachment, Recorder
 from cfepy.cli.failures import writing
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.trace_text import TraceText
+from cfepy.contained_files import write_contained
 from cfepy.mission import Mission
 from cfepy.osal import FileSystem
 from cfepy.pilot import Flown, RunPlan
@@ -155,12 +156,9 @@ def _save(files: FileSystem, folder: Path) -> None:
     """/ram/cfe_evs.log becomes DIR/ram/cfe_evs.log; a file of the same name is written over."""
     written = files.written()
     for name, data in written.items():
-        path = folder / name.lstrip("/")
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(data)
-        except OSError as error:
-            raise UsageError(f"could not be written: {error.strerror}", file=path, field=SAVE_FILES) from None
+        inside = f"/{name.lstrip('/')}"
+        with writing(f"{folder}{inside}", SAVE_FILES):
+            write_contained(folder, inside, data)
     count = len(written)
     print(f"saved to {folder}: {count} {'file' if count == 1 else 'files'}")
 

@@ -38,7 +38,10 @@ def read_file(file: Path, args: Mapping[str, str] | None = None, environ: Mappin
         ('<param name="a" value="$(eval open(1))"/>', "NameError: name 'open' is not defined"),
         ('<param name="a" value="$(find nothing)"/>', "there is no package 'nothing'; put it beside"),
         ('<include file="none.launch"/>', "x.launch:3: <include file>: none.launch cannot be read: No such file"),
-        ("<rosparam>a: rad(two)</rosparam>", "'two' is no angle"),
+        (
+            "<rosparam>a: rad(two)</rosparam>",
+            "has 'rad(two)', which is no angle: name 'two' is not defined",
+        ),
         ("<rosparam>a: 2001-01-01</rosparam>", "<rosparam>: /a is datetime.date(2001, 1, 1), which no"),
         ('<param name="a" value="4294967296"/>', "<param>: /a is 4294967296, which no parameter can be: int exceeds"),
         ('<remap from="a"/>', "x.launch:3: <remap>: has no 'to'; write to="),

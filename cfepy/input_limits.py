@@ -1,0 +1,80 @@
+"""How large an input may become: a limit for each kind, so that no file of somebody else's fills memory or never ends.
+
+The limits are far above what missions, bags and launch files have. What exceeds one is refused with an error that names
+the file, the limit, and what to do. docs/security.md lists them.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+from cfepy.status import UsageError
+
+# YAML, of whatever file
+YAML_BYTES = 32 << 20
+YAML_VALUES = 100_000  # with its aliases written out
+YAML_DEPTH = 100  # lists and mappings inside each other
+YAML_DIGITS = 1_000  # of a number
+
+# XML: launch files, descriptions of robots, manifests, reports of tests
+XML_BYTES = 8 << 20
+XML_DEPTH = 100
+XML_TAGS = 200_000
+XML_ENTITY = 100  # characters of an entity, which has no other one inside
+
+# launch files
+LAUNCH_INCLUDES_DEEP = 64  # a file that includes itself would go on for ever
+LAUNCH_WORK = 5_000_000  # tags that are read, each with the arguments, variables and remappings that hold there
+LAUNCH_NAME = 1_000  # characters of a name with its namespaces
+LAUNCH_FILE_BYTES = 32 << 20  # of what textfile= and binfile= name
+SUBSTITUTED_CHARACTERS = 1_000_000  # of a text whose substitutions are made
+SUBSTITUTED_IN_ALL = 50_000_000  # in all texts of a launch
+
+# $(eval ...) and rad(...)
+EXPRESSION_CHARACTERS = 10_000
+EXPRESSION_DEPTH = 60  # operators and brackets inside each other
+EXPRESSION_STEPS = 100_000
+EXPRESSION_SIZE = 100_000  # characters and items of a value
+EXPRESSION_WORK = 5_000_000  # characters and items of all values on the way
+EXPRESSION_BITS = 8_192  # of a whole number
+
+# message definitions
+DEFINITION_BYTES = 4 << 20
+MESSAGE_FIELDS = 10_000  # of one definition
+MESSAGE_VALUES = 16_000_000  # items of an array of fixed length, with those of the types inside it
+
+# what is packed
+UNPACKED_BYTES = 1 << 30  # of a bag's chunk
+JOURNAL_FRAME_BYTES = 128 << 20
+JOURNAL_VALUES = 1_000_000  # of a frame
+JOURNAL_FILE_BYTES = 64 << 20  # of a file that a journal carries
+JOURNAL_FILES_BYTES = 512 << 20  # of all of them
+
+# texts that are read line by line: startup scripts, scripts of commands
+LINE_FILE_BYTES = 16 << 20
+
+_GIVEN = ("/dev/fd/", "/dev/stdin", "/proc/self/fd/")  # what a shell hands over in place of a file
+
+
+def read_limited(path: str | Path, most: int) -> bytes:
+    """The content of a file, if it is not too large.
+
+    Args:
+        path: the file.
+        most: bytes that it may have.
+
+    Raises:
+        UsageError: it has more, or it is a device or a pipe, which may never end.
+        OSError: it cannot be read.
+    """
+    if not str(path).startswith(_GIVEN):
+        mode = os.stat(path).st_mode
+        if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
+            raise UsageError("is a device or a pipe, which may never end; name a file", file=path)
+    with open(path, "rb") as file:
+        data = file.read(most + 1)
+    if len(data) > most:
+        raise UsageError(f"has more than {most:,} bytes, which is the limit for it; make it smaller", file=path)
+    return data

@@ -1,0 +1,208 @@
+"""Whether the frames of a journal hold what a recorder writes: kinds of values, sizes, paths that stay in a folder.
+
+A journal may come from somebody else. What passes here can be taken without a second look.
+"""
+
+from __future__ import annotations
+
+import string
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, fields
+from typing import Any
+
+from cfepy.contained_files import is_contained
+from cfepy.input_limits import JOURNAL_FILE_BYTES, JOURNAL_VALUES
+from cfepy.pilot import RunPlan
+
+Check = Callable[[Any], bool]
+_SMALL = 1 << 16  # bytes of a frame that cannot become much
+_MOST = 1 << 62  # of a number; virtual times in ns fit
+
+
+def _whole(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < _MOST
+
+
+def _number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < _MOST
+
+
+def _flag(value: Any) -> bool:
+    return isinstance(value, bool)
+
+
+def _text(value: Any) -> bool:
+    return isinstance(value, str) and "\0" not in value
+
+
+def _digits(value: Any) -> bool:
+    return isinstance(value, str) and set(value) <= set(string.hexdigits)
+
+
+def _data(value: Any) -> bool:
+    return isinstance(value, bytes)
+
+
+def _perhaps(check: Check) -> Check:
+    return lambda value: value is None or check(value)
+
+
+def _list(check: Check) -> Check:
+    return lambda value: isinstance(value, (list, tuple)) and all(map(check, value))
+
+
+def _table(key: Check, check: Check) -> Check:
+    return lambda value: isinstance(value, Mapping) and all(map(key, value)) and all(map(check, value.values()))
+
+
+def _any(value: Any) -> bool:
+    return True
+
+
+def _named(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) and len(value) == 2 and isinstance(value[0], str)
+
+
+def _name_of_file(value: Any) -> bool:
+    return _text(value) and value not in ("", ".", "..") and "/" not in value
+
+
+def _variable(value: Any) -> bool:
+    return _text(value) and value != "" and "=" not in value
+
+
+def _point(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) and len(value) == 3 and _whole(value[0]) and _whole(value[1])
+
+
+def _gaps(value: Any) -> bool:
+    return _list(_whole)(value) and len(value) % 2 == 0
+
+
+def _size(value: Any) -> bool:
+    return _whole(value) and value <= JOURNAL_FILE_BYTES
+
+
+FRAMES: dict[str, dict[str, Check]] = {
+    "header": {
+        "plan": _any,  # see PLAN
+        "paced": _perhaps(_number),
+        "policy": _perhaps(_table(_text, _any)),
+        "mission": _text,
+        "folder": is_contained,
+        "startup": is_contained,
+        "cwd": is_contained,
+        "environ": _table(_variable, _text),
+        "versions": _table(_text, _text),
+        "host": _table(_text, _text),
+        "format": _whole,
+    },
+    "file": {"path": is_contained, "size": _whole, "sha256": _digits, "packed": _perhaps(_data)},
+    "folder": {"path": is_contained, "names": _table(_name_of_file, _flag)},
+    "pause": {"until_ns": _whole, "visits": _whole, "events": _list(_named)},
+    "answer": {"values": _list(_any)},
+    "check": {"at": _point, "decisions": _gaps, "decided": _whole},
+    "end": {
+        "reason": _text,
+        "until_ns": _whole,
+        "visits": _whole,
+        "now_ns": _whole,
+        "records": _whole,
+        "trace": _text,
+        "results": _text,
+        "outcome": _table(_text, _any),
+    },
+}
+PLAN: dict[str, Check] = {
+    "words": lambda value: _list(_text)(value) and len(value) > 0,
+    "command": lambda value: value in ("run", "launch", "node"),
+    "launch_args": _list(lambda value: _named(value) and _text(value[0]) and _text(value[1])),
+    "seconds": _perhaps(_number),
+    "seed": lambda value: isinstance(value, int) and not isinstance(value, bool),
+    "board": _perhaps(_text),
+    "tasks": _text,
+    "schedule": _text,
+    "script": _perhaps(_text),
+    "stop_on_failure": _flag,
+    "faults": _perhaps(_text),
+    "play": _perhaps(_text),
+    "stall": _number,
+}
+_LATER = {"outcome"}  # may be missing
+
+
+def problem_of(kind: str, body: Any) -> str | None:
+    """What is wrong with a frame; None when nothing is. Kinds and fields that are not known are a later version's."""
+    wanted = FRAMES.get(kind)
+    if wanted is None:
+        return None
+    if not isinstance(body, Mapping):
+        return f"a frame {kind!r} is no mapping"
+    found = _problem(kind, body, wanted)
+    if found is None and kind == "file" and body["packed"] is not None and not _size(body["size"]):
+        return f"the file {body['path']} has {body['size']:,} bytes, a journal carries at most {JOURNAL_FILE_BYTES:,}"
+    if found is None and kind == "header":
+        needed = {each.name for each in fields(RunPlan) if each.default is MISSING and each.default_factory is MISSING}
+        plan = body["plan"]
+        return _problem("plan", plan, PLAN, needed) if isinstance(plan, Mapping) else "its plan is no mapping"
+    return found
+
+
+def _problem(
+    kind: str, body: Mapping[Any, Any], wanted: Mapping[str, Check], needed: set[str] | None = None
+) -> str | None:
+    for name, check in wanted.items():
+        if name not in body:
+            if name in (needed if needed is not None else set(wanted) - _LATER):
+                return f"a frame {kind!r} has no {name!r}"
+        elif not check(body[name]):
+            shown = repr(body[name])
+            return f"{name!r} of a frame {kind!r} cannot be {shown if len(shown) < 80 else shown[:80] + '...'}"
+    return None
+
+
+# -- before a frame is unpacked (github.com/msgpack/msgpack/blob/master/spec.md) ---------------------------------------
+
+_PLAIN = dict(zip(range(0xCA, 0xD9), (4, 8, 1, 2, 4, 8, 1, 2, 4, 8, 2, 3, 5, 9, 17), strict=True))
+"""Bytes that follow, by the first one: floating-point and whole numbers, short extensions."""
+_SIZED = {0xC4: 1, 0xC5: 2, 0xC6: 4, 0xC7: 1, 0xC8: 2, 0xC9: 4, 0xD9: 1, 0xDA: 2, 0xDB: 4}
+"""Bytes of the length that follows: data, extensions and texts."""
+_COUNTED = {0xDC: (2, 1), 0xDD: (4, 1), 0xDE: (2, 2), 0xDF: (4, 2)}
+"""Bytes of the count that follows, and values for each: lists and mappings."""
+
+
+def check_values(data: bytes) -> None:
+    """Refuse packed data that would become far larger: an empty list is one byte there and sixty here.
+
+    Raises:
+        ValueError: it has too many values, or is cut off.
+    """
+    if len(data) <= _SMALL:
+        return
+    at, left = 0, 1
+    for _ in range(JOURNAL_VALUES):
+        if not left:
+            return
+        if at >= len(data):
+            raise ValueError("a frame is cut off inside")
+        step, inner = _value_at(data, at)
+        at += step
+        left += inner - 1
+    raise ValueError(f"a frame has more than {JOURNAL_VALUES:,} values; record a shorter run")
+
+
+def _value_at(data: bytes, at: int) -> tuple[int, int]:
+    """Of the value at a place: how many bytes it takes, and how many values are inside it."""
+    first = data[at]
+    if 0x80 <= first < 0xA0:
+        return 1, (first & 15) * (2 if first < 0x90 else 1)
+    if 0xA0 <= first < 0xC0:
+        return 1 + (first & 31), 0
+    width = _SIZED.get(first)
+    if width is not None:
+        is_extension = 0xC7 <= first <= 0xC9
+        return 1 + width + is_extension + int.from_bytes(data[at + 1 : at + 1 + width], "big"), 0
+    if first in _COUNTED:
+        width, each = _COUNTED[first]
+        return 1 + width, each * int.from_bytes(data[at + 1 : at + 1 + width], "big")
+    return 1 + _PLAIN.get(first, 0), 0
