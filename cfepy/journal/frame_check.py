@@ -14,6 +14,7 @@ from cfepy.contained_files import is_contained
 from cfepy.input_limits import JOURNAL_FILE_BYTES, JOURNAL_VALUES
 from cfepy.pilot import RunPlan
 
+FORMAT = 1  # of a journal
 Check = Callable[[Any], bool]
 _SMALL = 1 << 16  # bytes of a frame that cannot become much
 _MOST = 1 << 62  # of a number; virtual times in ns fit
@@ -138,6 +139,8 @@ def problem_of(kind: str, body: Any) -> str | None:
         return None
     if not isinstance(body, Mapping):
         return f"a frame {kind!r} is no mapping"
+    if kind == "header" and _whole(body.get("format")) and body["format"] != FORMAT:
+        return None  # whose fields are others
     found = _problem(kind, body, wanted)
     if found is None and kind == "file" and body["packed"] is not None and not _size(body["size"]):
         return f"the file {body['path']} has {body['size']:,} bytes, a journal carries at most {JOURNAL_FILE_BYTES:,}"

@@ -17,13 +17,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.input_limits import JOURNAL_FRAME_BYTES
-from cfepy.journal.frame_check import check_values, problem_of
+from cfepy.journal.frame_check import FORMAT, check_values, problem_of
 from cfepy.journal.mission_files import MissionFile, hash_of
 from cfepy.mission import Arrival
 from cfepy.pilot import STALLED, SUDDEN, Results, RunPlan
 from cfepy.status import UsageError
 
-FORMAT = 1
 HEADER, FILE, FOLDER, PAUSE, ANSWER, CHECK, END = "header", "file", "folder", "pause", "answer", "check", "end"
 MARK = b"cfepy journal\r\n\x1a"
 _head = struct.Struct("<II")
@@ -207,7 +206,7 @@ def read_journal(path: str | Path) -> Journal:
         return _read(str(path))
     except OSError as error:
         raise JournalError(f"cannot be read: {error.strerror}", file=path) from None
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
         if isinstance(error, JournalError):
             raise
         raise JournalError(f"is damaged: {type(error).__name__}: {error}", file=path) from error

@@ -62,5 +62,5 @@ def test_a_file_that_cannot_be_written(mission: Path, tmp_path: Path, capsys: py
     assert main(command) == 2
     out, err = capsys.readouterr()
     assert "note.txt" in err
-    assert "could not be written" in err
+    assert "cannot be written" in err
     assert "Applications" in out

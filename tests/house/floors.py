@@ -13,9 +13,9 @@ from tests.house.tree import Tree
 
 FLOORS: tuple[tuple[str, ...], ...] = (
     (
-        *("status", "ids", "units", "texts", "trace", "console", "config", "config_api", "ports", "core_app", "versions"),
-        *("resources", "input_limits", "contained_files", "plain_yaml", "marked_yaml", "suggestions", "faces"),
-        *("cached", "markup", "garbage", "syntax_trees"),
+        *("status", "ids", "units", "texts", "trace", "console", "config", "config_api", "ports", "core_app"),
+        *("versions", "resources", "input_limits", "contained_files", "plain_yaml", "marked_yaml", "suggestions"),
+        *("faces", "cached", "markup", "garbage", "syntax_trees"),
     ),
     ("rtos",),
     ("osal",),

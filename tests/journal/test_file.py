@@ -134,7 +134,7 @@ def test_a_length_that_no_frame_has_is_damage_and_not_a_cut_off_end(
     writer.close()
     size = (tmp_path / "frames").stat().st_size - len(MARK) - 8
     for largest, cut, frames in ((size, 0, [("a", {"b": 1})]), (size, 1, []), (size - 1, 1, None)):
-        monkeypatch.setattr("cfepy.journal.journal.LARGEST", largest)
+        monkeypatch.setattr("cfepy.journal.journal.JOURNAL_FRAME_BYTES", largest)
         (tmp_path / "cut").write_bytes((tmp_path / "frames").read_bytes()[: len(MARK) + 8 + size - cut])
         if frames is not None:
             assert list(read_frames(tmp_path / "cut")) == frames
@@ -160,7 +160,7 @@ def test_other_files_and_other_formats_are_told(run: Path, tmp_path: Path) -> No
     def without(kind: str, body: dict[str, Any]) -> None:
         body.pop("plan", None)
 
-    with pytest.raises(JournalError, match="is damaged"):
+    with pytest.raises(JournalError, match="a frame 'header' has no 'plan'"):
         read_journal(rewritten(run, without))
 
 
