@@ -23,16 +23,17 @@ def delay_of(link: Link, subscription: Subscription) -> int:
     return node.kernel.connection_delay(publisher, subscriber, link.name, node.graph.connection_delay_ns)
 
 
-def begin(link: Link, subscription: Subscription, delay_ns: int) -> None:
+def begin(link: Link, subscription: Subscription, delay_ns: int, *, late: bool) -> None:
     """Both are on the graph: connect them.
 
     Args:
         link: the publishing side.
         subscription: the subscribing side.
         delay_ns: virtual ns until they are connected; 0 connects them at once.
+        late: the publisher was there before, and may have a latched message.
     """
     if not delay_ns:
-        link.peer_joined(subscription)
+        link.peer_joined(subscription, late=late)
         return
     link.expect_peer(subscription)
     link.node.start_task("connect", lambda: _finish(link, subscription, delay_ns))
@@ -43,7 +44,9 @@ def _finish(link: Link, subscription: Subscription, delay_ns: int) -> None:
     link.node.kernel.delay(delay_ns)
     link.acquire()
     try:
-        if subscription in link.expected and not link.closed:
-            link.peer_connected(subscription)
+        if subscription not in link.expected or link.closed:
+            return
+        link.peer_connected(subscription)
     finally:
         link.release()
+    link.welcome(subscription, late=True)

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.status import CfeError
 from rospy_shim.client import connecting
-from rospy_shim.client.exceptions import ROSSerializationException
-from rospy_shim.client.message import args_kwds_to_message, packer
+from rospy_shim.client.exceptions import ROSException, ROSSerializationException
+from rospy_shim.client.leftovers import Leftovers, half_of
+from rospy_shim.client.message import packer, serialized
 from rospy_shim.client.topic_side import OUTBOUND, TopicConnection, TopicSide
 from rospy_shim.client.transport import HEADER_BYTES, segments, whole_header
 from rospy_shim.genpy import SerializationError
@@ -37,7 +38,7 @@ class SubscribeListener:
     __module__ = "rospy.topics"
 
     def peer_subscribe(self, topic_name: str, topic_publish: Callable[..., None], peer_publish: Any) -> None:
-        """A subscriber came; `topic_publish` sends to all, `peer_publish` to the new one only."""
+        """A subscriber came; `topic_publish` sends a message to all, `peer_publish` to the new one only."""
 
     def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
         """A subscriber left, `num_peers` remain."""
@@ -77,6 +78,7 @@ class Link(TopicSide):
         self._count_items = getattr(data_class, "_count_items", None) if node.call_ns else None
         self._slot_ns = node.publish_slot_ns
         self._slot = -1  # in which the last message went out
+        self.leftovers: Leftovers | None = None  # once a connection was spoilt
         self._room = bus.config.sb_max_msg_size - HEADER_BYTES
 
     def connect(self) -> None:
@@ -97,7 +99,7 @@ class Link(TopicSide):
         self._head = whole_header(topic.msg_id)
         topic.add_link(self)
         for subscription in topic.subscriptions[:]:
-            connecting.begin(self, subscription, connecting.delay_of(self, subscription))
+            connecting.begin(self, subscription, connecting.delay_of(self, subscription), late=False)
 
     def _own_header(self) -> Header:
         return {
@@ -137,9 +139,10 @@ class Link(TopicSide):
     def get_num_connections(self) -> int:
         """How many pipes get the topic's messages: subscribing nodes, and cFE applications."""
         route = self._routes.get(self.msg_id)
-        if route is None or not self.expected:
+        if route is None or not (self.expected or self.leftovers):
             return len(route.active) if route is not None else 0
-        return sum(self.node.owner not in each.pipe.unheard for each in route.active)
+        streams = self.leftovers.streams if self.leftovers is not None else 0
+        return streams + sum(self.node.owner not in each.pipe.unheard for each in route.active)
 
     @property
     def peers(self) -> list[Subscription]:
@@ -157,6 +160,30 @@ class Link(TopicSide):
         sent = self.message_data_sent
         return self.name, sent, [(each.id, sent, self.seq, True) for each in self.connections]
 
+    def publish(self, message: Any, connection_override: Subscription | None = None) -> None:
+        """Publish a message as rospy's own code does, which does not look at its type.
+
+        Args:
+            message: any message.
+            connection_override: the only subscription that is to get it.
+
+        Raises:
+            ROSException: the topic is closed.
+            ROSSerializationException: a field holds what its type cannot carry.
+            AttributeError: it is no message.
+        """
+        if self.closed:
+            raise ROSException("publish() to a closed topic")
+        if connection_override is None:
+            self.send(message)
+            return
+        if self.is_latch:
+            self.latch = message
+        if connection_override in self.peers:
+            payload = self.serialize(message)
+            if self.leftovers is None or self.leftovers.goes_to(connection_override, payload):
+                connection_override.deliver(payload, self.header)
+
     def send(self, message: Any) -> None:
         """Publish a message.
 
@@ -173,6 +200,8 @@ class Link(TopicSide):
         if self._slot_ns:
             self._hold_back()
         payload = self.serialize(message)
+        if self.leftovers is not None:
+            self.leftovers.go_out(payload)
         if self._count_items is not None:
             self._charge(self._call_ns * self._count_items(message))
         try:
@@ -205,17 +234,34 @@ class Link(TopicSide):
             ROSSerializationException: a field holds what its type cannot carry.
         """
         self.seq = seq = self.seq + 1
-        if self.has_header:
-            header = message.header
-            header.seq = seq
-            if header.frame_id is None:
-                header.frame_id = "0"
         try:
+            if self.has_header:
+                header = message.header
+                header.seq = seq
+                if header.frame_id is None:
+                    header.frame_id = "0"
             payload = self._pack(message)
-        except SerializationError as error:
-            raise ROSSerializationException(str(error)) from error
+        except Exception as error:
+            payload = self._serialize_another(message, error)
         self.message_data_sent += len(payload)
         return payload
+
+    def _serialize_another(self, message: Any, error: Exception) -> bytes:
+        """The bytes of a message of another type than the topic's; of one of the topic's, half stays behind."""
+        if not isinstance(message, self.data_class):
+            try:
+                return serialized(message)
+            except Exception as another:
+                error = another
+        self._spoilt().add(half_of(message))
+        if isinstance(error, SerializationError):
+            raise ROSSerializationException(str(error)) from error
+        raise error
+
+    def _spoilt(self) -> Leftovers:
+        if self.leftovers is None:
+            self.leftovers = Leftovers(self)
+        return self.leftovers
 
     def _send_packet(self, message: Any) -> None:
         """A raw topic: the message's data are a whole packet."""
@@ -274,9 +320,13 @@ class Link(TopicSide):
     # -- subscribers that come and go --------------------------------------------------------------------------------
 
     def give_latched(self, subscription: Subscription) -> None:
-        """Give a new subscriber the latched message, if there is one."""
+        """Give a new subscriber the latched message, if there is one; a bad one costs it the connection."""
         if self.is_latch and self.latch is not None and not self.raw:
-            subscription.deliver(self.serialize(self.latch), self.header)
+            try:
+                self.publish(self.latch, subscription)
+            except Exception as error:  # whatever serializing raises
+                self._refuse(subscription, error)
+                return
             if self.topic is not None:
                 self.topic.latched += 1
 
@@ -286,34 +336,64 @@ class Link(TopicSide):
         subscription.ignore(self)
 
     def peer_connected(self, subscription: Subscription) -> None:
-        """It has connected: the listeners are told, and it gets the latched message."""
+        """It has connected."""
         self.expected.remove(subscription)
         subscription.heed(self)
-        for listener in self.subscriber_listeners[:]:
-            self._tell(listener, subscription)
-        self.give_latched(subscription)
 
-    def peer_joined(self, subscription: Subscription) -> None:
-        """Tell the listeners of a new subscriber, which is connected at once."""
-        for listener in self.subscriber_listeners:
-            self.node.start_task(self.name, lambda each=listener: self._tell(each, subscription))  # type: ignore[misc]
+    def peer_joined(self, subscription: Subscription, *, late: bool = False) -> None:
+        """Tell the listeners of a new subscriber, which is connected at once.
 
-    def _tell(self, listener: SubscribeListener, subscription: Subscription) -> None:
-        def peer_publish(*args: Any, **kwds: Any) -> None:
-            message = args_kwds_to_message(self.data_class, args, kwds)
-            subscription.deliver(self.serialize(message), self.header)
+        Args:
+            subscription: the new one.
+            late: the publisher was there before it: a latched message follows what the listeners send.
+        """
+        if self.subscriber_listeners:
+            if late:
+                subscription.is_welcomed_by(self)
+            self.node.start_task(self.name, lambda: self.welcome(subscription, late=late))
+        elif late and subscription.has_begun:
+            self.give_latched(subscription)
 
-        def topic_publish(*args: Any, **kwds: Any) -> None:
-            self.send(args_kwds_to_message(self.data_class, args, kwds))
+    def welcome(self, subscription: Subscription, *, late: bool) -> None:
+        """What rospy does with a new connection, in the one thread of a node that takes connections.
 
-        listener.peer_subscribe(self.name, topic_publish, peer_publish)
+        Args:
+            subscription: the new one.
+            late: it gets the latched message.
+        """
 
-    def peer_left(self, subscription: Subscription) -> None:
-        """Tell the listeners, unless it was not connected yet."""
+        def peer_publish(data: Any) -> None:
+            self.publish(data, subscription)
+
+        self.node.takes_connections.take()
+        try:
+            for listener in self.subscriber_listeners[:]:
+                listener.peer_subscribe(self.name, self.publish, peer_publish)
+            if late:
+                self.give_latched(subscription)
+        except Exception as error:  # whatever a listener raises
+            self._refuse(subscription, error)
+        finally:
+            self.node.takes_connections.give()
+
+    def _refuse(self, subscription: Subscription, error: Exception) -> None:
+        """Close a connection that could not be set up."""
+        self.node.logs.logwarn("Inbound TCP/IP connection failed: %s", error)
+        self._spoilt().cut(subscription)
+
+    def peer_left(self, subscription: Subscription, *, gone: bool = True) -> None:
+        """Tell the listeners, unless it was not connected.
+
+        Args:
+            subscription: which left.
+            gone: it is closed; False when it only has no connection any more.
+        """
+        if self.leftovers is not None:
+            self.leftovers.forget(subscription)
         if subscription in self.expected:
             self.expected.remove(subscription)
             return
-        remaining = len(self.peers)
+        remaining = len(self.peers) - (not gone)
         for listener in self.subscriber_listeners:
             body = lambda each=listener: each.peer_unsubscribe(self.name, remaining)  # noqa: E731
             self.node.start_task(self.name, body)

@@ -66,7 +66,7 @@ def packer(data_class: MessageClass) -> Callable[[Any], bytes]:
     if data_class is AnyMsg:
         return lambda message: packer(type(message))(message) if type(message) is not AnyMsg else message._pack()
     own: Callable[[Any], bytes] | None = getattr(data_class, "_pack", None)
-    return own if own is not None else _serialized
+    return own if own is not None else serialized
 
 
 def unpacker(data_class: MessageClass) -> Callable[[bytes, int], Any]:
@@ -97,7 +97,8 @@ def _register_text_errors() -> None:
         codecs.register_error("rosmsg", _TextErrors())
 
 
-def _serialized(message: Any) -> bytes:
+def serialized(message: Any) -> bytes:
+    """What `serialize` of a message writes."""
     buffer = io.BytesIO()
     message.serialize(buffer)
     return buffer.getvalue()
@@ -220,7 +221,7 @@ def numpy_msg(msg_type: Any) -> Any:
         return self.deserialize_numpy(data, numpy)
 
     def serialize(self: Any, buff: BinaryIO) -> None:
-        buff.write(self._pack_numpy(numpy))
+        self.serialize_numpy(buff, numpy)
 
     names = {
         "__slots__": msg_type.__slots__,

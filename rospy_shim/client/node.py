@@ -11,7 +11,7 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cfepy.rtos import Task
+from cfepy.rtos import Mutex, Task
 from cfepy.status import CfeError
 from rospy_shim.client.client import Client
 from rospy_shim.client.exceptions import ROSInitException
@@ -71,6 +71,7 @@ class Node:
         self.subscriptions: dict[str, Subscription] = {}
         self.services: list[Service] = []
         self.connection_numbers = count(1)
+        self.takes_connections = Mutex(universe.kernel, "connections")  # rospy has one thread for it
         self._tasks = tasks
         self.owner = tasks.owner
         self._timer: type | None = None

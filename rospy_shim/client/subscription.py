@@ -55,8 +55,9 @@ class Subscription(TopicSide):
         self._calls: list[tuple[Callable[..., Any], Any]] = []  # those, behind one that measures; replaced, not changed
         self.connected = False
         self.latest: Any = None  # kept while a latching publisher is there
-        self._backlog: list[tuple[bytes, Header]] = []
-        self._late: list[Link] = []  # publishers whose connection took some time, which give their latched message then
+        self._backlog: list[tuple[int, bytes, Header]] = []  # behind the packet with that sequence count
+        self.has_begun = False  # latched messages of publishers that were there are given at the beginning
+        self._late: list[Link] = []  # publishers that give their latched message at another time
         self._attention = False  # the task has other work than receiving
         self._segments = 1  # packets of the longest message so far
         self._pipe = NO_PIPE
@@ -172,7 +173,7 @@ class Subscription(TopicSide):
         bus.subscribe_ex(topic.msg_id, self._pipe, 0, NO_LIMIT)  # the pipe's depth is the limit, and can be changed
         topic.add_subscription(self)
         for link in list(topic.links):
-            connecting.begin(link, self, delays.get(link, 0))
+            connecting.begin(link, self, delays.get(link, 0), late=True)
 
     def _measure(self) -> None:
         """Have each message go through the statistics first (rospy.impl.statistics)."""
@@ -214,8 +215,7 @@ class Subscription(TopicSide):
 
     def ignore(self, link: Link) -> None:
         """This publisher is not connected yet."""
-        if link not in self._late:
-            self._late.append(link)
+        self.is_welcomed_by(link)
         pipe = self._find_pipe()
         if pipe is not None:
             pipe.ignore(link.node.owner)
@@ -233,8 +233,19 @@ class Subscription(TopicSide):
 
     def deliver(self, payload: bytes, header: Header) -> None:
         """Give this subscriber alone a message: a latched one, or one of a SubscribeListener."""
-        self._backlog.append((payload, header))
+        route = self.node.cfe.sb.routes.get(self.topic.msg_id) if self.topic is not None else None
+        self._backlog.append((route.sequence if route is not None else 0, payload, header))
         self._call_attention()
+
+    @property
+    def takes_any_type(self) -> bool:
+        """Whether it reads messages without understanding them."""
+        return self.data_class._type == "*"
+
+    def is_welcomed_by(self, link: Link) -> None:
+        """The listeners of a publisher hear of this subscription first; it gives its latched message then."""
+        if link not in self._late:
+            self._late.append(link)
 
     def _call_attention(self) -> None:
         self._attention = True
@@ -256,6 +267,7 @@ class Subscription(TopicSide):
 
     def _take_latched(self, topic: TopicEntry) -> None:
         """As for a new subscriber of a latching publisher in ROS: of all that came before, only the last counts."""
+        self.has_begun = True
         at_once = [link for link in topic.links if link.is_latch and link not in self._late]
         if at_once and not self.closed:
             while self.node.cfe.sb.receive_buffer(self._pipe, POLL) is not None:
@@ -304,14 +316,29 @@ class Subscription(TopicSide):
         """Handle what came up between two messages; False when the task is to end."""
         self._attention = False
         while self._backlog and not self.closed:
-            payload, header = self._backlog.pop(0)
-            message = self._unpack(payload, 0)
-            message._connection_header = header
-            if header.get("latching") == "1":
-                self.latest = message
-            for callback, argument in self._calls:
-                self._call(callback, argument, message)
+            if self._has_earlier(self._backlog[0][0]):
+                self._attention = True
+                return True
+            _, payload, header = self._backlog.pop(0)
+            self._hand_over(payload, header)
         return not self.closed
+
+    def _has_earlier(self, count: int) -> bool:
+        """Whether the pipe has a packet that was sent before, or with, a sequence count."""
+        pipe = self._find_pipe()
+        return pipe is not None and bool(pipe.items) and (count - sequence_of(pipe.items[0][0])) & 0x3FFF < 0x2000
+
+    def _hand_over(self, payload: bytes, header: Header) -> None:
+        try:
+            message = self._unpack(payload, 0)
+        except Exception as error:
+            self.node.logs.logerr("cannot read a message on %s: %s", self.name, error)
+            return
+        message._connection_header = header
+        if header.get("latching") == "1":
+            self.latest = message
+        for callback, argument in self._calls:
+            self._call(callback, argument, message)
 
     def _assemble(self, packet: bytes, topic: TopicEntry) -> bytes | None:
         header, index = topic.notes.get(sequence_of(packet), (None, None))

@@ -113,8 +113,9 @@ class Publisher(TopicHandle):
             link.header.update(headers)
         if subscriber_listener is not None:
             link.subscriber_listeners.append(subscriber_listener)
-            for subscription in link.peers:
-                link.peer_joined(subscription)
+            if link.ref_count == 1:
+                for subscription in link.peers:
+                    link.peer_joined(subscription)
 
     def publish(self, *args: Any, **kwds: Any) -> None:
         """Send a message, given as such or by its fields.

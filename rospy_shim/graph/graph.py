@@ -87,12 +87,20 @@ class TopicEntry:
         self.links.append(link)
         _remember(self.publisher_names, link.node.names.name)
         self._refresh()
+        self._reconnect()
 
     def remove_link(self, link: Link) -> None:
         """A publisher left."""
         if link in self.links:
             self.links.remove(link)
             self._refresh()
+            self._reconnect()
+
+    def _reconnect(self) -> None:
+        """The master tells subscribers of the publishers: they connect to those to which they have no connection."""
+        for link in self.links:
+            if link.leftovers is not None:
+                link.leftovers.reconnect()
 
     def add_subscription(self, subscription: Subscription) -> None:
         """A subscriber came."""

@@ -1,8 +1,8 @@
 """Connections that take their time: what is published meanwhile, who counts whom, and in which order it comes.
 
 On a real master a subscriber that came second was connected after 3 to 9 ms, a publisher after 30 to 80 ms. No side
-counted the other before; then the publisher counted 1 as `peer_subscribe` was called, and the latched message came
-behind what that had sent.
+counted the other before; then the publisher counted 1 as `peer_subscribe` was called, and the latched message, which is
+the one that the listener sent, came behind.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ TALKS = """
     class Listener(rospy.SubscribeListener):
         def peer_subscribe(self, topic, publish, publish_to_new):
             print("peer", round(rospy.get_time() % 100, 2), publisher.get_num_connections())
-            publish_to_new(-1)
+            publish_to_new(Int32(-1))
 
         def peer_unsubscribe(self, topic, remaining):
             print("left", remaining)
@@ -71,11 +71,11 @@ def test_without_a_delay_they_are_connected_at_once(tmp_path: Path) -> None:
 
 
 def test_a_latched_message_comes_with_the_connection(tmp_path: Path) -> None:
-    assert fly(tmp_path, 220, latch=True).printed["hears"][-1] == "[-1, 4, 5, 6, 7, 8, 9, 10, 11]"
+    assert fly(tmp_path, 220, latch=True).printed["hears"][-1] == "[-1, -1, 5, 6, 7, 8, 9, 10, 11]"
 
 
 def test_a_connection_that_comes_before_the_first_callback_loses_nothing(tmp_path: Path) -> None:
-    assert fly(tmp_path, 20, latch=True).printed["hears"][-1] == "[-1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10]"
+    assert fly(tmp_path, 20, latch=True).printed["hears"][-1] == "[-1, -1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10]"
 
 
 def test_each_publisher_of_a_topic_connects_by_itself(tmp_path: Path) -> None:
