@@ -92,6 +92,10 @@ class Squelch:
     _credited_at: int = 0
 
     def __post_init__(self) -> None:
+        self.refill()
+
+    def refill(self) -> None:
+        """Fill the bucket."""
         self.tokens = self.burst * EVENT_COST
 
     def admit(self, now: int) -> tuple[bool, bool]:
@@ -137,9 +141,20 @@ class AppEvents:
         self.filters = Filters(config.evs_max_event_filters, wanted)
         self.squelch = Squelch(config.evs_max_app_event_burst, config.evs_app_events_per_sec)
 
-    def judge(self, event_id: int, event_type: int) -> tuple[bool, bool]:
-        """(whether an event is filtered out, whether its filter was locked by this very event)."""
-        if not self.active or not 0 < event_type < 5 or not self.types >> event_type - 1 & 1:
+    def set_types(self, mask: int, enabled: bool) -> None:
+        """Switch event types on or off; the flood brake is as new then (CFE_EVS_SetTypeEnable)."""
+        self.types = self.types | mask if enabled else self.types & ~mask
+        self.squelch.refill()
+
+    def judge(self, event_id: int, event_type: int, types: int) -> tuple[bool, bool]:
+        """(whether an event is filtered out, whether its filter was locked by this very event).
+
+        Args:
+            event_id: of the event.
+            event_type: of the event.
+            types: the types that are enabled, as the application whose task sends the event has them.
+        """
+        if not self.active or not 0 < event_type < 5 or not types >> event_type - 1 & 1:
             return True, False
         slot = self.filters.find(event_id)
         if slot is None:

@@ -194,7 +194,7 @@ class EvsCommands:
         if not self._replies.is_mask(mask, pk.ENABLE_EVENT_TYPE_CC):
             return False
         for app in self._core.apps.values():
-            app.types |= mask
+            app.set_types(mask, enabled=True)
         text = f"Enable Event Type Command Received with Event Type Bit Mask = 0x{mask:02x}"
         return self._replies.done(ev.ENAEVTTYPE_EID, text)
 
@@ -203,7 +203,7 @@ class EvsCommands:
         if not self._replies.is_mask(mask, pk.DISABLE_EVENT_TYPE_CC):
             return False
         for app in self._core.apps.values():
-            app.types &= ~mask
+            app.set_types(mask, enabled=False)
         text = f"Disable Event Type Command Received with Event Type Bit Mask = 0x{mask:02x}"
         return self._replies.done(ev.DISEVTTYPE_EID, text)
 
@@ -284,7 +284,7 @@ class AppEventCommands:
         mask = fields["BitMask"]
         if not self._replies.is_mask(mask, pk.ENABLE_APP_EVENT_TYPE_CC):
             return False
-        app.types |= mask
+        app.set_types(mask, enabled=True)
         text = f"Enable App Event Type Command Received with AppName = {name}, EventType Bit Mask = 0x{mask:02x}"
         return self._replies.done(ev.ENAAPPEVTTYPE_EID, text)
 
@@ -292,7 +292,7 @@ class AppEventCommands:
         mask = fields["BitMask"]
         if not self._replies.is_mask(mask, pk.DISABLE_APP_EVENT_TYPE_CC):
             return False
-        app.types &= ~mask
+        app.set_types(mask, enabled=False)
         text = f"Disable App Event Type Command Received with AppName = {name}, EventType Bit Mask = 0x{mask:02x}"
         return self._replies.done(ev.DISAPPENTTYPE_EID, text)
 

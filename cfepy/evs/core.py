@@ -102,8 +102,18 @@ class EventCore:
         self.send_own(ERR_UNREGISTERED_EVS_APP, ERROR, text)
         self.ports.syslog.write_to_sys_log(f"EVS_NotRegistered: {text}")
 
+    def _types_for(self, app: AppEvents) -> int:
+        """The event types that are enabled for an event of an application (CFE_EVS_GetTypeEnable).
+
+        They are those of the application whose task sends it, which may be another one: events of SB come from
+        everywhere. Of a sender that is not registered, they are those of the event's own application.
+        """
+        owner = self.kernel.current.owner
+        sender = self.apps.get(owner.app_id) if owner is not None else None
+        return (sender or app).types
+
     def _is_filtered(self, app: AppEvents, event_id: int, event_type: int) -> bool:
-        is_filtered, is_locked = app.judge(event_id, event_type)
+        is_filtered, is_locked = app.judge(event_id, event_type, self._types_for(app))
         if is_locked:
             text = (
                 f"Max filter count reached, AppName = {app.name}, EventID = 0x{event_id:08x}: Filter locked until reset"

@@ -184,7 +184,8 @@ class EventServices(EventCore):
         Args:
             event_id: as for `send_event`.
             event_type: as for `send_event`.
-            app_id: the application whose event it is, with its filters and types.
+            app_id: the application whose event it is, with its filters; which types are enabled is asked of the
+                application that calls.
             text: as for `send_event`.
             values: as for `send_event`.
 

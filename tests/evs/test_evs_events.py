@@ -100,11 +100,13 @@ def test_the_time_of_a_timed_event_has_32_bits(world: World) -> None:
         assert caught.value.status == CFE_EVS_INVALID_PARAMETER
 
 
-def test_an_event_goes_out_in_the_name_of_another_with_the_types_of_that_other(world: World) -> None:
+def test_an_event_goes_out_in_the_name_of_another_with_the_types_of_its_sender(world: World) -> None:
     world.evs.apps[APP_ID].types = 0x0F
     world.call(lambda: world.evs.send_event_with_app_id(4, DEBUG, APP_ID, "for HK"), EVS_ID)
     world.call(lambda: world.evs.send_event_with_app_id(5, DEBUG, EVS_ID, "for EVS"), APP_ID)
-    assert world.sent() == [Sent("HK", 4, DEBUG, "for HK")]
+    assert world.sent() == [Sent("CFE_EVS", 5, DEBUG, "for EVS")]
+    world.call(lambda: world.evs.send_event_with_app_id(6, DEBUG, APP_ID, "for HK"), MUTE_ID)
+    assert world.sent()[1:] == [Sent("HK", 6, DEBUG, "for HK")]  # of a sender that is not registered nothing is known
 
 
 def test_ports_are_lines_on_the_console(world: World) -> None:

@@ -35,7 +35,7 @@ KEPT = ("PipeOptsErrorCounter", "GetPipeIdByNameErrorCounter")
 @pytest.fixture
 def flight(fly: Callable[..., Flight]) -> Flight:
     flight = fly(pk.HK_TLM_MID, pk.STATS_TLM_MID, pk.ONESUB_TLM_MID, pk.ALLSUBS_TLM_MID)
-    flight.send(evs_packets.ENABLE_APP_EVENT_TYPE, AppName="CFE_SB", BitMask=0x0F)
+    flight.send(evs_packets.ENABLE_EVENT_TYPE, BitMask=0x0F)
     return flight
 
 

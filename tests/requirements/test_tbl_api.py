@@ -106,7 +106,7 @@ def test_cTBL6302_1_too_much_data(fly: Fly) -> None:
 def test_cTBL6302_2_less_data(fly: Fly) -> None:
     """The event of a first load is one for debugging, as in cFE."""
     table = ProbeTable(fly())
-    table.flight.send(evs_packets.ENABLE_APP_EVENT_TYPE, AppName="CFE_TBL", BitMask=0x0F)
+    table.flight.send(evs_packets.ENABLE_EVENT_TYPE, BitMask=0x0F)
     for data, content, event_type in ((b"XY", b"XY" + bytes(6), DEBUG), (b"Z", b"ZY" + bytes(6), INFORMATION)):
         put(table.flight, data)
         table.flight.packets.clear()

@@ -1,0 +1,201 @@
+"""Flies steps on a computer, and keeps what came of each: the packets that came down and the files that changed."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple, Protocol
+
+from apps import to_lab
+from cfepy.console import Console
+from cfepy.es import packets as es
+from cfepy.evs import packets as evs
+from cfepy.ground.link import GroundLink
+from cfepy.mission import Mission
+from cfepy.sb import packets as sb
+from cfepy.tbl import packets as tbl
+from cfepy.time import packets as time_packets
+from tests.twin import masks, mission
+from tests.twin.commands import APPS, BACKGROUND, CONTROL, HOUSEKEEPING, PLAIN, Step
+from tests.twin.real import RealCfe
+
+VIRTUAL_S = {PLAIN: 1.6, BACKGROUND: 4.0, CONTROL: 9.5}
+"""How long a step flies in the simulation: uplink, answer, and TO_LAB's pass every half a second."""
+LIMIT_S = {PLAIN: 4.0, BACKGROUND: 8.0, CONTROL: 14.0}
+"""How long the real one may take for the same, on a busy host."""
+QUIET_S = 0.8
+"""How long nothing comes down when a step without an answer is over: more than a pass of TO_LAB."""
+ENABLE = to_lab.packets.OUTPUT_ENABLE.packet(dest_IP="127.0.0.1")
+
+
+class Observed(NamedTuple):
+    """What came of a step: packets in order, and the files that were made or changed, by path."""
+
+    packets: tuple[bytes, ...]
+    files: dict[str, bytes]
+
+    def told(self) -> Counter[bytes]:
+        """What is compared of the packets."""
+        return Counter(each for each in map(masks.of_packet, self.packets) if each is not None)
+
+
+class Computer(Protocol):
+    """One that flies steps."""
+
+    def fly(self, step: Step, expected: Observed | None) -> Observed:
+        """Send a step up, and wait for what comes of it; `expected` says when that is all there."""
+
+
+def with_housekeeping(step: Step) -> tuple[bytes, ...]:
+    """What a step sends, and then the question for its service's housekeeping."""
+    return (*step.packets, HOUSEKEEPING[step.service].packet())
+
+
+def preparation() -> list[Step]:
+    """Steps that make both computers alike: what counted the boot, which is not alike, begins anew."""
+    reset = [es.RESET_COUNTERS, evs.RESET_COUNTERS, sb.RESET_COUNTERS, tbl.RESET_COUNTERS, time_packets.RESET_COUNTERS]
+    steps = [Step("EVS", (evs.RESET_ALL_FILTERS.packet(AppName="CFE_SB"),), PLAIN)]
+    steps += [Step(each.name.split("_")[1], (each.packet(),), PLAIN) for each in reset]
+    steps += [Step("EVS", (evs.RESET_APP_COUNTER.packet(AppName=name),), PLAIN) for name in APPS]
+    return [*steps, Step("ES", (es.CLEAR_SYS_LOG.packet(),), PLAIN), Step("EVS", (evs.CLEAR_LOG.packet(),), PLAIN)]
+
+
+class Simulated:
+    """The mission in cfepy."""
+
+    def __init__(self, flown: Mission) -> None:
+        self._mission, self._ground = flown, GroundLink(flown)
+        flown.run_for(3)
+        self._ground.send(ENABLE)
+        flown.run_for(2)
+        self._ground.received()
+        self._files = self._read_files()
+
+    def fly(self, step: Step, expected: Observed | None = None) -> Observed:
+        for packet in with_housekeeping(step):
+            self._ground.send(packet)
+        self._mission.run_for(VIRTUAL_S[step.pace])
+        packets = tuple(data for _, data in self._ground.received())
+        files = self._read_files()
+        changed = {path: data for path, data in files.items() if self._files.get(path) != data}
+        self._files = files
+        return Observed(packets, changed)
+
+    def _read_files(self) -> dict[str, bytes]:
+        read, names = self._mission.files.read_file, self._mission.files.list_dir
+        found = {f"{folder}/{name}" for folder in ("/ram", "/cf") for name in names(folder)}
+        return {path: read(path) for path in found if path not in mission.files()}
+
+
+class Real:
+    """The mission in NASA's cFE."""
+
+    def __init__(self, booted: RealCfe) -> None:
+        self._booted = booted
+        booted.send(ENABLE)
+        end = time.monotonic() + LIMIT_S[BACKGROUND]
+        while booted.receive(0.5) is None:
+            if time.monotonic() > end:
+                raise TimeoutError("NASA's cFE: no telemetry after TO_LAB_OUTPUT_ENABLE")
+        while booted.receive(QUIET_S) is not None:
+            pass
+        self._files = self._read_files()
+
+    def fly(self, step: Step, expected: Observed | None = None) -> Observed:
+        for packet in with_housekeeping(step):
+            self._booted.send(packet)
+        packets = list(self._come_down(step, expected))
+        files = self._read_files()
+        changed = {path: data for path, data in files.items() if self._files.get(path) != data}
+        self._files = files
+        return Observed(tuple(packets), changed)
+
+    def _come_down(self, step: Step, expected: Observed | None) -> Iterator[bytes]:
+        wanted = expected.told() if expected is not None else Counter[bytes]()
+        silent = bool(wanted)  # then the last answer is the end; otherwise it takes a while to know
+        end = time.monotonic() + LIMIT_S[step.pace]
+        last = time.monotonic()
+        while time.monotonic() < end:
+            packet = self._booted.receive(0.05 if wanted else QUIET_S)
+            if packet is not None:
+                last = time.monotonic()
+                told = masks.of_packet(packet)
+                if told is not None and wanted[told] > 0:
+                    wanted -= Counter([told])
+                yield packet
+            elif not wanted and (silent or time.monotonic() - last > QUIET_S):
+                return
+
+    def _read_files(self) -> dict[str, bytes]:
+        files = self._booted.files()
+        given = mission.files()
+        for path in (self._booted.folder / "cf").iterdir():
+            virtual = f"/cf/{path.name}"
+            if path.is_file() and virtual not in given and path.suffix not in (".so", ".scr"):
+                files[virtual] = path.read_bytes()
+        return files
+
+
+@contextmanager
+def simulated(mission_yaml: str = "") -> Iterator[Simulated]:
+    """The mission in cfepy, prepared; with a mission file, if one is given."""
+    with tempfile.TemporaryDirectory() as folder:
+        for path, data in mission.files().items():
+            (Path(folder) / Path(path).name).write_bytes(data)
+        (Path(folder) / "startup.scr").write_text(mission.STARTUP)
+        if mission_yaml:
+            (Path(folder) / "mission.yaml").write_text(mission_yaml)
+        with Mission(folder, console=Console(quiet=True)) as flown:
+            computer = Simulated(flown)
+            for step in preparation():
+                computer.fly(step)
+            yield computer
+
+
+@contextmanager
+def real(built: Path) -> Iterator[Real]:
+    """The mission in NASA's cFE, prepared."""
+    with tempfile.TemporaryDirectory() as folder, RealCfe(built, Path(folder) / "cfe", mission.files()) as booted:
+        computer = Real(booted)
+        for step in preparation():
+            computer.fly(step)
+        yield computer
+
+
+def differences(ours: Observed, theirs: Observed) -> list[str]:
+    """What is not the same in two observations of a step, a line each."""
+    mine, real_ones = ours.told(), theirs.told()
+    found = [f"only NASA's: {_shown(each)}" for each in (real_ones - mine).elements()]
+    found += [f"only ours:   {_shown(each)}" for each in (mine - real_ones).elements()]
+    for path in sorted({*ours.files, *theirs.files}):
+        one, other = (each.files.get(path) for each in (ours, theirs))
+        if one is None or other is None:
+            found.append(f"file {path}: {'not here' if one is None else 'not there'}")
+        elif masks.of_file(one) != masks.of_file(other):
+            found.append(f"file {path}: {_first_difference(masks.of_file(one), masks.of_file(other))}")
+    return found
+
+
+def _shown(told: bytes) -> str:
+    msg_id = int.from_bytes(told[:2], "big")
+    if msg_id == evs.LONG_EVENT_MSG_MID:
+        app, number = told[8:28].partition(b"\0")[0], int.from_bytes(told[28:30], "little")
+        return f"event {app.decode(errors='replace')} {number}: {told[40:].rstrip(bytes(1))!r} type {told[30]}"
+    return f"0x{msg_id:04X} {told[2:].hex()}"
+
+
+def _first_difference(ours: bytes, theirs: bytes) -> str:
+    at = next((at for at, (one, other) in enumerate(zip(ours, theirs, strict=False)) if one != other), None)
+    if at is None:
+        return f"{len(ours)} bytes of ours, {len(theirs)} of NASA's are compared"
+    here, there = (each[at : at + 24].hex() for each in (ours, theirs))
+    return f"byte {at}: {here} is {there} in NASA's; of {len(ours)}, {len(theirs)}"
+
+
+def fly(computer: Computer, steps: Iterable[Step]) -> list[Observed]:
+    """Fly steps, and keep what came of each."""
+    return [computer.fly(step, None) for step in steps]

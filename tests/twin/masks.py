@@ -1,0 +1,188 @@
+"""What may differ between a packet or a file of NASA's cFE and ours: which fields, and why. All else is compared.
+
+Time in the headers of packets and files is left out everywhere, and so is the sequence count of events, since TIME of
+the real one enters and leaves flywheel mode when the host is slow, with an event each time.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+
+from apps import ci_lab, sample_app, to_lab
+from cfepy import msg
+from cfepy.es import packets as es
+from cfepy.evs import packets as evs
+from cfepy.fs import HEADER_SIZE, header, read_header
+from cfepy.msg import TLM_HEADER_SIZE, Layout, Telemetry
+from cfepy.sb import packets as sb
+from cfepy.status import CfeError
+from cfepy.tbl import packets as tbl
+from cfepy.time import packets as time
+
+FLYWHEEL = {("CFE_TIME", 20), ("CFE_TIME", 21)}
+BUILD = re.compile(rb"(cFS Versions: |Build |Version Info: |.*No-op |.*NOOP |.*[Nn]oop |.*Initialized)")
+"""Events that tell versions of the build."""
+TELEMETRY: tuple[Telemetry, ...] = (
+    *(*es.TELEMETRY, *evs.TELEMETRY, *sb.TELEMETRY, *tbl.TELEMETRY, *time.TELEMETRY),
+    *(*ci_lab.TELEMETRY, *sample_app.TELEMETRY, *to_lab.TELEMETRY),
+)
+BLANKS = {
+    ("CFE_SB", 15): re.compile(rb"(size=)\d+"),
+    ("CFE_SB", 21): re.compile(rb"(MsgId\()0x[0-9a-f]+"),
+    ("CFE_SB", 44): re.compile(rb"()\n"),
+}
+"""What rows of docs/differences.md speak of: NASA's texts tell 0, or end with a line feed."""
+OF_TELEMETRY = {
+    "CFE_ES_HK_TLM": {
+        "CFECoreChecksum": "made from the C build",
+        "PerfFilterMask.*|PerfTriggerMask.*": "a fault of NASA's housekeeping, see docs/differences.md",
+        "Perf(DataCount|DataStart|DataEnd|TriggerCount|State|DataToWrite)": "how often tasks ran",
+        "SysLog(BytesUsed|Entries)": "the lines of the boot name the build",
+    },
+    "CFE_EVS_HK_TLM": {
+        "MessageSendCounter|LogOverflowCounter|LogFullFlag": "flywheel events are counted",
+        r"AppData\[4\]\.AppMessageSentCounter": "flywheel events of CFE_TIME",
+    },
+    "CFE_SB_HK_TLM": {
+        "NoSubscribersCounter": "the applications start on several processors",
+        "MemInUse|UnmarkedMem": "the packet that is worked on is counted",
+        "MsgLimitErrorCounter": "a host that stops for a moment",
+    },
+    "CFE_SB_STATS_TLM": {
+        ".*MemInUse|.*SBBuffersInUse": "the packet that is worked on is counted",
+        r"PipeDepthStats.*QueueDepth": "what waits at this instant",
+    },
+    "CFE_TBL_HK_TLM": {"LastUpdateTime.*": "a time"},
+    "CFE_TBL_REG_TLM": {".*Addr|.*Ptr": "an address", "TimeOfLastUpdate.*": "a time"},
+    "CFE_ES_APP_TLM": {
+        ".*Address|.*Addr|.*Size": "of the module in memory",
+        "AppInfo.ExecutionCounter|ExecutionCounter": "how often tasks ran",
+    },
+    "CFE_TIME_HK_TLM": {
+        "ClockStateFlags|ClockStateAPI": "flywheel mode",
+        "(SecondsMET|SubsecsMET|MET.*|Seconds|Subsecs).*": "a time",
+        "(STCF.*|SecondsSTCF|SubsecsSTCF)": "a time, once the clock was set",
+    },
+    "CFE_TIME_DIAG_TLM": {".*": "latches and counts of times"},
+    "CFE_ES_MEMSTATS_TLM": {".*": "how much memory the bus uses"},
+}
+LAYOUTS: dict[int, Layout] = {
+    header.SUBTYPE_ES_QUERYALL: es.APP_INFO,
+    header.SUBTYPE_ES_QUERYALLTASKS: es.TASK_INFO,
+    header.SUBTYPE_ES_CDS_REG: es.CDS_REG_DUMP_RECORD,
+    header.SUBTYPE_TBL_REG: tbl.REGISTRY_RECORD,
+    header.SUBTYPE_EVS_APPDATA: evs.APP_DATA_RECORD,
+    header.SUBTYPE_SB_PIPEDATA: sb.PIPE_FILE_ENTRY,
+    header.SUBTYPE_SB_ROUTEDATA: sb.ROUTING_FILE_ENTRY,
+    header.SUBTYPE_SB_MAPDATA: sb.MAP_FILE_ENTRY,
+}
+OF_RECORDS = {
+    header.SUBTYPE_ES_QUERYALL: {
+        ".*Address|.*Addr|.*Size": "of the module in memory",
+        "ExecutionCounter": "how often tasks ran",
+    },
+    header.SUBTYPE_ES_QUERYALLTASKS: {"ExecutionCounter": "how often tasks ran"},
+    header.SUBTYPE_TBL_REG: {".*Addr|.*Ptr": "an address", "TimeOfLastUpdate.*": "a time"},
+    header.SUBTYPE_EVS_APPDATA: {"EventCount": "flywheel events"},
+    header.SUBTYPE_SB_PIPEDATA: {".*QueueDepth": "what waits at this instant", "SendErrors": "a host that stops"},
+    header.SUBTYPE_SB_ROUTEDATA: {"MsgCnt": "how many messages went there"},
+}
+ONLY_HEADERS = (header.SUBTYPE_ES_SYSLOG, header.SUBTYPE_ES_PERFDATA, header.SUBTYPE_ES_ERLOG)
+"""Files with the lines of the boot, the run of tasks, addresses: what they begin with is compared."""
+APP_NAME, EVENT_ID, TEXT = slice(16, 36), slice(36, 38), slice(48, 170)
+
+
+@cache
+def _masked_cells(layout: Layout, patterns: tuple[str, ...]) -> tuple[tuple[int, int], ...]:
+    return tuple(
+        (cell.offset, cell.size)
+        for cell in layout.cells()
+        if any(re.fullmatch(pattern, cell.path) for pattern in patterns)
+    )
+
+
+def _masked(layout: Layout, patterns: dict[str, str], data: bytes) -> bytes:
+    left = bytearray(data)
+    for offset, size in _masked_cells(layout, tuple(patterns)):
+        if offset + size <= len(left):
+            left[offset : offset + size] = bytes(size)
+    return bytes(left)
+
+
+@cache
+def _declared() -> dict[int, Telemetry]:
+    return {each.msg_id: each for each in TELEMETRY}
+
+
+def is_event(packet: bytes) -> bool:
+    """Whether a packet is an event, long or short."""
+    return msg.get_msg_id(packet) in (evs.LONG_EVENT_MSG_MID, evs.SHORT_EVENT_MSG_MID)
+
+
+def of_packet(packet: bytes) -> bytes | None:
+    """What is compared of a packet; None for one that is left out."""
+    if is_event(packet):
+        source = (
+            packet[APP_NAME].partition(b"\0")[0].decode(errors="replace"),
+            int.from_bytes(packet[EVENT_ID], "little"),
+        )
+        if source in FLYWHEEL:
+            return None
+        found = BUILD.match(packet[TEXT])
+        text = found[0] if found else packet[TEXT]
+        if source in BLANKS:
+            text = BLANKS[source].sub(rb"\1", text)
+        return packet[:2] + packet[4:6] + packet[12:48] + text
+    declared = _declared().get(msg.get_msg_id(packet))
+    if declared is None:
+        return packet[:2] + packet[4:6]
+    if declared is sb.ALLSUBS_TLM:
+        return packet[:2] + packet[4:6] + _subscriptions(packet)
+    patterns = OF_TELEMETRY.get(declared.name, {})
+    return packet[:2] + packet[4:6] + _masked(declared.payload, patterns, packet[TLM_HEADER_SIZE:])
+
+
+def _subscriptions(packet: bytes) -> bytes:
+    """The entries that are in use, in any order: applications subscribe as they come up."""
+    fields = sb.ALLSUBS_TLM.read(packet)
+    used = sorted(each["MsgId"] for each in fields["Entry"][: fields["Entries"]])
+    return repr((fields["PktSegment"], fields["TotalSegments"], fields["Entries"], used)).encode()
+
+
+def of_file(data: bytes) -> bytes:
+    """What is compared of a file that was written."""
+    try:
+        head = read_header(data)
+    except CfeError:  # whatever it is, it is compared as it stands
+        return data
+    left = bytearray(data)
+    left[24:32] = bytes(8)  # when it was made
+    if head.subtype == header.SUBTYPE_TBL_IMG:
+        return bytes(left[: HEADER_SIZE - 32]) + _text(left[HEADER_SIZE - 32 : HEADER_SIZE]) + bytes(left[HEADER_SIZE:])
+    begin = bytes(left[: HEADER_SIZE - 32]) + _text(left[HEADER_SIZE - 32 : HEADER_SIZE])
+    if head.subtype in ONLY_HEADERS:
+        return begin
+    if head.subtype == header.SUBTYPE_EVS_EVENTLOG:
+        return begin + b"".join(_events(data))
+    layout = LAYOUTS.get(head.subtype)
+    if layout is None:
+        return bytes(left)
+    body, size = data[HEADER_SIZE:], layout.size
+    records = [
+        _masked(layout, OF_RECORDS.get(head.subtype, {}), body[at : at + size]) for at in range(0, len(body), size)
+    ]
+    return begin + b"".join(records)
+
+
+def _text(field: bytes | bytearray) -> bytes:
+    """A text up to its NUL: NASA's headers have what the stack held behind it."""
+    return bytes(field).partition(b"\0")[0].ljust(len(field), b"\0")
+
+
+def _events(data: bytes) -> Iterator[bytes]:
+    """The last events of a log: how many are there depends on flywheel events."""
+    size = TLM_HEADER_SIZE + evs.LONG_EVENT.size
+    events = [of_packet(data[at : at + size]) for at in range(HEADER_SIZE, len(data), size)]
+    yield from [each for each in events if each is not None][-5:]
