@@ -15,6 +15,8 @@ from rospy_shim.client.rostime import nanoseconds
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
 
+LOOK_NS = 10_000_000  # how often wait_for_message looks, as on ROS
+
 
 class Client:
     """The client functions of one node.
@@ -157,16 +159,22 @@ class Client:
                 found.append(message)
                 kernel.wake_all(waits)
 
-        deadline = None if timeout is None else kernel.now + nanoseconds(timeout)
+        begin = kernel.now
+        limit = None if timeout is None else nanoseconds(timeout)
         subscriber = self._node.Subscriber(topic, topic_type, keep)
         try:
             while not found and not life.is_shutdown():
-                left = FOREVER if deadline is None else deadline - kernel.now
-                if deadline is not None and left <= 0:
+                life.wait(waits, FOREVER if limit is None else _till_look(limit) - (kernel.now - begin))
+                kernel.delay(_till_look(kernel.now - begin) - (kernel.now - begin))
+                if limit is not None and kernel.now - begin >= limit:
                     raise ROSException(f"timeout exceeded while waiting for message on topic {topic}")
-                life.wait(waits, left)
         finally:
             subscriber.unregister()
-        if not found:
+        if life.is_shutdown():
             raise ROSInterruptException("rospy shutdown")
         return found[0]
+
+
+def _till_look(after_ns: int) -> int:
+    """When rospy looks for the message of `wait_for_message`, from a time on after its beginning; not at once."""
+    return max(-(-after_ns // LOOK_NS), 1) * LOOK_NS

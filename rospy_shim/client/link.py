@@ -89,7 +89,7 @@ class Link(TopicSide):
         """
         self.connected = True
         self.header |= self._own_header()
-        topic = self.node.topic_for(self.name, self.data_class)
+        topic = self.node.topic_for(self.name, self.data_class, "publication")
         if topic is None:
             self._routes = {}
             return

@@ -23,7 +23,6 @@ class AnyMsg(Message):
     _type = "*"
     _has_header: ClassVar[bool] = False
     _full_text = ""
-    _slot_types: ClassVar[list[str]] = []
     __slots__ = ["_buff"]
 
     def __init__(self, *args: Any) -> None:
@@ -53,7 +52,8 @@ class AnyMsg(Message):
         Raises:
             ROSException: there are none.
         """
-        buff.write(self._pack())
+        octets = self._pack()
+        buff.write(octets)
 
     def deserialize(self, str_: bytes) -> AnyMsg:
         """Take the bytes."""
@@ -63,8 +63,6 @@ class AnyMsg(Message):
 
 def packer(data_class: MessageClass) -> Callable[[Any], bytes]:
     """What serialises the messages of a class: its own fast function, or `serialize` of a class that genpy made."""
-    if data_class is AnyMsg:
-        return lambda message: packer(type(message))(message) if type(message) is not AnyMsg else message._pack()
     own: Callable[[Any], bytes] | None = getattr(data_class, "_pack", None)
     return own if own is not None else serialized
 
@@ -114,6 +112,7 @@ def args_kwds_to_message(data_class: MessageClass, args: tuple[Any, ...], kwds: 
 
     Raises:
         TypeError: both kinds of arguments, a message of another type, or a wrong number of values.
+        AttributeError: a message for AnyMsg, which is not a type to publish with.
     """
     if args and kwds:
         raise TypeError("publish() can be called with arguments or keywords, but not both.")
@@ -122,22 +121,19 @@ def args_kwds_to_message(data_class: MessageClass, args: tuple[Any, ...], kwds: 
     if len(args) != 1:
         return data_class(*args)
     value = args[0]
-    if isinstance(value, data_class) or (data_class is AnyMsg and isinstance(value, Message)):
+    if isinstance(value, data_class) or getattr(value, "_md5sum", None) == data_class._md5sum:
         return value
-    if isinstance(value, Message):
-        return _same_type(data_class, value)
-    return data_class(*args)
+    if isinstance(value, AnyMsg):
+        return value
+    if isinstance(value, Message) and value._type != (expected := _first_type(data_class)):
+        raise TypeError(f"expected [{expected}] but got [{value._type}]")
+    return data_class(value)
 
 
-def _same_type(data_class: MessageClass, value: Any) -> Any:
-    """A message whose class is another one of the same type; or the one field of a type that holds a message."""
-    if value._type == data_class._type:
-        if value._md5sum != data_class._md5sum:
-            raise TypeError(f"expected [{data_class._slot_types[0]}] but got [{value._type}]")
-        return data_class(*(getattr(value, name) for name in data_class.__slots__))
-    if len(data_class._slot_types) == 1 and data_class._slot_types[0] in (value._type, value._type.split("/")[-1]):
-        return data_class(value)
-    raise TypeError(f"expected [{', '.join(data_class._slot_types)}] but got [{value._type}]")
+def _first_type(data_class: MessageClass) -> str:
+    """Type of the first field, with which rospy compares a message that is not of the topic's type."""
+    types = data_class._slot_types
+    return types[0] if types else ""
 
 
 def serialize_message(b: BinaryIO, seq: int, msg: Any) -> None:

@@ -242,6 +242,18 @@ def isstring(s: Any) -> bool:
     return isinstance(s, str)
 
 
+def refusal(kind: str, name: str) -> str | None:
+    """Why the master does not register a topic or service of a resolved name; None when it does.
+
+    Args:
+        kind: "topic" or "service".
+        name: resolved name.
+    """
+    if name == SEP:
+        return f"ERROR: parameter [{kind}] cannot be the global namespace"
+    return f"ERROR: parameter [{kind}] contains illegal chars" if ":" in name or " " in name else None
+
+
 def valid_name_validator_unresolved(param_name: str, param_value: Any, caller_id: str) -> str:
     """Check a name, and give it as it is.
 

@@ -18,7 +18,7 @@ from rospy_shim.client.exceptions import ROSInitException
 from rospy_shim.client.life import Life
 from rospy_shim.client.link import Link, link_class
 from rospy_shim.client.logs import Logs
-from rospy_shim.client.names import Names, is_legal_name
+from rospy_shim.client.names import Names, is_legal_name, refusal
 from rospy_shim.client.params import Params
 from rospy_shim.client.rostime import RosClock
 from rospy_shim.client.service import Service, make_service
@@ -155,15 +155,21 @@ class Node:
             self.subscriptions.setdefault(name, found)
         return found
 
-    def topic_for(self, name: str, data_class: MessageClass) -> TopicEntry | None:
-        """The topic to connect to; None when the node is shut down, or when the topic's type is another one.
+    def topic_for(self, name: str, data_class: MessageClass, registration: str) -> TopicEntry | None:
+        """The topic to connect to; None when the node is shut down, when the master refuses the name, or when the
+        topic's type is another one.
 
-        The latter is logged as an error, and the rest of the graph goes on.
+        The latter two are logged, and the rest of the graph goes on.
+
+        Args:
+            name: resolved name.
+            data_class: message class.
+            registration: what the node registers, "publication" or "subscription".
 
         Raises:
             UsageError: the topic's MsgId belongs to another topic.
         """
-        if self.life.over:
+        if self.life.over or self.is_refused("topic", name, registration):
             return None
         topic = self.graph.topic(name)
         if topic.join(data_class):
@@ -178,6 +184,13 @@ class Node:
             topic.md5sum,
         )
         return None
+
+    def is_refused(self, kind: str, name: str, registration: str) -> bool:
+        """Whether the master does not register a "topic" or "service" of a resolved name, which is logged then."""
+        reason = refusal(kind, name)
+        if reason is not None:
+            self.logs.logfatal("unable to register %s [%s] with master: %s", registration, name, reason)
+        return reason is not None
 
     def wait_for_service(self, service: str, timeout: Any = None) -> None:
         """See `rospy_shim.client.service_proxy.wait_for_service`."""

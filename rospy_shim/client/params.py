@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
+from xml.parsers.expat import ExpatError
 
 from rospy_shim.client.exceptions import ROSException
 from rospy_shim.client.names import SEP, is_legal_name
 from rospy_shim.parameters.tree import ParameterTree
-from rospy_shim.parameters.values import DateTime, marshalled
+from rospy_shim.parameters.values import DateTime, marshalled, through_xml
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
@@ -43,7 +44,7 @@ class Params:
             KeyError: there is none, and no default; it holds the name as it was asked for.
         """
         self._node.universe.charge()
-        key = self._node.names.resolve_name(param_name)
+        key = self._sent("getParam", self._node.names.resolve_name(param_name))[0]
         value = self._tree.find(key)
         if value is not _MISSING:
             return self._unpacked(value)
@@ -58,18 +59,23 @@ class Params:
     def has_param(self, param_name: str) -> bool:
         """Whether a parameter or namespace exists."""
         self._node.universe.charge()
-        return self._tree.find(self._node.names.resolve_name(param_name)) is not _MISSING
+        key = self._sent("hasParam", self._node.names.resolve_name(param_name))[0]
+        return self._tree.find(key) is not _MISSING
 
     def set_param(self, param_name: str, param_value: Any) -> None:
         """Set a parameter; a dictionary replaces a whole namespace.
 
         Raises:
             TypeError, OverflowError: XML-RPC cannot carry the value.
+            xmlrpc.client.Fault: a text has a character that XML does not have, such as NUL.
             ParametersFull: ROS's tables have no room for it; a ROSException.
         """
         self._node.universe.charge()
         self._node.warn_of_illegal(param_name)
-        self._tree.set(self._node.names.resolve_name(param_name), marshalled(param_value))
+        key = self._node.names.resolve_name(param_name)
+        key, value = self._sent("setParam", key, marshalled(param_value))
+        if key != SEP or type(value) is dict:
+            self._tree.set(key, value)  # the master's refusal of another root is not looked at
 
     def give(self, values: Mapping[str, Any]) -> None:
         """Set the private parameters that the mission file has for the node; see `ParameterTree.give`."""
@@ -81,8 +87,9 @@ class Params:
         Raises:
             KeyError: there is none.
         """
+        key = self._sent("deleteParam", self._node.names.resolve_name(param_name))[0]
         try:
-            self._tree.delete(self._node.names.resolve_name(param_name))
+            self._tree.delete(key)
         except KeyError:
             raise KeyError(param_name) from None
 
@@ -102,6 +109,18 @@ class Params:
     def get_param_names(self) -> list[str]:
         """The full names of all parameters."""
         return self._tree.names()
+
+    def _sent(self, method: str, *arguments: Any) -> tuple[Any, ...]:
+        """Arguments as the master has them after the trip over XML-RPC.
+
+        Raises:
+            xmlrpc.client.Fault: of the node's own `xmlrpc.client`; XML has no such character.
+        """
+        try:
+            return through_xml(method, self._node.names.get_name(), *arguments)
+        except ExpatError as error:
+            fault = self._node.universe.importer.load("xmlrpc.client").Fault(1, f"{type(error)}:{error}")
+        raise fault
 
     def _unpacked(self, value: Any) -> Any:
         """A copy for the node; bytes and dates as its own xmlrpc.client has them."""

@@ -201,18 +201,20 @@ class Service:
         self._unpack = unpacker(self.request_class)
         self._pack = packer(self.response_class)
         self._entry: ServiceEntry
-        if node.initialized:
-            self._entry = node.graph.register_service(self)
-        elif any(each.resolved_name == self.resolved_name for each in node.services):
+        self._refused = False  # by the master
+        node.warn_of_illegal(name)
+        if any(each.resolved_name == self.resolved_name for each in node.services):
             raise ServiceException(f"service [{self.resolved_name}] already registered")
-        node.services.append(self)
         if node.initialized:
-            self._begin()
+            self.connect()
+        node.services.append(self)
 
     def connect(self) -> None:
-        """The node is initialised: offer the service that was made before."""
-        self._entry = self._node.graph.register_service(self)
-        self._begin()
+        """The node is initialised: offer the service, unless the master refuses its name."""
+        self._refused = self._node.is_refused("service", self.resolved_name, "service")
+        if not self._refused:
+            self._entry = self._node.graph.register_service(self)
+            self._begin()
 
     @property
     def node(self) -> Node:
@@ -243,7 +245,7 @@ class Service:
         self._node.graph.forget_service(self)
         if self in self._node.services:
             self._node.services.remove(self)
-        if not self._node.initialized:
+        if not self._node.initialized or self._refused:
             return
         callers = [call.pipe for call in self._entry.calls.values()]
         for pipe in map(self._node.cfe.sb.find_pipe, [self._pipe, *callers]):
@@ -332,7 +334,11 @@ class Service:
         call = self._entry.calls.get(number)
         request._connection_header = call.header if call is not None else {}
         try:
-            return True, self._pack(response_of(self.handler(request), self.response_class))
+            response = response_of(self.handler(request), self.response_class)
+            self._entry.half_answered.add(number)
+            body = self._pack(response)
+            self._entry.half_answered.remove(number)
+            return True, body
         except (ServiceException, ROSInterruptException) as error:
             return False, f"service cannot process request: {error}".encode()
         except Exception as error:

@@ -5,13 +5,16 @@ The caller waits for the answer in a pipe of its node that has subscribed to the
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
+from cfepy.rtos import FOREVER, WaitList
 from cfepy.status import CfeError
 from rospy_shim.client.exceptions import ROSException, ROSInterruptException, ServiceException
 from rospy_shim.client.message import args_kwds_to_message, packer, unpacker
 from rospy_shim.client.rostime import nanoseconds
 from rospy_shim.client.service import ANSWER_LEAD, Pieces, call_of_answer, request_packets
+from rospy_shim.genpy import DeserializationError
 from rospy_shim.graph.graph import ServiceCall
 
 if TYPE_CHECKING:
@@ -20,10 +23,24 @@ if TYPE_CHECKING:
     from rospy_shim.msgs import ServiceClass
 
 LOOK_MS = 500  # how often a caller looks whether the service is still there
-POLL_NS = 20_000_000  # how often wait_for_service looks
+POLL_NS = 300_000_000  # how often wait_for_service looks, as on ROS
 PACE_NS = 100_000  # how often a caller looks whether the service has room for its request
 NO_LIMIT = 0xFFFF
 POLL = 0
+_NOTE = (
+    "cfepy: a request for {service} could not be serialized. As on ROS, the half of it that was written stays in the"
+    " buffer of the persistent connection: the next call of this proxy waits for ever.\n"
+)
+
+
+class Connection(IntEnum):
+    """State of the connection of a persistent proxy, as rospy would have one."""
+
+    NONE = 0
+    OPEN = 1
+    HALF_A_RESPONSE = 2
+    HALF_A_REQUEST = 3
+    CLOSED = 4
 
 
 class AnswerPipes:
@@ -83,7 +100,7 @@ class ServiceProxy:
         Args:
             name: of the service.
             service_class: its type.
-            persistent: told to the service; the bus needs no connection that stays.
+            persistent: told to the service; the bus needs no connection that stays, but what spoils one on ROS does it.
             headers: added to the `_connection_header` of the requests.
         """
         self.resolved_name = self._node.names.resolve_name(name)
@@ -100,6 +117,7 @@ class ServiceProxy:
         }
         self._pack = packer(self.request_class)
         self._unpack = unpacker(self.response_class)
+        self._connection = Connection.NONE  # that stays
 
     def __call__(self, *args: Any, **kwds: Any) -> Any:
         """See `call`."""
@@ -117,15 +135,23 @@ class ServiceProxy:
         node = self._node
         node.universe.charge()
         request = args_kwds_to_message(self.request_class, args, kwds)
+        if self._connection is Connection.CLOSED:
+            raise AttributeError("'NoneType' object has no attribute 'tell'")
+        if self._connection is Connection.HALF_A_REQUEST:
+            self._wait_in_vain()
         entry = node.graph.services.get(self.resolved_name)
         if entry is None:
             raise ServiceException(f"service [{self.resolved_name}] unavailable")
         self._check_type(entry)
-        body = self._pack(request)
+        body = self._packed(request)
         try:
-            good, answer = self._exchange(entry, body)
+            good, answer, half = self._exchange(entry, body)
         except CfeError as error:
             raise ServiceException(f"service [{self.resolved_name}]: {error}") from error
+        if self._connection is Connection.HALF_A_RESPONSE:
+            self._read_half()
+        if half and self.persistent:
+            self._connection = Connection.HALF_A_RESPONSE
         if not good:
             raise ServiceException(f"service [{self.resolved_name}] responded with an error: {answer!r}")
         response = self._unpack(answer, 0)
@@ -137,6 +163,39 @@ class ServiceProxy:
         }
         return response
 
+    def _packed(self, request: Any) -> bytes:
+        """The bytes of a request; of one that cannot be serialized, half stays in the buffer of the connection."""
+        if self.persistent:
+            self._connection = max(self._connection, Connection.OPEN)
+        try:
+            return self._pack(request)
+        except Exception:
+            if self.persistent:
+                self._connection = Connection.HALF_A_REQUEST
+                self._node.universe.print_error(_NOTE.format(service=self.resolved_name))
+            raise
+
+    def _wait_in_vain(self) -> NoReturn:
+        """The service could not read the request that came behind half of another one, and does not answer."""
+        life, waits = self._node.life, WaitList(f"an answer of service {self.resolved_name}, which got half a request")
+        while not life.is_shutdown():
+            life.wait(waits, FOREVER)
+        raise ROSInterruptException("node shutdown interrupted service call")
+
+    def _read_half(self) -> None:
+        """Read a response behind half of another one, as a message of no bytes.
+
+        Raises:
+            ServiceException: it cannot be one.
+        """
+        try:
+            self.response_class().deserialize(b"")
+        except DeserializationError as error:
+            what = f"receive_once[{self.resolved_name}]: DeserializationError cannot deserialize: {error}"
+        else:
+            return
+        raise ServiceException(f"transport error completing service call: {what}")
+
     def _check_type(self, entry: ServiceEntry) -> None:
         ours, theirs = self.service_class._md5sum, entry.service.service_class._md5sum
         if ours not in (theirs, "*"):
@@ -145,16 +204,22 @@ class ServiceProxy:
                 f" md5sums do not match: [{ours}] vs. [{theirs}]"
             )
 
-    def _exchange(self, entry: ServiceEntry, body: bytes) -> tuple[bool, bytes]:
-        """Send a request and wait for the answer that carries its number."""
+    def _exchange(self, entry: ServiceEntry, body: bytes) -> tuple[bool, bytes, bool]:
+        """Send a request and wait for the answer that carries its number.
+
+        Returns:
+            whether it went well; the answer; whether half a response stays in the buffer of the service's connection.
+        """
         pipes, answer_id = self._node.answer_pipes, entry.answer_id
         pipe = pipes.open(answer_id)
         number = entry.begin(ServiceCall(pipe, {**self._header, "callerid": self._node.names.name}))
         try:
             self._send(entry, number, body)
-            return self._await(entry, number, pipe)
+            good, answer = self._await(entry, number, pipe)
+            return good, answer, number in entry.half_answered
         finally:
             entry.calls.pop(number, None)
+            entry.half_answered.discard(number)
             pipes.close(answer_id, pipe)
 
     def _send(self, entry: ServiceEntry, number: int, body: bytes) -> None:
@@ -187,7 +252,9 @@ class ServiceProxy:
             raise ServiceException("transport error completing service call: the service has ended")
 
     def close(self) -> None:
-        """End a persistent connection, of which the bus has none."""
+        """End a persistent connection; on ROS, calls fail then."""
+        if self._connection is not Connection.NONE:
+            self._connection = Connection.CLOSED
 
     def wait_for_service(self, timeout: Any = None) -> None:
         """Wait until the service is there; see the function of that name."""
@@ -200,21 +267,27 @@ def wait_for_service(node: Node, service: str, timeout: Any = None) -> None:
     Args:
         node: the caller.
         service: its name.
-        timeout: longest time, seconds or a Duration; None waits for as long as it takes.
+        timeout: longest time, seconds or a Duration; None waits for as long as it takes. It looks every 0.3 s, and
+            comes back with such a look.
 
     Raises:
+        ValueError: the timeout is 0.
         ROSException: no node offered it in time.
         ROSInterruptException: the node is shut down.
     """
+    limit = None if timeout is None else nanoseconds(timeout)
+    if limit == 0:
+        raise ValueError("timeout must be non-zero")
     name, kernel = node.names.resolve_name(service), node.kernel
-    deadline = None if timeout is None else kernel.now + nanoseconds(timeout)
-    while not node.life.is_shutdown():
+    deadline = None if limit is None else kernel.now + limit
+    # After the last look it sleeps on, and then does not look again.
+    while not node.life.is_shutdown() and (deadline is None or kernel.now < deadline):
         if name in node.graph.services:
             return
-        if deadline is not None and kernel.now >= deadline:
-            raise ROSException(f"timeout exceeded while waiting for service {name}")
-        kernel.delay(POLL_NS if deadline is None else min(POLL_NS, deadline - kernel.now))
-    raise ROSInterruptException("rospy shutdown")
+        kernel.delay(POLL_NS)
+    if node.life.is_shutdown():
+        raise ROSInterruptException("rospy shutdown")
+    raise ROSException(f"timeout exceeded while waiting for service {name}")
 
 
 def make_service_proxy(node: Node) -> type[ServiceProxy]:

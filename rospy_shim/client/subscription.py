@@ -153,7 +153,7 @@ class Subscription(TopicSide):
             UsageError: the topic's MsgId belongs to another topic.
         """
         self.connected = True
-        topic = self.topic = self.node.topic_for(self.name, self.data_class)
+        topic = self.topic = self.node.topic_for(self.name, self.data_class, "subscription")
         if topic is not None:
             if self.node.params.get_param("/enable_statistics", False):
                 self._measure()

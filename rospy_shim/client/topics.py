@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from rospy_shim.msgs import MessageClass
 
 NO_QUEUE_SIZE = (
-    "The publisher should be created with an explicit keyword argument 'queue_size'. It has no effect here, but on"
-    " ROS a publisher without it waits for its slowest subscriber."
+    "The publisher should be created with an explicit keyword argument 'queue_size'. Please see"
+    " http://wiki.ros.org/rospy/Overview/Publishers%20and%20Subscribers for more information."
 )
 PUB, SUB = "pub", "sub"
 

@@ -54,7 +54,7 @@ class _Writer:
             return self.time(val, indent)
         if kind in (list, tuple):
             return self.items(val, indent)
-        if hasattr(val, "_slot_types"):
+        if hasattr(val, "_get_types"):
             return self.message(val, indent)
         return str(val)
 

@@ -149,6 +149,7 @@ class ServiceEntry:
     def __init__(self, service: Service, ids: MsgIds) -> None:
         self.service = service
         self.calls: dict[int, ServiceCall] = {}  # by number
+        self.half_answered: set[int] = set()  # calls whose response could not be serialized
         self._ids = ids
         self._count = 0
 

@@ -26,6 +26,7 @@ _BRACKETS = ("[", "{", '"')
 _ODD = re.compile(rb"[^!-~]|[%/]")
 _ESCAPE = re.compile(r"%([0-9A-F]{2})")
 _DATE_TIME = re.compile(r"\d{8}T\d\d:\d\d:\d\d")
+_NOT_IN_XML = re.compile("[\x00-\x08\x0b-\x1f\ud800-\udfff\ufffe\uffff]")
 _NO_NAME = "%"  # the part of a name that has no characters
 
 
@@ -90,6 +91,33 @@ def _wrapped(value: Any) -> bytes | DateTime | None:
         case ("xmlrpc.client", "Binary"):
             return bytes(value.data)
     return None
+
+
+def through_xml(method: str, caller: str, *arguments: Any) -> tuple[Any, ...]:
+    """Arguments of a call of the master as it gets them: in XML a line ends with a line feed.
+
+    Args:
+        method: of the master.
+        caller: name of the node that calls.
+        arguments: marshalled values.
+
+    Raises:
+        ExpatError: a text has a character that XML does not have; the place is that in the request.
+    """
+    if not any(map(_has_odd_text, arguments)):
+        return arguments
+    from xmlrpc.client import dumps, loads
+
+    request = dumps((caller, *arguments), method, encoding="utf-8")
+    return tuple(map(marshalled, loads(request.encode("utf-8", "xmlcharrefreplace"))[0][1:]))
+
+
+def _has_odd_text(value: Any) -> bool:
+    if type(value) is dict:
+        return any(map(_has_odd_text, value)) or any(map(_has_odd_text, value.values()))
+    if type(value) is list:
+        return any(map(_has_odd_text, value))
+    return type(value) is str and _NOT_IN_XML.search(value) is not None
 
 
 def leaves_of(name: str, value: Any) -> Iterator[tuple[str, str]]:

@@ -1,0 +1,195 @@
+"""What rospy does with names, values and calls that do not fit, recorded from rospy 1.15.15 with a master."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from tests.rospy_shim.missions import run_nodes
+
+_STAMP = re.compile(r" \[[0-9.]+\]:")
+HEAD = """
+import rospy
+from std_msgs.msg import *
+from geometry_msgs.msg import *
+from roscpp.srv import *
+from roscpp.msg import Logger
+rospy.init_node("a")
+def tried(function, *arguments):
+    try:
+        answer = function(*arguments)
+        print(repr(answer) if not hasattr(answer, "_md5sum") else "answered")
+    except Exception as error:
+        print(f"{type(error).__name__}: {error}")
+"""
+
+
+def answers(tmp_path: Path, body: str, seconds: float = 5.0) -> list[str]:
+    """What a node printed, log lines without their time."""
+    lines = run_nodes(tmp_path, {"A": HEAD + body}, seconds=seconds).printed["a"]
+    return [_STAMP.sub("", line) for line in lines]
+
+
+def test_the_master_refuses_some_names(tmp_path: Path) -> None:
+    body = """
+import warnings
+warnings.simplefilter("ignore")
+got = []
+for name in ("a b", "/", "c:d", "a-b"):
+    publisher = rospy.Publisher(name, String, queue_size=1)
+    subscriber = rospy.Subscriber(name, String, got.append)
+    rospy.sleep(0.2)
+    publisher.publish("x")
+    rospy.sleep(0.2)
+    print(len(got), publisher.get_num_connections())
+rospy.Service("a b", Empty, print)
+tried(rospy.ServiceProxy("a b", Empty))
+tried(rospy.wait_for_service, "a b", 0.2)
+tried(rospy.Service, "a b", Empty, print)
+print(sorted(name for name, kind in rospy.get_published_topics()))
+"""
+    refused = "[FATAL] unable to register {} [{}] with master: ERROR: parameter [{}] {}"
+    chars, root = "contains illegal chars", "cannot be the global namespace"
+    expected = []
+    for name, why in (("/a b", chars), ("/", root), ("/c:d", chars)):
+        expected += [refused.format(what, name, "topic", why) for what in ("publication", "subscription")] + ["0 0"]
+    assert answers(tmp_path, body) == [
+        *expected,
+        "1 1",
+        refused.format("service", "/a b", "service", chars),
+        "ServiceException: service [/a b] unavailable",
+        "ROSException: timeout exceeded while waiting for service /a b",
+        "ServiceException: service [/a b] already registered",
+        "['/a-b', '/rosout']",
+    ]
+
+
+def test_xml_has_no_control_characters(tmp_path: Path) -> None:
+    body = r"""
+for value in ("a\0b", ["a\0"], {"k": "x\0"}, {"k\0": 1}, "\x01", "\ud800", "\ufffe"):
+    tried(rospy.set_param, "/q", value)
+tried(rospy.get_param, "/q", None)
+rospy.set_param("/q", "\r\n")
+tried(rospy.get_param, "/q")
+for function in (rospy.get_param, rospy.has_param, rospy.delete_param):
+    tried(function, "a\0")
+tried(rospy.set_param, "/", 1)
+tried(rospy.get_param, "/q")
+"""
+    fault = "Fault: <Fault 1: \"<class 'xml.parsers.expat.ExpatError'>:{}\">"
+    token = "not well-formed (invalid token): line {}, column {}"
+    places = [(12, 16), (13, 16), (15, 16), (14, 7), (12, 15)]
+    name = fault.format(token.format(9, 17))
+    # A sixth and seventh text: one that is written as a reference, one that is not.
+    assert answers(tmp_path, body) == [
+        *(fault.format(token.format(*place)) for place in places),
+        fault.format("reference to invalid character number: line 12, column 15"),
+        fault.format(token.format(12, 15)),
+        "None",
+        "'\\n'",
+        name,
+        name,
+        name,
+        "None",
+        "'\\n'",
+    ]
+
+
+def test_messages_of_another_type(tmp_path: Path) -> None:
+    body = """
+stamped = rospy.Publisher("stamped", PointStamped, queue_size=1)
+for message in (Int32(1), Header()):
+    tried(stamped.publish, message)
+tried(rospy.Publisher("empty", Empty, queue_size=1).publish, Int32(1))
+tried(rospy.Publisher("header", Header, queue_size=1).publish, Point())
+tried(rospy.Publisher("any", rospy.AnyMsg, queue_size=1).publish, String("a"))
+tried(rospy.AnyMsg().serialize, None)
+got = []
+words = rospy.Publisher("words", String, queue_size=1)
+rospy.Subscriber("words", String, lambda message: got.append(message.data))
+rospy.sleep(0.2)
+raw = rospy.AnyMsg()
+raw._buff = b"\\1\\0\\0\\0a"
+words.publish(raw)
+rospy.sleep(0.2)
+print(got)
+""".replace('"empty", Empty', '"empty", __import__("std_msgs.msg").msg.Empty')
+    lines = answers(tmp_path, body)
+    assert lines[0] == "TypeError: expected [std_msgs/Header] but got [std_msgs/Int32]"
+    assert lines[1] == "TypeError: Invalid number of arguments, args should be ['header', 'point'] args are(seq: 0"
+    assert lines[6:] == [
+        "TypeError: expected [] but got [std_msgs/Int32]",
+        "TypeError: expected [uint32] but got [geometry_msgs/Point]",
+        "AttributeError: type object 'AnyMsg' has no attribute '_slot_types'",
+        "ROSException: AnyMsg is not initialized",
+        "['a']",
+    ]
+
+
+def test_a_publisher_without_queue_size(tmp_path: Path) -> None:
+    lines = answers(tmp_path, 'rospy.Publisher("a", String)')
+    assert lines[0].endswith(
+        "SyntaxWarning: The publisher should be created with an explicit keyword argument 'queue_size'. Please see"
+        " http://wiki.ros.org/rospy/Overview/Publishers%20and%20Subscribers for more information."
+    )
+
+
+SERVICE = """
+calls = 0
+def answer(request):
+    global calls
+    calls += 1
+    return GetLoggersResponse([Logger("name", "x" if calls != 2 else 3)])
+rospy.Service("get", GetLoggers, answer)
+rospy.Service("set", SetLoggerLevel, lambda request: SetLoggerLevelResponse())
+"""
+
+
+def test_half_a_response_spoils_a_persistent_connection(tmp_path: Path) -> None:
+    body = """
+for persistent in (True, False):
+    calls = 0
+    proxy = rospy.ServiceProxy("get", GetLoggers, persistent=persistent)
+    for _ in range(4):
+        tried(proxy)
+"""
+    lines = [line for line in answers(tmp_path, SERVICE + body) if line == "answered" or line.startswith("ServiceExc")]
+    bad = (
+        "ServiceException: service [/get] responded with an error: b'error processing request: field loggers[].level"
+        " must be of type bytes or an ascii string'"
+    )
+    spoilt = (
+        "ServiceException: transport error completing service call: receive_once[/get]: DeserializationError cannot"
+        " deserialize: unpack requires a buffer of 4 bytes"
+    )
+    assert lines == ["answered", bad, spoilt, spoilt, "answered", bad, "answered", "answered"]
+
+
+def test_half_a_request_spoils_a_persistent_connection(tmp_path: Path) -> None:
+    body = """
+for persistent in (False, True):
+    proxy = rospy.ServiceProxy("set", SetLoggerLevel, persistent=persistent)
+    tried(proxy, "a", "b")
+    tried(proxy, "a", 3)
+    tried(proxy, "c", "d")
+print(rospy.get_time() % 100 > 4)
+"""
+    lines = answers(tmp_path, SERVICE + body)
+    bad = "SerializationError: field level must be of type bytes or an ascii string"
+    assert lines[:4] == ["answered", bad, "answered", "answered"]
+    assert lines[4].startswith("cfepy: a request for /set could not be serialized.")
+    assert lines[5:] == [bad, "ROSInterruptException: node shutdown interrupted service call", "True"]
+
+
+def test_a_persistent_connection_that_was_closed(tmp_path: Path) -> None:
+    body = """
+for persistent in (True, False):
+    proxy = rospy.ServiceProxy("set", SetLoggerLevel, persistent=persistent)
+    proxy.close()
+    tried(proxy, "a", "b")
+    proxy.close()
+    tried(proxy, "a", "b")
+    tried(proxy.wait_for_service, 1)
+"""
+    closed = "AttributeError: 'NoneType' object has no attribute 'tell'"
+    assert answers(tmp_path, SERVICE + body) == ["answered", closed, "None", "answered", "answered", "None"]
