@@ -37,19 +37,34 @@ GRACE_S = 0.6  # wall time from the wish of the host's user until the run is bro
 SPUN_S = 0.3  # of it without a call: that is what the user is told then
 END_S = 0.8  # wall time in which all tasks of a run that was broken off have to end
 PRESS_S = 0.15  # of it that each of them may take
-BUSY = 0.1  # share of a CPU that this process uses at least while a task computes
+BUSY = 0.1  # share of a CPU that this process uses, or could use, at least while a task computes
 TURNS_PER_S = 1000  # so many calls that let another task run, while the clock stands still, are a stall as well
 LOOKS, LOOK_AGAIN_S = 12, 0.01  # at what spins, so that the loop is found that it does not leave
 POLL_S = 0.002
 LINES = 5
 SPARE_S = 2.0  # CPU time beyond the limit until the last resort
 COLLECTOR = "a finalizer"
+THREADS = "/proc/self/task"
 
 
 def to_stderr(text: str) -> None:
     """Where a report goes by default."""
     sys.stderr.write(text + "\n")
     sys.stderr.flush()
+
+
+def cpu_s() -> float:
+    """Seconds of CPU that the other threads of this process had, or were ready for while other programs had it.
+
+    Only Linux tells the latter. Without it a computing task looks like a waiting one where many programs compute.
+    """
+    used, own = time.process_time(), str(threading.get_native_id())
+    delay_ns = 0
+    with contextlib.suppress(OSError):
+        for thread in os.listdir(THREADS):
+            with contextlib.suppress(OSError, IndexError, ValueError), open(f"{THREADS}/{thread}/schedstat") as told:
+                delay_ns += int(told.read().split()[1]) if thread != own else 0
+    return used + delay_ns / NS_PER_S
 
 
 class StallWatch:
@@ -127,12 +142,12 @@ class StallWatch:
     # -- looking -----------------------------------------------------------------------------------------------------
 
     def _look_on(self) -> None:
-        over, clock, cpu = self._over, time.monotonic(), time.process_time()
+        over, clock, cpu = self._over, time.monotonic(), cpu_s()
         while not over.wait(interval := self._interval()):
-            now, used = time.monotonic(), time.process_time()
+            now, used = time.monotonic(), cpu_s()
             wall_s = min(now - clock, 2 * interval)  # this process may have been stopped
             self._look(wall_s, used - cpu >= BUSY * wall_s)
-            clock, cpu = time.monotonic(), time.process_time()
+            clock, cpu = time.monotonic(), cpu_s()
 
     def _interval(self) -> float:
         if self._kernel.broken is not None or self._wanted_s:

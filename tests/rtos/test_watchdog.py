@@ -5,12 +5,14 @@ from __future__ import annotations
 import gc
 import os
 import threading
+import time
 import weakref
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
-from cfepy.rtos import Kernel
+from cfepy.rtos import Kernel, watchdog
 from cfepy.rtos.context import drain
 from cfepy.rtos.watchdog import StallWatch
 from cfepy.status import StallError
@@ -283,3 +285,21 @@ def test_the_watch_does_not_hold_a_task_that_has_ended() -> None:
         drain()
         gc.collect()
         assert task() is None
+
+
+def test_time_in_which_others_have_the_cpu_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told = {
+        "1": "5 2000000000 7\n",
+        "2": "5 500000000 7\n",
+        str(threading.get_native_id()): "0 9000000000 1\n",
+        "3": "",
+    }
+    for thread, text in told.items():
+        (tmp_path / thread).mkdir()
+        (tmp_path / thread / "schedstat").write_text(text)
+    (tmp_path / "4").mkdir()  # a thread that has just ended
+    monkeypatch.setattr(watchdog, "THREADS", str(tmp_path))
+    monkeypatch.setattr(time, "process_time", lambda: 1.0)
+    assert watchdog.cpu_s() == 3.5
+    monkeypatch.setattr(watchdog, "THREADS", str(tmp_path / "none"))
+    assert watchdog.cpu_s() == 1.0
