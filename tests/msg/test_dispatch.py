@@ -47,3 +47,14 @@ def test_one_handler_each() -> None:
         commands.add(0x1808, 0, 8, print)
     with pytest.raises(CfeError, match="handler already"):
         commands.add_message(0x1806, 8, print)
+
+
+def test_the_function_code_of_a_packet_that_ends_with_it() -> None:
+    """A length field of 0 leaves 7 bytes; NASA's looks for the code all the same."""
+    codes: list[bytes] = []
+    table = CommandTable()
+    table.add(0x1880, 1, 0, codes.append)
+    packet = bytes.fromhex("1880c000000001")
+    assert table.dispatch(packet).outcome == dispatch.DONE
+    assert codes == [packet]
+    assert msg.get_fcn_code(packet) == 1

@@ -175,6 +175,8 @@ def differences(ours: Observed, theirs: Observed) -> list[str]:
         one, other = (each.files.get(path) for each in (ours, theirs))
         if one is None or other is None:
             found.append(f"file {path}: {'not here' if one is None else 'not there'}")
+        elif masks.is_log(one) and masks.is_log(other):
+            found += [] if masks.same_log(one, other) else [f"file {path}: other events"]
         elif masks.of_file(one) != masks.of_file(other):
             found.append(f"file {path}: {_first_difference(masks.of_file(one), masks.of_file(other))}")
     return found

@@ -22,7 +22,7 @@ CFE_APP, sch_lab, SCH_LAB_AppMain, SCH_LAB, 80, 16384, 0x0, 0;
 """
 DOWN = (0x800, 0x801, 0x803, 0x804, 0x805, 0x806, 0x808, 0x809, 0x80A, 0x80B, 0x80C, 0x80D, 0x80E, 0x810)
 LAB_DOWN = (0x880, 0x881, 0x883, 0x884)
-TICKS_PER_LOOK = 5  # of 10 ms
+LOOKS_PER_S = 20
 
 
 def _table(name: str, data: bytes, offset: int = 0) -> bytes:
@@ -33,8 +33,8 @@ def files() -> dict[str, bytes]:
     """What is in /cf beside the applications, by virtual path."""
     subscription = to_lab.packets.SUBSCRIPTION
     rows = b"".join(subscription.pack(Stream=each, BufLimit=50) for each in (*DOWN, *LAB_DOWN))
-    look = {"MessageID": ci_lab.READ_UPLINK.msg_id, "PacketRate": TICKS_PER_LOOK}
-    schedule = sch_lab.schedule.TABLE.pack(TickRate=100, Config=[look])
+    look = {"MessageID": ci_lab.READ_UPLINK.msg_id, "PacketRate": 1}
+    schedule = sch_lab.schedule.TABLE.pack(TickRate=LOOKS_PER_S, Config=[look])
     example = "SAMPLE_APP.ExampleTable"
     size = sample_app.EXAMPLE_TABLE.size
     return {

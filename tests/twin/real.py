@@ -25,6 +25,7 @@ RAM_DISK = "dev/shm/osal:RAM"
 OPERATIONAL = b"entering OPERATIONAL state"
 CLONE_NEWNET = 0x40000000
 BOOT_LIMIT_S = 60.0
+NOT_LONGER_THAN_US = ("setpriv", "--pdeathsig", "KILL")  # also when nobody leaves the context
 INSIDE = """
 mount -t tmpfs none /dev/shm
 mount -t mqueue none /dev/mqueue
@@ -68,7 +69,10 @@ class RealCfe:
         self._log = folder / "console.log"
 
     def __enter__(self) -> RealCfe:
-        spaces = ["unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"]
+        spaces = [
+            *NOT_LONGER_THAN_US,
+            *["unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"],
+        ]
         with self._log.open("wb") as log:
             self._process = subprocess.Popen(
                 [*spaces, "bash", "-c", INSIDE, "-", f"./{EXECUTABLE}"], cwd=self._folder, stdout=log, stderr=log
