@@ -122,7 +122,6 @@ class EvsCommands:
         self._core = core
         self._replies = CommandReplies(core)
         self._table = CommandTable(
-            (pk.SEND_HK, self._send_housekeeping),
             (pk.NOOP, self._noop),
             (pk.RESET_COUNTERS, self._reset_counters),
             (pk.SET_EVENT_FORMAT_MODE, self._set_format),
@@ -135,6 +134,7 @@ class EvsCommands:
             (pk.WRITE_APP_DATA_FILE, files.write_app_data),
             (pk.WRITE_LOG_DATA_FILE, files.write_log),
         )
+        self._table.handle(pk.SEND_HK, self._send_housekeeping, any_length=True)  # NASA's does not look
         AppEventCommands(core, self._replies).add_to(self._table)
 
     def process(self, packet: bytes) -> None:

@@ -58,11 +58,11 @@ class SbTask:
             (pk.DISABLE_ROUTE, self._disable_route),
             (pk.WRITE_PIPE_INFO, self.files.write_pipe_info),
             (pk.WRITE_MAP_INFO, self.files.write_map_info),
-            (pk.SEND_HK, self._send_housekeeping),
             (pk.ENABLE_SUB_REPORTING, self._enable_reports),
             (pk.DISABLE_SUB_REPORTING, self._disable_reports),
             (pk.SEND_PREV_SUBS, self._send_previous),
         )
+        self.commands.handle(pk.SEND_HK, self._send_housekeeping, any_length=True)  # NASA's does not look
 
     def task_main(self) -> None:
         """The main task of CFE_SB (CFE_SB_TaskMain)."""

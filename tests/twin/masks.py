@@ -31,9 +31,11 @@ TELEMETRY: tuple[Telemetry, ...] = (
 BLANKS = {
     ("CFE_SB", 15): re.compile(rb"(size=)\d+"),
     ("CFE_SB", 21): re.compile(rb"(MsgId\()0x[0-9a-f]+"),
+    ("CFE_ES", 60): re.compile(rb"(will write )\d+"),
+    ("CFE_ES", 68): re.compile(rb"(written:Size=)\d+(?:,EntryCount=\d+)?"),
     ("CFE_SB", 44): re.compile(rb"()\n"),
 }
-"""What rows of docs/differences.md speak of: NASA's texts tell 0, or end with a line feed."""
+"""What rows of docs/differences.md speak of: NASA's texts tell 0, or end with a line feed; and how often tasks ran."""
 OF_TELEMETRY = {
     "CFE_ES_HK_TLM": {
         "CFECoreChecksum": "made from the C build",
