@@ -51,6 +51,7 @@ def library_parts(node: Node) -> dict[str, Factory]:
     return {
         "importlib.metadata": _metadata,
         "pkg_resources": _pkg_resources,
+        "roslib._definitions": _factory({"packages": library.packages}),
         "rosmsg._definitions": _factory(definitions),
         "rosparam._angles": _factory({"degrees": degrees, "radians": radians}),
         "rospkg._places": _factory(places),

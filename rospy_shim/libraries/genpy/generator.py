@@ -12,7 +12,7 @@ import genmsg
 from genmsg import InvalidMsgSpec, MsgContext, MsgGenerationException, MsgSpec
 from genmsg.base import log
 from genmsg.gentools import compute_full_type_name
-from genmsg.msg_loader import SearchPath, load_depends, load_msg_from_file, load_srv_from_file
+from genmsg.msg_loader import load_depends, load_msg_from_file, load_srv_from_file
 
 from .base import SIMPLE_TYPES, is_simple
 from .expressions import (
@@ -89,6 +89,7 @@ __all__ = [
 ]
 
 Source = Iterator[str]
+SearchPath = dict[str, list[str]]
 
 
 def msg_generator(msg_context: MsgContext, spec: MsgSpec, search_path: SearchPath) -> Source:

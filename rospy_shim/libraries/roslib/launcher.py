@@ -6,8 +6,8 @@ import importlib.util
 import os
 import sys
 
-import rosmsg
 import rospkg
+from roslib import _definitions  # type: ignore[attr-defined]  # made for the node, which knows its message types
 
 _bootstrapped: list[str] = []
 
@@ -27,7 +27,7 @@ def load_manifest(package_name: str, bootstrap_version: str = "0.7") -> None:
     packages = rospkg.RosPack()
     if package_name in packages.list():
         _add_code(packages, package_name)
-    elif package_name not in rosmsg.packages() and importlib.util.find_spec(package_name) is None:
+    elif package_name not in _definitions.packages() and importlib.util.find_spec(package_name) is None:
         raise rospkg.ResourceNotFound(package_name, ros_paths=packages.get_ros_paths())
     _bootstrapped.append(package_name)
 
@@ -35,7 +35,11 @@ def load_manifest(package_name: str, bootstrap_version: str = "0.7") -> None:
 def _add_code(packages: rospkg.RosPack, package_name: str) -> None:
     if packages.get_manifest(package_name).is_catkin:
         return
-    for name in [*packages._known_depends(package_name, True), package_name]:
+    try:
+        needed = packages.get_depends(package_name)
+    except (rospkg.InvalidManifest, rospkg.ResourceNotFound):
+        needed = []
+    for name in [*needed, package_name]:
         folders = _code_folders(packages, name) if name in packages.list() else []
         sys.path[:0] = [folder for folder in folders if folder not in sys.path]
 

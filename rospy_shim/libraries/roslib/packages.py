@@ -8,7 +8,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import rospkg
-from rospkg import MANIFEST_FILE, PACKAGE_FILE
+from rospkg import MANIFEST_FILE
+from rospkg.common import PACKAGE_FILE
 from rospkg.environment import ROS_PACKAGE_PATH, ROS_ROOT
 
 __all__ = [

@@ -11,7 +11,7 @@ from typing import Any
 
 import rosgraph
 import rosunit
-from rosunit.pyunit import run_suite
+from ros_tools.suites import run_suite
 
 XML_OUTPUT_FLAG = rosunit.XML_OUTPUT_FLAG
 _CALLER_ID = "/script"
