@@ -9,11 +9,24 @@ from __future__ import annotations
 import importlib.machinery
 import os
 import sys
+import warnings
 from types import CodeType
+from typing import NamedTuple
 
 AGAIN = "cfepy.source"  # Python's audit hooks are told of a file that was compiled before, as they are of opened ones
 
 _compiled: dict[tuple[object, ...], CodeType] = {}
+
+
+class Doubt(NamedTuple):
+    """What the compiler warns of: the text, its category, the line."""
+
+    text: str
+    category: type[Warning]
+    line: int
+
+
+_doubts: dict[CodeType, tuple[Doubt, ...]] = {}
 
 
 def code_of_file(path: str, ordered: bool, name: str) -> CodeType:
@@ -36,8 +49,17 @@ def code_of_file(path: str, ordered: bool, name: str) -> CodeType:
         return code
     with open(path, "rb") as file:
         source = file.read()
-    _compiled[key] = code = _compile(source, name, ordered)
+    with warnings.catch_warnings(record=True) as seen:  # they are for who reads the node's output
+        warnings.simplefilter("default")
+        _compiled[key] = code = _compile(source, name, ordered)
+    if seen:
+        _doubts[code] = tuple(Doubt(str(each.message), each.category, each.lineno) for each in seen)
     return code
+
+
+def doubts_of(code: CodeType) -> tuple[Doubt, ...]:
+    """What the compiler warned of as it made the code of a file."""
+    return _doubts.get(code, ())
 
 
 def own_files() -> list[str]:

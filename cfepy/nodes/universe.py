@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from cfepy.nodes.importer import Factory, Importer
 from cfepy.nodes.report import traceback_text
 from cfepy.nodes.sharing import refused_modules
-from cfepy.nodes.sources import code_of_file
+from cfepy.nodes.sources import code_of_file, doubts_of
 from cfepy.nodes.stdlib import os_module, signal_module, sys_module, time_module
 from cfepy.nodes.stdlib.descriptors import OpenFiles, SocketTable
 from cfepy.nodes.stdlib.locks import make_lock_types
@@ -361,8 +361,10 @@ def _execute(universe: Universe) -> int:
     )
     universe.importer.modules["__main__"] = module
     try:
-        place = universe.resolve(universe.script)
-        exec(code_of_file(place, universe.ordered_sets, universe.script), vars(module))
+        code = code_of_file(universe.resolve(universe.script), universe.ordered_sets, universe.script)
+        for doubt in doubts_of(code):  # of the program alone: modules come from Python's byte code cache
+            universe.importer.load("warnings").warn_explicit(doubt.text, doubt.category, universe.script, doubt.line)
+        exec(code, vars(module))
     except BaseException as error:
         return _status_of(universe, error)
     return 0

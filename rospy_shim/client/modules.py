@@ -19,6 +19,7 @@ from rospy_shim.client import (
     logs,
     message,
     names,
+    params,
     service,
     subscription,
     timer,
@@ -119,6 +120,10 @@ class ModuleTables:
             "on_shutdown": life.add_client_shutdown_hook,
             "spin": life.spin,
         }
+
+    def client_module(self) -> NameTable:
+        """`rospy.client`, of which not all is in `rospy`."""
+        return {**self.client(), "_Unspecified": params.Unspecified, "_unspecified": params.UNSPECIFIED}
 
     def params(self) -> NameTable:
         """The functions for parameters."""
@@ -326,7 +331,7 @@ class RosModules:
         master_proxy = make_master_proxy(node)
         self._of_node = tables = ModuleTables(node, make_get_master(node, master_proxy))
         self._tables: dict[str, Callable[[], NameTable]] = {
-            "client": tables.client,
+            "client": tables.client_module,
             "core": tables.core,
             "exceptions": tables.exceptions,
             "impl": dict,

@@ -21,6 +21,15 @@ if TYPE_CHECKING:
 _MISSING = ParameterTree.MISSING
 
 
+class Unspecified:
+    """What stands for "no default" (rospy.client._Unspecified); nodes hand it on from functions of their own."""
+
+    __module__ = "rospy.client"
+
+
+UNSPECIFIED = Unspecified()
+
+
 class Params:
     """The parameter functions of one node (rospy.get_param and its kin).
 
@@ -33,7 +42,7 @@ class Params:
         self._node = node
         self._tree = tree
 
-    def get_param(self, param_name: str, default: Any = _MISSING) -> Any:
+    def get_param(self, param_name: str, default: Any = UNSPECIFIED) -> Any:
         """The value of a parameter, or a namespace as a dictionary.
 
         Args:
@@ -48,11 +57,11 @@ class Params:
         value = self._tree.find(key)
         if value is not _MISSING:
             return self._unpacked(value)
-        if default is _MISSING:
+        if default is UNSPECIFIED:
             raise KeyError(param_name)
         return default
 
-    def get_param_cached(self, param_name: str, default: Any = _MISSING) -> Any:
+    def get_param_cached(self, param_name: str, default: Any = UNSPECIFIED) -> Any:
         """As `get_param`; the tree is as near as a cache would be."""
         return self.get_param(param_name, default)
 

@@ -10,8 +10,10 @@ from pathlib import Path
 
 from cfepy.status import UsageError
 from tests.corpus.flight import Flight
+from tests.corpus.likeness import differences
 from tests.corpus.pool import run_all
 from tests.corpus.report import PAGE, write_page
+from tests.corpus.ros_flight import RosFlight
 from tests.corpus.scenarios import Corpus, Scenario, read_corpus
 from tests.corpus.sources import ENVIRONMENT, FETCH, Sources
 from tests.corpus.verdict import Verdict, judge
@@ -35,7 +37,7 @@ def _parser() -> argparse.ArgumentParser:
     fetch.add_argument("folder", type=Path)
     fetch.add_argument("--mirrors", type=Path, help="folder with bare repositories as owner+name/repo")
     fetch.set_defaults(action=_fetch)
-    for name, action in (("run", _run), ("report", _report), ("fly", _fly)):
+    for name, action in (("run", _run), ("report", _report), ("fly", _fly), ("beside", _beside)):
         sub = actions.add_parser(name, help=(action.__doc__ or "").splitlines()[0])
         sub.add_argument("ids", nargs="*", metavar="ID", help="scenarios; all when none is given")
         sub.add_argument("--sources", type=Path, default=os.environ.get(ENVIRONMENT), help=f"default: ${ENVIRONMENT}")
@@ -81,6 +83,22 @@ def _fly(arguments: argparse.Namespace, corpus: Corpus) -> int:
         print(f"{scenario.id}: {verdict.reason or 'ok'}, {outcome.wall_s:.2f} s")
         good = good and verdict.passed
     return 0 if good else 1
+
+
+def _beside(arguments: argparse.Namespace, corpus: Corpus) -> int:
+    """Run scenarios here and on the ROS 1 of this computer, and show what is not alike."""
+    sources = _sources(arguments)
+    alike = True
+    for scenario in corpus.chosen(arguments.ids):
+        with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as other:
+            there = RosFlight(scenario, sources, Path(folder)).run()
+            here = Flight(scenario, sources, Path(other), arguments.tasks).run()
+        found = differences(there, here)
+        print(f"{scenario.id}: {len(found) or 'no'} differences")
+        for name, (on_ros, on_cfepy) in found.items():
+            print(f"  {name}\n    ROS   {on_ros}\n    cfepy {on_cfepy}")
+        alike = alike and not found
+    return 0 if alike else 1
 
 
 def _verdicts(arguments: argparse.Namespace, corpus: Corpus) -> list[Verdict]:

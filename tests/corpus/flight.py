@@ -63,7 +63,8 @@ class Flight:
         scenario, folder = self._scenario, self._folder
         told = {"observe": scenario.observe, "stimulus": scenario.stimulus}
         (folder / "scenario.json").write_text(json.dumps({**told, "seconds": scenario.seconds}))
-        shutil.copy(Path(__file__).with_name("observer.py"), folder / "observer.py")
+        for name in ("observer.py", "driving.py"):
+            shutil.copy(Path(__file__).with_name(name), folder / name)
         programs = {f"HELPER{number}": helper for number, helper in enumerate(scenario.helpers)}
         programs[NODE] = scenario.node
         files = {OBSERVER: "observer.py", **{app: self._place(app, program) for app, program in programs.items()}}

@@ -4,6 +4,7 @@
     pub(topic, type, latch, queue_size), waitsub(topic)         publish by hand
     serve(name, type, function), call(key, name, type, ...)     offer and call services; answers go to R[key]
     wait(topic, n), sleep(seconds), stop                        wait for messages, for time; set at the end
+    drive(rounds, gap)                                          feed and record all that is on the graph (driving.py)
     N, T, R                                                     counts, messages as plain data, remarks
     mc(type), sc(type), conv(value)                             classes by name; a message as plain data
 
@@ -24,6 +25,7 @@ import rospy
 
 KEPT = 400  # messages of a topic
 LONGEST = 64  # items of a sequence that are kept whole
+OF_ROSCORE = ("/rosdistro", "/rosversion", "/run_id")
 
 folder = sys.argv[1]
 with open(os.path.join(folder, "scenario.json")) as _file:
@@ -110,6 +112,22 @@ def call(key, name, kind, *args, **fields):
         return answer
     except Exception as error:
         R[key] = {"exception": type(error).__name__, "text": str(error)}
+
+
+def watch(topic, kind):
+    N.setdefault(topic, 0)
+    T.setdefault(topic, [])
+    arrivals.setdefault(topic, [])
+    rospy.Subscriber(topic, kind, record, callback_args=topic)
+
+
+def drive(rounds=5, gap=0.2):
+    from driving import Drive
+
+    done = Drive(watch, conv)
+    R.update(kinds=done.kinds, services=done.services, answers=done.answers)
+    done.run(rounds, gap)
+    R["params"] = {name: rospy.get_param(name) for name in rospy.get_param_names() if name not in OF_ROSCORE}
 
 
 def wait(topic, n=1, timeout=10):

@@ -12,6 +12,7 @@ import pytest
 from cfepy.status import UsageError
 from tests.corpus import report
 from tests.corpus.flight import Flight
+from tests.corpus.likeness import differences, digest, lines, messages
 from tests.corpus.pool import run_all
 from tests.corpus.scenarios import Corpus, Program, Scenario, read_corpus
 from tests.corpus.sources import Sources
@@ -177,3 +178,35 @@ def test_the_page_has_a_row_for_each_scenario() -> None:
 def test_the_page_in_docs_is_about_these_scenarios() -> None:
     rows = [line.split("|")[1].strip() for line in report.PAGE.read_text().splitlines() if line.startswith("| ")][1:]
     assert rows == list(read_corpus().scenarios)
+
+
+def test_a_node_that_nobody_has_read_is_driven(sources: Sources, tmp_path: Path) -> None:
+    scenario = scenario_of(sources, "echo.py", stimulus="drive(rounds=2)", params={"/echo/mark": "!"})
+    outcome = fly(scenario, sources, tmp_path)
+    assert outcome.remarks["kinds"] == {"> /out": "std_msgs/String", "< /in": "std_msgs/String"}
+    assert outcome.remarks["services"] == {"/count": "own_msgs/Count"}
+    assert outcome.remarks["answers"] == {"/count": {"b": 2}}
+    assert outcome.remarks["params"] == {"/echo/mark": "!"}
+    assert [each["data"] for each in outcome.messages["/out"]] == ["DATA 0!", "DATA 1!", "bye"]
+    assert differences(outcome, outcome) == {}
+    expected = (f"like('/out') == '{digest(messages(outcome.messages['/out']))}'", "about('answers') == 'other'")
+    assert judge(replace(scenario, expect=expected), outcome).reason == expected[1]
+
+
+def test_times_addresses_frames_and_folders_are_not_compared() -> None:
+    printed = (
+        'Traceback (most recent call last):\n  File "/a/b.py", line 3, in go\n    go()\n\nValueError: at 0x7f001122\n'
+    )
+    assert lines(f"[INFO] [1700000000.123456]: x\n[INFO] [1700000009.5, 12.25]: x\n{printed}") == [
+        "[INFO] [t]: x",
+        "Traceback: ValueError: at 0x0",
+    ]
+    assert lines("/home/me/n/b.py:3: Warning: no") == lines("/tmp/x/b.py:3: Warning: no") == ["b.py:3: Warning: no"]
+    stamped = [{"header": {"seq": number, "stamp": {"secs": 2_000_000 + number, "nsecs": 0}}} for number in range(3)]
+    assert messages(stamped) == [{"header": {"stamp": "time"}}]
+
+
+def test_two_runs_that_are_not_alike() -> None:
+    one = Outcome({"/a": 100}, {"/a": [{"data": 1.0000001}]}, status=0, out="x\n")
+    other = Outcome({"/a": 80}, {"/a": [{"data": 1.0}]}, status=1, out="y\n")
+    assert differences(one, other) == {"status": (0, 1), "printed": (["x"], ["y"]), "/a count": (100, 80)}

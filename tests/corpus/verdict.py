@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from tests.corpus import likeness
 from tests.corpus.scenarios import Scenario
 
 
@@ -53,6 +54,8 @@ def judge(scenario: Scenario, outcome: Outcome) -> Verdict:
     """Evaluate a scenario's expectations.
 
     They see N, T, R, rate, rc, out, hout (of the helpers), `approx(a, b, tolerance)`, and rec with self_exit and files.
+    Of nodes that were driven, digests of what came on ROS stand there (`likeness.py`): of `like(topic)`, of `said`, of
+    `about(remark)`.
     """
     names = {
         "N": outcome.counts,
@@ -64,6 +67,9 @@ def judge(scenario: Scenario, outcome: Outcome) -> Verdict:
         "hout": outcome.helpers_out,
         "rec": {"self_exit": outcome.ended_itself, "files": outcome.files},
         "approx": _approx,
+        "like": lambda topic: likeness.digest(likeness.messages(outcome.messages[topic])),
+        "said": likeness.digest(likeness.lines(outcome.out)),
+        "about": lambda name: likeness.digest(likeness.plain(outcome.remarks[name])),
     }
     failed = [expression for expression in scenario.expect if not _holds(expression, names)]
     reason = "; ".join([*failed, *_last_error(outcome)]) if failed else ""

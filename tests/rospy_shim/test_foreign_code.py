@@ -75,3 +75,12 @@ def test_catkin_finds_files_of_packages(tmp_path: Path) -> None:
         print(find_in_workspaces(project="none"), find_in_workspaces(project="arm", path="none"), find_in_workspaces())
     """
     assert printed(tmp_path, script, ROS_PACKAGE_PATH=str(tmp_path / "ws")) == ["True arm/package.xml", "[] [] []"]
+
+
+def test_what_the_compiler_warns_of_is_in_the_output_of_the_node(tmp_path: Path) -> None:
+    source = 'kind = "a"\nif kind is not "b":\n    print("runs")\n'
+    for folder in ("once", "again"):
+        (tmp_path / folder).mkdir()
+        lines = run_nodes(tmp_path / folder, {"DOUBTED": source}).printed["DOUBTED"]
+        assert 'doubted.py:2: SyntaxWarning: "is not" with' in lines[0]
+        assert lines[1:] == ['  if kind is not "b":', "runs"]

@@ -111,3 +111,21 @@ def test_import_rospy_shows_the_modules_of_rospy_impl(tmp_path: Path) -> None:
         "rospy.impl.rosout pub",
         str([*modules.split(), "tcpros_service", "transport", "validators"]),
     ]
+
+
+def test_no_default_can_be_handed_on(tmp_path: Path) -> None:
+    asks = """
+        import rospy
+        rospy.init_node("asks")
+
+        def value_of(name, default=rospy.client._unspecified):
+            return rospy.get_param(name, default)
+
+        print(value_of("absent", 3), hasattr(rospy, "_unspecified"))
+        print(isinstance(rospy.get_param("absent", rospy.client._Unspecified()), rospy.client._Unspecified))
+        try:
+            value_of("absent")
+        except KeyError as error:
+            print(error)
+    """
+    assert run_nodes(tmp_path, {"ASKS": asks}).printed["asks"] == ["3 False", "True", "'absent'"]
