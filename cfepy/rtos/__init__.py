@@ -13,7 +13,17 @@ from cfepy.rtos.errors import DeadlockError, InjectedCrash
 from cfepy.rtos.exploring import ExploringKernel, make_kernel
 from cfepy.rtos.kernel import ENDLESS, Kernel
 from cfepy.rtos.mutex import Mutex
-from cfepy.rtos.policy import HOLD, PCT, Connection, Decision, Deviations, Moment, NotingPolicy, Policy, SeededRandom
+from cfepy.rtos.policy import (
+    HOLD,
+    PCT,
+    Decision,
+    Deviations,
+    Moment,
+    NotingPolicy,
+    OpenConnection,
+    Policy,
+    SeededRandom,
+)
 from cfepy.rtos.queue import EMPTY, Queue
 from cfepy.rtos.realtime import Pacer, Stopwatch
 from cfepy.rtos.report import Wait
@@ -32,7 +42,6 @@ __all__ = [
     "STALL_S",
     "STEPS",
     "TIMEOUT",
-    "Connection",
     "CpuCosts",
     "DeadlockError",
     "Decision",
@@ -44,6 +53,7 @@ __all__ = [
     "Moment",
     "Mutex",
     "NotingPolicy",
+    "OpenConnection",
     "Pacer",
     "Policy",
     "Queue",

@@ -12,7 +12,7 @@ from typing import Any
 
 from cfepy import trace as tr
 from cfepy.rtos.kernel import Kernel
-from cfepy.rtos.policy import Connection, Decision, Policy
+from cfepy.rtos.policy import Decision, OpenConnection, Policy
 from cfepy.rtos.scheduler import SLICE_NS
 from cfepy.rtos.task import Task
 
@@ -172,7 +172,7 @@ class ExploringKernel(Kernel):
         if not longest_ns:
             return usual_ns
         tried = (longest_ns * step // CONNECTION_DELAYS for step in range(CONNECTION_DELAYS + 1))
-        connection = Connection(publisher, subscriber, topic, tuple(dict.fromkeys((usual_ns, *tried))))
+        connection = OpenConnection(publisher, subscriber, topic, tuple(dict.fromkeys((usual_ns, *tried))))
         number = self._decisions
         self._decisions = number + 1
         choice = self.policy.choose(Decision(number, self.now, (), False, False, None, connection))

@@ -20,7 +20,7 @@ HOLD_ODDS = 16  # one in so many chances to hold a task up is taken: time would 
 HOLD = "hold"  # in place of a task's name: no task runs until the next timer
 
 
-class Connection(NamedTuple):
+class OpenConnection(NamedTuple):
     """A publisher and a subscriber that are about to be connected.
 
     Attributes:
@@ -61,7 +61,7 @@ class Decision:
     running: bool
     hold: bool
     left: Task | None
-    connection: Connection | None = None
+    connection: OpenConnection | None = None
 
     @property
     def width(self) -> int:
