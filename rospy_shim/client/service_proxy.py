@@ -33,7 +33,7 @@ _NOTE = (
 )
 
 
-class Connection(IntEnum):
+class PersistentConnection(IntEnum):
     """State of the connection of a persistent proxy, as rospy would have one."""
 
     NONE = 0
@@ -117,7 +117,7 @@ class ServiceProxy:
         }
         self._pack = packer(self.request_class)
         self._unpack = unpacker(self.response_class)
-        self._connection = Connection.NONE  # that stays
+        self._connection = PersistentConnection.NONE  # that stays
 
     def __call__(self, *args: Any, **kwds: Any) -> Any:
         """See `call`."""
@@ -135,9 +135,9 @@ class ServiceProxy:
         node = self._node
         node.universe.charge()
         request = args_kwds_to_message(self.request_class, args, kwds)
-        if self._connection is Connection.CLOSED:
+        if self._connection is PersistentConnection.CLOSED:
             raise AttributeError("'NoneType' object has no attribute 'tell'")
-        if self._connection is Connection.HALF_A_REQUEST:
+        if self._connection is PersistentConnection.HALF_A_REQUEST:
             self._wait_in_vain()
         entry = node.graph.services.get(self.resolved_name)
         if entry is None:
@@ -148,10 +148,10 @@ class ServiceProxy:
             good, answer, half = self._exchange(entry, body)
         except CfeError as error:
             raise ServiceException(f"service [{self.resolved_name}]: {error}") from error
-        if self._connection is Connection.HALF_A_RESPONSE:
+        if self._connection is PersistentConnection.HALF_A_RESPONSE:
             self._read_half()
         if half and self.persistent:
-            self._connection = Connection.HALF_A_RESPONSE
+            self._connection = PersistentConnection.HALF_A_RESPONSE
         if not good:
             raise ServiceException(f"service [{self.resolved_name}] responded with an error: {answer!r}")
         response = self._unpack(answer, 0)
@@ -166,12 +166,12 @@ class ServiceProxy:
     def _packed(self, request: Any) -> bytes:
         """The bytes of a request; of one that cannot be serialized, half stays in the buffer of the connection."""
         if self.persistent:
-            self._connection = max(self._connection, Connection.OPEN)
+            self._connection = max(self._connection, PersistentConnection.OPEN)
         try:
             return self._pack(request)
         except Exception:
             if self.persistent:
-                self._connection = Connection.HALF_A_REQUEST
+                self._connection = PersistentConnection.HALF_A_REQUEST
                 self._node.universe.print_error(_NOTE.format(service=self.resolved_name))
             raise
 
@@ -253,8 +253,8 @@ class ServiceProxy:
 
     def close(self) -> None:
         """End a persistent connection; on ROS, calls fail then."""
-        if self._connection is not Connection.NONE:
-            self._connection = Connection.CLOSED
+        if self._connection is not PersistentConnection.NONE:
+            self._connection = PersistentConnection.CLOSED
 
     def wait_for_service(self, timeout: Any = None) -> None:
         """Wait until the service is there; see the function of that name."""

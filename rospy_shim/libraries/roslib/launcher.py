@@ -7,6 +7,7 @@ import os
 import sys
 
 import rospkg
+
 from roslib import _definitions  # type: ignore[attr-defined]  # made for the node, which knows its message types
 
 _bootstrapped: list[str] = []

@@ -29,9 +29,8 @@ def taken(file: Path) -> Iterator[str]:
         if isinstance(node, ast.Import):
             found = [each for each in node.names if each.name.partition(".")[0] in others]
             modules |= {each.asname or each.name.partition(".")[0]: each.name if each.asname else "" for each in found}
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            if node.module.partition(".")[0] in others:
-                yield from (f"{node.module}.{each.name}" for each in node.names)
+        elif isinstance(node, ast.ImportFrom) and not node.level and str(node.module).partition(".")[0] in others:
+            yield from (f"{node.module}.{each.name}" for each in node.names)
     for node in ast.walk(tree):
         parts = _dotted(node)
         if len(parts) > 1 and parts[0] in modules:
