@@ -76,7 +76,7 @@ class PipeServices(BufferServices):
             text = f"Pipe Delete Error:Caller({self.caller_name()}) is not the owner of pipe {pipe_id}"
             raise self._create_error(ev.DEL_PIPE_ERR2_EID, CFE_SB_BAD_ARGUMENT, text)
         self.remove_pipe(pipe)
-        self._report_deleted(pipe)
+        self._report_deleted(pipe, pipe.app_name)
 
     def remove_pipe(self, pipe: Pipe) -> None:
         """Delete a pipe without asking whose it is: also at clean-up of an application."""
@@ -89,8 +89,8 @@ class PipeServices(BufferServices):
         pipe.depth = 0  # so that a transmission that is under way finds it full, and no longer there
         pipe.close(None)
 
-    def _report_deleted(self, pipe: Pipe) -> None:
-        self.report(ev.PIPE_DELETED_EID, ev.DEBUG, f"Pipe Deleted:id {pipe.pipe_id},owner {pipe.app_name}")
+    def _report_deleted(self, pipe: Pipe, owner: str) -> None:
+        self.report(ev.PIPE_DELETED_EID, ev.DEBUG, f"Pipe Deleted:id {pipe.pipe_id},owner {owner}")
 
     def set_pipe_opts(self, pipe_id: int, opts: int) -> None:
         """Set the options of a pipe of the calling application (CFE_SB_SetPipeOpts).
@@ -156,7 +156,7 @@ class PipeServices(BufferServices):
         for pipe in list(self.pipes):
             if pipe.app_id == app_id:
                 self.remove_pipe(pipe)
-                self._report_deleted(pipe)
+                self._report_deleted(pipe, "")  # its record is reserved by now, so NASA's finds no name
         self.release_buffers_of(app_id)
 
     def _opts_error(self, event_id: int, text: str) -> CfeError:

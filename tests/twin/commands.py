@@ -20,7 +20,7 @@ from cfepy.tbl import packets as tbl
 from cfepy.time import packets as time
 
 PLAIN, BACKGROUND, CONTROL = "plain", "background", "control"
-"""How long a step takes: the answer of a task, a file written in the background, an application that ends or starts."""
+"""How long a step takes: the answer of a task; a file in the background, or a start; the end of an application."""
 
 SERVICES: dict[str, tuple[Command, ...]] = {
     "ES": es.COMMANDS,
@@ -83,9 +83,9 @@ class Step(NamedTuple):
 def pace_of(packet: bytes) -> str:
     """How long a command takes."""
     msg_id, code = int.from_bytes(packet[:2], "big"), packet[6] & 0x7F if len(packet) > 6 else 0
-    if msg_id == es.CMD_MID and code in (4, 5, 6, 7):
+    if msg_id == es.CMD_MID and code in (5, 6, 7, 15):
         return CONTROL
-    background = {es.CMD_MID: (13, 15), sb.CMD_MID: (3, 7, 8), tbl.CMD_MID: (3, 4, 5, 6)}
+    background = {es.CMD_MID: (4, 13), sb.CMD_MID: (3, 7, 8), tbl.CMD_MID: (3, 4, 5, 6)}
     return BACKGROUND if code in background.get(msg_id, ()) else PLAIN
 
 
@@ -102,6 +102,10 @@ def is_safe(packet: bytes) -> bool:
         pipe = int.from_bytes(packet[12:16], "little")
         return pipe >> 16 != 0x16 or pipe in (*CORE_PIPES, 0x160000, 0x160040)
     return msg_id != ci_lab.packets.READ_UPLINK.msg_id
+
+
+def _asks_housekeeping(packet: bytes) -> bool:
+    return any(int.from_bytes(packet[:2], "big") == each.msg_id for each in HOUSEKEEPING.values())
 
 
 def _all() -> Iterator[Command]:
@@ -151,6 +155,8 @@ class Commander:
             packet = self._any(service)
             if damaged:
                 packet = self._damage(packet)
+            if packets and _asks_housekeeping(packets[-1]):
+                packets.pop()  # its answer would race with CI_LAB, which goes on with the next packet
             if is_safe(packet):
                 packets.append(packet)
         if any(pace_of(packet) != PLAIN for packet in packets):

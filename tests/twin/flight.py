@@ -27,6 +27,8 @@ VIRTUAL_S = {PLAIN: 1.6, BACKGROUND: 4.0, CONTROL: 9.5}
 """How long a step flies in the simulation: uplink, answer, and TO_LAB's pass every half a second."""
 LIMIT_S = {PLAIN: 4.0, BACKGROUND: 8.0, CONTROL: 14.0}
 """How long the real one may take for the same, on a busy host."""
+LEAST_S = {PLAIN: 0.0, BACKGROUND: 1.2, CONTROL: 8.5}
+"""How long the real one is given at least: the events that tell the end may be switched off."""
 QUIET_S = 0.8
 """How long nothing comes down when a step without an answer is over: more than a pass of TO_LAB."""
 ENABLE = to_lab.packets.OUTPUT_ENABLE.packet(dest_IP="127.0.0.1")
@@ -117,8 +119,8 @@ class Real:
     def _come_down(self, step: Step, expected: Observed | None) -> Iterator[bytes]:
         wanted = expected.told() if expected is not None else Counter[bytes]()
         silent = bool(wanted)  # then the last answer is the end; otherwise it takes a while to know
-        end = time.monotonic() + LIMIT_S[step.pace]
-        last = time.monotonic()
+        last = begin = time.monotonic()
+        end = begin + LIMIT_S[step.pace]
         while time.monotonic() < end:
             packet = self._booted.receive(0.05 if wanted else QUIET_S)
             if packet is not None:
@@ -127,6 +129,8 @@ class Real:
                 if told is not None and wanted[told] > 0:
                     wanted -= Counter([told])
                 yield packet
+            elif time.monotonic() - begin < LEAST_S[step.pace]:
+                continue
             elif not wanted and (silent or time.monotonic() - last > QUIET_S):
                 return
 
@@ -169,8 +173,16 @@ def real(built: Path) -> Iterator[Real]:
 def differences(ours: Observed, theirs: Observed) -> list[str]:
     """What is not the same in two observations of a step, a line each."""
     mine, real_ones = ours.told(), theirs.told()
-    found = [f"only NASA's: {_shown(each)}" for each in (real_ones - mine).elements()]
-    found += [f"only ours:   {_shown(each)}" for each in (mine - real_ones).elements()]
+    missing, added = [*(real_ones - mine).elements()], [*(mine - real_ones).elements()]
+    found = []
+    for each in [*missing]:
+        pair = next((other for other in added if masks.fields_that_differ(other, each)), None)
+        if pair is not None:
+            missing.remove(each)
+            added.remove(pair)
+            found.append(f"telemetry 0x{int.from_bytes(each[:2], 'big'):04X}: {masks.fields_that_differ(pair, each)}")
+    found += [f"only NASA's: {_shown(each)}" for each in missing]
+    found += [f"only ours:   {_shown(each)}" for each in added]
     for path in sorted({*ours.files, *theirs.files}):
         one, other = (each.files.get(path) for each in (ours, theirs))
         if one is None or other is None:

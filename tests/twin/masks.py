@@ -150,6 +150,17 @@ def of_packet(packet: bytes) -> bytes | None:
     return packet[:2] + packet[4:6] + _masked(declared.payload, patterns, packet[TLM_HEADER_SIZE:])
 
 
+def fields_that_differ(ours: bytes, theirs: bytes) -> str:
+    """Fields of two packets of a MsgId, as `of_packet` leaves them: path, our bytes, NASA's; "" for other packets."""
+    declared = _declared().get(int.from_bytes(ours[:2], "big"))
+    if declared is None or ours[:4] != theirs[:4] or len(ours) != 4 + declared.payload.size:
+        return ""
+    cells = ((each.path, slice(4 + each.offset, 4 + each.offset + each.size)) for each in declared.payload.cells())
+    return ", ".join(
+        f"{path} {ours[at].hex()} is {theirs[at].hex()} in NASA's" for path, at in cells if ours[at] != theirs[at]
+    )
+
+
 def _subscriptions(packet: bytes) -> bytes:
     """The entries that are in use, in any order: applications subscribe as they come up."""
     fields = sb.ALLSUBS_TLM.read(packet)
