@@ -157,7 +157,7 @@ def read_header(data: bytes) -> FileHeader:
 
 
 def read_table_header(data: bytes, at: int = HEADER_SIZE) -> TableHeader:
-    """The table header at an offset of a table file.
+    """The table header at an offset of a table file; of a name that fills its field the last character is lost.
 
     Raises:
         CfeError: CFE_TBL_ERR_NO_TBL_HEADER when the file ends before it.
@@ -166,7 +166,7 @@ def read_table_header(data: bytes, at: int = HEADER_SIZE) -> TableHeader:
         text = f"a table header has {TABLE_HEADER_SIZE} bytes after the {at} of the file header, the file ends before"
         raise CfeError(CFE_TBL_ERR_NO_TBL_HEADER, text)
     reserved, offset, num_bytes, name = _TABLE.unpack_from(data, at)
-    return TableHeader(_text(name), num_bytes, offset, reserved)
+    return TableHeader(_text(name[:-1]), num_bytes, offset, reserved)
 
 
 def read_table_file(data: bytes) -> tuple[FileHeader, TableHeader, bytes]:

@@ -7,6 +7,7 @@ import pytest
 from cfepy import fs, status
 from cfepy.fs import FileHeader, TableHeader
 from cfepy.status import CfeError, UsageError
+from cfepy.texts import to_bytes
 from tests.layouts import DATA, c_structs
 
 
@@ -72,3 +73,14 @@ def test_numbers_that_do_not_fit() -> None:
         FileHeader("d", subtype=1 << 32).pack()
     with pytest.raises(UsageError, match="32 bits"):
         TableHeader("t", -1).pack()
+
+
+def test_a_table_name_that_fills_its_field_loses_its_last_character() -> None:
+    """NASA's puts a NUL there before it looks the name up (CFE_TBL_DecodeInputData)."""
+    header = bytes(12) + b"T" * 40
+    assert fs.read_table_header(header, 0).table_name == "T" * 39
+
+
+def test_bytes_of_a_header_that_are_not_utf8_stay_as_they_are() -> None:
+    header = bytes(12) + b"A.\xff\xe9".ljust(40, b"\0")
+    assert to_bytes(fs.read_table_header(header, 0).table_name) == b"A.\xff\xe9"

@@ -69,6 +69,7 @@ MSG_IDS = (0x1806, 0x1808, 0x1801, 0x1882, 0x1883, 0x1803, 0x0808, 0x0800, 0x180
 CORE_PIPES = tuple(0x160001 + number for number in range(5))
 PIPES = (*CORE_PIPES, *CORE_PIPES, 0x160000, 0, 0x160040, 0xFFFFFFFF, 0x170001, 5)
 EVENT_IDS = (1, 3, 4, 7, 14, 17, 25, 0, 0xFFFF, 20, 2)
+MOST_AT_ONCE = 3  # with the request for housekeeping; a pipe takes 4 packets of a MsgId
 TONES = (0x1810, 0x1811, 0x1860, 0x1862)
 
 
@@ -102,6 +103,26 @@ def is_safe(packet: bytes) -> bool:
         pipe = int.from_bytes(packet[12:16], "little")
         return pipe >> 16 != 0x16 or pipe in (*CORE_PIPES, 0x160000, 0x160040)
     return msg_id != ci_lab.packets.READ_UPLINK.msg_id
+
+
+def _joined(steps: Iterable[Step]) -> Iterator[Step]:
+    """Steps that follow one another go up at once, as far as one service takes them and none takes long."""
+    waiting: Step | None = None
+    for step in steps:
+        if waiting is not None and _go_together(waiting, step):
+            waiting = waiting._replace(packets=(*waiting.packets, *step.packets))
+            continue
+        if waiting is not None:
+            yield waiting
+        waiting = step
+    if waiting is not None:
+        yield waiting
+
+
+def _go_together(one: Step, other: Step) -> bool:
+    if one.service != other.service or {one.pace, other.pace} != {PLAIN}:
+        return False
+    return len(one.packets) < MOST_AT_ONCE and not _asks_housekeeping(one.packets[-1])
 
 
 def _asks_housekeeping(packet: bytes) -> bool:
@@ -144,14 +165,15 @@ class Commander:
             kind = self._random.random()
             if kind < 0.45:
                 sequence = self._random.choice(self._sequences)
-                yield from (Step(service, (packet,), pace_of(packet)) for service, packet in sequence())
+                yield from _joined(Step(service, (packet,), pace_of(packet)) for service, packet in sequence())
             else:
                 yield self._burst(damaged=kind > 0.8)
 
     def _burst(self, damaged: bool) -> Step:
         service = self._random.choices([*WEIGHTS], [*WEIGHTS.values()])[0]
         packets: list[bytes] = []
-        while len(packets) < self._random.choice((1, 2, 3)):
+        count = self._random.choice((1, 2, 3, 3))
+        while len(packets) < count:
             packet = self._any(service)
             if damaged:
                 packet = self._damage(packet)
