@@ -1,4 +1,4 @@
-"""Platform configuration: the CFE_PLATFORM_* and CFE_MISSION_* values that services read, with cFE v7.0.0's defaults.
+"""Platform configuration: the CFE_PLATFORM_* and CFE_MISSION_* values that services read, with the defaults of cFE 7.0.
 
 A board profile and a mission file may change them (`PlatformConfig.with_limits`).
 """
@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+
+from cfepy.versions import CFE_7_0_0, DEFAULT_RELEASE, RELEASES, Release
 
 ES_MEM_BLOCK_SIZES = (8, 16, 32, 48, 64, 96, 128, 160, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768, 80000)
 """Bytes of the blocks in memory pools and in the CDS (CFE_PLATFORM_ES_MEM_BLOCK_SIZE_01 and on)."""
@@ -56,7 +58,13 @@ COUNTED_BY_ID = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class PlatformConfig:
-    """Limits and identities of one processor; field names are cFE's macro names without CFE_PLATFORM_/CFE_MISSION_."""
+    """Limits and identities of one processor; field names are cFE's macro names without CFE_PLATFORM_/CFE_MISSION_.
+
+    Attributes:
+        cfe_version: the release of cFE that it runs, a key of `RELEASES`; a mission file names it by itself.
+    """
+
+    cfe_version: str = DEFAULT_RELEASE
 
     spacecraft_id: int = 66
     processor_id: int = 1
@@ -142,6 +150,16 @@ class PlatformConfig:
     time_cfg_tone_limit: int = 20000
     time_cfg_start_fly: int = 2
     time_cfg_latch_fly: int = 8
+
+    @property
+    def release(self) -> Release:
+        """The release of cFE."""
+        return RELEASES[self.cfe_version]
+
+    @property
+    def is_cfe_7_0_0(self) -> bool:
+        """Whether the release is 7.0.0; what differs from 7.0.1 is in docs/differences.md."""
+        return self.cfe_version == CFE_7_0_0
 
     def with_limits(self, limits: Mapping[str, int | str | tuple[int, ...]]) -> PlatformConfig:
         """A copy with some values replaced.

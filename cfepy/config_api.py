@@ -86,10 +86,11 @@ class ConfigServices:
 
 def _build_info(config: PlatformConfig, mission: str) -> dict[str, Value]:
     """The keys of config_ids_base.cmake."""
-    major, minor, revision, mission_revision = versions.VERSION_NUMBER
+    release = config.release
+    major, minor, revision, mission_revision = release.number
     return {
         "MISSION_NAME": mission,
-        "MISSION_SRCVER": f"git:{versions.OFFICIAL}",
+        "MISSION_SRCVER": f"git:{release.official}",
         "MISSION_EDS_DB": NO_OBJECT,
         "MISSION_SBINTF_DB": NO_OBJECT,
         "CORE_VERSION_MAJOR": major,
@@ -97,12 +98,12 @@ def _build_info(config: PlatformConfig, mission: str) -> dict[str, Value]:
         "CORE_VERSION_REVISION": revision,
         "CORE_VERSION_MISSION_REV": mission_revision,
         "CORE_VERSION_BUILDNUM": versions.BUILD_NUMBER,
-        "CORE_VERSION_BASELINE": versions.OFFICIAL,
-        "CORE_VERSION_DESCRIPTION": versions.version_string("cFE"),
-        "CORE_BUILDINFO_DATE": f"cfepy {versions.CFE_VERSION}",
+        "CORE_VERSION_BASELINE": release.official,
+        "CORE_VERSION_DESCRIPTION": release.text("cFE"),
+        "CORE_BUILDINFO_DATE": f"cfepy {release.source}",
         "CORE_BUILDINFO_USER": "cfepy",
         "CORE_BUILDINFO_HOST": config.processor_name,
-        **{f"MOD_SRCVER_{module}": f"git:{versions.OFFICIAL}" for module in versions.MODULES},
+        **{f"MOD_SRCVER_{module}": release.module(module) for module in versions.MODULES},
     }
 
 
@@ -121,4 +122,5 @@ def _arrays(config: PlatformConfig) -> dict[str, Value]:
 def _platform(config: PlatformConfig) -> dict[str, Value]:
     """The fields of the platform configuration: PLATFORM_ES_MAX_APPLICATIONS; OSAL's without a prefix: OS_MAX_TASKS."""
     fields: dict[str, Value] = asdict(config)
+    del fields["cfe_version"]
     return {name.upper() if name.startswith("os_") else f"PLATFORM_{name.upper()}": fields[name] for name in fields}

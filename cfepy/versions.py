@@ -1,22 +1,66 @@
-"""The versions that cFE, OSAL and PSP show, in one place."""
+"""The releases of cFE that a mission can choose from, and the versions that cFE, OSAL and PSP show."""
 
 from __future__ import annotations
 
-CFE_VERSION = "v7.0.0+dev0"
+from dataclasses import dataclass
+
+CFE_7_0_0, CFE_7_0_1 = "7.0.0", "7.0.1"
 OSAL_VERSION = "v7.0.0+dev0"
 PSP_VERSION = "v7.0.0+dev0"
 CODENAME = "Draco"
+APP_VERSION = "v7.0.0+dev0"
 OFFICIAL = "v7.0.0"
 VERSION_NUMBER = (7, 0, 0, 0)
-"""Major, minor, revision, mission revision: of cFE, OSAL and PSP alike."""
+"""Major, minor, revision, mission revision of OSAL and PSP, which are the same with both releases of cFE."""
 
 BUILD_NUMBER = 0  # of a release
 MODULES = ("CORE_API", "ES", "EVS", "FS", "SB", "TBL", "TIME", "OSAL", "PSP", "MSG", "SBR", "RESOURCEID", "CONFIG")
 """The parts of the flight software, in the order in which ES tells their versions."""
 
 
+@dataclass(frozen=True, slots=True)
+class Release:
+    """A release of cFE.
+
+    Attributes:
+        number: major, minor, revision, mission revision.
+        longest_entry: characters of an entry of the startup script, without blanks, that are read.
+    """
+
+    number: tuple[int, int, int, int]
+    longest_entry: int
+
+    @property
+    def official(self) -> str:
+        """Its name, "v7.0.1" (CFE_LAST_OFFICIAL)."""
+        return "v{}.{}.{}".format(*self.number)
+
+    @property
+    def source(self) -> str:
+        """The version of its source, "v7.0.1+dev0" (CFE_SRC_VERSION)."""
+        return f"{self.official}+dev{BUILD_NUMBER}"
+
+    def module(self, name: str) -> str:
+        """The version of the source of one of `MODULES`; OSAL's and the PSP's are the same with both releases."""
+        return f"git:{OFFICIAL if name in ('OSAL', 'PSP') else self.official}"
+
+    def text(self, component: str) -> str:
+        """The long version text of one of its parts."""
+        return version_string(component, self.source, CODENAME, self.official)
+
+
+RELEASES = {
+    CFE_7_0_0: Release((7, 0, 0, 0), longest_entry=128),
+    CFE_7_0_1: Release((7, 0, 1, 0), longest_entry=127),
+}
+"""Releases by what a mission file calls them."""
+
+DEFAULT_RELEASE = CFE_7_0_1
+"""What a mission flies on that names none: 7.0.0 refuses every table that the ground loads."""
+
+
 def version_string(
-    component: str, version: str = CFE_VERSION, codename: str = CODENAME, official: str = OFFICIAL
+    component: str, version: str = APP_VERSION, codename: str = CODENAME, official: str = OFFICIAL
 ) -> str:
     """The long version text of a component, as CFE_Config_GetVersionString makes it.
 

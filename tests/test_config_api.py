@@ -38,8 +38,8 @@ def test_each_kind_of_value(config: ConfigServices) -> None:
 
     assert config.get_value(named("CORE_VERSION_MAJOR")) == 7
     assert config.get_string(named("MISSION_NAME")) == config.get_obj_pointer(named("MISSION_NAME")) == "demo"
-    assert config.get_string(named("MOD_SRCVER_SB")) == "git:v7.0.0"
-    description = "cFE v7.0.0+dev0 (Draco) v7.0.0 Official Release, EDS disabled"
+    assert config.get_string(named("MOD_SRCVER_SB")) == "git:v7.0.1"
+    description = "cFE v7.0.1+dev0 (Draco) v7.0.1 Official Release, EDS disabled"
     assert config.get_string(named("CORE_VERSION_DESCRIPTION")) == description
     assert config.get_obj_pointer(named("MISSION_EDS_DB")) is None
     assert config.get_array_value(named("PLATFORM_ES_MEM_BLOCK_SIZE")) == BUCKETS[::-1]

@@ -6,7 +6,12 @@ to discard combined packets that lack data, is here an argument of `run`, for a 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from .app import HK_AppMain, run
-from .packets import COMMANDS, TABLES, TELEMETRY
+from .copy_table import find_fault
+from .packets import COMMANDS, COPY_TABLE, RUNTIME_TABLE, TELEMETRY
+
+TABLES = (replace(COPY_TABLE, fault=find_fault), RUNTIME_TABLE)
 
 __all__ = ["COMMANDS", "TABLES", "TELEMETRY", "HK_AppMain", "run"]

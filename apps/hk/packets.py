@@ -70,5 +70,3 @@ COPY_TABLE = TableType(
 
 RUNTIME_TABLE = TableType("HK.RuntimeTable", RUNTIME_TABLE_ENTRY, COPY_TABLE_ENTRIES, description="HK Runtime Tbl")
 """What HK made of each entry of the copy table; it can only be dumped."""
-
-TABLES = (COPY_TABLE, RUNTIME_TABLE)

@@ -153,5 +153,4 @@ class SampleApp:
 
 def check_table(image: memoryview) -> int:
     """Whether a table image is good: 0, or a negative number. cFE asks before the image is ever used."""
-    values = pk.EXAMPLE_TABLE.unpack(image)
-    return 0 if values["Int1"] <= pk.INT1_MAX else pk.TABLE_OUT_OF_RANGE
+    return 0 if pk.find_fault(image) is None else pk.TABLE_OUT_OF_RANGE

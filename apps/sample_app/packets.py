@@ -36,7 +36,18 @@ EXAMPLE_TABLE = Layout("SAMPLE_APP_ExampleTable_t", [("Int1", "u16"), ("Int2", "
 INT1_MAX = 10
 TABLE_OUT_OF_RANGE = -1
 
+
+def find_fault(image: bytes | memoryview) -> str | None:
+    """What is wrong with an image of the table; None when it is good."""
+    value = EXAMPLE_TABLE.unpack(image)["Int1"]
+    return f"Int1 is {value}, at most {INT1_MAX} is allowed" if value > INT1_MAX else None
+
+
 TABLE = TableType(
-    "SAMPLE_APP.ExampleTable", EXAMPLE_TABLE, file="/cf/sample_app_tbl.tbl", description="Table Utility Test Table"
+    "SAMPLE_APP.ExampleTable",
+    EXAMPLE_TABLE,
+    file="/cf/sample_app_tbl.tbl",
+    description="Table Utility Test Table",
+    fault=find_fault,
 )
 TABLES = (TABLE,)

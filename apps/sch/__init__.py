@@ -6,7 +6,15 @@ has either SCH or SCH_LAB.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from .app import SCH_AppMain
-from .packets import COMMANDS, TABLES, TELEMETRY
+from .packets import COMMANDS, MESSAGE_TABLE, SCHEDULE_TABLE, TELEMETRY
+from .state import judge_messages, judge_schedule
+
+TABLES = (
+    replace(SCHEDULE_TABLE, fault=lambda image: judge_schedule(image).fault or None),
+    replace(MESSAGE_TABLE, fault=lambda image: judge_messages(image).fault or None),
+)
 
 __all__ = ["COMMANDS", "TABLES", "TELEMETRY", "SCH_AppMain"]

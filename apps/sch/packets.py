@@ -116,5 +116,3 @@ MESSAGE_TABLE = TableType(
     description="SCH message definitions table",
 )
 """Whole packets, header included; they are bytes here, in C 16-bit words."""
-
-TABLES = (SCHEDULE_TABLE, MESSAGE_TABLE)

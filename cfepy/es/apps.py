@@ -341,7 +341,8 @@ class AppEnd(AppServices):
         for task in [task for task in self.kernel.tasks if task.owner is app]:
             history.cpu_ns += task.cpu_ns
             self.kernel.kill(task)
-        for service in (self.ports.tbl, self.ports.sb, self.ports.time, self.ports.evs):
+        tbl, sb, time, evs = self.ports.tbl, self.ports.sb, self.ports.time, self.ports.evs
+        for service in (tbl, sb, time, evs) if self.config.is_cfe_7_0_0 else (evs, sb, tbl, time):
             service.cleanup_app(app.app_id)
         self.osal.delete_objects_of(app)
         self._release_pools(app)

@@ -62,10 +62,12 @@ class CoreApp(NamedTuple):
 
 
 class ObjectTable(NamedTuple):
-    """What the executive sets up before any application (cfe_es_objtab.c): calls with their C names, then core apps."""
+    """What the executive sets up before any application (cfe_es_objtab.c): calls with what the log names them, then
+    core apps; `failed` is what it says of a call that failed, with its name and the status."""
 
     calls: Sequence[tuple[str, Callable[[], object]]]
     core_apps: Sequence[CoreApp]
+    failed: str = "Error returned when calling function: {}: EC = {}"
 
 
 class Boot:
@@ -121,7 +123,7 @@ class Boot:
             try:
                 call()
             except CfeError as error:
-                self._panic(f"Error returned when calling function: {name}: EC = {error.hex}", error)
+                self._panic(self.table.failed.format(name, error.hex), error)
         for core in self.table.core_apps:
             try:
                 self._start_core_app(core)
@@ -152,7 +154,8 @@ class Boot:
         script = self._volatile_script() if reset_type == RST_TYPE_PROCESSOR else None
         file = VOLATILE_STARTUP_FILE if script is not None else NONVOL_STARTUP_FILE
         self.log(f"CFE_ES_StartApplications: Opened ES App Startup file: {file}")
-        for entry in parse(self.script if script is None else script):
+        longest = self.es.config.release.longest_entry
+        for entry in parse(self.script if script is None else script, longest):
             if isinstance(entry, BadLine):
                 for text in entry.log_texts:
                     self.log(text)

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from cfepy.fs import FileCategory, parse_input_file_name
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CFE_ES_ERR_APP_CREATE, CfeError
+from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 CFE_APP = "CFE_APP"
 CFE_LIB = "CFE_LIB"
@@ -23,7 +24,7 @@ EXCEPTION_RESTART_APP = 0
 EXCEPTION_PROC_RESTART = 1
 
 MAX_TOKENS = 8
-BUFFER_SIZE = 128
+LONGEST = RELEASES[DEFAULT_RELEASE].longest_entry
 MAX_NAME_LEN = 20
 MAX_TASK_PRIORITY = 255
 
@@ -112,37 +113,40 @@ class _Raw(NamedTuple):
     dropped: bool
 
 
-def parse(data: bytes) -> Iterator[StartupEntry | BadLine]:
+def parse(data: bytes, longest: int = LONGEST) -> Iterator[StartupEntry | BadLine]:
     """The entries of a startup script in order, one result for each ";"; no bytes make it fail.
 
     Args:
         data: the file.
+        longest: characters of an entry that the release of cFE reads.
     """
     for raw in _split(data):
         if raw.ended:
-            yield _parse_entry(raw)
+            yield _parse_entry(raw, longest)
 
 
-def entries(data: bytes) -> list[StartupEntry]:
+def entries(data: bytes, longest: int = LONGEST) -> list[StartupEntry]:
     """The entries of a startup script that start something, in order.
 
     Args:
         data: the file.
+        longest: characters of an entry that the release of cFE reads.
     """
-    return [entry for entry in parse(data) if isinstance(entry, StartupEntry)]
+    return [entry for entry in parse(data, longest) if isinstance(entry, StartupEntry)]
 
 
-def check(data: bytes) -> list[Note]:
+def check(data: bytes, longest: int = LONGEST) -> list[Note]:
     """Everything in a script that its author should look at, also what cFE takes without a word.
 
     Args:
         data: the file.
+        longest: characters of an entry that the release of cFE reads.
     """
     found: list[Note] = []
     for raw in _split(data):
-        error = _error_in(raw)
+        error = _error_in(raw, longest)
         found += [] if error is None else [Note(raw.line, error)]
-        found += [Note(raw.line, text, is_warning=True) for text in _remarks(raw)]
+        found += [Note(raw.line, text, is_warning=True) for text in _remarks(raw, longest)]
     return found
 
 
@@ -177,10 +181,10 @@ def _split(data: bytes) -> Iterator[_Raw]:
         line += chunk.count(b"\n")
 
 
-def _parse_entry(raw: _Raw) -> StartupEntry | BadLine:
+def _parse_entry(raw: _Raw, longest: int) -> StartupEntry | BadLine:
     tokens = raw.text.split(",")
-    if len(tokens) > MAX_TOKENS or len(raw.text) > BUFFER_SIZE:
-        return _malformed(raw, len(tokens))
+    if len(tokens) > MAX_TOKENS or len(raw.text) > longest:
+        return _malformed(raw, len(tokens), longest)
     if len(tokens) < MAX_TOKENS:
         return _too_few(raw, len(tokens))
     kind, file, symbol, name = tokens[:4]
@@ -221,13 +225,13 @@ def _bad(raw: _Raw, explanation: str, log_text: str, status: int = CFE_ES_BAD_AR
     return BadLine(raw.number, raw.line, (log_text,), explanation, status, raw.text)
 
 
-def _malformed(raw: _Raw, tokens: int) -> BadLine:
+def _malformed(raw: _Raw, tokens: int, longest: int) -> BadLine:
     """More fields, or more characters, than cFE's buffers take; its log counts the commas as "tokens"."""
     size = len(raw.text)
     text = f"{_START}**WARNING** File Line {raw.number} is malformed: {size} bytes, {tokens - 1} tokens."
     if tokens > MAX_TOKENS:
         return _bad(raw, f"the entry has {tokens} fields, it must have {MAX_TOKENS}; is a ';' missing?", text)
-    return _bad(raw, f"the entry has {size} characters without blanks, at most {BUFFER_SIZE} are read", text)
+    return _bad(raw, f"the entry has {size} characters without blanks, at most {longest} are read", text)
 
 
 def _too_few(raw: _Raw, tokens: int) -> BadLine:
@@ -238,19 +242,19 @@ def _too_few(raw: _Raw, tokens: int) -> BadLine:
     return _bad(raw, reason, text)
 
 
-def _error_in(raw: _Raw) -> str | None:
+def _error_in(raw: _Raw, longest: int) -> str | None:
     """Why an entry starts nothing; None when it does."""
     if not raw.ended:
         return f"the last entry has no ';' and is lost: {raw.text}"
-    entry = _parse_entry(raw)
+    entry = _parse_entry(raw, longest)
     return entry.explanation if isinstance(entry, BadLine) else None
 
 
-def _remarks(raw: _Raw) -> Iterator[str]:
+def _remarks(raw: _Raw, longest: int) -> Iterator[str]:
     """What cFE takes otherwise than it is written."""
     if raw.dropped:
         yield "bytes that are not ASCII are left out of the entry"
-    entry = _parse_entry(raw) if raw.ended else None
+    entry = _parse_entry(raw, longest) if raw.ended else None
     if not isinstance(entry, StartupEntry):
         return
     fields = raw.text.split(",")

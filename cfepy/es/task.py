@@ -13,7 +13,7 @@ from cfepy.es.service import ExecutiveServices
 from cfepy.msg import BAD_CODE, BAD_MSG_ID, DONE, CommandTable
 from cfepy.psp import RST_TYPE_POWERON
 from cfepy.status import CfeError
-from cfepy.versions import CFE_VERSION, MODULES, OFFICIAL, OSAL_VERSION, PSP_VERSION, VERSION_NUMBER, version_string
+from cfepy.versions import MODULES, OSAL_VERSION, PSP_VERSION
 
 _VERSION_PARTS = ("MajorVersion", "MinorVersion", "Revision", "MissionRevision")
 PIPE_NAME = "ES_CMD_PIPE"
@@ -34,7 +34,7 @@ def housekeeping(es: ExecutiveServices, replies: Replies, dump: PerfDump, checks
         "CommandCounter": replies.command_counter & 0xFF,
         "CommandErrorCounter": replies.error_counter & 0xFF,
         "CFECoreChecksum": checksum,
-        **_versions("CFE", VERSION_NUMBER),
+        **_versions("CFE", es.config.release.number),
         **_versions("OSAL", es.osal.get_version_number()),
         **_versions("PSP", es.psp.get_version_number()),
         **_logs(es),
@@ -119,6 +119,7 @@ class EsTask:
         self.mission_name = mission_name
         self.build = build
         self.checksum = checksum
+        self._versions = f"cfe {es.config.release.source}, osal {OSAL_VERSION}, psp {PSP_VERSION}"
         self.replies = Replies(es.ports)
         self.perf_dump = PerfDump(es.perf_log, es.osal, es.ports)
         self.background = BackgroundTask(es, self._jobs())
@@ -170,14 +171,12 @@ class EsTask:
 
     def _announce(self) -> None:
         send = self.replies.send
-        send(ev.INIT_INF_EID, f"cFE ES Initialized: {version_string('CFE_ES')}")
-        send(
-            ev.INITSTATS_INF_EID,
-            f"cFS Versions: cfe {CFE_VERSION}, osal {OSAL_VERSION}, psp {PSP_VERSION}. cFE chksm {self.checksum}",
-        )
-        send(ev.VERSION_INF_EID, f"Version Info: Mission {self.mission_name}, version git:{OFFICIAL}")
+        send(ev.INIT_INF_EID, f"cFE ES Initialized: {self.es.config.release.text('CFE_ES')}")
+        release = self.es.config.release
+        send(ev.INITSTATS_INF_EID, f"cFS Versions: {self._versions}. cFE chksm {self.checksum}")
+        send(ev.VERSION_INF_EID, f"Version Info: Mission {self.mission_name}, version git:{release.official}")
         for module in MODULES:
-            send(ev.VERSION_INF_EID, f"Version Info: Module {module}, version git:{OFFICIAL}")
+            send(ev.VERSION_INF_EID, f"Version Info: Module {module}, version {release.module(module)}")
         send(ev.BUILD_INF_EID, self.build)
 
     def process(self, packet: bytes) -> None:
@@ -195,8 +194,7 @@ class EsTask:
 
     def _noop(self, packet: bytes) -> None:
         self.replies.send(ev.BUILD_INF_EID, self.build)
-        versions = f" cFS Versions: cfe {CFE_VERSION}, osal {OSAL_VERSION}, psp {PSP_VERSION}"
-        self.replies.accept(ev.NOOP_INF_EID, f"No-op command:\n{versions}")
+        self.replies.accept(ev.NOOP_INF_EID, f"No-op command:\n cFS Versions: {self._versions}")
 
     def _reset_counters(self, packet: bytes) -> None:
         self.replies.reset()

@@ -21,7 +21,6 @@ from cfepy.ids import ES_APPID_BASE, get_base, to_index
 from cfepy.msg import BAD_CODE, BAD_MSG_ID, DONE, Command, CommandTable, Dispatch
 from cfepy.osal import OS_FILE_FLAG_CREATE, OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY, Osal
 from cfepy.status import CfeError, OsalError
-from cfepy.versions import version_string
 
 Fields = Mapping[str, Any]
 Handler = Callable[[AppEvents, str, Fields], bool]
@@ -157,7 +156,7 @@ class EvsCommands:
             self._replies.refuse(ev.LEN_ERR_EID, done.length_text())
 
     def _noop(self, packet: bytes) -> bool:
-        self._core.send_own(ev.NOOP_EID, ev.INFORMATION, f"No-op Cmd Rcvd: {version_string('CFE_EVS')}")
+        self._core.send_own(ev.NOOP_EID, ev.INFORMATION, f"No-op Cmd Rcvd: {self._core.config.release.text('CFE_EVS')}")
         return True
 
     def _reset_counters(self, packet: bytes) -> None:

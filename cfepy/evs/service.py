@@ -30,7 +30,6 @@ from cfepy.status import (
     CFE_EVS_UNKNOWN_FILTER,
     CfeError,
 )
-from cfepy.versions import version_string
 
 PIPE_DEPTH = 32
 PIPE_NAME = "EVS_CMD_PIPE"
@@ -97,7 +96,7 @@ class EventServices(EventCore):
         ports.sb.subscribe(pk.CMD_MID, pipe)
         ports.sb.subscribe(pk.SEND_HK_MID, pipe)
         self.own_app_id = ports.es.get_app_id()
-        self.send_own(STARTUP_EID, INFORMATION, f"cFE EVS Initialized: {version_string('CFE_EVS')}")
+        self.send_own(STARTUP_EID, INFORMATION, f"cFE EVS Initialized: {self.config.release.text('CFE_EVS')}")
         serve(ports, self.config, pipe, MAIN_PERF_ID, self.commands.process)
 
     def cleanup_app(self, app_id: int) -> None:

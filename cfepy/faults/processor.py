@@ -231,10 +231,12 @@ class TableFault(MemoryFault):
 
     def _find(self, processor: Processor) -> tuple[Any, str]:
         name = self._fault.target[0]
-        table = processor.cfe.tbl.registry.find(name)
-        if table is None or table.active is None:
+        registry = processor.cfe.tbl.registry
+        table = registry.find(name)
+        active = None if table is None else registry.active(table)
+        if table is None or active is None:
             raise LookupError(f"there is no table {name} at {processor.machine.kernel.now / 1e9:g} s")
-        return table.active.view(), f"table {name}"
+        return table.image(active), f"table {name}"
 
 
 class RetainedFault(MemoryFault):

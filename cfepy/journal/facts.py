@@ -13,7 +13,7 @@ from pathlib import Path
 from cfepy import __version__
 from cfepy.mission import KEPT_ENVIRONMENT, MissionSpec
 from cfepy.resources import shipped
-from cfepy.versions import CFE_VERSION
+from cfepy.versions import RELEASES
 
 _SECRET = re.compile(r"TOKEN|SECRET|PASSW|PASSPHRASE|CREDENTIAL|API_?KEY|PRIVATE|AUTH|COOKIE|SESSION", re.IGNORECASE)
 
@@ -21,7 +21,7 @@ _SECRET = re.compile(r"TOKEN|SECRET|PASSW|PASSPHRASE|CREDENTIAL|API_?KEY|PRIVATE
 def versions() -> dict[str, str]:
     """Of cfepy, cFE and Python; `source` stands for cfepy's own files, which may change between two versions."""
     python = platform.python_version()
-    return {"cfepy": __version__, "cfe": CFE_VERSION, "python": python, "source": _source()}
+    return {"cfepy": __version__, "cfe": ", ".join(RELEASES), "python": python, "source": _source()}
 
 
 def own_places() -> tuple[str, ...]:

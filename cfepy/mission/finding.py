@@ -121,6 +121,7 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None) -> Mission
         board=said.board_in(script.parent),
         ros=said.ros,
         limits=said.limits,
+        cfe_version=said.cfe_version,
         demands=said.demands,
     )
     if said.launch:

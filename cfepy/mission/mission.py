@@ -11,6 +11,7 @@ import warnings
 import weakref
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
@@ -102,7 +103,8 @@ class Mission:
         self.seed = seed
         self.tasks = tasks
         self.board = board if isinstance(board, BoardProfile) else load_profile(board or self.spec.board)
-        self.config = self.spec.limits.config(self.board, self.spec.has_nodes)
+        limits = self.spec.limits.config(self.board, self.spec.has_nodes)
+        self.config = replace(limits, cfe_version=self.spec.cfe_version)
         self.console = console if console is not None else Console()
         self.trace = Trace() if trace is None else trace
         self.console.record = self.trace.note

@@ -19,6 +19,7 @@ from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import merged, read_files, read_tree
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import NodeConfig, RosConfig, TopicConfig
+from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 DEMANDS = ("invariants", "results", "deadlines")
 """Sections that say what must hold of a run."""
@@ -32,14 +33,15 @@ class MissionSections:
     """What a mission file says, as far as it could be read.
 
     Attributes:
-        name, board, limits, nodes, topics, params, params_from, ordered_sets, connection_delay, launch: the sections
-            of these names, as their readers give them; `name` and `board` are None when nothing is said.
+        name, board, cfe_version, limits, nodes, topics, params, params_from, ordered_sets, connection_delay, launch:
+            the sections of these names, as their readers give them; `name` and `board` are None when nothing is said.
         demands: the sections of `DEMANDS`, as they stand there.
         places: all sections that are there and known, as they stand there.
     """
 
     name: str | None = None
     board: str | None = None
+    cfe_version: str = DEFAULT_RELEASE
     limits: MissionLimits = field(default_factory=MissionLimits)
     nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
     topics: Mapping[str, TopicConfig] = field(default_factory=dict)
@@ -186,6 +188,14 @@ def _truth(entry: Marked) -> bool:
     return entry.value
 
 
+def _release(entry: Marked) -> str:
+    """A release of cFE."""
+    if not isinstance(entry.value, str) or entry.value not in RELEASES:
+        choice = " or ".join(f'"{name}"' for name in RELEASES)
+        raise entry.fail(f"is {entry.value!r}; the releases of cFE to choose from are {choice}")
+    return entry.value
+
+
 def _texts(section: Marked) -> Mapping[str, str]:
     return {key: str(value.value) for key, value in section.mapping().items()}
 
@@ -214,6 +224,7 @@ def _single(read: Callable[[Marked], Any]) -> Callable[[Marked, Mistakes], Any]:
 _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "name": _single(Marked.text),
     "board": _single(Marked.text),
+    "cfe_version": _single(_release),
     "limits": read_limits,
     "nodes": read_nodes,
     "topics": read_topics,

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cfepy import versions
 from cfepy.app import Cfe
 from cfepy.config import PlatformConfig
 from cfepy.config_api import ConfigServices
@@ -25,6 +24,7 @@ from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
 from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
 from cfepy.mission.record import RunRecord
 from cfepy.mission.spec import MissionSpec
+from cfepy.mission.table_files import TableFiles
 from cfepy.osal import FileSystem, Network, Osal
 from cfepy.ports import Ports
 from cfepy.psp import BoardProfile, MemoryBudget, Psp, Retained, object_sizes
@@ -117,7 +117,7 @@ class Processor:
         self.cfe = self._make_services()
         self.handle = handle_for_apps(self.cfe, machine.kernel)
         self.sb_task = SbTask(self.cfe.sb)
-        checksum = zlib.crc32(versions.CFE_VERSION.encode()) & 0xFFFF
+        checksum = zlib.crc32(machine.config.release.source.encode()) & 0xFFFF
         self.es_task = EsTask(self.cfe.es, machine.spec.name, self._build_text(), checksum)
 
     def _finders(self) -> list[Finder]:
@@ -153,7 +153,7 @@ class Processor:
         sb = machine.bus(kernel, ports, config, self._costs, object_sizes(machine.board))
         evs = EventServices(kernel, ports, config, console, self.osal)
         time = TimeServices(kernel, ports, config)
-        tbl = TableServices(kernel, ports, config, machine.files)
+        tbl = TableServices(kernel, ports, config, TableFiles(self.osal))
         ports.es, ports.syslog, ports.sb, ports.evs, ports.time, ports.tbl = es, es.syslog, sb, evs, time, tbl
         time.clock.on_jump = sb.forget_time
         record = machine.record
@@ -163,7 +163,7 @@ class Processor:
     def _build_text(self) -> str:
         machine = self.machine
         who = f"cfepy@{machine.config.processor_name}"
-        return f"Build cfepy {versions.CFE_VERSION} by {who}, config {machine.board.name}"
+        return f"Build cfepy {machine.config.release.source} by {who}, config {machine.board.name}"
 
     def _boot(self) -> None:
         """The processor's main task: PSP first, then the executive."""
@@ -176,23 +176,33 @@ class Processor:
         """What CFE_ES_Main calls and starts before the startup script (CFE_ES_ObjectTable)."""
         cfe, kept = self.cfe, self.machine.retained.kept
         nothing = bool  # what C does here, Python did when it made the objects
+        calls: dict[str, Callable[[], object]] = {
+            "Config_Init": nothing,
+            "ES_CDSEarlyInit": cfe.es.cds_early_init,
+            "EVS_EarlyInit": lambda: cfe.evs.early_init(kept),
+            "SB_EarlyInit": cfe.sb.early_init,
+            "TIME_EarlyInit": lambda: cfe.time.early_init(kept),
+            "TBL_EarlyInit": cfe.tbl.early_init,
+            "FS_EarlyInit": nothing,
+        }
+        apps = {
+            "EVS": CoreApp("CFE_EVS", cfe.evs.task_main, EVS_PRIORITY),
+            "SB": CoreApp("CFE_SB", self.sb_task.task_main, SB_PRIORITY),
+            "ES": CoreApp("CFE_ES", self.es_task.task_main, ES_PRIORITY),
+            "TIME": CoreApp("CFE_TIME", cfe.time.task_main, TIME_PRIORITY),
+            "TBL": CoreApp("CFE_TBL", cfe.tbl.task_main, TBL_PRIORITY),
+        }
+        if self.machine.config.is_cfe_7_0_0:
+            return ObjectTable(
+                calls=tuple((f"CFE_{name}", call) for name, call in calls.items()), core_apps=tuple(apps.values())
+            )
+        by_module = {name.split("_")[0]: call for name, call in calls.items()}
+        order = [by_module.pop("Config"), *(by_module[name] for name in sorted(by_module))]
+        names = ["CONFIG", *sorted(by_module)]
         return ObjectTable(
-            calls=(
-                ("CFE_Config_Init", nothing),
-                ("CFE_ES_CDSEarlyInit", cfe.es.cds_early_init),
-                ("CFE_EVS_EarlyInit", lambda: cfe.evs.early_init(kept)),
-                ("CFE_SB_EarlyInit", cfe.sb.early_init),
-                ("CFE_TIME_EarlyInit", lambda: cfe.time.early_init(kept)),
-                ("CFE_TBL_EarlyInit", cfe.tbl.early_init),
-                ("CFE_FS_EarlyInit", nothing),
-            ),
-            core_apps=(
-                CoreApp("CFE_EVS", cfe.evs.task_main, EVS_PRIORITY),
-                CoreApp("CFE_SB", self.sb_task.task_main, SB_PRIORITY),
-                CoreApp("CFE_ES", self.es_task.task_main, ES_PRIORITY),
-                CoreApp("CFE_TIME", cfe.time.task_main, TIME_PRIORITY),
-                CoreApp("CFE_TBL", cfe.tbl.task_main, TBL_PRIORITY),
-            ),
+            calls=tuple((f"EarlyInit for CFE_{name}", call) for name, call in zip(names, order, strict=True)),
+            core_apps=tuple(apps[name] for name in sorted(apps)),
+            failed="Error returned from {}: EC = {}",
         )
 
     def _operational(self) -> None:

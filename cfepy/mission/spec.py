@@ -13,6 +13,7 @@ from cfepy.marked_yaml import Marked
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.nodes import RosConfig
+from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,7 @@ class MissionSpec:
         script: the startup script.
         mission_file: None when there is none.
         board: what it is made for: a shipped board's name or a path.
+        cfe_version: the release of cFE that it flies on.
         ros: its ROS nodes, topics and parameters.
         limits: what it asks for of a platform.
         startup: the startup script of a mission that was made in memory; `script` then names what it was made from.
@@ -40,6 +42,7 @@ class MissionSpec:
     board: str
     ros: RosConfig
     limits: MissionLimits = field(default_factory=MissionLimits)
+    cfe_version: str = DEFAULT_RELEASE
     startup: bytes | None = None
     notes: tuple[str, ...] = ()
     demands: Mapping[str, Marked] = field(default_factory=dict)
@@ -52,7 +55,7 @@ class MissionSpec:
     @CachedProperty
     def entries(self) -> tuple[StartupEntry, ...]:
         """What the startup script starts, in order; read once."""
-        return tuple(read_entries(self.startup_script))
+        return tuple(read_entries(self.startup_script, RELEASES[self.cfe_version].longest_entry))
 
     @property
     def has_nodes(self) -> bool:

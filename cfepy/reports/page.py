@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from cfepy import __version__, versions
+from cfepy import __version__
 from cfepy.ground import SeriesSet, graph_svg
 from cfepy.markup import element, escaped
 from cfepy.monitors import time_text
@@ -138,7 +138,7 @@ def _header(flown: Flown, numbers: Numbers, about: About, collector: Collector) 
         "OPERATIONAL at": booted,
         "Tasks": escaped(results.tasks),
         "Made from": escaped(about.source),
-        "Versions": escaped(f"cfepy {__version__}, cFE {versions.CFE_VERSION}, Python {platform.python_version()}"),
+        "Versions": escaped(f"cfepy {__version__}, Python {platform.python_version()}"),
         "Trace": element("code", escaped(results.trace)),
     }
     if results.wall_s:

@@ -25,7 +25,6 @@ from cfepy.sb import packets as pk
 from cfepy.sb.bus import SoftwareBus, tell_all
 from cfepy.sb.routing import Destination, Throttle
 from cfepy.status import CFE_STATUS_REQUEST_ALREADY_PENDING, CfeError
-from cfepy.versions import version_string
 
 PIPE_DEPTH = 32
 PIPE_NAME = "SB_CMD_PIPE"
@@ -75,7 +74,9 @@ class SbTask:
         ports.sb.subscribe(pk.CMD_MID, pipe)
         ports.sb.subscribe(pk.SEND_HK_MID, pipe)
         ports.sb.subscribe(pk.SUB_RPT_CTRL_MID, pipe)
-        ports.evs.send_event(ev.INIT_EID, ev.INFORMATION, f"cFE SB Initialized: {version_string('CFE_SB')}")
+        ports.evs.send_event(
+            ev.INIT_EID, ev.INFORMATION, f"cFE SB Initialized: {self.bus.config.release.text('CFE_SB')}"
+        )
         serve(ports, self.bus.config, pipe, MAIN_PERF_ID, self.process)
 
     def process(self, packet: bytes) -> None:
@@ -95,7 +96,7 @@ class SbTask:
     # -- commands --------------------------------------------------------------------------------------------------
 
     def _noop(self, packet: bytes) -> None:
-        text = f"No-op Cmd Rcvd: {version_string('CFE_SB')}"
+        text = f"No-op Cmd Rcvd: {self.bus.config.release.text('CFE_SB')}"
         self.ports.evs.send_event(ev.CMD0_RCVD_EID, ev.INFORMATION, text)
         self.bus.counters.command += 1
 

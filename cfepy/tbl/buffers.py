@@ -1,35 +1,40 @@
 """The memory that table images live in: a table's own one or two buffers, and the load buffers that tables share.
 
 Stands for cfe_tbl_loadbuff.c. All come out of one memory pool of Executive Services. Images never move; only which
-buffer is active changes.
+buffer is active changes. A buffer in use has an id. The ids matter: cFE frees the id of a single-buffered table's
+buffer with the first load, so that the buffer is no more protected by a lock, and cannot be dumped.
 """
 
 from __future__ import annotations
 
 from cfepy.fs import calculate_crc
+from cfepy.ids import SERIAL_MAX, TBL_LOADBUFFID_BASE, UNDEFINED, get_serial, make
 from cfepy.ports import Block, Ports
-from cfepy.status import CFE_TBL_ERR_NO_BUFFER_AVAIL, CfeError
 
 _FIRST_ADDRESS = 0x10000
 _ALIGNMENT = 8
+_PER_TABLE = 2
+SHARED = 0
+"""The category of ids of shared buffers; a table's own have its slot in the registry and 1."""
 
 Bytes = bytes | bytearray | memoryview
 
 
 class Buffer:
-    """One image.
+    """One image (CFE_TBL_LoadBuff_t).
 
     Attributes:
-        data: the bytes; all of the buffer, of which a shared one uses only `content_size`.
-        content_size: bytes that belong to the table now.
+        data: all of its memory, of which the content may be less; nothing before an app gave its own.
+        is_external: whether it is memory of an app, which nothing is written to.
+        content_size: bytes that were put into it; a partial load ends with its last byte.
         address: a number for telemetry; nothing can be read through it.
         block: what it is in the pool; None for memory of an app.
+        load_id: 0 for a free one.
         source: where the image came from, for LastFileLoaded.
         file_time: (seconds, subseconds) of the file it came from.
         crc: CRC-16 of the content at load time.
         is_valid: the image passed its validation.
         activate_requested: the owner may switch to it.
-        place: what a registry dump calls it: a shared buffer's index, or -3 and -2 for a table's own two.
     """
 
     __slots__ = (
@@ -40,54 +45,90 @@ class Buffer:
         "crc",
         "data",
         "file_time",
+        "is_external",
         "is_valid",
-        "place",
+        "load_id",
         "source",
     )
 
-    def __init__(self, data: memoryview, address: int, place: int, block: Block | None = None) -> None:
+    def __init__(self, data: memoryview, address: int, block: Block | None = None) -> None:
         self.data = data
         self.block = block
+        self.is_external = block is None
         self.address = address
-        self.place = place
-        self.content_size = len(data)
+        self.load_id = UNDEFINED
+        self.content_size = 0
         self.source = ""
         self.file_time = (0, 0)
         self.crc = 0
         self.is_valid = False
         self.activate_requested = False
 
-    @property
-    def is_shared(self) -> bool:
-        """Whether it belongs to all tables."""
-        return self.place >= 0
-
     def view(self) -> memoryview:
         """The content, writable in place."""
         return self.data[: self.content_size]
 
     def copy(self, image: Bytes) -> None:
-        """Replace the content."""
+        """Replace the content, unless it does not fit (CFE_TBL_LoadBuffCopyData)."""
+        if self.is_external or len(image) > len(self.data):
+            return
         self.data[: len(image)] = image
         self.content_size = len(image)
+        self.crc = 0
 
-    def take_over(self, other: Buffer) -> None:
-        """Become a copy of another buffer, content and what is known of it (the update of a single-buffered table)."""
-        self.copy(other.view())
-        self.source, self.file_time, self.crc = other.source, other.file_time, other.crc
-        self.is_valid = other.is_valid
+    def refer_to(self, memory: memoryview, address: int) -> None:
+        """Become the memory of an app (CFE_TBL_LoadBuffSetExternalBlock)."""
+        self.data, self.address, self.content_size, self.crc = memory, address, len(memory), 0
 
     def clear(self) -> None:
-        """Overwrite the content with zeros."""
-        self.data[: self.content_size] = bytes(self.content_size)
+        """Overwrite the memory with zeros; there is no content then (CFE_TBL_LoadBuffClearData)."""
+        if not self.is_external:
+            self.data[:] = bytes(len(self.data))
+        self.content_size = self.crc = 0
 
     def recompute_crc(self) -> None:
         """Note the CRC of the content as it is now."""
         self.crc = calculate_crc(self.view())
 
-    def mark_unvalidated(self) -> None:
-        """What every new image starts as."""
-        self.is_valid = self.activate_requested = False
+
+class BufferIds:
+    """Which ids there are: serial numbers go round all shared buffers, then round two for each slot of the registry.
+
+    Args:
+        shared: how many load buffers the tables share.
+        tables: slots of the registry.
+    """
+
+    def __init__(self, shared: int, tables: int) -> None:
+        self._shared = shared
+        self._total = shared + tables * _PER_TABLE
+
+    def split(self, buffer_id: int) -> tuple[int, int]:
+        """Category and number of the buffer that an id means (CFE_TBL_LoadBuffSerialDecompose)."""
+        return self._split(get_serial(buffer_id))
+
+    def _split(self, serial: int) -> tuple[int, int]:
+        number = serial % self._total
+        if number < self._shared:
+            return SHARED, number
+        category, number = divmod(number - self._shared, _PER_TABLE)
+        return category + 1, number
+
+    def after(self, buffer_id: int, category: int) -> int:
+        """The id of a category that follows another id (CFE_TBL_LoadBuffIncrementSerial_Impl)."""
+        serial = get_serial(buffer_id) + 1
+        actual, number = self._split(serial)
+        if actual != category:
+            serial += -serial % self._total  # the next round
+            serial += number if category == SHARED else self._shared + (category - 1) * _PER_TABLE + number
+        return make(TBL_LOADBUFFID_BASE, serial % self._total if serial >= SERIAL_MAX else serial)
+
+    def place(self, buffer_id: int) -> int:
+        """What a registry dump calls a buffer: -1 for none, a shared one's number, -3 and -2 for a table's own."""
+        if buffer_id == UNDEFINED:
+            return -1
+        category, number = self.split(buffer_id)
+        return number if category == SHARED else number - 3
 
 
 class BufferMemory:
@@ -97,19 +138,23 @@ class BufferMemory:
         ports: has Executive Services, and with them the pool.
         size: bytes of the pool (CFE_PLATFORM_TBL_BUF_MEMORY_BYTES).
         shared: how many load buffers the tables share (CFE_PLATFORM_TBL_MAX_SIMULTANEOUS_LOADS).
-        shared_size: bytes of each.
+        shared_size: bytes of each (CFE_PLATFORM_TBL_MAX_SNGL_TABLE_SIZE).
+        tables: how many tables there may be.
 
     Attributes:
         pool_id: the pool's handle.
+        ids: the ids of buffers.
     """
 
-    def __init__(self, ports: Ports, size: int, shared: int, shared_size: int) -> None:
+    def __init__(self, ports: Ports, size: int, shared: int, shared_size: int, tables: int) -> None:
         self._ports = ports
         self._size = size
-        self._shared = shared
+        self._count = shared
         self._shared_size = shared_size
         self._next_address = _FIRST_ADDRESS
-        self._free: list[Buffer] = []
+        self._shared: list[Buffer] = []
+        self._last_id = make(TBL_LOADBUFFID_BASE, 0)
+        self.ids = BufferIds(shared, tables)
         self.pool_id = 0
 
     def early_init(self) -> None:
@@ -119,49 +164,49 @@ class BufferMemory:
             CfeError: there is no room for them.
         """
         self.pool_id = self._ports.es.pool_create(self._size, "CFE_TBL")
-        self._free = [self.allocate(self._shared_size, place) for place in range(self._shared)]
+        self._shared = [self.allocate(self._shared_size) for _ in range(self._count)]
 
     @property
     def free_shared(self) -> int:
         """The number of shared buffers that are free."""
-        return len(self._free)
+        return sum(buffer.load_id == UNDEFINED for buffer in self._shared)
 
-    def allocate(self, size: int, place: int) -> Buffer:
+    def shared(self, number: int) -> Buffer:
+        """A shared buffer by its number."""
+        return self._shared[number]
+
+    def allocate(self, size: int) -> Buffer:
         """A zeroed buffer of `size` bytes.
 
         Raises:
             CfeError: CFE_ES_ERR_MEM_BLOCK_SIZE when the pool has no room for it.
         """
         block = self._ports.es.get_pool_buf(self.pool_id, size)
-        return Buffer(block.memory, self._address_for(size), place, block)
+        return Buffer(block.memory, self.address_for(size), block)
 
-    def external(self, data: Bytes, place: int) -> Buffer:
-        """A buffer over memory of an app, which stays the app's (CFE_TBL_OPT_USR_DEF_ADDR); it costs nothing here."""
-        return Buffer(memoryview(data), self._address_for(len(data)), place)
+    def external(self) -> Buffer:
+        """A buffer for memory of an app, which stays the app's (CFE_TBL_OPT_USR_DEF_ADDR); it costs nothing here."""
+        return Buffer(memoryview(b""), 0)
 
     def free(self, buffer: Buffer) -> None:
         """Give a table's own buffer back."""
+        buffer.load_id = UNDEFINED
         if buffer.block is not None:
             self._ports.es.put_pool_buf(self.pool_id, buffer.block)
 
-    def acquire_shared(self) -> Buffer:
-        """Borrow the shared buffer with the lowest number.
+    def acquire_shared(self) -> Buffer | None:
+        """Borrow the shared buffer that is next; None when all are lent (CFE_TBL_AcquireGlobalLoadBuff)."""
+        candidate = self._last_id
+        for _ in self._shared:
+            candidate = self.ids.after(candidate, SHARED)
+            buffer = self._shared[self.ids.split(candidate)[1]]
+            if buffer.load_id == UNDEFINED:
+                buffer.load_id = self._last_id = candidate
+                return buffer
+        return None
 
-        Raises:
-            CfeError: CFE_TBL_ERR_NO_BUFFER_AVAIL when all are lent.
-        """
-        if not self._free:
-            raise CfeError(CFE_TBL_ERR_NO_BUFFER_AVAIL, "all shared load buffers are in use")
-        buffer = self._free.pop(0)
-        buffer.mark_unvalidated()
-        return buffer
-
-    def release_shared(self, buffer: Buffer) -> None:
-        """Give a shared buffer back."""
-        self._free.append(buffer)
-        self._free.sort(key=lambda each: each.place)
-
-    def _address_for(self, size: int) -> int:
+    def address_for(self, size: int) -> int:
+        """A number for telemetry that no other buffer has."""
         address = self._next_address
         self._next_address += size + -size % _ALIGNMENT
         return address

@@ -10,11 +10,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 
+from cfepy.config import PlatformConfig
+from cfepy.ids import UNDEFINED
 from cfepy.msg import sys_time_fields
 from cfepy.ports import Ports
-from cfepy.status import CFE_ES_CDS_ALREADY_EXISTS, CFE_SUCCESS, CFE_TBL_INFO_RECOVERED_TBL, CfeError
+from cfepy.status import (
+    CFE_ES_CDS_ALREADY_EXISTS,
+    CFE_SUCCESS,
+    CFE_TBL_ERR_NEVER_LOADED,
+    CFE_TBL_INFO_RECOVERED_TBL,
+    CfeError,
+)
 from cfepy.tbl.packets import CRITICAL_RECORD
-from cfepy.tbl.registry import TableRecord
+from cfepy.tbl.registry import TableRecord, TableRegistry
 
 REGISTRY_NAME = "CFE_TBL.CritReg"
 
@@ -53,10 +61,10 @@ class CriticalRecord:
     loaded_once: bool = False
 
     def begin(self, handle: int, name: str) -> None:
-        """Become the record of a table that was never loaded."""
+        """Become the record of a new table; as in cFE `loaded_once` stays what it was."""
         self.handle, self.name = handle, name
         self.file_time = self.last_update = (0, 0)
-        self.last_file, self.loaded_once = "", False
+        self.last_file = ""
 
     def pack(self) -> bytes:
         """Its bytes in the CDS."""
@@ -76,12 +84,15 @@ class CriticalTables:
 
     Args:
         ports: has the CDS and the system log.
-        capacity: how many critical tables there may be.
+        config: how many critical tables there may be, and the release.
+        registry: has the tables' buffers.
     """
 
-    def __init__(self, ports: Ports, capacity: int) -> None:
+    def __init__(self, ports: Ports, config: PlatformConfig, registry: TableRegistry) -> None:
         self._ports = ports
-        self._records = [CriticalRecord() for _ in range(capacity)]
+        self._registry = registry
+        self._loads_stay = config.is_cfe_7_0_0
+        self._records = [CriticalRecord() for _ in range(config.tbl_max_critical_tables)]
         self._handle = 0
 
     def early_init(self) -> None:
@@ -113,10 +124,10 @@ class CriticalTables:
             CfeError: the CDS has no room for it, or there is no CDS; the table is an ordinary one then.
         """
         handle, status = self._ports.es.register_cds_ex(table.size, table.name, critical_table=True)
-        table.cds_handle = handle
+        table.cds_handle, table.critical = handle, True
         if status == CFE_ES_CDS_ALREADY_EXISTS and self._restore(table):
             return CFE_TBL_INFO_RECOVERED_TBL
-        record = self._of(handle) or self._of(0)
+        record = self._of(0)
         if record is None:
             function = "RegisterWithCriticalTableRegistry"
             self._log(function, f"Failed to find a free Crit Tbl Reg Rec for '{table.name}'")
@@ -126,33 +137,41 @@ class CriticalTables:
         return CFE_SUCCESS
 
     def _restore(self, table: TableRecord) -> bool:
-        """Give a table the image that the CDS has; False when there is none, or it is not to be trusted."""
+        """Give a table the image that the CDS has (CFE_TBL_RestoreTableDataFromCDS); False when there is none.
+
+        As in cFE nobody says how much was put into the buffer: the CRC of what came back is that of nothing, 0, and a
+        dump is empty, until the next load. Where there is no image, or with release 7.0.0 in any case, the load that
+        was begun for it stays in progress.
+        """
         function = "RestoreTableDataFromCDS"
+        buffer = self._registry.working_buffer(table)
+        if buffer is None:
+            return False
         try:
-            data = self._ports.es.restore_from_cds(table.cds_handle)
+            table.image(buffer)[:] = self._ports.es.restore_from_cds(table.cds_handle)
         except CfeError as error:
             self._log(function, f"Failed to recover '{table.name}' from CDS (ErrCode={error.hex})")
             return False
         record = self._of(table.cds_handle)
-        if record is None or record.name != table.name or not record.loaded_once:
+        if record is None or not record.loaded_once:
             self._log(function, f"Failed to recover '{table.name}' info from CDS TblReg")
             return False
-        buffer = table.next_buffer()
-        buffer.copy(data)
         buffer.source, buffer.file_time = record.last_file, record.file_time
+        table.set_active(buffer)
+        if not self._loads_stay:
+            table.next_id = UNDEFINED
+        table.note_load(record.last_file, record.last_update)
         buffer.recompute_crc()
-        table.active, table.last_file, table.last_update = buffer, record.last_file, record.last_update
-        for access in table.accesses:
-            access.updated = True
+        table.tell_users()
         return True
 
     def save(self, table: TableRecord) -> None:
         """Keep the active image of a critical table; a failure is logged, and the table good all the same."""
-        active, function = table.active, "UpdateCriticalTblCDS"
-        if not table.cds_handle or active is None:
-            return
+        active, function = self._registry.active(table), "UpdateCriticalTblCDS"
         try:
-            self._ports.es.copy_to_cds(table.cds_handle, active.view())
+            if active is None:
+                raise CfeError(CFE_TBL_ERR_NEVER_LOADED, f"{table.name!r} was never loaded")
+            self._ports.es.copy_to_cds(table.cds_handle, table.image(active))
         except CfeError as error:
             self._log(function, f"Unable to update Critical Table '{table.name}' in CDS (Err={error.hex})")
             return
@@ -169,14 +188,13 @@ class CriticalTables:
         return next((record for record in self._records if record.name == name), None)
 
     def delete(self, record: CriticalRecord) -> None:
-        """Delete the CDS of a table that is not registered any more.
+        """Delete the CDS of a table that is not registered any more; the registry is written with its next change.
 
         Raises:
             CfeError: CFE_ES_CDS_WRONG_TYPE_ERR, CFE_ES_CDS_OWNER_ACTIVE_ERR, CFE_ES_ERR_NAME_NOT_FOUND.
         """
         self._ports.es.delete_cds(record.name, called_by_tbl_services=True)
         record.handle = 0
-        self._save("DeleteCDSCmd", "Unable to update Critical Table Registry in CDS")
 
     def _of(self, handle: int) -> CriticalRecord | None:
         return next((record for record in self._records if record.handle == handle), None)

@@ -6,8 +6,8 @@ says in its table header and in CFE_TBL_FILEDEF.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, cast
 
 from cfepy.msg import Layout
@@ -29,6 +29,8 @@ class TableType:
         rows: how many of them.
         file: where the app loads it from at its start; empty when it does not.
         description: of its file, at most 31 characters.
+        fault: the application's validation, for those who cannot ask the application: given a whole image, it says
+            what the application refuses it for, or None.
 
     >>> point = TableType("APP.Points", Layout("Point", [("X", "u8"), ("Y", "u8")]), rows=3)
     >>> point.pack({1: {"X": 7}}).hex()
@@ -42,6 +44,7 @@ class TableType:
     rows: int = 1
     file: str = ""
     description: str = ""
+    fault: Callable[[bytes | memoryview], str | None] | None = field(default=None, compare=False)
 
     @property
     def own_name(self) -> str:

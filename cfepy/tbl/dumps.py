@@ -6,41 +6,83 @@ table at once.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from cfepy.config import PlatformConfig
 from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE, FileHeader, write_table_file
+from cfepy.ids import TBL_DUMPCTRLID_BASE, UNDEFINED, IdTable
 from cfepy.ports import Ports
 from cfepy.status import (
     CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
     CFE_SUCCESS,
     CFE_TBL_BAD_ARGUMENT,
+    CFE_TBL_ERR_INVALID_HANDLE,
     CFE_TBL_ERR_NO_BUFFER_AVAIL,
     CFE_TBL_INFO_DUMP_PENDING,
     CFE_TBL_INFO_NO_DUMP_PENDING,
+    OS_ERR_INVALID_SIZE,
     CfeError,
     OsalError,
 )
 from cfepy.tbl import events as ev
 from cfepy.tbl.buffers import Buffer, BufferMemory
 from cfepy.tbl.packets import ACTIVE_BUFFER, INACTIVE_BUFFER
-from cfepy.tbl.registry import DumpControl, TableRecord
+from cfepy.tbl.registry import Access, TableRecord, TableRegistry
 from cfepy.tbl.table_file import TableStorage
 
 DESCRIPTION = "Table Dump Image"
 
 
+def select_buffer(registry: TableRegistry, table: TableRecord, which: int) -> Buffer | None:
+    """The image that a dump or validate command means; None when there is none (CFE_TBL_GetSelectedBuffer)."""
+    if which == ACTIVE_BUFFER:
+        return registry.active(table)
+    return registry.inactive(table) if which == INACTIVE_BUFFER else None
+
+
 class DumpRefused(CfeError):
-    """A dump that cannot be, with the id of the event that tells the ground; `text` is what that event says."""
+    """A dump that cannot be, with the id of the event that tells the ground; `text` is what that event says.
+
+    There is none for a buffer whose id was freed: cFE refuses the dump and says nothing.
+    """
 
     def __init__(self, status: int, event_id: int, text: str) -> None:
         super().__init__(status, text)
         self.event_id = event_id
 
 
-def select_buffer(table: TableRecord, which: int) -> Buffer | None:
-    """The image that a dump or validate command means; None when there is none (CFE_TBL_GetSelectedBuffer)."""
-    if which == ACTIVE_BUFFER:
-        return table.active
-    return table.inactive() if which == INACTIVE_BUFFER else None
+class DumpControl:
+    """One dump that the ground asked for (CFE_TBL_DumpControl_t).
+
+    Attributes:
+        table: whose.
+        table_name: its name.
+        source: the buffer that is copied.
+        source_id: its id when the ground asked; 0 once it was copied.
+        image: the snapshot, which goes to the file later.
+        file_name: of that file.
+        file_time: when the snapshot was taken.
+        performed: whether it was.
+        number: its id.
+    """
+
+    __slots__ = ("file_name", "file_time", "image", "number", "performed", "source", "source_id", "table", "table_name")
+
+    def __init__(self, table: TableRecord, source: Buffer) -> None:
+        self.table = table
+        self.table_name = table.name
+        self.source = source
+        self.source_id = source.load_id
+        self.image: Buffer | None = None
+        self.file_name = ""
+        self.file_time = (0, 0)
+        self.performed = False
+        self.number = UNDEFINED
+
+    @property
+    def has_source(self) -> bool:
+        """Whether the buffer still has the id that it had."""
+        return self.source_id != UNDEFINED and self.source.load_id == self.source_id
 
 
 class Dumps:
@@ -50,72 +92,96 @@ class Dumps:
         last_file: the file written last, for housekeeping.
     """
 
-    def __init__(self, memory: BufferMemory, config: PlatformConfig, ports: Ports, files: TableStorage) -> None:
+    def __init__(
+        self, registry: TableRegistry, memory: BufferMemory, config: PlatformConfig, ports: Ports, files: TableStorage
+    ) -> None:
+        self._registry = registry
         self._memory = memory
         self._config = config
         self._ports = ports
         self._files = files
-        self._dumps: list[DumpControl] = []
+        self._dumps: IdTable[DumpControl] = IdTable(TBL_DUMPCTRLID_BASE, config.tbl_max_simultaneous_loads)
         self.last_file = ""
 
     def request(self, table: TableRecord, which: int, file_name: str) -> None:
-        """Begin a dump of the active or inactive image.
+        """Begin a dump of the active or inactive image (CFE_TBL_AllocateDumpCtrlBlock, _PrepareDumpSnapshotBuffer).
+
+        As in cFE a dump that fails for want of a buffer, or of an id, keeps its place among the dumps for ever.
 
         Raises:
-            DumpRefused: one is pending, there is no such image, or no buffer for the snapshot.
+            DumpRefused: one is pending, there is no such image, there are too many dumps, no buffer for the snapshot,
+                or the buffer has no id.
         """
-        if table.dump is not None:
+        if table.dump_id != UNDEFINED:
             raise DumpRefused(CFE_TBL_INFO_DUMP_PENDING, ev.DUMP_PENDING_ERR_EID, "A dump is already pending")
-        source = select_buffer(table, which)
+        source = select_buffer(self._registry, table, which)
         if source is None:
             text = f"Cmd had illegal buffer parameter (0x{which:08X})"
             raise DumpRefused(CFE_TBL_BAD_ARGUMENT, ev.ILLEGAL_BUFF_PARAM_ERR_EID, text)
-        if len(self._dumps) >= self._config.tbl_max_simultaneous_loads:
+        if len(self._dumps) >= self._dumps.capacity:
             text = "Too many table dumps have been requested"
             raise DumpRefused(CFE_TBL_ERR_NO_BUFFER_AVAIL, ev.TOO_MANY_DUMPS_ERR_EID, text)
-        try:
-            image = self._memory.acquire_shared()
-        except CfeError as error:
+        dump = DumpControl(table, source)
+        dump.number = self._dumps.create(dump)
+        image = self._memory.acquire_shared()
+        if image is None:
             text = "No working buffers available"
-            raise DumpRefused(error.status, ev.NO_WORK_BUFFERS_ERR_EID, text) from None
-        dump = DumpControl(table, source, image, file_name)
-        self._dumps.append(dump)
+            raise DumpRefused(CFE_TBL_ERR_NO_BUFFER_AVAIL, ev.NO_WORK_BUFFERS_ERR_EID, text)
+        dump.image, dump.file_name = image, file_name
         if table.dump_only:
-            table.dump = dump
-        else:
-            self._take(dump)
+            table.dump_id = dump.number
+        elif not self._take(dump):
+            image.load_id = UNDEFINED
+            raise DumpRefused(CFE_TBL_ERR_INVALID_HANDLE, UNDEFINED, f"{table.name!r} cannot be dumped")
 
-    def take_snapshot(self, table: TableRecord) -> int:
-        """Take the snapshot that waits for the owner.
+    def take_snapshot(self, table: TableRecord, access: Access) -> int:
+        """Take the snapshot that waits for the owner (CFE_TBL_DumpToBuffer).
+
+        The table goes on waiting until the file was written, and this was called once more.
 
         Returns:
             CFE_SUCCESS, or CFE_TBL_INFO_NO_DUMP_PENDING.
-        """
-        dump, table.dump = table.dump, None
-        if dump is None:
-            return CFE_TBL_INFO_NO_DUMP_PENDING
-        self._take(dump)
-        return CFE_SUCCESS
 
-    def _take(self, dump: DumpControl) -> None:
+        Raises:
+            CfeError: CFE_TBL_ERR_INVALID_HANDLE when the buffer has lost its id, or the snapshot is taken already.
+        """
+        dump = self._dumps.find(table.dump_id)
+        if dump is not None:
+            if not self._take(dump):
+                raise CfeError(CFE_TBL_ERR_INVALID_HANDLE, f"the image of {table.name!r} cannot be copied")
+            return CFE_SUCCESS
+        if table.dump_id != UNDEFINED:
+            table.dump_id = UNDEFINED
+            text = f"App(0x{access.app_id:x}) had stale dump request pending on 0x{int(access.handle):x} (dropped)"
+            self._ports.syslog.write_to_sys_log(f"CFE_TBL_DumpToBuffer: {text}")
+        return CFE_TBL_INFO_NO_DUMP_PENDING
+
+    def _take(self, dump: DumpControl) -> bool:
+        """Copy the image (CFE_TBL_ExecuteDumpSnapshot); whether its buffer still has its id."""
+        if not dump.has_source or dump.image is None:
+            return False
         dump.image.copy(dump.source.view())
         dump.file_time = self._ports.time.now()
-        dump.performed = True
+        dump.performed, dump.source_id = True, UNDEFINED
+        return True
 
-    def write_files(self, app_id: int, app_name: str) -> None:
-        """Write every snapshot that was taken to its file, and tell the ground.
+    def write_files(self, app_id: int) -> Iterator[tuple[DumpControl, int, int, str]]:
+        """Write every snapshot that was taken to its file.
 
         Args:
-            app_id: AppId of Table Services, for header and event.
-            app_name: its name.
-        """
-        for dump in [dump for dump in self._dumps if dump.performed]:
-            event_id, event_type, text = self._write(dump, app_id)
-            self._end(dump)
-            where = f"dump,table={dump.table.name},app={app_name},file={dump.file_name}"
-            self._ports.evs.send_event_with_app_id(event_id, event_type, app_id, f"{where}:{text}")
+            app_id: AppId of Table Services, for the header.
 
-    def _write(self, dump: DumpControl, app_id: int) -> tuple[int, int, str]:
+        Returns:
+            Each dump with id, type and text of the event that tells of it.
+        """
+        for number in range(self._dumps.capacity):
+            dump = self._dumps.at(number)
+            if dump is not None and dump.performed and dump.image is not None:
+                yield dump, *self._write(dump, dump.image, app_id)
+                dump.image.load_id = UNDEFINED
+                self._dumps.delete(dump.number)
+
+    def _write(self, dump: DumpControl, image: Buffer, app_id: int) -> tuple[int, int, str]:
         existed = self._files.exists(dump.file_name)
         header = FileHeader(
             description=DESCRIPTION,
@@ -125,7 +191,7 @@ class Dumps:
             time_seconds=dump.file_time[0],
             time_subseconds=dump.file_time[1],
         )
-        failed = self._store(dump.file_name, write_table_file(header, dump.table.name, bytes(dump.image.view())))
+        failed = self._store(dump.file_name, write_table_file(header, dump.table_name, bytes(image.view())))
         if failed is not None:
             event_id, text = failed
             return event_id, ev.ERROR, text
@@ -146,17 +212,17 @@ class Dumps:
         ):
             try:
                 self._files.write_file(name, data[:end])
+                if end == len(data) == headers and event_id == ev.WRITE_TBL_IMG_ERR_EID:
+                    raise OsalError(OS_ERR_INVALID_SIZE, "there is no content to write")
             except OsalError as error:
                 return event_id, text.format(error.status)
         return None
 
     def forget_owner(self, app_id: int) -> None:
-        """Drop the dumps of an app's tables, because the app ends."""
-        for dump in [dump for dump in self._dumps if dump.table.owner == app_id]:
-            self._end(dump)
+        """Drop the dumps of an app's tables whose snapshots were not taken, because the app ends (CFE_TBL_CleanUpApp).
 
-    def _end(self, dump: DumpControl) -> None:
-        if dump.table.dump is dump:
-            dump.table.dump = None
-        self._dumps.remove(dump)
-        self._memory.release_shared(dump.image)
+        As in cFE the buffers that they had borrowed are not given back.
+        """
+        for dump in [dump for dump in self._dumps if dump.has_source]:
+            if dump.table.reg_id in self._registry.tables and dump.table.owner == app_id:
+                self._dumps.delete(dump.number)

@@ -21,7 +21,7 @@ from cfepy.status import (
 from cfepy.tbl import events as ev
 from cfepy.tbl.buffers import Buffer, BufferMemory, Bytes
 from cfepy.tbl.critical import CriticalTables
-from cfepy.tbl.registry import FIRST_PLACE, TableRecord, TableRegistry
+from cfepy.tbl.registry import TableRecord, TableRegistry
 from cfepy.tbl.table_file import LoadFile, Refused, TableStorage
 
 _SIGN_EXTENDED = 0xFFFFFFFFFFFFFFFF
@@ -45,47 +45,45 @@ class Loads:
         Raises:
             Refused: a load is in progress, the table is dump-only, or no buffer is to be had.
         """
-        if table.loading is not None:
+        if table.is_loading:
             text = "Load already in progress"
             raise Refused(CFE_TBL_ERR_LOAD_IN_PROGRESS, ev.LOAD_IN_PROGRESS_ERR_EID, text, names_file=False)
-        if table.dump_only and (not table.user_defined or table.active is not None):
+        if table.dump_only and (not table.user_defined or table.is_loaded):
             text = "Attempted to load DUMP-ONLY table"
             raise Refused(CFE_TBL_ERR_DUMP_ONLY, ev.LOADING_A_DUMP_ONLY_ERR_EID, text, names_file=False)
         if table.dump_only and from_file:
             text = "Attempted to load from illegal source type=0"
             raise Refused(CFE_TBL_ERR_ILLEGAL_SRC_TYPE, ev.LOAD_TYPE_ERR_EID, text, names_file=False)
-        if not table.user_defined:
-            table.loading = self._working_buffer(table)
-
-    def _working_buffer(self, table: TableRecord) -> Buffer:
-        """A buffer that starts as a copy of the active image, so that a file may hold part of the table."""
-        try:
-            own = table.active is None or table.double_buffered
-            buffer = self._registry.exclusive_buffer(table) if own else self._memory.acquire_shared()
-        except CfeError as error:
-            if table.double_buffered:
-                self._ports.syslog.write_to_sys_log(f"CFE_TBL_GetInactiveBufferExclusive: {error.text}")
-            text = f"No working buffers available, stat=0x{CFE_TBL_ERR_NO_BUFFER_AVAIL & _SIGN_EXTENDED:x}"
-            event_id = ev.NO_WORK_BUFFERS_ERR_EID
-            raise Refused(CFE_TBL_ERR_NO_BUFFER_AVAIL, event_id, text, names_file=False) from None
-        if table.active is not None:
-            buffer.copy(table.active.view())
-        buffer.mark_unvalidated()
-        return buffer
+        if self._registry.working_buffer(table) is None:
+            raise _no_buffer()
 
     def fill_from_file(self, table: TableRecord, file: LoadFile) -> None:
-        """Read a file into the working buffer.
+        """Read a file into the working buffer (CFE_TBL_LoadContentFromFile, CFE_TBL_SetMetaDataFromFileHeader).
+
+        What there is of a file that is too short, or too long, is in the buffer when this fails.
 
         Raises:
-            Refused: the file does not belong into the table.
+            Refused: the file does not belong into the table, or no load is in progress.
         """
         file.check_fits(table)
-        buffer = _loading(table)
-        buffer.data[file.table.offset : file.table.offset + file.table.num_bytes] = file.image
+        buffer = self._registry.loading(table)
+        if buffer is None:
+            raise _no_buffer()
+        offset, size = file.table.offset, file.table.num_bytes
+        if offset + size > len(buffer.data):
+            raise file.too_big()
+        image = file.image[:size]
+        buffer.data[offset : offset + len(image)] = image
+        if len(image) < size:
+            text = "Incomplete load into working buffer"
+            raise Refused(CFE_TBL_ERR_LOAD_INCOMPLETE, ev.FILE_INCOMPLETE_ERR_EID, text)
+        if len(file.image) > size:
+            raise file.too_big()
+        buffer.content_size = offset + size
         buffer.source = file.path
         buffer.file_time = file.header.time_seconds, file.header.time_subseconds
         buffer.recompute_crc()
-        buffer.is_valid = table.validator is None
+        buffer.is_valid, buffer.activate_requested = table.validator is None, False
 
     def fill_from_memory(self, table: TableRecord, source: Bytes) -> None:
         """Copy an image into the working buffer, or, with a user-defined address, make it the working buffer.
@@ -100,10 +98,10 @@ class Loads:
             text = f"Cannot load {len(source)} at off 0"
             raise Refused(CFE_TBL_ERR_LOAD_INCOMPLETE, ev.LOAD_EXCEEDS_SIZE_ERR_EID, text, names_file=False)
         image = memoryview(source)[: table.size]
+        buffer = self._loading(table)
         if table.user_defined:
-            table.loading = self._memory.external(image, FIRST_PLACE)
-        buffer = _loading(table)
-        if not table.user_defined:
+            buffer.refer_to(image, self._memory.address_for(table.size))
+        else:
             buffer.copy(image)
         buffer.source = f"Addr 0x{buffer.address:08X}"
         buffer.file_time = (0, 0)
@@ -115,8 +113,8 @@ class Loads:
         A bad image is overwritten with zeros. A positive result of a validator is a mistake of its own and is reported
         besides.
         """
-        buffer = _loading(table)
-        result = table.judge(buffer.view())
+        buffer = self._loading(table)
+        result = table.judge(table.image(buffer))
         buffer.is_valid = buffer.activate_requested = result == 0
         if result == 0:
             return []
@@ -129,53 +127,43 @@ class Loads:
         text = f"Validation func reports table invalid (Stat={result & _SIGN_EXTENDED:x})"
         return [*faults, Refused(result, ev.VALIDATION_ERR_EID, text, names_file=False)]
 
-    def update(self, table: TableRecord) -> int:
+    def update(self, table: TableRecord, handle: int) -> int:
         """Make the loaded image the active one (CFE_TBL_UpdateInternal).
 
         Returns:
             CFE_SUCCESS, CFE_TBL_INFO_NO_UPDATE_PENDING, or CFE_TBL_INFO_TABLE_LOCKED: then try again later.
         """
-        loaded = table.loading
+        registry = self._registry
+        loaded = registry.loading(table)
         if loaded is None:
             return CFE_TBL_INFO_NO_UPDATE_PENDING
-        target = loaded
-        if loaded.is_shared:
-            try:
-                target = self._registry.exclusive_buffer(table)
-            except CfeError:
-                return CFE_TBL_INFO_TABLE_LOCKED
-            target.take_over(loaded)
-        table.active = target
-        table.last_file, table.last_update, table.modified = target.source, self._ports.time.now(), False
-        for access in table.accesses:
-            access.updated = True
-        self._critical.save(table)
-        self._registry.discard_load(table)
+        target = loaded if registry.is_private(table, loaded) else registry.exclusive_buffer(table)
+        if target is None:
+            text = f"Unable to update locked table Handle={int(handle)}"
+            self._ports.syslog.write_to_sys_log(f"CFE_TBL_UpdateInternal: {text}")
+            return CFE_TBL_INFO_TABLE_LOCKED
+        if target is not loaded:
+            target.copy(loaded.view())
+            target.source, target.file_time, target.crc = loaded.source, loaded.file_time, loaded.crc
+        table.set_active(target)
+        table.note_load(target.source, self._ports.time.now())
+        table.tell_users()
+        if table.critical:
+            self._critical.save(table)
+        registry.discard_load(table)
         return CFE_SUCCESS
-
-    def report(
-        self, refused: Refused, app_id: int, caller: str, file: LoadFile | None, table: TableRecord | None
-    ) -> None:
-        """Send the event of a refusal, in the name of Table Services.
-
-        Args:
-            refused: what happened.
-            app_id: AppId of Table Services.
-            caller: name of the app that asked.
-            file: the file it was about, if any.
-            table: the table it was about, when it was found.
-        """
-        name = file.table_name if file else table.name if table else "[unknown]"
-        where = f"file={file.path},tbl={name}" if file and refused.names_file else f"tbl={name}"
-        text = f"{'LoadFile' if file else 'Load'},app={caller},{where}:{refused.text}"
-        self._ports.evs.send_event_with_app_id(refused.event_id, ev.ERROR, app_id, text)
 
     def open(self, file: LoadFile) -> None:
         """Read and check a file that was named; see `LoadFile.open`."""
         file.open(self._files)
 
+    def _loading(self, table: TableRecord) -> Buffer:
+        buffer = self._registry.loading(table)
+        if buffer is None:
+            raise CfeError(CFE_TBL_ERR_NO_BUFFER_AVAIL, f"no load of {table.name!r} is in progress; please report this")
+        return buffer
 
-def _loading(table: TableRecord) -> Buffer:
-    if table.loading is None:
-        raise CfeError(CFE_TBL_ERR_NO_BUFFER_AVAIL, f"no load of {table.name!r} is in progress; please report this")
-    return table.loading
+
+def _no_buffer() -> Refused:
+    text = f"No working buffers available, stat=0x{CFE_TBL_ERR_NO_BUFFER_AVAIL & _SIGN_EXTENDED:x}"
+    return Refused(CFE_TBL_ERR_NO_BUFFER_AVAIL, ev.NO_WORK_BUFFERS_ERR_EID, text, names_file=False)

@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 from cfepy.config import PlatformConfig
 from cfepy.ids import TBL_HANDLE_BASE, TBL_REGID_BASE, UNDEFINED, IdTable, name_size
+from cfepy.ports import Ports
 from cfepy.status import (
     CFE_SUCCESS,
     CFE_TBL_ERR_DUPLICATE_DIFF_SIZE,
@@ -19,13 +20,12 @@ from cfepy.status import (
     CFE_TBL_ERR_INVALID_NAME,
     CFE_TBL_ERR_INVALID_OPTIONS,
     CFE_TBL_ERR_INVALID_SIZE,
-    CFE_TBL_ERR_NO_BUFFER_AVAIL,
     CFE_TBL_ERR_REGISTRY_FULL,
     CFE_TBL_ERR_UNREGISTERED,
     CfeError,
     to_signed,
 )
-from cfepy.tbl.buffers import Buffer, BufferMemory
+from cfepy.tbl.buffers import SHARED, Buffer, BufferMemory
 
 OPT_SNGL_BUFFER = 0
 OPT_LOAD_DUMP = 0
@@ -38,8 +38,6 @@ _USR_DEF_BIT = 4
 
 MAX_NAME_LENGTH = 16
 """Characters of a table's own name, the NUL included (CFE_MISSION_TBL_MAX_NAME_LENGTH)."""
-
-FIRST_PLACE, SECOND_PLACE = -3, -2
 
 Validator = Callable[[memoryview], int]
 """Looks at an image; returns 0 when it is good, a negative number when not."""
@@ -61,44 +59,21 @@ class TableHandle(int):
         return handle
 
 
-class Validation:
-    """One validation that the ground asked for; `result` is the validator's, once `performed`."""
-
-    __slots__ = ("crc", "of_active", "performed", "result", "table_name")
-
-    def __init__(self, table_name: str, crc: int, of_active: bool) -> None:
-        self.table_name = table_name
-        self.crc = crc
-        self.of_active = of_active
-        self.performed = False
-        self.result = 0
-
-
-class DumpControl:
-    """One dump that the ground asked for: `source` is copied into `image` first, `image` goes to the file later."""
-
-    __slots__ = ("file_name", "file_time", "image", "performed", "source", "table")
-
-    def __init__(self, table: TableRecord, source: Buffer, image: Buffer, file_name: str) -> None:
-        self.table = table
-        self.source = source
-        self.image = image
-        self.file_name = file_name
-        self.file_time = (0, 0)
-        self.performed = False
-
-
 class TableRecord:
     """A registered table (CFE_TBL_RegistryRec_t).
 
     Attributes:
         owner: AppId, or 0 once the owner unregistered it.
-        buffers: its own one or two; none for a user-defined address.
-        active: the image that apps see; None until the first load.
-        loading: the image of a load in progress.
+        buffers: its own one or two.
+        active_id: of the buffer that apps see; 0 until the first load. The buffer itself may have another id meanwhile.
+        previous_id: of the buffer that was active before.
+        next_id: of the buffer of a load in progress.
         cds_handle: the block of the CDS that keeps a critical table's image; 0 for all others.
+        critical: whether its image outlives a processor reset.
         accesses: the handles on it.
-        validations: what the owner shall validate: True stands for the active image, False for the inactive one.
+        validations: ids of what the owner shall validate; a release with one request at a time has it under None, the
+            other one for the active image under True and one for the inactive image under False.
+        dump_id: of a dump that the owner shall take, or has taken.
         notify: (message id, function code, parameter) of the owner's wish to be told of requests.
     """
 
@@ -109,29 +84,29 @@ class TableRecord:
         self.dump_only = bool(options & OPT_DUMP_ONLY)
         self.user_defined = bool(options & _USR_DEF_BIT)
         self.cds_handle = UNDEFINED
+        self.critical = False
         self.validator = validator
         self.owner = owner
         self.reg_id = UNDEFINED
         self.buffers: list[Buffer] = []
-        self.active: Buffer | None = None
-        self.loading: Buffer | None = None
+        self.active_id = self.previous_id = self.next_id = UNDEFINED
         self.accesses: list[Access] = []
         self.last_file = ""
         self.last_update = (0, 0)
         self.modified = False
-        self.validations: dict[bool, Validation] = {}
-        self.dump: DumpControl | None = None
+        self.validations: dict[bool | None, int] = {}
+        self.dump_id = UNDEFINED
         self.notify: tuple[int, int, int] | None = None
 
     @property
-    def critical(self) -> bool:
-        """Whether its image outlives a processor reset."""
-        return self.cds_handle != UNDEFINED
+    def is_loaded(self) -> bool:
+        """Whether it has an image that apps see."""
+        return self.active_id != UNDEFINED
 
     @property
-    def is_update_pending(self) -> bool:
-        """Whether the load in progress waits for the owner to switch to it."""
-        return self.loading is not None and self.loading.is_valid and self.loading.activate_requested
+    def is_loading(self) -> bool:
+        """Whether a load is in progress."""
+        return self.next_id != UNDEFINED
 
     def judge(self, image: memoryview) -> int:
         """What the validator says of an image, a number of 32 bits; 0 without one.
@@ -144,42 +119,42 @@ class TableRecord:
             raise TypeError(f"the validator of {self.name!r} returned {result!r}, it must return 0 for a good image")
         return to_signed(result)
 
-    def take_validation(self) -> Validation | None:
-        """The validation that is next, inactive image first; it does not wait any more."""
-        return self.validations.pop(False, None) or self.validations.pop(True, None)
+    def set_active(self, buffer: Buffer) -> None:
+        """Let apps see a buffer (CFE_TBL_SetActiveBuffer)."""
+        self.previous_id, self.active_id = self.active_id, buffer.load_id
 
-    def inactive(self) -> Buffer | None:
-        """The image that is not in use: the load in progress, else the previous one of a double-buffered table."""
-        if self.loading is None and self.double_buffered and self.active is not None:
-            return next(buffer for buffer in self.buffers if buffer is not self.active)
-        return self.loading
+    def image(self, buffer: Buffer) -> memoryview:
+        """The memory of the whole table in a buffer, also what was never put into it."""
+        return buffer.data[: self.size]
 
-    def next_buffer(self) -> Buffer:
-        """The own buffer that the next update goes to: the only one, or the one that is not active."""
-        return next((buffer for buffer in self.buffers if buffer is not self.active), self.buffers[0])
+    def note_load(self, source: str, time: tuple[int, int]) -> None:
+        """Remember where and when the active image came from (CFE_TBL_RegRecResetLoadInfo)."""
+        self.last_file, self.last_update, self.modified = source, time, False
 
-    def locker_of(self, buffer: Buffer) -> Access | None:
-        """A handle whose address is on that buffer at this moment."""
-        return next((access for access in self.accesses if access.locked and access.buffer is buffer), None)
+    def tell_users(self) -> None:
+        """Every handle's next address is of new content (CFE_TBL_NotifyTblUsersOfUpdate)."""
+        for access in self.accesses:
+            access.updated = True
 
 
 class Access:
     """What one app knows a table by (CFE_TBL_AccessDescriptor_t).
 
     Attributes:
-        locked: the app has the address of `buffer`.
+        locked: the app has the address of a buffer.
+        buffer_id: what that buffer's id was then.
         updated: the content changed since the app last got the address.
     """
 
-    __slots__ = ("app_id", "buffer", "handle", "locked", "table", "updated")
+    __slots__ = ("app_id", "buffer_id", "handle", "locked", "table", "updated")
 
     def __init__(self, table: TableRecord, app_id: int) -> None:
         self.table = table
         self.app_id = app_id
         self.handle = TableHandle(UNDEFINED)
         self.locked = False
-        self.buffer: Buffer | None = None
-        self.updated = not table.dump_only and table.active is not None
+        self.buffer_id = UNDEFINED
+        self.updated = not table.dump_only and table.is_loaded
 
 
 class TableRegistry:
@@ -188,12 +163,14 @@ class TableRegistry:
     Args:
         config: the limits.
         memory: where the tables' buffers come from.
+        ports: has the system log.
 
     Attributes:
         services_app_id: AppId of Table Services, which may use every handle; 0 before their task runs.
     """
 
-    def __init__(self, config: PlatformConfig, memory: BufferMemory) -> None:
+    def __init__(self, config: PlatformConfig, memory: BufferMemory, ports: Ports) -> None:
+        self._ports = ports
         self.services_app_id = UNDEFINED
         self._config = config
         self._memory = memory
@@ -273,7 +250,9 @@ class TableRegistry:
             self._forget(table)
             raise
         if table.dump_only and not table.user_defined:
-            table.active = table.buffers[0]
+            buffer = self.exclusive_buffer(table)
+            assert buffer is not None  # nobody has an address of a table that was just made
+            table.set_active(buffer)
         return access
 
     def connect(self, table: TableRecord, app_id: int) -> Access:
@@ -297,32 +276,113 @@ class TableRegistry:
         if table.owner == UNDEFINED and not table.accesses:
             self._forget(table)
 
+    # -- buffers of a table, by their ids --
+
+    def locate(self, table: TableRecord, buffer_id: int) -> Buffer | None:
+        """The buffer that an id means, whatever id it has itself by now (CFE_TBL_LocateLoadBufferByID)."""
+        if buffer_id == UNDEFINED:
+            return None
+        category, number = self._memory.ids.split(buffer_id)
+        if category == SHARED:
+            return self._memory.shared(number)
+        return table.buffers[number if table.double_buffered else 0]
+
+    def active(self, table: TableRecord) -> Buffer | None:
+        """The buffer that apps see; None before the first load."""
+        return self.locate(table, table.active_id)
+
+    def loading(self, table: TableRecord) -> Buffer | None:
+        """The buffer of the load in progress (CFE_TBL_GetLoadInProgressBuffer)."""
+        buffer = self.locate(table, table.next_id)
+        if buffer is None or buffer.load_id == table.next_id:
+            return buffer
+        table.next_id = UNDEFINED
+        text = f"WARNING: Cleared stale load in progress on table {table.name}"
+        self._ports.syslog.write_to_sys_log(text)
+        return None
+
+    def inactive(self, table: TableRecord) -> Buffer | None:
+        """The buffer of the load in progress, else the one that was active before (CFE_TBL_GetInactiveBuffer)."""
+        return self.loading(table) or self.locate(table, table.previous_id)
+
+    def is_update_pending(self, table: TableRecord) -> bool:
+        """Whether the load in progress waits for the owner to switch to it; release 7.0.0 asks for no activation."""
+        buffer = self.locate(table, table.next_id)
+        if buffer is None or buffer.load_id != table.next_id:
+            return False
+        return buffer.is_valid and (self._config.is_cfe_7_0_0 or buffer.activate_requested)
+
+    def is_private(self, table: TableRecord, buffer: Buffer) -> bool:
+        """Whether a buffer is one of the table's own (CFE_TBL_LoadBuffIsPrivate)."""
+        return self._memory.ids.split(buffer.load_id)[0] == self._category(table)
+
+    def place(self, table: TableRecord) -> int:
+        """What a registry dump calls the buffer of the load in progress."""
+        return self._memory.ids.place(table.next_id)
+
     def discard_load(self, table: TableRecord) -> None:
-        """Drop a load in progress; a shared buffer is free again."""
-        buffer, table.loading = table.loading, None
-        if buffer is not None and buffer.is_shared:
-            self._memory.release_shared(buffer)
+        """Drop a load in progress (CFE_TBL_DiscardWorkingBuffer).
 
-    def exclusive_buffer(self, table: TableRecord) -> Buffer:
-        """The own buffer that comes next, when no app holds its address.
-
-        Raises:
-            CfeError: CFE_TBL_ERR_NO_BUFFER_AVAIL when another app does; the text names it.
+        The buffer of a single-buffered table is free again, also when it is the table's own.
         """
-        buffer = table.next_buffer()
-        holder = table.locker_of(buffer)
+        buffer = None if table.double_buffered else self.locate(table, table.next_id)
+        table.next_id = UNDEFINED
+        if buffer is not None:
+            buffer.load_id = UNDEFINED
+
+    def exclusive_buffer(self, table: TableRecord) -> Buffer | None:
+        """The own buffer that comes next; None when an app holds its address (CFE_TBL_GetInactiveBufferExclusive)."""
+        next_id = self._memory.ids.after(table.active_id, self._category(table))
+        buffer = self.locate(table, next_id)
+        if buffer is None or buffer.load_id == next_id:
+            return buffer
+        holder = self._holder(table, buffer) if buffer.load_id != UNDEFINED else None
         if holder is not None:
             text = f"Inactive Buff Locked for '{table.name}' by AppId={holder.app_id}"
-            raise CfeError(CFE_TBL_ERR_NO_BUFFER_AVAIL, text)
+            self._ports.syslog.write_to_sys_log(f"CFE_TBL_GetInactiveBufferExclusive: {text}")
+            return None
+        buffer.load_id = next_id
         return buffer
 
+    def working_buffer(self, table: TableRecord) -> Buffer | None:
+        """The buffer of the load in progress, which begins if there is none (CFE_TBL_GetWorkingBuffer)."""
+        buffer = self.loading(table)
+        if buffer is not None:
+            return buffer
+        buffer = self._new_buffer(table) if table.is_loaded else self.exclusive_buffer(table)
+        if buffer is not None:
+            table.next_id = buffer.load_id
+        return buffer
+
+    def _new_buffer(self, table: TableRecord) -> Buffer | None:
+        """A buffer that starts as a copy of the active image, so that a file may hold part of the table."""
+        buffer = self.exclusive_buffer(table) if table.double_buffered else self._memory.acquire_shared()
+        if buffer is None:
+            return None
+        active = self.active(table)
+        if active is not None:
+            buffer.copy(active.view())
+        buffer.is_valid = buffer.activate_requested = False
+        return buffer
+
+    def _holder(self, table: TableRecord, buffer: Buffer) -> Access | None:
+        """A handle whose address is on that buffer at this moment."""
+        locked = (access for access in table.accesses if access.locked)
+        return next((access for access in locked if self.locate(table, access.buffer_id) is buffer), None)
+
+    def _category(self, table: TableRecord) -> int:
+        return self.tables.index(table.reg_id) + 1
+
     def _allocate(self, table: TableRecord) -> None:
-        places = [] if table.user_defined else [FIRST_PLACE, SECOND_PLACE][: 1 + table.double_buffered]
-        for place in places:
-            table.buffers.append(self._memory.allocate(table.size, place))
+        if table.user_defined:
+            table.buffers.append(self._memory.external())
+            return
+        for _ in range(1 + table.double_buffered):
+            table.buffers.append(self._memory.allocate(table.size))
 
     def _forget(self, table: TableRecord) -> None:
-        self.discard_load(table)
+        if not table.user_defined:
+            self.discard_load(table)
         for buffer in table.buffers:
             self._memory.free(buffer)
         for access in table.accesses:

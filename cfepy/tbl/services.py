@@ -24,7 +24,6 @@ from cfepy.status import (
     CFE_TBL_ERR_UNREGISTERED,
     CFE_TBL_INFO_DUMP_PENDING,
     CFE_TBL_INFO_NO_VALIDATION_PENDING,
-    CFE_TBL_INFO_TABLE_LOCKED,
     CFE_TBL_INFO_UPDATE_PENDING,
     CFE_TBL_INFO_UPDATED,
     CFE_TBL_INFO_VALIDATION_PENDING,
@@ -38,11 +37,15 @@ from cfepy.tbl.critical import CriticalTables
 from cfepy.tbl.dumps import Dumps
 from cfepy.tbl.loads import Loads
 from cfepy.tbl.registry import OPT_CRITICAL, Access, TableHandle, TableRecord, TableRegistry, Validator
+from cfepy.tbl.reports import Reports
 from cfepy.tbl.table_file import LoadFile, Refused, TableStorage
-from cfepy.tbl.task import TableTask
+from cfepy.tbl.task import Parts, TableTask
+from cfepy.tbl.validations import Validations
 
 BAD_TABLE_HANDLE = -1
 MODIFIED_MARK = "(*)"
+_ULONG = 0xFFFFFFFFFFFFFFFF
+_NO_ACCESS = "App({app}) does not have access to Tbl Handle={handle}"
 
 
 class TableInfo(NamedTuple):
@@ -84,16 +87,16 @@ class TableAccess:
         Raises:
             CfeError: CFE_TBL_ERR_NEVER_LOADED, CFE_TBL_ERR_UNREGISTERED, or no access.
         """
-        access = self._access("GetAddress", handle)
-        table = access.table
+        access = self._access("GetAddress", handle, log="Bad AppId={app}")
+        table, active = access.table, self.registry.active(access.table)
         if table.owner == UNDEFINED:
             self._log("TxnGetTableAddress", f"App({access.app_id}) attempt to access unowned Tbl Handle={int(handle)}")
             raise CfeError(CFE_TBL_ERR_UNREGISTERED, f"the owner of {table.name!r} gave it up")
-        if table.active is None:
+        if active is None:
             raise CfeError(CFE_TBL_ERR_NEVER_LOADED, f"{table.name!r} was never loaded")
         updated, access.updated = access.updated, False
-        access.locked, access.buffer = True, table.active
-        return table.active.view(), updated
+        access.locked, access.buffer_id = True, active.load_id
+        return table.image(active), updated
 
     def release_address(self, handle: int) -> int:
         """Give the address back, so that updates can take place (CFE_TBL_ReleaseAddress).
@@ -102,8 +105,8 @@ class TableAccess:
             CFE_SUCCESS, or CFE_TBL_INFO_UPDATED when the table changed meanwhile.
         """
         access = self._access("ReleaseAddress", handle)
-        access.locked, access.buffer = False, None
-        if access.table.active is None:
+        access.locked = False
+        if not access.table.is_loaded:
             raise CfeError(CFE_TBL_ERR_NEVER_LOADED, f"{access.table.name!r} was never loaded")
         return CFE_TBL_INFO_UPDATED if access.updated else CFE_SUCCESS
 
@@ -149,9 +152,9 @@ class TableAccess:
         table = self._access("GetStatus", handle).table
         if table.validations:
             return CFE_TBL_INFO_VALIDATION_PENDING
-        if table.is_update_pending:
+        if self.registry.is_update_pending(table):
             return CFE_TBL_INFO_UPDATE_PENDING
-        return CFE_TBL_INFO_DUMP_PENDING if table.dump is not None else CFE_SUCCESS
+        return CFE_TBL_INFO_DUMP_PENDING if table.dump_id != UNDEFINED else CFE_SUCCESS
 
     def get_info(self, full_name: str) -> TableInfo:
         """All about a table, by its full name (CFE_TBL_GetInfo).
@@ -160,7 +163,7 @@ class TableAccess:
             CfeError: CFE_TBL_ERR_INVALID_NAME.
         """
         table = self.registry.by_name(full_name)
-        active = table.active
+        active = self.registry.active(table)
         return TableInfo(
             size=table.size,
             num_users=len(table.accesses),
@@ -201,19 +204,30 @@ class TableAccess:
             raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, "tables belong to apps; host code cannot make this call")
         return caller.app_id, caller.name
 
-    def _access(self, function: str, handle: int, owner_only: bool = False) -> Access:
-        """The access descriptor of a handle, once the caller is found to have the right to use it."""
+    def _access(self, function: str, handle: int, owner_only: bool = False, log: str = _NO_ACCESS) -> Access:
+        """The access descriptor of a handle, once the caller is found to have the right to use it.
+
+        Args:
+            function: that was called.
+            handle: its argument.
+            owner_only: whether the table must be the caller's; else the handle must be.
+            log: what the system log says otherwise; "" for nothing.
+
+        Raises:
+            CfeError: CFE_TBL_ERR_INVALID_HANDLE or CFE_TBL_ERR_NO_ACCESS.
+        """
         app_id, _ = self._caller()
         access = self.registry.accesses.find(handle)
         if access is None:
             error = CfeError(CFE_TBL_ERR_INVALID_HANDLE, f"0x{int(handle) & 0xFFFFFFFF:x} is no table handle")
-        elif app_id not in (access.app_id, self.registry.services_app_id):
-            error = CfeError(CFE_TBL_ERR_NO_ACCESS, f"this handle on {access.table.name!r} is another app's")
-        elif owner_only and app_id not in (access.table.owner, self.registry.services_app_id):
+        elif app_id in (access.table.owner if owner_only else access.app_id, self.registry.services_app_id):
+            return access
+        elif owner_only:
             error = CfeError(CFE_TBL_ERR_NO_ACCESS, f"{access.table.name!r} belongs to another app")
         else:
-            return access
-        self._log(function, f"App({app_id}) does not have access to Tbl Handle={int(handle)}")
+            error = CfeError(CFE_TBL_ERR_NO_ACCESS, f"this handle on {access.table.name!r} is another app's")
+        if log:
+            self._log(function, log.format(app=app_id, handle=int(handle)))
         raise error
 
     def _log(self, function: str, text: str) -> None:
@@ -231,15 +245,24 @@ class TableServices(TableAccess):
     """
 
     def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, files: TableStorage) -> None:
-        shared_size = max(config.tbl_max_sngl_table_size, config.tbl_max_dbl_table_size)
-        memory = BufferMemory(ports, config.tbl_buf_memory_bytes, config.tbl_max_simultaneous_loads, shared_size)
+        memory = BufferMemory(
+            ports,
+            size=config.tbl_buf_memory_bytes,
+            shared=config.tbl_max_simultaneous_loads,
+            shared_size=config.tbl_max_sngl_table_size,
+            tables=config.tbl_max_num_tables,
+        )
+        registry = TableRegistry(config, memory, ports)
+        super().__init__(kernel, ports, registry)
         self._config = config
         self._memory = memory
-        self._critical = CriticalTables(ports, config.tbl_max_critical_tables)
-        super().__init__(kernel, ports, TableRegistry(config, memory))
-        self._loads = Loads(self.registry, memory, ports, files, self._critical)
-        self._dumps = Dumps(memory, config, ports, files)
-        self.task = TableTask(ports, config, files, self.registry, self._loads, self._dumps, memory, self._critical)
+        self._critical = CriticalTables(ports, config, registry)
+        self._loads = Loads(registry, memory, ports, files, self._critical)
+        self._dumps = Dumps(registry, memory, config, ports, files)
+        self._validations = Validations(config.tbl_max_num_validations, one_at_a_time=not config.is_cfe_7_0_0)
+        self._reports = Reports(ports, config, registry)
+        parts = Parts(registry, self._loads, self._dumps, memory, self._critical, self._validations, self._reports)
+        self.task = TableTask(ports, config, files, parts)
 
     def early_init(self) -> None:
         """What is done before any task runs (CFE_TBL_EarlyInit): the buffer pool, and the critical table registry."""
@@ -278,7 +301,7 @@ class TableServices(TableAccess):
             access = self.registry.add(TableRecord(full_name, size, options, validate, app_id))
         except CfeError as error:
             text = f"{app_name} Failed to Register table '{name}', Status={error.hex}"
-            self._event(ev.REGISTER_ERR_EID, ev.ERROR, text)
+            self._reports.send(ev.REGISTER_ERR_EID, ev.ERROR, text)
             raise
         return access.handle.with_status(self._make_critical(access.table)) if options & OPT_CRITICAL else access.handle
 
@@ -302,7 +325,7 @@ class TableServices(TableAccess):
             if error.status == CFE_TBL_ERR_INVALID_NAME:
                 self._log("Share", f"Table '{full_name}' not found in Registry")
             text = f"{app_name} Failed to Share '{full_name}', Status={error.hex}"
-            self._event(ev.SHARE_ERR_EID, ev.ERROR, text)
+            self._reports.send(ev.SHARE_ERR_EID, ev.ERROR, text)
             raise
 
     def unregister(self, handle: int) -> None:
@@ -311,7 +334,7 @@ class TableServices(TableAccess):
             self.registry.release(self._access("Unregister", handle))
         except CfeError as error:
             text = f"{self._caller()[1]} Failed to Unregister '?', Status={error.hex}"
-            self._event(ev.UNREGISTER_ERR_EID, ev.ERROR, text)
+            self._reports.send(ev.UNREGISTER_ERR_EID, ev.ERROR, text)
             raise
 
     # --- loading ---
@@ -331,20 +354,27 @@ class TableServices(TableAccess):
         Raises:
             CfeError: what was wrong; an event tells the ground too, and the table is as it was.
         """
-        access = self._access("Load", handle, owner_only=True)
-        table, caller = access.table, self._caller()[1]
+        caller = self._caller()[1]
+        try:
+            table = self._access("Load", handle, owner_only=True, log="").table
+        except CfeError as error:
+            self._load_denied(error, handle, caller)
+            raise
         file = LoadFile(source, self._config) if isinstance(source, str) else None
         try:
             self._loads.reserve(table, from_file=file is not None)
         except Refused as refused:
-            self._loads.report(refused, self.registry.services_app_id, caller, None, table)
+            self._reports.load_refused(refused, caller, table)
             raise
         try:
             status = self._fill(table, file, source)
             faults = self._loads.validate(table)
         except Refused as refused:
             self.registry.discard_load(table)
-            self._loads.report(refused, self.registry.services_app_id, caller, file, table)
+            if file is None:
+                self._reports.load_refused(refused, caller, table)
+            else:
+                self._reports.file_refused(refused, caller, file, table)
             raise
         except BaseException:  # a fault of the app's validator must not leave the table half loaded
             self.registry.discard_load(table)
@@ -352,9 +382,19 @@ class TableServices(TableAccess):
         if faults:
             self.registry.discard_load(table)
             for fault in faults:
-                self._loads.report(fault, self.registry.services_app_id, caller, None, table)
+                self._reports.load_refused(fault, caller, table)
             raise faults[-1]
-        return self._finish_load(table, caller, status)
+        return self._finish_load(table, handle, caller, status)
+
+    def _load_denied(self, error: CfeError, handle: int, caller: str) -> None:
+        """Tell of a load through a handle that does not allow it; release 7.0.0 says nothing of one that is none."""
+        access = self.registry.accesses.find(handle)
+        if access is not None:
+            refused = Refused(error.status, ev.HANDLE_ACCESS_ERR_EID, "No access to Tbl Handle")
+            self._reports.load_refused(refused, caller, access.table)
+        elif not self._config.is_cfe_7_0_0:
+            refused = Refused(error.status, ev.NO_SUCH_TABLE_ERR_EID, "Unable to locate in Table Registry")
+            self._reports.load_refused(refused, caller, None)
 
     def _fill(self, table: TableRecord, file: LoadFile | None, source: str | Bytes) -> int:
         if file is not None:
@@ -365,15 +405,15 @@ class TableServices(TableAccess):
             self._loads.fill_from_memory(table, source)
         return CFE_SUCCESS
 
-    def _finish_load(self, table: TableRecord, caller: str, status: int) -> int:
-        is_first = table.active is None
-        result = self._loads.update(table)
+    def _finish_load(self, table: TableRecord, handle: int, caller: str, status: int) -> int:
+        is_first = not table.is_loaded
+        result = self._loads.update(table, handle)
         if result != CFE_SUCCESS:
             text = f"{caller}: Failed to update '{table.name}' (Stat={result})"
-            self._event(ev.UPDATE_ERR_EID, ev.ERROR, text)
+            self._reports.send(ev.UPDATE_ERR_EID, ev.ERROR, text)
             return result
         text = f"Successfully loaded '{table.name}' from '{table.last_file}'"
-        self._event(ev.LOAD_SUCCESS_INF_EID, ev.DEBUG if is_first else ev.INFORMATION, text)
+        self._reports.send(ev.LOAD_SUCCESS_INF_EID, ev.DEBUG if is_first else ev.INFORMATION, text)
         self.task.note_update(table)
         return status
 
@@ -387,20 +427,16 @@ class TableServices(TableAccess):
             access = self._access("Update", handle, owner_only=True)
         except CfeError as error:
             text = f"{self._caller()[1]} Failed to update table, Status={error.hex}"
-            self._event(ev.UPDATE_ERR_EID, ev.ERROR, text)
+            self._reports.send(ev.UPDATE_ERR_EID, ev.ERROR, text)
             raise
         table = access.table
-        status = self._loads.update(table)
+        status = self._loads.update(table, handle)
         if status == CFE_SUCCESS:
             text = f"{self._caller()[1]} Successfully Updated '{table.name}'"
-            self._event(ev.UPDATE_SUCCESS_INF_EID, ev.INFORMATION, text)
+            self._reports.send(ev.UPDATE_SUCCESS_INF_EID, ev.INFORMATION, text)
             self.task.note_update(table)
             return status
-        if status == CFE_TBL_INFO_TABLE_LOCKED:
-            self._ports.syslog.write_to_sys_log(
-                f"CFE_TBL_UpdateInternal: Unable to update locked table Handle={int(handle)}"
-            )
-        text = f"App({access.app_id}) fail to update Tbl '{table.name}' (Stat=0x{status:08X})"
+        text = f"App({self._caller()[0]}) fail to update Tbl '{table.name}' (Stat=0x{status:08X})"
         self._log("Update", text)
         return status
 
@@ -411,28 +447,31 @@ class TableServices(TableAccess):
             CFE_SUCCESS whatever the validator found, or CFE_TBL_INFO_NO_VALIDATION_PENDING.
         """
         table = self._access("Validate", handle, owner_only=True).table
-        request = table.take_validation()
+        request = self._validations.take(table)
         if request is None:
             return CFE_TBL_INFO_NO_VALIDATION_PENDING
         which = "active" if request.of_active else "inactive"
-        buffer = table.active if request.of_active else table.loading
+        buffer = self.registry.active(table) if request.of_active else self.registry.loading(table)
         result = -1
         try:
             if buffer is not None:
-                result = table.judge(buffer.view())
-                buffer.is_valid = result == 0
+                result = table.judge(table.image(buffer))
+                if result == 0 or not self._config.is_cfe_7_0_0:  # 7.0.0 leaves a good mark of before
+                    buffer.is_valid = result == 0
         finally:  # the ground gets an answer even when the validator raises
             request.result, request.performed = result, True
         caller = self._caller()[1]
         if result == 0:
             text = f"{caller} validation successful for {which} '{table.name}'"
-            self._event(ev.VALIDATION_INF_EID, ev.INFORMATION, text)
+            self._reports.send(ev.VALIDATION_INF_EID, ev.INFORMATION, text)
             return CFE_SUCCESS
         status = f"0x{result & 0xFFFFFFFF:08X}"
-        text = f"{caller} validation failed for {which} '{table.name}', Status={status}"
-        self._event(ev.VALIDATION_ERR_EID, ev.ERROR, text)
+        told = "0x00000000" if self._config.is_cfe_7_0_0 else status  # 7.0.0 tells the status of the call
+        text = f"{caller} validation failed for {table.name} '{which}', Status={told}"
+        self._reports.send(ev.VALIDATION_ERR_EID, ev.ERROR, text)
         if result > 0:
-            text = f"App({table.owner}) Validation func return code invalid (Stat={status}) for '{table.name}'"
+            app = self.registry.services_app_id
+            text = f"App({app}) Validation func return code invalid (Stat={status}) for '{table.name}'"
             self._log("Validate", text)
         return CFE_SUCCESS
 
@@ -459,20 +498,27 @@ class TableServices(TableAccess):
 
         Returns:
             CFE_SUCCESS or CFE_TBL_INFO_NO_DUMP_PENDING.
+
+        Raises:
+            CfeError: CFE_TBL_ERR_INVALID_HANDLE when the image cannot be copied, as `Dumps.take_snapshot` tells.
         """
-        return self._dumps.take_snapshot(self._access("DumpToBuffer", handle).table)
+        access = self._access(
+            "DumpToBuffer", handle, log="App({app:x}) does not have access to Tbl Handle=0x{handle:x}"
+        )
+        return self._dumps.take_snapshot(access.table, access)
 
     def modified(self, handle: int) -> None:
         """Say that the app changed the table's content itself (CFE_TBL_Modified)."""
         access = self._access("Modified", handle)
         table = access.table
-        if table.active is None:
-            return
-        table.modified, table.last_update = True, self._ports.time.now()
-        table.active.recompute_crc()
-        for other in table.accesses:
-            other.updated = other.updated or other.app_id != access.app_id
-        self._critical.save(table)
+        active, app_id = self.registry.active(table), self._caller()[0]
+        if active is not None:
+            table.modified, table.last_update = True, self._ports.time.now()
+            active.recompute_crc()
+            for other in table.accesses:
+                other.updated = other.updated or other.app_id != app_id
+        if table.critical:
+            self._critical.save(table)
 
     def notify_by_message(self, handle: int, msg_id: int, fcn_code: int, parameter: int) -> None:
         """Have a command sent whenever the ground asks for something of the table (CFE_TBL_NotifyByMessage).
@@ -483,7 +529,13 @@ class TableServices(TableAccess):
             fcn_code: its function code.
             parameter: 32 bits of payload.
         """
-        access = self._access("NotifyByMessage", handle, owner_only=True)
+        status_text = "App={app} Handle={handle} status code="
+        access = self._access("NotifyByMessage", handle, log=status_text + f"{CFE_TBL_ERR_NO_ACCESS & _ULONG:x}")
+        app_id = self._caller()[0]
+        if access.table.owner != app_id:
+            text = f"{status_text.format(app=app_id, handle=int(handle))}{CFE_TBL_ERR_NO_ACCESS & _ULONG:x}"
+            self._log("NotifyByMessage", text)
+            raise CfeError(CFE_TBL_ERR_NO_ACCESS, f"{access.table.name!r} belongs to another app")
         access.table.notify = (msg_id, fcn_code, parameter & 0xFFFFFFFF)
 
     def cleanup_app(self, app_id: int) -> None:
@@ -492,6 +544,3 @@ class TableServices(TableAccess):
         for access in self.registry.accesses:
             if access.app_id == app_id:
                 self.registry.release(access)
-
-    def _event(self, event_id: int, event_type: int, text: str) -> None:
-        self._ports.evs.send_event_with_app_id(event_id, event_type, self.registry.services_app_id, text)

@@ -6,6 +6,7 @@ the load sends it.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Protocol
 
 from cfepy.config import PlatformConfig
@@ -20,6 +21,7 @@ from cfepy.fs import (
     read_table_header,
 )
 from cfepy.status import (
+    CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
     CFE_STATUS_VALIDATION_FAILURE,
     CFE_SUCCESS,
     CFE_TBL_ERR_ACCESS,
@@ -30,19 +32,19 @@ from cfepy.status import (
     CFE_TBL_ERR_FILE_FOR_WRONG_TABLE,
     CFE_TBL_ERR_FILE_TOO_LARGE,
     CFE_TBL_ERR_FILENAME_TOO_LONG,
-    CFE_TBL_ERR_LOAD_INCOMPLETE,
     CFE_TBL_ERR_NO_STD_HEADER,
     CFE_TBL_ERR_NO_TBL_HEADER,
     CFE_TBL_ERR_PARTIAL_LOAD,
     CFE_TBL_WARN_PARTIAL_LOAD,
     CFE_TBL_WARN_SHORT_FILE,
-    OS_FS_ERR_NAME_TOO_LONG,
     OS_FS_ERR_PATH_TOO_LONG,
     CfeError,
     OsalError,
+    to_signed,
 )
 from cfepy.tbl import events as ev
 from cfepy.tbl.image import is_intact, mark_for, mark_in
+from cfepy.tbl.packets import FULL_NAME_SIZE
 from cfepy.tbl.registry import TableRecord
 
 
@@ -51,6 +53,9 @@ class TableStorage(Protocol):
 
     def read_file(self, path: str) -> bytes:
         """The whole content of a file."""
+
+    def leave_open(self, path: str) -> None:
+        """Open a file and lose its descriptor."""
 
     def write_file(self, path: str, data: bytes) -> None:
         """Make or replace a file."""
@@ -81,10 +86,12 @@ class LoadFile:
     Args:
         path: where it is.
         config: says which spacecraft and processors it may be for.
+        stays_open: whether nobody closes it, as after a load from the ground.
     """
 
-    def __init__(self, path: str, config: PlatformConfig) -> None:
+    def __init__(self, path: str, config: PlatformConfig, stays_open: bool = False) -> None:
         self.path = path
+        self._stays_open = stays_open
         self._config = config
         self.table_name = "[unknown]"
         self.header = FileHeader()
@@ -101,16 +108,18 @@ class LoadFile:
         try:
             data = files.read_file(self.path)
         except OsalError as error:
-            if error.status in (OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_NAME_TOO_LONG):
+            if error.status == OS_FS_ERR_PATH_TOO_LONG:
                 status, event_id = CFE_TBL_ERR_FILENAME_TOO_LONG, ev.LOAD_FILENAME_LONG_ERR_EID
                 raise Refused(status, event_id, "Filename invalid") from None
             text = f"Unable to open, Status = {error.status}"
             raise Refused(CFE_TBL_ERR_ACCESS, ev.FILE_ACCESS_ERR_EID, text) from None
         self._read_headers(data)
+        if self._stays_open:
+            files.leave_open(self.path)
 
     def _read_headers(self, data: bytes) -> None:
         if len(data) < HEADER_SIZE:
-            text = f"Unable to read std header, Status = 0x{len(data):08x}"
+            text = f"Unable to read std header, Status = 0x{CFE_STATUS_EXTERNAL_RESOURCE_FAIL & 0xFFFFFFFF:08x}"
             raise Refused(CFE_TBL_ERR_NO_STD_HEADER, ev.FILE_STD_HDR_ERR_EID, text)
         self.header = header = read_header(data)
         if header.content_type != CONTENT_ID:
@@ -123,7 +132,8 @@ class LoadFile:
         if len(data) < HEADER_SIZE + TABLE_HEADER_SIZE:
             text = f"Unable to read tbl header, Status = 0x{len(data) - HEADER_SIZE:08x}"
             raise Refused(CFE_TBL_ERR_NO_TBL_HEADER, ev.FILE_TBL_HDR_ERR_EID, text)
-        self.table = read_table_header(data)
+        header_in_file = read_table_header(data)
+        self.table = replace(header_in_file, table_name=header_in_file.table_name[: FULL_NAME_SIZE - 1])
         self.table_name = self.table.table_name or self.table_name
         if not is_intact(data):
             text = f"File is damaged, mark = 0x{mark_in(data):08x}, expected 0x{mark_for(data):08x}"
@@ -141,11 +151,10 @@ class LoadFile:
             raise Refused(CFE_TBL_ERR_BAD_PROCESSOR_ID, ev.PROCESSOR_ID_ERR_EID, text)
 
     def check_fits(self, table: TableRecord) -> None:
-        """Check that the content belongs into a table (CFE_TBL_ValidateFileIsLoadable and the checks of the content).
+        """Check that the content belongs into a table (CFE_TBL_ValidateFileIsLoadable).
 
         Raises:
-            Refused: another table's file, no data, partial data for a table never loaded, data that does not fit,
-                or not as much data as the header says.
+            Refused: another table's file, no data, partial data for a table never loaded, or data that does not fit.
         """
         name, offset, size = self.table.table_name, self.table.offset, self.table.num_bytes
         if name != table.name:
@@ -154,18 +163,18 @@ class LoadFile:
         if size == 0:
             text = "Table header indicates no data in file"
             raise Refused(CFE_TBL_ERR_NO_TBL_HEADER, ev.ZERO_LENGTH_LOAD_ERR_EID, text)
-        if offset > 0 and table.active is None:
+        if offset > 0 and not table.is_loaded:
             text = "partial load for uninitialized table"
             raise Refused(CFE_TBL_ERR_PARTIAL_LOAD, ev.PARTIAL_LOAD_ERR_EID, text)
-        if offset + size > table.size:
+        end = offset + size
+        if (end & 0xFFFFFFFF if self._config.is_cfe_7_0_0 else end) > table.size:  # 7.0.0 adds in 32 bits
             text = f"Cannot load {size} at off {offset}"
             raise Refused(CFE_TBL_ERR_FILE_TOO_LARGE, ev.LOAD_EXCEEDS_SIZE_ERR_EID, text)
-        if len(self.image) < size:
-            text = "Incomplete load into working buffer"
-            raise Refused(CFE_TBL_ERR_LOAD_INCOMPLETE, ev.FILE_INCOMPLETE_ERR_EID, text)
-        if len(self.image) > size:
-            text = f"File has more data than Tbl Hdr indicates ({size})"
-            raise Refused(CFE_TBL_ERR_FILE_TOO_LARGE, ev.FILE_TOO_BIG_ERR_EID, text)
+
+    def too_big(self) -> Refused:
+        """What is said of a file with more data than there is room for, or than its header says."""
+        text = f"File has more data than Tbl Hdr indicates ({to_signed(self.table.num_bytes)})"
+        return Refused(CFE_TBL_ERR_FILE_TOO_LARGE, ev.FILE_TOO_BIG_ERR_EID, text)
 
     def completeness(self, table: TableRecord) -> int:
         """CFE_SUCCESS, or the warning that the file held only part of the table."""

@@ -1,19 +1,21 @@
 """The CFE_TBL task: its pipe, dispatch, housekeeping, and what the ground can do with tables.
 
 Stands for cfe_tbl_task.c and cfe_tbl_task_cmds.c: load, validate, activate, dump, and a file about the registry of all
-tables, which the background task of ES writes record by record. LOAD works as in cFE v7.0.1: v7.0.0 refuses every one.
+tables, which the background task of ES writes record by record. Release 7.0.0 refuses to LOAD any table; release 7.0.1
+keeps a load that failed in progress, until the ground gives it up.
 `Housekeeping` counts, remembers the last validation, load, update and dump, and builds values for packets
 (CFE_TBL_GetHkData, CFE_TBL_GetTblRegData); it sends nothing.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from cfepy.config import PlatformConfig
 from cfepy.core_app import serve
 from cfepy.fs import SUBTYPE_TBL_REG, FileWriteEvent, FileWriteMetaData, calculate_crc, dump_file_name
-from cfepy.msg import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, CommandTable, Dispatch, command, sys_time_fields
+from cfepy.ids import UNDEFINED
+from cfepy.msg import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, CommandTable, Dispatch, command, set_size, sys_time_fields
 from cfepy.ports import Ports
 from cfepy.status import (
     CFE_ES_CDS_OWNER_ACTIVE_ERR,
@@ -25,19 +27,21 @@ from cfepy.status import (
 )
 from cfepy.tbl import events as ev
 from cfepy.tbl import packets as pk
-from cfepy.tbl.buffers import BufferMemory
+from cfepy.tbl.buffers import Buffer, BufferMemory
 from cfepy.tbl.critical import CriticalTables
 from cfepy.tbl.dumps import DumpRefused, Dumps, select_buffer
 from cfepy.tbl.loads import Loads
 from cfepy.tbl.packets import REGISTRY_RECORD
-from cfepy.tbl.registry import TableRecord, TableRegistry, Validation
+from cfepy.tbl.registry import TableRecord, TableRegistry
+from cfepy.tbl.reports import UNKNOWN, Reports
 from cfepy.tbl.table_file import LoadFile, Refused, TableStorage
-from cfepy.versions import version_string
+from cfepy.tbl.validations import Validation, Validations
 
-NO_LOAD = -1
 _BYTE = 0xFF
 _HALF = 0xFFFF
 APP_NAME = "CFE_TBL"
+_SIZE_NOT_SET = 7
+"""Bytes of a packet whose length field is 0."""
 _NOT_DELETED = {
     CFE_ES_CDS_WRONG_TYPE_ERR: (
         ev.NOT_CRITICAL_TBL_ERR_EID,
@@ -69,11 +73,13 @@ class Housekeeping:
         last_table_loaded: the table of that load.
     """
 
-    def __init__(self, registry: TableRegistry, memory: BufferMemory, dumps: Dumps) -> None:
+    def __init__(self, registry: TableRegistry, memory: BufferMemory, dumps: Dumps, validations: Validations) -> None:
         self._registry = registry
         self._memory = memory
         self._dumps = dumps
-        self._validations: list[Validation] = []
+        self._validations = validations
+        self._updated: dict[str, Any] = {}
+        self._registry_fields: dict[str, Any] = {}
         self._last_validation = Validation("", 0, of_active=False)
         self._registry_request: TableRecord | None = None
         self.last_updated: TableRecord | None = None
@@ -91,30 +97,24 @@ class Housekeeping:
         self._commands += accepted
         self._errors += not accepted
 
-    def add_validation(self, request: Validation, by_owner: bool = False) -> None:
-        """Keep a validation request until its result was told; `by_owner`: an app has to do it."""
-        self._validations.append(request)
-        self._requests += by_owner
-
-    def validations_under_way(self) -> int:
-        """Requests whose results were not told yet."""
-        return len(self._validations)
+    def count_request(self) -> None:
+        """Count a validation that an app has to do."""
+        self._requests += 1
 
     def request_registry(self, table: TableRecord) -> None:
         """Send a table's registry entry with the next housekeeping packet."""
         self._registry_request = table
 
     def take_registry_request(self) -> TableRecord | None:
-        """The table whose entry is wanted, if it still exists; asked for once."""
+        """The table whose entry is wanted, whether or not it still exists; asked for once."""
         table, self._registry_request = self._registry_request, None
-        return table if table is not None and table.reg_id in self._registry.tables else None
+        return table
 
     def _count_a_validation(self) -> None:
         """Take over one finished validation; the next one waits for the next packet, so that none is missed."""
-        done = next((request for request in self._validations if request.performed), None)
+        done = self._validations.tell()
         if done is None:
             return
-        self._validations.remove(done)
         self._last_validation = done
         self._validated += 1
         self._successes += done.result == 0
@@ -124,11 +124,13 @@ class Housekeeping:
         """The fields of packets.HOUSEKEEPING."""
         self._count_a_validation()
         last, table = self._last_validation, self.last_updated
+        if table is not None and table.reg_id in self._registry.tables:
+            self._updated = {"LastUpdateTime": sys_time_fields(table.last_update), "LastUpdatedTable": table.name}
         values: dict[str, Any] = {
             "CommandCounter": self._commands & _BYTE,
             "CommandErrorCounter": self._errors & _BYTE,
             "NumTables": len(self._registry.tables),
-            "NumLoadPending": sum(table.loading is not None for table in self._registry.tables),
+            "NumLoadPending": sum(table.is_loading for table in self._registry.tables),
             "ValidationCounter": self._validated & _HALF,
             "LastValCrc": last.crc,
             "LastValStatus": last.result,
@@ -143,70 +145,82 @@ class Housekeeping:
             "LastFileDumped": self._dumps.last_file,
             "LastTableLoaded": self.last_table_loaded,
         }
-        if table is not None:
-            values |= {"LastUpdateTime": sys_time_fields(table.last_update), "LastUpdatedTable": table.name}
-        return values
+        return values | self._updated
 
     def registry_packet(self, table: TableRecord, owner_name: str) -> dict[str, Any]:
-        """The fields of packets.REGISTRY_PACKET for one table."""
-        inactive = table.inactive()
-        return _common(table, owner_name) | {
-            "ActiveBufferAddr": table.active.address if table.active else 0,
+        """The fields of packets.REGISTRY_PACKET for one table.
+
+        As in cFE a field that nothing is known for has the value of the last packet: all of them for a table that is
+        gone, CRC and file time for one that was never loaded.
+        """
+        if table.reg_id not in self._registry.tables:
+            return self._registry_fields
+        active, inactive = self._registry.active(table), self._registry.inactive(table)
+        self._registry_fields = {
+            **self._registry_fields,
+            **self._common(table, owner_name),
+            **({} if active is None else _image(active)),
+            "ActiveBufferAddr": active.address if active else 0,
             "InactiveBufferAddr": inactive.address if inactive else 0,
             "ValidationFuncPtr": int(table.validator is not None),
             "Critical": table.critical,
         }
+        return self._registry_fields
 
     def registry_record(self, table: TableRecord, owner_name: str) -> dict[str, Any]:
         """The fields of packets.REGISTRY_RECORD for one table."""
-        return _common(table, owner_name) | {
+        active = self._registry.active(table)
+        return {
+            **self._common(table, owner_name),
+            **(_image(active) if active else {"Crc": 0, "FileTime": sys_time_fields((0, 0))}),
             "NumUsers": len(table.accesses),
-            "LoadInProgress": table.loading.place if table.loading else NO_LOAD,
+            "LoadInProgress": self._registry.place(table),
             "ValidationFunc": table.validator is not None,
             "CriticalTable": table.critical,
         }
 
+    def _common(self, table: TableRecord, owner_name: str) -> dict[str, Any]:
+        return {
+            "Size": table.size,
+            "TimeOfLastUpdate": sys_time_fields(table.last_update),
+            "TableLoadedOnce": table.is_loaded,
+            "LoadPending": self._registry.is_update_pending(table),
+            "DumpOnly": table.dump_only,
+            "DoubleBuffered": table.double_buffered,
+            "Name": table.name,
+            "LastFileLoaded": table.last_file,
+            "OwnerAppName": owner_name,
+        }
 
-def _common(table: TableRecord, owner_name: str) -> dict[str, Any]:
-    return {
-        "Size": table.size,
-        "Crc": table.active.crc if table.active else 0,
-        "TimeOfLastUpdate": sys_time_fields(table.last_update),
-        "FileTime": sys_time_fields(table.active.file_time if table.active else (0, 0)),
-        "TableLoadedOnce": table.active is not None,
-        "LoadPending": table.is_update_pending,
-        "DumpOnly": table.dump_only,
-        "DoubleBuffered": table.double_buffered,
-        "Name": table.name,
-        "LastFileLoaded": table.last_file,
-        "OwnerAppName": owner_name,
-    }
+
+def _image(active: Buffer) -> dict[str, Any]:
+    return {"Crc": active.crc, "FileTime": sys_time_fields(active.file_time)}
+
+
+class Parts(NamedTuple):
+    """What the task works with."""
+
+    registry: TableRegistry
+    loads: Loads
+    dumps: Dumps
+    memory: BufferMemory
+    critical: CriticalTables
+    validations: Validations
+    reports: Reports
 
 
 class TableCommands:
     """The commands about single tables; each returns whether it was carried out."""
 
-    def __init__(
-        self,
-        ports: Ports,
-        config: PlatformConfig,
-        registry: TableRegistry,
-        loads: Loads,
-        dumps: Dumps,
-        critical: CriticalTables,
-        housekeeping: Housekeeping,
-    ) -> None:
+    def __init__(self, ports: Ports, config: PlatformConfig, parts: Parts, housekeeping: Housekeeping) -> None:
         self._ports = ports
         self._config = config
-        self._registry = registry
-        self._loads = loads
-        self._dumps = dumps
-        self._critical = critical
+        self._registry, self._loads, self._dumps, _, self._critical, self._validations, self._reports = parts
         self._housekeeping = housekeeping
 
     def load(self, packet: bytes) -> bool:
         """Read a table file into the inactive image of its table (CFE_TBL_LoadCmd)."""
-        file = LoadFile(pk.LOAD.read_name(packet, "LoadFilename"), self._config)
+        file = LoadFile(pk.LOAD.read_name(packet, "LoadFilename"), self._config, stays_open=True)
         table = None
         try:
             self._loads.open(file)
@@ -214,22 +228,15 @@ class TableCommands:
             if table is None:
                 text = "Unable to locate in Table Registry"
                 raise Refused(CFE_TBL_ERR_INVALID_NAME, ev.NO_SUCH_TABLE_ERR_EID, text, names_file=False)
-            self._loads.reserve(table, from_file=True)
-            self._fill(table, file)
+            if not self._config.is_cfe_7_0_0:  # which forgets it, and so finds no buffer to load into
+                self._loads.reserve(table, from_file=True)
+            self._loads.fill_from_file(table, file)
         except Refused as refused:
-            self._loads.report(refused, self._registry.services_app_id, APP_NAME, file, table)
+            self._reports.file_refused(refused, APP_NAME, file, table)
             return False
         self._housekeeping.last_file_loaded, self._housekeeping.last_table_loaded = file.path, table.name
-        where = f"LoadFile,app={APP_NAME},file={file.path},tbl={table.name}"
-        self._info(ev.FILE_LOADED_INF_EID, f"{where}:Successful load into '{table.name}' working buffer")
+        self._reports.loaded(file, APP_NAME, table)
         return True
-
-    def _fill(self, table: TableRecord, file: LoadFile) -> None:
-        try:
-            self._loads.fill_from_file(table, file)
-        except Refused:
-            self._registry.discard_load(table)
-            raise
 
     def dump(self, packet: bytes) -> bool:
         """Begin to write an image of a table to a file (CFE_TBL_DumpCmd)."""
@@ -241,8 +248,9 @@ class TableCommands:
         try:
             self._dumps.request(table, values["ActiveTableFlag"], path)
         except DumpRefused as refused:
-            where = f"dump,table={table.name},app={APP_NAME},file={path}"
-            self._error(refused.event_id, f"{where}:{refused.text}")
+            self._reports.dump_refused(refused, table, values["ActiveTableFlag"], path)
+            if refused.event_id == UNDEFINED:  # the snapshot could not be taken; its owner is told all the same
+                self._notify(table)
             return False
         self._notify(table)
         return True
@@ -250,53 +258,53 @@ class TableCommands:
     def validate(self, packet: bytes) -> bool:
         """Have an image of a table validated (CFE_TBL_ValidateCmd)."""
         values = pk.VALIDATE.read(packet)
-        table = self._table(pk.VALIDATE.read_name(packet, "TableName"))
+        name, which = pk.VALIDATE.read_name(packet, "TableName"), values["ActiveTableFlag"]
+        table = self._registry.find(name)
         if table is None:
+            self._reports.no_such_table_for(name)
             return False
-        buffer = select_buffer(table, values["ActiveTableFlag"])
+        before = self._validations.asked(table)
+        if before is not None:
+            self._reports.validation_in_progress(table, before.number)
+            return True
+        buffer = select_buffer(self._registry, table, which)
         if buffer is None:
-            self._error(ev.NO_INACTIVE_BUFFER_ERR_EID, f"No Buffer for Table '{table.name}' present")
+            self._reports.no_buffer_to_validate(table, which)
             return False
-        if self._housekeeping.validations_under_way() >= self._config.tbl_max_num_validations:
-            text = "Too many Table Validations have been requested"
-            self._error(ev.TOO_MANY_VALIDATIONS_ERR_EID, text)
+        if self._validations.is_full:
+            self._reports.too_many_validations(table)
             return False
-        of_active = values["ActiveTableFlag"] == pk.ACTIVE_BUFFER
-        self._begin_validation(table, Validation(table.name, calculate_crc(buffer.view()), of_active))
+        self._begin_validation(table, buffer, which == pk.ACTIVE_BUFFER)
         return True
 
-    def _begin_validation(self, table: TableRecord, request: Validation) -> None:
-        if table.validator is None:
-            request.performed = True
-            self._housekeeping.add_validation(request)
-            text = f"Tbl Services assumes '{table.name}' is valid. No Validation Function has been registered"
-            self._info(ev.ASSUMED_VALID_INF_EID, text)
+    def _begin_validation(self, table: TableRecord, buffer: Buffer, of_active: bool) -> None:
+        is_7_0_0 = self._config.is_cfe_7_0_0
+        request = Validation(table.name, calculate_crc(buffer.view()) if is_7_0_0 else buffer.crc, of_active)
+        if table.validator is not None:
+            self._validations.ask(table, request)
+            self._housekeeping.count_request()
+            if self._notify(table):
+                text = f"Tbl Services issued validation request for '{table.name}'"
+                self._debug(ev.VAL_REQ_MADE_INF_EID, text)
             return
-        if request.of_active in table.validations:
-            return  # the owner has not got round to the request before; one answer serves both
-        table.validations[request.of_active] = request
-        self._housekeeping.add_validation(request, by_owner=True)
-        if self._notify(table):
-            text = f"Tbl Services issued validation request for '{table.name}'"
-            self._debug(ev.VAL_REQ_MADE_INF_EID, text)
+        if is_7_0_0:  # which tells of it in housekeeping, but does not mark the image as good
+            request.performed = True
+            self._validations.add(request)
+        else:
+            buffer.is_valid = True
+        self._reports.assumed_valid(table)
 
     def activate(self, packet: bytes) -> bool:
         """Let a table's owner switch to the inactive image (CFE_TBL_ActivateCmd)."""
-        table = self._named(packet)
+        name = pk.ACTIVATE.read_name(packet, "TableName")
+        table = self._registry.find(name)
         if table is None:
+            self._reports.no_such_table_for(name)
             return False
-        name, loading = table.name, table.loading
-        if table.dump_only:
-            text = f"Illegal attempt to activate dump-only table '{name}'"
-            self._error(ev.ACTIVATE_DUMP_ONLY_ERR_EID, text)
-            return False
-        if loading is None:
-            text = f"Cannot activate table '{name}'. No Inactive image available"
-            self._error(ev.ACTIVATE_ERR_EID, text)
-            return False
-        if not loading.is_valid:
-            text = f"Cannot activate table '{name}'. Inactive image not Validated"
-            self._error(ev.UNVALIDATED_ERR_EID, text)
+        loading = None if table.dump_only else self._registry.loading(table)
+        if loading is None or not loading.is_valid:
+            event_id = ev.ACTIVATE_ERR_EID if loading is None else ev.UNVALIDATED_ERR_EID
+            self._reports.not_activated(ev.ACTIVATE_DUMP_ONLY_ERR_EID if table.dump_only else event_id, table)
             return False
         loading.activate_requested = True
         if self._notify(table):
@@ -341,7 +349,7 @@ class TableCommands:
         table = self._named(packet)
         if table is None:
             return False
-        if table.loading is None:
+        if not table.is_loading or table.dump_only:
             text = f"Cannot abort load of '{table.name}'. No load started."
             self._error(ev.LOAD_ABORT_ERR_EID, text)
             return False
@@ -355,16 +363,19 @@ class TableCommands:
     def _table(self, name: str) -> TableRecord | None:
         table = self._registry.find(name)
         if table is None:
-            self._error(ev.NO_SUCH_TABLE_ERR_EID, f"Unable to locate '{name}' in Table Registry")
+            self._reports.no_such_table(name)
         return table
 
     def _notify(self, table: TableRecord) -> bool:
-        """Send the owner's notification; False when there is none to send or it could not be sent."""
+        """Send the owner's notification; whether it was sent. Release 7.0.0 takes none to send for one sent."""
         if table.notify is None:
-            return False
+            return self._config.is_cfe_7_0_0
         msg_id, fcn_code, parameter = table.notify
         try:
             packet = command(msg_id, fcn_code, pk.NOTIFY_COMMAND.pack(Parameter=parameter))
+            if self._config.is_cfe_7_0_0:  # it never sets the size of this message
+                packet = packet[:_SIZE_NOT_SET]
+                set_size(packet, _SIZE_NOT_SET)
             self._ports.sb.transmit_msg(bytes(packet))
         except CfeError as error:
             text = f"Manage Notification Pkt Error(Status={error.hex})"
@@ -446,24 +457,15 @@ class RegistryDump:
 class TableTask:
     """The core application CFE_TBL."""
 
-    def __init__(
-        self,
-        ports: Ports,
-        config: PlatformConfig,
-        files: TableStorage,
-        registry: TableRegistry,
-        loads: Loads,
-        dumps: Dumps,
-        memory: BufferMemory,
-        critical: CriticalTables,
-    ) -> None:
+    def __init__(self, ports: Ports, config: PlatformConfig, files: TableStorage, parts: Parts) -> None:
         self._ports = ports
         self._config = config
-        self._registry = registry
-        self._dumps = dumps
-        self._housekeeping = Housekeeping(registry, memory, dumps)
+        self._registry = registry = parts.registry
+        self._dumps = parts.dumps
+        self._reports = parts.reports
+        self._housekeeping = Housekeeping(registry, parts.memory, parts.dumps, parts.validations)
         self._registry_dump = RegistryDump(ports, registry, self._housekeeping, files)
-        commands = TableCommands(ports, config, registry, loads, dumps, critical, self._housekeeping)
+        commands = TableCommands(ports, config, parts, self._housekeeping)
         self._commands = CommandTable(
             (pk.SEND_HK, self._send_hk),
             (pk.NOOP, self._noop),
@@ -487,7 +489,7 @@ class TableTask:
         pipe = ports.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
         ports.sb.subscribe(pk.SEND_HK_MID, pipe)
         ports.sb.subscribe(pk.CMD_MID, pipe)
-        text = f"cFE TBL Initialized: {version_string(APP_NAME)}"
+        text = f"cFE TBL Initialized: {self._config.release.text(APP_NAME)}"
         ports.evs.send_event(ev.INIT_INF_EID, ev.INFORMATION, text)
         serve(ports, self._config, pipe, MAIN_PERF_ID, self.handle)
 
@@ -527,10 +529,11 @@ class TableTask:
         if wanted is not None:
             owner = self._ports.es.get_app_name(wanted.owner) if wanted.owner else ""
             self._ports.sb.transmit_msg(pk.REG_TLM.packet(self._housekeeping.registry_packet(wanted, owner)))
-        self._dumps.write_files(self._registry.services_app_id, APP_NAME)
+        for dump, event_id, event_type, text in self._dumps.write_files(self._registry.services_app_id):
+            self._reports.dump(event_id, event_type, UNKNOWN, dump.file_name, text)
 
     def _noop(self, packet: bytes) -> bool:
-        text = f"No-op Cmd Rcvd: {version_string(APP_NAME)}"
+        text = f"No-op Cmd Rcvd: {self._config.release.text(APP_NAME)}"
         self._ports.evs.send_event(ev.NOOP_INF_EID, ev.INFORMATION, text)
         return True
 

@@ -28,7 +28,6 @@ from cfepy.time.tone import (
     ToneCounters,
 )
 from cfepy.units import US_PER_S
-from cfepy.versions import version_string
 
 _STATES = {CLOCK_INVALID: "INVALID", CLOCK_VALID: "VALID", CLOCK_FLYWHEEL: "FLYWHEEL"}
 _SOURCES = {SOURCE_INTERNAL: "INTERNAL", SOURCE_EXTERNAL: "EXTERNAL"}
@@ -58,6 +57,7 @@ class TimeCommands:
         tone: Tone,
         settings: TimeSettings,
         on_housekeeping: Callable[[], object],
+        version_text: str,
     ) -> None:
         self.table = CommandTable(
             (pk.SEND_HK, self._send_housekeeping),
@@ -85,6 +85,7 @@ class TimeCommands:
         self._tone = tone
         self._settings = settings
         self._on_housekeeping = on_housekeeping
+        self._version_text = version_text
         self._version_at_reset = 0
 
     def process(self, packet: bytes) -> None:
@@ -116,7 +117,7 @@ class TimeCommands:
     # -- counters and telemetry ------------------------------------------------------------------------------------
 
     def _noop(self, packet: bytes) -> None:
-        self.replies.accept(ev.NOOP_EID, f"No-op Cmd Rcvd: {version_string('CFE_TIME')}")
+        self.replies.accept(ev.NOOP_EID, f"No-op Cmd Rcvd: {self._version_text}")
 
     def _reset_counters(self, packet: bytes) -> None:
         self.replies.reset()

@@ -65,7 +65,9 @@ class TimeServices:
         self._kept: dict[str, Any] = {}
         tone_ready = Semaphore(kernel, 0, 1, "TIME_TONE_SEM")
         self.tone = Tone(self.clock, settings, ports, tone_ready.give, self._notify)
-        self.commands = TimeCommands(ports, self.clock, self.tone, settings, self._save)
+        self.commands = TimeCommands(
+            ports, self.clock, self.tone, settings, self._save, config.release.text("CFE_TIME")
+        )
         self._sender = ToneDataSender(ports, self.clock, self.tone, settings)
         self.task = TimeTask(kernel, ports, config, settings, self.tone, self._sender, self.commands, tone_ready)
 

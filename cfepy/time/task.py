@@ -17,7 +17,6 @@ from cfepy.time.settings import TimeSettings
 from cfepy.time.systime import ticks_of, ticks_of_ns
 from cfepy.time.tone import SECOND, Tone, ToneData, ToneDataSender
 from cfepy.units import NS_PER_S
-from cfepy.versions import version_string
 
 PIPE_DEPTH = 12
 PIPE_NAME = "TIME_CMD_PIPE"
@@ -101,7 +100,7 @@ class TimeTask:
         if not self._settings.client:
             ports.sb.subscribe(pk.SEND_CMD_MID, pipe)
         ports.sb.subscribe(pk.CMD_MID, pipe)
-        text = f"cFE TIME Initialized: {version_string('CFE_TIME')}"
+        text = f"cFE TIME Initialized: {self._config.release.text('CFE_TIME')}"
         ports.evs.send_event(ev.INIT_EID, ev.INFORMATION, text)
         self._kernel.spawn(TIMER_NAME, self._timer, TIMER_PRIORITY)
         return pipe

@@ -89,7 +89,13 @@ def table_name(number: int) -> str:
 
 
 TABLES = tuple(
-    TableType(f"{APP_NAME}.{table_name(number)}", ROW, rows=MOST_ROWS, description=f"ROS parameters {number + 1}")
+    TableType(
+        f"{APP_NAME}.{table_name(number)}",
+        ROW,
+        rows=MOST_ROWS,
+        description=f"ROS parameters {number + 1}",
+        fault=lambda image: fault(unpack(image)),
+    )
     for number in range(MOST_TABLES)
 )
 

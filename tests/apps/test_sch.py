@@ -185,7 +185,8 @@ def test_a_bad_schedule_from_the_ground_is_refused(flight: Flight) -> None:
 
 def test_corrupt_entries_are_disabled(flight: Flight) -> None:
     flight.run_to(2.6)
-    active = flight.mission.cfe.tbl.registry.by_name("SCH.SCHED_DEF").active
+    registry = flight.mission.cfe.tbl.registry
+    active = registry.active(registry.by_name("SCH.SCHED_DEF"))
     assert active is not None
     active.data[2:4] = b"\0\0"  # no frequency in the entry of slot 0
     flight.run_to(5.6)

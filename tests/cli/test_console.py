@@ -94,7 +94,7 @@ def test_what_is_wrong_is_told_and_the_session_goes_on(console: Console) -> None
 def test_stop_on_failure_ends_the_session(console: Console) -> None:
     status, output = console("lab", "--stop-on-failure", lines="run 0.7\nexpect app NOBODY\nrun 5\n")
     assert status == 1
-    assert "FAILED 0.700 expect app NOBODY: there are CFE_EVS, " in output
+    assert "FAILED 0.700 expect app NOBODY: there are CFE_ES, " in output
     assert "> run 5" not in output
 
 

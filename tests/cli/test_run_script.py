@@ -38,7 +38,7 @@ def test_a_failed_step_is_the_exit_status(
 ) -> None:
     assert run(make_mission("Quiet"), script, BAD) == 1
     shown = capsys.readouterr().out
-    assert f"FAILED     1.000  {script}:1: at 1 expect app NOBODY: there are CFE_EVS, " in shown
+    assert f"FAILED     1.000  {script}:1: at 1 expect app NOBODY: there are CFE_ES, " in shown
     assert f"ok         2.000  {script}:2: at 2 expect app QUIET RUNNING\n" in shown
     assert "2 steps, 1 failed\n" in shown
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from cfepy.cli.main import main
+from cfepy.ground.dictionary import table_type
 from cfepy.tbl import TableImage, build, read
 from cfepy.tbl.image import with_mark
 
@@ -168,6 +170,26 @@ def test_verify_reports_offset_and_field(
     lines = capsys.readouterr().out.splitlines()
     assert any(line.startswith(f"{path}: byte {offset}: {field}: ") for line in lines)
     assert lines[-1].endswith("good")
+
+
+@pytest.mark.parametrize(
+    ("table", "row", "fault"),
+    [
+        ("SAMPLE_APP.ExampleTable", {"Int1": 11}, "Int1 is 11, at most 10 is allowed"),
+        ("HK.CopyTable", {"InputMid": 0x0901, "NumBytes": 1}, "Invalid Output MID: 0x0 at entry index 0"),
+        ("SCH.MSG_DEFS", {"MessageBuffer": [0, 1]}, "idx[0] mid[0x1] len[7] buf[0]"),
+    ],
+)
+def test_verify_asks_the_application(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], table: str, row: dict[str, Any], fault: str
+) -> None:
+    kind = table_type(table, None)
+    path = tmp_path / "t.tbl"
+    path.write_bytes(build(kind.image([row])))
+    assert main(["tbl", "verify", str(path)]) == 1
+    assert f"{path}: byte 116: data: the application refuses it: {fault}" in capsys.readouterr().out
+    path.write_bytes(build(TableImage(table, kind.pack([row])[:-1])))
+    assert main(["tbl", "verify", str(path)]) == 0, "of a part it cannot be asked"
 
 
 def test_verify_reports_every_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

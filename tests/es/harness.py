@@ -39,6 +39,7 @@ class Lab:
 
     def __init__(self, folder: Path, tasks: str = "thread", **mains: Main) -> None:
         (folder / "startup.scr").write_text("!\n")
+        (folder / "mission.yaml").write_text('cfe_version: "7.0.0"\n')  # what tests compare with was recorded on it
         self.mission = Mission(str(folder), console=Console(quiet=True), tasks=tasks)
         self.cfe = self.mission.cfe
         self.es = self.cfe.es

@@ -6,6 +6,7 @@ import pytest
 
 from cfepy import status
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, StartupEntry, check, parse, strtoul
+from cfepy.versions import RELEASES
 
 BAD_SCRIPT = b"""\
 CFE_LIB, cfe_assert,  CFE_Assert_LibInit, ASSERT_LIB,  0,   0,     0x0, 0;
@@ -163,11 +164,14 @@ def test_an_empty_file_name() -> None:
     assert bad.status == status.CFE_FS_INVALID_PATH
 
 
-def test_the_buffer_takes_128_characters() -> None:
+@pytest.mark.parametrize(("version", "longest"), [("7.0.0", 128), ("7.0.1", 127)])
+def test_the_longest_entry(version: str, longest: int) -> None:
     entry = b"CFE_APP,hk,%s,HK,90,16384,0x0,0;"
-    symbol = b"s" * (128 - len(entry) + 3)
-    assert isinstance(only(entry % symbol), StartupEntry)
-    assert isinstance(only(entry % (symbol + b"s")), BadLine)
+    symbol = b"s" * (longest - len(entry) + 3)
+    (good,) = parse(entry % symbol, RELEASES[version].longest_entry)
+    (bad,) = parse(entry % (symbol + b"s"), RELEASES[version].longest_entry)
+    assert isinstance(good, StartupEntry)
+    assert isinstance(bad, BadLine)
 
 
 def test_bytes_beyond_ascii_vanish_like_blanks() -> None:

@@ -53,7 +53,7 @@ def test_layouts_are_those_of_c(layout: Layout, c_name: str) -> None:
 
 
 OK_COMMANDS = [
-    (0, b"", 0, INFORMATION, "No-op Cmd Rcvd: CFE_EVS v7.0.0+dev0 (Draco) v7.0.0 Official Release, EDS disabled"),
+    (0, b"", 0, INFORMATION, "No-op Cmd Rcvd: CFE_EVS v7.0.1+dev0 (Draco) v7.0.1 Official Release, EDS disabled"),
     (2, b"\1\0", 20, DEBUG, "Enable Event Type Command Received with Event Type Bit Mask = 0x01"),
     (3, b"\2\0", 21, DEBUG, "Disable Event Type Command Received with Event Type Bit Mask = 0x02"),
     (4, b"\1\0", 22, DEBUG, "Set Event Format Mode Command Received with Mode = 0x01"),
@@ -272,7 +272,7 @@ def test_the_log_file_is_made_as_the_real_one(world: World) -> None:
     assert read_header(ours).description == "cFE EVS Log File"
     assert len(ours) == 64 + 172
     assert ours[64:70] == real[64:70]
-    assert ours[76:236] == real[76:236]
+    assert ours[76:236] == real[76:236].replace(b"v7.0.0", b"v7.0.1")
 
 
 def test_the_app_data_file_is_made_as_the_real_one(world: World) -> None:

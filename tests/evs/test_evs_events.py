@@ -22,7 +22,7 @@ from cfepy.status import (
 )
 from tests.evs.conftest import APP_ID, EVS_ID, MUTE_ID, Sent, World
 
-READY = "cFE EVS Initialized: CFE_EVS v7.0.0+dev0 (Draco) v7.0.0 Official Release, EDS disabled"
+READY = "cFE EVS Initialized: CFE_EVS v7.0.1+dev0 (Draco) v7.0.1 Official Release, EDS disabled"
 
 
 def test_it_tells_that_it_is_ready(fresh: World) -> None:

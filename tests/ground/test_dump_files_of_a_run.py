@@ -56,7 +56,7 @@ def test_all_are_whole(dumps: dict[str, DumpFile]) -> None:
 
 
 def test_what_is_in_them(dumps: dict[str, DumpFile]) -> None:
-    assert dumps["events"].records[0]["Message"].startswith("cFE EVS Initialized: ")
+    assert dumps["events"].records[0]["Message"].startswith("cFE ES Initialized: ")
     assert [row["AppName"] for row in dumps["event_apps"].records][-1] == "SAMPLE_APP"
     assert [row["Name"] for row in dumps["apps"].records if row["Type"] == 2] == ["SAMPLE_APP"]
     assert "ES_BG_TASK" in [row["TaskName"] for row in dumps["tasks"].records]

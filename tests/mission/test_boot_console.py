@@ -95,6 +95,7 @@ def flight(folder: Path, startup: str, files: dict[str, str] = APPS) -> list[str
         lines = source.splitlines()
         (folder / name).write_text("\n".join(line.removeprefix(" " * 8) for line in lines) + "\n")
     (folder / "startup.scr").write_text(startup)
+    (folder / "mission.yaml").write_text('cfe_version: "7.0.0"')
     (folder / "to_lab_sub.tbl").write_bytes(wrong_table())
     console = Console(quiet=True)
     with Mission(str(folder), console=console) as mission:

@@ -59,6 +59,7 @@ class Flight:
         startup: more lines of the startup script.
         sources: more code of the mission, by stem.
         tables: table files by name.
+        cfe_version: the release of cFE; most of what tests compare with was recorded on 7.0.0.
         limits: of the board.
     """
 
@@ -69,11 +70,13 @@ class Flight:
         startup: str = "",
         sources: dict[str, str] | None = None,
         tables: dict[str, bytes] | None = None,
+        cfe_version: str = "7.0.0",
         **limits: int | bool,
     ) -> None:
         self._listen = (evs_packets.LONG_EVENT_MSG_MID, *listen)
         self.packets: list[bytes] = []
-        path = write_mission(folder, STARTUP + startup, probe=PROBE, mute=MUTE, **(sources or {}))
+        mission = {"mission_yaml": f'cfe_version: "{cfe_version}"', **(sources or {})}
+        path = write_mission(folder, STARTUP + startup, probe=PROBE, mute=MUTE, **mission)
         for name, data in (tables or {}).items():
             (folder / name).write_bytes(data)
         board = folder / "board.yaml"

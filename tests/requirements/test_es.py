@@ -41,7 +41,8 @@ LOOPER = """
 
 @pytest.fixture
 def ground(tmp_path: Path) -> Iterator[Ground]:
-    folder = write_mission(tmp_path, STARTUP, tools=TOOLS, looper=LOOPER, other=LOOPER.replace("_CHILD", "_BABY"))
+    sources = {"tools": TOOLS, "looper": LOOPER, "other": LOOPER.replace("_CHILD", "_BABY")}
+    folder = write_mission(tmp_path, STARTUP, mission_yaml='cfe_version: "7.0.0"', **sources)
     with Mission(folder, console=Console(quiet=True)) as mission:
         mission.run_for(2)
         ground = Ground(mission)

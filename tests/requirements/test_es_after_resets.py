@@ -152,7 +152,7 @@ def test_cES1515_1_an_executive_that_loses_its_objects_in_a_reset_panics(
     with pytest.raises(CfeError):
         reset(ground, PROCESSOR)
     assert ground.lines("CFE_ES_CreateObjects")[-1] == (
-        "CFE_ES_CreateObjects: Error returned when calling function: CFE_SB_EarlyInit: EC = 0xC400000A"
+        "CFE_ES_CreateObjects: Error returned from EarlyInit for CFE_SB: EC = 0xC400000A"
     )
     assert "CFE_PSP_Panic called with error code = 0x00000006. Exiting." in ground.mission.console.lines
 
@@ -165,10 +165,10 @@ def test_an_executive_without_its_objects_panics(tmp_path: Path, what: str) -> N
     mission = Mission(write_mission(tmp_path, "!"), console=Console(quiet=True))
     if what == "function":
         mission.cfe.sb.early_init = fail  # type: ignore[method-assign]
-        said = "Error returned when calling function: CFE_SB_EarlyInit: EC = 0xC400000A"
+        said = "Error returned from EarlyInit for CFE_SB: EC = 0xC400000A"
     else:
         mission.processor.osal.task_create = fail  # type: ignore[method-assign]
-        said = "OS_TaskCreate error creating core App: CFE_EVS: EC = 0xC8000005"
+        said = "OS_TaskCreate error creating core App: CFE_ES: EC = 0xC8000005"
     with pytest.raises(CfeError):
         mission.run_for(2)
     assert Ground(mission).lines("CFE_ES_CreateObjects")[-1] == f"CFE_ES_CreateObjects: {said}"

@@ -49,7 +49,7 @@ def start(
     if schedule is not None:
         tables["sch_lab_table.tbl"] = schedule
         startup += SCHEDULER
-    flight = fly(hk.HK_TLM_MID, COMBINED, OTHER, startup=startup, sources=sources, tables=tables)
+    flight = fly(hk.HK_TLM_MID, COMBINED, OTHER, startup=startup, sources=sources, tables=tables, cfe_version="7.0.1")
     flight.send(evs.ENABLE_APP_EVENT_TYPE, AppName="HK", BitMask=0x0F)
     return flight
 

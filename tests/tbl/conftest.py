@@ -23,6 +23,7 @@ from cfepy.status import (
     CFE_SUCCESS,
     OS_ERR_FILE,
     OS_FS_ERR_PATH_INVALID,
+    OS_FS_ERR_PATH_TOO_LONG,
     CfeError,
     OsalError,
 )
@@ -35,7 +36,10 @@ POOL_ID = 0x140002
 
 
 class Store:
-    """A Critical Data Store that outlives the bench; `broken` names cannot be read, `running` apps own theirs."""
+    """A Critical Data Store that outlives the bench; `broken` names cannot be read, `running` apps own theirs.
+
+    A block that was never written cannot be read either.
+    """
 
     def __init__(self) -> None:
         self.blocks: dict[str, bytes] = {}
@@ -55,12 +59,14 @@ class Store:
         if len(self.blocks.get(full_name, b"")) == block_size:
             return handle, CFE_ES_CDS_ALREADY_EXISTS
         self.blocks[full_name] = bytes(block_size)
+        self.broken.add(full_name)
         return handle, CFE_SUCCESS
 
     def copy_to_cds(self, handle: int, data: bytes) -> None:
         name = self.names[handle - 0x150001]
         assert len(data) == len(self.blocks[name])
         self.blocks[name] = bytes(data)
+        self.broken.discard(name)
 
     def restore_from_cds(self, handle: int) -> bytes:
         name = self.names[handle - 0x150001]
@@ -85,7 +91,7 @@ class Bench:
 
     Args:
         store: what the CDS holds from before; None for an empty one.
-        limits: fields of `PlatformConfig`.
+        limits: fields of `PlatformConfig`, the release among them.
     """
 
     def __init__(self, store: Store | None = None, **limits: Any) -> None:
@@ -96,6 +102,8 @@ class Bench:
         self.pools: list[tuple[int, str]] = []
         self.jobs: list[FileWriteMetaData] = []
         self.files: dict[str, bytes] = {}
+        self.left_open: list[str] = []
+        self.too_long = ""
         self.kernel = cast(Any, SimpleNamespace(current=SimpleNamespace(owner=None)))
         ports = SimpleNamespace(
             es=SimpleNamespace(
@@ -129,6 +137,8 @@ class Bench:
         return POOL_ID
 
     def read_file(self, path: str) -> bytes:
+        if path == self.too_long:
+            raise OsalError(OS_FS_ERR_PATH_TOO_LONG, path)
         if path not in self.files:
             raise OsalError(OS_FS_ERR_PATH_INVALID, path)
         return self.files[path]
@@ -137,6 +147,9 @@ class Bench:
         if not path.startswith("/"):
             raise OsalError(OS_FS_ERR_PATH_INVALID, path)
         self.files[path] = data
+
+    def leave_open(self, path: str) -> None:
+        self.left_open.append(path)
 
     def exists(self, path: str) -> bool:
         return path in self.files

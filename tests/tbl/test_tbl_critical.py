@@ -6,6 +6,7 @@ import pytest
 
 from cfepy.status import (
     CFE_SUCCESS,
+    CFE_TBL_ERR_LOAD_IN_PROGRESS,
     CFE_TBL_ERR_NEVER_LOADED,
     CFE_TBL_INFO_RECOVERED_TBL,
     CFE_TBL_INFO_UPDATED,
@@ -47,8 +48,20 @@ def test_a_critical_table_comes_back(options: int) -> None:
     again = after.tbl.register("T", 4, options)
     assert again.status == CFE_TBL_INFO_RECOVERED_TBL
     assert after.tbl.get_address(again) == (memoryview(b"abcd"), True)
-    assert after.tbl.get_info(NAME) == before
+    assert after.tbl.get_info(NAME) == before._replace(crc=0)  # cFE does not say how much came back
+    assert after.send_hk()["NumLoadPending"] == 0
     assert (before.critical, before.last_file_loaded, before.time_of_last_update) == (True, "/cf/t.tbl", NOW)
+
+
+def test_in_release_7_0_0_the_load_of_a_recovered_table_stays_in_progress() -> None:
+    bench, _ = loaded()
+    after = Bench(bench.store, cfe_version="7.0.0")
+    handle = after.tbl.register("T", 4, OPT_CRITICAL)
+    assert handle.status == CFE_TBL_INFO_RECOVERED_TBL
+    assert after.send_hk()["NumLoadPending"] == 1
+    with pytest.raises(CfeError) as caught:
+        after.tbl.load(handle, b"2nd.")
+    assert caught.value.status == CFE_TBL_ERR_LOAD_IN_PROGRESS
 
 
 def test_the_latest_image_is_kept() -> None:
@@ -107,7 +120,10 @@ def test_a_table_that_was_never_loaded_does_not_come_back() -> None:
     assert handle.status == CFE_SUCCESS
     assert never_loaded(after, handle)
     records = [packets.CRITICAL_RECORD.unpack(after.store.blocks[REGISTRY], at) for at in range(0, 4096, 128)]
-    assert sum(record["Name"] == NAME for record in records) == 1
+    assert sum(record["Name"] == NAME for record in records) == 2
+    with pytest.raises(CfeError) as caught:
+        after.tbl.load(handle, b"abcd")
+    assert caught.value.status == CFE_TBL_ERR_LOAD_IN_PROGRESS
 
 
 def test_another_size_is_another_table() -> None:

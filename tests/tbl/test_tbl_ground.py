@@ -8,12 +8,14 @@ from cfepy.fs import crc16, read_header
 from cfepy.msg import Command, Layout, command, get_msg_id
 from cfepy.status import (
     CFE_SUCCESS,
+    CFE_TBL_ERR_INVALID_HANDLE,
     CFE_TBL_INFO_DUMP_PENDING,
     CFE_TBL_INFO_NO_DUMP_PENDING,
     CFE_TBL_INFO_NO_VALIDATION_PENDING,
     CFE_TBL_INFO_UPDATE_PENDING,
     CFE_TBL_INFO_UPDATED,
     CFE_TBL_INFO_VALIDATION_PENDING,
+    CfeError,
 )
 from cfepy.tbl import OPT_DBL_BUFFER, OPT_DUMP_ONLY, packets, read
 from tests.layouts import assert_same
@@ -62,10 +64,12 @@ def test_the_whole_way_of_a_load(loaded: Bench) -> None:
     handle = loaded.handle  # type: ignore[attr-defined]
     load_file(loaded)
     where = "LoadFile,app=CFE_TBL,file=/cf/t.tbl,tbl=APP.T"
-    assert loaded.take_events() == [(12, 2, f"{where}:Successful load into 'APP.T' working buffer")]
+    assert loaded.take_events() == [(12, 2, f"{where}:Successful load into working buffer")]
     assert loaded.tbl.get_status(handle) == CFE_SUCCESS
     loaded.named(packets.ACTIVATE, NAME)
-    assert loaded.take_events() == [(81, 3, "Cannot activate table 'APP.T'. Inactive image not Validated")]
+    assert loaded.take_events() == [
+        (81, 3, "Activate,app=,tbl=APP.T:Cannot activate table, Inactive image not Validated")
+    ]
     validate(loaded, packets.INACTIVE_BUFFER)
     assert loaded.tbl.get_status(handle) == CFE_TBL_INFO_VALIDATION_PENDING
     assert loaded.tbl.manage(handle) == CFE_SUCCESS
@@ -89,7 +93,7 @@ def test_bad_image_from_the_ground_never_gets_active(loaded: Bench) -> None:
     validate(loaded, packets.INACTIVE_BUFFER)
     loaded.take_events()
     loaded.tbl.manage(loaded.handle)  # type: ignore[attr-defined]
-    assert loaded.take_events() == [(96, 3, "APP validation failed for inactive 'APP.T', Status=0xFFFFFFFF")]
+    assert loaded.take_events() == [(96, 3, "APP validation failed for APP.T 'inactive', Status=0xFFFFFFFF")]
     loaded.named(packets.ACTIVATE, NAME)
     assert loaded.take_events()[0][0] == 81
     values = loaded.send_hk()
@@ -99,13 +103,13 @@ def test_bad_image_from_the_ground_never_gets_active(loaded: Bench) -> None:
     assert loaded.send_hk()["NumFreeSharedBufs"] == 4
 
 
-def test_events_of_the_recorded_session(bench: Bench) -> None:
+def test_there_is_no_inactive_image(bench: Bench) -> None:
     bench.tbl.register("T", 4)
     validate(bench, packets.INACTIVE_BUFFER)
     bench.named(packets.ACTIVATE, NAME)
     assert bench.take_events() == [
-        (66, 3, "No Buffer for Table 'APP.T' present"),
-        (70, 3, "Cannot activate table 'APP.T'. No Inactive image available"),
+        (80, 3, "Validate,app=,tbl=APP.T:Request had illegal buffer parameter (0x00000000)"),
+        (70, 3, "Activate,app=,tbl=APP.T:Cannot activate table, No Inactive image available"),
     ]
 
 
@@ -115,18 +119,25 @@ def test_table_without_validator_is_taken_as_valid(bench: Bench) -> None:
     load_file(bench)
     bench.take_events()
     validate(bench, packets.INACTIVE_BUFFER)
-    text = "Tbl Services assumes 'APP.T' is valid. No Validation Function has been registered"
+    text = "Validate,app=,tbl=APP.T:No Validation Function has been registered, assumed valid"
     assert bench.take_events() == [(23, 2, text)]
     bench.named(packets.ACTIVATE, NAME)
     assert bench.tbl.manage(handle) == CFE_TBL_INFO_UPDATED
 
 
 @pytest.mark.parametrize(
-    "wish", [packets.ACTIVATE, packets.SEND_REGISTRY, packets.ABORT_LOAD], ids=["activate", "reg", "abort"]
+    "wish", [packets.SEND_REGISTRY, packets.ABORT_LOAD, packets.DUMP], ids=["reg", "abort", "dump"]
 )
 def test_unknown_tables(bench: Bench, wish: Command) -> None:
     bench.named(wish, "NO.SUCH")
     assert bench.take_events() == [(57, 3, "Unable to locate 'NO.SUCH' in Table Registry")]
+
+
+@pytest.mark.parametrize("wish", [packets.ACTIVATE, packets.VALIDATE], ids=["activate", "validate"])
+def test_unknown_tables_of_which_nothing_is_said(bench: Bench, wish: Command) -> None:
+    bench.named(wish, "NO.SUCH")
+    assert bench.take_events() == []
+    assert bench.send_hk()["CommandErrorCounter"] == 1
 
 
 def test_ground_loads_that_cannot_be(loaded: Bench) -> None:
@@ -136,17 +147,32 @@ def test_ground_loads_that_cannot_be(loaded: Bench) -> None:
     load_file(loaded)
     load_file(loaded)
     assert [(event_id, text) for event_id, _, text in loaded.take_events()] == [
-        (57, "LoadFile,app=CFE_TBL,tbl=NO.SUCH:Unable to locate in Table Registry"),
+        (57, "LoadFile,app=CFE_TBL,file=/cf/x.tbl,tbl=[unknown]:Tbl Hdr has invalid name: 'NO.SUCH'"),
         (53, "LoadFile,app=CFE_TBL,file=/cf/none.tbl,tbl=[unknown]:Unable to open, Status = -108"),
-        (12, "LoadFile,app=CFE_TBL,file=/cf/t.tbl,tbl=APP.T:Successful load into 'APP.T' working buffer"),
+        (12, "LoadFile,app=CFE_TBL,file=/cf/t.tbl,tbl=APP.T:Successful load into working buffer"),
         (100, "LoadFile,app=CFE_TBL,tbl=APP.T:Load already in progress"),
     ]
 
 
-def test_a_refused_file_gives_its_buffer_back(loaded: Bench) -> None:
+def test_a_refused_file_stays_in_progress_until_it_is_given_up(loaded: Bench) -> None:
     loaded.files["/cf/t.tbl"] = loaded.files["/cf/t.tbl"][:-1]
     load_file(loaded)
-    assert loaded.send_hk()["NumFreeSharedBufs"] == 4
+    load_file(loaded)
+    assert [event_id for event_id, _, _ in loaded.take_events()] == [71, 100]
+    values = loaded.send_hk()
+    assert (values["NumLoadPending"], values["NumFreeSharedBufs"]) == (1, 3)
+    loaded.named(packets.ABORT_LOAD, NAME)
+    values = loaded.send_hk()
+    assert (values["NumLoadPending"], values["NumFreeSharedBufs"]) == (0, 4)
+
+
+def test_the_ground_leaves_files_open_whose_headers_are_good(loaded: Bench) -> None:
+    loaded.files["/cf/short.tbl"] = loaded.files["/cf/t.tbl"][:70]
+    load_file(loaded, "/cf/short.tbl")
+    load_file(loaded)
+    load_file(loaded)
+    loaded.tbl.load(loaded.tbl.register("U", 4), b"data")
+    assert loaded.left_open == ["/cf/t.tbl", "/cf/t.tbl"]
 
 
 def test_shared_buffers_run_out() -> None:
@@ -159,12 +185,35 @@ def test_shared_buffers_run_out() -> None:
     assert bench.take_events()[-1] == (60, 3, text)
 
 
+def test_a_single_buffered_table_can_be_dumped_from_its_second_load_on(loaded: Bench) -> None:
+    dump(loaded, packets.ACTIVE_BUFFER)
+    values = loaded.send_hk()
+    assert (loaded.take_events(), values["CommandErrorCounter"], values["NumFreeSharedBufs"]) == ([], 1, 4)
+    loaded.tbl.load(loaded.handle, b"2nd.")  # type: ignore[attr-defined]
+    dump(loaded, packets.ACTIVE_BUFFER)
+    loaded.send_hk()
+    assert read(loaded.files["/ram/t.tbl"]).data == b"2nd."
+
+
+def test_dumps_that_failed_keep_their_places(loaded: Bench) -> None:
+    for _ in range(4):
+        dump(loaded, packets.ACTIVE_BUFFER)
+    loaded.take_events()
+    loaded.tbl.load(loaded.handle, b"2nd.")  # type: ignore[attr-defined]
+    loaded.take_events()
+    dump(loaded, packets.ACTIVE_BUFFER)
+    text = "Dump,table=APP.T,app=,file=/ram/t.tbl:Too many table dumps have been requested"
+    assert loaded.take_events() == [(76, 3, text)]
+
+
 def test_dump_of_an_ordinary_table(loaded: Bench) -> None:
+    loaded.tbl.load(loaded.handle, b"old.")  # type: ignore[attr-defined]
+    loaded.take_events()
     dump(loaded, packets.ACTIVE_BUFFER)
     assert "/ram/t.tbl" not in loaded.files
     values = loaded.send_hk()
     assert values["NumFreeSharedBufs"] == 3
-    where = "dump,table=APP.T,app=CFE_TBL,file=/ram/t.tbl"
+    where = "Dump,table=[unknown],app=,file=/ram/t.tbl"
     assert loaded.take_events() == [(14, 2, f"{where}:Successfully dumped table")]
     image = read(loaded.files["/ram/t.tbl"])
     assert (image.name, image.data, image.time, image.description) == (NAME, b"old.", NOW, "Table Dump Image")
@@ -180,19 +229,29 @@ def test_dump_of_a_dump_only_table_waits_for_its_owner(bench: Bench) -> None:
     bench.tbl.get_address(handle)[0][:] = b"live"
     dump(bench, packets.ACTIVE_BUFFER)
     dump(bench, packets.ACTIVE_BUFFER)
-    assert bench.take_events()[0][::2] == (77, "dump,table=APP.T,app=CFE_TBL,file=/ram/t.tbl:A dump is already pending")
+    assert bench.take_events()[0][::2] == (77, "Dump,table=APP.T,app=,file=/ram/t.tbl:A dump is already pending")
     bench.send_hk()
     assert "/ram/t.tbl" not in bench.files
     assert bench.tbl.get_status(handle) == CFE_TBL_INFO_DUMP_PENDING
     assert bench.tbl.manage(handle) == CFE_SUCCESS
+    assert bench.tbl.get_status(handle) == CFE_TBL_INFO_DUMP_PENDING
+    with pytest.raises(CfeError) as taken_already:
+        bench.tbl.dump_to_buffer(handle)
+    assert taken_already.value.status == CFE_TBL_ERR_INVALID_HANDLE
+    bench.take_events()
+    bench.send_hk()  # cFE never learns how much an app puts into a dump-only table
+    text = "Dump,table=[unknown],app=,file=/ram/t.tbl:Error writing Tbl image, Status=-40"
+    assert bench.take_events() == [(65, 3, text)]
     assert bench.tbl.dump_to_buffer(handle) == CFE_TBL_INFO_NO_DUMP_PENDING
-    bench.send_hk()
-    assert read(bench.files["/ram/t.tbl"]).data == b"live"
+    assert bench.tbl.get_status(handle) == CFE_SUCCESS
+    assert "had stale dump request pending" in bench.log[-1]
 
 
 def test_dumps_that_cannot_be(loaded: Bench) -> None:
     dump(loaded, packets.INACTIVE_BUFFER)
     dump(loaded, 7)
+    loaded.tbl.load(loaded.handle, b"2nd.")  # type: ignore[attr-defined]
+    loaded.events = [event for event in loaded.events if event[0] != 35]
     dump(loaded, packets.ACTIVE_BUFFER, path="nowhere")
     loaded.send_hk()
     dump(loaded, packets.ACTIVE_BUFFER, name="NO.SUCH")
@@ -216,12 +275,12 @@ def test_previous_image_of_a_double_buffered_table_can_be_dumped(bench: Bench) -
     assert read(bench.files["/ram/t.tbl"]).data == b"one."
 
 
-def test_cleanup_drops_the_dumps_of_an_app(bench: Bench) -> None:
+def test_cleanup_drops_the_dumps_of_an_app_but_not_their_buffers(bench: Bench) -> None:
     bench.tbl.register("T", 4, OPT_DUMP_ONLY)
     dump(bench, packets.ACTIVE_BUFFER)
     bench.tbl.cleanup_app(0x110006)
     values = bench.send_hk()
-    assert (values["NumTables"], values["NumFreeSharedBufs"]) == (0, 4)
+    assert (values["NumTables"], values["NumFreeSharedBufs"]) == (0, 3)
 
 
 def test_notification_of_the_owner(loaded: Bench) -> None:
@@ -251,6 +310,13 @@ def test_registry_packet_is_sent_once(loaded: Bench) -> None:
     assert (values["Crc"], values["TableLoadedOnce"], values["LoadPending"]) == (crc16(b"old."), True, False)
     loaded.send_hk()
     assert len(loaded.sent) == 1
+
+
+def test_the_registry_packet_of_a_table_that_is_gone_is_the_last_one(loaded: Bench) -> None:
+    loaded.named(packets.SEND_REGISTRY, NAME)
+    loaded.tbl.cleanup_app(0x110006)
+    loaded.send_hk()
+    assert packets.REGISTRY_PACKET.unpack(loaded.sent[1][16:])["Name"] == ""
 
 
 def test_registry_file(loaded: Bench) -> None:
@@ -301,10 +367,13 @@ def test_pool_is_made_at_early_init(bench: Bench) -> None:
     assert bench.table_pool.statistics()["NumBlocksRequested"] == 4
 
 
-def test_a_validation_computes_a_crc_of_its_own(loaded: Bench) -> None:
-    handle = loaded.handle  # type: ignore[attr-defined]
+@pytest.mark.parametrize(("version", "told"), [("7.0.0", b"Xld."), ("7.0.1", b"old.")])
+def test_the_crc_of_a_validation(version: str, told: bytes) -> None:
+    loaded = Bench(cfe_version=version)
+    handle = loaded.tbl.register("T", 4, 0, lambda image: 0)
+    loaded.tbl.load(handle, b"old.")
     loaded.tbl.get_address(handle)[0][0] = ord("X")
     validate(loaded, packets.ACTIVE_BUFFER)
     loaded.tbl.manage(handle)
-    assert loaded.send_hk()["LastValCrc"] == crc16(b"Xld.")
+    assert loaded.send_hk()["LastValCrc"] == crc16(told)
     assert loaded.tbl.get_info(NAME).crc == crc16(b"old.")

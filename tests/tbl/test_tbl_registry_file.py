@@ -18,6 +18,7 @@ CFE_APP, sch_lab, SCH_LAB_AppMain, SCH_LAB,    80, 16384, 0x0, 0;
 CFE_APP, hk,      HK_AppMain,      HK,         90, 16384, 0x0, 0;
 !
 """
+RECORDED_WITH = 'cfe_version: "7.0.0"'
 GOLDEN = (DATA / "cfe_tbl_reg.log").read_bytes()
 SIZE = pk.REGISTRY_RECORD.size
 OTHER_BYTES = {"HK.CopyTable": {"Crc"}}  # NASA's copies spare bytes; see docs/differences.md
@@ -29,7 +30,7 @@ def test_records_are_packed_to_the_byte() -> None:
 
 
 def test_the_file_is_that_of_nasa(tmp_path: Path) -> None:
-    with Mission(write_mission(tmp_path, STARTUP), console=Console(quiet=True)) as mission:
+    with Mission(write_mission(tmp_path, STARTUP, mission_yaml=RECORDED_WITH), console=Console(quiet=True)) as mission:
         mission.run_for(3)
         packet = pk.DUMP_REGISTRY.packet()
         mission.kernel.spawn("ground", partial(mission.cfe.sb.transmit_msg, packet, False), 10)

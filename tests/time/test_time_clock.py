@@ -20,7 +20,7 @@ from cfepy.time import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID, SysTime, Time
 from cfepy.time import packets as pk
 from tests.time.conftest import APP_ID, OTHER_ID, SECOND_NS, TIME_ID, World
 
-READY = "cFE TIME Initialized: CFE_TIME v7.0.0+dev0 (Draco) v7.0.0 Official Release, EDS disabled"
+READY = "cFE TIME Initialized: CFE_TIME v7.0.1+dev0 (Draco) v7.0.1 Official Release, EDS disabled"
 FLY_OFF, FLY_ON = (21, "Stop FLYWHEEL"), (20, "Start FLYWHEEL")
 
 

@@ -54,7 +54,7 @@ def test_layouts_are_those_of_c(layout: Layout, c_name: str) -> None:
     assert_same(layout, c_name)
 
 
-NOOP = "No-op Cmd Rcvd: CFE_TIME v7.0.0+dev0 (Draco) v7.0.0 Official Release, EDS disabled"
+NOOP = "No-op Cmd Rcvd: CFE_TIME v7.0.1+dev0 (Draco) v7.0.1 Official Release, EDS disabled"
 OK_COMMANDS = [
     (0, b"", 4, NOOP),
     (2, b"", 6, "Request diagnostics command"),

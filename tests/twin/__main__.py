@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.twin.commands import Commander, Step
-from tests.twin.flight import differences, real, simulated
+from tests.twin.flight import RELEASE, differences, real, simulated
 from tests.twin.real import VARIABLE, installed
 
 STEPS_OF_A_FLIGHT = 60
@@ -35,7 +35,7 @@ class Difference(NamedTuple):
 
 
 def compare_flight(
-    built: Path, seed: int, count: int, mission_yaml: str = "", without: Iterable[str] = ()
+    built: Path, seed: int, count: int, mission_yaml: str = RELEASE, without: Iterable[str] = ()
 ) -> Iterator[tuple[Step, Difference | None]]:
     """Fly the steps of a seed in both; each with its difference, or None."""
     with simulated(mission_yaml) as ours, real(built) as theirs:
@@ -51,7 +51,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="of the first flight; the next ones count up")
     parser.add_argument("--count", type=int, default=100, help="commands in all")
     parser.add_argument("--flight", type=int, default=STEPS_OF_A_FLIGHT, help="steps of a flight")
-    parser.add_argument("--mission", default="", help="text of a mission file")
+    parser.add_argument("--mission", default=RELEASE, help="text of a mission file")
     parser.add_argument("--without", nargs="*", default=(), help="names of commands to leave out")
     given = parser.parse_args()
     built = installed()

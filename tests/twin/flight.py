@@ -144,15 +144,18 @@ class Real:
         return files
 
 
+RELEASE = 'cfe_version: "7.0.0"'
+"""The release that is flown beside, when nothing else is said."""
+
+
 @contextmanager
-def simulated(mission_yaml: str = "") -> Iterator[Simulated]:
-    """The mission in cfepy, prepared; with a mission file, if one is given."""
+def simulated(mission_yaml: str = RELEASE) -> Iterator[Simulated]:
+    """The mission in cfepy, prepared, with a mission file."""
     with tempfile.TemporaryDirectory() as folder:
         for path, data in mission.files().items():
             (Path(folder) / Path(path).name).write_bytes(data)
         (Path(folder) / "startup.scr").write_text(mission.STARTUP)
-        if mission_yaml:
-            (Path(folder) / "mission.yaml").write_text(mission_yaml)
+        (Path(folder) / "mission.yaml").write_text(mission_yaml)
         with Mission(folder, console=Console(quiet=True)) as flown:
             computer = Simulated(flown)
             for step in preparation():

@@ -238,6 +238,7 @@ def defects_of(data: bytes, find: Find) -> Iterator[TableDefect]:
     kind = find(table.table_name)
     yield from _table_header(data, table, kind)
     yield from _image(data, table)
+    yield from _content(data[IMAGE_AT:], table, kind)
 
 
 def _file_header(data: bytes) -> Iterator[TableDefect]:
@@ -276,6 +277,15 @@ def _table_header(data: bytes, table: TableHeader, kind: TableType | None) -> It
     if not all(table.table_name.partition(".")[::2]):
         yield TableDefect(NAME_AT, "table name", f"is {table.table_name!r}, it must be APP.Table")
     yield from _text_field(data, NAME_AT, TABLE_NAME_SIZE, "table name")
+
+
+def _content(image: bytes, table: TableHeader, kind: TableType | None) -> Iterator[TableDefect]:
+    """What the application's own validation says of a whole image; of a part of a table it cannot be asked."""
+    if kind is None or kind.fault is None or table.offset or table.num_bytes != kind.size or len(image) != kind.size:
+        return
+    fault = kind.fault(image)
+    if fault is not None:
+        yield TableDefect(IMAGE_AT, "data", f"the application refuses it: {fault}")
 
 
 def _image(data: bytes, table: TableHeader) -> Iterator[TableDefect]:

@@ -30,6 +30,7 @@ from cfepy.pilot.check.problem import MissionProblem, problem_of
 from cfepy.pilot.check.ros_files import NodeScript, check_definitions_of, check_launch, check_nodes
 from cfepy.pilot.check.startup import app_sources, check_startup
 from cfepy.status import UsageError
+from cfepy.versions import RELEASES
 
 __all__ = ["MissionProblem", "check_mission", "problem_of"]
 
@@ -79,12 +80,13 @@ def _check_node(file: Path) -> list[MissionProblem]:
 def _check_folder(script: Path, board: str | None) -> list[MissionProblem]:
     """A startup script with all that belongs to it."""
     data = script.read_bytes()
-    started = entries(data)
     mistakes = Mistakes(keep=True)
     path = mission_file_of(script)
     said = MissionSections() if path is None else read_mission_file(path, mistakes)
+    longest = RELEASES[said.cfe_version].longest_entry
+    started = entries(data, longest)
     demands = read_demands(said.demands, mistakes)
-    found = [*check_startup(script, data, started), *(problem_of(error, script) for error in mistakes.errors)]
+    found = [*check_startup(script, data, started, longest), *(problem_of(error, script) for error in mistakes.errors)]
     for source, entry_point in dict.fromkeys(app_sources(script.parent, started)):
         found += wrong_names(source, entry_point)
     nodes = _nodes_of(script.parent, started, said)

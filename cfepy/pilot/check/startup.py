@@ -16,15 +16,16 @@ NO_SYMBOL = "NULL"
 FILES = "/cf/"
 
 
-def check_startup(script: Path, data: bytes, entries: list[StartupEntry]) -> Iterator[MissionProblem]:
+def check_startup(script: Path, data: bytes, entries: list[StartupEntry], longest: int) -> Iterator[MissionProblem]:
     """What is wrong with a startup script, and with the code of the applications that it starts.
 
     Args:
         script: its path; code is looked for in its folder.
         data: its contents.
         entries: what it starts.
+        longest: characters of an entry that the mission's release of cFE reads.
     """
-    for note in startup_script.check(data):
+    for note in startup_script.check(data, longest):
         yield MissionProblem(script, note.line, note.explanation, note.is_warning)
     yield from _check_names(script, entries)
     for entry in entries:

@@ -84,7 +84,8 @@ def dump(mission: Mission, number: int) -> bytes:
 
 def rows_of(mission: Mission) -> list[Row]:
     """The rows that are not free, of all tables that there are."""
-    names = [table.name for table in TABLES if mission.cfe.tbl.registry.find(table.name) is not None]
-    tables = [mission.cfe.tbl.registry.by_name(name) for name in names]
-    rows = [row for table in tables if table.active is not None for row in unpack(table.active.view())]
+    registry = mission.cfe.tbl.registry
+    tables = [found for table in TABLES if (found := registry.find(table.name)) is not None]
+    images = [table.image(active) for table in tables if (active := registry.active(table)) is not None]
+    rows = [row for image in images for row in unpack(image)]
     return [row for row in rows if row != ("", "")]
