@@ -1,8 +1,9 @@
 """Where message and service definitions come from: packages shipped with cfepy, folders on disk, or texts at hand.
 
 Shipped packages are text files beside this one, `<package>.msgs`, `<package>.srvs` and `<package>.actions`, with one `#
-package/Name` section per type. A service has two parts; an action is a goal, a result and a feedback, and an envelope
-for each, the seven messages that actionlib_msgs' genaction makes of it.
+package/Name` section per type, whose title says when the type's own file has no line feed at its end. A service
+has two parts; an action is a goal, a result and a feedback, and an envelope for each, the seven messages that
+actionlib_msgs' genaction makes of it.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ _ENVELOPES = {
     "Feedback": "actionlib_msgs/GoalStatus status",
 }
 Kind = Literal["msg", "srv"]
+_NO_END = " (no line feed at its end)"  # of a type whose .msg file has none
 _SHIPPED = Path(__file__).parent / "definitions"
 _SUFFIXES = (".msgs", ".srvs", ".actions")
 
@@ -184,5 +186,7 @@ def _sections(text: str, file: str) -> Iterator[tuple[str, Definition]]:
     line = 1
     for chunk in text.removeprefix("# ").split("\n# "):
         title, _, body = chunk.partition("\n")
-        yield title.rpartition("/")[2].strip(), Definition(body.strip("\n") + "\n", file, line + 1)
+        name = title.removesuffix(_NO_END)
+        end = "\n" if name == title else ""
+        yield name.rpartition("/")[2].strip(), Definition(body.strip("\n") + end, file, line + 1)
         line += chunk.count("\n") + 1

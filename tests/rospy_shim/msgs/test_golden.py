@@ -14,6 +14,9 @@ from tests.rospy_shim.golden_msgs import build, md5sums, recorded
 
 MESSAGES = [pytest.param(each, id=each["type"]) for each in recorded()["messages"]]
 SERVICES = [pytest.param(each, id=each["type"]) for each in recorded()["services"]]
+STANDARD = """
+    Bool Byte Char ColorRGBA Duration Empty Float32 Float64 Int16 Int32 Int64 Int8 String Time UInt16 UInt32 UInt64 UInt8
+""".split()
 
 
 def _squeezed(text: str) -> list[str]:
@@ -30,6 +33,16 @@ def test_identity(message: dict[str, Any]) -> None:
     assert cls._slot_types == message["slot_types"]
     assert cls._has_header == message["has_header"]
     assert _squeezed(cls._full_text) == _squeezed(message["full_text"])
+
+
+def test_the_text_of_a_type_without_comments_ends_as_its_file_does() -> None:
+    """As in Debian's packages std_msgs 0.5.13 and tf2_msgs 0.7.6."""
+    without = ("Bool", "Char", "Empty", "Float32", "Float64", "Int32", "Int64", "UInt32", "UInt64")
+    assert [name for name in STANDARD if not message_class(f"std_msgs/{name}")._full_text.endswith("\n")] == [*without]
+    assert message_class("std_msgs/Int32")._full_text == "int32 data"
+    assert message_class("std_msgs/Empty")._full_text == ""
+    assert message_class("std_msgs/ColorRGBA")._full_text == "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"
+    assert message_class("tf2_msgs/TF2Error")._full_text.startswith("uint8 NO_ERROR = 0\nuint8 LOOKUP_ERROR = 1\n")
 
 
 @pytest.mark.parametrize("message", MESSAGES)
