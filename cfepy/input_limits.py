@@ -42,11 +42,12 @@ EXPRESSION_BITS = 8_192  # of a whole number
 
 # message definitions
 DEFINITION_BYTES = 4 << 20
-MESSAGE_FIELDS = 10_000  # of one definition
-MESSAGE_VALUES = 16_000_000  # items of an array of fixed length, with those of the types inside it
+MESSAGE_FIELDS = 5_000  # of a type, those of types inside it counted
+MESSAGE_DEPTH = 50  # types inside each other
+MESSAGE_VALUES = 8_000_000  # in arrays of fixed length, with those of the types inside them
 
 # what is packed
-UNPACKED_BYTES = 1 << 30  # of a bag's chunk
+BAG_CHUNK_BYTES = 256 << 20  # of a bag's chunk when it is unpacked
 JOURNAL_FRAME_BYTES = 128 << 20
 JOURNAL_VALUES = 1_000_000  # of a frame
 JOURNAL_FILE_BYTES = 64 << 20  # of a file that a journal carries
@@ -78,3 +79,13 @@ def read_limited(path: str | Path, most: int) -> bytes:
     if len(data) > most:
         raise UsageError(f"has more than {most:,} bytes, which is the limit for it; make it smaller", file=path)
     return data
+
+
+def text_limited(path: str | Path, most: int, errors: str = "strict") -> str:
+    """The text of a file in UTF-8, its lines ended by "\\n". Arguments and errors as `read_limited`.
+
+    Raises:
+        UnicodeDecodeError: it is not UTF-8, and `errors` (as of `bytes.decode`) does not say what to do then.
+    """
+    text = read_limited(path, most).decode("utf-8", errors)
+    return text.replace("\r\n", "\n").replace("\r", "\n")

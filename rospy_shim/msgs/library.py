@@ -8,15 +8,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache
+from typing import NamedTuple
 
+from cfepy.input_limits import MESSAGE_DEPTH, MESSAGE_FIELDS, MESSAGE_VALUES
 from cfepy.status import UsageError
 from rospy_shim.genpy.message import Message
 from rospy_shim.msgs.classes import MessageClass, ServiceClass, build_class, build_service
 from rospy_shim.msgs.sources import Definition, Definitions, Kind, Shipped, Source, Texts, split_service
-from rospy_shim.msgs.spec import BUILTINS, Spec, full_text, md5_text, md5sum, parse, split_full_text
+from rospy_shim.msgs.spec import BUILTINS, PRIMITIVES, Spec, full_text, md5_text, md5sum, parse, split_full_text
 
 _PARTS = ("Request", "Response")
 _KINDS: tuple[Kind, ...] = ("msg", "srv")
+_OBJECT = 20  # how many values a message or a text in an array counts as
+
+
+class _Size(NamedTuple):
+    """How much a type is: types inside each other, fields without those in arrays, values in arrays of fixed length."""
+
+    depth: int
+    fields: int
+    values: int
 
 
 class Library:
@@ -49,6 +60,7 @@ class Library:
         self._services: dict[str, ServiceClass] = {}
         self._opening: list[str] = []
         self._own: dict[str, bool] = {}
+        self._sizes: dict[str, _Size] = {}
 
     def packages(self) -> list[str]:
         """Names of all packages, sorted."""
@@ -184,6 +196,9 @@ class Library:
         """Parse the nested types as well, so that a type with a gap in it is never half usable."""
         self._opening.append(found.full_name)
         try:
+            if len(self._opening) > MESSAGE_DEPTH:
+                problem = f"message type {found.full_name} is inside {MESSAGE_DEPTH} others, which is too deep"
+                raise UsageError(problem, file=found.file)
             for field in found.fields:
                 name = field.base
                 if name in BUILTINS:
@@ -194,8 +209,36 @@ class Library:
                     problem = f"message type {name} is unknown; add its package"
                     raise UsageError(problem, file=found.file, line=field.line)
                 self.spec(name)
+            self._hold_to_limits(found)
         finally:
             self._opening.pop()
+
+    def _hold_to_limits(self, found: Spec) -> None:
+        size = self._sizes[found.full_name] = self._sum(found)
+        for what, number, limit in (
+            ("types inside each other", size.depth, MESSAGE_DEPTH),
+            ("fields, those of nested types counted", size.fields, MESSAGE_FIELDS),
+            ("values in fixed arrays, those inside counted", size.values, MESSAGE_VALUES),
+        ):
+            if number > limit:
+                problem = f"message type {found.full_name} has more than {limit:,} {what}; divide it"
+                raise UsageError(problem, file=found.file, line=found.fields[0].line)
+
+    def _sum(self, spec: Spec) -> _Size:
+        """The size of a type; its nested types are held to the limits already."""
+        depth, fields, values = 0, 0, 0
+        for field in spec.fields:
+            inner = _Size(0, 1, 1) if field.base in BUILTINS else self._size(field.base)
+            depth = max(depth, inner.depth)
+            fields += 1 if field.is_array else inner.fields
+            each = inner.values if field.base in PRIMITIVES else inner.values + _OBJECT
+            values += each * (field.length or 0) if field.is_array else inner.values
+        return _Size(depth + 1, max(fields, len(spec.fields)), values)
+
+    def _size(self, full_name: str) -> _Size:
+        if full_name not in self._sizes:
+            self._sizes[full_name] = self._sum(self.spec(full_name))
+        return self._sizes[full_name]
 
 
 def from_full_text(full_name: str, text: str) -> Library:

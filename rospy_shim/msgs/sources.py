@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Literal, NamedTuple, Protocol
 
+from cfepy.input_limits import DEFINITION_BYTES, text_limited
 from cfepy.marked_yaml import Mistakes
 from cfepy.status import UsageError
 from rospy_shim.msgs.packages import Packages, has_definitions
@@ -179,7 +180,7 @@ def _files(folder: Path, kind: str) -> dict[str, Definition]:
 
 def _read(path: Path) -> Definition:
     # Only comments can hold anything but ASCII, and an old file's are in some other encoding.
-    return Definition(path.read_text(encoding="utf-8", errors="replace"), str(path))
+    return Definition(text_limited(path, DEFINITION_BYTES, "replace"), str(path))
 
 
 def _sections(text: str, file: str) -> Iterator[tuple[str, Definition]]:

@@ -13,6 +13,7 @@ import re
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
+from cfepy.input_limits import DEFINITION_BYTES, MESSAGE_FIELDS
 from cfepy.marked_yaml import Mistakes
 from cfepy.status import UsageError
 
@@ -30,6 +31,7 @@ _RANGES = {
 _TYPE = re.compile(r"([A-Za-z][\w/]*)(\[(\d*)\])?")
 _NAME = re.compile(r"[A-Za-z]\w*")
 _RESERVED = frozenset(keyword.kwlist) | {"self"}
+_DIGITS = 12  # of the length of an array
 _SEPARATOR = "=" * 80 + "\n"
 
 
@@ -107,14 +109,23 @@ def parse(text: str, full_name: str, file: str, first_line: int = 1, mistakes: M
     package = full_name.rpartition("/")[0]
     fields: list[Field] = []
     constants: list[Constant] = []
+    taken: set[str] = set()
+    if len(text) > DEFINITION_BYTES:
+        raise UsageError(f"has more than {DEFINITION_BYTES:,} characters, which is too much for a message", file=file)
     for number, raw in enumerate(text.split("\n"), first_line):
         line = raw.split("#", 1)[0].strip()
         try:
             if "=" in line:
                 constants.append(_constant(line, raw)._replace(line=number))
             elif line:
-                fields.append(_field(line, package, {field.name for field in fields})._replace(line=number))
-        except ValueError as error:
+                fields.append(_field(line, package, taken)._replace(line=number))
+                taken.add(fields[-1].name)
+                if len(fields) + len(constants) > MESSAGE_FIELDS:
+                    what = f"is one more than {MESSAGE_FIELDS:,} fields, which a message may have; divide it"
+                    raise UsageError(what, file=file, line=number)
+        except UsageError:
+            raise
+        except (ValueError, OverflowError) as error:
             mistake = UsageError(f"{error}; write `type name` or `type NAME=value`", file=file, line=number)
             if mistakes is None:
                 raise mistake from None
@@ -144,6 +155,8 @@ def _field(line: str, package: str, taken: set[str]) -> Field:
 
 
 def _length(digits: str | None) -> int | None:
+    if digits and len(digits) > _DIGITS:
+        raise ValueError(f"an array of {digits[:_DIGITS]}... items is too large")
     return int(digits) if digits else None
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from .errors import ROSBagException
+from .errors import ROSBagException, ROSBagFormatException
 
 NONE = "none"
 BZ2 = "bz2"
 LZ4 = "lz4"
 ALL = (NONE, BZ2, LZ4)
+LARGEST = 256 << 20  # bytes of a chunk: BAG_CHUNK_BYTES of `cfepy.input_limits`, which nodes cannot see
 
 
 def compress(kind: str, data: bytes) -> bytes:
@@ -35,15 +36,49 @@ def compress(kind: str, data: bytes) -> bytes:
 
 
 def decompress(kind: str, data: bytes) -> bytes:
-    """What `compress` was given; the same arguments and errors."""
+    """What `compress` was given.
+
+    Args:
+        kind: one of `ALL`.
+        data: the compressed chunk.
+
+    Raises:
+        ROSBagException: there is no such compression, the data are damaged, or they become too large.
+        ImportError: LZ4 is not installed.
+    """
     if kind == NONE:
         return data
     if kind == BZ2:
-        import bz2
-
-        return bz2.decompress(data)
-    if kind == LZ4:
+        found = _of_bz2(data)
+    elif kind == LZ4:
         from . import lz4_frames
 
-        return lz4_frames.decompress(data)
-    raise ROSBagException(f"unsupported compression type: {kind}")
+        try:
+            found = lz4_frames.decompress(data, LARGEST + 1)
+        except RuntimeError as error:
+            raise ROSBagFormatException(f"the data of a chunk are damaged: {error}") from None
+    else:
+        raise ROSBagException(f"unsupported compression type: {kind}")
+    if len(found) > LARGEST:
+        raise ROSBagFormatException(f"a chunk has more than {LARGEST:,} bytes when it is unpacked; record smaller ones")
+    return found
+
+
+def _of_bz2(data: bytes) -> bytes:
+    """Not much more than `LARGEST` bytes of what is packed; there may be several streams, as of `bz2`."""
+    import bz2
+
+    found = b""
+    while data and len(found) <= LARGEST:
+        stream = bz2.BZ2Decompressor()
+        try:
+            more = stream.decompress(data, LARGEST + 1 - len(found))
+        except OSError as error:
+            if found:
+                break  # what follows a stream and is none is ignored
+            raise ROSBagFormatException(f"the data of a chunk are damaged: {error}") from None
+        found = found + more if found else more
+        if not stream.eof and len(found) <= LARGEST:
+            raise ROSBagFormatException("the data of a chunk are cut off")
+        data = stream.unused_data
+    return found

@@ -52,6 +52,14 @@ def compress(data: bytes) -> bytes:
     return compressor.compress(data) + compressor.flush()
 
 
-def decompress(data: bytes) -> bytes:
-    """The data of a frame."""
-    return LZ4Decompressor().decompress(data)
+def decompress(data: bytes, most: int = -1) -> bytes:
+    """The data of a frame.
+
+    Args:
+        data: the frame.
+        most: bytes that it may become; what is behind them is left out. Negative for any number.
+
+    Raises:
+        RuntimeError: it is damaged.
+    """
+    return bytes(_frame.LZ4FrameDecompressor().decompress(data, most))
