@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from cfepy.input_limits import YAML_BYTES, read_limited
+from cfepy.input_limits import YAML_BYTES, text_limited
 from cfepy.plain_yaml import YamlError, constructed, opened
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS
@@ -189,7 +189,7 @@ def load(path: Path) -> Marked:
         UsageError: it cannot be read, or is not good YAML.
     """
     try:
-        text = read_limited(path, YAML_BYTES).decode("utf-8")
+        text = text_limited(path, YAML_BYTES)
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
     except UnicodeDecodeError:

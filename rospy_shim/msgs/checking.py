@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.input_limits import DEFINITION_BYTES, read_limited
+from cfepy.input_limits import DEFINITION_BYTES, text_limited
 from cfepy.marked_yaml import Mistakes
 from cfepy.status import UsageError
 from cfepy.suggestions import like
@@ -68,9 +68,7 @@ class _Check:
             yield DefinitionFault(self._error(text))
             return
         try:
-            definition = Definition(
-                read_limited(self._path, DEFINITION_BYTES).decode("utf-8", "replace"), str(self._path)
-            )
+            definition = Definition(text_limited(self._path, DEFINITION_BYTES, "replace"), str(self._path))
             parts = self._parts(definition)
         except OSError as error:
             yield DefinitionFault(self._error(f"cannot be read: {error.strerror}"))

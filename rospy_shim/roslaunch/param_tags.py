@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from cfepy.input_limits import LAUNCH_FILE_BYTES, LAUNCH_NAME, read_limited
+from cfepy.input_limits import LAUNCH_FILE_BYTES, LAUNCH_NAME, read_limited, text_limited
 from rospy_shim.client.names import PRIV_NAME, SEP, canonicalize_name
 from rospy_shim.parameters.values import marshalled
 from rospy_shim.roslaunch.document import Attributes, Tag
@@ -59,7 +59,7 @@ def _cat(arguments: list[str]) -> str:
 
 
 def _read_text(file: str) -> str:
-    return read_limited(file, LAUNCH_FILE_BYTES).decode("utf-8")
+    return text_limited(file, LAUNCH_FILE_BYTES)
 
 
 def _xacro(arguments: list[str]) -> str:
