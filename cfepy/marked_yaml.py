@@ -205,6 +205,8 @@ def load(path: Path) -> Marked:
 def _mark(loader: Any, node: Any, path: Path, field: str) -> Marked:
     """A composed node as Marked; the loader's own constructor turns scalars into Python values."""
     line = node.start_mark.line + 1
+    if node.id != "scalar" and not node.tag.endswith((":map", ":seq", ":omap", ":set")):
+        raise YamlError(f"has the tag {node.tag}, which is not known; leave it out", line)
     if node.id == "mapping":
         return Marked(dict(_pairs(loader, node, path, field)), path, line, field)
     if node.id == "sequence":

@@ -10,7 +10,7 @@ import html
 import re
 from collections.abc import Iterable, Sequence
 
-_CONTROLS = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
+_CONTROLS = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff\ufffe\uffff]")
 _TROUBLE = "color: var(--jp-error-color1, var(--vscode-errorForeground, #c62828)); white-space: pre-wrap"
 _LINES = "max-height: 24em; overflow: auto; margin: 0; white-space: pre; font-family: monospace"
 FEW = 12  # rows of a table that are seen at once
@@ -19,7 +19,12 @@ MOST = 100  # rows of a table that there are
 
 def escaped(text: object) -> str:
     """Text for an element or an attribute; characters that no page may have are shown by their number."""
-    return html.escape(_CONTROLS.sub(lambda match: f"\\x{ord(match[0]):02x}", str(text)))
+    return html.escape(printable(str(text)))
+
+
+def printable(text: str) -> str:
+    """A text in which characters that neither XML nor a page may have are shown by their number."""
+    return _CONTROLS.sub(lambda match: f"\\x{ord(match[0]):02x}", text)
 
 
 def element(name: str, inside: str = "", **attributes: object) -> str:

@@ -170,7 +170,17 @@ def read_results(path: str | Path) -> tuple[dict[str, Any], Iterator[tuple[int, 
     head = next(lines, (0, {}))[1]
     if head.get("format") != FORMAT:
         raise _foreign(path)
-    return head["campaign"], ((record["number"], record["verdict"]) for _, record in lines)
+    if not isinstance(head.get("campaign"), dict):
+        raise _damaged(path, 1)
+    return head["campaign"], _verdicts(path, lines)
+
+
+def _verdicts(path: Path, lines: Iterator[tuple[int, dict[str, Any]]]) -> Iterator[tuple[int, dict[str, Any]]]:
+    for line, (_, record) in enumerate(lines, 2):
+        number, verdict = record.get("number"), record.get("verdict")
+        if not isinstance(number, int) or number < 0 or not isinstance(verdict, dict):
+            raise _damaged(path, line)
+        yield number, verdict
 
 
 def _check(head: dict[str, Any], identity: dict[str, Any], path: Path) -> None:

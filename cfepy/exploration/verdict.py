@@ -14,6 +14,7 @@ from statistics import median
 from typing import Any
 
 from cfepy.rtos import Schedule
+from cfepy.status import UsageError
 
 DIED = "died"
 RAISED = "unhandled exception"
@@ -118,13 +119,29 @@ class Verdict:
         """The other way round.
 
         Raises:
-            UsageError: its schedule is none.
+            UsageError: it is no verdict.
         """
+        try:
+            return cls._of(plain)
+        except UsageError:
+            raise
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise UsageError(f"is no verdict: {type(error).__name__}: {error}") from None
+
+    @classmethod
+    def _of(cls, plain: dict[str, Any]) -> Verdict:
         schedule = Schedule.parse(plain["schedule"])
         failures = tuple(Failure(**each) for each in plain["failures"])
         deviations = tuple((int(at), int(candidate)) for at, candidate in plain["deviations"])
         own = {"schedule": schedule, "failures": failures, "deviations": deviations}
-        return cls(**{**plain, **own, "widths": tuple(plain["widths"])})
+        found = cls(**{**plain, **own, "widths": tuple(map(int, plain["widths"]))})
+        texts = [found.results, found.trace, found.trouble]
+        for each in failures:
+            texts += [each.kind, each.who, each.text, each.detail, each.task]
+        numbers = [found.decisions, found.preemptions, found.end_ns, *(each.at_ns or 0 for each in failures)]
+        if not all(isinstance(each, str) for each in texts) or not all(isinstance(each, int) for each in numbers):
+            raise TypeError("a text or a number is of another kind")
+        return found
 
 
 @dataclass(slots=True)

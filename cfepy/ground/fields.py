@@ -66,8 +66,11 @@ def steps_of(path: str) -> tuple[Step, ...]:
         match = _PART.fullmatch(part)
         if match is None:
             raise LookupError(path)
-        steps.append(int(match[1]) if match[1].isdecimal() else match[1])
-        steps += [_index(*found) for found in _INDEX.findall(match[2])]
+        try:
+            steps.append(int(match[1]) if match[1].isdecimal() else match[1])
+            steps += [_index(*found) for found in _INDEX.findall(match[2])]
+        except ValueError:
+            raise LookupError(path) from None
     return tuple(steps)
 
 

@@ -21,6 +21,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from cfepy import __version__
 from cfepy.ground.dictionary import Dictionary
 from cfepy.ground.topics import Topic, library_of
+from cfepy.markup import printable
 from cfepy.msg import TLM_HEADER_SIZE, Cell, Command, Layout, Telemetry, ValueNames
 
 LITTLE = "leastSignificantByteFirst"
@@ -55,7 +56,7 @@ UNSEGMENTED = 0xC000
 
 def xtce_name(path: str) -> str:
     """A name without what XTCE forbids: "/arm_health/samples" becomes arm_health_samples, "Counts[3]" Counts_3."""
-    return re.sub(r"[./:\[\]\s]+", "_", path).strip("_")
+    return re.sub(r"[./:\[\]\s\\]+", "_", printable(path)).strip("_")
 
 
 def cells_with_padding(layout: Layout) -> Iterator[Cell]:
@@ -72,7 +73,7 @@ def cells_with_padding(layout: Layout) -> Iterator[Cell]:
 
 def add(parent: Element, tag: str, **attributes: str) -> Element:
     """A new element below another; a value of "" leaves its attribute out."""
-    return SubElement(parent, tag, {name: value for name, value in attributes.items() if value})
+    return SubElement(parent, tag, {name: printable(value) for name, value in attributes.items() if value})
 
 
 class TypeSet:

@@ -29,6 +29,7 @@ _RANGES = {
     for code, bits in zip("bBhHiIqQ", (8, 8, 16, 16, 32, 32, 64, 64), strict=True)
 }
 _TYPE = re.compile(r"([A-Za-z][\w/]*)(\[(\d*)\])?")
+_CONSTANT_NAME = re.compile(r"(?!__)[A-Za-z_]\w*")
 _NAME = re.compile(r"[A-Za-z]\w*")
 _RESERVED = frozenset(keyword.kwlist) | {"self"}
 _DIGITS = 12  # of the length of an array
@@ -110,6 +111,7 @@ def parse(text: str, full_name: str, file: str, first_line: int = 1, mistakes: M
     fields: list[Field] = []
     constants: list[Constant] = []
     taken: set[str] = set()
+    names: set[str] = set()  # of constants
     if len(text) > DEFINITION_BYTES:
         raise UsageError(f"has more than {DEFINITION_BYTES:,} characters, which is too much for a message", file=file)
     for number, raw in enumerate(text.split("\n"), first_line):
@@ -117,9 +119,14 @@ def parse(text: str, full_name: str, file: str, first_line: int = 1, mistakes: M
         try:
             if "=" in line:
                 constants.append(_constant(line, raw)._replace(line=number))
+                names.add(constants[-1].name)
+                if constants[-1].name in taken:
+                    raise ValueError(f"{line!r} has the name of a field")
             elif line:
                 fields.append(_field(line, package, taken)._replace(line=number))
                 taken.add(fields[-1].name)
+                if fields[-1].name in names:
+                    raise ValueError(f"{line!r} has the name of a constant")
                 if len(fields) + len(constants) > MESSAGE_FIELDS:
                     what = f"is one more than {MESSAGE_FIELDS:,} fields, which a message may have; divide it"
                     raise UsageError(what, file=file, line=number)
@@ -174,7 +181,7 @@ def _constant(line: str, raw: str) -> Constant:
         text = raw.partition("=")[2]
     elif kind not in PRIMITIVES:
         raise ValueError(f"{kind!r} is not a type for a constant")
-    if len(names) != 1:
+    if len(names) != 1 or not _CONSTANT_NAME.fullmatch(names[0]):
         raise ValueError(f"{line!r} is not a constant")
     text = text.strip()
     return Constant(kind, names[0], python_name(names[0]), _value(kind, text), text)

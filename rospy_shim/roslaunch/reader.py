@@ -49,6 +49,7 @@ _IGNORED = {
 ARG = ("name", "value", "default", "doc")
 GROUP = ("ns", "clear_params")
 INCLUDE = ("file", "ns", "clear_params", "pass_all_args")
+_TAG, _FILE = 5, 500  # what a tag and a file count besides what holds there: about their shares of the time
 _TOO_MUCH = (
     "is where the launch becomes too large: the tags that were read until here, each counted with the arguments,"
     f" variables and remappings that hold there, are more than {LAUNCH_WORK:,}; include fewer files, or fewer times"
@@ -284,6 +285,7 @@ class _Reader:
 
     def _read_file(self, file: Path, scope: Scope) -> bool:
         """Read a file; whether it is one that can be read."""
+        self._work += _FILE
         tag = self._findings.mistakes.attempt(partial(read_launch_tag, file))
         if tag is None:
             return False
@@ -299,7 +301,7 @@ class _Reader:
 
     def _read_all(self, tags: Iterable[Tag], scope: Scope) -> None:
         for tag in tags:
-            self._work += 1 + scope.size
+            self._work += _TAG + scope.size
             if self._work > LAUNCH_WORK:
                 if not self._too_much:
                     self._too_much = True

@@ -18,6 +18,7 @@ from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import launch_words
 from cfepy.cli.options import plan_of as run_plan_of
 from cfepy.cli.ros.view import NodesDisplay
+from cfepy.markup import printable
 from cfepy.mission import launch_file, spec_of
 from cfepy.nodes import NodeConfig
 from cfepy.pilot import LAUNCH, Flown, fly
@@ -79,12 +80,14 @@ class TestResults:
     def xml(self, name: str) -> bytes:
         """All of it as one JUnit suite called `name`."""
         counts = {"tests": str(self.tests), "errors": str(self.errors), "failures": str(self.failures)}
-        suite = ElementTree.Element("testsuite", {"name": name, **counts})
+        suite = ElementTree.Element("testsuite", {"name": printable(name), **counts})
         for case in self.cases:
             seconds = f"{case.seconds:.3f}"
-            tag = ElementTree.SubElement(suite, "testcase", classname=case.suite, name=case.name, time=seconds)
+            tag = ElementTree.SubElement(
+                suite, "testcase", classname=printable(case.suite), name=printable(case.name), time=seconds
+            )
             for problem in case.problems:
-                ElementTree.SubElement(tag, problem.kind, message=problem.text)
+                ElementTree.SubElement(tag, problem.kind, message=printable(problem.text))
         text: bytes = ElementTree.tostring(suite, encoding="utf-8", xml_declaration=True)
         return text
 

@@ -1,0 +1,469 @@
+"""The kinds of inputs: samples of each, and what reads one as the commands do."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable, Iterator
+from contextlib import redirect_stdout, suppress
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cfepy.cli.ros.rostest import read_results as read_test_results
+from cfepy.debugger.breakpoints import breakpoints
+from cfepy.es.startup_script import check, entries
+from cfepy.exploration.results_file import read_results
+from cfepy.exploration.verdict import Failure, Verdict
+from cfepy.faults.plan import read_plan
+from cfepy.ground.bag import BagReader
+from cfepy.ground.dictionary import Dictionary, dictionary_of, table_types
+from cfepy.ground.fields import steps_of, value_at
+from cfepy.ground.files import table_yaml
+from cfepy.ground.files.dump_files import read_dump
+from cfepy.ground.files.table_file import defects_of, document, take_apart
+from cfepy.ground.parameters import of_files
+from cfepy.ground.values import packet_of
+from cfepy.ground.xtce import xtce_of
+from cfepy.journal import read_journal
+from cfepy.marked_yaml import Mistakes, load
+from cfepy.mission import MissionSpec, read_mission
+from cfepy.mission.finding import read_lock
+from cfepy.mission.mission_file import read_mission_file
+from cfepy.monitors import read_demands
+from cfepy.msg import Layout, Telemetry
+from cfepy.pilot.check import check_mission
+from cfepy.plain_yaml import YamlError
+from cfepy.psp.profile import load_profile
+from cfepy.rtos import Schedule
+from cfepy.script.text import parse_script, read_script
+from cfepy.status import CfeError, UsageError
+from rospy_shim.expression import ExpressionError, plain_text, value_of
+from rospy_shim.msgs import Packages, check_definitions
+from rospy_shim.msgs.library import Library, from_full_text, shipped
+from rospy_shim.msgs.sources import Definition, Texts
+from rospy_shim.roslaunch.reader import read
+from rospy_shim.roslaunch.values import from_yaml
+
+ROOT = Path(__file__).parents[2]
+DATA = ROOT / "tests/data"
+REFUSED = (UsageError, CfeError)
+
+
+class Kind(NamedTuple):
+    """A kind of inputs: `samples` of it, and what reads one that was written to a file of the name `file`."""
+
+    name: str
+    samples: Callable[[], list[bytes]]
+    attempt: Callable[[bytes, Path], object]
+    file: str = "input"
+
+
+@cache
+def spec() -> MissionSpec:
+    """A mission with nodes and applications."""
+    return read_mission("capture")
+
+
+@cache
+def dictionary() -> Dictionary:
+    """What the ground knows of it."""
+    return dictionary_of(spec())
+
+
+def files(*patterns: str) -> Callable[[], list[bytes]]:
+    """Samples that lie in the repository; large ones are left out."""
+
+    def found() -> list[bytes]:
+        paths = sorted({path for pattern in patterns for path in ROOT.glob(pattern)})
+        return [path.read_bytes() for path in paths if path.stat().st_size < 200_000]
+
+    return found
+
+
+def texts(*found: str) -> Callable[[], list[bytes]]:
+    """Samples that are written here."""
+    return lambda: [text.encode() for text in found]
+
+
+# -- what reads them ---------------------------------------------------------------------------------------------------
+
+
+def startup(data: bytes, path: Path) -> None:
+    """A startup script, as the boot and the check read it."""
+    entries(data)
+    check(data)
+
+
+def mission_file(data: bytes, path: Path) -> None:
+    """A mission file with all its sections; the first mistake is an error, and all are kept."""
+    mistakes = Mistakes(keep=True)
+    read_demands(read_mission_file(path, mistakes).demands, mistakes)
+    read_demands(read_mission_file(path, Mistakes()).demands, Mistakes())
+
+
+def mission(data: bytes, path: Path) -> None:
+    """A mission's folder, as `cfepy check` looks at it."""
+    (path.parent / "startup.scr").write_bytes(b"CFE_APP, hk, HK_AppMain, HK, 90, 16384, 0x0, 0;\n!\n")
+    check_mission(str(path.parent))
+
+
+def launch(data: bytes, path: Path) -> None:
+    """A launch file, as a check and as a run read it."""
+    read(path, {"given": "1"}, Packages(path.parent, {}), {"HOME": "/home/me"}, Mistakes(keep=True))
+    read(path, {"given": "1"}, Packages(path.parent, {}), {"HOME": "/home/me"})
+
+
+def parameters(data: bytes, path: Path) -> None:
+    """YAML of parameters, in a launch file and as a file."""
+    problems: list[str] = []
+    with suppress(YamlError):  # which the launch file's reader turns into a mistake
+        from_yaml(data.decode("utf-8", "replace"))
+    of_files(path, problems)
+
+
+def expression(data: bytes, path: Path) -> None:
+    """An expression of a launch file; what Python itself raises of one is told as its error."""
+    with suppress(ExpressionError, SyntaxError, ArithmeticError, TypeError, ValueError, LookupError, NameError):
+        plain_text(value_of(data.decode("utf-8", "replace"), {"x": 3, "s": "a,b"}))
+
+
+def definition(data: bytes, path: Path) -> None:
+    """A message definition, made a class, filled and read."""
+    text = data.decode("utf-8", "replace")
+    library = Library([Texts({"fuzz/Message": Definition(text, "Message.msg")})], base=shipped())
+    made = library.message_class("fuzz/Message")
+    buffer = io.BytesIO()
+    made().serialize(buffer)
+    made().deserialize(buffer.getvalue())
+
+
+def service(data: bytes, path: Path) -> None:
+    """Definitions of services and actions, as a check of a package reads them."""
+    folder = path.parent
+    for kind in ("srv", "action"):
+        (folder / kind).mkdir(exist_ok=True)
+        (folder / kind / f"Thing.{kind}").write_bytes(data)
+    (folder / "package.xml").write_text("<package><name>fuzz</name></package>")
+    list(check_definitions(Packages(folder / "x.py", {}), [folder.name, "fuzz"]))
+
+
+def full_text(data: bytes, path: Path) -> None:
+    """The definition that a bag or a publisher brings."""
+    from_full_text("fuzz/Message", data.decode("utf-8", "replace")).message_class("fuzz/Message")()
+
+
+TYPES = ("std_msgs/String", "sensor_msgs/JointState", "tf2_msgs/TFMessage", "diagnostic_msgs/DiagnosticArray")
+
+
+def message(data: bytes, path: Path) -> None:
+    """Bytes of a message; the first one says of which type."""
+    from rospy_shim.genpy import DeserializationError
+
+    made = shipped().message_class(TYPES[data[0] % len(TYPES)] if data else TYPES[0])()
+    with suppress(DeserializationError):
+        made.deserialize(data[1:])
+        made.serialize(io.BytesIO())
+
+
+def table(data: bytes, path: Path) -> None:
+    """A table file: shown, written as YAML, verified."""
+    find = table_types(None, []).get
+    list(defects_of(data, find))
+    found = take_apart(data, find, str(path))
+    table_yaml.write(document(found))
+    list(found.leaves())
+
+
+def table_text(data: bytes, path: Path) -> None:
+    """A table in YAML, built."""
+    table_yaml.read(path, table_types(None, []).get).pack()
+
+
+def dump(data: bytes, path: Path) -> None:
+    """A file that cFE wrote, shown."""
+    from cfepy.cli.files.log import run
+
+    read_dump(data, str(path))
+    with redirect_stdout(io.StringIO()):
+        run(_words("log", str(path)))
+
+
+def bag(data: bytes, path: Path) -> None:
+    """A bag with all its messages."""
+    with BagReader(str(path)) as found:
+        for _ in found.messages():
+            pass
+
+
+def journal(data: bytes, path: Path) -> None:
+    """A journal: shown by `--info`, its files unpacked."""
+    from cfepy.cli.journal.replay import show_info
+    from cfepy.journal import staged
+
+    found = read_journal(path)
+    show_info(found, io.StringIO())
+    with staged(found):
+        pass
+
+
+def results(data: bytes, path: Path) -> None:
+    """The results file of an exploration."""
+    for _, verdict in read_results(path)[1]:
+        Verdict.from_dict(verdict)
+
+
+def schedule(data: bytes, path: Path) -> None:
+    """The text of a schedule."""
+    Schedule.parse(data.decode("utf-8", "replace")).policy()
+
+
+def script(data: bytes, path: Path) -> None:
+    """A script of commands and expectations."""
+    read_script(path, spec(), dictionary())
+
+
+def typed(data: bytes, path: Path) -> None:
+    """Lines that are typed at the console."""
+    for line in data.decode("utf-8", "replace").split("\n")[:20]:
+        parse_script(line, "typed", spec(), dictionary())
+
+
+def faults(data: bytes, path: Path) -> None:
+    """A fault plan."""
+    read_plan(path).text()
+
+
+def lock(data: bytes, path: Path) -> None:
+    """A lock file of MsgIds."""
+    read_lock(path, spec().ros)
+
+
+def board(data: bytes, path: Path) -> None:
+    """A board's profile."""
+    load_profile(path)
+
+
+def words(data: bytes, path: Path) -> None:
+    """Words of `cfepy cmd`: the first one says which command."""
+    commands = list(dictionary().commands.values())
+    given = data.decode("utf-8", "replace").split("\n")
+    packet_of(commands[len(given[0]) % len(commands)], given[1:])
+
+
+def telemetry(data: bytes, path: Path) -> None:
+    """Packets that arrive from somewhere."""
+    for declared in dictionary().telemetry.values():
+        with suppress(*REFUSED):
+            if isinstance(declared, Telemetry):
+                declared.read(data)
+
+
+def paths(data: bytes, path: Path) -> None:
+    """Paths of fields."""
+    made = shipped().message_class("sensor_msgs/JointState")()
+    made.position = [1.0, 2.0]
+    for line in data.decode("utf-8", "replace").split("\n"):
+        with suppress(LookupError):  # which the commands tell
+            value_at(made, steps_of(line))
+
+
+def breaks(data: bytes, path: Path) -> None:
+    """What `--break` takes."""
+    breakpoints(data.decode("utf-8", "replace").split("\n"), spec(), lambda *_: None)
+
+
+def junit(data: bytes, path: Path) -> None:
+    """Results that a test program wrote."""
+    with suppress(ValueError):  # which the command tells
+        read_test_results(path, "suite")
+
+
+def manifest(data: bytes, path: Path) -> None:
+    """A package's manifest, where packages are looked for."""
+    (path.parent / "package.xml").write_bytes(data)
+    (path.parent / "setup.py").write_bytes(data)
+    list(Packages(path.parent / "x.py", {}).names())
+
+
+def names(data: bytes, path: Path) -> None:
+    """A mission's name and descriptions in XTCE, which any XML reader must take."""
+    from xml.etree import ElementTree
+
+    name = data.decode("utf-8", "surrogateescape")
+    few = Dictionary()
+    few.add([Telemetry(name, 0x0801, Layout(name, [(name, "uint8")]))])
+    text = xtce_of(name, few)
+    ElementTree.fromstring(text.encode("utf-8"))
+
+
+def yaml_file(data: bytes, path: Path) -> None:
+    """Any file in YAML whose values know their lines."""
+    load(path).plain()
+
+
+def _words(*given: str) -> Any:
+    from cfepy.cli.main import parser_for
+
+    return parser_for(given).parse_args(given)
+
+
+# -- samples -----------------------------------------------------------------------------------------------------------
+
+
+def journals() -> list[bytes]:
+    """The journal of a short run, with files of its mission."""
+    from tests.fuzz.sample_journal import sample
+
+    return [sample()]
+
+
+def packets() -> list[bytes]:
+    """Telemetry packets."""
+    return [bytes.fromhex(text) for text in _hex_in(json.loads((DATA / "golden_telemetry.json").read_text()))][:40]
+
+
+def messages() -> list[bytes]:
+    """Messages of some types, with something in them."""
+    found = []
+    for number, name in enumerate(TYPES):
+        buffer = io.BytesIO()
+        made = shipped().message_class(name)()
+        for attribute, value in (("name", ["a", "bc"]), ("position", [1.0, 2.0]), ("data", "text")):
+            if hasattr(made, attribute):
+                setattr(made, attribute, value)
+        made.serialize(buffer)
+        found.append(bytes([number]) + buffer.getvalue())
+    return found
+
+
+def _hex_in(value: Any) -> Iterator[str]:
+    if isinstance(value, str) and len(value) > 20 and len(value) % 2 == 0 and set(value) <= set("0123456789abcdef"):
+        yield value
+    elif isinstance(value, (dict, list)):
+        for each in value.values() if isinstance(value, dict) else value:
+            yield from _hex_in(each)
+
+
+LAUNCH = """<launch>
+  <arg name="given"/><arg name="x" default="$(eval 1 + int(arg('given')))"/>
+  <env name="A" value="$(optenv HOME nothing)"/>
+  <group ns="arm" if="$(eval x == 2)"><remap from="a" to="/b"/>
+    <param name="p" value="1.5" type="double"/><param name="q" command="cat $(dirname)/none"/>
+    <rosparam>{a: [1, 2.5, deg(90), rad(pi/2)], b: {c: text}}</rosparam>
+    <node pkg="rospy_tutorials" type="talker.py" name="n" args="$(anon n)" respawn="true" respawn_delay="1e9">
+      <param name="~r" value="true"/><remap from="x" to="y"/></node>
+  </group>
+  <include file="$(dirname)/input"><arg name="given" value="$(arg x)"/></include>
+  <rosparam param="l" subst_value="true">[$(arg x), 2]</rosparam>
+  <test test-name="t" pkg="p" type="t.py" time-limit="1e999" retry="2"/>
+</launch>
+"""
+MESSAGE = """# what it is
+Header header
+uint8 A=1
+string S= text # all of it
+float64[3] three
+string[] names
+geometry_msgs/Pose[2] poses
+time stamp
+char c
+int64[] many
+duration[4] spans
+"""
+ACTION = "int32 order=1\n---\nint32[] sequence\n---\nfloat32 part\n"
+FULL = (
+    f"{MESSAGE}{'=' * 80}\nMSG: geometry_msgs/Pose\nOther position\n{'=' * 80}\nMSG: geometry_msgs/Other\nfloat64 x\n"
+)
+FULL += f"{'=' * 80}\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
+EXPRESSIONS = (
+    "1 + 2 * 3 ** 2 // 5 % 7",
+    "[i * 2 for i in range(10) if i % 2]",
+    "'%s-%05d' % (s, 12)",
+    "'{:>10}'.format(s.upper())",
+    "f'{x:.3f}' + str({'a': [1, (2, 3)]})",
+    "sorted(map(int, '3,1,2'.split(',')), reverse=True)[0]",
+    "max([len(p) for p in s.split(',')]) if x > 2 and not x == 5 else -abs(x)",
+    "sum(range(100)) << 3 | 5",
+)
+FAULTS = """faults:
+  - {kind: drop, topic: /joint_states, from: 1.0, until: 2.0, probability: 0.5}
+  - {kind: crash, app: HK, at: 3.5}
+  - {kind: delay, mid: 0x0910, from: 0, delay: 0.25}
+seed: 7
+"""
+SCHEDULES = ("fifo", "random:3", "at:56=1", "pct:3:100:7", "at:1=1,2=2", "random:1:any")
+RESULTS = (
+    '{"format": "cfepy exploration 1", "campaign": {"plan": {"words": ["m"]}, "files": {}}}\n'
+    '{"number": 0, "verdict": VERDICT}\n'
+)
+VERDICT = Verdict(Schedule.parse("random:3"), (Failure("died", "HK", "at hk.py:3", 5),), deviations=((1, 2),))
+JUNIT = """<testsuites><testsuite name="s" tests="2" errors="0" failures="1">
+<testcase classname="a" name="b" time="0.1">
+<failure message="x" type="y">text</failure></testcase><testcase classname="a" name="c"/></testsuite></testsuites>"""
+PARAMETERS = """a: 1
+b: {c: [1.5, -2, true, ~], d: "text", when: 2001-01-01}
+angle: deg(90)
+turn: !radians 2*pi
+data: !!binary AAEC
+base: &base {x: 1}
+other: {<<: *base, y: 2}
+"""
+LOCK = "topics:\n  /joint_states: 0x0910\n  /phase: 0x0912\nservices:\n  /reset: 0x0930\n"
+
+KINDS = {
+    kind.name: kind
+    for kind in (
+        Kind("startup", files("missions/*/startup.scr"), startup, "startup.scr"),
+        Kind(
+            "mission-file",
+            files("missions/*/mission.yaml", "tests/quality/missions/*/mission.yaml"),
+            mission_file,
+            "mission.yaml",
+        ),
+        Kind("mission", files("missions/*/mission.yaml"), mission, "mission.yaml"),
+        Kind("launch", lambda: [*texts(LAUNCH)(), *files("tests/**/*.launch")()], launch, "input"),
+        Kind("rostest", lambda: [*texts(LAUNCH)(), *files("tests/**/*.test")()], launch, "input.test"),
+        Kind("parameters", texts(PARAMETERS), parameters, "robot.yaml"),
+        Kind("expression", texts(*EXPRESSIONS), expression),
+        Kind("message-definition", texts(MESSAGE), definition),
+        Kind("service-definition", texts(ACTION), service),
+        Kind("full-text", texts(FULL), full_text),
+        Kind("message", messages, message),
+        Kind("table", files("tests/data/*.tbl", "missions/*/*.tbl"), table, "table.tbl"),
+        Kind("table-yaml", lambda: table_texts(), table_text, "table.yaml"),
+        Kind("dump", files("tests/data/*.log", "tests/data/*.dat"), dump, "dump.log"),
+        Kind("bag", files("tests/data/bags/*.bag"), bag, "input.bag"),
+        Kind("journal", journals, journal, "run.cfepy"),
+        Kind(
+            "results",
+            lambda: [RESULTS.replace("VERDICT", json.dumps(VERDICT.to_dict())).encode()],
+            results,
+            "results.json",
+        ),
+        Kind("schedule", texts(*SCHEDULES), schedule),
+        Kind("script", files("missions/capture/checks.txt", "tests/**/checks.txt"), script, "checks.txt"),
+        Kind("typed", files("missions/capture/checks.txt"), typed),
+        Kind("faults", texts(FAULTS), faults, "faults.yaml"),
+        Kind("lock", texts(LOCK), lock, "topics.lock"),
+        Kind("board", files("boards/*.yaml"), board, "board.yaml"),
+        Kind("command-words", texts("abc\nName=x\nMode=0x10\nMask[1]=3", "a\nx=1,2,3\ny=-2.5"), words),
+        Kind("telemetry", packets, telemetry),
+        Kind(
+            "field-paths", texts("position[0]", "header.stamp", "position[-1]", "name[0:2]", "header.frame_id"), paths
+        ),
+        Kind("breakpoints", texts("/joint_states", "CFE_ES:3", "0x910", "msg.data > 3 and t > 1", "HK:ERROR"), breaks),
+        Kind("test-results", texts(JUNIT), junit, "results.xml"),
+        Kind("manifest", texts("<package><name>arm</name></package>", "setup(package_dir={'': 'src'})"), manifest),
+        Kind("xtce-names", texts("capture", "a b/c", "\x1b[0m"), names),
+        Kind("yaml", files("missions/*/*.yaml", "boards/*.yaml"), yaml_file, "any.yaml"),
+    )
+}
+
+
+@cache
+def table_texts() -> list[bytes]:
+    """Table files in YAML."""
+    find = table_types(None, []).get
+    sources = sorted([*DATA.glob("*.tbl"), *(ROOT / "missions").glob("*/*.tbl")])
+    return [table_yaml.write(document(take_apart(path.read_bytes(), find, path.name))).encode() for path in sources]

@@ -1,0 +1,28 @@
+"""A few damaged inputs of each kind; `python -m tests.fuzz` does many."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.fuzz.kinds import KINDS
+from tests.fuzz.runs import failures
+
+SLOW = {"mission": 3, "table": 5, "table-yaml": 5, "launch": 10, "service-definition": 10}
+"""Kinds of which a case takes long, and how many of them are done here."""
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_damaged_inputs_are_read_or_refused(name: str, tmp_path: Path) -> None:
+    assert [each.what for each in failures(name, SLOW.get(name, 25), 1, tmp_path)] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", KINDS)
+def test_more_damaged_inputs_are_read_or_refused(name: str, tmp_path: Path) -> None:
+    assert [each.what for each in failures(name, 300, 2, tmp_path)] == []
+
+
+def test_there_are_kinds_enough() -> None:
+    assert len(KINDS) >= 20

@@ -1,0 +1,140 @@
+"""Limits of inputs hold where they are, and say what to do."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import msgpack
+import pytest
+
+from cfepy.cli.main import main
+from cfepy.contained_files import make_folder, write_contained
+from cfepy.input_limits import BAG_CHUNK_BYTES, JOURNAL_VALUES, YAML_DEPTH, read_limited, text_limited
+from cfepy.journal import read_journal, staged
+from cfepy.journal.frame_check import check_values
+from cfepy.journal.journal import JournalError
+from cfepy.plain_yaml import YamlError, plain_yaml
+from cfepy.status import UsageError
+from rospy_shim.libraries.rosbag_storage import compression
+from tests.fuzz.sample_journal import sample, with_frames
+
+
+def test_a_file_of_another_kind_or_size_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "x").write_bytes(b"a\r\nb")
+    assert read_limited(tmp_path / "x", 4) == b"a\r\nb"
+    assert text_limited(tmp_path / "x", 4) == "a\nb"
+    with pytest.raises(UsageError, match=r"x: has more than 3 bytes"):
+        read_limited(tmp_path / "x", 3)
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", Path("/dev/zero")):
+        with pytest.raises(UsageError, match="a device or a pipe"):
+            read_limited(path, 3)
+
+
+def test_yaml_is_held_to_its_limits(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cfepy.plain_yaml.YAML_VALUES", 1000)
+    assert len(plain_yaml("[" + "1," * 999 + "]")) == 999
+    for text, said in (
+        ("[" + "1," * 1000 + "]", "more than 1,000 values"),
+        ("[" * (YAML_DEPTH + 1), "nested too deeply"),
+        ("\n- &a [*a]", "an alias of something inside itself, line 2"),
+        ("a: 1\nb: !!timestamp soon", "no timestamp.*line 2"),
+        ("!!int ''", "no int"),
+        ("0x" + "f" * 2000, "digits"),
+    ):
+        with pytest.raises(YamlError, match=said):
+            plain_yaml(text)
+    assert plain_yaml("'" + "1" * 2000 + "'") == "1" * 2000, "a text may be as long as it likes"
+
+
+def test_the_limit_of_chunks_is_that_of_all_inputs() -> None:
+    assert compression.LARGEST == BAG_CHUNK_BYTES
+
+
+def test_packed_values_are_counted_before_they_are_unpacked() -> None:
+    for value in ({"a": [1, -1, 2.5, None, True, b"x" * 70_000, "text" * 100]}, list(range(30_000)), "x" * 70_000):
+        check_values(msgpack.packb(value))
+    with pytest.raises(ValueError, match="more than 1,000,000 values"):
+        check_values(b"\xdd" + (JOURNAL_VALUES + 1).to_bytes(4, "big") + b"\x90" * (JOURNAL_VALUES + 1))
+    with pytest.raises(ValueError, match="cut off"):
+        check_values(b"\xdd\0\0\xff\xff" + b"\x90" * 65_530 + b"\xdb\0\0\xff\xff")
+
+
+def test_files_stay_in_their_folder(tmp_path: Path) -> None:
+    root = tmp_path / "root"
+    root.mkdir()
+    write_contained(root, "/a/b", b"1")
+    assert (root / "a/b").read_bytes() == b"1"
+    (root / "link").symlink_to(tmp_path)
+    (root / "file").symlink_to(tmp_path / "canary")
+    for name in ("a", "/../x", "/a/../../x", "//x", "/a/./b", "/a/", "/", "/a\0", "/link/canary", "/" + "x" * 5000):
+        with pytest.raises(UsageError):
+            write_contained(root, name, b"")
+    with pytest.raises(OSError, match="symbolic links"):
+        write_contained(root, "/file", b"")
+    with pytest.raises(UsageError, match="through a symbolic link"):
+        make_folder(root, "/link/x")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["root"]
+
+
+def test_a_journal_is_unpacked_as_it_was(tmp_path: Path) -> None:
+    (tmp_path / "run.cfepy").write_bytes(sample())
+    found = read_journal(tmp_path / "run.cfepy")
+    with staged(found) as stage:
+        for path, file in found.files.items():
+            assert Path(stage.root + path).read_bytes() == file.data
+        assert Path(stage.root).is_dir()
+    assert not Path(stage.root).exists()
+
+
+def test_info_of_a_journal_runs_and_unpacks_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def change(kind: str, body: dict[str, object]) -> None:
+        if kind == "file":
+            body.update(packed=b"no zlib at all", size=5)
+
+    with_frames(tmp_path / "run.cfepy", change)
+    seen = []
+
+    def hook(event: str, values: tuple[object, ...]) -> None:
+        if watching and event in ("open", "os.mkdir", "os.symlink", "exec", "subprocess.Popen", "socket.connect"):
+            seen.append((event, values[0]))
+
+    watching = False
+    sys.addaudithook(hook)
+    main(["replay", "--info", str(tmp_path / "run.cfepy")])  # what is imported is imported now
+    watching = True
+    assert main(["replay", "--info", str(tmp_path / "run.cfepy")]) == 0
+    watching = False
+    assert seen == [("open", str(tmp_path / "run.cfepy"))]
+    with pytest.raises(JournalError, match="cannot be unpacked"), staged(read_journal(tmp_path / "run.cfepy")):
+        pass
+    assert "trace:" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_temporary_folders_go_after_sigterm(tmp_path: Path) -> None:
+    (tmp_path / "run.cfepy").write_bytes(sample())
+    program = (
+        "import sys, cfepy.journal.stage as stage\n"
+        "from cfepy.cli.main import main\n"
+        "def wait(journal, *_):\n    print('unpacked', flush=True)\n    sys.stdin.read()\n"
+        "stage._show_lines = wait\n"
+        "sys.exit(main(['replay', sys.argv[1]]))\n"
+    )
+    (tmp_path / "tmp").mkdir()
+    process = subprocess.Popen(
+        [sys.executable, "-c", program, str(tmp_path / "run.cfepy")],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env={**os.environ, "TMPDIR": str(tmp_path / "tmp")},
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == b"unpacked\n"
+    assert len(list((tmp_path / "tmp").iterdir())) == 1
+    process.send_signal(signal.SIGTERM)
+    assert process.wait() == 130
+    assert list((tmp_path / "tmp").iterdir()) == []
