@@ -270,6 +270,18 @@ TRICKS = (
         "nodes: {}\n",
         hk__py=f"{WRITE}\ndef HK_AppMain(cfe):\n    pass\n",
     ),
+    Trick(
+        "check: a node is not executed",
+        "check {}/x.launch",
+        "",
+        _files(
+            x__launch='<launch><node pkg="arm" type="node.py" name="n"/></launch>',
+            package__xml="<package><name>arm</name></package>",
+            node__py=f"from arm.cfg import ThingConfig\n{WRITE}\n",
+            setup__py=WRITE,
+            **{"cfg/Thing__cfg": f"#!/usr/bin/env python\n{WRITE}\n"},
+        ),
+    ),
     definition("50,000 fields", "more than 5,000 fields", MANY),
     definition("an array of terabytes", "values in fixed arrays", "uint8[999999999999] a"),
     definition("a type inside itself", "contains itself", "a_type_inside_itself/Bomb b"),
