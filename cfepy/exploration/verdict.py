@@ -125,7 +125,7 @@ class Verdict:
             return cls._of(plain)
         except UsageError:
             raise
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except (KeyError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
             raise UsageError(f"is no verdict: {type(error).__name__}: {error}") from None
 
     @classmethod

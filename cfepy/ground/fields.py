@@ -18,7 +18,7 @@ from cfepy.units import NS_PER_S
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_PART = re.compile(r"(\w+)((?:\[-?\d*:?-?\d*\])*)")
+_PART = re.compile(r"(\w+)((?:\[-?\d*(?::-?\d*)?\])*)")  # in one way only, or a long path would take for ever
 _INDEX = re.compile(r"\[(-?\d*)(:?)(-?\d*)\]")
 
 

@@ -69,6 +69,8 @@ class Schedule:
         Raises:
             UsageError: it means none.
         """
+        if _LONG_NUMBER.search(text):
+            raise UsageError("has a number of more than 30 digits; write a smaller one", field="--schedule")
         kind, *fields = text.split(":")
         found = cls(kind, seed)
         while fields and (option := _option(fields[-1])) is not None:
@@ -129,6 +131,10 @@ class Schedule:
         return replace(self, seed=seed)
 
 
+_LONG_NUMBER = re.compile(r"\d{31}")
+_HIGHEST = {"depth": 10_000, "steps": 10**12}
+
+
 def _option(field: str) -> dict[str, Any] | None:
     """What a field at the end of the text sets, if it is an option."""
     if field == "any":
@@ -149,6 +155,9 @@ def _numbers(text: str, fields: list[str]) -> dict[str, Any]:
         if re.fullmatch(r"\d+", field, re.ASCII) is None or (name != "seed" and not int(field)):
             least = "0" if name == "seed" else "1"
             wrong = f"{name.upper()} is a whole number of at least {least}, not {field!r}"
+            raise UsageError(f"schedule {text!r}: {wrong}", field="--schedule")
+        if name in _HIGHEST and int(field) > _HIGHEST[name]:
+            wrong = f"{name.upper()} is {field}, it must be at most {_HIGHEST[name]:,}"
             raise UsageError(f"schedule {text!r}: {wrong}", field="--schedule")
         found[name] = int(field)
     return found

@@ -122,15 +122,15 @@ class _Check:
         for number, line in enumerate(part.text.split("\n"), part.first_line):
             if _TABBED.match(line.partition("#")[0].rstrip()):
                 yield self._error("has a tab behind the type, which ROS's genmsg refuses; write a blank", number)
-        names = {field.name: "a field" for field in spec.fields}
+        names: set[str] = set()
         for constant in spec.constants:
             if constant.name in names:
-                text = f"the constant {constant.name} has the name of {names[constant.name]}; change one of them"
+                text = f"the constant {constant.name} has the name of another constant; change one of them"
                 yield self._error(text, constant.line)
             if not _LEGAL.fullmatch(constant.name):
                 text = f"{constant.name!r} is no name that a program can use for a constant; begin with a letter"
                 yield self._error(text, constant.line)
-            names.setdefault(constant.name, "another constant")
+            names.add(constant.name)
 
     def _error(self, text: str, line: int | None = None) -> UsageError:
         return UsageError(text, file=self._path, line=line)

@@ -29,9 +29,10 @@ _RANGES = {
     for code, bits in zip("bBhHiIqQ", (8, 8, 16, 16, 32, 32, 64, 64), strict=True)
 }
 _TYPE = re.compile(r"([A-Za-z][\w/]*)(\[(\d*)\])?")
-_CONSTANT_NAME = re.compile(r"(?!__)[A-Za-z_]\w*")
+_CONSTANT_NAME = re.compile(r"(?!__).*")
 _NAME = re.compile(r"[A-Za-z]\w*")
 _RESERVED = frozenset(keyword.kwlist) | {"self"}
+_LONGEST_TYPE = 250  # characters with the package: folders and files are named after them
 _DIGITS = 12  # of the length of an array
 _SEPARATOR = "=" * 80 + "\n"
 
@@ -121,12 +122,12 @@ def parse(text: str, full_name: str, file: str, first_line: int = 1, mistakes: M
                 constants.append(_constant(line, raw)._replace(line=number))
                 names.add(constants[-1].name)
                 if constants[-1].name in taken:
-                    raise ValueError(f"{line!r} has the name of a field")
+                    raise ValueError(f"the constant {constants[-1].name} has the name of a field")
             elif line:
                 fields.append(_field(line, package, taken)._replace(line=number))
                 taken.add(fields[-1].name)
                 if fields[-1].name in names:
-                    raise ValueError(f"{line!r} has the name of a constant")
+                    raise ValueError(f"field {fields[-1].name!r} has the name of a constant")
                 if len(fields) + len(constants) > MESSAGE_FIELDS:
                     what = f"is one more than {MESSAGE_FIELDS:,} fields, which a message may have; divide it"
                     raise UsageError(what, file=file, line=number)
@@ -153,6 +154,8 @@ def _field(line: str, package: str, taken: set[str]) -> Field:
     match = _TYPE.fullmatch(kind)
     if match is None:
         raise ValueError(f"{kind!r} is not a field type")
+    if len(kind) > _LONGEST_TYPE:
+        raise ValueError(f"{kind[:40]}... has more than {_LONGEST_TYPE} characters, and no type has")
     if not _NAME.fullmatch(name):
         raise ValueError(f"{name!r} is not a field name")
     if name in taken:
