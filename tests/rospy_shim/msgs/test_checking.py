@@ -38,7 +38,8 @@ def test_all_faults_of_all_files(tmp_path: Path) -> None:
     found = faults(
         tmp_path,
         **GOOD,
-        A_msg="int33 x\nint32 y\nint32 y\nint8 BIG=300\nfloat32[a] z\nDrivee d\n\nint32 1a\nsensor_msgs/Imagee i\nint8 y=3\n",
+        A_msg="int33 x\nint32 y\nint32 y\nint8 BIG=300\nfloat32[a] z\nDrivee d\n\nint32 1a\nsensor_msgs/Imagee i\n"
+        "int8 y=3\n",
         B_srv="string text\n---\nnowhere_msgs/Thing thing\nbool\n",
         C_action="int32 x\n---\nint32 y\n",
         Loop_msg="Loop[] inner\n",

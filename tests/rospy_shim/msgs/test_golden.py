@@ -14,9 +14,26 @@ from tests.rospy_shim.golden_msgs import build, md5sums, recorded
 
 MESSAGES = [pytest.param(each, id=each["type"]) for each in recorded()["messages"]]
 SERVICES = [pytest.param(each, id=each["type"]) for each in recorded()["services"]]
-STANDARD = """
-    Bool Byte Char ColorRGBA Duration Empty Float32 Float64 Int16 Int32 Int64 Int8 String Time UInt16 UInt32 UInt64 UInt8
-""".split()
+STANDARD = [
+    "Bool",
+    "Byte",
+    "Char",
+    "ColorRGBA",
+    "Duration",
+    "Empty",
+    "Float32",
+    "Float64",
+    "Int16",
+    "Int32",
+    "Int64",
+    "Int8",
+    "String",
+    "Time",
+    "UInt16",
+    "UInt32",
+    "UInt64",
+    "UInt8",
+]
 
 
 def _squeezed(text: str) -> list[str]:
