@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from cfepy.status import UsageError
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+"""What a disk says that is full or broken."""
 
 
 @contextmanager
@@ -23,8 +28,18 @@ def writing(file: str | Path, option: str) -> Iterator[None]:
     """
     try:
         yield
+    except BrokenPipeError:  # of standard output, to which the caller writes as well
+        raise
     except OSError as error:
+        discard_half_written(file, error)
         raise UsageError(f"cannot be written: {error.strerror}", file=file, field=option) from None
+
+
+def discard_half_written(file: str | Path, error: OSError) -> None:
+    """Remove a file that was cut off because there is no more room; a program must not take it for a whole one."""
+    if error.errno in NO_ROOM and os.path.isfile(file):
+        with suppress(OSError):
+            os.unlink(file)
 
 
 def tell(texts: Iterable[object]) -> None:

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any, Literal, TextIO
 
-from cfepy.status import UsageError
+from cfepy.cli.failures import writing
 
 STDOUT = "-"
 _MAY_BE_STDOUT = ("json", "yaml", "output", "dot", "svg")
@@ -40,9 +40,13 @@ def check_json(arguments: argparse.Namespace) -> None:
     Raises:
         UsageError: it cannot.
     """
-    if arguments.json is not None:
-        with _opened(arguments.json, "a", "--json", arguments):
-            pass
+    if arguments.json is None:
+        return
+    is_new = arguments.json != STDOUT and not os.path.exists(arguments.json)
+    with _opened(arguments.json, "a", "--json", arguments):
+        pass
+    if is_new:
+        os.unlink(arguments.json)  # an empty one would stay if there is nothing to write in the end
 
 
 def write_json(arguments: argparse.Namespace, value: Any, indent: int | None = 2) -> None:
@@ -100,10 +104,5 @@ def _opened(file: str, mode: Literal["w", "a"], option: str, arguments: argparse
         yield stream
         stream.flush()
         return
-    try:
-        with open(file, mode, encoding="utf-8") as opened:
-            yield opened
-    except BrokenPipeError:  # of standard output, to which the caller writes as well
-        raise
-    except OSError as error:
-        raise UsageError(f"cannot be written: {error.strerror}", file=file, field=option) from None
+    with writing(file, option), open(file, mode, encoding="utf-8") as opened:
+        yield opened

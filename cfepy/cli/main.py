@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import errno
 import gc
 import importlib
 import io
@@ -17,6 +18,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from cfepy import __version__
+from cfepy.cli.failures import NO_ROOM
 from cfepy.cli.json_output import standard_output
 from cfepy.cli.options import MISSION_HELP
 from cfepy.cli.parser import CommandParser, RootParser
@@ -74,8 +76,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if argv is None else argv
     if "_ARGCOMPLETE" in os.environ:
         _command("shell.completion").complete(parser_for)
-    chosen = parser_for(words).parse_args(words)
     try:
+        chosen = parser_for(words).parse_args(words)
         with terminable(), standard_output(chosen):
             status: int = _command(chosen.module).run(chosen)
         sys.stdout.flush()
@@ -93,9 +95,21 @@ def main(argv: Sequence[str] | None = None) -> int:
         with contextlib.suppress(ValueError):  # an app closed it
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return ENDED_WELL
+    except MemoryError:
+        return _tell_out_of_memory(words)
     except OSError as error:
-        print(f"cfepy: {error}", file=sys.stderr)
+        if error.errno == errno.ENOMEM:
+            return _tell_out_of_memory(words)
+        no_room = error.filename is None and error.errno in NO_ROOM
+        what = f"standard output cannot be written: {error.strerror}" if no_room else error
+        print(f"cfepy: {what}", file=sys.stderr)
         return BAD_USAGE
+
+
+def _tell_out_of_memory(words: Sequence[str]) -> int:
+    """There is no more memory; what was asked for says which file wanted it."""
+    print(f"cfepy: there is not enough memory for `cfepy {' '.join(words)}`; make its input smaller", file=sys.stderr)
+    return BAD_USAGE
 
 
 @contextlib.contextmanager
