@@ -122,7 +122,14 @@ def _joined(steps: Iterable[Step]) -> Iterator[Step]:
 def _go_together(one: Step, other: Step) -> bool:
     if one.service != other.service or {one.pace, other.pace} != {PLAIN}:
         return False
-    return len(one.packets) < MOST_AT_ONCE and not _asks_housekeeping(one.packets[-1])
+    last = one.packets[-1]
+    return len(one.packets) < MOST_AT_ONCE and not _asks_housekeeping(last) and not _cuts_a_route(last)
+
+
+def _cuts_a_route(packet: bytes) -> bool:
+    """Whether SB may get no more commands after this one; which of those that went up with it still come is chance."""
+    is_command = len(packet) > 6 and int.from_bytes(packet[:2], "big") == sb.CMD_MID
+    return is_command and packet[6] & 0x7F == sb.DISABLE_ROUTE.code
 
 
 def _asks_housekeeping(packet: bytes) -> bool:
@@ -181,8 +188,8 @@ class Commander:
                 packets.pop()  # its answer would race with CI_LAB, which goes on with the next packet
             if is_safe(packet):
                 packets.append(packet)
-        if any(pace_of(packet) != PLAIN for packet in packets):
-            packets = [next(packet for packet in packets if pace_of(packet) != PLAIN)]
+        alone = next((packet for packet in packets if pace_of(packet) != PLAIN or _cuts_a_route(packet)), None)
+        packets = packets if alone is None else [alone]
         return Step(service, tuple(packets), pace_of(packets[0]))
 
     def _any(self, service: str) -> bytes:
