@@ -25,7 +25,7 @@ class Dispatch(NamedTuple):
     """What became of a packet, with all that an event text wants to tell.
 
     `outcome` is DONE, BAD_MSG_ID, BAD_CODE or BAD_LENGTH; `length` and `expected` are bytes of the whole packet
-    (`expected` 0 when unknown); `fcn_code` is 0 for a message that is no command; `result` is the handler's.
+    (`expected` 0 when unknown); `fcn_code` is 0 for telemetry; `result` is the handler's.
     """
 
     outcome: int
@@ -111,16 +111,15 @@ class CommandTable:
         """Check a packet and call its handler."""
         msg_id, length = get_msg_id(packet), len(packet)
         codes = self._commands.get(msg_id)
+        fcn_code = _fcn_code(packet)
         if codes is not None:
-            fcn_code = _fcn_code(packet)
             entry = codes.get(fcn_code)
             if entry is None:
                 return Dispatch(BAD_CODE, msg_id, fcn_code, length, 0)
         else:
-            fcn_code = 0
             entry = self._messages.get(msg_id)
             if entry is None:
-                return Dispatch(BAD_MSG_ID, msg_id, _fcn_code(packet), length, 0)
+                return Dispatch(BAD_MSG_ID, msg_id, fcn_code, length, 0)
         expected, handler = entry
         if expected not in (0, length):
             return Dispatch(BAD_LENGTH, msg_id, fcn_code, length, expected)

@@ -58,3 +58,11 @@ def test_the_function_code_of_a_packet_that_ends_with_it() -> None:
     assert table.dispatch(packet).outcome == dispatch.DONE
     assert codes == [packet]
     assert msg.get_fcn_code(packet) == 1
+
+
+def test_a_message_without_codes_tells_the_code_that_is_in_it() -> None:
+    """As the events of NASA's services about its length do."""
+    table = CommandTable()
+    table.add_message(0x180C, 8, print)
+    done = table.dispatch(bytes.fromhex("180cc0000029074b").ljust(48, b"\0"))
+    assert (done.outcome, done.fcn_code) == (dispatch.BAD_LENGTH, 7)

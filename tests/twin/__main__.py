@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.twin.commands import Commander, Step
-from tests.twin.flight import RELEASE, differences, real, simulated
+from tests.twin.flight import differences, real, simulated
 from tests.twin.real import VARIABLE, installed
 
 STEPS_OF_A_FLIGHT = 60
@@ -35,10 +35,10 @@ class Difference(NamedTuple):
 
 
 def compare_flight(
-    built: Path, seed: int, count: int, mission_yaml: str = RELEASE, without: Iterable[str] = ()
+    built: Path, seed: int, count: int, without: Iterable[str] = ()
 ) -> Iterator[tuple[Step, Difference | None]]:
     """Fly the steps of a seed in both; each with its difference, or None."""
-    with simulated(mission_yaml) as ours, real(built) as theirs:
+    with real(built) as theirs, simulated(theirs.release) as ours:
         for number, step in enumerate(itertools.islice(Commander(seed, without).steps(), count)):
             expected = ours.fly(step)
             lines = differences(expected, theirs.fly(step, expected))
@@ -51,7 +51,6 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="of the first flight; the next ones count up")
     parser.add_argument("--count", type=int, default=100, help="commands in all")
     parser.add_argument("--flight", type=int, default=STEPS_OF_A_FLIGHT, help="steps of a flight")
-    parser.add_argument("--mission", default=RELEASE, help="text of a mission file")
     parser.add_argument("--without", nargs="*", default=(), help="names of commands to leave out")
     given = parser.parse_args()
     built = installed()
@@ -59,7 +58,7 @@ def main() -> int:
         sys.exit(f"{VARIABLE} does not say where the folder of NASA's core-cpu1 is")
     steps = commands = unlike = 0
     for seed in itertools.count(given.seed):
-        for step, difference in compare_flight(built, seed, given.flight, given.mission, given.without):
+        for step, difference in compare_flight(built, seed, given.flight, given.without):
             steps, commands = steps + 1, commands + len(step.packets) + 1
             unlike += difference is not None
             if difference is not None:

@@ -45,7 +45,7 @@ OF_TELEMETRY = {
     },
     "CFE_EVS_HK_TLM": {
         "MessageSendCounter|LogOverflowCounter|LogFullFlag": "flywheel events are counted",
-        r"AppData\[3\]\.AppMessageSentCounter": "flywheel events of CFE_TIME",
+        r"AppData\[[34]\]\.AppMessageSentCounter": "flywheel events of CFE_TIME, 4th in 7.0.0 and 5th in 7.0.1",
     },
     "CFE_SB_HK_TLM": {
         "NoSubscribersCounter": "the applications start on several processors",
@@ -89,12 +89,15 @@ OF_RECORDS = {
     header.SUBTYPE_TBL_REG: {".*Addr|.*Ptr": "an address", "TimeOfLastUpdate.*": "a time"},
     header.SUBTYPE_EVS_APPDATA: {"EventCount": "flywheel events"},
     header.SUBTYPE_SB_PIPEDATA: {".*QueueDepth": "what waits at this instant", "SendErrors": "a host that stops"},
+    header.SUBTYPE_SB_MAPDATA: {"Index": "which application subscribed first"},
     header.SUBTYPE_SB_ROUTEDATA: {"MsgCnt": "how many messages went there"},
 }
+IN_ANY_ORDER = (header.SUBTYPE_SB_ROUTEDATA, header.SUBTYPE_SB_MAPDATA)
+"""Files of routes: the applications subscribe as they come up, on several processors."""
 ONLY_HEADERS = (header.SUBTYPE_ES_SYSLOG, header.SUBTYPE_ES_PERFDATA, header.SUBTYPE_ES_ERLOG)
 """Files with the lines of the boot, the run of tasks, addresses: what they begin with is compared."""
 LAST_OF_NAME = 115
-"""The last byte of the table's name in a dump, which NASA's never sets; see docs/differences.md."""
+"""The last byte of the table's name in a dump, which NASA's never sets, as its first word; see docs/differences.md."""
 MOST_FLYWHEEL = 8
 """Events of flywheel mode that a log of 20 may have, at most."""
 APP_NAME, EVENT_ID, TEXT = slice(16, 36), slice(36, 38), slice(48, 170)
@@ -177,6 +180,7 @@ def of_file(data: bytes) -> bytes:
     left = bytearray(data)
     left[24:32] = bytes(8)  # when it was made
     if head.subtype == header.SUBTYPE_TBL_IMG:
+        left[HEADER_SIZE : HEADER_SIZE + 4] = bytes(4)[: len(left) - HEADER_SIZE]
         left[LAST_OF_NAME : LAST_OF_NAME + 1] = b"\0"[: len(left) - LAST_OF_NAME]
         return bytes(left[: HEADER_SIZE - 32]) + _text(left[HEADER_SIZE - 32 : HEADER_SIZE]) + bytes(left[HEADER_SIZE:])
     begin = bytes(left[: HEADER_SIZE - 32]) + _text(left[HEADER_SIZE - 32 : HEADER_SIZE])
@@ -191,6 +195,8 @@ def of_file(data: bytes) -> bytes:
     records = [
         _masked(layout, OF_RECORDS.get(head.subtype, {}), body[at : at + size]) for at in range(0, len(body), size)
     ]
+    if head.subtype in IN_ANY_ORDER:
+        records.sort()
     return begin + b"".join(records)
 
 

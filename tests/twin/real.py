@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import re
 import select
 import shutil
 import socket
@@ -113,6 +114,11 @@ class RealCfe:
     def console(self) -> bytes:
         """All that was printed since the start."""
         return self._log.read_bytes()
+
+    def release(self) -> str:
+        """Which release of cFE it is, as its first events say: "7.0.0"."""
+        found = re.search(rb"cFE ES Initialized: CFE_ES v(\d+\.\d+\.\d+)", self.console())
+        return found[1].decode() if found else ""
 
     def files(self) -> dict[str, bytes]:
         """Content of every file in /ram, by virtual path."""

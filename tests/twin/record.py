@@ -16,7 +16,7 @@ from tests.twin.real import VARIABLE, installed
 def fly(built: Path, seed: int, count: int, without: list[str]) -> recorded.Flight:
     """The steps of a seed, and what came of them."""
     flight: recorded.Flight = []
-    with simulated() as ours, real(built) as theirs:
+    with real(built) as theirs, simulated(theirs.release) as ours:
         for step in itertools.islice(Commander(seed, without).steps(), count):
             flight.append((step, theirs.fly(step, ours.fly(step))))
     return flight

@@ -12,7 +12,13 @@ from tests.twin.commands import Step
 from tests.twin.flight import Observed
 
 DATA = Path(__file__).parent / "data"
+
 Flight = list[tuple[Step, Observed]]
+
+
+def of_release(release: str) -> Path:
+    """The record of a release of cFE such as "7.0.0"."""
+    return DATA / f"commands_{release.replace('.', '_')}.json.xz"
 
 
 def save(path: Path, flights: Iterable[Flight]) -> None:

@@ -20,7 +20,10 @@ from tests.twin.commands import PLAIN, Step
 from tests.twin.flight import Simulated, differences, real, simulated
 from tests.twin.real import VARIABLE, installed
 
-RECORD = recorded.DATA / "commands_7_0_0.json.xz"
+RELEASES = ("7.0.0", "7.0.1")
+FLIGHTS = [
+    (release, number) for release in RELEASES for number in range(len(recorded.load(recorded.of_release(release))))
+]
 ORDINARY = 15  # steps
 needs_real = pytest.mark.skipif(installed() is None, reason=f"{VARIABLE} does not name a folder with NASA's core-cpu1")
 
@@ -81,7 +84,7 @@ ALL_TYPES = Step("EVS", (evs.ENABLE_EVENT_TYPE.packet(BitMask=15),), PLAIN)
 
 @pytest.fixture(scope="module")
 def flown() -> Iterator[Simulated]:
-    with simulated() as computer:
+    with simulated("7.0.0") as computer:
         computer.fly(ALL_TYPES)
         yield computer
 
@@ -111,29 +114,31 @@ def test_the_letters_are_nasas() -> None:
             assert (name, found) == (name, letter.events)
 
 
-def fly_again(flight: recorded.Flight) -> list[str]:
-    with simulated() as computer:
+def fly_again(release: str, flight: recorded.Flight) -> list[str]:
+    with simulated(release) as computer:
         found = []
         for number, (step, observed) in enumerate(flight):
             found += [f"step {number}: {line}" for line in differences(computer.fly(step), observed)]
         return found
 
 
-def test_the_first_commands_on_record() -> None:
-    flight = recorded.load(RECORD)[0][:ORDINARY]
+@pytest.mark.parametrize("release", RELEASES)
+def test_the_first_commands_on_record(release: str) -> None:
+    flight = recorded.load(recorded.of_release(release))[0][:ORDINARY]
     assert len(flight) == ORDINARY
-    assert fly_again(flight) == []
+    assert fly_again(release, flight) == []
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", range(len(recorded.load(RECORD))))
-def test_all_commands_on_record(number: int) -> None:
-    assert fly_again(recorded.load(RECORD)[number]) == []
+@pytest.mark.parametrize(("release", "number"), FLIGHTS)
+def test_all_commands_on_record(release: str, number: int) -> None:
+    assert fly_again(release, recorded.load(recorded.of_release(release))[number]) == []
 
 
 def test_a_difference_is_seen() -> None:
     """A comparison that cannot fail would prove nothing: another text, a packet less, another file."""
-    step, observed = next(pair for pair in recorded.load(RECORD)[0] if any(map(masks.is_event, pair[1].packets)))
+    flight = recorded.load(recorded.of_release("7.0.0"))[0]
+    step, observed = next(pair for pair in flight if any(map(masks.is_event, pair[1].packets)))
     assert differences(observed, observed) == []
     at = next(at for at, packet in enumerate(observed.packets) if masks.is_event(packet))
     other = observed.packets[at][:38] + b"\7" + observed.packets[at][39:]
