@@ -21,11 +21,16 @@ def is_hidden(file: str) -> bool:
 
 def traceback_text(error: BaseException) -> str:
     """The traceback of an error as Python prints it, without the simulator's frames."""
+    return "".join(traceback_parts(error))
+
+
+def traceback_parts(error: BaseException) -> list[str]:
+    """As `traceback_text`, a text for each frame (traceback.format_exception)."""
     from traceback import TracebackException
 
     report = TracebackException(type(error), error, error.__traceback__)
     strip(report, is_hidden)
-    return "".join(report.format())
+    return list(report.format())
 
 
 def strip(report: TracebackException, hidden: Callable[[str], bool]) -> None:

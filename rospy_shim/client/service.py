@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from cfepy.nodes.report import traceback_text
+from cfepy.nodes.report import traceback_parts
 from cfepy.rtos import TIMEOUT, WaitList
 from cfepy.status import CfeError
 from rospy_shim.client.exceptions import ROSInterruptException, ServiceException
@@ -234,8 +234,8 @@ class Service:
             bus.subscribe_ex(self._entry.request_id, self._pipe, 0, depth)
 
     def error_handler(self, error: Exception, exc_type: Any, exc_value: Any, tb: Any) -> None:
-        """Log an exception in the handler."""
-        self._node.logs.logerr("Error processing request: %s\n%s", error, traceback_text(error))
+        """Log an exception in the handler; the traceback is a list in brackets, as rospy has it."""
+        self._node.logs.logerr("Error processing request: %s\n%s", error, traceback_parts(error))
 
     def shutdown(self, reason: str = "") -> None:
         """Offer the service no longer; callers whose requests wait get an error."""

@@ -77,7 +77,10 @@ def _of_object(value: Any) -> Any:
     if (wrapped := _wrapped(value)) is not None:
         return wrapped
     if not hasattr(value, "__dict__") or isinstance(value, _BUILT_IN) or kind.__module__ == "datetime":
-        raise TypeError(f"cannot marshal {kind} objects")
+        try:
+            raise KeyError(kind)  # xmlrpc.client looks the type up first, and a traceback shows both
+        except KeyError:
+            raise TypeError(f"cannot marshal {kind} objects")  # noqa: B904
     return marshalled(dict(vars(value)))
 
 

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 _STAMP = re.compile(r"\[(\d{9,10}\.\d+)(, \d+\.\d+)?\]")
 _TIME = re.compile(r"\b\d{9,10}\.\d+\b")
+_LISTED = re.compile(r"\['Traceback \(most recent call last\):.*, (?:'|\")(.*?)\\n(?:'|\")\]")
+_ANONYMOUS = re.compile(r"_\d+_\d{12,13}(?!\d)")
 _THREAD = re.compile(r"\bThread-\d+")
 _ADDRESS = re.compile(r"0x[0-9a-f]{5,}")
 _PLACE = re.compile(r"(?<![\w.])/[\w./+-]*/([\w.-]+\.py)")
@@ -65,7 +67,7 @@ def plain(value: Any) -> Any:
     if isinstance(value, dict):
         if value.keys() == {"secs", "nsecs"}:
             return "time" if value["secs"] > 1_000_000 else value
-        return {name: plain(item) for name, item in value.items() if name != "seq"}
+        return {_without_times(str(name)): plain(item) for name, item in value.items() if name != "seq"}
     if isinstance(value, list):
         return [plain(item) for item in value]
     if isinstance(value, str):
@@ -79,6 +81,8 @@ def _without_times(text: str) -> str:
         (_STAMP, "[t]"),
         (_TIME, "t"),
         (_THREAD, "Thread-n"),
+        (_ANONYMOUS, "_n"),
+        (_LISTED, r"[Traceback: \1]"),
         (_ADDRESS, "0x0"),
         (_PLACE, r"\1"),
     ):

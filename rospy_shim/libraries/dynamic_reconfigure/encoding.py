@@ -117,7 +117,10 @@ def get_tree(m: Any, group: Any = None) -> Config:
 
 
 def _tree(groups: Iterable[Any], make: Callable[[Any], Config]) -> Config:
-    outermost = make(next(group for group in groups if group.id == 0))
+    zeros = [group for group in groups if group.id == 0]
+    if not zeros:
+        raise AttributeError("'NoneType' object has no attribute 'id'")  # callers of the service see this text
+    outermost = make(zeros[-1])
     outermost["groups"] = _inside(groups, 0, make)
     return outermost
 

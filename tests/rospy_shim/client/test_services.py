@@ -244,3 +244,15 @@ attempt(rospy.ServiceProxy("odd", Trigger))
     )
     refused = "service [/odd] responded with an error: b'error processing request: field success is not a bool'"
     assert lines == ["handled field success is not a bool", f"ServiceException {refused}"]
+
+
+def test_an_error_in_a_handler_is_logged_with_its_traceback_as_a_list(tmp_path: Path) -> None:
+    result = two(
+        tmp_path,
+        'rospy.Service("halve", SetBool, lambda r: 1 / 0)\nrospy.spin()',
+        'rospy.wait_for_service("halve")\nattempt(rospy.ServiceProxy("halve", SetBool), True)',
+    )
+    told, listed = result.printed["server"][:2]
+    assert told.endswith("Error processing request: division by zero")
+    assert listed.startswith("['Traceback (most recent call last):\\n', '  File ")
+    assert listed.endswith("'ZeroDivisionError: division by zero\\n']")

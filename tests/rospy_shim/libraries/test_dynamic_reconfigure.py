@@ -182,3 +182,17 @@ def test_config_is_a_dict_with_attributes() -> None:
         "c": "x",
         "d": 0.5,
     }
+
+
+def test_groups_without_an_outermost_one_are_refused_as_on_ros(tmp_path: Path) -> None:
+    reads = """
+        from dynamic_reconfigure.encoding import get_tree
+        from dynamic_reconfigure.msg import Config, GroupState
+        try:
+            get_tree(Config(groups=[GroupState("a", True, 1, 0)]))
+        except AttributeError as error:
+            print(error)
+        print(get_tree(Config(groups=[GroupState("one", True, 0, 0), GroupState("two", True, 0, 0)]))["name"])
+    """
+    run = run_nodes(tmp_path, {"READS": reads})
+    assert run.printed["READS"] == ["'NoneType' object has no attribute 'id'", "two"]
