@@ -23,7 +23,12 @@ NODES = "nodes"
 
 MOST_NODES = 4000
 
-ROS_ROOM: Mapping[str, int] = {"es_cds_size": 409_600, "os_max_tasks": 512, "sb_buf_memory_bytes": 64 << 20}
+ROS_ROOM: Mapping[str, int] = {
+    "es_cds_size": 409_600,
+    "os_max_tasks": 512,
+    "sb_buf_memory_bytes": 64 << 20,
+    "tbl_buf_memory_bytes": 1 << 20,
+}
 """What cFE is built with for ROS's parameters, which are critical tables, for threads, and for images on their way."""
 
 _PER_NODE: Mapping[str, int] = {

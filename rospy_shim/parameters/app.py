@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from cfepy.es import APP_ERROR, StartParams
 from cfepy.msg import BAD_CODE, BAD_LENGTH, CommandTable
 from cfepy.status import CFE_TBL_INFO_RECOVERED_TBL, CFE_TBL_INFO_UPDATED, CFE_TBL_WARN_NOT_CRITICAL, CfeError
-from cfepy.tbl import OPT_CRITICAL
+from cfepy.tbl import OPT_CRITICAL, OPT_DBL_BUFFER
 from rospy_shim.parameters import table
 from rospy_shim.parameters.rows import ParameterRows, ParametersFull
 from rospy_shim.parameters.tree import ParameterTree
@@ -83,7 +83,10 @@ class ParameterImages:
         """One more table; None when there is no room for it. The first may be one that a reset does not leave."""
         tbl, name = self._cfe.tbl, table.table_name(number)
         try:
-            handle = tbl.register(name, self._rows * table.ROW_BYTES, OPT_CRITICAL, self._validator(name))
+            options = (
+                OPT_CRITICAL | OPT_DBL_BUFFER
+            )  # a single-buffered table could not be dumped before its second load
+            handle = tbl.register(name, self._rows * table.ROW_BYTES, options, self._validator(name))
         except CfeError:
             if number:
                 return None

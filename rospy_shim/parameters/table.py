@@ -62,13 +62,13 @@ _CRITICAL_RECORD = 256  # of the registry of critical tables, which takes a bloc
 def extent(config: PlatformConfig) -> tuple[int, int]:
     """How many tables there are under a platform's limits, and how many rows each has.
 
-    Each takes a block of the CDS and one of the table memory. A quarter of both, and half of the critical tables, are
+    Each takes a block of the CDS and two of the table memory. A quarter of both, and half of the critical tables, are
     left to others.
     """
     registries = config.es_cds_max_num_entries * _CDS_RECORD + config.tbl_max_critical_tables * _CRITICAL_RECORD
-    room = min(config.es_cds_size - registries, config.tbl_buf_memory_bytes) * 3 // 4
+    room = min(config.es_cds_size - registries, config.tbl_buf_memory_bytes // 2) * 3 // 4
     block = _LARGEST_BLOCK
-    while block > min(room, config.tbl_max_sngl_table_size) and block > ROW_BYTES:
+    while block > min(room, config.tbl_max_dbl_table_size) and block > ROW_BYTES:
         block //= 2
     count = min(MOST_TABLES, config.tbl_max_critical_tables // 2, room // (block + _BLOCK_HEADER))
     return count, (block - _CDS_HEADER) // ROW_BYTES

@@ -96,7 +96,7 @@ def test_an_event_by_number_and_by_type(plan: RunPlan) -> None:
 @pytest.mark.parametrize("text", ["0x0808", "CFE_EVS_LONG_EVENT_MSG"])
 def test_a_packet_by_msg_id_and_by_name(plan: RunPlan, text: str) -> None:
     found = hits(plan, text)
-    assert found[0].startswith("CFE_EVS_LONG_EVENT_MSG (0x0808) of CFE_EVS, 172 bytes: {'PacketID'")
+    assert found[0].startswith("CFE_EVS_LONG_EVENT_MSG (0x0808) of CFE_ES, 172 bytes: {'PacketID'")
 
 
 def test_a_command_is_told_from_others_with_its_msg_id() -> None:

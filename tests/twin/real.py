@@ -59,6 +59,9 @@ class RealCfe:
         built: the folder of the executable and of its `cf`.
         folder: where its private copy goes.
         files: what to write over files of the copy, by virtual path ("/cf/x").
+
+    Attributes:
+        inside: id of the first process of its namespaces.
     """
 
     def __init__(self, built: Path, folder: Path, files: Mapping[str, bytes]) -> None:
@@ -80,8 +83,8 @@ class RealCfe:
             )
         try:
             self.wait(lambda: OPERATIONAL in self.console(), "boot", BOOT_LIMIT_S)
-            self._inside = int(Path(f"/proc/{self._process.pid}/task/{self._process.pid}/children").read_text())
-            with _in_network_of(self._inside):
+            self.inside = int(Path(f"/proc/{self._process.pid}/task/{self._process.pid}/children").read_text())
+            with in_network_of(self.inside):
                 self._up = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
                 self._down = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
                 self._down.bind(("127.0.0.1", TO_PORT))
@@ -122,7 +125,7 @@ class RealCfe:
 
     def files(self) -> dict[str, bytes]:
         """Content of every file in /ram, by virtual path."""
-        disk = Path(f"/proc/{self._inside}/root/{RAM_DISK}")
+        disk = Path(f"/proc/{self.inside}/root/{RAM_DISK}")
         return {f"/ram/{each.name}": each.read_bytes() for each in disk.iterdir() if each.is_file()}
 
     @property
@@ -145,7 +148,7 @@ class RealCfe:
 
 
 @contextmanager
-def _in_network_of(pid: int) -> Iterator[None]:
+def in_network_of(pid: int) -> Iterator[None]:
     """Sockets that are made here belong to the network of another process; they keep belonging to it."""
     enter = ctypes.CDLL(None, use_errno=True).setns
     with Path("/proc/self/ns/net").open() as own, Path(f"/proc/{pid}/ns/net").open() as other:
