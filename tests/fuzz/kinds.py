@@ -44,6 +44,7 @@ from rospy_shim.msgs.library import Library, from_full_text, shipped
 from rospy_shim.msgs.sources import Definition, Texts
 from rospy_shim.roslaunch.reader import read
 from rospy_shim.roslaunch.values import from_yaml
+from tests.es.test_cds import Board
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "tests/data"
@@ -308,6 +309,20 @@ def _words(*given: str) -> Any:
     return parser_for(given).parse_args(given)
 
 
+def cds_image(data: bytes, path: Path) -> None:
+    """The memory of the Critical Data Store after a processor reset: what is found in it is used."""
+    board = Board()
+    board.memory[:] = data[: len(board.memory)].ljust(len(board.memory), b"\0")
+    store = board.boot()
+    for block in list(store):
+        with suppress(CfeError):
+            store.read(block.handle)
+        with suppress(CfeError):
+            store.write(block.handle, bytes(block.user_size))
+    with suppress(CfeError):
+        store.write(store.register(40, "NEW.Block", is_table=False)[0], bytes(40))
+
+
 # -- samples -----------------------------------------------------------------------------------------------------------
 
 
@@ -316,6 +331,16 @@ def journals() -> list[bytes]:
     from tests.fuzz.sample_journal import sample
 
     return [sample()]
+
+
+def cds_images() -> list[bytes]:
+    """Memory with blocks in it."""
+    board = Board()
+    for size, name in ((10, "APP.One"), (200, "APP.Two"), (33, "TBL.Three")):
+        handle = board.cds.register(size, name, name.startswith("TBL"))[0]
+        board.cds.write(handle, bytes(range(size)))
+    board.cds.delete("APP.Two")
+    return [bytes(board.memory)]
 
 
 def packets() -> list[bytes]:
@@ -448,6 +473,7 @@ KINDS = {
         Kind("lock", texts(LOCK), lock, "topics.lock"),
         Kind("board", files("boards/*.yaml"), board, "board.yaml"),
         Kind("command-words", texts("abc\nName=x\nMode=0x10\nMask[1]=3", "a\nx=1,2,3\ny=-2.5"), words),
+        Kind("cds-image", cds_images, cds_image),
         Kind("telemetry", packets, telemetry),
         Kind(
             "field-paths", texts("position[0]", "header.stamp", "position[-1]", "name[0:2]", "header.frame_id"), paths
