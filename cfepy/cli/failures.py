@@ -35,6 +35,19 @@ def writing(file: str | Path, option: str) -> Iterator[None]:
         raise UsageError(f"cannot be written: {error.strerror}", file=file, field=option) from None
 
 
+def check_writable(file: str | Path, option: str) -> None:
+    """That a file can be written is better known before a run than after it; nothing is left there.
+
+    Raises:
+        UsageError: it cannot.
+    """
+    is_new = not os.path.exists(file)
+    with writing(file, option):
+        open(file, "a").close()
+        if is_new:
+            os.unlink(file)
+
+
 def discard_half_written(file: str | Path, error: OSError) -> None:
     """Remove a file that was cut off because there is no more room; a program must not take it for a whole one."""
     if error.errno in NO_ROOM and os.path.isfile(file):

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any, Literal, TextIO
 
-from cfepy.cli.failures import writing
+from cfepy.cli.failures import check_writable, writing
 
 STDOUT = "-"
 _MAY_BE_STDOUT = ("json", "yaml", "output", "dot", "svg")
@@ -40,13 +40,8 @@ def check_json(arguments: argparse.Namespace) -> None:
     Raises:
         UsageError: it cannot.
     """
-    if arguments.json is None:
-        return
-    is_new = arguments.json != STDOUT and not os.path.exists(arguments.json)
-    with _opened(arguments.json, "a", "--json", arguments):
-        pass
-    if is_new:
-        os.unlink(arguments.json)  # an empty one would stay if there is nothing to write in the end
+    if arguments.json not in (None, STDOUT):
+        check_writable(arguments.json, "--json")
 
 
 def write_json(arguments: argparse.Namespace, value: Any, indent: int | None = 2) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 import msgpack
 import pytest
 
+from cfepy.cli.ground.export import file_name
 from cfepy.cli.main import main
 from cfepy.contained_files import make_folder, write_contained
 from cfepy.input_limits import BAG_CHUNK_BYTES, JOURNAL_VALUES, YAML_DEPTH, read_limited, text_limited
@@ -79,6 +80,14 @@ def test_files_stay_in_their_folder(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="through a symbolic link"):
         make_folder(root, "/link/x")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["root"]
+
+
+def test_tables_of_a_bag_are_written_into_their_folder() -> None:
+    for topic in ("/../../x", "..", "/a\0b", "~/x", "C:\\x", "/x\n"):
+        name = file_name(topic)
+        assert "/" not in name
+        assert "\\" not in name
+        assert name.isprintable()
 
 
 def test_a_journal_is_unpacked_as_it_was(tmp_path: Path) -> None:

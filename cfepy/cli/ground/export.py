@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 import csv
+import re
 import sys
 from collections.abc import Iterable, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
 
-from cfepy.cli.failures import writing
+from cfepy.cli.failures import check_writable, writing
 from cfepy.cli.json_output import STDOUT, write_text
 from cfepy.cli.looked_at import look_at_series
 from cfepy.cli.main import ENDED_WELL
@@ -72,8 +73,7 @@ def _values(arguments: argparse.Namespace) -> int:
     if arguments.format == "parquet":
         _parquet()  # that it is installed is better known before a long run than after it
     if folder is None and output != STDOUT:
-        with writing(output, "--output"):
-            Path(output).open("a").close()
+        check_writable(output, "--output")
     series, status = look_at_series(arguments, arguments.names)
     chosen: dict[str, tuple[Series, list[str]]] = {}
     for found, field in chain.from_iterable(series.matching(word) for word in arguments.names):
@@ -85,12 +85,13 @@ def _values(arguments: argparse.Namespace) -> int:
         with writing(folder, "--output"):
             folder.mkdir(parents=True, exist_ok=True)
         for table in tables:
-            write(str(folder / f"{_file_name(table.name)}.{arguments.format}"), table, arguments)
+            write(str(folder / f"{file_name(table.name)}.{arguments.format}"), table, arguments)
     return status
 
 
-def _file_name(name: str) -> str:
-    return name.strip("/").replace("/", ".")
+def file_name(name: str) -> str:
+    """A file's name for a topic, which a bag may call anything."""
+    return re.sub(r"[^\w.~-]", "_", name.strip("/").replace("/", "."))
 
 
 def _table(series: Series, fields: Sequence[str], from_s: float) -> ValueTable:

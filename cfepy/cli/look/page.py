@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from cfepy.cli.failures import writing
+from cfepy.cli.failures import check_writable, writing
 from cfepy.cli.looked_at import look_at
 from cfepy.ground import SeriesRecorder
 from cfepy.reports import About, Collector, page_of
@@ -23,8 +23,7 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: there is no such run, or the page cannot be written.
     """
     path = Path(arguments.output)
-    with writing(path, "--output"):
-        path.open("a").close()  # that it can be written is better known before a long run than after it
+    check_writable(path, "--output")
     collector, recorder = Collector(), SeriesRecorder(most=MOST_KEPT)
     looked_at = look_at(arguments, [collector, recorder], collector.policy)
     about = About(looked_at.command, looked_at.schedule, arguments.source, looked_at.warnings)

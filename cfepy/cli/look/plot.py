@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from cfepy.cli.failures import writing
+from cfepy.cli.failures import check_writable, writing
 from cfepy.cli.looked_at import look_at_series
 from cfepy.reports import Curves, curves_of, picture_of, save
 from cfepy.status import UsageError
@@ -26,8 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
     if path.suffix.lower() not in KINDS:
         raise UsageError(f"is no picture; give a name that ends with {', '.join(KINDS)}", file=path, field="--output")
     picture_of([[]])  # that matplotlib is installed is better known before a long run than after it
-    with writing(path, "--output"):
-        path.open("a").close()
+    check_writable(path, "--output")
     series, status = look_at_series(arguments, arguments.names)
     drawn = [curves.since(arguments.from_s or 0.0) for word in arguments.names for curves in curves_of(series, word)]
     if not any(each.changes or any(len(line.times) for line in each.lines) for each in drawn):

@@ -12,10 +12,9 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.cli.failures import tell, writing
+from cfepy.cli.failures import check_writable, tell
 from cfepy.cli.ground.console.pages import PacketBoard
 from cfepy.cli.ground.console.saved import SavedScript
 from cfepy.cli.ground.console.session import REPLY, ConsoleSession
@@ -60,8 +59,7 @@ class Opening:
         self._arguments = arguments
         self._interrupts = interrupts
         if arguments.save_script is not None:
-            with writing(arguments.save_script, "--save-script"):
-                Path(arguments.save_script).open("a").close()
+            check_writable(arguments.save_script, "--save-script")
 
     @contextlib.contextmanager
     def session(self, note: Callable[[str], object]) -> Iterator[ConsoleSession]:
