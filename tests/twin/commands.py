@@ -231,7 +231,7 @@ class Commander:
             texts = CDS_NAMES
         elif "entry" in field:
             texts = ("SAMPLE_APP_Main", "", "Nothing", "S" * 19, "S" * 20)
-        text = random.choice(texts) if random.random() < 0.97 else random.randbytes(size)
+        text = random.choice(texts) if random.random() < 0.97 else random.randbytes(size).translate(None, b"/.")
         data = text.encode() if isinstance(text, str) else text
         data = data[:size].ljust(size, b"\0")
         if random.random() < 0.05:
