@@ -55,7 +55,8 @@ class Flight:
             (self._folder / "end").touch()
             self._run_until(mission, lambda: OBSERVER in mission.ros.ended, SHUTDOWN_S)
             ended = dict(mission.ros.ended)
-        return self._outcome(ended, console.lines, ended_itself, time.perf_counter() - begun)
+        names = {app: end.name for app, end in mission.ros.ended.items()}  # also of those that the end of it all ended
+        return self._outcome(ended, names, console.lines, ended_itself, time.perf_counter() - begun)
 
     # -- before ------------------------------------------------------------------------------------------------------
 
@@ -123,13 +124,15 @@ class Flight:
 
     # -- afterwards --------------------------------------------------------------------------------------------------
 
-    def _outcome(self, ended: dict[str, Any], lines: list[str], ended_itself: bool, wall_s: float) -> Outcome:
+    def _outcome(
+        self, ended: dict[str, Any], names: dict[str, str], lines: list[str], ended_itself: bool, wall_s: float
+    ) -> Outcome:
         result = self._folder / "result.json"
         failure = {"stimulus failed": next((line for line in lines if "Error" in line), "the observer did not end")}
         nothing = {"N": {}, "T": {}, "R": failure, "rate": {}}
         seen = json.loads(result.read_text()) if result.is_file() else nothing
         files = {f"@TMP/{path.name}": path.stat().st_size for path in self._folder.iterdir() if path.is_file()}
-        helpers = [app for app in ended if app not in (NODE, OBSERVER)]
+        helpers = [app for app in names if app not in (NODE, OBSERVER)]
         return Outcome(
             counts=seen["N"],
             messages=seen["T"],
@@ -137,8 +140,8 @@ class Flight:
             rates=seen["rate"],
             status=ended[NODE].status if NODE in ended else None,
             ended_itself=ended_itself,
-            out=_printed(lines, NODE, ended),
-            helpers_out="".join(_printed(lines, app, ended) for app in helpers),
+            out=_printed(lines, NODE, names),
+            helpers_out="".join(_printed(lines, app, names) for app in helpers),
             files=files,
             wall_s=wall_s,
         )
@@ -148,9 +151,9 @@ def _line(app: str, file: str) -> str:
     return _ENTRY.format(app=app, file=file, priority=_PRIORITIES.get(app, 100))
 
 
-def _printed(lines: list[str], app: str, ended: dict[str, Any]) -> str:
+def _printed(lines: list[str], app: str, names: dict[str, str]) -> str:
     """What a node printed; its lines are marked with its application's name, and with its own from init_node on."""
-    marks = [f"[{name}] " for name in {app, ended[app].name if app in ended else app}]
+    marks = [f"[{name}] " for name in {app, names.get(app, app)}]
     found = [line.partition("] ")[2] for line in lines if line.startswith(tuple(marks))]
     return "".join(f"{line}\n" for line in found)
 

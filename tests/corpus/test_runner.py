@@ -210,3 +210,13 @@ def test_two_runs_that_are_not_alike() -> None:
     one = Outcome({"/a": 100}, {"/a": [{"data": 1.0000001}]}, status=0, out="x\n")
     other = Outcome({"/a": 80}, {"/a": [{"data": 1.0}]}, status=1, out="y\n")
     assert differences(one, other) == {"status": (0, 1), "printed": (["x"], ["y"]), "/a count": (100, 80)}
+
+
+def test_what_a_node_printed_that_never_ends(sources: Sources, tmp_path: Path) -> None:
+    script = sources.script(Program("us/robots", "own_msgs/scripts/echo.py", ()))
+    stubborn = script[0] / Path(script[1]).with_name("stubborn.py")
+    stubborn.write_text(
+        "import rospy, time\nprint('first')\nrospy.init_node('mule')\nprint('then')\nwhile True:\n    time.sleep(1)\n"
+    )
+    outcome = fly(scenario_of(sources, "stubborn.py"), sources, tmp_path)
+    assert (outcome.out, outcome.status, outcome.ended_itself) == ("first\nthen\n", None, False)
