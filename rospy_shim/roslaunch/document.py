@@ -171,6 +171,10 @@ class Attributes:
         """There is something to tell about the tag; see `LaunchRemark`."""
         self._scope.findings.remarks.append(self.tag.remark(text, is_error=is_error))
 
+    def charge(self, work: int) -> None:
+        """What the tag brings makes the launch larger (`LAUNCH_WORK` of `cfepy.input_limits`)."""
+        self._scope.findings.work += work
+
     def tell_unknown(self, known: tuple[str, ...]) -> None:
         """Tell of the attributes that this kind of tag should not have; they are ignored, as roslaunch does."""
         allowed = (*known, "if", "unless")

@@ -41,11 +41,13 @@ class LaunchFindings:
         mistakes: takes what is wrong: it raises the first mistake, or keeps all.
         remarks: all else that a user should know.
         unset: arguments without a value that have been told of: file, the <include> that reads it, name.
+        work: how large the launch is so far (`LAUNCH_WORK` of `cfepy.input_limits`).
     """
 
     mistakes: Mistakes = field(default_factory=Mistakes)
     remarks: list[LaunchRemark] = field(default_factory=list)
     unset: set[tuple[Path, str, str]] = field(default_factory=set)
+    work: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,6 +24,7 @@ STOOD_IN = {"xacro": Path("xacro")}
 """What $(find) gives for packages whose programs are stood in for, when they are not there."""
 PARAM = ("name", "value", "type", "textfile", "binfile", "command")
 ROSPARAM = ("command", "ns", "file", "param", "subst_value")
+_BYTES_KEPT, _YAML_BYTES = 200, 10  # that count for the size of a launch as one
 _SOURCES = ("value", "textfile", "binfile", "command")
 
 
@@ -147,12 +148,15 @@ def _value(attributes: Attributes, source: str) -> Any:
         return None
     try:
         if source == "binfile":
-            return read_limited(text, LAUNCH_FILE_BYTES)
+            data = read_limited(text, LAUNCH_FILE_BYTES)
+            attributes.charge(len(data) // _BYTES_KEPT)
+            return data
         found = text.strip()
         if source == "textfile":
             found = _read_text(text)
         elif source == "command":
             found = output_of(text)
+        attributes.charge(len(found) // _BYTES_KEPT)
         return converted(found, (attributes.tag.attributes.get("type") or "auto").strip())
     except OSError as error:
         attributes.wrong(f"{text} cannot be read: {error.strerror}", source)
@@ -182,6 +186,8 @@ def read_rosparam(launch: Launch, tag: Tag, scope: Scope) -> None:
     text = None if attributes.failed else _text_of(file, attributes)
     if text is not None and resolves:
         text = attributes.resolved(text)
+    if text is not None:
+        attributes.charge(len(text) // _YAML_BYTES)
     value = None if text is None else _loaded(text, file, attributes)
     if value is None:
         return

@@ -247,7 +247,6 @@ class _Reader:
         self._names_made = 0
         self._depth = 0
         self._too_deep = self._too_much = False
-        self._work = 0
         self._findings = findings
         self._launch = Launch(remarks=findings.remarks)
         self._tags: dict[str, Callable[[Tag, Scope], None]] = {
@@ -285,7 +284,7 @@ class _Reader:
 
     def _read_file(self, file: Path, scope: Scope) -> bool:
         """Read a file; whether it is one that can be read."""
-        self._work += _FILE
+        self._findings.work += _FILE
         tag = self._findings.mistakes.attempt(partial(read_launch_tag, file))
         if tag is None:
             return False
@@ -301,8 +300,8 @@ class _Reader:
 
     def _read_all(self, tags: Iterable[Tag], scope: Scope) -> None:
         for tag in tags:
-            self._work += _TAG + scope.size
-            if self._work > LAUNCH_WORK:
+            self._findings.work += _TAG + scope.size
+            if self._findings.work > LAUNCH_WORK:
                 if not self._too_much:
                     self._too_much = True
                     self._findings.mistakes.add(tag.fail(_TOO_MUCH))

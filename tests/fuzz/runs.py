@@ -14,6 +14,8 @@ from typing import NamedTuple
 from tests.fuzz.damage import damaged
 from tests.fuzz.kinds import KINDS, REFUSED
 
+_WAITS = 20  # times as long a case may wait: a busy computer gives it the CPU now and then
+
 
 class Failed(NamedTuple):
     """A case that ended with a traceback, or did not end."""
@@ -37,7 +39,7 @@ def failures(name: str, count: int, seed: int, folder: Path, patience_s: float =
         count: how many cases.
         seed: of all of them.
         folder: for their files.
-        patience_s: wall time that each may take; 0 for any.
+        patience_s: time of the CPU that each may take, and much longer to wait for something; 0 for any.
     """
     kind = KINDS[name]
     samples = kind.samples()
@@ -64,10 +66,13 @@ def _alarm(patience_s: float) -> Iterator[None]:
     def ring(number: int, frame: FrameType | None) -> None:
         raise HangError
 
-    before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, patience_s)
+    before = {each: signal.signal(each, ring) for each in (signal.SIGPROF, signal.SIGALRM)}
+    signal.setitimer(signal.ITIMER_PROF, patience_s)
+    signal.setitimer(signal.ITIMER_REAL, _WAITS * patience_s)
     try:
         yield
     finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
         signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        for each, handler in before.items():
+            signal.signal(each, handler)

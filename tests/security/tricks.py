@@ -230,6 +230,7 @@ TRICKS = (
     ),
     launch("tags 20,000 deep", "too deep", "<group>" * 20_000),
     launch("a million nodes", "too many", '<node pkg="p" type="t" name="n"/>' * 11_000),
+    launch("yaml again and again", "becomes too large", f"<rosparam>a: {'x' * 20_000}</rosparam>" * 60),
     launch("a prefix that is a program", HARMLESS, '<node pkg="p" type="t" name="n" launch-prefix="touch @/canary"/>'),
     Trick(
         "xml: entities in entities",
