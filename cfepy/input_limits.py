@@ -27,6 +27,7 @@ XML_ENTITY = 100  # characters of an entity, which has no other one inside
 # launch files
 LAUNCH_INCLUDES_DEEP = 64  # a file that includes itself would go on for ever
 LAUNCH_WORK = 1_000_000  # tags that are read, each with the arguments, variables and remappings that hold there
+LAUNCH_NUMBER = 1e9  # seconds, and times to try again
 LAUNCH_NAME = 1_000  # characters of a name with its namespaces
 LAUNCH_FILE_BYTES = 32 << 20  # of what textfile= and binfile= name
 SUBSTITUTED_CHARACTERS = 1_000_000  # of a text whose substitutions are made

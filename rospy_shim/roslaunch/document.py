@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from cfepy.input_limits import XML_BYTES, XML_DEPTH, XML_ENTITY, XML_TAGS, read_limited
+from cfepy.input_limits import LAUNCH_NUMBER, XML_BYTES, XML_DEPTH, XML_ENTITY, XML_TAGS, read_limited
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
 from rospy_shim.roslaunch.model import LaunchRemark
@@ -228,7 +228,7 @@ class Attributes:
         return value is not None and value.lower() == "true"
 
     def number(self, name: str, least: float) -> float | None:
-        """An attribute that is a number of at least `least`; None when it is not there or something else."""
+        """An attribute that is a number of at least `least`, and not one without end; None when it is not there or something else."""
         value = self.optional(name)
         if value is None:
             return None
@@ -236,9 +236,9 @@ class Attributes:
             number = float(value)
         except ValueError:
             number = least - 1
-        if number >= least:
+        if least <= number <= LAUNCH_NUMBER:
             return number
-        self.wrong(f"is {value!r}; write a number of at least {least:g}", name)
+        self.wrong(f"is {value[:40]!r}; write a number of at least {least:g} and at most {LAUNCH_NUMBER:g}", name)
         return None
 
     def counts(self) -> bool:

@@ -230,6 +230,12 @@ TRICKS = (
     ),
     launch("tags 20,000 deep", "too deep", "<group>" * 20_000),
     launch("a million nodes", "too many", '<node pkg="p" type="t" name="n"/>' * 11_000),
+    launch("a test that is tried without end", "at most 1e+09", '<test test-name="t" pkg="p" type="t" retry="1e999"/>'),
+    launch(
+        "a node that is awaited without end",
+        "at most 1e+09",
+        '<node name="n" pkg="p" type="t" respawn="true" respawn_delay="inf"/>',
+    ),
     launch("yaml again and again", "becomes too large", f"<rosparam>a: {'x' * 20_000}</rosparam>" * 60),
     launch("a prefix that is a program", HARMLESS, '<node pkg="p" type="t" name="n" launch-prefix="touch @/canary"/>'),
     Trick(
