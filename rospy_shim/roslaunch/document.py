@@ -228,7 +228,7 @@ class Attributes:
         return value is not None and value.lower() == "true"
 
     def number(self, name: str, least: float) -> float | None:
-        """An attribute that is a number of at least `least`, and not one without end; None when it is not there or something else."""
+        """An attribute that is a number of at least `least`, and not too large; None when it is not there or wrong."""
         value = self.optional(name)
         if value is None:
             return None
