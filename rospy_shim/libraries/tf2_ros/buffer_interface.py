@@ -85,7 +85,7 @@ class ConvertRegistration:
 
 def _registered(table: dict[Any, Callable[..., Any]], key: Any) -> Callable[..., Any]:
     if key not in table:
-        raise TypeException(f"Type {key} is not loaded or supported")
+        raise TypeException(f"Type {key} if not loaded or supported")  # the wording is tf2's
     return table[key]
 
 
@@ -105,7 +105,8 @@ def convert(a: Any, b_type: type) -> Any:
     except TypeException:
         if type(a) is b_type:
             return deepcopy(a)
-        return registration.get_from_msg(b_type)(registration.get_to_msg(type(a))(a))
+        to_msg = registration.get_to_msg(type(a))
+        return registration.get_from_msg(b_type)(to_msg(a))
     return straight(a)
 
 

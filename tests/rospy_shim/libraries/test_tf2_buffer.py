@@ -156,3 +156,13 @@ def test_converting(node: Universe) -> None:
 def test_names_that_tf2_ros_does_not_have(node: Universe) -> None:
     with pytest.raises(AttributeError, match="BufferKlient"):
         _ = node.importer.load("tf2_ros").BufferKlient
+
+
+def test_a_type_that_nobody_has_registered(node: Universe) -> None:
+    """The words are those of tf2_ros 0.7.6."""
+    load = node.importer.load
+    error = load("tf2_ros").TypeException
+    with pytest.raises(error, match=r"^Type <class 'int'> if not loaded or supported$"):
+        buffer_of(load).transform(5, "map")
+    with pytest.raises(error, match=r"^Type <class 'int'> if not loaded or supported$"):
+        load("tf2_ros").convert(5, str)
