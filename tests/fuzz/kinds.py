@@ -232,7 +232,7 @@ def typed(data: bytes, path: Path) -> None:
 
 def faults(data: bytes, path: Path) -> None:
     """A fault plan."""
-    read_plan(path).text()
+    read_plan(path).to_dict()
 
 
 def lock(data: bytes, path: Path) -> None:
@@ -412,10 +412,11 @@ EXPRESSIONS = (
     "sum(range(100)) << 3 | 5",
 )
 FAULTS = """faults:
-  - {kind: drop, topic: /joint_states, from: 1.0, until: 2.0, probability: 0.5}
-  - {kind: crash, app: HK, at: 3.5}
-  - {kind: delay, mid: 0x0910, from: 0, delay: 0.25}
-seed: 7
+- {reorder: CFE_ES_SEND_HK, name: reorder-1, after: 1.1, number: 1, past: 3}
+- {duplicate: /motor_command, name: duplicate-2, after: 1.903, until: 8.75, probability: 0.2}
+- {lose_1hz: tone, name: lose_1hz-3, after: 1.112, until: 10.25}
+- {drop: HK_SEND_COMBINED_PKT, name: drop-4, after: 1.1, number: 1}
+- {duplicate: /joint_states_throttle, name: duplicate-5, after: 5.28, until: 9.826, probability: 0.01}
 """
 SCHEDULES = ("fifo", "random:3", "at:56=1", "pct:3:100:7", "at:1=1,2=2", "random:1:any")
 RESULTS = (
