@@ -260,9 +260,12 @@ def _remarks(raw: _Raw, longest: int) -> Iterator[str]:
     fields = raw.text.split(",")
     what = "application" if entry.kind == CFE_APP else "library"
     if not entry.name:
-        yield f"the {what} has no name; cFE starts it, and no command can name it"
+        yield f"the {what} has no name: cFE starts it, and no command can name it; write one in the fourth field"
     if entry.kind == CFE_APP and entry.symbol in ("", "NULL"):
-        yield f"the symbol is {entry.symbol!r}: the application never runs, and the start waits for it"
+        yield (
+            f"the symbol is {entry.symbol!r}: the application never runs, and the start waits for it; "
+            "write a function's name in the third field"
+        )
     if len(fields[2]) >= MAX_NAME_LEN:
         yield f"the symbol {fields[2]!r} is cut to {entry.symbol!r}"
     for what, field in (("priority", fields[4]), ("stack size", fields[5]), ("exception action", fields[7])):

@@ -129,8 +129,9 @@ class Shipment:
         """Put the files into a folder.
 
         Args:
-            root: the folder.
+            root: the folder; it is made.
         """
+        root.mkdir(parents=True, exist_ok=True)
         for file in self.files:
             write_contained(root, file.path, file.data or b"", 0o777)  # roslaunch starts executable files only
         return Unpacked(root, make_folder(root, self.folder))

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
-from cfepy.es import CFE_APP, CFE_LIB, StartupEntry, startup_script
+from cfepy.es import CFE_APP, StartupEntry, startup_script
 from cfepy.mission import CORE_APPS, NODE_SYMBOL, find_code, find_node, sources
 from cfepy.osal import OS_MAX_FILE_NAME
 from cfepy.pilot.check.problem import MissionProblem
@@ -47,12 +47,11 @@ def app_sources(folder: Path, entries: list[StartupEntry]) -> Iterator[tuple[Pat
 
 
 def _check_names(script: Path, entries: list[StartupEntry]) -> Iterator[MissionProblem]:
-    """Names that are missing or taken; applications and libraries have a name space each."""
+    """Names that are taken; applications and libraries have a name space each."""
     taken = {(CFE_APP, name): "the core application" for name in CORE_APPS}
     for entry in entries:
         if not entry.name:
-            yield MissionProblem(script, entry.line, "the name is empty; write one in the fourth field")
-            continue
+            continue  # the reader of the script has told it
         key = (entry.kind, entry.name)
         if key in taken:
             text = f"the name {entry.name!r} is taken by {taken[key]}; give this one another name"
@@ -95,11 +94,9 @@ def _check_syntax(source: Path) -> Iterator[MissionProblem]:
 
 
 def _check_symbol(script: Path, entry: StartupEntry, source: Path) -> Iterator[MissionProblem]:
-    if entry.kind == CFE_LIB and entry.symbol == NO_SYMBOL:
-        return
-    if not entry.symbol:
-        yield MissionProblem(script, entry.line, "the entry point is empty; write a function's name in the third field")
-    elif not sources.defines(source, entry.symbol):
+    if entry.symbol in ("", NO_SYMBOL):
+        return  # what becomes of an application without one, the reader of the script has told
+    if not sources.defines(source, entry.symbol):
         functions = [name for file in sources.files_of(source) for name in sources.functions_of(file)]
         hint = did_you_mean(entry.symbol, functions, f"write {NODE_SYMBOL} if it is a ROS node, or add the function")
         yield MissionProblem(script, entry.line, f"{source} has no function {entry.symbol}; {hint}")

@@ -41,8 +41,11 @@ def test_a_good_mission(tmp_path: Path) -> None:
         ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0;", "the entry has 7 of 8 fields"),
         ("CFE_APP, nothere, X_Main, X, 60, 16384, 0, 0;", "no code for /cf/nothere.so"),
         ("CFE_APP, hk, HK_AppMian, HK2, 60, 16384, 0, 0;", "has no function HK_AppMian; did you mean HK_AppMain?"),
-        ("CFE_APP, hk, , HK2, 60, 16384, 0, 0;", "the entry point is empty"),
-        ("CFE_APP, hk, HK_AppMain, , 60, 16384, 0, 0;", "the name is empty"),
+        ("CFE_APP, hk, , HK2, 60, 16384, 0, 0;", "the application never runs, and the start waits for it; write"),
+        (
+            "CFE_APP, hk, HK_AppMain, , 60, 16384, 0, 0;",
+            "has no name: cFE starts it, and no command can name it; write",
+        ),
         ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 0;", "the name 'HK' is taken by line 1"),
         ("CFE_APP, hk, HK_AppMain, CFE_ES, 60, 16384, 0, 0;", "the name 'CFE_ES' is taken by the core application"),
         ("CFE_APP, hk, HK_AppMain, TWENTY_CHARACTERS_XX, 60, 1, 0, 0;", "at most 19 fit"),

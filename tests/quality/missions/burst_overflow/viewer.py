@@ -11,7 +11,7 @@ rospy.init_node("viewer")
 seen = []
 rospy.Subscriber("stamped", Int32, lambda message: seen.append(message.data), queue_size=1)
 image = rospy.Publisher("image", Int32, queue_size=10)
-rospy.sleep(0.15)
+rospy.sleep(0.5)  # relay looks for its service every 0.3 s
 for number in range(IMAGES):
     image.publish(number)
 rospy.sleep(0.05)
