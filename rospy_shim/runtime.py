@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from cfepy.app import Cfe
     from cfepy.console import Console
-    from cfepy.nodes import Factory
+    from cfepy.nodes import Factory, Overlay
     from cfepy.osal import Network
     from cfepy.rtos import Kernel
 
@@ -137,6 +137,7 @@ class RosRuntime:
         max_publish_hz: messages a second that a publisher may send; it is held back at more. 0 for no limit.
         console: where nodes print and log.
         network: what their sockets are plugged into; None refuses sockets.
+        files: what they see of files; None is the computer's own.
 
     Attributes:
         parameters: the application ROS, which starts before the first node.
@@ -155,6 +156,7 @@ class RosRuntime:
         max_publish_hz: int = 0,
         console: Console,
         network: Network | None = None,
+        files: Overlay | None = None,
     ) -> None:
         self.graph = Graph(config)
         self._switchboard = Switchboard(self.graph)
@@ -167,6 +169,9 @@ class RosRuntime:
         self._publish_slot_ns = NS_PER_S // max_publish_hz if max_publish_hz else 0
         self._console = console
         self._network = network
+        self._files = files
+        if files is not None:
+            files.stamps.now_ns = lambda: self._epoch_ns + kernel.now
         self.monitor = ProcessMonitor(config, console, kernel.stop)
         self.parameters = ParameterApp(cfe, self.graph.params)
         self._started: dict[str, NodeConfig] = {}
@@ -237,6 +242,7 @@ class RosRuntime:
             keys=config.keys,
             network=self._network,
             root=self._config.root,
+            overlay=None if config.on_disk else self._files,
             on_thread_start=tasks.thread,
         )
         universe.pid = self._free_pid(universe.pid)

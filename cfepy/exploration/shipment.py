@@ -9,6 +9,7 @@ the folder.
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from hashlib import file_digest
@@ -133,7 +134,8 @@ class Shipment:
         """
         root.mkdir(parents=True, exist_ok=True)
         for file in self.files:
-            write_contained(root, file.path, file.data or b"", 0o777)  # roslaunch starts executable files only
+            write_contained(root, file.path, file.data or b"")
+            os.chmod(f"{root}{file.path}", stat.S_IMODE(file.mode) | stat.S_IRUSR)
         return Unpacked(root, make_folder(root, self.folder))
 
     def plan_in(self, inside: Unpacked) -> PlanElsewhere:

@@ -1,6 +1,7 @@
 """A worker process: flies batches of schedules for the process that started it.
 
-`python -m cfepy.exploration.worker DESCRIPTOR`, where DESCRIPTOR is its end of a connection. First comes the trial,
+`python -m cfepy.exploration.worker DESCRIPTOR FOLDER`, where DESCRIPTOR is its end of a connection and FOLDER the place
+for all that it needs for a while. First comes the trial,
 then batches; each is answered by its verdicts. A thread reads the connection, so that the worker ends at once, in the
 middle of a schedule too, when the process at the other end does.
 """
@@ -12,6 +13,7 @@ import gc
 import os
 import signal
 import sys
+import tempfile
 import threading
 from multiprocessing.connection import Connection
 from queue import SimpleQueue
@@ -27,7 +29,7 @@ def main() -> None:
     """Serve until the other end closes the connection."""
     faulthandler.enable()  # a worker that crashes, or is told to abort, says where it was
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started it
-    descriptor = int(sys.argv[1])
+    descriptor, tempfile.tempdir = int(sys.argv[1]), sys.argv[2]
     os.set_inheritable(descriptor, False)
     connection: Connection[Any, Any] = Connection(descriptor)
     os.register_at_fork(after_in_child=connection.close)  # whose end means that of this process alone

@@ -63,11 +63,12 @@ class Worker:
         self.ready = False
         self._watch = Stopwatch()
         self._said = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115  # as long as the worker
+        self._scratch = tempfile.TemporaryDirectory(prefix="cfepy-worker-")  # it may be killed, and cannot tidy up then
         fcntl.fcntl(self._said, fcntl.F_SETFL, os.O_APPEND)  # so that it can be emptied under the worker's hands
         self.connection, theirs = Pipe()
         with theirs:
             self._process = subprocess.Popen(
-                [*python_command(), "-m", __package__ + ".worker", str(theirs.fileno())],
+                [*python_command(), "-m", __package__ + ".worker", str(theirs.fileno()), self._scratch.name],
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
                 stdout=self._said,
@@ -148,6 +149,7 @@ class Worker:
         self._process.wait()
         self.connection.close()
         self._said.close()
+        self._scratch.cleanup()
 
     def _signal(self, number: int) -> None:
         try:

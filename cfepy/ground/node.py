@@ -87,6 +87,7 @@ def with_player(spec: MissionSpec, bag: str) -> MissionSpec:
 
 def _with_node(spec: MissionSpec, node: NodeConfig) -> MissionSpec:
     head = spec.startup_script.partition(b"!")[0].rstrip() + b"\n"
+    node = replace(node, on_disk=True)
     ros = replace(spec.ros, nodes={**spec.ros.nodes, node.app: node})
     return replace(spec, ros=ros, startup=head + lines_for({node.app: node}) + b"!\n")
 

@@ -98,7 +98,7 @@ FRAMES: dict[str, dict[str, Check]] = {
         "host": _table(_text, _text),
         "format": _whole,
     },
-    "file": {"path": is_contained, "size": _whole, "sha256": _digits, "packed": _perhaps(_data)},
+    "file": {"path": is_contained, "size": _whole, "sha256": _digits, "packed": _perhaps(_data), "mode": _whole},
     "folder": {"path": is_contained, "names": _table(_name_of_file, _flag)},
     "pause": {"until_ns": _whole, "visits": _whole, "events": _list(_named)},
     "answer": {"values": _list(_any)},
@@ -129,7 +129,7 @@ PLAN: dict[str, Check] = {
     "play": _perhaps(_text),
     "stall": _number,
 }
-_LATER = {"outcome"}  # may be missing
+_LATER = {"outcome", "mode"}  # may be missing
 
 
 def problem_of(kind: str, body: Any) -> str | None:

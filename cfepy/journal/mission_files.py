@@ -11,6 +11,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import site
+import stat
 import sys
 import sysconfig
 import zlib
@@ -23,8 +24,8 @@ from typing import Any
 
 from cfepy.journal.facts import own_places
 from cfepy.mission import MissionSpec
+from cfepy.nodes import LISTED, MADE, NEEDED
 from cfepy.nodes.sources import AGAIN
-from cfepy.nodes.stdlib.os_module import LISTED
 from cfepy.status import UsageError
 
 CARRIED = 32 << 20  # bytes of files that a journal carries, before they are compressed
@@ -43,12 +44,14 @@ class MissionFile:
         size: in bytes.
         sha256: of its content, hexadecimal; empty when it could not be had.
         packed: its content, compressed; None when the journal does not carry it.
+        mode: its permissions.
     """
 
     path: str
     size: int
     sha256: str
     packed: bytes | None = None
+    mode: int = 0o777
 
     @property
     def data(self) -> bytes | None:
@@ -103,7 +106,8 @@ class Carrier:
         if len(content) <= self._left:
             self._left -= len(content)
             packed = zlib.compress(content)
-        return MissionFile(path, len(content), sha256(content).hexdigest(), packed)
+        mode = stat.S_IMODE(os.stat(path).st_mode)
+        return MissionFile(path, len(content), sha256(content).hexdigest(), packed, mode)
 
 
 def files_of(spec: MissionSpec) -> list[str]:
@@ -151,6 +155,8 @@ class ReadFiles:
         self._listed = listed
         self._known: set[str] = set()
         self._written: set[str] = set()
+        self._own: list[str] = []
+        self._needed: set[str] = set()  # folders of which only that is known
         self._busy = False
 
     def __enter__(self) -> ReadFiles:
@@ -165,6 +171,10 @@ class ReadFiles:
         self._known.add(os.path.abspath(path))
         self._written.add(os.path.abspath(path))
 
+    def forget_below(self, folder: str) -> None:
+        """What the run itself has written is there, and no file of the computer."""
+        self._own.append(os.path.join(folder, ""))
+
     def is_product(self, path: str) -> bool:
         """Whether the run, or an attachment, has written a file."""
         return path in self._written
@@ -174,7 +184,7 @@ class ReadFiles:
         if self._busy or isinstance(path, int) or not isinstance(path, (str, bytes, os.PathLike)):
             return
         name = os.path.abspath(os.fsdecode(path))
-        if name in self._known:
+        if name in self._known or name.startswith(tuple(self._own)):
             return
         self._known.add(name)
         if flags & (os.O_WRONLY | os.O_RDWR | os.O_CREAT):
@@ -191,8 +201,11 @@ class ReadFiles:
         if self._busy or isinstance(path, int):
             return
         folder = os.path.abspath(os.fsdecode(path))
-        if folder not in self._known and not folder.startswith((*_VOLATILE, *_left_out())):
+        if (folder not in self._known or (names and folder in self._needed)) and not folder.startswith(
+            (*_VOLATILE, *_left_out())
+        ):
             self._known.add(folder)
+            (self._needed.discard if names else self._needed.add)(folder)
             found = [os.fsdecode(name) for name in names]
             self._listed(folder, [name for name in found if os.path.join(folder, name) not in self._written])
 
@@ -216,6 +229,10 @@ def _listeners() -> list[ReadFiles]:
                 each.opened(values[0], values[2])
             elif event == AGAIN:
                 each.opened(values[0], os.O_RDONLY)
+            elif event == NEEDED:
+                each.looked_into(values[0], ())
+            elif event == MADE:
+                each.forget_below(values[0])
             elif event == LISTED:
                 each.looked_into(*values)
 

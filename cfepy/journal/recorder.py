@@ -34,6 +34,7 @@ from cfepy.pilot import Flown, RunPlan, fly
 from cfepy.rtos import Policy
 from cfepy.status import UsageError
 
+FILE_FIELDS = ("path", "size", "sha256", "packed", "mode")
 CHECK_NS = 100_000_000  # virtual time between two marks of how far a run has come, when it stops more often
 
 
@@ -164,7 +165,7 @@ class JournalRecorder(Attachment):
         elif path not in self._known and not self._is_left_out(path):
             self._known.add(path)
             file = self._carrier.take(path)
-            self._write(FILE, {name: getattr(file, name) for name in ("path", "size", "sha256", "packed")})
+            self._write(FILE, {name: getattr(file, name) for name in FILE_FIELDS})
 
     def _is_left_out(self, path: str) -> bool:
         """Whether a file in the folder of a mission is a journal, or what this run has written."""

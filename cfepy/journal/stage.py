@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import linecache
 import os
+import stat
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -131,7 +132,8 @@ def _unpack(file: MissionFile, root: Path) -> None:
     if data is None:
         link_contained(root, file.path)
     else:
-        write_contained(root, file.path, data, 0o777)  # roslaunch starts executable files only
+        write_contained(root, file.path, data)
+        os.chmod(f"{root}{file.path}", stat.S_IMODE(file.mode) | stat.S_IRUSR)
 
 
 def _fill(root: Path, path: str, names: Mapping[str, bool]) -> None:

@@ -24,7 +24,7 @@ from cfepy.mission.finding import read_mission
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.outside import Outside
 from cfepy.mission.pieces import HeldBack, PieceLength
-from cfepy.mission.processor import Machine, Processor
+from cfepy.mission.processor import Machine, NodeFiles, Processor
 from cfepy.mission.python_code import find_code
 from cfepy.mission.record import Reset, RunRecord
 from cfepy.mission.spec import MissionSpec
@@ -38,6 +38,7 @@ from cfepy.trace import Trace
 from cfepy.units import NS_PER_MS, NS_PER_S
 
 if TYPE_CHECKING:
+    from cfepy.nodes import Overlay
     from rospy_shim.runtime import RosRuntime
 
 P = ParamSpec("P")
@@ -149,6 +150,7 @@ class Mission:
             record=self.record,
             bus=bus,
             on_restart=_while_there_is_one(self._on_restart, None),
+            node_files=NodeFiles(),
         )
 
     def _provide_tables(self) -> None:
@@ -181,6 +183,11 @@ class Mission:
     def ros(self) -> RosRuntime | None:
         """The ROS side; None before the first node started."""
         return self.processor.ros
+
+    @property
+    def node_files(self) -> Overlay | None:
+        """What nodes see of files, and wrote, until the mission is closed; None before the first node."""
+        return self._machine.node_files.made
 
     @property
     def booted(self) -> int | None:
@@ -285,6 +292,7 @@ class Mission:
             self.stall_watch.end()
         for each in self._attachments:
             each.close()
+        self._machine.node_files.close()
 
     def __enter__(self) -> Mission:
         return self

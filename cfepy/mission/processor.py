@@ -35,6 +35,7 @@ from cfepy.time import TimeServices
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
+    from cfepy.nodes import Overlay
     from rospy_shim.graph.graph import TopicRow
     from rospy_shim.runtime import RosRuntime
 
@@ -51,7 +52,8 @@ class Machine:
     """What a reset leaves alone, and what a processor is made of.
 
     `retained` is the memory that outlives a processor reset, `network` what sockets are plugged into, `bus` the class
-    of the Software Bus, `on_restart` what the PSP calls for a reset: (type, reason, fault).
+    of the Software Bus, `on_restart` what the PSP calls for a reset: (type, reason, fault). `node_files` what nodes see
+    of files.
     """
 
     spec: MissionSpec
@@ -66,11 +68,37 @@ class Machine:
     record: RunRecord
     bus: type[SoftwareBus]
     on_restart: Callable[[int, str, bool], object]
+    node_files: NodeFiles
 
     @property
     def epoch_ns(self) -> int:
         """Unix time in ns at virtual time 0: the spacecraft's clock, as ROS nodes read it."""
         return (UNIX_AT_CFE_EPOCH + self.config.time_def_met_secs + self.config.time_def_stcf_secs) * NS_PER_S
+
+
+class NodeFiles:
+    """What nodes see of files, made for the first one: a mission without nodes does not import it.
+
+    Attributes:
+        made: it; None before.
+    """
+
+    def __init__(self) -> None:
+        self.made: Overlay | None = None
+
+    def of(self, machine: Machine) -> Overlay:
+        """That of a machine."""
+        if self.made is None:
+            from cfepy.nodes import Overlay, below_root
+
+            epoch_ns, kernel = machine.epoch_ns, machine.kernel
+            self.made = Overlay(lambda: epoch_ns + kernel.now, below_root(machine.spec.ros.root))
+        return self.made
+
+    def close(self) -> None:
+        """The mission is over."""
+        if self.made is not None:
+            self.made.close()
 
 
 class Processor:
@@ -236,6 +264,7 @@ class Processor:
             max_publish_hz=machine.board.max_publish_hz,
             console=machine.console,
             network=machine.network,
+            files=machine.node_files.of(machine),
         )
 
     def _script_of(self, file: str) -> Path | None:

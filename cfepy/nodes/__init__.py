@@ -18,24 +18,32 @@ from cfepy.faces import face
 from cfepy.nodes.config import ROSCORE_PARAMS, NodeConfig, RosConfig, TopicConfig
 
 if TYPE_CHECKING:
+    from cfepy.nodes.files import LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
     from cfepy.nodes.refused import RefusedError
     from cfepy.nodes.universe import Factory, StartThread, Universe
 
 __all__ = [
+    "LISTED",
+    "MADE",
+    "NEEDED",
+    "PREFIX",
     "ROSCORE_PARAMS",
     "Factory",
     "NodeConfig",
+    "Overlay",
     "RefusedError",
     "RosConfig",
     "StartThread",
     "TopicConfig",
     "Universe",
+    "below_root",
 ]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".files": ("LISTED", "MADE", "NEEDED", "PREFIX", "Overlay", "below_root"),
             ".refused": ("RefusedError",),
             ".universe": (
                 "Factory",

@@ -384,11 +384,11 @@ class Importer:
 
     def _node_folders(self) -> list[str]:
         """The folders of the search path that are the node's: given to it, or added by itself."""
-        resolve = self._universe.resolve
         return [
-            resolve(folder)
+            place
             for folder in self.path
             if isinstance(folder, str) and (folder in self._own or folder not in self._hosts)
+            for place in self._universe.places(folder)
         ]
 
     def _is_own(self, origin: str | None) -> bool:

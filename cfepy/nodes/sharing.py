@@ -24,12 +24,13 @@ if TYPE_CHECKING:
 # fmt: off
 FRESH = frozenset({
     "_pydatetime", "_pyio", "_threading_local", "argparse", "asynchat", "asyncio", "asyncore", "bdb", "bz2", "cmd",
-    "code", "codeop", "concurrent", "configparser", "contextlib", "curses", "email", "fileinput", "ftplib",
-    "genericpath", "getopt", "getpass", "glob", "gzip", "http", "imaplib", "json", "logging", "lzma", "nntplib",
-    "optparse", "pathlib", "pdb", "pickle", "platform", "poplib", "posixpath", "pprint", "queue", "random", "runpy",
-    "sched", "secrets", "selectors", "shelve", "shutil", "smtpd", "smtplib", "socketserver", "statistics", "tarfile",
-    "telnetlib", "tempfile", "threading", "timeit", "traceback", "tracemalloc", "tty", "unittest", "urllib", "uuid",
-    "warnings", "wave", "weakref", "wsgiref", "xmlrpc", "zipfile",
+    "code", "codeop", "concurrent", "configparser", "contextlib", "curses", "dbm", "email", "filecmp", "fileinput",
+    "ftplib", "genericpath", "getopt", "getpass", "glob", "gzip", "http", "imaplib", "json", "logging", "lzma",
+    "mailbox", "nntplib", "optparse", "pathlib", "pdb", "pickle", "platform", "poplib", "posixpath", "pprint",
+    "queue", "random", "runpy", "sched", "secrets", "selectors", "shelve", "shutil", "smtpd", "smtplib",
+    "socketserver", "statistics", "tarfile", "telnetlib", "tempfile", "threading", "timeit", "traceback",
+    "tracemalloc", "tty", "unittest", "urllib", "uuid", "warnings", "wave", "weakref", "wsgiref", "xmlrpc",
+    "zipfile",
 })
 # fmt: on
 """Modules of the standard library, by their first name, that each node executes for itself."""
@@ -42,8 +43,10 @@ HOST_SUBMODULES = frozenset({"urllib.parse", "urllib.error"})
 HOST_BELOW = frozenset({"importlib", "numpy"})
 """Packages that are made for the node, while their submodules are the host's."""
 
-WITHOUT_ACCELERATOR = frozenset({"_pickle", "_queue", "_uuid", "_warnings", "_posixsubprocess", "_asyncio"})
-"""C halves of the above that would keep state per process or block a real thread; the Python half works alone."""
+WITHOUT_ACCELERATOR = frozenset(
+    {"_pickle", "_queue", "_uuid", "_warnings", "_posixsubprocess", "_asyncio", "_dbm", "_gdbm"}
+)
+"""C halves of the above that would keep state per process, block a real thread or open files themselves."""
 
 HOST_PACKAGES = frozenset({"cfepy", "greenlet", "hypothesis", "_pytest", "pkg_resources", "pytest", "setuptools"})
 

@@ -11,6 +11,7 @@ import errno
 import io
 import os
 import random
+import sys
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -18,12 +19,13 @@ from importlib.machinery import SourceFileLoader
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from cfepy.nodes.files import OpenFiles
 from cfepy.nodes.importer import Factory, Importer
 from cfepy.nodes.report import traceback_text
 from cfepy.nodes.sharing import refused_modules
 from cfepy.nodes.sources import code_of_file, doubts_of
 from cfepy.nodes.stdlib import os_module, signal_module, sys_module, time_module
-from cfepy.nodes.stdlib.descriptors import OpenFiles, SocketTable
+from cfepy.nodes.stdlib.descriptors import SocketTable
 from cfepy.nodes.stdlib.locks import make_lock_types
 from cfepy.nodes.stdlib.signal_module import NodeInterrupt
 from cfepy.nodes.stdlib.streams import ConsoleStream, NoInput, TypedInput
@@ -31,6 +33,7 @@ from cfepy.nodes.stdlib.table import FIXES, MADE
 from cfepy.rtos import Task, TaskExit
 
 if TYPE_CHECKING:
+    from cfepy.nodes.files import Overlay
     from cfepy.nodes.stdlib.terminal import Key, Terminal
     from cfepy.osal import Network
     from cfepy.rtos import Kernel
@@ -74,6 +77,7 @@ class Universe:
         network: what its sockets are plugged into; None refuses them.
         root: folder that stands for the computer's root: what is there is taken from there, and the program believes
             that it is where it was ("" for none).
+        overlay: the files of its run, in which that root counts already; None lets it read and write the computer's.
         on_thread_start: `(task name, entry, priority) -> Task`, starts the task of a thread, so that the owner of the
             node also owns its threads; None uses `Kernel.spawn`.
     """
@@ -101,11 +105,13 @@ class Universe:
         keys: Sequence[Key] | None = None,
         network: Network | None = None,
         root: str = "",
+        overlay: Overlay | None = None,
         on_thread_start: StartThread | None = None,
     ) -> None:
         self.kernel = kernel
         self.name = name
         self._root = root
+        self.overlay = overlay
         self.script = self.shown(os.path.abspath(script)) if script else ""
         self.argv = [self.shown(os.fspath(script)), *argv]
         self.host_name = "cfepy"
@@ -137,7 +143,7 @@ class Universe:
         self.terminal = self._make_terminal(keys) if keys is not None else None
         self.stdin: io.TextIOBase = TypedInput(self.terminal) if self.terminal is not None else NoInput()
         self.sockets = SocketTable(self, network)
-        self.files = OpenFiles(self.resolve)
+        self.files = OpenFiles(self.resolve if overlay is None else self.absolute, overlay)
         self.signals = signal_module.SignalTable(self)
         self.clock = time_module.VirtualClock(self, epoch_ns)
         self.locks = make_lock_types(self)
@@ -278,24 +284,57 @@ class Universe:
                 self.kernel.delay(_LOOK_NS)
             self.kernel.interrupt(main, error)
 
+    def absolute(self, path: Any) -> str:
+        """A path from the root on: relative ones start at the node's working directory.
+
+        Raises:
+            OSError: ENXIO, it is the host's terminal.
+        """
+        plain = os.fsdecode(path)
+        if plain == _TERMINAL:
+            raise OSError(errno.ENXIO, os.strerror(errno.ENXIO), _TERMINAL)
+        return plain if os.path.isabs(plain) else os.path.join(self.cwd, plain)
+
     def resolve(self, path: Any) -> Any:
-        """A path as the host sees it: relative ones start at the node's working directory.
+        """Where the host finds what the program has at a path, for reading.
 
         Raises:
             OSError: ENXIO, it is the host's terminal.
         """
         if isinstance(path, int):
             return path
-        plain = os.fspath(path)
-        if plain == _TERMINAL:
-            raise OSError(errno.ENXIO, os.strerror(errno.ENXIO), _TERMINAL)
-        if not os.path.isabs(plain):
-            path = os.path.join(os.fsencode(self.cwd) if isinstance(plain, bytes) else self.cwd, plain)
-        return self._below_root(path) if self._root else path
+        whole = self.absolute(path)
+        if self.overlay is not None:
+            whole = self.overlay.place(self.overlay.real(whole))
+        elif self._root:
+            whole = self._below_root(whole)
+        return os.fsencode(whole) if isinstance(path, bytes) else whole
+
+    def places(self, folder: str) -> list[str]:
+        """Where the host finds what the program has in a folder: the run's own files come first."""
+        if self.overlay is None:
+            return [self.resolve(folder)]
+        try:
+            found = self.overlay.places(self.overlay.real(self.absolute(folder)))
+        except OSError:  # such as a path into an archive
+            return [self.absolute(folder)]
+        for place in found[:-1]:
+            sys.path_importer_cache.pop(place, None)  # which goes by the real time of the folder
+        return found
+
+    def claimed(self, path: str) -> str:
+        """Where the host finds what the program has at a path, for changes of it.
+
+        Raises:
+            OSError: it cannot be changed.
+        """
+        if self.overlay is None:
+            return str(self.resolve(path))
+        return self.overlay.claim(self.overlay.real(self.absolute(path)))
 
     def shown(self, path: str) -> str:
         """A path of the host as the program sees it."""
-        return path.removeprefix(self._root)
+        return (path if self.overlay is None else self.overlay.shown(path)).removeprefix(self._root)
 
     def _below_root(self, path: Any) -> str:
         """Where a path leads: below the root, if it or its folder is there; else it is the host's own."""
@@ -306,8 +345,12 @@ class Universe:
 
     def change_directory(self, path: str | os.PathLike[str]) -> None:
         """`os.chdir`."""
-        target = os.path.normpath(self.resolve(path))
-        os.listdir(target)  # raises what os.chdir would
+        if self.overlay is not None:
+            target = self.overlay.real(self.absolute(path))
+            self.overlay.check_folder(target)
+        else:
+            target = os.path.normpath(self.resolve(path))
+            os.listdir(target)  # raises what os.chdir would
         self.cwd = self.shown(target)
 
     # -- output ------------------------------------------------------------------------------------------------------

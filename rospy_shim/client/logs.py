@@ -184,7 +184,7 @@ def log_file(node: Node, name: str) -> str:
         environ = node.universe.environ
         home = environ.get("ROS_HOME") or os.path.join(environ.get("HOME", "/"), ".ros")
         path = os.path.join(environ.get("ROS_LOG_DIR") or os.path.join(home, "log"), name)
-    return str(node.universe.resolve(path))
+    return node.universe.absolute(path)
 
 
 class Logs:

@@ -170,3 +170,26 @@ def test_a_file_in_the_working_directory_is_no_module_of_the_runs(
     monkeypatch.chdir(tmp_path)
     assert main(["run", "lab", "--for", "0.01", "--check-determinism", "2"]) == 0
     assert not (tmp_path / "executed").exists()
+
+
+HOST = """
+import numpy, os, rospy
+rospy.init_node("talker")
+open("kept.txt", "w").write("the run's own")
+numpy.save("kept", numpy.zeros(3))
+numpy.memmap({path!r}, mode='w+', shape=3)
+with open("/proc/uptime") as file:
+    file.read()
+"""
+
+
+def test_what_goes_past_the_simulated_computer_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = str(tmp_path / "raw.bin")
+    folder = write_mission(tmp_path, STARTUP, talker=HOST.format(path=path), listener=LISTENER)
+    assert check(folder, "2") == 0
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[1:-2] == [
+        "past the simulated computer, where cfepy cannot answer for it:",
+        f"  talker.py:6: numpy.memmap({path!r}, mode='w+', shape=3): writes {path} on this computer",
+        '  talker.py:7: with open("/proc/uptime") as file:: reads /proc/uptime, which is another each time',
+    ]

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from cfepy.cli.run.outputs import SavedNodeFiles
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
 from cfepy.nodes.config import NodeConfig, RosConfig, TopicConfig
@@ -35,7 +36,7 @@ def run_nodes(
     priorities: Mapping[str, int] | None = None,
     connection_delay_ns: int = 0,
 ) -> Run:
-    """Run scripts as nodes; keys are their cFE names.
+    """Run scripts as nodes; keys are their cFE names. What they write is on the computer afterwards.
 
     Args:
         folder: an empty folder to put the mission in.
@@ -61,7 +62,8 @@ def run_nodes(
     startup.write_text("".join(script_lines) + "!\n")
     ros = RosConfig(nodes or {}, topics or {}, params or {}, connection_delay_ns=connection_delay_ns)
     console = Console(quiet=True)
-    with Mission(MissionSpec("test", folder, startup, None, "linux", ros), tasks=tasks, console=console) as mission:
+    spec = MissionSpec("test", folder, startup, None, "linux", ros)
+    with Mission(spec, tasks=tasks, console=console, attachments=[SavedNodeFiles(Path("/"))]) as mission:
         mission.run_for(seconds)
         mission.shut_down_nodes()
         rows = {row.name: row for row in mission.ros.topics()} if mission.ros is not None else {}

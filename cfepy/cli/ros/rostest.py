@@ -18,6 +18,7 @@ from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import launch_words
 from cfepy.cli.options import plan_of as run_plan_of
 from cfepy.cli.ros.view import NodesDisplay
+from cfepy.cli.run.outputs import SavedNodeFiles
 from cfepy.markup import printable
 from cfepy.mission import launch_file, spec_of
 from cfepy.nodes import NodeConfig
@@ -190,23 +191,26 @@ class _Runner:
     def run(self, test: PlannedTest) -> TestResults:
         """Run a test (`rospy_shim.roslaunch.plan.PlannedTest`), again and again as long as it fails and may."""
         results = self._once(test)
-        for _ in range(test.retry):
+        for number in range(1, test.retry + 1):
             if results.passed or self._interrupts.asked:
                 break
             test.results.unlink(missing_ok=True)
-            results = self._once(test)
+            results = self._once(test, number)
         return results
 
-    def _once(self, test: PlannedTest) -> TestResults:
+    def _once(self, test: PlannedTest, number: int = 0) -> TestResults:
+        """A run of a test; that of a retry has another seed, for with the same one it would be the same run."""
         suite = f"{test.package}.{test.test_name}"
         if test.node is None:
             return broken(suite, "can_run_here", test.problem)
         node, seconds = test.node, test.time_limit_ns / NS_PER_S
         run = replace(run_plan_of(self._arguments, [str(self._file)], LAUNCH), seconds=seconds)
+        run = replace(run, seed=run.seed + number)
         nodes = {**self._plan.nodes, node.app: node}
         spec = run.with_played_bag(replace(spec_of(self._file, nodes, self._plan.params), board=BOARD))
+        written = SavedNodeFiles(Path("/"), os.path.realpath(test.results.parent))
         with WatchedHost(self._interrupts, self._display) as host:
-            flown = fly(run, spec=spec, console=host.console, host=host)
+            flown = fly(run, spec=spec, attachments=[written], console=host.console, host=host)
         tell(flown.results.never_struck)
         return self._judged(test, node, suite, flown)
 

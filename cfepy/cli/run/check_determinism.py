@@ -22,6 +22,7 @@ from cfepy.pilot.determinism import RunEndedError, first_parting
 from cfepy.pilot.determinism_look import Look
 from cfepy.status import UsageError
 
+MOST_CONTACTS = 20
 ATTEMPTS = 3  # runs that follow addresses or the host do not part at the same record twice
 _SETS = """with `ordered_sets: true` in the mission file these two agree: somewhere the order of a set decides;
 sort it in the code (for name in sorted(names)), or switch ordered sets on"""
@@ -66,6 +67,7 @@ def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
     for _ in range(ATTEMPTS):
         found, facts = runs.compare(variants)
         if found is None:
+            _tell_contacts(facts.get("contacts", []))
             print(f"all made the same {facts['records']} records\ntrace: {facts['digest']}")
             return ENDED_WELL
         one, other, index = found
@@ -76,6 +78,16 @@ def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
     print(f"not deterministic: record {index} differs, but never in the same way twice; something outside the runs")
     print("decides: a file that changes, an address (id()), a C library")
     return FOUND_PROBLEMS
+
+
+def _tell_contacts(contacts: Sequence[str]) -> None:
+    """What another run, or another computer, may answer otherwise."""
+    if contacts:
+        print("past the simulated computer, where cfepy cannot answer for it:")
+    for text in contacts[:MOST_CONTACTS]:
+        print(f"  {text}")
+    if len(contacts) > MOST_CONTACTS:
+        print(f"  and {len(contacts) - MOST_CONTACTS} more")
 
 
 def _variants(count: int, tasks: str) -> list[Variant]:

@@ -10,6 +10,7 @@ import dataclasses
 import json
 import os
 import sys
+import tempfile
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -23,6 +24,7 @@ from cfepy.mission import Mission, MissionSpec
 from cfepy.pilot import RunPlan, fly
 from cfepy.pilot.determinism import ComparedTrace, RecordWriter, comparing
 from cfepy.pilot.determinism_look import Look, LookingTrace
+from cfepy.pilot.open_world import OpenWorld
 from cfepy.sb import SoftwareBus
 from cfepy.status import CfeError, UsageError
 from cfepy.trace import UNSENT
@@ -74,6 +76,7 @@ class ComparedRun:
         look_at: number of the record to look at; None writes all records.
         ordered_sets: all nodes get ordered sets, whatever the mission file says.
         lines: records that are shown before the one that is looked at.
+        scratch: folder for what the run needs for a while; empty for that of the computer.
     """
 
     plan: RunPlan | None = None
@@ -82,6 +85,7 @@ class ComparedRun:
     look_at: int | None = None
     ordered_sets: bool = False
     lines: int = LINES
+    scratch: str = ""
 
     def to_json(self) -> str:
         """Itself as text, for the command line of the process."""
@@ -96,15 +100,16 @@ class ComparedRun:
 
 
 class RecordPipe(Recorder):
-    """The recorder of a run that writes all records."""
+    """The recorder of a run that writes all records, and at last what it did past the simulated computer."""
 
-    def __init__(self, writer: RecordWriter) -> None:
+    def __init__(self, writer: RecordWriter, world: OpenWorld) -> None:
         self.trace = ComparedTrace(writer.write)
         self._writer = writer
+        self._world = world
 
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         if kind is None:
-            self._writer.end({"digest": self.trace.digest()})
+            self._writer.end({"digest": self.trace.digest(), "contacts": list(self._world.contacts)})
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """A bus that also records messages without a subscriber."""
@@ -164,7 +169,12 @@ def run(asked: ComparedRun) -> None:
     spec = asked.plan.spec()
     if asked.ordered_sets:
         spec = _with_ordered_sets(spec)
-    with Interrupts() as interrupts, _recorder(asked) as recorder, WatchedHost(interrupts) as host:
+    with (
+        Interrupts() as interrupts,
+        OpenWorld() as world,
+        _recorder(asked, world) as recorder,
+        WatchedHost(interrupts) as host,
+    ):
         fly(asked.plan, spec=spec, attachments=[recorder], console=host.console, trace=recorder.trace, host=host)
 
 
@@ -179,15 +189,16 @@ def _run_again(asked: ComparedRun) -> None:
     with (
         staged(journal) as stage,
         Interrupts() as interrupts,
-        _recorder(asked, stage.root) as recorder,
+        OpenWorld() as world,
+        _recorder(asked, world, stage.root) as recorder,
         WatchedHost(interrupts) as host,
     ):
         Replay(journal, stage).fly([recorder], console=host.console, trace=recorder.trace, host=host)
 
 
-def _recorder(asked: ComparedRun, root: str = "") -> RecordPipe | Lookout:
+def _recorder(asked: ComparedRun, world: OpenWorld, root: str = "") -> RecordPipe | Lookout:
     writer = RecordWriter(open(asked.pipe, "wb"))  # noqa: SIM115  # as long as the process
-    return RecordPipe(writer) if asked.look_at is None else Lookout(writer, asked.look_at, asked.lines, root)
+    return RecordPipe(writer, world) if asked.look_at is None else Lookout(writer, asked.look_at, asked.lines, root)
 
 
 def _with_ordered_sets(spec: MissionSpec) -> MissionSpec:
@@ -198,7 +209,9 @@ def _with_ordered_sets(spec: MissionSpec) -> MissionSpec:
 def main() -> int:
     """Run the plan on the command line; the exit status."""
     try:
-        run(ComparedRun.from_json(sys.argv[1]))
+        asked = ComparedRun.from_json(sys.argv[1])
+        tempfile.tempdir = asked.scratch or None
+        run(asked)
     except (UsageError, OSError) as error:
         print(error, file=sys.stderr)
         return BAD_USAGE

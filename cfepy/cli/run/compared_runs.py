@@ -40,12 +40,10 @@ def started(asked: ComparedRun, hash_seed: int | None = None) -> Iterator[RunInP
         hash_seed: PYTHONHASHSEED of the process; None for that of this one.
     """
     out, into = os.pipe()
-    module = "cfepy.cli.run.compared_run"
-    command = [*python_command(), "-m", module, dataclasses.replace(asked, pipe=into).to_json()]
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as said, open(out, "rb") as pipe:
+        there = dataclasses.replace(asked, pipe=into, scratch=folder)  # it is killed in the end, and cannot tidy up
+        command = [*python_command(), "-m", "cfepy.cli.run.compared_run", there.to_json()]
         environment = {**os.environ, "PYTHONPATH": import_path()}
-        if asked.journal is not None:  # it is killed in the end: what it unpacks goes with the folder
-            environment["TMPDIR"] = folder
         if hash_seed is not None:
             environment["PYTHONHASHSEED"] = str(hash_seed)
         process = subprocess.Popen(command, pass_fds=[into], env=environment, stdout=said, stderr=said)

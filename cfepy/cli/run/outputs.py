@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
@@ -19,7 +20,6 @@ from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.trace_text import TraceText
 from cfepy.contained_files import write_contained
 from cfepy.mission import Mission
-from cfepy.osal import FileSystem
 from cfepy.pilot import Flown, RunPlan
 from cfepy.status import UsageError
 from cfepy.trace import Trace
@@ -79,6 +79,43 @@ class TraceFile(Recorder):
             self._error = error
 
 
+class SavedNodeFiles(Attachment):
+    """Copies what nodes wrote, at the end of the mission.
+
+    Args:
+        folder: where to.
+        below: only what is in this folder.
+
+    Attributes:
+        count: files that were copied.
+        error: why one could not be; None when each could.
+    """
+
+    def __init__(self, folder: Path, below: str = "/") -> None:
+        self._below = os.path.join(below, "")
+        self.count = 0
+        self.error: UsageError | None = None
+        self._folder = folder
+        self._mission: Mission | None = None
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._mission = mission
+
+    def close(self) -> None:
+        """See `Attachment.close`: the run's own files are about to go."""
+        files = None if self._mission is None else self._mission.node_files
+        for name, place in files.written() if files is not None else ():
+            if not name.startswith(self._below):
+                continue
+            try:
+                _write(self._folder, name, Path(place).read_bytes())
+            except UsageError as error:
+                self.error = self.error or error
+            else:
+                self.count += 1
+
+
 class Outputs:
     """What one run leaves behind; use as a context manager around the run.
 
@@ -100,6 +137,7 @@ class Outputs:
         self._arguments = arguments
         check_json(arguments)
         self._folder = None if arguments.save_files is None else _saving_to(arguments.save_files)
+        self._node_files = None if self._folder is None else SavedNodeFiles(self._folder)
         self._trace_file = TraceFile(arguments.trace) if arguments.trace else None
         self._bag = arguments.bag
         self._bag_topics = arguments.bag_topics
@@ -115,7 +153,7 @@ class Outputs:
             from cfepy.ground import BagRecorder
 
             self.attachments.append(self._open.enter_context(BagRecorder(self._bag, self._bag_topics)))
-        self.attachments += [] if recorder is None else [recorder]
+        self.attachments += [each for each in (recorder, self._node_files) if each is not None]
         return self
 
     def __exit__(self, *error: Any) -> None:
@@ -138,8 +176,16 @@ class Outputs:
         Raises:
             UsageError: one cannot be written.
         """
-        if self._folder is not None:
-            _save(flown.mission.files, self._folder)
+        saved = self._node_files
+        if self._folder is None or saved is None:
+            return
+        if saved.error is not None:
+            raise saved.error
+        written = flown.mission.files.written()
+        for name, data in written.items():
+            _write(self._folder, name, data)
+        count = len(written) + saved.count
+        print(f"saved to {self._folder}: {count} {'file' if count == 1 else 'files'}")
 
 
 def _saving_to(folder: str) -> Path:
@@ -152,15 +198,11 @@ def _saving_to(folder: str) -> Path:
     return path
 
 
-def _save(files: FileSystem, folder: Path) -> None:
+def _write(folder: Path, name: str, data: bytes) -> None:
     """/ram/cfe_evs.log becomes DIR/ram/cfe_evs.log; a file of the same name is written over."""
-    written = files.written()
-    for name, data in written.items():
-        inside = f"/{name.lstrip('/')}"
-        with writing(f"{folder}{inside}", SAVE_FILES):
-            write_contained(folder, inside, data)
-    count = len(written)
-    print(f"saved to {folder}: {count} {'file' if count == 1 else 'files'}")
+    inside = f"/{name.lstrip('/')}"
+    with writing(f"{folder}{inside}", SAVE_FILES):
+        write_contained(folder, inside, data)
 
 
 @contextlib.contextmanager

@@ -1,4 +1,4 @@
-"""`os` of a node: its own environment, working directory, process number and entropy, over the host's files.
+"""`os` of a node: its own environment, working directory, process number and entropy, over the files of its run.
 
 Relative paths are relative to the node's working directory. What would start a process, or change the host's
 process, is refused or does nothing.
@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from cfepy.nodes.files import LISTED, Entries, FileCalls
 from cfepy.nodes.refused import PROCESS, RefusedError, refusal
 from cfepy.nodes.stdlib.streams import COLUMNS, ROWS, STDIN
 from cfepy.nodes.synth import rebind
@@ -38,9 +39,6 @@ _NO_EFFECT = (
 # fmt: on
 
 
-LISTED = "cfepy.listing"  # Python's audit hooks are told of each folder that a node looks into, and what is in it
-
-
 class Environ(dict[str, str]):
     """`os.environ`: changes stay in the node."""
 
@@ -53,35 +51,6 @@ class Environ(dict[str, str]):
         if name not in self:
             self[name] = default
         return self[name]
-
-
-class Entries:
-    """`os.scandir`, sorted by name: the order of a directory is the file system's whim.
-
-    Args:
-        path: the directory.
-    """
-
-    def __init__(self, path: Any) -> None:
-        with os.scandir(path) as entries:
-            found = sorted(entries, key=lambda entry: entry.name)
-        sys.audit(LISTED, path, [entry.name for entry in found])
-        self._entries = iter(found)
-
-    def __iter__(self) -> Iterator[os.DirEntry[Any]]:
-        return self._entries
-
-    def __next__(self) -> os.DirEntry[Any]:
-        return next(self._entries)
-
-    def __enter__(self) -> Entries:
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """`close` of a scandir iterator; all was read at once."""
 
 
 def os_module(universe: Universe) -> ModuleType:
@@ -99,6 +68,13 @@ def os_module(universe: Universe) -> ModuleType:
 
 
 def _paths(universe: Universe) -> dict[str, Any]:
+    names = _host_paths(universe) if universe.overlay is None else FileCalls(universe, universe.overlay).names()
+    cwd = {"getcwd": lambda: universe.cwd, "getcwdb": lambda: os.fsencode(universe.cwd)}
+    return {**names, **cwd, "chdir": universe.change_directory}
+
+
+def _host_paths(universe: Universe) -> dict[str, Any]:
+    """The functions of a program that works on the computer's own files."""
     resolve = universe.resolve
 
     def one(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -123,14 +99,15 @@ def _paths(universe: Universe) -> dict[str, Any]:
         return names
 
     def scandir(path: Any = ".") -> Entries:
-        return Entries(resolve(path))
+        place = resolve(path)
+        with os.scandir(place) as entries:
+            found = sorted(entries, key=lambda entry: entry.name)
+        sys.audit(LISTED, place, [entry.name for entry in found])
+        return Entries(found)
 
     names = {name: one(getattr(os, name)) for name in _ONE_PATH if hasattr(os, name)}
     names.update({name: two(getattr(os, name)) for name in _TWO_PATHS})
-    names.update(
-        symlink=symlink, listdir=listdir, scandir=scandir, getcwd=lambda: universe.cwd, chdir=universe.change_directory
-    )
-    names["getcwdb"] = lambda: os.fsencode(universe.cwd)
+    names.update(symlink=symlink, listdir=listdir, scandir=scandir)
     return names
 
 
@@ -144,7 +121,10 @@ def _process(universe: Universe) -> dict[str, Any]:
 
     def write(fd: int, data: Any) -> int:
         if fd not in (1, 2):
-            return os.write(fd, data)
+            written = os.write(fd, data)
+            if universe.overlay is not None:
+                universe.overlay.wrote(fd)
+            return written
         stream = universe.stdout if fd == 1 else universe.stderr
         return stream.buffer.write(data)
 

@@ -7,6 +7,7 @@ import importlib
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from cfepy.nodes.files.shared import array_files
 from cfepy.nodes.synth import proxy
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def numpy_module(universe: Universe) -> ModuleType:
         value = getattr(numpy, name)
         return load(value.__name__) if _is_part(name, value) else value
 
-    module = proxy(numpy, __getattr__=lookup)
+    module = proxy(numpy, __getattr__=lookup, **array_files(universe, numpy))
     universe.importer.modules["numpy"] = module
     for name in [name for name, value in vars(numpy).items() if _is_part(name, value)]:
         del vars(module)[name]

@@ -45,7 +45,8 @@ def sys_module(universe: Universe) -> ModuleType:
 
 def io_module(universe: Universe) -> ModuleType:
     """The module `io` of a universe."""
-    return proxy(io, open=universe.builtins.open)
+    open_file = universe.builtins.open
+    return proxy(io, open=open_file, open_code=lambda path: open_file(path, "rb"), FileIO=universe.files.raw_type)
 
 
 def builtins_module(universe: Universe, ordered_sets: bool) -> ModuleType:

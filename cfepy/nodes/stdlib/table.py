@@ -73,6 +73,24 @@ def _socket(universe: Universe) -> ModuleType:
     return socket_module(universe)
 
 
+def _sqlite3(universe: Universe) -> ModuleType:
+    from cfepy.nodes.files.shared import sqlite3_module
+
+    return sqlite3_module(universe)
+
+
+def _sqlite3_part(universe: Universe) -> ModuleType:
+    from cfepy.nodes.files.shared import sqlite3_part
+
+    return sqlite3_part(universe)
+
+
+def _codecs(universe: Universe) -> ModuleType:
+    from cfepy.nodes.files.shared import codecs_module
+
+    return codecs_module(universe)
+
+
 def _termios(universe: Universe) -> ModuleType:
     from cfepy.nodes.stdlib.terminal import termios_module
 
@@ -85,6 +103,7 @@ MADE: Mapping[str, Callable[[Universe], ModuleType]] = {
     "_socket": _socket,
     "_thread": thread_module.thread_module,
     "atexit": signal_module.atexit_module,
+    "codecs": _codecs,
     "dataclasses": lookup.dataclasses_module,
     "datetime": time_module.datetime_module,
     "fcntl": _fcntl,
@@ -103,6 +122,8 @@ MADE: Mapping[str, Callable[[Universe], ModuleType]] = {
     "psutil": _psutil,
     "signal": signal_module.signal_module,
     "socket": _socket,
+    "sqlite3": _sqlite3,
+    "sqlite3.dbapi2": _sqlite3_part,
     "sys": sys_module.sys_module,
     "termios": _termios,
     "time": time_module.time_module,

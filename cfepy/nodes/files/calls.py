@@ -1,0 +1,360 @@
+"""The functions of `os` that take paths or descriptors, over the files of a run.
+
+A path may be relative to the node's working directory, to an open folder (`dir_fd`), or an open file itself; errors
+name it as the program gave it.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cfepy.nodes.files.overlay import Overlay
+    from cfepy.nodes.universe import Universe
+
+_LOOKS = ("getxattr", "listxattr", "pathconf", "statvfs")
+_CHANGES = ("chflags", "chmod", "chown", "removexattr", "setxattr")
+_LINK_CHANGES = ("lchflags", "lchmod", "lchown")
+_WRITES = ("copy_file_range", "ftruncate", "posix_fallocate", "pwrite", "pwritev", "sendfile", "writev")
+_MKFIFO_MODE, _MKDIR_MODE = 0o666, 0o777
+
+
+class FolderEntry:
+    """`os.DirEntry`: a name in a folder.
+
+    Args:
+        folder: the folder as it was given.
+        name: of the file.
+        look: `stat` of a path of the program.
+    """
+
+    def __init__(self, folder: str, name: str, look: Callable[..., os.stat_result]) -> None:
+        self.name = name
+        self.path = os.path.join(folder, name)
+        self._look = look
+
+    def __fspath__(self) -> str:
+        return self.path
+
+    def __repr__(self) -> str:
+        return f"<DirEntry {self.name!r}>"
+
+    def inode(self) -> int:
+        """Its number."""
+        return self.stat(follow_symlinks=False).st_ino
+
+    def is_dir(self, *, follow_symlinks: bool = True) -> bool:
+        """Whether it is a folder."""
+        return stat.S_ISDIR(self._mode(follow_symlinks))
+
+    def is_file(self, *, follow_symlinks: bool = True) -> bool:
+        """Whether it is a file."""
+        return stat.S_ISREG(self._mode(follow_symlinks))
+
+    def is_symlink(self) -> bool:
+        """Whether it is a link."""
+        return stat.S_ISLNK(self._mode(False))
+
+    def is_junction(self) -> bool:
+        """Whether it is what only Windows has."""
+        return False
+
+    def stat(self, *, follow_symlinks: bool = True) -> os.stat_result:
+        """What it says of itself."""
+        return self._look(self.path, follow_symlinks=follow_symlinks)
+
+    def _mode(self, follow: bool) -> int:
+        try:
+            return self.stat(follow_symlinks=follow).st_mode
+        except OSError:
+            return 0
+
+
+class BytesFolderEntry(FolderEntry):
+    """The same of a folder that is given as bytes."""
+
+    def __init__(self, folder: bytes, name: str, look: Callable[..., os.stat_result]) -> None:
+        super().__init__(os.fsdecode(folder), name, look)
+        self.name, self.path = os.fsencode(self.name), os.fsencode(self.path)  # type: ignore[assignment]
+
+
+class Entries:
+    """`os.scandir`, sorted by name: the order of a directory is the file system's whim.
+
+    Args:
+        found: the entries.
+    """
+
+    def __init__(self, found: list[Any]) -> None:
+        self._entries = iter(found)
+
+    def __iter__(self) -> Iterator[Any]:
+        return self._entries
+
+    def __next__(self) -> Any:
+        return next(self._entries)
+
+    def __enter__(self) -> Entries:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """`close` of a scandir iterator; all was read at once."""
+
+
+class FileCalls:
+    """What `os` of a program does with files.
+
+    Args:
+        universe: the program's.
+        overlay: the files of its run.
+    """
+
+    def __init__(self, universe: Universe, overlay: Overlay) -> None:
+        self._universe = universe
+        self._overlay = overlay
+        self._folders: dict[int, str] = {}  # open ones, by descriptor
+
+    def names(self) -> dict[str, Any]:
+        """The functions by name."""
+        overlay = self._overlay
+        found: dict[str, Any] = {
+            "access": self._access,
+            "close": self._close,
+            "closerange": lambda low, high: None,
+            "fchmod": self._on_descriptor(os.fchmod),
+            "fstat": overlay.stat_of,
+            "link": self._link,
+            "listdir": self._listdir,
+            "lstat": lambda path, *, dir_fd=None: self._stat(path, dir_fd=dir_fd, follow_symlinks=False),
+            "mkdir": self._mkdir,
+            "mkfifo": self._mkfifo,
+            "mknod": self._mknod,
+            "open": self._open,
+            "readlink": self._readlink,
+            "remove": self._remove,
+            "rename": self._rename,
+            "replace": self._rename,
+            "rmdir": self._rmdir,
+            "scandir": self._scandir,
+            "stat": self._stat,
+            "symlink": self._symlink,
+            "truncate": self._truncate,
+            "unlink": self._remove,
+            "utime": self._utime,
+        }
+        found |= {name: self._look_at(getattr(os, name)) for name in _LOOKS if hasattr(os, name)}
+        found |= {name: self._changing(getattr(os, name)) for name in _CHANGES if hasattr(os, name)}
+        found |= {name: self._changing(getattr(os, name), follow=False) for name in _LINK_CHANGES if hasattr(os, name)}
+        found |= {name: self._writing(name, getattr(os, name)) for name in _WRITES if hasattr(os, name)}
+        return found
+
+    def where(self, path: Any, dir_fd: int | None = None) -> str:
+        """The absolute path, as the program has it, of what a function was given."""
+        plain = os.fsdecode(path)
+        if not plain:
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
+        if dir_fd is not None and not plain.startswith("/") and dir_fd in self._folders:
+            plain = os.path.join(self._folders[dir_fd], plain)
+        found: str = self._universe.absolute(plain)
+        return found
+
+    # -- opening -----------------------------------------------------------------------------------------------------
+
+    def _open(self, path: Any, flags: int, mode: int = 0o777, *, dir_fd: int | None = None) -> int:
+        where = self.where(path, dir_fd)
+        with _told(path):
+            descriptor = self._overlay.open(where, flags, mode)
+        if stat.S_ISDIR(os.fstat(descriptor).st_mode):
+            self._folders[descriptor] = where
+        return descriptor
+
+    def _close(self, fd: int) -> None:
+        self._folders.pop(fd, None)
+        os.close(fd)
+
+    def _on_descriptor(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        def call(fd: int, *args: Any) -> Any:
+            value = function(fd, *args)
+            self._overlay.stamps.changed(os.fstat(fd))
+            return value
+
+        return call
+
+    def _writing(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        at = 1 if name == "copy_file_range" else 0
+
+        def call(*args: Any, **options: Any) -> Any:
+            value = function(*args, **options)
+            self._overlay.wrote(args[at])
+            return value
+
+        return call
+
+    # -- looking -----------------------------------------------------------------------------------------------------
+
+    def _stat(self, path: Any, *, dir_fd: int | None = None, follow_symlinks: bool = True) -> os.stat_result:
+        if isinstance(path, int):
+            return self._overlay.stat_of(path)
+        where = self.where(path, dir_fd)
+        with _told(path):
+            return self._overlay.stat(where, follow_symlinks)
+
+    def _look_at(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        def call(path: Any, *args: Any, follow_symlinks: bool = True) -> Any:
+            if isinstance(path, int):
+                return function(path, *args)
+            with _told(path):
+                return function(self._overlay.place(self._overlay.real(self.where(path), follow_symlinks)), *args)
+
+        return call
+
+    def _access(
+        self,
+        path: Any,
+        mode: int,
+        *,
+        dir_fd: int | None = None,
+        effective_ids: bool = False,
+        follow_symlinks: bool = True,
+    ) -> bool:
+        try:
+            where = self._overlay.real(self.where(path, dir_fd), follow_symlinks)
+        except OSError:
+            return False
+        return os.access(self._overlay.place(where), mode, effective_ids=effective_ids)
+
+    def _readlink(self, path: Any, *, dir_fd: int | None = None) -> Any:
+        where = self.where(path, dir_fd)
+        with _told(path):
+            target = os.readlink(self._overlay.place(self._overlay.real(where, follow=False)))
+        return os.fsencode(target) if isinstance(path, bytes) else target
+
+    def _listed(self, path: Any) -> list[str]:
+        where = self._folders[path] if isinstance(path, int) else self.where(path)
+        with _told(path):
+            return self._overlay.names(self._overlay.real(where))
+
+    def _listdir(self, path: Any = ".") -> list[Any]:
+        names = self._listed("." if path is None else path)
+        return [os.fsencode(name) for name in names] if isinstance(path, bytes) else list(names)
+
+    def _scandir(self, path: Any = ".") -> Entries:
+        given = "." if path is None else self._folders.get(path) if isinstance(path, int) else os.fspath(path)
+        kind: Any = BytesFolderEntry if isinstance(given, bytes) else FolderEntry
+        return Entries([kind(given, name, self._stat) for name in self._listed(path if path is not None else ".")])
+
+    # -- changing ----------------------------------------------------------------------------------------------------
+
+    def _mkdir(self, path: Any, mode: int = _MKDIR_MODE, *, dir_fd: int | None = None) -> None:
+        where = self.where(path, dir_fd)
+        with _told(path):
+            self._overlay.make(where, os.mkdir, mode)
+
+    def _mkfifo(self, path: Any, mode: int = _MKFIFO_MODE, *, dir_fd: int | None = None) -> None:
+        where = self.where(path, dir_fd)
+        with _told(path):
+            self._overlay.make(where, os.mkfifo, mode)
+
+    def _mknod(self, path: Any, mode: int = 0o600, device: int = 0, *, dir_fd: int | None = None) -> None:
+        where = self.where(path, dir_fd)
+        with _told(path):
+            self._overlay.make(where, lambda place: os.mknod(place, mode, device), stat.S_IMODE(mode))
+
+    def _symlink(self, src: Any, dst: Any, target_is_directory: bool = False, *, dir_fd: int | None = None) -> None:
+        where = self.where(dst, dir_fd)
+        with _told(src, dst):
+            self._overlay.make(where, lambda place: os.symlink(os.fsdecode(src), place))
+
+    def _link(
+        self,
+        src: Any,
+        dst: Any,
+        *,
+        src_dir_fd: int | None = None,
+        dst_dir_fd: int | None = None,
+        follow_symlinks: bool = True,
+    ) -> None:
+        source, target = self.where(src, src_dir_fd), self.where(dst, dst_dir_fd)
+        with _told(src, dst):
+            self._overlay.link(source, target)
+
+    def _rename(self, src: Any, dst: Any, *, src_dir_fd: int | None = None, dst_dir_fd: int | None = None) -> None:
+        source, target = self.where(src, src_dir_fd), self.where(dst, dst_dir_fd)
+        with _told(src, dst):
+            self._overlay.rename(source, target)
+
+    def _remove(self, path: Any, *, dir_fd: int | None = None) -> None:
+        where = self.where(path, dir_fd)
+        with _told(path):
+            self._overlay.remove(where)
+
+    def _rmdir(self, path: Any, *, dir_fd: int | None = None) -> None:
+        where = self.where(path, dir_fd)
+        with _told(path):
+            self._overlay.remove_folder(where)
+
+    def _changing(self, function: Callable[..., Any], follow: bool = True) -> Callable[..., Any]:
+        def call(
+            path: Any, *args: Any, dir_fd: int | None = None, follow_symlinks: bool = follow, **options: Any
+        ) -> None:
+            if isinstance(path, int):
+                function(path, *args, **options)
+                self._overlay.stamps.changed(os.fstat(path))
+                return
+            where = self.where(path, dir_fd)
+            with _told(path):
+                self._overlay.change(where, lambda place: function(place, *args, **options), follow_symlinks)
+
+        return call
+
+    def _truncate(self, path: Any, length: int) -> None:
+        if isinstance(path, int):
+            os.ftruncate(path, length)
+            self._overlay.wrote(path)
+            return
+        where = self.where(path)
+        with _told(path):
+            self._overlay.truncate(where, length)
+
+    def _utime(
+        self,
+        path: Any,
+        times: tuple[float, float] | None = None,
+        *,
+        ns: tuple[int, int] | None = None,
+        dir_fd: int | None = None,
+        follow_symlinks: bool = True,
+    ) -> None:
+        now = self._universe.clock.epoch_ns + self._universe.kernel.now
+        told = ns if ns is not None else (now, now) if times is None else (round(times[0] * 1e9), round(times[1] * 1e9))
+        if isinstance(path, int):
+            self._overlay.stamps.changed(os.fstat(path), told)
+            return
+        where = self.where(path, dir_fd)
+        with _told(path):
+            own = self._overlay.change(where, lambda place: None, follow_symlinks)
+            self._overlay.stamps.changed(os.lstat(own), told)
+
+
+class _told:
+    """Around a call: its errors name paths as the program gave them."""
+
+    def __init__(self, path: Any, second: Any = None) -> None:
+        self._path = path
+        self._second = second
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: object, error: BaseException | None, where: object) -> None:
+        if isinstance(error, OSError) and error.filename is not None:
+            error.filename = self._path
+            if self._second is not None:
+                error.filename2 = self._second

@@ -1,0 +1,542 @@
+"""`Overlay`: the files that the programs of one run see: the host's, and over them what the run wrote.
+
+What a run writes lies in a temporary folder of its own, at its path below that; a file of the host that is changed is
+copied there first. What it removes is only noted. So descriptors are real ones, and code in C that is given one, or a
+place, works as ever. The folder is made when it is first needed and goes with the mission.
+
+Paths here are absolute and as programs have them, unless they are called places: where a file really lies.
+"""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import os
+import shutil
+import stat
+import sys
+import tempfile
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache
+from weakref import WeakSet, finalize
+
+from cfepy.nodes.files.stamps import LISTED, MADE, NEEDED, Stamps, key_of
+
+PREFIX = "cfepy-files-"  # of the folders that runs have in the temporary one
+_SYSTEM = ("/proc", "/sys", "/dev")  # no files, but questions to the operating system
+_SHM = "/dev/shm"
+_MOST_LINKS = 40
+_UMASK = 0o022
+_CREATES = os.O_CREAT | os.O_TRUNC | getattr(os, "O_TMPFILE", 0)
+_TMPFILE = getattr(os, "O_TMPFILE", -1)
+
+
+class Overlay:
+    """The files of one run.
+
+    Args:
+        now_ns: the run's time of day, ns since 1970.
+        host: the place of a file of the host; that of a replay has the recorded files elsewhere.
+
+    Attributes:
+        stamps: numbers and times of files.
+    """
+
+    def __init__(self, now_ns: Callable[[], int] = lambda: 0, host: Callable[[str], str] = lambda path: path) -> None:
+        self.stamps = Stamps(now_ns)
+        self._host = host
+        self._top = ""
+        self._gone: set[str] = set()  # what of the host does not show through, with all below it
+        self._no_links: set[str] = set()  # folders of which this is known
+        self._descriptors: set[int] = set()
+        self._remove: Callable[[], object] = bool
+        _living().add(self)
+        tempfile.gettempdir()  # found now, by a file that is made and removed, and not in the midst of what a node does
+
+    # -- where things are --------------------------------------------------------------------------------------------
+
+    def real(self, path: str, follow: bool = True) -> str:
+        """A path without links, of the last part too if it is to be followed; what is not there has none.
+
+        Raises:
+            OSError: the links go round in circles, or what ".." is said of is no folder.
+        """
+        if self.is_system(path):
+            return path
+        parts, done, links = deque(path.split("/")), "", 0
+        while parts:
+            part = parts.popleft()
+            if part in ("", "."):
+                continue
+            if part == "..":
+                self.check_folder(done or "/")
+                done = done.rpartition("/")[0]
+                continue
+            here = f"{done}/{part}"
+            target = self._target(here) if parts or follow else None
+            if target is None:
+                if parts and here not in self._no_links and self.exists(here):
+                    raise _error(errno.ENOTDIR, path)
+                done = here
+                continue
+            links += 1
+            if links > _MOST_LINKS:
+                raise _error(errno.ELOOP, path)
+            parts.extendleft(reversed(target.split("/")))
+            done = "" if target.startswith("/") else done
+        return done or "/"
+
+    def _target(self, path: str) -> str | None:
+        if path in self._no_links:
+            return None
+        try:
+            return os.readlink(self.place(path))
+        except OSError:
+            if self.is_folder(path):
+                self._no_links.add(path)
+            return None
+
+    def is_system(self, path: str) -> bool:
+        """Whether the operating system answers at a path, and not a disk."""
+        return path.startswith(_SYSTEM) and any(_is_in(path, each) for each in _SYSTEM) and not _is_in(path, _SHM)
+
+    def place(self, path: str) -> str:
+        """Where the file at a path without links lies, or would lie if it were there."""
+        if self._top:
+            own = self._top + path
+            if os.path.lexists(own) or self.is_hidden(path):
+                return own
+        return self._host(path)
+
+    def own_place(self, path: str) -> str | None:
+        """Where the run's own file at a path without links lies; None when it has none there."""
+        own = self._top + path
+        return own if self._top and os.path.lexists(own) else None
+
+    def places(self, path: str) -> list[str]:
+        """Where what is in a folder at a path without links lies, the run's own first; what was removed shows there."""
+        own = self.own_place(path)
+        hosts = [] if self.is_hidden(path) else [self._host(path)]
+        return hosts if own is None else [own, *hosts]
+
+    def is_hidden(self, path: str) -> bool:
+        """Whether the host's file at a path was removed, or one of the folders above it was."""
+        gone = self._gone
+        if not gone:
+            return False
+        while path:
+            if path in gone:
+                return True
+            path = path.rpartition("/")[0]
+        return False
+
+    def shown(self, place: str) -> str:
+        """The path of a place."""
+        return place.removeprefix(self._top) if self._top else place
+
+    def exists(self, path: str) -> bool:
+        """Whether there is something at a path without links, perhaps a link that leads nowhere."""
+        return os.path.lexists(self.place(path))
+
+    def is_folder(self, path: str) -> bool:
+        """Whether there is a folder at a path without links."""
+        place = self.place(path)
+        return os.path.isdir(place) and not os.path.islink(place)
+
+    def check_folder(self, path: str) -> None:
+        """Raise the OSError of a path without links that is no folder."""
+        if not self.is_folder(path):
+            raise _error(errno.ENOTDIR if self.exists(path) else errno.ENOENT, path)
+
+    def _shines_through(self, path: str) -> bool:
+        return not self.is_hidden(path) and os.path.lexists(self._host(path))
+
+    def names(self, path: str) -> list[str]:
+        """What is in a folder, sorted.
+
+        Raises:
+            OSError: it is none.
+        """
+        self.check_folder(path)
+        below = "" if path == "/" else path
+        found: set[str] = set()
+        if not self.is_hidden(path) and os.path.isdir(place := self._host(path)):
+            hosts = sorted(os.listdir(place))
+            sys.audit(LISTED, place, hosts)
+            found = {name for name in hosts if f"{below}/{name}" not in self._gone}
+        if self._top and os.path.isdir(self._top + path):
+            found.update(os.listdir(self._top + path))
+        return sorted(found)
+
+    # -- changes -----------------------------------------------------------------------------------------------------
+
+    def claim(self, path: str, with_data: bool = True) -> str:
+        """The place of what is at a path without links, for a change: a file of the host is copied first.
+
+        Raises:
+            OSError: the host would not let it be changed, or there is no folder for it.
+        """
+        own = self._top + path
+        if self._top and os.path.lexists(own):
+            return own
+        if not self.is_hidden(path) and os.path.lexists(place := self._host(path)):
+            if path != "/":
+                self._folder_of(path)
+            own = self._home() + path
+            if path != "/":
+                self._copy(place, own, with_data)
+        else:
+            self._own_folder_of(path)
+            own = self._home() + path
+        return own
+
+    def _copy(self, place: str, own: str, with_data: bool) -> None:
+        real = os.lstat(place)
+        if stat.S_ISLNK(real.st_mode):
+            os.symlink(os.readlink(place), own)
+        elif stat.S_ISDIR(real.st_mode):
+            os.mkdir(own)
+            os.chmod(own, stat.S_IMODE(real.st_mode) | stat.S_IRWXU)
+        elif not stat.S_ISREG(real.st_mode):
+            raise _error(errno.EPERM, own)
+        else:
+            if with_data:
+                shutil.copyfile(place, own)
+            else:
+                os.close(os.open(own, os.O_CREAT | os.O_WRONLY))
+            os.chmod(own, stat.S_IMODE(real.st_mode))
+        self.stamps.made(os.lstat(own), real)
+
+    def _folder_of(self, path: str) -> None:
+        """Have the folder of a path among the run's own."""
+        folder = os.path.dirname(path)
+        self.check_folder(folder)
+        if not (self._top and os.path.isdir(self._top + folder)):
+            if folder != "/":
+                self._folder_of(folder)
+            sys.audit(NEEDED, self._host(folder))
+            self.claim(folder)
+
+    def _own_folder_of(self, path: str) -> None:
+        """The same, for something new in it, or for something to go."""
+        folder = os.path.dirname(path)
+        self.check_folder(folder)
+        place = self.place(folder)
+        if not os.access(place, os.W_OK | os.X_OK):
+            raise _error(errno.EACCES, path)
+        self._folder_of(path)
+
+    def _touch_folder(self, path: str) -> None:
+        with suppress(OSError):
+            self.stamps.written(key_of(os.stat(self._home() + os.path.dirname(path))))
+
+    def _home(self) -> str:
+        if not self._top:
+            self._top = os.path.realpath(tempfile.mkdtemp(prefix=PREFIX))
+            sys.audit(MADE, self._top)
+            self._remove = finalize(self, _remove_tree, self._top, os.getpid())
+        return self._top
+
+    def open(self, path: str, flags: int, mode: int = 0o777) -> int:
+        """`os.open`.
+
+        Raises:
+            OSError: as of `os.open`.
+        """
+        must_be_new = flags & os.O_CREAT and flags & os.O_EXCL
+        path = self.real(path, not (must_be_new or flags & getattr(os, "O_NOFOLLOW", 0)))
+        place = self.place(path)
+        changes = flags & (os.O_WRONLY | os.O_RDWR | _CREATES)
+        if not changes or self.is_system(path) or _is_special(place):
+            descriptor = os.open(place, flags, mode)
+        elif flags & _TMPFILE == _TMPFILE:
+            self._own_folder_of(os.path.join(path, "new"))
+            descriptor = os.open(self._home() + path, flags, mode)
+        else:
+            descriptor = self._open_to_write(path, flags, mode)
+        self._descriptors.add(descriptor)
+        return descriptor
+
+    def _open_to_write(self, path: str, flags: int, mode: int) -> int:
+        is_new = not self.exists(path)
+        if is_new:
+            if not flags & os.O_CREAT:
+                raise _error(errno.ENOENT, path)
+            self._own_folder_of(path)
+        elif flags & os.O_CREAT and flags & os.O_EXCL:
+            raise _error(errno.EEXIST, path)
+        elif self.is_folder(path):
+            raise _error(errno.EISDIR, path)
+        elif not os.access(self.place(path), os.W_OK):
+            raise _error(errno.EACCES, path)
+        own = self.claim(path, with_data=not flags & os.O_TRUNC)
+        descriptor = os.open(own, flags, mode)
+        if is_new:
+            os.fchmod(descriptor, mode & ~_UMASK)
+            self.stamps.made(os.fstat(descriptor))
+            self._touch_folder(path)
+        elif flags & os.O_TRUNC:
+            self.stamps.written(key_of(os.fstat(descriptor)))
+        return descriptor
+
+    def make(self, path: str, how: Callable[[str], object], mode: int | None = None) -> None:
+        """Make something new at a path, such as a folder or a link.
+
+        Args:
+            path: where; its last part is no link that is followed.
+            how: makes it at a place.
+            mode: its permissions; None leaves them.
+        """
+        path = self.real(path, follow=False)
+        if self.exists(path):
+            raise _error(errno.EEXIST, path)
+        self._own_folder_of(path)
+        own = self._home() + path
+        how(own)
+        if mode is not None:
+            os.chmod(own, mode & ~_UMASK)
+        self._no_links.clear()
+        self.stamps.made(os.lstat(own))
+        self._touch_folder(path)
+
+    def link(self, source: str, target: str) -> None:
+        """`os.link`."""
+        source = self.real(source, follow=False)
+        if not self.exists(source):
+            raise _error(errno.ENOENT, source)
+        target = self.real(target, follow=False)
+        if self.exists(target):
+            raise _error(errno.EEXIST, target)
+        self.check_folder(os.path.dirname(target))
+        if self.is_folder(source):
+            raise _error(errno.EPERM, source)
+        self._own_folder_of(target)
+        os.link(self.claim(source), self._home() + target, follow_symlinks=False)
+        self.stamps.changed(os.lstat(self._home() + target))
+        self._touch_folder(target)
+
+    def remove(self, path: str) -> None:
+        """`os.unlink`."""
+        path = self.real(path, follow=False)
+        if not self.exists(path):
+            self.check_folder(os.path.dirname(path))
+            raise _error(errno.ENOENT, path)
+        if self.is_folder(path):
+            raise _error(errno.EISDIR, path)
+        self._take_away(path, os.unlink)
+
+    def remove_folder(self, path: str) -> None:
+        """`os.rmdir`."""
+        path = self.real(path, follow=False)
+        if self.names(path):
+            raise _error(errno.ENOTEMPTY, path)
+        self._take_away(path, os.rmdir)
+
+    def _take_away(self, path: str, how: Callable[[str], object]) -> None:
+        self._own_folder_of(path)
+        own = self.own_place(path)
+        if own is not None:
+            self.stamps.forget(os.lstat(own))
+            how(own)
+        if self._shines_through(path):
+            self._gone.add(path)
+        self._no_links.clear()
+        self._touch_folder(path)
+
+    def rename(self, source: str, target: str) -> None:
+        """`os.rename`: what is at the target is replaced, a folder only if it is empty."""
+        source, target = self.real(source, follow=False), self.real(target, follow=False)
+        if not self.exists(source):
+            raise _error(errno.ENOENT, source)
+        is_folder = self.is_folder(source)
+        self.check_folder(os.path.dirname(target))
+        if is_folder and _is_in(target, source) and target != source:
+            raise _error(errno.EINVAL, source)
+        if _is_in(source, target) and source != target:
+            raise _error(errno.ENOTEMPTY, source)
+        if self.exists(target) and not self._make_room(source, target, is_folder):
+            return
+        own = self._claim_all(source)
+        self._own_folder_of(target)
+        os.rename(own, self._home() + target)
+        if self._shines_through(source):
+            self._gone.add(source)
+        if self._shines_through(target):
+            self._gone.add(target)
+        self._no_links.clear()
+        self._touch_folder(source)
+        self._touch_folder(target)
+
+    def _make_room(self, source: str, target: str, is_folder: bool) -> bool:
+        """Remove what a rename replaces; False when both are one file."""
+        if self.is_folder(target):
+            if not is_folder:
+                raise _error(errno.EISDIR, target)
+            if source != target:
+                self.remove_folder(target)
+            return source != target
+        if is_folder:
+            raise _error(errno.ENOTDIR, target)
+        if os.path.samestat(os.lstat(self.place(source)), os.lstat(self.place(target))):
+            return False
+        self.remove(target)
+        return True
+
+    def _claim_all(self, path: str) -> str:
+        self._own_folder_of(path)
+        own = self.claim(path)
+        if self.is_folder(path):
+            for name in self.names(path):
+                self._claim_all(f"{path}/{name}")
+        return own
+
+    def change(self, path: str, how: Callable[[str], object], follow: bool = True) -> str:
+        """Change what a file says of itself; returns the place.
+
+        Args:
+            path: of the file.
+            how: does it at a place.
+            follow: a link is followed.
+        """
+        path = self.real(path, follow)
+        if not self.exists(path):
+            raise _error(errno.ENOENT, path)
+        own = path if self.is_system(path) or _is_special(self.place(path)) else self.claim(path)
+        how(own)
+        self.stamps.changed(os.lstat(own))
+        return own
+
+    def truncate(self, path: str, length: int) -> None:
+        """`os.truncate` of a path."""
+        descriptor = self.open(path, os.O_WRONLY)
+        try:
+            os.ftruncate(descriptor, length)
+            self.stamps.written(key_of(os.fstat(descriptor)))
+        finally:
+            os.close(descriptor)
+
+    # -- looking -----------------------------------------------------------------------------------------------------
+
+    def stat(self, path: str, follow: bool = True) -> os.stat_result:
+        """`os.stat`."""
+        path = self.real(path, follow)
+        own = self.own_place(path)
+        return self.stamps.dressed(os.lstat(self.place(path)), own)
+
+    def stat_of(self, descriptor: int) -> os.stat_result:
+        """`os.fstat`."""
+        return self.stamps.dressed(os.fstat(descriptor), descriptor if self.is_own(descriptor) else None)
+
+    def wrote(self, descriptor: int) -> None:
+        """Something was written to an open file."""
+        self.stamps.written(key_of(os.fstat(descriptor)))
+
+    def is_own(self, descriptor: int) -> bool:
+        """Whether an open file is one of the run's own."""
+        return bool(self._top) and place_of(descriptor).startswith(os.path.join(self._top, ""))
+
+    def written(self) -> Iterator[tuple[str, str]]:
+        """Path and place of each file that the run wrote, in order."""
+        for folder, folders, names in os.walk(self._top) if self._top else ():
+            folders.sort()
+            for name in sorted(names):
+                place = os.path.join(folder, name)
+                if stat.S_ISREG(os.lstat(place).st_mode):
+                    yield self.shown(place), place
+
+    # -- the end, and a second life ----------------------------------------------------------------------------------
+
+    def close(self) -> None:
+        """The mission is over: what it wrote is gone."""
+        self._remove()
+        self._remove = bool
+        self._top = ""
+
+    def part(self) -> None:
+        """This process was forked: its run goes on with files of its own, and its own places in open ones."""
+        old = self._top
+        if old:
+            self._top, self._remove = "", bool
+            new = self._home()
+            _copy_tree(old, new, self.stamps)
+        for descriptor in list(self._descriptors):
+            try:
+                place, at = place_of(descriptor), os.lseek(descriptor, 0, os.SEEK_CUR)
+                flags = fcntl.fcntl(descriptor, fcntl.F_GETFL) & ~(_CREATES | os.O_EXCL)
+                moved = self._top + place.removeprefix(old) if old and place.startswith(old + "/") else place
+                again = os.open(moved, flags)
+            except OSError:  # it is closed, or has no name any more
+                continue
+            os.lseek(again, at, os.SEEK_SET)
+            os.dup2(again, descriptor, inheritable=False)
+            os.close(again)
+
+
+def below_root(root: str) -> Callable[[str], str]:
+    """The places of the host's files, some of which are below a folder that stands for the computer's root."""
+    if not root:
+        return lambda path: path
+    return lambda path: root + path if os.path.lexists(root + path) else path
+
+
+def place_of(descriptor: int) -> str:
+    """Where an open file lies; empty where the system does not tell."""
+    try:
+        return os.readlink(f"/proc/self/fd/{descriptor}")
+    except OSError:
+        return ""
+
+
+def _copy_tree(old: str, new: str, stamps: Stamps) -> None:
+    links: dict[tuple[int, int], str] = {}
+    for folder, folders, names in os.walk(old):
+        inside = new + folder.removeprefix(old)
+        for name in (*folders, *names):
+            source, target = os.path.join(folder, name), os.path.join(inside, name)
+            real = os.lstat(source)
+            if stat.S_ISDIR(real.st_mode):
+                os.mkdir(target)
+                os.chmod(target, stat.S_IMODE(real.st_mode))
+            elif key_of(real) in links:
+                os.link(links[key_of(real)], target)
+                continue
+            else:
+                shutil.copy2(source, target, follow_symlinks=False)
+                links[key_of(real)] = target
+            stamps.moved(key_of(real), key_of(os.lstat(target)))
+
+
+def _error(number: int, path: str) -> OSError:
+    return OSError(number, os.strerror(number), path)
+
+
+def _is_in(path: str, folder: str) -> bool:
+    return path == folder or path.startswith(folder + "/")
+
+
+def _is_special(place: str) -> bool:
+    try:
+        mode = os.stat(place).st_mode
+    except OSError:
+        return False
+    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode) or stat.S_ISLNK(mode))
+
+
+def _remove_tree(top: str, process: int) -> None:
+    if os.getpid() == process:  # a forked one has its own
+        shutil.rmtree(top, ignore_errors=True)
+
+
+@cache
+def _living() -> WeakSet[Overlay]:
+    """The overlays of this process, which part from their like when it is forked."""
+    found: WeakSet[Overlay] = WeakSet()
+
+    def part() -> None:
+        for each in tuple(found):
+            each.part()
+
+    os.register_at_fork(after_in_child=part)
+    return found

@@ -1,0 +1,98 @@
+"""What a mission does past the simulated computer: code in C and installed packages reach the host by themselves.
+
+Python's audit hooks tell of it. What cfepy and Python do for a mission, such as an import, is left out: a contact
+counts when a line of the mission's own code has it made, itself or through a package.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from functools import cache
+from types import FrameType
+from typing import Any
+
+from cfepy.mission import is_own_code
+from cfepy.nodes import MADE, PREFIX
+from cfepy.pilot.determinism_look import place_text
+
+_WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT
+_CHANGES = frozenset({"os.link", "os.mkdir", "os.remove", "os.rename", "os.rmdir", "os.symlink", "os.truncate"})
+_ANSWERS = ("/proc/", "/sys/", "/dev/random", "/dev/urandom")  # each time others
+_SAME = ("/dev/null", "/dev/zero", "/dev/full")
+_IMPORTS = "<frozen importlib"
+MOST = 100  # contacts that are kept
+
+
+class OpenWorld:
+    """Notes contacts with the host; a context manager around a run.
+
+    Attributes:
+        contacts: each once, as text with the line of code.
+    """
+
+    def __init__(self) -> None:
+        self.contacts: dict[str, None] = {}
+        self._own: tuple[str, ...] = ()
+
+    def __enter__(self) -> OpenWorld:
+        _listeners().append(self)
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        _listeners().remove(self)
+
+    def told(self, event: str, values: tuple[Any, ...]) -> None:
+        """Something happens in this process."""
+        if event == MADE:
+            self._own += (os.path.join(values[0], ""),)
+            return
+        what = self._contact(event, values)
+        if what is None or len(self.contacts) >= MOST:
+            return
+        frame = _asking(sys._getframe(2))
+        if frame is not None:
+            self.contacts[f"{place_text(frame)}: {what}"] = None
+
+    def _contact(self, event: str, values: tuple[Any, ...]) -> str | None:
+        if event == "ctypes.dlopen":
+            return f"loads {values[0]}, whose code nothing holds" if values[0] else None
+        if not values or not isinstance(values[0], (str, bytes, os.PathLike)):
+            return None
+        path = os.path.abspath(os.fsdecode(values[0]))
+        if os.path.basename(path).startswith(PREFIX) or path.startswith(self._own):
+            return None
+        if event in _CHANGES:
+            return f"changes {path} on this computer"
+        if event == "open" and path not in _SAME:
+            if path.startswith(_ANSWERS):
+                return f"reads {path}, which is another each time"
+            if values[2] & _WRITES:
+                return f"writes {path} on this computer"
+        return None
+
+
+def _asking(frame: FrameType | None) -> FrameType | None:
+    """The frame of the mission's own code that has something done; None when nobody of it has, or an import does it."""
+    while frame is not None:
+        file = frame.f_code.co_filename
+        if file.startswith(_IMPORTS):
+            return None
+        if is_own_code(file):
+            return frame
+        frame = frame.f_back
+    return None
+
+
+@cache
+def _listeners() -> list[OpenWorld]:
+    """The listeners of the one hook of this process, which cannot be taken away."""
+    found: list[OpenWorld] = []
+
+    def hook(event: str, values: tuple[Any, ...]) -> None:
+        if found and (event in _CHANGES or event in ("open", "ctypes.dlopen", MADE)):
+            for each in tuple(found):
+                each.told(event, values)
+
+    sys.addaudithook(hook)
+    return found

@@ -1,0 +1,129 @@
+"""What nodes write is the run's own: each run finds the host as the one before it did, and leaves nothing there."""
+
+from __future__ import annotations
+
+import glob
+import os
+import tempfile
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from cfepy.exploration.fork_server import ForkingJudge
+from cfepy.exploration.trial import Trial
+from cfepy.journal import read_journal, record
+from cfepy.pilot.pilot import fly
+from cfepy.pilot.plan import NODE, RunPlan
+from cfepy.rtos.schedule import Schedule
+from tests.journal.replays import assert_same_again
+
+COUNTER = """
+import logging, os, rospy, sqlite3, tempfile
+rospy.init_node("counter")
+with open("starts", "a+") as file:
+    file.seek(0)
+    print("start", len(file.read()), os.fstat(file.fileno()))
+    file.write("x")
+scratch = tempfile.mkdtemp()
+with tempfile.NamedTemporaryFile(delete=False) as named:
+    named.write(b"kept")
+print(scratch, named.name, os.path.getmtime(named.name), os.stat(named.name).st_ino)
+base = sqlite3.connect(os.path.join(scratch, "base.db"))
+base.execute("create table starts (at)")
+rospy.sleep(0.25)
+base.execute("insert into starts values (1)")
+base.commit()
+base.close()
+print(os.listdir(scratch), [os.stat(os.path.join(scratch, name)) for name in os.listdir(scratch)])
+logging.basicConfig(filename=os.path.join(scratch, "log"), force=True)
+logging.warning("logged")
+print(open(os.path.join(scratch, "log")).read(), os.path.getmtime(os.path.join(scratch, "log")), rospy.get_time())
+"""
+
+
+@pytest.fixture
+def node(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "home"
+    folder.mkdir()
+    (folder / "starts").write_text("xx")
+    script = folder / "counter.py"
+    script.write_text(COUNTER)
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))  # where runs have their own files
+    return script
+
+
+def plan_of(script: Path, tasks: str = "thread", seconds: float = 1.0) -> RunPlan:
+    return RunPlan((str(script),), seconds=seconds, command=NODE, tasks=tasks)
+
+
+def left(folder: Path) -> list[str]:
+    """What is in the folder of the test, but for what pytest or a journal has there."""
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.suffix != ".cfepy")
+
+
+def printed(lines: Sequence[str]) -> list[str]:
+    return [line.removeprefix("[counter] ") for line in lines if line.startswith("[counter] ")]
+
+
+def test_a_node_that_counts_its_starts_has_one_digest(node: Path, tmp_path: Path) -> None:
+    runs = [fly(plan_of(node, tasks)) for tasks in ("thread", "greenlet", "thread")]
+    assert len({run.trace for run in runs}) == 1
+    lines = printed(runs[0].mission.console.lines)
+    assert lines[0].startswith("start 2 os.stat_result(st_mode=33188, st_ino=")
+    assert (node.parent / "starts").read_text() == "xx"
+    assert left(tmp_path) == ["home", "home/counter.py", "home/starts"]
+    name = lines[1].split()[1]
+    assert name.startswith("/tmp/tmp")
+    assert not os.path.exists(name)
+
+
+def test_its_journal_has_what_it_read_and_gives_the_run_again(node: Path, tmp_path: Path) -> None:
+    flown = record(plan_of(node), tmp_path / "run.cfepy")
+    journal = read_journal(tmp_path / "run.cfepy")
+    assert {os.path.basename(path) for path in journal.files} == {"counter.py", "starts"}
+    (node.parent / "starts").write_text("another computer")
+    assert_same_again(journal, flown.trace)
+
+
+def test_what_it_wrote_can_be_kept(node: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert main(["node", str(node), "--for", "1", "--save-files", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert f"saved to {out}: 4 files" in said
+    assert (out / str(node.parent).lstrip("/") / "starts").read_text() == "xxx"
+    (log,) = glob.glob(f"{out}/tmp/tmp*/log")
+    assert Path(log).read_text() == "WARNING:root:logged\n"
+
+
+FORKED = """
+import os, rospy
+rospy.init_node("counter")
+file = open("starts", "a+")
+lines = open("lines")
+lines.readline()
+file.write("y")
+file.flush()
+rospy.sleep(0.4)
+file.write("z")
+file.flush()
+assert (open("starts").read(), lines.read()) == ("xxyz", "two\\n"), os.listdir(".")
+"""
+
+
+def test_processes_that_part_have_files_of_their_own(node: Path, tmp_path: Path) -> None:
+    node.write_text(FORKED)
+    (node.parent / "lines").write_text("one\ntwo\n")
+    trial = Trial(replace(plan_of(node, "greenlet"), schedule=Schedule.parse("random:0:from=700ms")))
+    judge = ForkingJudge(trial)
+    try:
+        verdicts = [judge.judge(Schedule.parse(f"random:{seed}:from=700ms")) for seed in (1, 2, 1)]
+    finally:
+        judge.close()
+    assert not any(verdict.failures for verdict in verdicts)
+    alone = trial.run(Schedule.parse("random:1:from=700ms"))
+    assert verdicts[0].trace == verdicts[2].trace == alone.trace
+    assert left(tmp_path) == ["home", "home/counter.py", "home/lines", "home/starts"]
