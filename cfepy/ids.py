@@ -173,12 +173,21 @@ class IdTable(Generic[Record]):
         Raises:
             CfeError: no free slot (OsalError for an OSAL base).
         """
+        new_id = self.skip()
+        self._slots[self.index(new_id)] = new_id
+        self.records[new_id] = record
+        return new_id
+
+    def skip(self) -> int:
+        """Use up the next free id without a record: a creation that reserved its slot, and then failed.
+
+        Raises:
+            CfeError: no free slot (OsalError for an OSAL base).
+        """
         new_id = find_next(self._last_id, self.capacity, lambda candidate: self._slots[self.index(candidate)] != 0)
         if not new_id:
             raise self._error(self._full, f"all {self.capacity} slots of base 0x{self.base:x} are taken")
         self._last_id = new_id
-        self._slots[self.index(new_id)] = new_id
-        self.records[new_id] = record
         return new_id
 
     def find(self, resource_id: int) -> Record | None:

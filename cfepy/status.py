@@ -260,6 +260,11 @@ def status_to_string(status: int) -> str:
     return f"0x{status & 0xFFFFFFFF:08x}"
 
 
+def status_to_decimal(status: int) -> str:
+    """A status as a signed decimal number, e.g. "-35" (OS_StatusToString, CFE_PSP_StatusToString)."""
+    return str(to_signed(status))
+
+
 def severity_of(status: int) -> int:
     """One of CFE_SEVERITY_SUCCESS, _INFO, _ERROR; OSAL's and PSP's small negative codes are errors too."""
     return status & CFE_SEVERITY_BITMASK

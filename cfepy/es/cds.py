@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Container, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 
 from cfepy.es import events as ev
@@ -69,8 +70,8 @@ class CdsBlock:
 
     @property
     def user_size(self) -> int:
-        """Bytes that its owner sees."""
-        return self.size - BLOCK_HEADER.size
+        """Bytes that its owner sees; 0 for a name that has lost its bytes, because a new size had no room."""
+        return max(0, self.size - BLOCK_HEADER.size)
 
 
 def pack(block: CdsBlock) -> bytes:
@@ -207,7 +208,8 @@ class CriticalDataStore:
             The handle, and CFE_SUCCESS (a new block, all zeros) or CFE_ES_CDS_ALREADY_EXISTS.
 
         Raises:
-            CfeError: CFE_ES_CDS_INVALID_SIZE, CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CFE_ES_ERR_MEM_BLOCK_SIZE.
+            CfeError: CFE_ES_CDS_INVALID_SIZE, CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CFE_ES_ERR_MEM_BLOCK_SIZE. After the
+                last one a block from before has lost its bytes; it keeps its name and its handle until a reset.
         """
         if not 0 < user_size <= MAX_BLOCK_SIZE:
             raise CfeError(CFE_ES_CDS_INVALID_SIZE, f"a CDS block of {user_size} bytes")
@@ -216,8 +218,8 @@ class CriticalDataStore:
         if block is not None and block.size == size:
             return block.handle, CFE_ES_CDS_ALREADY_EXISTS
         if block is not None:
-            self._remove(block)
             handle, is_table = block.handle, block.is_table
+            self._empty(block)
         else:
             handle = self._next_handle()
         block = CdsBlock(handle, self._pool.get(size), size, name, is_table)
@@ -231,16 +233,17 @@ class CriticalDataStore:
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_BAD_ARGUMENT (not as many bytes as the block has),
-                CFE_ES_POOL_BLOCK_INVALID (the block's descriptor is damaged).
+                CFE_ES_BUFFER_NOT_IN_POOL (it has lost its bytes), CFE_ES_POOL_BLOCK_INVALID (its descriptor is
+                damaged).
         """
         block = self.get(handle)
-        if len(data) != block.user_size:
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"{len(data)} bytes for {block.name!r}, which has {block.user_size}")
         try:
             self._check(block)
         except CfeError:
             self._log("CFE_ES_CDSBlockWrite: Invalid Handle or Block Descriptor.")
             raise
+        if len(data) != block.user_size:
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"{len(data)} bytes for {block.name!r}, which has {block.user_size}")
         self._psp.write_to_cds(BLOCK_HEADER.pack(calculate_crc(data)), block.offset)
         self._psp.write_to_cds(data, block.offset + BLOCK_HEADER.size)
 
@@ -300,10 +303,15 @@ class CriticalDataStore:
         return handle
 
     def _remove(self, block: CdsBlock) -> None:
-        slot = self._slot(block.handle)
-        self._blocks[slot] = None
-        self._save(slot, None)
-        self._free(block.offset)
+        self._empty(block)
+        self._blocks[self._slot(block.handle)] = None
+
+    def _empty(self, block: CdsBlock) -> None:
+        """Free the bytes of a block; its record stays, but in the registry of this run alone."""
+        self._save(self._slot(block.handle), None)
+        if block.offset:
+            self._free(block.offset)
+        block.offset = block.size = 0
 
     def _free(self, offset: int) -> None:
         try:
@@ -367,14 +375,16 @@ class CdsApi(EsCore):
             return self._register(block_size, name, app.name)
         except CfeError as error:
             text = f"{app.name} Failed to Register CDS '{name}', Status={error.hex}"
-            self.ports.evs.send_event_with_app_id(ev.CDS_REGISTER_ERR_EID, ev.ERROR, app.app_id, text)
+            with suppress(CfeError):  # an application may register a block before its events
+                self.ports.evs.send_event_with_app_id(ev.CDS_REGISTER_ERR_EID, ev.ERROR, app.app_id, text)
             raise
 
     def _register(self, block_size: int, name: str, app_name: str) -> CdsHandle:
         if self.cds is None or not self.cds.is_available:
             self.write_to_sys_log("CFE_ES_RegisterCDS: CDS not available")
         elif not 0 < name_size(name) <= MAX_NAME_LENGTH:
-            self.write_to_sys_log(f"CFE_ES_RegisterCDS: CDS Name ({name}) is either too long, or an empty string")
+            cut = name[: FULL_NAME_SIZE - 1]
+            self.write_to_sys_log(f"CFE_ES_RegisterCDS: CDS Name ({cut}) is either too long, or an empty string")
             raise CfeError(CFE_ES_CDS_INVALID_NAME, f"CDS name {name!r}: 1 to {MAX_NAME_LENGTH} characters")
         try:
             handle, status = self.register_cds_ex(block_size, f"{app_name}.{name}", critical_table=False)

@@ -97,6 +97,8 @@ class GenericPool:
     def get(self, size: int) -> int:
         """Take a block; the offset of its first byte (CFE_ES_GenPoolGetBlock).
 
+        Of size 0 it is one of the smallest, and as in NASA's code it can never be given back.
+
         Raises:
             CfeError: CFE_ES_ERR_MEM_BLOCK_SIZE: larger than the largest block, or no room left.
         """
@@ -132,7 +134,7 @@ class GenericPool:
         raw = self._read(offset - DESCRIPTOR.size, DESCRIPTOR.size)
         size: int = DESCRIPTOR.unpack(raw)[2]
         bucket = self._bucket_for(size)
-        if bucket is None or raw != self._describe(_IN_USE, bucket, size):
+        if not size or bucket is None or raw != self._describe(_IN_USE, bucket, size):
             raise CfeError(CFE_ES_POOL_BLOCK_INVALID, f"no block in use begins at offset {offset}")
         return size
 
@@ -164,11 +166,7 @@ class GenericPool:
         return rows + [dict.fromkeys(("BlockSize", "NumCreated", "NumFree"), 0)] * (MAX_BUCKETS - len(rows))
 
     def _bucket_for(self, size: int) -> Bucket | None:
-        if size > 0:
-            for bucket in self.buckets:
-                if size <= bucket.size:
-                    return bucket
-        return None
+        return next((bucket for bucket in self.buckets if 0 <= size <= bucket.size), None)
 
     def _describe(self, state: int, bucket: Bucket, size: int, following: int = 0) -> bytes:
         return DESCRIPTOR.pack(_CHECK, state + bucket.number, size, following)

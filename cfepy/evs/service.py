@@ -121,6 +121,7 @@ class EventServices(EventCore):
         """
         caller = self._caller()
         self.apps.pop(caller.app_id, None)
+        self.unregistered.discard(caller.app_id)  # as NASA's, which wipes the record first: it will be told anew
         if filter_scheme != EVENT_FILTER_BINARY:
             raise CfeError(CFE_EVS_UNKNOWN_FILTER, f"filter scheme {filter_scheme!r}, there is only 0, the binary one")
         wanted = list(filters)
@@ -129,7 +130,6 @@ class EventServices(EventCore):
         limit = self.config.evs_max_event_filters
         if len(wanted) > limit:
             self.ports.syslog.write_to_sys_log(f"CFE_EVS_Register: Filter limit truncated to {limit}")
-        self.unregistered.discard(caller.app_id)
         self.apps[caller.app_id] = AppEvents(caller.app_id, caller.name, self.config, wanted)
 
     def reset_filter(self, event_id: int) -> None:
@@ -267,13 +267,14 @@ class EventServices(EventCore):
         if app_id not in self.unregistered:
             self.unregistered.add(app_id)
             self.report_unregistered(name)
-        return CfeError(CFE_EVS_APP_NOT_REGISTERED, f"{name} has to call evs.register before it sends events")
+        who = name or f"AppId 0x{app_id:x}"
+        return CfeError(CFE_EVS_APP_NOT_REGISTERED, f"{who} is not registered: evs.register comes before its events")
 
     def _name_of(self, app_id: int) -> str:
         try:
             return self.ports.es.get_app_name(app_id)
         except CfeError:
-            return f"0x{app_id:x}"  # it ended meanwhile
+            return ""  # there is no such application
 
 
 def _checked(event_id: int, text: str, values: tuple[object, ...]) -> str:

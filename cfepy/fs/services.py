@@ -102,13 +102,13 @@ class FileServices:
             data = struct.pack(">II", *new_timestamp)
         except struct.error as error:
             raise CfeError(CFE_FS_BAD_ARGUMENT, f"{new_timestamp} is no time: {error}") from error
+        what = "lseek time fields"
         try:
             self._osal.lseek(filedes, TIMESTAMP_OFFSET, OS_SEEK_SET)
+            what = "write timestamp"
             self._osal.write(filedes, data)
         except OsalError as error:
-            self._ports.syslog.write_to_sys_log(
-                f"CFE_FS_SetTimestamp: Failed to write timestamp (Status={error.status})"
-            )
+            self._ports.syslog.write_to_sys_log(f"CFE_FS_SetTimestamp: Failed to {what} (Status={error.status})")
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
 
     def background_file_dump_request(self, meta: FileWriteMetaData) -> None:

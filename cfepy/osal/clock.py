@@ -22,6 +22,7 @@ OS_TIME_MAX = OsTime((1 << 63) - 1)
 OS_TIME_ZERO = OsTime(0)
 OS_TIME_MIN = OsTime(-(1 << 63))
 _INT32_MAX = 0x7FFFFFFF
+_U32_MAX = 0xFFFFFFFF
 _QUARTER_SECOND = OS_TIME_TICKS_PER_SECOND >> 2
 
 
@@ -101,13 +102,13 @@ def time_assemble_from_nanoseconds(seconds: int, nanoseconds: int) -> OsTime:
 
 
 def time_assemble_from_microseconds(seconds: int, microseconds: int) -> OsTime:
-    """A time from seconds and microseconds (OS_TimeAssembleFromMicroseconds)."""
-    return OsTime(seconds * OS_TIME_TICKS_PER_SECOND + microseconds * OS_TIME_TICKS_PER_USEC)
+    """A time from seconds and microseconds, which wrap at 2**32 ticks (OS_TimeAssembleFromMicroseconds)."""
+    return OsTime(seconds * OS_TIME_TICKS_PER_SECOND + (microseconds * OS_TIME_TICKS_PER_USEC & _U32_MAX))
 
 
 def time_assemble_from_milliseconds(seconds: int, milliseconds: int) -> OsTime:
-    """A time from seconds and milliseconds (OS_TimeAssembleFromMilliseconds)."""
-    return OsTime(seconds * OS_TIME_TICKS_PER_SECOND + milliseconds * OS_TIME_TICKS_PER_MSEC)
+    """A time from seconds and milliseconds, which wrap at 2**32 ticks (OS_TimeAssembleFromMilliseconds)."""
+    return OsTime(seconds * OS_TIME_TICKS_PER_SECOND + (milliseconds * OS_TIME_TICKS_PER_MSEC & _U32_MAX))
 
 
 def time_assemble_from_subseconds(seconds: int, subseconds: int) -> OsTime:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Protocol, TypeVar
+from typing import Any, NoReturn, Protocol, TypeVar
 
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
@@ -31,6 +31,7 @@ from cfepy.status import (
     OS_ERR_NAME_NOT_FOUND,
     OS_ERR_NAME_TAKEN,
     OS_ERR_NAME_TOO_LONG,
+    OS_ERROR,
     OsalError,
 )
 
@@ -146,12 +147,21 @@ class OsObjectTable(IdTable[Record]):
         Raises:
             OsalError: OS_ERR_NAME_TOO_LONG, OS_ERR_NAME_TAKEN or OS_ERR_NO_FREE_IDS.
         """
-        self.check_name(record.name)
-        if record.name in self.names:
-            raise OsalError(OS_ERR_NAME_TAKEN, f"there is a {self.kind} called {record.name!r} already")
+        self._check_free(record.name)
         record.id = self.create(record)
         self.names[record.name] = record.id
         return record.id
+
+    def refuse(self, name: str, why: str) -> NoReturn:
+        """Raise OS_ERROR for an object that the operating system does not make; its id is used up by then."""
+        self._check_free(name)
+        self.skip()
+        raise OsalError(OS_ERROR, why)
+
+    def _check_free(self, name: str) -> None:
+        self.check_name(name)
+        if name in self.names:
+            raise OsalError(OS_ERR_NAME_TAKEN, f"there is a {self.kind} called {name!r} already")
 
     def drop(self, record: Record) -> None:
         """Take a record out; its name is free again."""

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cfepy.ids import OS_USER_BASE, equal, from_integer, get_base, is_defined, to_integer
+from cfepy.ids import equal, from_integer, get_base, is_defined, to_integer
 from cfepy.osal.core import Core, OsObject, Setup
 from cfepy.osal.limits import (
     OS_BUFFER_SIZE,
     OS_ERROR_NAME_LENGTH,
     OS_OBJECT_CREATOR_ANY,
 )
-from cfepy.status import OS_ERR_INVALID_ID, OsalError, name_of, status_to_string, to_signed
+from cfepy.status import OS_ERR_INVALID_ID, OsalError, name_of, status_to_decimal, to_signed
 from cfepy.versions import OSAL_VERSION, VersionFunctions
 
 
@@ -24,7 +24,7 @@ class IdMapApi(VersionFunctions, Core):
     object_id_equal = staticmethod(equal)
     object_id_defined = staticmethod(is_defined)
     status_to_integer = staticmethod(to_signed)
-    status_to_string = staticmethod(status_to_string)
+    status_to_string = staticmethod(status_to_decimal)
     _version = OSAL_VERSION
 
     def __init__(self, setup: Setup) -> None:
@@ -40,9 +40,8 @@ class IdMapApi(VersionFunctions, Core):
         return self._object(object_id).name
 
     def identify_object(self, object_id: int) -> int:
-        """The kind of an id, one of the OS_*_BASE numbers; 0 for what is no OSAL id (OS_IdentifyObject)."""
-        base = get_base(object_id)
-        return base if 0 < base < OS_USER_BASE else 0
+        """The kind of an id, for OSAL's own one of the OS_*_BASE numbers (OS_IdentifyObject)."""
+        return get_base(object_id & 0xFFFFFFFF)
 
     def convert_to_array_index(self, object_id: int) -> int:
         """A number from 0 that no other existing object of the same kind has (OS_ConvertToArrayIndex).

@@ -102,6 +102,8 @@ class PathApi(ClockApi, FileApi):
                 path.
         """
         node = self.files.find(path)
+        if node is None and self.files.is_folder(path):
+            return  # what may be done with a folder is not kept
         if node is None or not node.mode:
             raise OsalError(OS_ERROR, f"{path} is no file that could be opened")
         node.mode = ACCESS_BITS.get(access_mode, 0)

@@ -46,7 +46,7 @@ class QueueApi(Core):
 
         Args:
             name: unique among queues, at most 19 characters.
-            depth: how many messages wait at most, 1 to OS_QUEUE_MAX_DEPTH.
+            depth: how many messages wait at most, 1 to OS_QUEUE_MAX_DEPTH; Linux refuses 0 later than what is above.
             data_size: largest message in bytes.
             flags: without effect, as in NASA's.
 
@@ -54,17 +54,19 @@ class QueueApi(Core):
             The queue's id.
 
         Raises:
-            OsalError: OS_ERR_NAME_TOO_LONG, OS_ERR_INVALID_SIZE, OS_QUEUE_INVALID_SIZE, OS_ERR_NAME_TAKEN or
-                OS_ERR_NO_FREE_IDS.
+            OsalError: OS_ERR_NAME_TOO_LONG, OS_ERR_INVALID_SIZE, OS_QUEUE_INVALID_SIZE, OS_ERR_NAME_TAKEN,
+                OS_ERR_NO_FREE_IDS or OS_ERROR.
         """
         if self._cost:
             self.kernel.charge(self._cost)
         self._queues.check_name(name)
         check_size(data_size, f"messages of queue {name}")
-        if not 0 < depth <= self.config.os_queue_max_depth:
+        if not 0 <= depth <= self.config.os_queue_max_depth:
             raise OsalError(
                 OS_QUEUE_INVALID_SIZE, f"depth {depth} of queue {name} is not 1 to {self.config.os_queue_max_depth}"
             )
+        if not depth:
+            self._queues.refuse(name, f"queue {name} has no room for a message")
         record = OsQueue(name, Queue(self.kernel, depth, name), data_size)
         sizes = self._setup.sizes
         return self._register(self._queues, record, "queue", sizes.queue + depth * (sizes.queue_slot + data_size))

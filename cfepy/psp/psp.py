@@ -26,7 +26,7 @@ from cfepy.status import (
     CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
     CfeError,
     OsalError,
-    status_to_string,
+    status_to_decimal,
 )
 from cfepy.units import NS_PER_S
 from cfepy.versions import PSP_VERSION, VersionFunctions
@@ -339,7 +339,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         """The watchdog's time in ms (CFE_PSP_WatchdogGet)."""
         return self.watchdog.value_ms
 
-    status_to_string = staticmethod(status_to_string)
+    status_to_string = staticmethod(status_to_decimal)
 
     def _announce(self, subtype: int) -> None:
         """Print the name of the computer and the reset's subtype; 0 stands for the default one."""

@@ -197,6 +197,7 @@ class SubscriptionServices(BufferServices):
         app = self.caller_name()
         pipe = self.find_pipe(pipe_id)
         if pipe is None:
+            self.report_nameless(pipe_id)  # NASA's code asks for the name before it sends any event
             text = f"Subscribe Err:Invalid Pipe Id,Msg=0x{msg_id:x},PipeId={pipe_id},App {app}"
             raise self._subscribe_error(ev.SUB_INV_PIPE_EID, CFE_SB_BAD_ARGUMENT, text)
         if self.is_foreign(pipe):

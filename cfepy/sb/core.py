@@ -161,6 +161,12 @@ class BusCore:
         """The pipe of an id, or None."""
         return self.pipes.find(pipe_id)
 
+    def report_nameless(self, pipe_id: int) -> str:
+        """Send the event of CFE_SB_GetPipeName for an id that no pipe has; its text."""
+        text = f"Pipe Id Error:Bad Argument,Id={pipe_id},Requestor {self.caller_name()}"
+        self.report(ev.GETPIPENAME_ID_ERR_EID, ev.ERROR, text)
+        return text
+
     def is_foreign(self, pipe: Pipe) -> bool:
         """Whether the calling application is not the owner of a pipe."""
         return pipe.owner is not self.kernel.current.owner

@@ -19,6 +19,8 @@ class PipeServices(BufferServices):
     def create_pipe(self, depth: int, name: str) -> int:
         """Make a pipe that belongs to the calling application (CFE_SB_CreatePipe).
 
+        The id is reserved before the name is looked at: a refused name uses up an id.
+
         Args:
             depth: messages that fit in, 1 to OS_QUEUE_MAX_DEPTH.
             name: unique, at most 19 characters.
@@ -38,9 +40,11 @@ class PipeServices(BufferServices):
             text = f"CreatePipeErr:Max Pipes({self.config.sb_max_pipes})In Use.app {app}"
             raise self._create_error(ev.MAX_PIPES_MET_EID, CFE_SB_MAX_PIPES_MET, text)
         if name_size(name) >= OS_MAX_API_NAME:
+            self.pipes.skip()
             text = f"CreatePipeErr:OS_QueueCreate returned {OS_ERR_NAME_TOO_LONG},app {app}"
             raise self._create_error(ev.CR_PIPE_ERR_EID, CFE_SB_PIPE_CR_ERR, text)
         if any(pipe.name == name for pipe in self.pipes):
+            self.pipes.skip()
             text = f"CreatePipeErr:OS_QueueCreate failed, name taken (app={app}, name={name})"
             raise self._create_error(ev.CR_PIPE_NAME_TAKEN_EID, CFE_SB_PIPE_CR_ERR, text)
         return self._add_pipe(depth, name, app)
@@ -127,9 +131,7 @@ class PipeServices(BufferServices):
         """The name of a pipe (CFE_SB_GetPipeName)."""
         pipe = self.find_pipe(pipe_id)
         if pipe is None:
-            text = f"Pipe Id Error:Bad Argument,Id={pipe_id},Requestor {self.caller_name()}"
-            self.report(ev.GETPIPENAME_ID_ERR_EID, ev.ERROR, text)
-            raise CfeError(CFE_SB_BAD_ARGUMENT, text)
+            raise CfeError(CFE_SB_BAD_ARGUMENT, self.report_nameless(pipe_id))
         return pipe.name
 
     def get_pipe_id_by_name(self, name: str) -> int:

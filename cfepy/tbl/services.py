@@ -17,8 +17,11 @@ from cfepy.rtos import Kernel
 from cfepy.status import (
     CFE_ES_ERR_RESOURCEID_NOT_VALID,
     CFE_SUCCESS,
+    CFE_TBL_ERR_DUPLICATE_DIFF_SIZE,
+    CFE_TBL_ERR_DUPLICATE_NOT_OWNED,
     CFE_TBL_ERR_INVALID_HANDLE,
     CFE_TBL_ERR_INVALID_NAME,
+    CFE_TBL_ERR_INVALID_OPTIONS,
     CFE_TBL_ERR_NEVER_LOADED,
     CFE_TBL_ERR_NO_ACCESS,
     CFE_TBL_ERR_UNREGISTERED,
@@ -46,6 +49,7 @@ BAD_TABLE_HANDLE = -1
 MODIFIED_MARK = "(*)"
 _ULONG = 0xFFFFFFFFFFFFFFFF
 _NO_ACCESS = "App({app}) does not have access to Tbl Handle={handle}"
+_NOT_NOTIFIED = "App={app} Handle={handle} status code={status:x}"
 
 
 class TableInfo(NamedTuple):
@@ -227,7 +231,7 @@ class TableAccess:
         else:
             error = CfeError(CFE_TBL_ERR_NO_ACCESS, f"this handle on {access.table.name!r} is another app's")
         if log:
-            self._log(function, log.format(app=app_id, handle=int(handle)))
+            self._log(function, log.format(app=app_id, handle=int(handle), status=error.status & _ULONG))
         raise error
 
     def _log(self, function: str, text: str) -> None:
@@ -294,8 +298,7 @@ class TableServices(TableAccess):
         """
         app_id, app_name = self._caller()
         try:
-            full_name = self.registry.check(app_name, name, size, options)
-            access = self.registry.duplicate(full_name, size, app_id)
+            access = self._duplicate(full_name := self._checked(app_name, name, size, options), size, app_id)
             if access is not None:
                 return access.handle.with_status(CFE_TBL_WARN_DUPLICATE)
             access = self.registry.add(TableRecord(full_name, size, options, validate, app_id))
@@ -304,6 +307,32 @@ class TableServices(TableAccess):
             self._reports.send(ev.REGISTER_ERR_EID, ev.ERROR, text)
             raise
         return access.handle.with_status(self._make_critical(access.table)) if options & OPT_CRITICAL else access.handle
+
+    def _checked(self, app_name: str, name: str, size: int, options: int) -> str:
+        """The full name; what is wrong with the table to be stands in the system log too (CFE_TBL_TxnCheckConfig)."""
+        try:
+            return self.registry.check(app_name, name, size, options)
+        except CfeError as error:
+            text = {
+                CFE_TBL_ERR_INVALID_NAME: f"bad table name: '{name}' (0x{error.status & _ULONG:x})",
+                CFE_TBL_ERR_INVALID_OPTIONS: f"bad TblOptionFlags combination for '{name}' (0x{options:x})",
+            }.get(error.status, f"Table '{name}' has invalid size ({size})")
+            self._log("TxnCheckConfig", text)
+            raise
+
+    def _duplicate(self, full_name: str, size: int, app_id: int) -> Access | None:
+        """`registry.duplicate`, with the lines of the system log (CFE_TBL_TxnCheckDuplicateRegistration)."""
+        table = self.registry.find(full_name)
+        try:
+            return self.registry.duplicate(full_name, size, app_id)
+        except CfeError as error:
+            if table is not None and error.status == CFE_TBL_ERR_DUPLICATE_DIFF_SIZE:
+                text = f"Attempt to register existing table ('{full_name}') with different size({size}!={table.size})"
+                self._log("TxnCheckDuplicateRegistration", text)
+            elif table is not None and error.status == CFE_TBL_ERR_DUPLICATE_NOT_OWNED:
+                text = f"App({app_id}) Registering Duplicate Table '{full_name}' owned by App({table.owner})"
+                self._log("TxnCheckDuplicateRegistration", text)
+            raise
 
     def _make_critical(self, table: TableRecord) -> int:
         try:
@@ -529,12 +558,11 @@ class TableServices(TableAccess):
             fcn_code: its function code.
             parameter: 32 bits of payload.
         """
-        status_text = "App={app} Handle={handle} status code="
-        access = self._access("NotifyByMessage", handle, log=status_text + f"{CFE_TBL_ERR_NO_ACCESS & _ULONG:x}")
+        access = self._access("NotifyByMessage", handle, log=_NOT_NOTIFIED)
         app_id = self._caller()[0]
         if access.table.owner != app_id:
-            text = f"{status_text.format(app=app_id, handle=int(handle))}{CFE_TBL_ERR_NO_ACCESS & _ULONG:x}"
-            self._log("NotifyByMessage", text)
+            status = CFE_TBL_ERR_NO_ACCESS & _ULONG
+            self._log("NotifyByMessage", _NOT_NOTIFIED.format(app=app_id, handle=int(handle), status=status))
             raise CfeError(CFE_TBL_ERR_NO_ACCESS, f"{access.table.name!r} belongs to another app")
         access.table.notify = (msg_id, fcn_code, parameter & 0xFFFFFFFF)
 

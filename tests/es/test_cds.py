@@ -17,6 +17,7 @@ from cfepy.psp.profile import load_profile
 from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
+    CFE_ES_BUFFER_NOT_IN_POOL,
     CFE_ES_CDS_ALREADY_EXISTS,
     CFE_ES_CDS_BLOCK_CRC_ERR,
     CFE_ES_CDS_INVALID_SIZE,
@@ -92,6 +93,22 @@ def test_another_size_makes_a_new_block() -> None:
     assert board.cds.read(handle) == bytes(20)
     assert board.cds.register(10, "APP.Other", is_table=False)[1] == CFE_SUCCESS
     assert board.cds.read(board.cds.named("APP.Other").handle) == bytes(10)
+
+
+def test_a_new_size_without_room_keeps_name_and_handle() -> None:
+    board = Board()
+    cds = board.cds
+    handle, _ = cds.register(10, "APP.Data", is_table=False)
+    assert status_of(lambda: cds.register(40_000, "APP.Data", is_table=False)) == CFE_ES_ERR_MEM_BLOCK_SIZE
+    assert (cds.named("APP.Data").handle, cds.named("APP.Data").user_size) == (handle, 0)
+    assert status_of(lambda: cds.write(handle, b"0123456789")) == CFE_ES_BUFFER_NOT_IN_POOL
+    assert status_of(lambda: cds.read(handle)) == CFE_ES_BUFFER_NOT_IN_POOL
+    cds.register(4, "APP.Other", is_table=False)
+    assert cds.register(12, "APP.Data", is_table=False) == (handle, CFE_SUCCESS)
+    assert status_of(lambda: cds.register(40_000, "APP.Data", is_table=False)) == CFE_ES_ERR_MEM_BLOCK_SIZE
+    cds.delete("APP.Data")
+    assert cds.find("APP.Data") is None
+    assert board.boot().find("APP.Other") is not None
 
 
 def test_what_cannot_be() -> None:

@@ -55,6 +55,17 @@ def test_sizes_of_ones_own() -> None:
     assert status_of(lambda: pool.get(101)) == CFE_ES_ERR_MEM_BLOCK_SIZE
 
 
+def test_a_block_of_no_bytes_is_taken_and_never_given_back() -> None:
+    pool = MemPool("P", 1024)
+    block = pool.get(0)
+    assert len(block.memory) == 0
+    assert status_of(lambda: pool.size_of(block)) == CFE_ES_POOL_BLOCK_INVALID
+    assert status_of(lambda: pool.put(block)) == CFE_ES_POOL_BLOCK_INVALID
+    assert pool.statistics()["CheckErrCtr"] == 1
+    assert pool.blocks.block_stats()[0] == {"BlockSize": 8, "NumCreated": 1, "NumFree": 0}
+    assert status_of(lambda: pool.get(-1)) == CFE_ES_ERR_MEM_BLOCK_SIZE
+
+
 def test_pools_that_cannot_be() -> None:
     assert status_of(lambda: MemPool("P", 400, alignment=12)) == CFE_ES_BAD_ARGUMENT
     assert status_of(lambda: MemPool("P", 400, sizes=())) == CFE_ES_BAD_ARGUMENT

@@ -120,13 +120,28 @@ def test_ports_are_lines_on_the_console(world: World) -> None:
 
 def test_an_unregistered_app_is_refused_and_told_of_once(world: World) -> None:
     for _ in range(2):
-        with pytest.raises(CfeError, match=r"MUTE has to call evs\.register") as caught:
+        with pytest.raises(CfeError, match="MUTE is not registered") as caught:
             world.call(lambda: world.evs.send_event(1, ERROR, "x"), MUTE_ID)
         assert caught.value.status == CFE_EVS_APP_NOT_REGISTERED
     text = "App MUTE not registered with Event Services. Unable to send event."
     assert world.sent() == [Sent("CFE_EVS", 41, ERROR, text)]
     assert world.log[-1] == f"EVS_NotRegistered: {text}"
     assert world.housekeeping()["UnregisteredAppCounter"] == 1
+
+
+def test_after_each_register_it_is_told_again(world: World) -> None:
+    """A register that fails wipes the record, as one that does not."""
+
+    def fail() -> None:
+        with pytest.raises(CfeError):
+            world.evs.register(filter_scheme=99)
+
+    for _ in range(2):
+        world.call(fail, MUTE_ID)
+        for _ in range(2):
+            with pytest.raises(CfeError, match="MUTE is not registered"):
+                world.call(lambda: world.evs.send_event(1, ERROR, "x"), MUTE_ID)
+    assert [each.event_id for each in world.sent()] == [41, 41]
 
 
 def test_host_code_belongs_to_no_app(world: World) -> None:
@@ -146,10 +161,11 @@ def test_the_app_id_of_an_event_must_be_one(world: World) -> None:
     assert caught.value.status == CFE_EVS_APP_NOT_REGISTERED
 
 
-def test_an_app_that_ended_is_named_by_its_id(world: World) -> None:
+def test_an_app_that_is_not_there_has_no_name_in_the_event(world: World) -> None:
     gone = 0x1100FF
-    with pytest.raises(CfeError, match="0x1100ff has to call"):
+    with pytest.raises(CfeError, match="AppId 0x1100ff is not registered"):
         world.call(lambda: world.evs.send_event_with_app_id(1, 2, gone, "x"))
+    assert world.log[-1].startswith("EVS_NotRegistered: App  not registered")
 
 
 @pytest.mark.parametrize("event_type", [DEBUG, INFORMATION, ERROR, CRITICAL])

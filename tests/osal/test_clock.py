@@ -65,6 +65,8 @@ def test_totals_there_and_back(unit: str) -> None:
 def test_assembling() -> None:
     assert Osal.time_assemble_from_nanoseconds(12, 345_678_999) == T
     assert Osal.time_assemble_from_microseconds(12, 345_678) == T - 9
+    assert Osal.time_assemble_from_milliseconds(0, 0xFFFFFFFF) == 0xFFFFD8F0
+    assert Osal.time_assemble_from_microseconds(0, 0xFFFFFFFF) == 0xFFFFFFF6
     assert Osal.time_assemble_from_milliseconds(12, 345) == T - 6_789
     assert Osal.time_assemble_from_subseconds(12, Osal.time_get_subseconds_part(T)) == T
 

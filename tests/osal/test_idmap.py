@@ -27,7 +27,7 @@ def test_identify_and_index(bench: Bench) -> None:
     assert bench.os.object_id_to_array_index(OS_QUEUE_BASE, ids[0]) == bench.os.convert_to_array_index(ids[0])
     assert status_of(bench.os.object_id_to_array_index, OS_TASK_BASE, ids[0]) == OS_ERR_INVALID_ID
     assert status_of(bench.os.convert_to_array_index, 0) == OS_ERR_INVALID_ID
-    assert bench.os.identify_object(0x110001) == 0
+    assert bench.os.identify_object(0x110001) == 0x11
     assert bench.os.identify_object(0) == 0
 
 

@@ -72,6 +72,7 @@ def test_a_file_that_cannot_be_opened_at_all_stays_so(bench: Bench) -> None:
     bench.os.chmod("/ram/x", 77)
     assert status_of(bench.os.chmod, "/ram/x", OS_READ_WRITE) == OS_ERROR
     assert status_of(bench.os.chmod, "/ram/none", OS_READ_WRITE) == OS_ERROR
+    bench.os.chmod("/ram", OS_READ_WRITE)
     assert status_of(bench.os.chmod, "x", OS_READ_WRITE) == OS_FS_ERR_PATH_INVALID
 
 

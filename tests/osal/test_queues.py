@@ -12,6 +12,7 @@ from cfepy.status import (
     OS_ERR_NAME_TAKEN,
     OS_ERR_NAME_TOO_LONG,
     OS_ERR_NO_FREE_IDS,
+    OS_ERROR,
     OS_QUEUE_FULL,
     OS_QUEUE_INVALID_SIZE,
 )
@@ -48,13 +49,21 @@ def test_bad_arguments(bench: Bench) -> None:
     assert status_of(create, "Q", 1, 4) == OS_ERR_NAME_TAKEN
     assert status_of(create, "R", 1, 0) == OS_ERR_INVALID_SIZE
     assert status_of(create, "R", 51, 4) == OS_QUEUE_INVALID_SIZE
-    assert status_of(create, "R", 0, 4) == OS_QUEUE_INVALID_SIZE
+    assert status_of(create, "Q", 0, 4) == OS_ERR_NAME_TAKEN
+    assert status_of(create, "R", 0, 4) == OS_ERROR
     assert status_of(bench.os.queue_put, queue_id, b"12345") == OS_QUEUE_INVALID_SIZE
     assert status_of(bench.os.queue_put, queue_id, b"") == OS_ERR_INVALID_SIZE
     assert status_of(bench.os.queue_put, 0, b"1") == OS_ERR_INVALID_ID
     assert status_of(bench.os.queue_get, queue_id + 1) == OS_ERR_INVALID_ID
     assert status_of(bench.os.queue_get_id_by_name, "R") == OS_ERR_NAME_NOT_FOUND
     assert status_of(bench.os.queue_get_info, 0x10001) == OS_ERR_INVALID_ID
+
+
+def test_a_queue_that_the_system_refuses_uses_up_an_id(bench: Bench) -> None:
+    first = bench.os.queue_create("Q", 1, 1)
+    status_of(bench.os.queue_create, "R", 51, 1)
+    status_of(bench.os.queue_create, "R", 0, 1)
+    assert bench.os.queue_create("R", 1, 1) == first + 2
 
 
 def test_there_are_as_many_queues_as_configured(bench: Bench) -> None:

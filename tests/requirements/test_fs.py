@@ -102,7 +102,7 @@ def test_cES1603_the_time_of_a_file_is_set(ask: Callable[..., Any]) -> None:
     header, log = ask(question)
     assert (header.time_seconds, header.time_subseconds) == (0x01020304, 0x05060708)
     assert header.description == "h"
-    assert b"CFE_FS_SetTimestamp: Failed to write timestamp (Status=-16)\n" in log
+    assert b"CFE_FS_SetTimestamp: Failed to lseek time fields (Status=-16)\n" in log
 
 
 def test_cES1604_the_name_of_a_file_is_taken_out_of_its_path(ask: Callable[..., Any]) -> None:

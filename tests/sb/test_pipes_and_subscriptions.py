@@ -48,6 +48,27 @@ def test_pipes_that_cannot_be_made(bench: Bench, depth: int, name: str, code: in
     assert bench.bus.counters.create_pipe_error == 1
 
 
+@pytest.mark.parametrize("name", ["TAKEN", "N" * 20])
+def test_a_refused_name_uses_up_an_id(bench: Bench, name: str) -> None:
+    assert bench.do("A", lambda: bench.bus.create_pipe(5, "TAKEN")) == 0x160001
+    bench.do("A", lambda: bench.bus.create_pipe(5, name))
+    assert bench.do("A", lambda: bench.bus.create_pipe(5, "NEXT")) == 0x160003
+    bench.do("A", lambda: bench.bus.create_pipe(0, "BAD"))
+    assert bench.do("A", lambda: bench.bus.create_pipe(5, "LAST")) == 0x160005
+
+
+@pytest.mark.parametrize("pipe", [0, 0x160009, 0x110001])
+def test_a_subscription_to_no_pipe_sends_two_events(bench: Bench, pipe: int) -> None:
+    assert status(bench.do("A", lambda: bench.bus.subscribe(0x1880, pipe))) == CFE_SB_BAD_ARGUMENT
+    assert bench.events.sent == [
+        (64, f"Pipe Id Error:Bad Argument,Id={pipe},Requestor A"),
+        (50, f"Subscribe Err:Invalid Pipe Id,Msg=0x1880,PipeId={pipe},App A"),
+    ]
+    bench.events.sent.clear()
+    assert status(bench.do("A", lambda: bench.bus.unsubscribe(0x1880, pipe))) == CFE_SB_BAD_ARGUMENT
+    assert len(bench.events.sent) == 1
+
+
 def test_the_last_pipe(bench: Bench) -> None:
     for number in range(3):
         assert isinstance(bench.do("A", lambda: bench.bus.create_pipe(5, f"P{number}")), int)  # noqa: B023

@@ -1,0 +1,50 @@
+"""Plays a script on NASA's own cFE, built with the application in `app/`, in namespaces of its own.
+
+The folder that CFEPY_REAL_API names has the executable core-cpu1 and its cf. To build it: copy app/ into the mission's
+apps as api_app, put it into the APPLIST of sample_defs/targets.cmake, take `STARTUP` of `tests.twin.api.twin` as the
+startup script, and set CFE_PLATFORM_EVS_MAX_APP_EVENT_BURST to 2000000, so that no event is squelched: that depends on
+the host's speed. Both sides write `answers.txt` with the same rules.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+VARIABLE = "CFEPY_REAL_API"
+LIMIT_S = 300
+INSIDE = """
+mount -t tmpfs none /dev/shm
+mount -t mqueue none /dev/mqueue 2> /dev/null
+echo 1000 > /proc/sys/fs/mqueue/msg_max
+echo 10000 > /proc/sys/fs/mqueue/msgsize_max
+ip link set lo up
+exec ./core-cpu1 > console.txt 2>&1
+"""
+SPACES = ("unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc")
+
+
+def installed() -> Path | None:
+    """The folder of the executable, as CFEPY_REAL_API says; None where there is none."""
+    folder = os.environ.get(VARIABLE)
+    return Path(folder) if folder else None
+
+
+def play(built: Path, script: list[str]) -> list[str]:
+    """The answers of the real cFE to a script.
+
+    Raises:
+        subprocess.TimeoutExpired: it did not end.
+        FileNotFoundError: the application did not start.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        here = Path(folder) / "run"
+        shutil.copytree(built, here)
+        (here / "script.txt").write_text("\n".join(script) + "\n")
+        command = [*SPACES, "bash", "-c", INSIDE]
+        subprocess.run(command, cwd=here, stdin=subprocess.DEVNULL, timeout=LIMIT_S, check=False)
+        lines = (here / "answers.txt").read_text(errors="surrogateescape").splitlines()
+        return lines[lines.index("begin") + 1 :]

@@ -1,0 +1,67 @@
+"""API calls answer as on NASA's cFE: as a real one did, and, where it is installed, as it does."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.twin.api import real, twin
+from tests.twin.api.compare import differences
+from tests.twin.api.recorded import read_record, records
+from tests.twin.api.script import GROUPS, Writer, write_script
+from tests.twin.api.words import quote, unquote
+
+SHORT = 700
+LONG_ONES = [each for each in records() if each[1] > SHORT]
+
+
+@pytest.mark.parametrize(("seed", "count"), [each for each in records() if each[1] <= SHORT])
+def test_a_short_script_answers_as_the_real_cfe_did(seed: int, count: int) -> None:
+    script = write_script(seed, count)
+    assert differences(script, read_record(seed, count), twin.play(script)) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "count"), LONG_ONES)
+def test_a_long_script_answers_as_the_real_cfe_did(seed: int, count: int) -> None:
+    script = write_script(seed, count)
+    assert differences(script, read_record(seed, count), twin.play(script)) == []
+
+
+@pytest.mark.slow
+def test_a_new_script_answers_as_the_real_cfe_does() -> None:
+    built = real.installed()
+    if built is None:
+        pytest.skip(f"{real.VARIABLE} names no real cFE")
+    script = write_script(4711, 2000)
+    assert differences(script, real.play(built, script), twin.play(script)) == []
+
+
+def test_there_are_short_and_long_records() -> None:
+    assert LONG_ONES
+    assert len(records()) > len(LONG_ONES)
+
+
+def test_a_difference_is_found() -> None:
+    script = ["A ES_GetAppID @1", "A OS_TaskGetId"]
+    real_answers = ["1 0 #110007", "E CFE_SB 5 1 'x", "2 0 #10008", "end"]
+    assert differences(script, real_answers, ["1 0 #110007", "E CFE_SB 5 1 'x", "2 0 #1000b", "end"]) == []
+    assert differences(script, real_answers, ["1 0 #110007", "2 0 #1000b", "end"]) == [
+        "1 A ES_GetAppID @1\n  cFE   E CFE_SB 5 1 x"
+    ]
+    assert len(differences(script, real_answers, ["1 0 #110008", "end"])) == 2
+
+
+@pytest.mark.parametrize("group", set(GROUPS), ids=lambda group: group.__name__)
+def test_scripts_follow_from_the_seed_and_name_calls_that_exist(group) -> None:
+    first, second = Writer(5), Writer(5)
+    for writer in (first, second):
+        for _ in range(20):
+            group(writer)
+    assert first.lines == second.lines
+    assert not [line for line in twin.play(first.lines[:40]) if "unknown" in line.split()]
+
+
+@pytest.mark.parametrize("text", ["", "plain.txt", "two words", "100%", "\n\x01"])
+def test_texts_go_through_a_line(text: str) -> None:
+    assert unquote(quote(text)) == text
+    assert " " not in quote(text)
