@@ -147,18 +147,19 @@ class OsObjectTable(IdTable[Record]):
         Raises:
             OsalError: OS_ERR_NAME_TOO_LONG, OS_ERR_NAME_TAKEN or OS_ERR_NO_FREE_IDS.
         """
-        self._check_free(record.name)
+        self.check_free(record.name)
         record.id = self.create(record)
         self.names[record.name] = record.id
         return record.id
 
     def refuse(self, name: str, why: str) -> NoReturn:
         """Raise OS_ERROR for an object that the operating system does not make; its id is used up by then."""
-        self._check_free(name)
+        self.check_free(name)
         self.skip()
         raise OsalError(OS_ERROR, why)
 
-    def _check_free(self, name: str) -> None:
+    def check_free(self, name: str) -> None:
+        """Raise OS_ERR_NAME_TOO_LONG or OS_ERR_NAME_TAKEN for a name that no new object can have."""
         self.check_name(name)
         if name in self.names:
             raise OsalError(OS_ERR_NAME_TAKEN, f"there is a {self.kind} called {name!r} already")

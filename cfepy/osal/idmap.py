@@ -40,8 +40,8 @@ class IdMapApi(VersionFunctions, Core):
         return self._object(object_id).name
 
     def identify_object(self, object_id: int) -> int:
-        """The kind of an id, for OSAL's own one of the OS_*_BASE numbers (OS_IdentifyObject)."""
-        return get_base(object_id & 0xFFFFFFFF)
+        """The kind of an id, one of the OS_*_BASE numbers, or what another number has there (OS_IdentifyObject)."""
+        return get_base(object_id)
 
     def convert_to_array_index(self, object_id: int) -> int:
         """A number from 0 that no other existing object of the same kind has (OS_ConvertToArrayIndex).

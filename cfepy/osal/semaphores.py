@@ -176,7 +176,7 @@ class SemaphoreApi(Core):
     def _create(self, table: OsObjectTable[OsSemaphore], name: str, initial_value: int, maximum: int | None) -> int:
         if self._cost:
             self.kernel.charge(self._cost)
-        table.check_name(name)
+        table.check_free(name)
         if not 0 <= initial_value <= SEM_VALUE_MAX:
             raise OsalError(OS_INVALID_SEM_VALUE, f"{table.kind} {name} cannot begin with {initial_value}")
         record = OsSemaphore(name, Semaphore(self.kernel, initial_value, maximum, name))

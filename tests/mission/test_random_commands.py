@@ -12,6 +12,7 @@ from cfepy import msg
 from cfepy.console import Console
 from cfepy.ground.dictionary import dictionary_of
 from cfepy.ground.link import GroundLink
+from cfepy.ids import OS_STREAM_BASE
 from cfepy.mission import Mission, read_mission
 from cfepy.msg import Command
 from cfepy.msg.layout import Cell
@@ -123,6 +124,7 @@ def left(mission: Mission) -> dict[str, object]:
     """What exists when only the core is left."""
     sb: SoftwareBus = mission.cfe.sb
     tables = {table.kind: len(table) for table in mission.processor.osal._tables.values() if table.kind != "module"}
+    tables["file"] -= len(left_by_loads(mission))
     return {
         "osal": tables,
         "apps": [app.name for app in mission.cfe.es.apps],
@@ -132,6 +134,14 @@ def left(mission: Mission) -> dict[str, object]:
         "owners": sorted({owner for owner, _ in mission.memory.totals()}),
         "ports": [*mission.network.datagrams.bound, *mission.network.streams.bound],
     }
+
+
+def left_by_loads(mission: Mission) -> list[int]:
+    """The files of good LOAD commands, which CFE_TBL never closes, as in NASA's code."""
+    osal, (services,) = mission.processor.osal, (app for app in mission.cfe.es.apps if app.name == "CFE_TBL")
+    opened: list[int] = []
+    osal.for_each_object_of_type(OS_STREAM_BASE, services.main_task_id, lambda number, _: opened.append(number))
+    return opened
 
 
 def _left_of_core(name: str, board: str | None) -> dict[str, object]:

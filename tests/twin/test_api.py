@@ -51,7 +51,7 @@ def test_a_difference_is_found() -> None:
     assert len(differences(script, real_answers, ["1 0 #110008", "end"])) == 2
 
 
-@pytest.mark.parametrize("group", set(GROUPS), ids=lambda group: group.__name__)
+@pytest.mark.parametrize("group", list(dict.fromkeys(GROUPS)), ids=lambda group: group.__name__)
 def test_scripts_follow_from_the_seed_and_name_calls_that_exist(group) -> None:
     first, second = Writer(5), Writer(5)
     for writer in (first, second):

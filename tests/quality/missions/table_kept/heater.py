@@ -13,7 +13,8 @@ class Heater:
         self.cfe = cfe
         cfe.evs.register()
         self.table = cfe.tbl.register("Limits", LIMITS.size)
-        cfe.tbl.load(self.table, LIMITS.pack(10, 20))
+        for _ in range(2):  # the address of a table that was loaded once does not lock it, as in NASA's cFE
+            cfe.tbl.load(self.table, LIMITS.pack(10, 20))
         self.ticks, self.loads = (cfe.sb.create_pipe(4, name) for name in ("HEATER_TICKS", "HEATER_LOADS"))
         cfe.sb.subscribe(TICK_MID, self.ticks)
         cfe.sb.subscribe(LOAD_MID, self.loads)
