@@ -10,6 +10,7 @@ from pathlib import Path
 from string import ascii_uppercase
 from typing import Any
 
+from cfepy.cli.run.outputs import SavedNodeFiles
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
 from cfepy.nodes.config import NodeConfig, RosConfig
@@ -47,7 +48,9 @@ class Flight:
         """Run it to its end."""
         begun = time.perf_counter()
         console = Console(quiet=True)
-        with Mission(self._prepare(), tasks=self._tasks, console=console) as mission:
+        spec = self._prepare()
+        written = SavedNodeFiles(Path("/"), os.path.realpath(self._folder))  # where the nodes think that it is
+        with Mission(spec, tasks=self._tasks, console=console, attachments=[written]) as mission:
             ended_itself = self._watch(mission)
             if not ended_itself:
                 mission.ros.begin_shutdown("the scenario is over", NODE)
@@ -110,8 +113,8 @@ class Flight:
 
     def _watch(self, mission: Mission) -> bool:
         """Run until the scenario is over; whether the node ended by itself before that."""
-        done = self._folder / "done"
-        self._run_until(mission, done.exists, LONGEST_S)
+        done = os.path.realpath(self._folder / "done")
+        self._run_until(mission, lambda: mission.node_files is not None and mission.node_files.exists(done), LONGEST_S)
         if self._scenario.ends_itself:
             self._run_until(mission, lambda: NODE in mission.ros.ended, LONGEST_S)
         return NODE in mission.ros.ended

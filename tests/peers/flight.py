@@ -64,7 +64,9 @@ def run(peer: Peer, sources: Sources) -> Verdict:
 def _run(peer: Peer, sources: Sources, folder: Path) -> tuple[dict[str, str], str]:
     file, results = _place(peer, sources, folder), folder / "results"
     if peer.kind == UNIT:
-        command = ["node", "--for", str(VIRTUAL_S), str(DRIVER), str(file), str(results)]
+        saved = folder / "saved"  # what nodes write is the run's own
+        command = ["node", "--for", str(VIRTUAL_S), "--save-files", str(saved), str(DRIVER), str(file), str(results)]
+        results = saved / os.path.realpath(results).lstrip("/")
     else:
         command = ["rostest", "--results", str(results), str(file)]
     try:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
 from cfepy.psp.psp import RST_TYPE_POWERON
 from cfepy.status import (
+    CFE_ES_BUFFER_NOT_IN_POOL,
     CFE_ES_CDS_ALREADY_EXISTS,
     CFE_ES_ERR_MEM_BLOCK_SIZE,
     CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
@@ -21,12 +23,12 @@ SIZES = st.sampled_from((1, 4, 12, 13, 100, 900))
 
 
 class CdsAgainstModel(RuleBasedStateMachine):
-    """`blocks` is what has to be in the store: name to content; content is what a block was last written with."""
+    """`blocks` is what has to be in the store: name to what it was last written with; None when its bytes are lost."""
 
     def __init__(self) -> None:
         super().__init__()
         self.board = Board()
-        self.blocks: dict[str, bytes] = {}
+        self.blocks: dict[str, bytes | None] = {}
 
     def _register(self, name: str, size: int) -> int:
         try:
@@ -38,23 +40,28 @@ class CdsAgainstModel(RuleBasedStateMachine):
     def register(self, name: str, size: int) -> None:
         old = self.blocks.get(name)
         is_same = old is not None and len(old) == size
-        is_full = old is None and len(self.blocks) == ENTRIES
+        is_full = name not in self.blocks and len(self.blocks) == ENTRIES
         status = self._register(name, size)
         if is_same or is_full:
             assert status == (CFE_ES_CDS_ALREADY_EXISTS if is_same else CFE_ES_NO_RESOURCE_IDS_AVAILABLE)
             return
         assert status in (CFE_SUCCESS, CFE_ES_ERR_MEM_BLOCK_SIZE)
-        self.blocks.pop(name, None)
         if status == CFE_SUCCESS:
             self.blocks[name] = bytes(size)
+        elif name in self.blocks:
+            self.blocks[name] = None  # its bytes went first
 
     @precondition(lambda self: self.blocks)
     @rule(data=st.data())
     def write(self, data: st.DataObject) -> None:
         name = data.draw(st.sampled_from(sorted(self.blocks)))
-        size = len(self.blocks[name])
-        self.blocks[name] = data.draw(st.binary(min_size=size, max_size=size))
-        self.board.cds.write(self.board.cds.named(name).handle, self.blocks[name])
+        handle, old = self.board.cds.named(name).handle, self.blocks[name]
+        if old is None:
+            with pytest.raises(CfeError, match="BUFFER_NOT_IN_POOL"):
+                self.board.cds.write(handle, b"!")
+            return
+        self.blocks[name] = new = data.draw(st.binary(min_size=len(old), max_size=len(old)))
+        self.board.cds.write(handle, new)
 
     @precondition(lambda self: self.blocks)
     @rule(data=st.data())
@@ -67,6 +74,7 @@ class CdsAgainstModel(RuleBasedStateMachine):
     def reset_processor(self) -> None:
         self.board.boot()
         assert not self.board.log
+        self.blocks = {name: data for name, data in self.blocks.items() if data is not None}
 
     @rule()
     def power_on(self) -> None:
@@ -77,7 +85,15 @@ class CdsAgainstModel(RuleBasedStateMachine):
     @invariant()
     def the_store_is_the_model(self) -> None:
         cds = self.board.cds
-        assert {block.name: cds.read(block.handle) for block in cds} == self.blocks
+        assert {block.name: self._read(block.handle) for block in cds} == self.blocks
+
+    def _read(self, handle: int) -> bytes | None:
+        try:
+            return self.board.cds.read(handle)
+        except CfeError as error:
+            if error.status != CFE_ES_BUFFER_NOT_IN_POOL:
+                raise
+            return None
 
 
 TestCds = CdsAgainstModel.TestCase
