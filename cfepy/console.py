@@ -9,6 +9,8 @@ import sys
 from collections.abc import Callable
 from typing import TextIO
 
+from cfepy.texts import without_addresses
+
 
 class Console:
     """Keeps and shows lines of text.
@@ -36,7 +38,7 @@ class Console:
 
     def write(self, text: str) -> None:
         """Add text: one line, or several with newlines between them; a newline at the end adds no empty line."""
-        for line in text.removesuffix("\n").split("\n"):
+        for line in without_addresses(text).removesuffix("\n").split("\n"):
             self.lines.append(line)
             if self.record is not None:
                 self.record(line)

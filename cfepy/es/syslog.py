@@ -13,7 +13,7 @@ from cfepy.status import (
     CFE_SUCCESS,
     CfeError,
 )
-from cfepy.texts import to_bytes
+from cfepy.texts import to_bytes, without_addresses
 
 TIME_TEXT_SIZE = 24  # CFE_TIME_PRINTED_STRING_SIZE: a printed time and its NUL
 
@@ -47,7 +47,7 @@ class SystemLog:
         Returns:
             CFE_SUCCESS, or why not all of it is there: CFE_ES_ERR_SYS_LOG_TRUNCATED, CFE_ES_ERR_SYS_LOG_FULL.
         """
-        line = to_bytes(f"{self._ports.time.text()} {text}")[: self._max_line].rstrip()
+        line = to_bytes(f"{self._ports.time.text()} {without_addresses(text)}")[: self._max_line].rstrip()
         status = self._append(line + b"\n")
         self._console.write(line.decode("utf-8", "replace"))
         return status

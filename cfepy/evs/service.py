@@ -30,6 +30,7 @@ from cfepy.status import (
     CFE_EVS_UNKNOWN_FILTER,
     CfeError,
 )
+from cfepy.texts import without_addresses
 
 PIPE_DEPTH = 32
 PIPE_NAME = "EVS_CMD_PIPE"
@@ -284,7 +285,7 @@ def _checked(event_id: int, text: str, values: tuple[object, ...]) -> str:
     if not isinstance(event_id, int) or not 0 <= event_id <= U16_MAX:
         raise CfeError(CFE_EVS_INVALID_PARAMETER, f"event id is {event_id!r}, it must be 0 to {U16_MAX}")
     try:
-        return text % values if values else text
+        return without_addresses(text % values if values else text)
     except (TypeError, ValueError) as error:
         raise CfeError(CFE_EVS_INVALID_PARAMETER, f"{text!r} does not go with {values}: {error}") from None
 

@@ -8,6 +8,7 @@ import traceback
 from pathlib import Path
 
 from cfepy.nodes.report import strip
+from cfepy.texts import without_addresses
 
 PACKAGE = str(Path(__file__).resolve().parents[1])
 SHARED = str(Path(PACKAGE) / "share")
@@ -36,7 +37,7 @@ def reason(error: BaseException) -> str:
     """
     frames = traceback.extract_tb(error.__traceback__, limit=-INNERMOST)
     own = [frame for frame in frames if not _is_ours(frame.filename)] or frames
-    what = traceback.format_exception_only(error)[-1].strip().partition("\n")[0].rstrip(":")
+    what = without_addresses(traceback.format_exception_only(error)[-1]).strip().partition("\n")[0].rstrip(":")
     return f"{what} ({Path(own[-1].filename).name}:{own[-1].lineno})" if own else what
 
 

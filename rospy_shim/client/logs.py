@@ -15,6 +15,7 @@ import sys
 from types import FrameType
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from cfepy.texts import without_addresses
 from cfepy.units import NS_PER_S
 from rospy_shim.client.exceptions import ROSException
 from rospy_shim.client.rostime import nanoseconds
@@ -165,7 +166,7 @@ def _message(node: Node, text: str, record: Any) -> Any:
     log.header.stamp = MessageTime(*divmod(node.clock.now_ns(), NS_PER_S))
     log.level = _ROS_LEVELS.get(record.levelno, _ROS_LEVELS[20])
     log.name = node.names.name
-    log.msg = text
+    log.msg = without_addresses(text)
     log.file, log.function, log.line = record.filename, record.funcName, record.lineno
     if not node.params.get_param("/rosout_disable_topics_generation", False):
         log.topics = list(dict.fromkeys([*node.links, *node.subscriptions]))
