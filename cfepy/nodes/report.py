@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,10 @@ if TYPE_CHECKING:
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _MESSAGES = os.path.join(os.path.dirname(_PACKAGE), "rospy_shim", "msgs", "")  # at work while a node imports
+_CFEPY = os.path.join(_PACKAGE, "")
+_ROSPY = tuple(
+    os.path.join(os.path.dirname(_PACKAGE), "rospy_shim", each) for each in ("runtime.py", "client", "graph")
+)
 _HIDDEN = (os.path.join(_PACKAGE, "nodes", ""), os.path.join(_PACKAGE, "rtos", ""), _MESSAGES, "<frozen importlib")
 
 
@@ -50,6 +55,7 @@ def hide_in(module: Any) -> None:
     for name in ("walk_tb", "_walk_tb_with_full_positions"):
         if hasattr(module, name):
             setattr(module, name, _without_hidden(getattr(module, name)))
+    module.walk_stack = _own_stack(module.walk_stack)
 
 
 def _without_hidden(walker: Callable[[Any], Iterable[Any]]) -> Callable[[Any], Iterator[Any]]:
@@ -59,3 +65,17 @@ def _without_hidden(walker: Callable[[Any], Iterable[Any]]) -> Callable[[Any], I
                 yield step
 
     return walk
+
+
+def _own_stack(walker: Callable[[Any], Iterable[Any]]) -> Callable[[Any], Iterator[Any]]:
+    """`walk_stack` up to the node's outermost frame: what lies below is another on threads than on greenlets."""
+
+    def walk_stack(start: Any) -> Iterator[Any]:
+        if start is None:  # the caller of who goes through the frames for it, as the original has it
+            start = sys._getframe().f_back.f_back.f_back.f_back  # type: ignore[union-attr]
+        steps = [step for step in walker(start) if not step[0].f_code.co_filename.startswith(_CFEPY)]
+        while steps and steps[-1][0].f_code.co_filename.startswith(_ROSPY):
+            steps.pop()
+        yield from steps
+
+    return walk_stack
