@@ -9,6 +9,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable
 from hashlib import blake2b
+from typing import SupportsIndex
 
 TIME = b"T"  # followed by the virtual time in ns, 8 bytes little-endian
 DISPATCH = b"S"  # followed by the task, 2 bytes
@@ -32,17 +33,53 @@ def mark(kind: bytes, number: int) -> bytes:
     return kind + (number & 0xFFFF).to_bytes(2, "little")
 
 
+class TimedRecords(list[bytes]):
+    """A trace's list of records that knows when each was made, for who shows them.
+
+    The records themselves tell the moves of the clock only, and a task that uses the CPU is further than that.
+
+    Attributes:
+        times: virtual time of each record in ns.
+        now: tells the virtual time in ns.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.times: list[int] = []
+        self.now: Callable[[], int] = lambda: 0
+
+    def append(self, record: bytes) -> None:
+        """As of a list."""
+        self.add(record, self.now())
+
+    def add(self, record: bytes, time_ns: int) -> None:
+        """Append one that was made then."""
+        self.times.append(time_ns)
+        super().append(record)
+
+    def pop(self, index: SupportsIndex = -1) -> bytes:
+        """As of a list."""
+        self.times.pop(index)
+        return super().pop(index)
+
+    def clear(self) -> None:
+        """As of a list."""
+        self.times.clear()
+        super().clear()
+
+
 class Trace:
     """Collects records; `digest()` is 128 bits of BLAKE2b over all of them.
 
     Args:
         sink: called with each batch of records, in order, before it is forgotten (a trace file, a detector).
+        records: the list in which they are collected; None makes a plain one.
     """
 
     __slots__ = ("_hash", "_sink", "append", "records")
 
-    def __init__(self, sink: Callable[[list[bytes]], None] | None = None) -> None:
-        self.records: list[bytes] = []
+    def __init__(self, sink: Callable[[list[bytes]], None] | None = None, records: TimedRecords | None = None) -> None:
+        self.records: list[bytes] = [] if records is None else records
         self.append = self.records.append
         self._hash = blake2b(digest_size=16)
         self._sink = sink

@@ -17,6 +17,7 @@ from cfepy.ground import SeriesRecorder, SeriesSet, bag_series, is_bag
 from cfepy.pilot import DEFAULT_S, Flown, RunPlan, fly
 from cfepy.rtos import Policy
 from cfepy.status import UsageError
+from cfepy.trace import Trace
 from cfepy.units import NS_PER_S
 
 
@@ -59,6 +60,7 @@ def look_at(
     arguments: argparse.Namespace,
     attachments: Sequence[Attachment],
     watched: Callable[[Policy], Policy] = lambda policy: policy,
+    trace: Trace | None = None,
 ) -> LookedAt:
     """Do the run that the command line names.
 
@@ -66,14 +68,15 @@ def look_at(
         arguments: of the command line.
         attachments: what watches the run.
         watched: makes the policy that is asked of the one that decides, of a schedule with some deviations from fifo.
+        trace: takes the records; None makes one.
 
     Raises:
         UsageError: there is no such run, or an option is for the other kind of source.
     """
     if _is_journal(arguments.source):
-        return _replay(arguments, attachments, watched)
+        return _replay(arguments, attachments, watched, trace)
     _refuse_from_disk(arguments)
-    return _fly(arguments, attachments, watched)
+    return _fly(arguments, attachments, watched, trace)
 
 
 def _refuse_from_disk(arguments: argparse.Namespace) -> None:
@@ -110,7 +113,10 @@ def _is_journal(source: str) -> bool:
 
 
 def _fly(
-    arguments: argparse.Namespace, attachments: Sequence[Attachment], watched: Callable[[Policy], Policy]
+    arguments: argparse.Namespace,
+    attachments: Sequence[Attachment],
+    watched: Callable[[Policy], Policy],
+    trace: Trace | None,
 ) -> LookedAt:
     plan = flight_plan(arguments)
     if arguments.until is not None:
@@ -118,11 +124,16 @@ def _fly(
     policy = plan.schedule.policy()
     if policy is not None and plan.schedule.deviations:
         policy = watched(policy)
-    return LookedAt(fly(plan, attachments=attachments, policy=policy), plan.command_line(), plan.schedule.text())
+    return LookedAt(
+        fly(plan, attachments=attachments, policy=policy, trace=trace), plan.command_line(), plan.schedule.text()
+    )
 
 
 def _replay(
-    arguments: argparse.Namespace, attachments: Sequence[Attachment], watched: Callable[[Policy], Policy]
+    arguments: argparse.Namespace,
+    attachments: Sequence[Attachment],
+    watched: Callable[[Policy], Policy],
+    trace: Trace | None,
 ) -> LookedAt:
     from cfepy.journal import Replay, read_journal, staged
 
@@ -133,7 +144,7 @@ def _replay(
         again = Replay(journal, stage, until_ns=until_ns)
         if again.policy is not None and journal.plan.schedule.deviations:
             again.policy = watched(again.policy)
-        flown = again.fly(attachments)
+        flown = again.fly(attachments, trace=trace)
     verdict = again.verdict
     warnings: tuple[str, ...] = ()
     if not verdict.same:

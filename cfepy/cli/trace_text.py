@@ -1,12 +1,14 @@
 """Records of a trace as text, a line each: virtual time, task, what happened.
 
-The time is that of the last move of the clock; on a board where computing costs time, a task may be a little further.
+The time is that of the record where the trace notes it (`TimedRecords`); else that of the last move of the clock, and a
+task that uses the CPU may be further.
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import repeat
 
 from cfepy import trace as tr
 from cfepy.ground import names_of
@@ -21,7 +23,7 @@ class TraceText:
     """Turns the records of one run, given in order, into lines.
 
     Attributes:
-        now_ns: virtual time of the last move of the clock.
+        now_ns: virtual time of the last record, or of the last move of the clock.
         task: name of the task that runs.
     """
 
@@ -37,13 +39,19 @@ class TraceText:
         """Learn names of tasks, pipes and messages from this mission."""
         self._mission = mission
         self._names = names_of(mission.spec)
+        records, kernel = mission.trace.records, mission.kernel
+        if isinstance(records, tr.TimedRecords):
+            records.now = lambda: kernel.now
 
     def lines(self, records: Sequence[bytes]) -> Iterator[str]:
         """A line for each record but those that move the clock, without its end."""
         self._learn()
-        for record in records:
+        times: Iterable[int | None] = records.times if isinstance(records, tr.TimedRecords) else repeat(None)
+        for record, time_ns in zip(records, times, strict=False):
             if not record:
                 continue  # what the host does leaves no mark
+            if time_ns is not None:
+                self.now_ns = time_ns
             what = self._packet(record) if record[0] < _FIRST_MARK else self._mark(record)
             if what is not None:
                 yield f"{self.now_ns // NS_PER_S}.{self.now_ns % NS_PER_S:09d} {self.task} {what}"

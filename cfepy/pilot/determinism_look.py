@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 from cfepy.mission import is_library, is_shown, is_standard
 from cfepy.nodes.sources import own_files
 from cfepy.syntax_trees import parsed
-from cfepy.trace import Trace
+from cfepy.trace import TimedRecords, Trace
 
 _SET_MAKERS = frozenset({"set", "frozenset"})
 _SET_METHODS = frozenset({"union", "intersection", "difference", "symmetric_difference"})
@@ -80,7 +80,7 @@ class Look:
         return own[-1] if own else None
 
 
-class _Counted(list[bytes]):
+class _Counted(TimedRecords):
     """A trace's list of records that calls `reached` with the record that has a certain number."""
 
     def __init__(self, index: int, reached: Callable[[bytes], object]) -> None:
@@ -106,22 +106,29 @@ class LookingTrace(Trace):
         seen: gets what was seen, inside the simulation.
     """
 
-    __slots__ = ("_before", "_describe", "_latest", "_seen")
+    __slots__ = ("_before", "_counted", "_describe", "_latest", "_seen")
 
     def __init__(
         self, index: int, describe: Callable[[list[bytes]], list[str]], seen: Callable[[Look], object]
     ) -> None:
-        super().__init__(self._keep)
+        counted = _Counted(index, self._look)
+        super().__init__(self._keep, counted)
         self._before = blake2b(digest_size=16)
-        self._latest: list[bytes] = []
+        self._latest = TimedRecords()
         self._describe = describe
         self._seen = seen
-        self.records = _Counted(index, self._look)
-        self.append = self.records.append
+        self._counted = counted
 
     def _keep(self, records: list[bytes]) -> None:
-        self._latest = [record for record in records if record]
+        self._latest = TimedRecords()
+        self._add_to(self._latest)
         self._before.update(b"".join(self._latest))
+
+    def _add_to(self, shown: TimedRecords) -> None:
+        """What was collected, but for the host's empty marks."""
+        for record, time_ns in zip(self._counted, self._counted.times, strict=True):
+            if record:
+                shown.add(record, time_ns)
 
     def _look(self, record: bytes) -> None:
         self._seen(self.look(record, sys._getframe(2)))
@@ -133,9 +140,12 @@ class LookingTrace(Trace):
             record: the record that is about to be made; empty at the end of the run.
             frame: of the code that makes it.
         """
-        waiting = [each for each in self.records if each]
-        self._before.update(b"".join(waiting))
-        lines = self._describe([*self._latest, *waiting, record])
+        shown = self._latest
+        known = len(shown)
+        self._add_to(shown)
+        self._before.update(b"".join(shown[known:]))
+        shown.add(record, self._counted.now())
+        lines = self._describe(shown)
         return Look(record, self._before.hexdigest(), tuple(lines), stack_of(frame), tuple(own_files()))
 
 

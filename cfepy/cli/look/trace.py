@@ -15,6 +15,7 @@ from cfepy.cli.looked_at import look_at
 from cfepy.cli.trace_text import TraceText
 from cfepy.mission import Mission
 from cfepy.status import UsageError
+from cfepy.trace import TimedRecords, Trace
 from cfepy.units import NS_PER_S
 
 _SEND = re.compile(r"send (0x[0-9A-F]{4}) (?:(.+) )?sequence \d+ length \d+")
@@ -70,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.perfetto is not None:
         return _write(arguments, arguments.perfetto)
     lines = Lines(sys.stdout, _filter(arguments))
-    looked_at = look_at(arguments, [lines])
+    looked_at = look_at(arguments, [lines], trace=Trace(records=TimedRecords()))
     if lines.error is not None:
         raise lines.error
     if not lines.count:

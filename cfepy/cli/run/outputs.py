@@ -22,7 +22,7 @@ from cfepy.contained_files import write_contained
 from cfepy.mission import Mission
 from cfepy.pilot import Flown, RunPlan
 from cfepy.status import UsageError
-from cfepy.trace import Trace
+from cfepy.trace import TimedRecords, Trace
 
 if TYPE_CHECKING:
     from cfepy.journal import JournalRecorder
@@ -46,7 +46,7 @@ class TraceFile(Recorder):
     def __init__(self, path: str) -> None:
         with writing(path, "--trace"):
             self._file = open(path, "w", encoding="utf-8")  # noqa: SIM115  # closed in __exit__
-        self.trace = Trace(self.write)
+        self.trace = Trace(self.write, TimedRecords())
         self._path = path
         self._text = TraceText()
         self._error: OSError | None = None
