@@ -40,7 +40,7 @@ def compose(samples: Iterable[Sample]) -> Rigid:
 
 
 def inverse(transform: Rigid) -> Rigid:
-    """The transform back."""
+    """The transform back. As in tf2 its rotation is multiplied by none, which decides the signs of zeros."""
     x, y, z, qx, qy, qz, qw = transform
     ax = qy * z - qw * x - qz * y
     ay = qz * x - qw * y - qx * z
@@ -50,9 +50,9 @@ def inverse(transform: Rigid) -> Rigid:
         ax * qw + aw * qx + ay * qz - az * qy,
         ay * qw + aw * qy + az * qx - ax * qz,
         az * qw + aw * qz + ax * qy - ay * qx,
-        -qx,
-        -qy,
-        -qz,
+        qw * 0.0 - qx - qy * 0.0 + qz * 0.0,
+        qw * 0.0 - qy - qz * 0.0 + qx * 0.0,
+        qw * 0.0 - qz - qx * 0.0 + qy * 0.0,
         qw,
     )
 

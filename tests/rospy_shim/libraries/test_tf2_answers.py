@@ -71,3 +71,21 @@ def test_the_recording_has_what_it_is_for() -> None:
     errors = {answer["error"] for answer in answers if "error" in answer}
     assert errors >= {"LookupException", "ConnectivityException", "ExtrapolationException", "InvalidArgumentException"}
     assert sum("numbers" in answer for answer in answers) > 50
+
+
+@pytest.mark.parametrize(
+    ("rotation", "back"),
+    [
+        ((0.0, 0.0, 0.0, 1.0), "0.0 0.0 0.0 1.0"),
+        ((0.0, 0.0, 0.0, -1.0), "0.0 0.0 0.0 -1.0"),
+        ((1.0, 0.0, 0.0, 0.0), "-1.0 0.0 0.0 0.0"),
+        ((-0.0, 0.0, 0.0, 1.0), "0.0 0.0 0.0 1.0"),
+        ((0.0, 0.0, math.sqrt(0.5), -math.sqrt(0.5)), "0.0 0.0 -0.7071067811865476 -0.7071067811865476"),
+    ],
+)
+def test_signs_of_zeros_in_a_transform_back(rotation: tuple[float, ...], back: str) -> None:
+    """Asked of tf2 0.7.6."""
+    buffer = tf2.BufferCore(rospy.Duration(10))
+    buffer.set_transform(stamped("a", "b", 1, [1.0, 0.0, 0.0, *rotation]), "")
+    found = buffer.lookup_transform_core("b", "a", moment(1)).transform.rotation
+    assert " ".join(map(repr, (found.x, found.y, found.z, found.w))) == back
