@@ -8,9 +8,11 @@ happens on a worker.
 from __future__ import annotations
 
 import logging
+import os
 import pickle
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
+from contextlib import contextmanager
 from importlib import import_module
 from queue import Empty, SimpleQueue
 from typing import Any
@@ -64,6 +66,17 @@ def make_crew(
     return Cluster(cluster, None if shipment is None else shipment(), longest_s)
 
 
+@contextmanager
+def _own_environment() -> Iterator[None]:
+    """Around what dask's nannies do: they write the variables of their workers into the environment of this process."""
+    before = dict(os.environ)
+    try:
+        yield
+    finally:
+        os.environ.clear()
+        os.environ.update(before)
+
+
 class Cluster:
     """A crew of dask workers.
 
@@ -114,7 +127,8 @@ class Cluster:
             pass  # the cluster went away; so did what this would have ended
         self._client.close()
         if self._local is not None:
-            self._local.close()
+            with _own_environment():
+                self._local.close()
 
     def _connected(self) -> Any:
         try:
@@ -139,7 +153,7 @@ class Cluster:
         # Port 0 is any free one: None would be the well-known 8787, which another cluster may have.
         options = {"threads_per_worker": 1, "processes": True, "host": "127.0.0.1", "dashboard_address": "127.0.0.1:0"}
         safe_path = {"distributed.nanny.pre-spawn-environ.PYTHONSAFEPATH": "1"}  # see `python_command`
-        with import_module("dask").config.set(safe_path):
+        with _own_environment(), import_module("dask").config.set(safe_path):
             return self._distributed.LocalCluster(n_workers=int(count), **options)
 
     def _set_up(self, trial: Experiment) -> None:

@@ -187,11 +187,14 @@ def open_ports() -> list[tuple[str, int]]:
 def test_a_cluster_of_this_computer_opens_no_well_known_port() -> None:
     first_of_any = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text().split()[0])
     before = set(open_ports())
+    environ = dict(os.environ)
     crew = Cluster("local:1")
     try:
+        assert dict(os.environ) == environ, "what workers are started with is not for this process"
         opened = set(open_ports()) - before
     finally:
         crew.close()
+    assert dict(os.environ) == environ
     assert opened
     assert {address for address, _ in opened} == {"0100007F"}  # 127.0.0.1
     assert [port for _, port in opened if port < first_of_any] == []
