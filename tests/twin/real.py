@@ -27,28 +27,29 @@ OPERATIONAL = b"entering OPERATIONAL state"
 CLONE_NEWNET = 0x40000000
 BOOT_LIMIT_S = 60.0
 NOT_LONGER_THAN_US = ("setpriv", "--pdeathsig", "KILL")  # also when nobody leaves the context
-INSIDE = """
+NAMESPACES = ("unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc")
+FURNISH = """
 mount -t tmpfs none /dev/shm
 mount -t mqueue none /dev/mqueue
 echo 1000 > /proc/sys/fs/mqueue/msg_max
 echo 10000 > /proc/sys/fs/mqueue/msgsize_max
 ip link set lo up
 ulimit -q unlimited
-while true; do "$@"; echo "process ended with $?"; done
 """
+FOREVER = FURNISH + 'while true; do "$@"; echo "process ended with $?"; done\n'
 
 
-def installed() -> Path | None:
-    """The folder of NASA's executable, as the environment variable CFEPY_REAL_CFE says.
+def installed(variable: str = VARIABLE) -> Path | None:
+    """The folder of NASA's executable, as an environment variable says.
 
     Raises:
         FileNotFoundError: the variable is set, and no executable is there.
     """
-    folder = os.environ.get(VARIABLE)
+    folder = os.environ.get(variable)
     if not folder:
         return None
     if not (Path(folder) / EXECUTABLE).exists():
-        raise FileNotFoundError(f"{VARIABLE}: no {EXECUTABLE} in {folder}")
+        raise FileNotFoundError(f"{variable}: no {EXECUTABLE} in {folder}")
     return Path(folder)
 
 
@@ -73,13 +74,10 @@ class RealCfe:
         self._log = folder / "console.log"
 
     def __enter__(self) -> RealCfe:
-        spaces = [
-            *NOT_LONGER_THAN_US,
-            *["unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"],
-        ]
+        spaces = [*NOT_LONGER_THAN_US, *NAMESPACES]
         with self._log.open("wb") as log:
             self._process = subprocess.Popen(
-                [*spaces, "bash", "-c", INSIDE, "-", f"./{EXECUTABLE}"], cwd=self._folder, stdout=log, stderr=log
+                [*spaces, "bash", "-c", FOREVER, "-", f"./{EXECUTABLE}"], cwd=self._folder, stdout=log, stderr=log
             )
         try:
             self.wait(lambda: OPERATIONAL in self.console(), "boot", BOOT_LIMIT_S)

@@ -8,29 +8,20 @@ the host's speed. Both sides write `answers.txt` with the same rules.
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import tempfile
 from pathlib import Path
 
+from tests.twin import real
+
 VARIABLE = "CFEPY_REAL_API"
 LIMIT_S = 300
-INSIDE = """
-mount -t tmpfs none /dev/shm
-mount -t mqueue none /dev/mqueue 2> /dev/null
-echo 1000 > /proc/sys/fs/mqueue/msg_max
-echo 10000 > /proc/sys/fs/mqueue/msgsize_max
-ip link set lo up
-exec ./core-cpu1 > console.txt 2>&1
-"""
-SPACES = ("unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc")
 
 
 def installed() -> Path | None:
     """The folder of the executable, as CFEPY_REAL_API says; None where there is none."""
-    folder = os.environ.get(VARIABLE)
-    return Path(folder) if folder else None
+    return real.installed(VARIABLE)
 
 
 def play(built: Path, script: list[str]) -> list[str]:
@@ -44,7 +35,8 @@ def play(built: Path, script: list[str]) -> list[str]:
         here = Path(folder) / "run"
         shutil.copytree(built, here)
         (here / "script.txt").write_text("\n".join(script) + "\n")
-        command = [*SPACES, "bash", "-c", INSIDE]
+        inside = f"{real.FURNISH}exec ./{real.EXECUTABLE} > console.txt 2>&1"
+        command = [*real.NAMESPACES, "bash", "-c", inside]
         subprocess.run(command, cwd=here, stdin=subprocess.DEVNULL, timeout=LIMIT_S, check=False)
         lines = (here / "answers.txt").read_text(errors="surrogateescape").splitlines()
         return lines[lines.index("begin") + 1 :]
