@@ -33,7 +33,7 @@ from cfepy.units import NS_PER_S
 
 STALL_S = 10.0
 LOOK_S, SOON_S = 0.25, 0.05  # wall time between two looks; when the run is being ended
-GRACE_S = 0.6  # wall time from the wish of the host's user until the run is broken off
+GRACE_S = 0.6  # CPU time from the wish of the host's user until the run is broken off; wall time of who uses no CPU
 SPUN_S = 0.3  # of it without a call: that is what the user is told then
 END_S = 0.8  # wall time in which all tasks of a run that was broken off have to end
 PRESS_S = 0.15  # of it that each of them may take
@@ -53,18 +53,32 @@ def to_stderr(text: str) -> None:
     sys.stderr.flush()
 
 
-def cpu_s() -> float:
-    """Seconds of CPU that the other threads of this process had, or were ready for while other programs had it.
+class Spent(NamedTuple):
+    """What a process has had of the computer's time so far, in seconds.
 
-    Only Linux tells the latter. Without it a computing task looks like a waiting one where many programs compute.
+    Attributes:
+        wall_s: of the wall clock.
+        used_s: of CPU.
+        ready_s: in which its threads, but for the calling one, were ready for a CPU that other programs had.
     """
-    used, own = time.process_time(), str(threading.get_native_id())
-    delay_ns = 0
+
+    wall_s: float
+    used_s: float
+    ready_s: float
+
+
+def spent() -> Spent:
+    """What this process has had.
+
+    Only Linux tells for how long threads were ready. Without it a computing task looks like a waiting one where many
+    programs compute.
+    """
+    own, delay_ns = str(threading.get_native_id()), 0
     with contextlib.suppress(OSError):
         for thread in os.listdir(THREADS):
             with contextlib.suppress(OSError, IndexError, ValueError), open(f"{THREADS}/{thread}/schedstat") as told:
                 delay_ns += int(told.read().split()[1]) if thread != own else 0
-    return used + delay_ns / NS_PER_S
+    return Spent(time.monotonic(), time.process_time(), delay_ns / NS_PER_S)
 
 
 class StallWatch:
@@ -82,6 +96,7 @@ class StallWatch:
         on_lost: called, in the thread of the watch, when a task cannot be ended that runs on the host's own thread, or
             a finalizer: only the end of the process ends it.
         last_resort: ends the process when this thread does not get to run any more; None leaves it.
+        spent: tells what this process has had of the computer's time.
     """
 
     def __init__(
@@ -95,6 +110,7 @@ class StallWatch:
         self.wanted: Callable[[], bool] = lambda: False
         self.on_lost: Callable[[BaseException], object] = self._tell_lost
         self.last_resort: LastResort | None = None
+        self.spent: Callable[[], Spent] = spent
         self._kernel = kernel
         self._is_own = is_own
         self._tell = tell
@@ -142,25 +158,35 @@ class StallWatch:
     # -- looking -----------------------------------------------------------------------------------------------------
 
     def _look_on(self) -> None:
-        over, clock, cpu = self._over, time.monotonic(), cpu_s()
+        over, before = self._over, self.spent()
         while not over.wait(interval := self._interval()):
-            now, used = time.monotonic(), cpu_s()
-            wall_s = min(now - clock, 2 * interval)  # this process may have been stopped
-            self._look(wall_s, used - cpu >= BUSY * wall_s)
-            clock, cpu = time.monotonic(), cpu_s()
+            now = self.spent()
+            wall_s = min(now.wall_s - before.wall_s, 2 * interval)  # this process may have been stopped
+            used_s = now.used_s - before.used_s
+            is_busy = used_s + now.ready_s - before.ready_s >= BUSY * wall_s
+            self._look(wall_s, is_busy, min(used_s, wall_s))
+            before = self.spent()
 
     def _interval(self) -> float:
-        if self._kernel.broken is not None or self._wanted_s:
+        if self._kernel.broken is not None or self.wanted():
             return SOON_S
         return min(LOOK_S, self.limit_s / 4) if self.limit_s else LOOK_S
 
-    def _look(self, wall_s: float, is_busy: bool) -> None:
+    def _look(self, wall_s: float, is_busy: bool, used_s: float) -> None:
+        """Look once.
+
+        Args:
+            wall_s: since the look before.
+            is_busy: the process used the CPU, or was ready for it.
+            used_s: CPU time since then. A run that is wanted to end is given some of that, so that it comes to the end
+                of its piece however busy the computer is; who waits for something uses none, and is given wall time.
+        """
         kernel = self._kernel
         self._arm()
         if self._is_paused or self._has_lost:
             self._stand = None
             return
-        self._wanted_s = self._wanted_s + wall_s if self.wanted() else 0.0
+        self._wanted_s = self._wanted_s + (used_s if is_busy else wall_s) if self.wanted() else 0.0
         self._stand = self._standing(wall_s, is_busy) if kernel.is_running else None
         if kernel.broken is not None:
             self._hurry(wall_s)

@@ -8,8 +8,9 @@ import signal
 import pytest
 
 import cfepy
-from cfepy.mission import PacketWatch, Seen
+from cfepy.mission import Mission, PacketWatch, Seen
 from cfepy.mission.pieces import FIRST_PIECE_NS, LEAST_PIECE_NS, LONG_NS, SHORT_NS, HeldBack, PieceLength
+from tests.rtos.helpers import Clocks
 
 TASKS = pytest.mark.parametrize("tasks", ["thread", "greenlet"])
 
@@ -41,6 +42,36 @@ def test_a_flight_goes_on_after_it(tasks: str, packet: int) -> None:
             flight.run_until(3)
         assert flight.now < 3
         flight.run_until(3)
+    assert flight.trace == usual.trace
+
+
+class LongPiece(PressedInTheBus):
+    """What happens at that packet then takes long on a busy computer."""
+
+    def __init__(self, packet: int, clocks: Clocks) -> None:
+        super().__init__(packet)
+        self._clocks = clocks
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        super().begin(mission)
+        mission.stall_watch.spent = self._clocks
+
+    def _take_packet(self, seen: Seen) -> None:
+        super()._take_packet(seen)
+        if not self.left:
+            self._clocks.wait_for_looks()
+
+
+@TASKS
+def test_a_flight_goes_on_after_it_however_busy_the_computer_is(tasks: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    with cfepy.boot("capture", tasks=tasks) as usual:
+        usual.run_until(2)
+    piece = LongPiece(300, Clocks(monkeypatch, used=0.0, ready=1.0))
+    with cfepy.boot("capture", tasks=tasks, attachments=[piece]) as flight:
+        with pytest.raises(KeyboardInterrupt):
+            flight.run_until(2)
+        flight.run_until(2)
     assert flight.trace == usual.trace
 
 

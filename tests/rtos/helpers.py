@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
+
+import pytest
+
+from cfepy.rtos import watchdog
+from cfepy.rtos.watchdog import GRACE_S, Spent
+
+LOOK_S = 0.01  # between two looks of a watch with `Clocks`
 
 
 class Log(list[str]):
@@ -14,3 +22,29 @@ class Log(list[str]):
     def writer(self, text: str) -> Callable[[], None]:
         """A task's entry point that writes one line."""
         return lambda: self.append(text)
+
+
+class Clocks:
+    """Clocks of the host for a stall watch, which tell what a test says: `watch.spent = Clocks(...)`.
+
+    Args:
+        monkeypatch: lets watches look often, so that the test is soon over.
+        used: share of a CPU that the process has.
+        ready: share of the time in which it is ready for one that other programs have.
+    """
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, used: float, ready: float) -> None:
+        monkeypatch.setattr(watchdog, "SOON_S", LOOK_S)
+        monkeypatch.setattr(watchdog, "LOOK_S", LOOK_S)
+        self._used, self._ready, self._wall_s = used, ready, 0.0
+
+    def __call__(self) -> Spent:
+        """As `cfepy.rtos.watchdog.spent`: each time the wall clock has gone further than a look may count."""
+        self._wall_s += 2 * LOOK_S
+        return Spent(self._wall_s, self._used * self._wall_s, self._ready * self._wall_s)
+
+    def wait_for_looks(self) -> None:
+        """Do not go on before the watch has seen twice the wall time that a run which is wanted to end is given."""
+        enough = self._wall_s + 2 * 2 * GRACE_S  # it looks at the clocks twice each time
+        while self._wall_s < enough:
+            threading.Event().wait(0.001)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import os
 import threading
@@ -14,8 +15,9 @@ import pytest
 
 from cfepy.rtos import Kernel, watchdog
 from cfepy.rtos.context import drain
-from cfepy.rtos.watchdog import StallWatch
+from cfepy.rtos.watchdog import Spent, StallWatch
 from cfepy.status import StallError
+from tests.rtos.helpers import Clocks
 
 LIMIT_S = 0.1  # how much of the computer's time a spinning task gets here
 
@@ -180,6 +182,22 @@ def test_a_wish_ends_what_makes_no_calls_and_what_makes_some(make_kernel: Callab
             watch.end()
 
 
+def test_a_wish_waits_while_other_programs_have_the_cpu(
+    make_kernel: Callable[[], Kernel], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for ready, used, broken in ((1.0, 0.0, False), (0.3, 0.7, True), (0.0, 0.0, True)):
+        clocks = Clocks(monkeypatch, used, ready)
+        with make_kernel() as kernel:
+            watch = watched(kernel)
+            watch.limit_s, watch.wanted, watch.spent = 0, lambda: True, clocks
+            kernel.spawn("computing", clocks.wait_for_looks)
+            watch.begin()
+            with pytest.raises((StallError, KeyboardInterrupt)) if broken else contextlib.nullcontext():
+                kernel.run(10)
+            assert (kernel.broken is not None) is broken
+            watch.end()
+
+
 def test_who_waits_for_something_outside_is_told_once_and_left_alone(make_kernel: Callable[[], Kernel]) -> None:
     reader, writer = os.pipe()
     told: list[str] = []
@@ -274,7 +292,7 @@ def test_the_watch_does_not_hold_a_task_that_has_ended() -> None:
         looked = threading.Event()
 
         def body() -> None:
-            watch._look(0.0, False)
+            watch._look(0.0, False, 0.0)
             looked.set()
 
         task = weakref.ref(kernel.spawn("task", body))
@@ -300,6 +318,7 @@ def test_time_in_which_others_have_the_cpu_counts(tmp_path: Path, monkeypatch: p
     (tmp_path / "4").mkdir()  # a thread that has just ended
     monkeypatch.setattr(watchdog, "THREADS", str(tmp_path))
     monkeypatch.setattr(time, "process_time", lambda: 1.0)
-    assert watchdog.cpu_s() == 3.5
+    monkeypatch.setattr(time, "monotonic", lambda: 9.0)
+    assert watchdog.spent() == Spent(wall_s=9.0, used_s=1.0, ready_s=2.5)
     monkeypatch.setattr(watchdog, "THREADS", str(tmp_path / "none"))
-    assert watchdog.cpu_s() == 1.0
+    assert watchdog.spent() == Spent(wall_s=9.0, used_s=1.0, ready_s=0.0)
