@@ -84,6 +84,11 @@ class Trace:
         self._hash = blake2b(digest_size=16)
         self._sink = sink
 
+    def take_times(self, now: Callable[[], int]) -> None:
+        """Records that know their times (`TimedRecords`) have them from this clock, in ns."""
+        if isinstance(self.records, TimedRecords):
+            self.records.now = now
+
     def also(self, sink: Callable[[list[bytes]], None]) -> None:
         """Add a second sink, which gets each batch of records after the present one."""
         first = self._sink

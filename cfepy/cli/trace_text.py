@@ -39,9 +39,6 @@ class TraceText:
         """Learn names of tasks, pipes and messages from this mission."""
         self._mission = mission
         self._names = names_of(mission.spec)
-        records, kernel = mission.trace.records, mission.kernel
-        if isinstance(records, tr.TimedRecords):
-            records.now = lambda: kernel.now
 
     def lines(self, records: Sequence[bytes]) -> Iterator[str]:
         """A line for each record but those that move the clock, without its end."""

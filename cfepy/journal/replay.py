@@ -6,10 +6,11 @@ A `Checker` compares the records with the checkpoints of the journal while the r
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from hashlib import blake2b
+from itertools import repeat
 
 from cfepy.attachment import Attachment
 from cfepy.console import Console
@@ -22,10 +23,10 @@ from cfepy.pilot import SUDDEN, Course, Flown, Host, Results, fly
 from cfepy.rtos import Policy
 from cfepy.script import ScriptRun
 from cfepy.status import StallError
-from cfepy.trace import UNSENT, Trace
+from cfepy.trace import UNSENT, TimedRecords, Trace
 
-Describe = Callable[[Sequence[bytes], int], list[str]]
-"""Makes lines of text of records that begin at a virtual time in ns."""
+Describe = Callable[[TimedRecords], list[str]]
+"""Makes lines of text of records."""
 
 
 class ReplayCourse(Course):
@@ -108,7 +109,7 @@ class Replay:
         stage: where its files are; it must last as long as the replay.
         tasks: what tasks run on; None as in the journal.
         until_ns: virtual time at which to end; None for the end of the run.
-        describe: makes text of what differs.
+        describe: makes text of what differs; None when nobody reads it.
 
     Attributes:
         journal, stage: as given.
@@ -130,7 +131,7 @@ class Replay:
         *,
         tasks: str | None = None,
         until_ns: int | None = None,
-        describe: Describe = lambda records, now_ns: [],
+        describe: Describe | None = None,
     ) -> None:
         self.journal = journal
         self.stage = stage
@@ -166,7 +167,7 @@ class Replay:
         Args:
             attachments: what watches the run.
             console: takes the lines; None drops them.
-            trace: takes the records.
+            trace: takes the records; their times are known where its list is `TimedRecords`.
             host: the host's side; None lets it go on by itself.
 
         Raises:
@@ -310,14 +311,14 @@ class Checker(Attachment):
     Args:
         checkpoints: of the journal.
         end: of the journal; None when the replay does not go that far.
-        describe: makes text of what differs.
+        describe: makes text of what differs, of a trace whose records know their times; None: nobody reads it.
 
     Attributes:
         agreed: how far the records are known to agree.
         difference: where they part; None as long as they do not.
     """
 
-    def __init__(self, checkpoints: Sequence[Checkpoint], end: End | None, describe: Describe) -> None:
+    def __init__(self, checkpoints: Sequence[Checkpoint], end: End | None, describe: Describe | None) -> None:
         self.agreed = Checkpoint(0, 0, "")
         self.difference: Difference | None = None
         self._end = end
@@ -325,7 +326,7 @@ class Checker(Attachment):
         self._coming = list(reversed(checkpoints))
         self._hash = blake2b(digest_size=16)
         self._count = 0
-        self._since: list[bytes] = []
+        self._since = TimedRecords()
         self._finished = False
         self._trace: Trace
 
@@ -355,7 +356,8 @@ class Checker(Attachment):
         is_over = not self._coming and self._end is None  # the replay goes on where the journal has ended
         if self._finished or is_over or self.difference is not None:
             return
-        rest = [record for record in records if record and record[:1] != UNSENT]
+        times: Iterable[int] = records.times if isinstance(records, TimedRecords) else repeat(0)
+        rest = [each for each in zip(records, times, strict=False) if each[0] and each[0][:1] != UNSENT]
         while self._coming and self.difference is None:
             missing = self._coming[-1].records - self._count
             if missing > len(rest):
@@ -365,10 +367,11 @@ class Checker(Attachment):
             self._compare(self._coming.pop())
         self._add(rest)
 
-    def _add(self, records: list[bytes]) -> None:
-        self._hash.update(b"".join(records))
+    def _add(self, records: Sequence[tuple[bytes, int]]) -> None:
+        self._hash.update(b"".join(record for record, _ in records))
         self._count += len(records)
-        self._since += records
+        for record, time_ns in records:
+            self._since.add(record, time_ns)
 
     def _compare(self, recorded: Checkpoint) -> None:
         if self._hash.hexdigest() == recorded.digest:
@@ -378,6 +381,6 @@ class Checker(Attachment):
             self._part(recorded)
 
     def _part(self, recorded: Checkpoint) -> None:
-        lines = self._describe(self._since, self.agreed.now_ns)
+        lines = self._describe(self._since) if self._describe is not None else ()
         self.difference = Difference(self.agreed, recorded, tuple(lines))
         self._since.clear()

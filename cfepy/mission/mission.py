@@ -113,7 +113,8 @@ class Mission:
         self.files = FileSystem(self.spec.folder)
         self.network = Network()
         switch_ns = self.board.cpu_costs().switch_ns
-        self.kernel = make_kernel(tasks, self.trace, policy, self.board.tick_ns, switch_ns, seed)
+        self.kernel = kernel = make_kernel(tasks, self.trace, policy, self.board.tick_ns, switch_ns, seed)
+        self.trace.take_times(lambda: kernel.now)
         self.outside = Outside(self.kernel, self.network, self.trace)
         self.outside.do = HostActs(self).do
         self.kernel.on_task_error = _while_there_is_one(self._task_failed, False)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.cli.journal import replay
 from cfepy.cli.main import main
 from cfepy.trace import TimedRecords
 
@@ -49,6 +50,19 @@ def test_a_line_has_the_time_at_which_it_was_made(
     assert told == times(file.read_text())
     assert len(told) == 3
     assert len({time for time, _ in told}) == 3
+    assert all(time == pytest.approx(known, abs=2e-5) for time, known in told)
+
+
+def test_a_replay_that_parts_tells_the_times_at_which_records_were_made(
+    mission: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(replay, "MOST_LINES", 10_000)
+    journal = str(tmp_path / "a.cfepy")
+    assert main(["run", str(mission), "--board", "rx64m", "--for", "1", "--quiet", "--record", journal]) == 0
+    (mission / "app.py").write_text(APP.replace("range(3)", "range(4)"))
+    assert main(["replay", journal, "--from-disk", "--quiet"]) == 1
+    told = times(re.sub("^  ", "", capsys.readouterr().err, flags=re.MULTILINE))
+    assert len({time for time, _ in told}) == 4
     assert all(time == pytest.approx(known, abs=2e-5) for time, known in told)
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from cfepy.journal.journal import Checkpoint
 from cfepy.journal.replay import Checker
-from cfepy.trace import UNSENT, Trace
+from cfepy.trace import UNSENT, TimedRecords, Trace
 
 RECORDS = [bytes([number + 1]) * 5 for number in range(12)]
 
@@ -23,10 +23,12 @@ def checkpoint(count: int) -> Checkpoint:
 def checked(records: Sequence[bytes], batches: Sequence[int]) -> Checker:
     """A checker with checkpoints after 3, 6, 9 and 12 records that got these, cut into batches."""
 
-    def describe(records: Sequence[bytes], at_ns: int) -> list[str]:
-        return [f"{record[0]} after {at_ns}" for record in records]
+    def describe(records: TimedRecords) -> list[str]:
+        return [f"{record[0]} at {time}" for record, time in zip(records, records.times, strict=True)]
 
-    checker, trace = Checker([checkpoint(count) for count in (3, 6, 9, 12)], None, describe), Trace()
+    checker = Checker([checkpoint(count) for count in (3, 6, 9, 12)], None, describe)
+    shown, clock = TimedRecords(), iter(range(len(records)))
+    shown.now, trace = lambda: next(clock), Trace(records=shown)
     checker.begin(cast(Any, SimpleNamespace(trace=trace)))
     left = list(records)
     for size in (*batches, len(left)):
@@ -55,7 +57,7 @@ def test_one_other_record_is_told_between_its_checkpoints(wrong: int, batches: t
     assert checker.difference is not None
     assert checker.difference.after.records == least
     assert checker.difference.before == checkpoint(least + 3)
-    assert f"255 after {least * 10}" in checker.difference.lines
+    assert f"255 at {wrong}" in checker.difference.lines
     assert len(checker.difference.lines) == 3
 
 

@@ -6,7 +6,8 @@ import argparse
 import contextlib
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from itertools import islice
 from typing import TYPE_CHECKING, TextIO
 
 from cfepy.attachment import Attachment
@@ -19,6 +20,7 @@ from cfepy.cli.trace_text import TraceText
 from cfepy.journal import Journal, Replay, ReplayVerdict, read_journal, staged
 from cfepy.mission import Mission
 from cfepy.pilot import LAUNCH, NODE, STALLED, SUDDEN
+from cfepy.trace import TimedRecords
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
@@ -61,13 +63,13 @@ class RecordLines(Attachment):
         """See `Attachment.begin`."""
         self._mission = mission
 
-    def describe(self, records: Sequence[bytes], now_ns: int) -> list[str]:
+    def describe(self, records: TimedRecords) -> list[str]:
         """The first lines of them."""
         text = TraceText()
-        text.now_ns, text.task = now_ns, "?"
+        text.task = "?"
         if self._mission is not None:
             text.watch(self._mission)
-        return list(text.lines(records[: 3 * MOST_LINES]))[:MOST_LINES]
+        return list(islice(text.lines(records), MOST_LINES))
 
 
 def run(arguments: argparse.Namespace) -> int:

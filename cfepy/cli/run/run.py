@@ -15,6 +15,7 @@ from cfepy.cli.run import report
 from cfepy.cli.run.outputs import Outputs, recording
 from cfepy.pilot import Flown, RunPlan, fly
 from cfepy.status import UsageError
+from cfepy.trace import TimedRecords, Trace
 
 if TYPE_CHECKING:
     from cfepy.journal import Replay
@@ -131,7 +132,8 @@ def fly_again(arguments: argparse.Namespace, replay: Replay, view: View) -> int:
         UsageError: it cannot run.
     """
     with Interrupts() as interrupts, Outputs(arguments) as outputs, WatchedHost(interrupts, view.display) as host:
-        flown = replay.fly(outputs.attachments, console=host.console, trace=outputs.trace, host=host)
+        trace = outputs.trace or Trace(records=TimedRecords())
+        flown = replay.fly(outputs.attachments, console=host.console, trace=trace, host=host)
     return _tell(flown, outputs, view, replay.why_over)
 
 
