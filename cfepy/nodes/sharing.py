@@ -23,14 +23,15 @@ if TYPE_CHECKING:
 
 # fmt: off
 FRESH = frozenset({
-    "_pydatetime", "_pyio", "_threading_local", "argparse", "asynchat", "asyncio", "asyncore", "bdb", "bz2", "cmd",
-    "code", "codeop", "concurrent", "configparser", "contextlib", "curses", "dbm", "email", "filecmp", "fileinput",
-    "ftplib", "genericpath", "getopt", "getpass", "glob", "gzip", "http", "imaplib", "json", "logging", "lzma",
-    "mailbox", "nntplib", "optparse", "pathlib", "pdb", "pickle", "platform", "poplib", "posixpath", "pprint",
-    "queue", "random", "runpy", "sched", "secrets", "selectors", "shelve", "shutil", "smtpd", "smtplib",
-    "socketserver", "statistics", "tarfile", "telnetlib", "tempfile", "threading", "timeit", "traceback",
-    "tracemalloc", "tty", "unittest", "urllib", "uuid", "warnings", "wave", "weakref", "wsgiref", "xmlrpc",
-    "zipfile",
+    "_pydatetime", "_pyio", "_threading_local", "aifc", "argparse", "asynchat", "asyncio", "asyncore", "bdb", "bz2",
+    "cProfile", "cmd", "code", "codeop", "concurrent", "configparser", "contextlib", "curses", "dbm", "email",
+    "filecmp", "fileinput", "ftplib", "genericpath", "getopt", "getpass", "gettext", "glob", "gzip", "http", "imaplib",
+    "imghdr", "json", "logging", "lzma", "mailbox", "mailcap", "mimetypes", "netrc", "nntplib", "optparse", "pathlib",
+    "pdb", "pickle", "platform", "poplib", "posixpath", "pprint", "profile", "pstats", "queue", "quopri", "random",
+    "runpy", "sched", "secrets", "selectors", "shelve", "shutil", "smtpd", "smtplib", "sndhdr", "socketserver",
+    "statistics", "sunau", "tarfile", "telnetlib", "tempfile", "threading", "timeit", "tokenize", "traceback",
+    "tracemalloc", "tty", "unittest", "urllib", "uu", "uuid", "warnings", "wave", "weakref", "wsgiref", "xml",
+    "xmlrpc", "zipapp", "zipfile",
 })
 # fmt: on
 """Modules of the standard library, by their first name, that each node executes for itself."""

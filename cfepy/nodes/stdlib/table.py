@@ -91,6 +91,16 @@ def _codecs(universe: Universe) -> ModuleType:
     return codecs_module(universe)
 
 
+def _fix_element_tree(universe: Universe, module: ModuleType) -> None:
+    """Its half in C knows comments by the host's functions: what was loaded last must not be it."""
+    from importlib import import_module
+    from xml.etree import ElementTree
+
+    names = {name: getattr(ElementTree, name) for name in ("Comment", "PI", "ProcessingInstruction")}
+    vars(module).update(names)
+    import_module("_elementtree")._set_factories(ElementTree.Comment, ElementTree.ProcessingInstruction)
+
+
 def _termios(universe: Universe) -> ModuleType:
     from cfepy.nodes.stdlib.terminal import termios_module
 
@@ -136,6 +146,7 @@ FIXES: Mapping[str, Callable[[Universe, ModuleType], None]] = {
     "concurrent.futures._base": futures.fix_futures,
     "random": random_module.fix_random,
     "threading": thread_module.fix_threading,
+    "xml.etree.ElementTree": _fix_element_tree,
     "traceback": lambda universe, module: hide_in(module),
 }
 """What is changed in modules of the standard library after their code has run for a node."""

@@ -99,6 +99,50 @@ def test_what_it_wrote_can_be_kept(node: Path, tmp_path: Path, capsys: pytest.Ca
     assert Path(log).read_text() == "WARNING:root:logged\n"
 
 
+LIBRARY = """
+import cProfile, mimetypes, netrc, os, pstats, rospy, tempfile, tokenize, zipapp
+from xml.dom import minidom
+from xml.etree import ElementInclude, ElementTree
+rospy.init_node("counter")
+scratch = tempfile.mkdtemp()
+path = lambda name: os.path.join(scratch, name)
+tree = ElementTree.ElementTree(ElementTree.fromstring("<a><b/></a>"))
+tree.getroot().append(ElementTree.Comment("said"))
+tree.write(path("tree.xml"))
+commented = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
+again = ElementTree.parse(path("tree.xml"), commented).getroot()
+assert again[1].tag is ElementTree.Comment and ElementTree.tostring(again) == b"<a><b /><!--said--></a>"
+assert minidom.parse(path("tree.xml")).documentElement.tagName == "a"
+assert ElementInclude.default_loader(path("tree.xml"), "xml").tag == "a"
+profile = cProfile.Profile()
+profile.runcall(len, "")
+profile.dump_stats(path("profile"))
+pstats.Stats(path("profile")).dump_stats(path("again"))
+os.mkdir(path("program"))
+with open(path("program/__main__.py"), "w") as file:
+    file.write("# nothing")
+with tokenize.open(path("program/__main__.py")) as file:
+    assert file.read() == "# nothing"
+zipapp.create_archive(path("program"))
+with open(path("netrc"), "w") as file:
+    file.write("machine arm login me password x")
+assert netrc.netrc(path("netrc")).hosts["arm"][0] == "me"
+with open(path("types"), "w") as file:
+    file.write("text/arm arm")
+assert mimetypes.read_mime_types(path("types"))[".arm"] == "text/arm"
+print(sorted(os.listdir(scratch)))
+"""
+
+
+def test_modules_of_the_standard_library_find_what_the_run_wrote(node: Path, tmp_path: Path) -> None:
+    node.write_text(LIBRARY)
+    flown = fly(plan_of(node))
+    assert printed(flown.mission.console.lines) == [
+        "['again', 'netrc', 'profile', 'program', 'program.pyz', 'tree.xml', 'types']"
+    ]
+    assert left(tmp_path) == ["home", "home/counter.py", "home/starts"]
+
+
 FORKED = """
 import os, rospy
 rospy.init_node("counter")
