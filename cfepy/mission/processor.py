@@ -19,6 +19,7 @@ from cfepy.es import Boot, CoreApp, EsTask, ExecutiveServices, ObjectTable
 from cfepy.evs import EventServices
 from cfepy.fs import FileServices
 from cfepy.mission.call_points import handle_for_apps
+from cfepy.mission.compiled_code import CompiledFiles
 from cfepy.mission.launch import scripts_of
 from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
 from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
@@ -35,6 +36,7 @@ from cfepy.time import TimeServices
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
+    from cfepy.c import CompiledLoader
     from cfepy.nodes import Overlay
     from rospy_shim.graph.graph import TopicRow
     from rospy_shim.runtime import RosRuntime
@@ -155,6 +157,7 @@ class Processor:
         return [
             BuiltInApps({ROS_FILE: self._ros_main}),
             NodeScripts(machine.files, folder, self._script_of, self._node_main),
+            CompiledFiles(machine.files, self._make_compiled_loader),
             *python_finders(python, machine.files, folder),
         ]
 
@@ -266,6 +269,14 @@ class Processor:
             network=machine.network,
             files=machine.node_files.of(machine),
         )
+
+    def _make_compiled_loader(self) -> CompiledLoader:
+        """What loads compiled code; a mission without any does not import it."""
+        from cfepy.c import CompiledLoader, CRuntime
+
+        machine = self.machine
+        runtime = CRuntime(self.cfe, self.handle, machine.kernel, self._costs.polling_ns, machine.console)
+        return CompiledLoader(runtime, machine.console)
 
     def _script_of(self, file: str) -> Path | None:
         """The script of a node that came with a launch file, or that another node has started."""

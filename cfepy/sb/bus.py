@@ -244,6 +244,17 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         self._records = kernel.trace.records if kernel.trace is not None else []
         self._flush = kernel.trace.flush if kernel.trace is not None else _nothing
 
+    def listen(self, listener: Callable[[bytes], object]) -> None:
+        """Call `listener` with each packet that is sent from now on, before any pipe gets it."""
+        record = self._record
+
+        def both(item: bytes) -> None:
+            listener(item)
+            if record is not None:
+                record(item)
+
+        self._record = both
+
     # -- transmitting ----------------------------------------------------------------------------------------------
 
     def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:

@@ -22,7 +22,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("psp", "msg", "fs"),
     ("es", "sb", "evs", "time", "tbl"),
     ("app", "attachment"),
-    ("nodes",),
+    ("nodes", "c"),
     ("rospy_shim", "apps"),
     ("mission",),
     ("ground",),

@@ -1,0 +1,110 @@
+"""CFE_SB_*: the Software Bus for C. What only looks at a message is the engine's (`engine/natives_msg.c`)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.c.api.pointers import name_into, need
+from cfepy.msg import set_msg_time
+from cfepy.status import (
+    CFE_ES_BAD_ARGUMENT,
+    CFE_SB_BAD_ARGUMENT,
+    CFE_SB_NO_MESSAGE,
+    CFE_SB_PIPE_CR_ERR,
+    CFE_SB_TIME_OUT,
+    CfeError,
+)
+
+if TYPE_CHECKING:
+    from cfepy.c.calls import Declarations
+    from cfepy.c.runtime import CRuntime
+
+BAD = CFE_SB_BAD_ARGUMENT
+TIMED_HEADER = 12
+"""Bytes of a telemetry header up to the end of its time."""
+
+
+def declare(api: Declarations, c: CRuntime) -> None:
+    """Add the functions; see `cfepy.c.api`."""
+    _declare_pipes(api, c)
+    _declare_subscriptions(api, c)
+    _declare_messages(api, c)
+    _declare_user_data(api, c)
+
+
+def _declare_pipes(api: Declarations, c: CRuntime) -> None:
+    sb, packets = c.handle.sb, c.packets
+
+    def create(depth: int, name: str | None) -> int:
+        need(CFE_SB_PIPE_CR_ERR, name)
+        return sb.create_pipe(depth, name or "")
+
+    def delete(pipe_id: int) -> None:
+        sb.delete_pipe(pipe_id)
+        packets.forget_pipe(pipe_id)
+
+    name_of = name_into(c.memory, sb.get_pipe_name, BAD, BAD)
+    api.add("CFE_SB_CreatePipe", "4Hs", create, BAD)
+    api.add("CFE_SB_DeletePipe", "I", delete)
+    api.add("CFE_SB_SetPipeOpts", "IB", sb.set_pipe_opts)
+    api.add("CFE_SB_GetPipeOpts", "I1", sb.get_pipe_opts, BAD)
+    api.add("CFE_SB_GetPipeName", "pQI", lambda at, size, pipe_id: name_of(at, pipe_id, size))
+    api.add("CFE_SB_GetPipeIdByName", "~4S", sb.get_pipe_id_by_name, BAD)
+    api.add("CFE_SB_PipeId_ToIndex", "I4", sb.pipe_id_to_index, CFE_ES_BAD_ARGUMENT)
+
+
+def _declare_subscriptions(api: Declarations, c: CRuntime) -> None:
+    sb = c.handle.sb
+    api.add("CFE_SB_Subscribe", "II", sb.subscribe)
+    api.add("CFE_SB_SubscribeEx", "IIHH", sb.subscribe_ex)
+    api.add("CFE_SB_SubscribeLocal", "IIH", sb.subscribe_local)
+    api.add("CFE_SB_Unsubscribe", "II", sb.unsubscribe)
+    api.add("CFE_SB_UnsubscribeLocal", "II", sb.unsubscribe_local)
+
+
+def _declare_messages(api: Declarations, c: CRuntime) -> None:
+    sb, packets, memory, time = c.handle.sb, c.packets, c.memory, c.handle.time
+    receive, image = sb.receive_buffer, packets.receive
+
+    def receive_buffer(pipe_id: int, timeout: int) -> int:
+        packet = receive(pipe_id, timeout)
+        if packet is None:
+            raise CfeError(CFE_SB_TIME_OUT if timeout else CFE_SB_NO_MESSAGE)
+        return image(pipe_id, packet)
+
+    def release(buffer: int) -> None:
+        need(BAD, buffer)
+        packets.release(buffer)
+
+    def transmit_buffer(buffer: int, is_origination: bool) -> None:
+        need(BAD, buffer)
+        packets.transmit(buffer, is_origination)
+
+    def time_stamp(message: int) -> None:
+        if message:
+            header = bytearray(memory.peek(message, TIMED_HEADER))
+            set_msg_time(header, time.get_time())
+            memory.poke(message, header)
+
+    api.add("CFE_SB_TransmitMsg", "$mb", sb.transmit_msg, BAD)
+    api.add("CFE_SB_ReceiveBuffer", "$~8Ii", receive_buffer, BAD)
+    api.add("CFE_SB_AllocateMessageBuffer", "Q", packets.allocate)
+    api.add("CFE_SB_ReleaseMessageBuffer", "p", release)
+    api.add("CFE_SB_TransmitBuffer", "$pb", transmit_buffer)
+    api.add("CFE_SB_TimeStampMsg", "$p", time_stamp)
+
+
+def _declare_user_data(api: Declarations, c: CRuntime) -> None:
+    """What the engine leaves to Python: lines in the system log."""
+    log = c.handle.es.write_to_sys_log
+
+    def no_user_data(message: int) -> int:
+        log("CFE_SB_GetUserData: Failed invalid arguments")
+        return 0
+
+    def bad_length(message: int, length: int) -> None:
+        what = "TotalMsgSize too large" if message else "invalid arguments"
+        log(f"CFE_SB_SetUserDataLength: Failed {what}")
+
+    api.add("CFE_SB_GetUserData", "p", no_user_data)
+    api.add("CFE_SB_SetUserDataLength", "pQ", bad_length)

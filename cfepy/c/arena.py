@@ -1,0 +1,84 @@
+"""The memory of C code: stretches at addresses that are the same in each run.
+
+A processor has a region of its own, of 8 GiB of address space, the lowest that no other living processor of this
+process has. In it memory is given out by whole pages, lowest first, with a gap of a page that nobody may touch behind
+each piece.
+"""
+
+from __future__ import annotations
+
+from bisect import insort
+
+from cfepy.c.engine import engine
+
+PAGE = 4096
+REGION = 8 << 30
+_FIRST = PAGE
+"""The first page of a region only holds its place."""
+
+
+def pages(size: int) -> int:
+    """Bytes of whole pages, at least one."""
+    return max(-(-size // PAGE), 1) * PAGE
+
+
+class Arena:
+    """The region of one processor.
+
+    Attributes:
+        base: its lowest address.
+    """
+
+    def __init__(self) -> None:
+        self._engine = engine()
+        self.base = self._take_region()
+        self._top = self.base + _FIRST + PAGE
+        self._free: list[tuple[int, int]] = []  # (address, bytes), in this order
+        self._sizes: dict[int, int] = {}
+
+    def _take_region(self) -> int:
+        """Whoever maps the first page of a region has it."""
+        low, high = self._engine.ARENA_LOW, self._engine.ARENA_HIGH
+        for base in range(low, high, REGION):
+            try:
+                self._engine.map(base, _FIRST)
+            except OSError:
+                continue
+            return base
+        raise MemoryError(f"{(high - low) // REGION} processors with compiled applications live in this process")
+
+    def map(self, size: int) -> int:
+        """New memory of zeros, readable and writable; its address.
+
+        Args:
+            size: bytes; rounded up to pages.
+        """
+        room = pages(size)
+        address = self._reuse(room)
+        if address is None:
+            address = self._top
+            if address + room > self.base + REGION:
+                raise MemoryError(f"no {size} bytes are left for compiled applications")
+            self._top += room + PAGE
+        self._engine.map(address, room)
+        self._sizes[address] = room
+        return address
+
+    def _reuse(self, room: int) -> int | None:
+        for number, (address, size) in enumerate(self._free):
+            if size == room:
+                del self._free[number]
+                return address
+        return None
+
+    def unmap(self, address: int) -> None:
+        """Give memory back that `map` gave."""
+        room = self._sizes.pop(address)
+        self._engine.unmap(address, room)
+        insort(self._free, (address, room))
+
+    def close(self) -> None:
+        """Give everything back, and the region with it."""
+        for address in list(self._sizes):
+            self._engine.unmap(address, self._sizes.pop(address))
+        self._engine.unmap(self.base, _FIRST)

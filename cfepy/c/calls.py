@@ -1,0 +1,90 @@
+"""The functions that C code can call: what the API declares, and the stubs in the arena through which it is called."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from cfepy.c.arena import PAGE, Arena
+from cfepy.c.engine import engine
+from cfepy.c.faults import CFault
+
+STUB = 32
+"""Bytes that are kept for one."""
+_STUB_PAGES = 16 * PAGE
+
+
+class Declared(NamedTuple):
+    """A function of the API: who answers, how its arguments are handed over, and what a NULL pointer is answered with.
+
+    `signature` has a letter for each parameter; the head of `engine/calls.c` tells them.
+    """
+
+    function: Callable[..., object] | None
+    signature: str
+    null_status: int
+
+
+class Declarations:
+    """The functions of the API, by name.
+
+    Attributes:
+        functions: what was declared.
+    """
+
+    def __init__(self) -> None:
+        self.functions: dict[str, Declared] = {name: Declared(None, "", 0) for name in engine().natives()}
+
+    def add(self, name: str, signature: str, function: Callable[..., object], null_status: int = 0) -> None:
+        """Declare a function; one that the engine has as well is asked only when the engine wants that."""
+        self.functions[name] = Declared(function, signature, null_status)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.functions
+
+
+class CallTable:
+    """The functions that were asked for so far, each behind a stub of its own.
+
+    Args:
+        arena: where stubs are.
+        table: the engine's table.
+        declared: the API.
+    """
+
+    def __init__(self, arena: Arena, table: Any, declared: Declarations) -> None:
+        self._arena = arena
+        self._table = table
+        self._declared = declared
+        self._stubs: dict[str, int] = {}
+        self._next = self._end = 0
+
+    def address(self, name: str) -> int:
+        """Where a function is called; one that nobody has is a fault of whoever calls it."""
+        stub = self._stubs.get(name)
+        if stub is None:
+            stub = self._stubs[name] = self._make(name)
+        return stub
+
+    def name_at(self, address: int) -> str | None:
+        """The function whose stub is at an address."""
+        return next((name for name, at in self._stubs.items() if at <= address < at + STUB), None)
+
+    def _make(self, name: str) -> int:
+        function, signature, null_status = self._declared.functions.get(name) or Declared(_absent(name), "", 0)
+        number = self._table.add(name, function, signature, null_status)
+        if self._next == self._end:
+            self._next = self._arena.map(_STUB_PAGES)
+            self._end = self._next + _STUB_PAGES
+            engine().protect(self._next, _STUB_PAGES, 7)
+        stub = self._next
+        engine().make_stub(stub, number)
+        self._next += STUB
+        return stub
+
+
+def _absent(name: str) -> Callable[[], object]:
+    def fail() -> None:
+        raise CFault(f"{name}() was called, which neither cfepy nor a library of the mission has")
+
+    return fail

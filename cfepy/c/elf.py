@@ -1,0 +1,179 @@
+"""Shared objects (ELF files): what one needs and has, read with pyelftools (the extra `cfepy[c]`)."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from io import BytesIO
+from pathlib import Path, PurePath
+from typing import Any
+
+from cfepy.status import UsageError
+
+MAGIC = b"\x7fELF"
+MACHINES = {"EM_X86_64": "x86_64", "EM_AARCH64": "aarch64"}
+
+
+def is_elf(file: Path) -> bool:
+    """Whether there is a file, and it is an ELF file."""
+    try:
+        with file.open("rb") as stream:
+            return stream.read(len(MAGIC)) == MAGIC
+    except OSError:
+        return False
+
+
+class ElfError(Exception):
+    """A file that is no shared object for this computer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """A stretch of the file that is loaded: `rights` are 4 read, 2 write, 1 execute."""
+
+    offset: int
+    address: int
+    file_size: int
+    memory_size: int
+    rights: int
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """A symbol: `is_defined` by this object; `address` counts from its base."""
+
+    name: str
+    address: int
+    size: int
+    is_defined: bool
+    is_weak: bool
+    kind: str
+
+
+@dataclass(frozen=True, slots=True)
+class Relocation:
+    """A word to be filled in: `symbol` is a number in the list of symbols."""
+
+    address: int
+    kind: int
+    symbol: int
+    addend: int
+
+
+@dataclass(slots=True)
+class SharedObject:
+    """A shared object as its file has it.
+
+    Attributes:
+        name: of its file, for errors.
+        data: its bytes.
+        segments: what is loaded.
+        symbols: those that the loader needs, by number.
+        relocations: words to be filled in.
+        needed: libraries that it was linked with.
+        functions_at_load: addresses of the array of functions to be called when it was loaded, and how many.
+        thread_local: (address, bytes in the file, bytes in memory, alignment) of its thread-local variables.
+    """
+
+    name: str
+    data: bytes
+    machine: str = ""
+    segments: list[Segment] = field(default_factory=list)
+    symbols: list[Symbol] = field(default_factory=list)
+    relocations: list[Relocation] = field(default_factory=list)
+    needed: list[str] = field(default_factory=list)
+    functions_at_load: tuple[int, int] = (0, 0)
+    function_at_load: int = 0
+    thread_local: tuple[int, int, int, int] | None = None
+
+    @property
+    def size(self) -> int:
+        """Bytes of memory from its base."""
+        return max(each.address + each.memory_size for each in self.segments)
+
+
+def _library() -> Any:
+    try:
+        from elftools.elf.elffile import ELFFile
+    except ImportError:
+        raise UsageError("compiled applications need pyelftools: pip install 'cfepy[c]'") from None
+    return ELFFile
+
+
+def read_shared_object(data: bytes, name: str) -> SharedObject:
+    """Read a shared object.
+
+    Args:
+        data: the file.
+        name: of the file, for errors.
+
+    Raises:
+        ElfError: it is none, or for another computer.
+        UsageError: pyelftools is not installed.
+    """
+    library = _library()
+    try:
+        return _read(library(BytesIO(data)), data, name)
+    except (ElfError, UsageError):
+        raise
+    except Exception as error:  # pyelftools raises its own errors, and those of what it finds: KeyError, UnicodeError
+        raise ElfError(f"{name}: damaged ELF file: {error}") from error
+
+
+def _read(elf: Any, data: bytes, name: str) -> SharedObject:
+    machine = MACHINES.get(elf["e_machine"], str(elf["e_machine"]))
+    found = f"a {elf.elfclass}-bit {'little' if elf.little_endian else 'big'}-endian file for {machine}"
+    if elf.elfclass != 64 or not elf.little_endian or machine != platform.machine():
+        raise ElfError(f"{name} is {found}; this computer runs 64-bit little-endian {platform.machine()}")
+    if elf["e_type"] != "ET_DYN":
+        raise ElfError(f"{name} is no shared object ({elf['e_type']}): link it with -shared")
+    made = SharedObject(PurePath(name).name, data, machine)
+    dynamic = None
+    for segment in elf.iter_segments():
+        head = segment.header
+        if head.p_type == "PT_LOAD":
+            made.segments.append(Segment(head.p_offset, head.p_vaddr, head.p_filesz, head.p_memsz, head.p_flags & 7))
+        elif head.p_type == "PT_DYNAMIC":
+            dynamic = segment
+        elif head.p_type == "PT_TLS":
+            made.thread_local = (head.p_vaddr, head.p_filesz, head.p_memsz, head.p_align)
+    if dynamic is None or not made.segments:
+        raise ElfError(f"{name} has nothing to load: link it with -shared")
+    _read_dynamic(made, dynamic)
+    return made
+
+
+def _read_dynamic(made: SharedObject, dynamic: Any) -> None:
+    tags: dict[str, int] = {}
+    for tag in dynamic.iter_tags():
+        if tag.entry.d_tag == "DT_NEEDED":
+            made.needed.append(tag.needed)
+        else:
+            tags.setdefault(tag.entry.d_tag, tag.entry.d_val)
+    if "DT_INIT_ARRAY" in tags:
+        made.functions_at_load = (tags["DT_INIT_ARRAY"], tags.get("DT_INIT_ARRAYSZ", 0) // 8)
+    made.function_at_load = tags.get("DT_INIT", 0)
+    made.symbols = list(_symbols(dynamic))
+    for table in dynamic.get_relocation_tables().values():
+        for each in table.iter_relocations():
+            entry = each.entry
+            if not each.is_RELA():
+                raise ElfError(f"{made.name}: relocations without addends, which this processor does not have")
+            made.relocations.append(
+                Relocation(entry["r_offset"], entry["r_info_type"], entry["r_info_sym"], entry["r_addend"])
+            )
+
+
+def _symbols(dynamic: Any) -> Iterator[Symbol]:
+    for each in dynamic.iter_symbols():
+        entry = each.entry
+        info = entry["st_info"]
+        yield Symbol(
+            each.name,
+            entry["st_value"],
+            entry["st_size"],
+            entry["st_shndx"] != "SHN_UNDEF",
+            info["bind"] == "STB_WEAK",
+            info["type"],
+        )

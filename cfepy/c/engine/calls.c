@@ -1,0 +1,315 @@
+/* Calls of an application that are answered by Python: what their arguments mean, and how results go back.
+ *
+ * A signature has a letter for each parameter of the C function.
+ *   in   i I int32 uint32   h H int16 uint16   B uint8   b bool   q int64   Q uint64, size_t
+ *        p pointer as a number, 0 for NULL   P the same, not NULL   s S text, None for NULL / not NULL
+ *        m message, as bytes, not NULL   t CFE_TIME_SysTime_t, as (seconds, subseconds)   f format and what follows
+ *        - is not handed over
+ *   out  1 2 4 8 so many bytes at the pointer   w z like 4 and 8, where the pointer may be NULL
+ * A NULL where there must not be one is answered with the status that the function was declared with; the others are not
+ * looked at then. Before the letters may be
+ *   = the Python function gives the status and then the outputs   ~ outputs become 0 when it raises a status
+ *   $ the call takes virtual time
+ * Otherwise the outputs alone, one value or a tuple; None and True are the status 0 and 1.
+ */
+#include "engine.h"
+
+#include <stdio.h>
+#include <string.h>
+
+HIDDEN PyObject *status_error, *fault_error, *on_preemption;
+
+enum { MOST_TEXT = 64 << 10, FORMATTED = 2048 };
+
+HIDDEN uint64_t argument(const Coroutine *coroutine, int number)
+{
+    if (number < REGISTER_ARGUMENTS)
+        return coroutine->arguments[number];
+    uint64_t value = 0;
+    engine_copy(&value, coroutine->stack_pointer + STACK_ARGUMENTS + number - REGISTER_ARGUMENTS, sizeof value);
+    return value;
+}
+
+/* ---- what pointers lead to ---------------------------------------------------------------------------------------- */
+
+HIDDEN PyObject *text_at(uint64_t address)
+{
+    char small[1024], *text = small;
+    size_t size = 0, room = sizeof small;
+    PyObject *result = NULL;
+    for (;;) { /* piece by piece: a text may end just before memory that is not there */
+        size_t piece = 64 - (address + size) % 64;
+        if (size + piece > room) {
+            char *more = room < MOST_TEXT ? PyMem_Malloc(room *= 8) : NULL;
+            if (more == NULL) {
+                PyErr_Format(fault_error, "a text at %p has no end", (void *)address);
+                break;
+            }
+            memcpy(more, text, size);
+            if (text != small)
+                PyMem_Free(text);
+            text = more;
+        }
+        if (engine_copy(text + size, (void *)(address + size), piece)) {
+            PyErr_Format(fault_error, "bad address %p of a text", (void *)address);
+            break;
+        }
+        char *end = memchr(text + size, 0, piece);
+        if (end != NULL) {
+            result = PyUnicode_DecodeUTF8(text, end - text, "surrogateescape");
+            break;
+        }
+        size += piece;
+    }
+    if (text != small)
+        PyMem_Free(text);
+    return result;
+}
+
+HIDDEN PyObject *message_at(uint64_t address)
+{
+    unsigned char header[6];
+    if (engine_copy(header, (void *)address, sizeof header))
+        return PyErr_Format(fault_error, "bad address %p of a message", (void *)address);
+    size_t size = (header[4] << 8 | header[5]) + 7;
+    PyObject *bytes = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)size);
+    if (bytes != NULL && engine_copy(PyBytes_AS_STRING(bytes), (void *)address, size)) {
+        Py_DECREF(bytes);
+        return PyErr_Format(fault_error, "a message of %zu bytes at %p reaches beyond its memory", size, (void *)address);
+    }
+    return bytes;
+}
+
+/* ---- formats ------------------------------------------------------------------------------------------------------ */
+
+/* A fault in here is the application's: a %s of a bad pointer, say. */
+static int format_guarded(Coroutine *coroutine, char *to, size_t room, const char *format, va_list list)
+{
+    Coroutine *before = running;
+    running = coroutine;
+    coroutine->is_native = true;
+    if (sigsetjmp(coroutine->native_fault, 0)) {
+        coroutine->is_native = false;
+        running = NULL;
+        PyErr_Format(fault_error, "bad address %p in a format or its arguments", (void *)coroutine->fault_address);
+        return -1;
+    }
+    int count = vsnprintf(to, room, format, list);
+    coroutine->is_native = false;
+    running = before;
+    return count < 0 ? 0 : count;
+}
+
+#if defined(__x86_64__)
+typedef struct {
+    unsigned gp_offset, fp_offset;
+    void *overflow_arg_area, *reg_save_area;
+} List;
+
+HIDDEN int format_text(Coroutine *coroutine, char *to, size_t room, const char *format, int fixed)
+{
+    struct {
+        uint64_t general[6];
+        struct { double low; uint64_t high; } floats[FLOAT_ARGUMENTS];
+    } saved;
+    memcpy(saved.general, coroutine->arguments, sizeof saved.general);
+    for (int i = 0; i < FLOAT_ARGUMENTS; i++)
+        saved.floats[i].low = coroutine->floats[i];
+    int in_registers = fixed < REGISTER_ARGUMENTS ? fixed : REGISTER_ARGUMENTS;
+    List made = {8u * in_registers, 48, coroutine->stack_pointer + STACK_ARGUMENTS + fixed - in_registers, &saved};
+    va_list list;
+    memcpy(list, &made, sizeof made);
+    return format_guarded(coroutine, to, room, format, list);
+}
+
+HIDDEN int format_list(Coroutine *coroutine, char *to, size_t room, const char *format, uint64_t address)
+{
+    va_list list;
+    if (engine_copy(list, (void *)address, sizeof(List))) {
+        PyErr_Format(fault_error, "bad address %p of a va_list", (void *)address);
+        return -1;
+    }
+    return format_guarded(coroutine, to, room, format, list);
+}
+#else
+typedef struct {
+    void *stack, *gr_top, *vr_top;
+    int gr_offs, vr_offs;
+} List;
+
+HIDDEN int format_text(Coroutine *coroutine, char *to, size_t room, const char *format, int fixed)
+{
+    struct { double low; uint64_t high; } floats[FLOAT_ARGUMENTS];
+    uint64_t general[REGISTER_ARGUMENTS];
+    memcpy(general, coroutine->arguments, sizeof general);
+    for (int i = 0; i < FLOAT_ARGUMENTS; i++)
+        floats[i].low = coroutine->floats[i];
+    List made = {coroutine->stack_pointer + STACK_ARGUMENTS, general + REGISTER_ARGUMENTS, floats + FLOAT_ARGUMENTS,
+                 -8 * (REGISTER_ARGUMENTS - fixed), -16 * FLOAT_ARGUMENTS};
+    va_list list;
+    memcpy(&list, &made, sizeof made);
+    return format_guarded(coroutine, to, room, format, list);
+}
+
+HIDDEN int format_list(Coroutine *coroutine, char *to, size_t room, const char *format, uint64_t address)
+{
+    va_list list;
+    if (engine_copy(&list, (void *)address, sizeof(List))) {
+        PyErr_Format(fault_error, "bad address %p of a va_list", (void *)address);
+        return -1;
+    }
+    return format_guarded(coroutine, to, room, format, list);
+}
+#endif
+
+static PyObject *formatted(Coroutine *coroutine, int fixed)
+{
+    char text[FORMATTED];
+    uint64_t format = argument(coroutine, fixed - 1);
+    if (format_text(coroutine, text, sizeof text, (const char *)format, fixed) < 0)
+        return NULL;
+    return PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "surrogateescape");
+}
+
+/* ---- one call ----------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    uint64_t at[MOST_PARAMETERS];
+    char kinds[MOST_PARAMETERS];
+    int count;
+} Outputs;
+
+static int size_of_output(char kind) { return kind == 'w' ? 4 : kind == 'z' ? 8 : kind - '0'; }
+
+static int write_output(const Outputs *outputs, int number, uint64_t value)
+{
+    uint64_t at = outputs->at[number];
+    if (at != 0 && engine_copy((void *)at, &value, size_of_output(outputs->kinds[number]))) {
+        PyErr_Format(fault_error, "bad address %p for a result", (void *)at);
+        return -1;
+    }
+    return 0;
+}
+
+static int put_output(const Outputs *outputs, int number, PyObject *value)
+{
+    uint64_t bits = PyLong_AsUnsignedLongLongMask(value);
+    return bits == (uint64_t)-1 && PyErr_Occurred() ? -1 : write_output(outputs, number, bits);
+}
+
+/* The Python form of a parameter; NULL with an exception, or without one for a NULL pointer that must not be. */
+static PyObject *argument_object(Coroutine *coroutine, char kind, int number)
+{
+    uint64_t value = argument(coroutine, number);
+    switch (kind) {
+    case 'i': return PyLong_FromLong((int32_t)value);
+    case 'I': return PyLong_FromUnsignedLong((uint32_t)value);
+    case 'h': return PyLong_FromLong((int16_t)value);
+    case 'H': return PyLong_FromLong((uint16_t)value);
+    case 'B': return PyLong_FromLong((uint8_t)value);
+    case 'b': return PyBool_FromLong((uint8_t)value);
+    case 'q': return PyLong_FromLongLong((int64_t)value);
+    case 'Q':
+    case 'p': return PyLong_FromUnsignedLongLong(value);
+    case 'P': return value ? PyLong_FromUnsignedLongLong(value) : NULL;
+    case 's': return value ? text_at(value) : Py_NewRef(Py_None);
+    case 'S': return value ? text_at(value) : NULL;
+    case 'm': return value ? message_at(value) : NULL;
+    case 't': return Py_BuildValue("(II)", (uint32_t)value, (uint32_t)(value >> 32));
+    case 'f': return value ? formatted(coroutine, number + 1) : NULL;
+    default: return PyErr_Format(PyExc_SystemError, "signature letter %c", kind);
+    }
+}
+
+/* The status of an exception that carries one; -1 when it is another exception, which stays. */
+static int take_status(Coroutine *coroutine, const Outputs *outputs, bool clears)
+{
+    if (!PyErr_ExceptionMatches(status_error))
+        return -1;
+    PyObject *type, *error, *trace;
+    PyErr_Fetch(&type, &error, &trace);
+    PyErr_NormalizeException(&type, &error, &trace);
+    PyObject *status = PyObject_GetAttrString(error, "status");
+    if (status != NULL)
+        coroutine->result = PyLong_AsUnsignedLongLongMask(status);
+    Py_XDECREF(status);
+    Py_XDECREF(type);
+    Py_XDECREF(error);
+    Py_XDECREF(trace);
+    for (int i = 0; clears && i < outputs->count; i++)
+        if (write_output(outputs, i, 0) < 0)
+            return -1;
+    return PyErr_Occurred() ? -1 : 0;
+}
+
+static int give_answer(Coroutine *coroutine, PyObject *answer, const Outputs *outputs, bool gives_status)
+{
+    coroutine->result = 0;
+    if (answer == Py_None)
+        return 0;
+    if (!PyTuple_Check(answer)) {
+        if (outputs->count > 0 && !gives_status)
+            return put_output(outputs, 0, answer);
+        coroutine->result = PyLong_AsUnsignedLongLongMask(answer);
+        return PyErr_Occurred() ? -1 : 0;
+    }
+    Py_ssize_t size = PyTuple_GET_SIZE(answer);
+    if (gives_status && size > 0)
+        coroutine->result = PyLong_AsUnsignedLongLongMask(PyTuple_GET_ITEM(answer, 0));
+    for (int i = 0; i < outputs->count && i + gives_status < size; i++)
+        if (put_output(outputs, i, PyTuple_GET_ITEM(answer, i + gives_status)) < 0)
+            return -1;
+    return PyErr_Occurred() ? -1 : 0;
+}
+
+/* Answer a call by its Python function; -1 with an exception that ends the coroutine. */
+HIDDEN int calls_serve(Coroutine *coroutine, const Function *function)
+{
+    PyObject *arguments[1 + MOST_PARAMETERS] = {NULL};
+    Outputs outputs = {.count = 0};
+    int given = 0, result = -1;
+    bool is_null = false;
+    const char *kinds = function->kinds;
+    for (int i = 0; kinds[i] && !is_null; i++) {
+        char kind = kinds[i];
+        if (kind == '-')
+            continue;
+        if ((kind >= '1' && kind <= '8') || kind == 'w' || kind == 'z') {
+            uint64_t at = argument(coroutine, i);
+            is_null = at == 0 && kind <= '8';
+            outputs.kinds[outputs.count] = kind;
+            outputs.at[outputs.count++] = at;
+            continue;
+        }
+        PyObject *object = argument_object(coroutine, kind, i);
+        if (object != NULL)
+            arguments[1 + given++] = object;
+        else if (PyErr_Occurred())
+            goto done;
+        else
+            is_null = true;
+    }
+    if (is_null) {
+        coroutine->result = function->null_status;
+        result = 0;
+        goto done;
+    }
+    if (function->costs && coroutine->table->charge != NULL) {
+        PyObject *charged = PyObject_CallNoArgs(coroutine->table->charge);
+        if (charged == NULL)
+            goto done;
+        Py_DECREF(charged);
+    }
+    PyObject *answer =
+        PyObject_Vectorcall(function->callable, arguments + 1, given | PY_VECTORCALL_ARGUMENTS_OFFSET, NULL);
+    if (answer == NULL)
+        result = take_status(coroutine, &outputs, function->clears_outputs);
+    else {
+        result = give_answer(coroutine, answer, &outputs, function->gives_status);
+        Py_DECREF(answer);
+    }
+done:
+    for (int i = 0; i < given; i++)
+        Py_DECREF(arguments[1 + i]);
+    return result;
+}

@@ -1,0 +1,134 @@
+/* What the parts of the engine share: compiled C code as coroutines of a Python program.
+ *
+ * The code of an application runs on a stack of its own. A call of a cFE, OSAL, PSP or libc function stores its
+ * arguments in the `Coroutine`, switches back to the host's stack, and is answered there: by C (`Native`), or by a
+ * Python function. Its result is handed over when the coroutine is resumed. So an application's stack holds nothing but
+ * what the application itself does: an exception leaves `run` and the stack is dropped, greenlets switch without
+ * copying frames of C, a fault lands in `run`, and what is left on the stack is the same in each run.
+ *
+ * All of this runs with the GIL held, so there is one coroutine at most that has the CPU: `running`.
+ */
+#ifndef CFEPY_ENGINE_H
+#define CFEPY_ENGINE_H
+
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define HIDDEN __attribute__((visibility("hidden")))
+
+/* What a coroutine wants when it gives up the CPU, in place of the number of a function. */
+enum { FINISHED = -1, FAULT = -2, PREEMPTED = -3 };
+
+#if defined(__x86_64__)
+enum { REGISTER_ARGUMENTS = 6, STACK_ARGUMENTS = 7 };  /* words from a stopped stack pointer to the arguments there */
+#else
+enum { REGISTER_ARGUMENTS = 8, STACK_ARGUMENTS = 20 };
+#endif
+enum { FLOAT_ARGUMENTS = 8 };
+
+/* The assembly knows the first eight members by their offsets. */
+typedef struct Coroutine {
+    uint64_t arguments[8];                     /* 0: as many as the processor passes in registers */
+    uint64_t *stack_pointer;                   /* 64: of the application, behind what the switch saved */
+    uint64_t *host_stack_pointer;              /* 72 */
+    uint64_t result;                           /* 80 */
+    int64_t wanted;                            /* 88: the function that is called, or one of the above */
+    double floats[FLOAT_ARGUMENTS];            /* 96 */
+    double float_result;                       /* 160 */
+    uint64_t host_float_modes, float_modes;    /* 168, 176 */
+    /* not known to the assembly */
+    char *stack;                               /* lowest byte */
+    size_t size;
+    int thread;
+    volatile bool is_native;                       /* a function of the engine runs on its behalf */
+    bool wants_python;                         /* said by a native: the Python function has to answer after all */
+    uint32_t owner;                            /* of what it allocates: an application */
+    sigjmp_buf native_fault;
+    int signal;
+    uint64_t fault_address, fault_pc, fault_stack_pointer;
+    struct Table *table;
+} Coroutine;
+
+struct Function;
+/* A call that is answered without Python; what it returns goes to the application. */
+typedef uint64_t (*Native)(Coroutine *, const struct Function *);
+
+enum { MOST_PARAMETERS = 12 };
+
+typedef struct Function {
+    PyObject *callable;                        /* or NULL */
+    Native native;                             /* or NULL; asked first */
+    void *target;                              /* what a native stands for, such as a function of libm */
+    uint64_t null_status;                      /* what a NULL is answered with, where one must not be */
+    char kinds[MOST_PARAMETERS + 1];
+    bool gives_status, clears_outputs, costs;
+} Function;
+
+/* The functions that the code of one processor can call, by number. */
+typedef struct Table {
+    PyObject_HEAD
+    Function *functions;
+    int count, room;
+    PyObject *charge;                          /* called before each function that costs virtual time; or NULL */
+    struct Heap *heap;                         /* malloc's */
+    uint32_t highest_msg_id, largest_message;
+    uint64_t ctype[3];                         /* of __ctype_b_loc, __ctype_toupper_loc, __ctype_tolower_loc */
+} Table;
+
+/* switch_*.S */
+extern HIDDEN Coroutine *running;
+HIDDEN void engine_resume(Coroutine *);
+HIDDEN void engine_reenter(Coroutine *);
+HIDDEN void engine_call(void);
+HIDDEN void engine_begin(void);
+HIDDEN void engine_land(void);
+HIDDEN int engine_copy(void *to, const void *from, size_t size);
+extern HIDDEN char engine_copy_end[], engine_copy_failed[];
+
+/* faults.c */
+enum { WATCH_MS = 50 };
+#define ARENA_LOW 0x1000000000ull              /* where all memory of C code is: arena.py divides it */
+#define ARENA_HIGH 0x5000000000ull
+HIDDEN int faults_begin(void);                 /* 0, or -1 with an exception */
+HIDDEN int faults_thread(void);                /* the calling thread is about to run C code; 0, or -1 */
+HIDDEN void faults_resume(Coroutine *);        /* let it run until it wants something; `running` stays set */
+HIDDEN void faults_raise(void);                /* the signal with which `engine_reenter` goes on */
+extern HIDDEN volatile uint64_t switches;
+extern HIDDEN volatile int running_thread;
+
+/* calls.c */
+extern HIDDEN PyObject *status_error, *fault_error, *on_preemption;
+HIDDEN int calls_serve(Coroutine *, const Function *);
+HIDDEN uint64_t argument(const Coroutine *, int number);
+HIDDEN int format_text(Coroutine *, char *to, size_t room, const char *format, int fixed);
+HIDDEN int format_list(Coroutine *, char *to, size_t room, const char *format, uint64_t list);
+HIDDEN PyObject *text_at(uint64_t address);
+HIDDEN PyObject *message_at(uint64_t address);
+extern HIDDEN PyTypeObject table_type;
+
+/* heap.c */
+typedef struct Heap Heap;
+extern HIDDEN PyTypeObject heap_type;
+HIDDEN uint64_t heap_take(Heap *, size_t);
+HIDDEN void heap_own(Heap *, uint32_t owner);    /* whose the blocks are that are taken from now on */
+HIDDEN bool heap_give(Heap *, uint64_t);
+HIDDEN size_t heap_size_of(Heap *, uint64_t);
+
+/* natives_*.c: their tables end with a row without a name */
+typedef struct {
+    const char *name;
+    Native native;
+    void *target;
+} NativeRow;
+extern HIDDEN const NativeRow natives_of_msg[], natives_of_libc[], natives_of_math[];
+#define NATIVE(function) static uint64_t function(Coroutine *call, const Function *self)
+#define POINTER(number) ((unsigned char *)call->arguments[number])
+#define WORD(number) (call->arguments[number])
+
+#endif

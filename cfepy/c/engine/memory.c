@@ -1,0 +1,100 @@
+/* Memory at fixed addresses, and the stubs through which an application calls. */
+#define _GNU_SOURCE
+#include "engine.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <string.h>
+#include <sys/mman.h>
+
+enum { CHARACTERS = 384, LOWEST = -128 };
+
+static bool is_in_arena(unsigned long long at, unsigned long long size)
+{
+    if (at >= ARENA_LOW && at < ARENA_HIGH && size <= ARENA_HIGH - at)
+        return true;
+    PyErr_Format(PyExc_ValueError, "%llu bytes at %p are not in the arena", size, (void *)at);
+    return false;
+}
+
+HIDDEN PyObject *memory_map(PyObject *module, PyObject *arguments)
+{
+    unsigned long long at, size;
+    if (!PyArg_ParseTuple(arguments, "KK", &at, &size) || !is_in_arena(at, size))
+        return NULL;
+    int flags = MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_FIXED_NOREPLACE;
+    void *memory = mmap((void *)at, size, PROT_READ | PROT_WRITE, flags, -1, 0);
+    if (memory == MAP_FAILED)
+        return PyErr_SetFromErrno(PyExc_OSError);
+    if (memory != (void *)at) { /* a kernel that does not know the flag takes the address as a wish */
+        munmap(memory, size);
+        errno = EEXIST;
+        return PyErr_SetFromErrno(PyExc_OSError);
+    }
+    Py_RETURN_NONE;
+}
+
+HIDDEN PyObject *memory_unmap(PyObject *module, PyObject *arguments)
+{
+    unsigned long long at, size;
+    if (!PyArg_ParseTuple(arguments, "KK", &at, &size) || !is_in_arena(at, size))
+        return NULL;
+    munmap((void *)at, size);
+    Py_RETURN_NONE;
+}
+
+HIDDEN PyObject *memory_protect(PyObject *module, PyObject *arguments)
+{
+    unsigned long long at, size;
+    int rights;
+    if (!PyArg_ParseTuple(arguments, "KKi", &at, &size, &rights) || !is_in_arena(at, size))
+        return NULL;
+    int protection = (rights & 4 ? PROT_READ : 0) | (rights & 2 ? PROT_WRITE : 0) | (rights & 1 ? PROT_EXEC : 0);
+    if (rights & 1)
+        __builtin___clear_cache((char *)at, (char *)at + size);
+    if (mprotect((void *)at, size, protection) != 0)
+        return PyErr_SetFromErrno(PyExc_OSError);
+    Py_RETURN_NONE;
+}
+
+HIDDEN PyObject *memory_clear(PyObject *module, PyObject *arguments)
+{
+    unsigned long long at, size;
+    if (!PyArg_ParseTuple(arguments, "KK", &at, &size) || !is_in_arena(at, size))
+        return NULL;
+    if (madvise((void *)at, size, MADV_DONTNEED) != 0)
+        return PyErr_SetFromErrno(PyExc_OSError);
+    Py_RETURN_NONE;
+}
+
+HIDDEN PyObject *memory_ctype(PyObject *module, PyObject *unused)
+{
+    return Py_BuildValue("(y#y#y#)", (const char *)(*__ctype_b_loc() + LOWEST), (Py_ssize_t)(CHARACTERS * 2),
+                         (const char *)(*__ctype_toupper_loc() + LOWEST), (Py_ssize_t)(CHARACTERS * 4),
+                         (const char *)(*__ctype_tolower_loc() + LOWEST), (Py_ssize_t)(CHARACTERS * 4));
+}
+
+/* The code of a stub: the number of its function, and a jump to engine_call. */
+HIDDEN PyObject *memory_make_stub(PyObject *module, PyObject *arguments)
+{
+    unsigned long long at;
+    unsigned number;
+    if (!PyArg_ParseTuple(arguments, "KI", &at, &number) || !is_in_arena(at, 32))
+        return NULL;
+    uint64_t target = (uint64_t)engine_call;
+#if defined(__x86_64__)
+    unsigned char code[] = {0x41, 0xBB, 0, 0, 0, 0,             /* mov r11d, number */
+                            0x49, 0xBA, 0, 0, 0, 0, 0, 0, 0, 0, /* mov r10, engine_call */
+                            0x41, 0xFF, 0xE2};                  /* jmp r10 */
+    memcpy(code + 2, &number, 4);
+    memcpy(code + 8, &target, 8);
+#else
+    uint32_t code[] = {0xD2800010u | (number & 0xFFFF) << 5,    /* movz x16, number */
+                       0xF2A00010u | (number >> 16) << 5,       /* movk x16, number >> 16, lsl 16 */
+                       0x58000051u,                             /* ldr x17, 8 bytes on */
+                       0xD61F0220u,                             /* br x17 */
+                       (uint32_t)target, (uint32_t)(target >> 32)};
+#endif
+    memcpy((void *)at, code, sizeof code);
+    return PyLong_FromSize_t(sizeof code);
+}

@@ -1,0 +1,360 @@
+/* `Table` and `run`: the functions that an application may call, and its code on a stack of its own. */
+#include "engine.h"
+
+#include <string.h>
+
+/* ---- Table -------------------------------------------------------------------------------------------------------- */
+
+static const NativeRow *find_native(const char *name)
+{
+    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math};
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+        for (const NativeRow *row = lists[i]; row->name != NULL; row++)
+            if (strcmp(row->name, name) == 0)
+                return row;
+    return NULL;
+}
+
+static PyObject *table_add(Table *table, PyObject *arguments)
+{
+    PyObject *callable;
+    const char *name, *signature;
+    long long null_status;
+    if (!PyArg_ParseTuple(arguments, "sOsL", &name, &callable, &signature, &null_status))
+        return NULL;
+    if (table->count == table->room) {
+        int more = table->room ? 2 * table->room : 512;
+        Function *functions = PyMem_Realloc(table->functions, more * sizeof *functions);
+        if (functions == NULL)
+            return PyErr_NoMemory();
+        table->functions = functions;
+        table->room = more;
+    }
+    Function made = {.null_status = (uint64_t)null_status};
+    for (; *signature && strchr("=~$", *signature); signature++) {
+        made.gives_status |= *signature == '=';
+        made.clears_outputs |= *signature == '~';
+        made.costs |= *signature == '$';
+    }
+    if (strlen(signature) > MOST_PARAMETERS || strspn(signature, "iIhHBbqQpPsSmtf-1248wz") != strlen(signature))
+        return PyErr_Format(PyExc_ValueError, "bad signature %s of %s", signature, name);
+    strcpy(made.kinds, signature);
+    const NativeRow *row = find_native(name);
+    if (row != NULL) {
+        made.native = row->native;
+        made.target = row->target;
+    }
+    if (callable != Py_None)
+        made.callable = Py_NewRef(callable);
+    else if (row == NULL)
+        return PyErr_Format(PyExc_ValueError, "nobody answers %s", name);
+    table->functions[table->count] = made;
+    return PyLong_FromLong(table->count++);
+}
+
+static int table_traverse(Table *table, visitproc visit, void *arg)
+{
+    for (int i = 0; i < table->count; i++)
+        Py_VISIT(table->functions[i].callable);
+    Py_VISIT(table->charge);
+    Py_VISIT((PyObject *)table->heap);
+    return 0;
+}
+
+static int table_clear(Table *table)
+{
+    for (int i = 0; i < table->count; i++)
+        Py_CLEAR(table->functions[i].callable);
+    Py_CLEAR(table->charge);
+    PyObject *heap = (PyObject *)table->heap;
+    table->heap = NULL;
+    Py_XDECREF(heap);
+    return 0;
+}
+
+static void table_dealloc(Table *table)
+{
+    PyObject_GC_UnTrack(table);
+    table_clear(table);
+    PyMem_Free(table->functions);
+    Py_TYPE(table)->tp_free(table);
+}
+
+static PyObject *table_new(PyTypeObject *type, PyObject *arguments, PyObject *options)
+{
+    static char *names[] = {"heap", "charge", "highest_msg_id", "largest_message", "ctype", NULL};
+    PyObject *heap, *charge;
+    unsigned highest, largest;
+    unsigned long long ctype[3];
+    if (!PyArg_ParseTupleAndKeywords(arguments, options, "O!OII(KKK)", names, &heap_type, &heap, &charge, &highest, &largest,
+                                     &ctype[0], &ctype[1], &ctype[2]))
+        return NULL;
+    Table *table = (Table *)type->tp_alloc(type, 0);
+    if (table != NULL) {
+        table->heap = (Heap *)Py_NewRef(heap);
+        table->charge = charge == Py_None ? NULL : Py_NewRef(charge);
+        table->highest_msg_id = highest;
+        table->largest_message = largest;
+        for (int i = 0; i < 3; i++)
+            table->ctype[i] = ctype[i];
+    }
+    return (PyObject *)table;
+}
+
+static PyMethodDef table_methods[] = {
+    {"add", (PyCFunction)table_add, METH_VARARGS,
+     "add(name, callable, signature, null_status) -> number; callable may be None for what the engine does itself"},
+    {NULL, NULL, 0, NULL},
+};
+HIDDEN PyTypeObject table_type = {
+    PyVarObject_HEAD_INIT(NULL, 0).tp_name = "cfepy.c._engine.Table",
+    .tp_basicsize = sizeof(Table),
+    .tp_flags = Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_GC,
+    .tp_new = table_new,
+    .tp_dealloc = (destructor)table_dealloc,
+    .tp_traverse = (traverseproc)table_traverse,
+    .tp_clear = (inquiry)table_clear,
+    .tp_methods = table_methods,
+    .tp_doc = "Table(heap, charge, highest_msg_id, largest_message, ctype): the functions that C code can call",
+};
+
+/* ---- run ---------------------------------------------------------------------------------------------------------- */
+
+enum { ENTRY_ARGUMENTS = 6 };
+
+static int fault_found(Coroutine *coroutine)
+{
+    uint64_t caller = 0; /* where a function was called that faulted, or that is not there */
+    if (coroutine->is_native || coroutine->fault_pc < ARENA_LOW || coroutine->fault_pc >= ARENA_HIGH) {
+        const uint64_t *at = coroutine->is_native ? coroutine->stack_pointer + STACK_ARGUMENTS - 1
+                                                  : (const uint64_t *)coroutine->fault_stack_pointer;
+        if (engine_copy(&caller, at, sizeof caller))
+            caller = 0;
+    }
+    coroutine->is_native = false;
+    PyObject *what = Py_BuildValue(
+        "(iKKKL)", coroutine->signal, (unsigned long long)coroutine->fault_pc, (unsigned long long)caller,
+        (unsigned long long)coroutine->fault_address,
+        (long long)(coroutine->fault_stack_pointer - (uint64_t)coroutine->stack));
+    PyErr_SetObject(fault_error, what);
+    Py_XDECREF(what);
+    return -1;
+}
+
+static __attribute__((noinline)) int serve_native(Coroutine *coroutine, const Function *function)
+{
+    if (sigsetjmp(coroutine->native_fault, 0))
+        return fault_found(coroutine);
+    coroutine->wants_python = false;
+    coroutine->is_native = true;
+    coroutine->result = function->native(coroutine, function);
+    coroutine->is_native = false;
+    return PyErr_Occurred() ? -1 : 0;
+}
+
+static int serve(Coroutine *coroutine)
+{
+    if (coroutine->wanted == PREEMPTED) {
+        running = NULL;
+        PyObject *answer = PyObject_CallNoArgs(on_preemption);
+        Py_XDECREF(answer);
+        return answer == NULL ? -1 : 0;
+    }
+    if (coroutine->wanted == FAULT)
+        return fault_found(coroutine);
+    const Function *function = &coroutine->table->functions[coroutine->wanted];
+    if (function->native != NULL) {
+        if (serve_native(coroutine, function) < 0)
+            return -1;
+        if (!coroutine->wants_python || function->callable == NULL)
+            return 0;
+    }
+    Function copy = *function; /* the table may grow meanwhile */
+    running = NULL;
+    Py_INCREF(copy.callable);
+    int result = calls_serve(coroutine, &copy);
+    Py_DECREF(copy.callable);
+    return result;
+}
+
+static void prepare(Coroutine *coroutine, uint64_t function, const uint64_t *values)
+{
+    uint64_t *top = (uint64_t *)((uint64_t)(coroutine->stack + coroutine->size) & ~15ull);
+#if defined(__x86_64__)
+    top -= 9; /* six registers, the address to begin at, the sixth argument; aligned to 16 at that */
+    top[0] = values[2]; /* r15 */
+    top[1] = values[1]; /* r14 */
+    top[2] = values[0]; /* r13 */
+    top[3] = function;  /* r12 */
+    top[4] = values[3]; /* rbx */
+    top[5] = values[4]; /* rbp */
+    top[6] = (uint64_t)engine_begin;
+    top[7] = values[5];
+    coroutine->float_modes = 0x1F80ull | 0x37Full << 32;
+#else
+    top -= STACK_ARGUMENTS;
+    top[0] = function; /* x19 */
+    for (int i = 0; i < ENTRY_ARGUMENTS; i++)
+        top[1 + i] = values[i]; /* x20 and on */
+    top[11] = (uint64_t)engine_begin; /* x30 */
+    coroutine->float_modes = 0;
+#endif
+    coroutine->stack_pointer = top;
+}
+
+static PyObject *run(PyObject *module, PyObject *const *arguments, Py_ssize_t count)
+{
+    uint64_t values[ENTRY_ARGUMENTS] = {0};
+    if (count != 6 || !Py_IS_TYPE(arguments[0], &table_type) || !PyTuple_Check(arguments[2]) ||
+        PyTuple_GET_SIZE(arguments[2]) > ENTRY_ARGUMENTS) {
+        PyErr_SetString(PyExc_TypeError, "run(table, function, arguments, stack, size, owner)");
+        return NULL;
+    }
+    for (Py_ssize_t i = 0; i < PyTuple_GET_SIZE(arguments[2]); i++)
+        values[i] = PyLong_AsUnsignedLongLongMask(PyTuple_GET_ITEM(arguments[2], i));
+    uint64_t function = PyLong_AsUnsignedLongLongMask(arguments[1]);
+    Coroutine *coroutine = PyMem_Calloc(1, sizeof *coroutine); /* not on this stack, which greenlets move away */
+    if (coroutine == NULL)
+        return PyErr_NoMemory();
+    coroutine->table = (Table *)Py_NewRef(arguments[0]);
+    coroutine->stack = (char *)PyLong_AsUnsignedLongLongMask(arguments[3]);
+    coroutine->size = PyLong_AsSize_t(arguments[4]);
+    coroutine->owner = (uint32_t)PyLong_AsUnsignedLongMask(arguments[5]);
+    PyObject *result = NULL;
+    if (!PyErr_Occurred() && faults_thread() == 0) {
+        prepare(coroutine, function, values);
+        do
+            faults_resume(coroutine);
+        while (coroutine->wanted != FINISHED && serve(coroutine) == 0);
+        running = NULL;
+        if (coroutine->wanted == FINISHED && !PyErr_Occurred())
+            result = PyLong_FromUnsignedLongLong(coroutine->arguments[0]);
+    }
+    Py_DECREF(coroutine->table);
+    PyMem_Free(coroutine);
+    return result;
+}
+
+/* ---- memory ------------------------------------------------------------------------------------------------------- */
+
+static PyObject *bad_address(uint64_t at) { return PyErr_Format(fault_error, "bad address %p", (void *)at); }
+
+static PyObject *peek(PyObject *module, PyObject *const *arguments, Py_ssize_t count)
+{
+    uint64_t at = PyLong_AsUnsignedLongLongMask(arguments[0]);
+    Py_ssize_t size = count == 2 ? PyLong_AsSsize_t(arguments[1]) : -1;
+    if (PyErr_Occurred())
+        return NULL;
+    if (size < 0 || (uint64_t)size > ARENA_HIGH)
+        return PyErr_Format(fault_error, "%zd bytes at %p", size, (void *)at);
+    unsigned char probe; /* of a huge size, the last byte shows whether it is worth while */
+    if (size > 0 && engine_copy(&probe, (void *)(at + size - 1), 1))
+        return bad_address(at + size - 1);
+    PyObject *bytes = PyBytes_FromStringAndSize(NULL, size);
+    if (bytes != NULL && engine_copy(PyBytes_AS_STRING(bytes), (void *)at, (size_t)size)) {
+        Py_DECREF(bytes);
+        return bad_address(at);
+    }
+    return bytes;
+}
+
+static PyObject *poke(PyObject *module, PyObject *const *arguments, Py_ssize_t count)
+{
+    Py_buffer view;
+    if (count != 2 || PyObject_GetBuffer(arguments[1], &view, PyBUF_SIMPLE) < 0)
+        return NULL;
+    uint64_t at = PyLong_AsUnsignedLongLongMask(arguments[0]);
+    int is_bad = engine_copy((void *)at, view.buf, (size_t)view.len);
+    PyBuffer_Release(&view);
+    if (is_bad)
+        return bad_address(at);
+    Py_RETURN_NONE;
+}
+
+static PyObject *text(PyObject *module, PyObject *address) { return text_at(PyLong_AsUnsignedLongLongMask(address)); }
+
+static PyObject *view(PyObject *module, PyObject *const *arguments, Py_ssize_t count)
+{
+    return PyMemoryView_FromMemory((char *)PyLong_AsUnsignedLongLongMask(arguments[0]), PyLong_AsSsize_t(arguments[1]),
+                                   PyBUF_WRITE);
+}
+
+static PyObject *address_of(PyObject *module, PyObject *object)
+{
+    Py_buffer buffer;
+    if (PyObject_GetBuffer(object, &buffer, PyBUF_SIMPLE) < 0)
+        return NULL;
+    PyObject *address = PyLong_FromVoidPtr(buffer.buf);
+    PyBuffer_Release(&buffer);
+    return address;
+}
+
+/* memory.c */
+HIDDEN PyObject *memory_map(PyObject *, PyObject *), *memory_unmap(PyObject *, PyObject *);
+HIDDEN PyObject *memory_protect(PyObject *, PyObject *), *memory_clear(PyObject *, PyObject *);
+HIDDEN PyObject *memory_ctype(PyObject *, PyObject *), *memory_make_stub(PyObject *, PyObject *);
+
+static PyObject *has_native(PyObject *module, PyObject *name)
+{
+    const char *text = PyUnicode_AsUTF8(name);
+    return text == NULL ? NULL : PyBool_FromLong(find_native(text) != NULL);
+}
+
+static PyObject *natives(PyObject *module, PyObject *unused)
+{
+    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math};
+    PyObject *names = PyList_New(0);
+    for (size_t i = 0; names != NULL && i < sizeof lists / sizeof *lists; i++)
+        for (const NativeRow *row = lists[i]; row->name != NULL; row++) {
+            PyObject *name = PyUnicode_FromString(row->name);
+            if (name == NULL || PyList_Append(names, name) < 0)
+                Py_CLEAR(names);
+            Py_XDECREF(name);
+        }
+    return names;
+}
+
+static PyObject *begin(PyObject *module, PyObject *arguments)
+{
+    PyObject *status, *fault, *preemption;
+    if (!PyArg_ParseTuple(arguments, "OOO", &status, &fault, &preemption))
+        return NULL;
+    Py_XSETREF(status_error, Py_NewRef(status));
+    Py_XSETREF(fault_error, Py_NewRef(fault));
+    Py_XSETREF(on_preemption, Py_NewRef(preemption));
+    if (faults_begin() < 0)
+        return NULL;
+    Py_RETURN_NONE;
+}
+
+static PyMethodDef methods[] = {
+    {"begin", begin, METH_VARARGS, "begin(status error, fault error, what is called while C code computes)"},
+    {"run", (PyCFunction)(void *)run, METH_FASTCALL, "run(table, function, arguments, stack, size, owner) -> result"},
+    {"peek", (PyCFunction)(void *)peek, METH_FASTCALL, "peek(address, size) -> bytes"},
+    {"poke", (PyCFunction)(void *)poke, METH_FASTCALL, "poke(address, bytes)"},
+    {"text", text, METH_O, "text(address) -> str"},
+    {"view", (PyCFunction)(void *)view, METH_FASTCALL, "view(address, size) -> memoryview"},
+    {"address_of", address_of, METH_O, "address_of(buffer) -> address"},
+    {"map", memory_map, METH_VARARGS, "map(address, size): zeros, readable and writable, exactly there"},
+    {"unmap", memory_unmap, METH_VARARGS, "unmap(address, size)"},
+    {"protect", memory_protect, METH_VARARGS, "protect(address, size, rights): 4 read, 2 write, 1 execute"},
+    {"clear", memory_clear, METH_VARARGS, "clear(address, size): zeros again"},
+    {"ctype", memory_ctype, METH_NOARGS, "ctype() -> the tables of <ctype.h>, as bytes from index -128 on"},
+    {"make_stub", memory_make_stub, METH_VARARGS, "make_stub(address, number) -> size: code there that calls a function"},
+    {"has_native", has_native, METH_O, "has_native(name) -> whether the engine has such a function"},
+    {"natives", natives, METH_NOARGS, "natives() -> names of the functions that the engine answers"},
+    {NULL, NULL, 0, NULL},
+};
+static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT, "_engine", "Compiled C code as coroutines of Python.", -1, methods};
+
+PyMODINIT_FUNC PyInit__engine(void)
+{
+    PyObject *module = PyModule_Create(&definition);
+    if (module == NULL || PyType_Ready(&heap_type) < 0 || PyType_Ready(&table_type) < 0 ||
+        PyModule_AddObjectRef(module, "Heap", (PyObject *)&heap_type) < 0 ||
+        PyModule_AddObjectRef(module, "Table", (PyObject *)&table_type) < 0 ||
+        PyModule_AddIntConstant(module, "ARENA_LOW", ARENA_LOW) < 0 ||
+        PyModule_AddIntConstant(module, "ARENA_HIGH", ARENA_HIGH) < 0)
+        return NULL;
+    return module;
+}

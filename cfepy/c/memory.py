@@ -1,0 +1,63 @@
+"""What Python code does with memory of C: reading and writing structures, texts and numbers at addresses."""
+
+from __future__ import annotations
+
+from struct import Struct
+
+from cfepy.c.engine import engine
+from cfepy.texts import to_bytes
+
+_U32, _U64 = Struct("<I"), Struct("<Q")
+
+
+class Memory:
+    """The memory of C code. A bad address is a `CFault` of whoever gave it.
+
+    Attributes:
+        peek: (address, size) -> bytes.
+        poke: (address, bytes).
+        text: (address) -> the text up to its NUL.
+        view: (address, size) -> the bytes themselves, as a memoryview.
+        address_of: where the bytes of a buffer are.
+    """
+
+    __slots__ = ("address_of", "peek", "poke", "text", "view")
+
+    def __init__(self) -> None:
+        made = engine()
+        self.peek, self.poke, self.text = made.peek, made.poke, made.text
+        self.view, self.address_of = made.view, made.address_of
+
+    def u32(self, address: int) -> int:
+        """The uint32 at an address."""
+        return int(_U32.unpack(self.peek(address, 4))[0])
+
+    def u64(self, address: int) -> int:
+        """The uint64, size_t or pointer at an address."""
+        return int(_U64.unpack(self.peek(address, 8))[0])
+
+    def put_u32(self, address: int, value: int) -> None:
+        """Write a uint32."""
+        self.poke(address, _U32.pack(value & 0xFFFFFFFF))
+
+    def put_u64(self, address: int, value: int) -> None:
+        """Write a uint64, size_t or pointer."""
+        self.poke(address, _U64.pack(value & 0xFFFFFFFFFFFFFFFF))
+
+    def unpack(self, layout: Struct, address: int) -> tuple[object, ...]:
+        """The fields of a structure."""
+        return layout.unpack(self.peek(address, layout.size))
+
+    def put_text(self, address: int, text: str, size: int) -> bool:
+        """Write a text into an array of `size` characters, cut so that a NUL follows; whether it was whole.
+
+        The array is filled up with NULs.
+        """
+        raw = to_bytes(text)
+        self.poke(address, chars(text, size))
+        return len(raw) < size
+
+
+def chars(text: str, size: int) -> bytes:
+    """A text as an array of `size` characters, cut so that a NUL follows, filled up with NULs."""
+    return to_bytes(text)[: size - 1].ljust(size, b"\0")

@@ -1,0 +1,164 @@
+"""`CRuntime`: all C code of one processor: its images, its memory, the functions that it calls, and how it is run."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from cfepy.app import Cfe
+from cfepy.c.arena import Arena
+from cfepy.c.calls import CallTable, Declarations
+from cfepy.c.elf import SharedObject
+from cfepy.c.engine import engine
+from cfepy.c.faults import CFault, explained
+from cfepy.c.image import Image
+from cfepy.c.memory import Memory
+from cfepy.c.packets import PacketImages
+from cfepy.c.stacks import LEAST, Stacks
+from cfepy.console import Console
+from cfepy.rtos import Kernel
+from cfepy.status import CfeError
+
+HEAP = 1 << 30
+"""Bytes of address space for malloc, and as many for messages."""
+CALLBACK_STACK = 65536
+SLACK = 64
+"""Bytes behind a message buffer that may be written by mistake: NASA's pool has blocks of a few sizes."""
+
+
+class CRuntime:
+    """The C side of a processor.
+
+    Args:
+        cfe: the services.
+        handle: the services as applications reach them, with their scheduling points.
+        kernel: the processor.
+        polling_ns: what a call costs with which code may wait by asking again and again.
+        console: for printf.
+
+    Attributes:
+        arena, memory, packets: the parts of the memory.
+        images: what is loaded, by the name of the application or the path of the library.
+    """
+
+    def __init__(self, cfe: Cfe, handle: Cfe, kernel: Kernel, polling_ns: int, console: Console) -> None:
+        from cfepy.c.api import declare
+
+        made = engine()
+        made.begin(CfeError, CFault, _let_others_in)
+        self.cfe = cfe
+        self.handle = handle
+        self.kernel = kernel
+        self.console = console
+        self.arena = Arena()
+        self.memory = Memory()
+        self._stacks = Stacks(self.arena)
+        self._heap = made.Heap(self.arena.map(HEAP), HEAP)
+        self.packets = PacketImages(made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK), handle.sb, cfe.sb)
+        config = cfe.es.config
+        self.table = made.Table(
+            heap=self._heap,
+            charge=partial(kernel.charge, polling_ns) if polling_ns else None,
+            highest_msg_id=config.sb_highest_valid_msg_id,
+            largest_message=config.sb_max_msg_size,
+            ctype=self._ctype_tables(),
+        )
+        self.declared = Declarations()
+        declare(self.declared, self)
+        self._calls = CallTable(self.arena, self.table, self.declared)
+        self.libraries: dict[str, Image] = {}
+        self.applications: dict[str, Image] = {}
+
+    def _ctype_tables(self) -> tuple[int, ...]:
+        """Copies of the tables of <ctype.h>: cells that point to their element 0."""
+        cells = []
+        for raw, width in zip(engine().ctype(), (2, 4, 4), strict=True):
+            at = self.arena.map(len(raw) + 8)
+            self.memory.poke(at + 8, raw)
+            self.memory.put_u64(at, at + 8 + 128 * width)
+            cells.append(at)
+        return tuple(cells)
+
+    # -- code --------------------------------------------------------------------------------------------------------
+
+    def load(self, source: SharedObject) -> Image:
+        """Load a shared object anew and call what it wants to be called at load."""
+        image = Image(source, self.arena, self._resolve)
+        for function in image.functions_at_load:
+            self.run(function)
+        return image
+
+    def forget_application(self, name: str) -> None:
+        """Take the code of an application out of memory: it is at its end, or about to be started again."""
+        image = self.applications.pop(name, None)
+        if image is not None:
+            image.unload()
+
+    def _resolve(self, name: str) -> int:
+        for image in self.libraries.values():
+            if name in image.symbols:
+                return image.symbols[name]
+        return self._calls.address(name)
+
+    def missing(self, source: SharedObject) -> list[str]:
+        """Names that an object needs and nobody has."""
+        return [
+            each.name
+            for each in source.symbols
+            if each.name
+            and not each.is_defined
+            and not each.is_weak
+            and each.name not in self.declared
+            and not any(each.name in image.symbols for image in self.libraries.values())
+        ]
+
+    # -- running -----------------------------------------------------------------------------------------------------
+
+    def run(self, function: int, *args: int, stack: int = 0, size: int = CALLBACK_STACK) -> int:
+        """Call a C function in the current task, on a stack of its own; what it returns, as a uint64.
+
+        Args:
+            function: its address.
+            args: at most six numbers or pointers.
+            stack: the lowest address of a stack that the application brings; 0 for one of the arena.
+            size: its bytes.
+
+        Raises:
+            CFault: the code failed.
+        """
+        owner = getattr(self.kernel.current.owner, "app_id", 0)
+        given, room = (stack, size) if stack else self._stacks.take(size)
+        try:
+            return int(engine().run(self.table, function, args, given, room, owner))
+        except CFault as fault:
+            raise explained(fault, self.place_of) from None
+        finally:
+            if not stack:
+                self._stacks.give(given, room)
+
+    def run_main(self, function: int) -> None:
+        """Run the main function of an application, on a stack of the size that its startup line says."""
+        params = getattr(self.kernel.current.owner, "params", None)
+        self.run(function, size=getattr(params, "stack_size", LEAST))
+
+    def status(self, function: int, *args: int) -> int:
+        """As `run`, for a function that returns an int32."""
+        result = self.run(function, *args) & 0xFFFFFFFF
+        return result - (result >> 31 << 32)
+
+    def place_of(self, address: int) -> str:
+        """Where an address of code is, in words."""
+        for image in (*self.applications.values(), *self.libraries.values()):
+            if address in image:
+                return image.name_at(address)
+        return self._calls.name_at(address) or f"0x{address:x}"
+
+    def close(self) -> None:
+        """The processor is at its end: give all memory back."""
+        self.applications.clear()
+        self.libraries.clear()
+        self.packets.close()
+        self.arena.close()
+
+
+def _let_others_in() -> None:
+    """Called while C code computes for long: Python does here what waits, such as Ctrl-C, or another thread's turn."""

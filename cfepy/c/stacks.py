@@ -1,0 +1,36 @@
+"""Stacks for C code, each with a page below that nobody may touch."""
+
+from __future__ import annotations
+
+from cfepy.c.arena import PAGE, Arena, pages
+from cfepy.c.engine import engine
+
+LEAST = 16384
+"""PTHREAD_STACK_MIN: what OSAL on Linux gives a task at least."""
+
+
+class Stacks:
+    """Stacks of an arena. One that was given back is zeros again: what a task finds on its stack is the same each time.
+
+    Args:
+        arena: where they are.
+    """
+
+    def __init__(self, arena: Arena) -> None:
+        self._arena = arena
+        self._free: dict[int, list[int]] = {}
+
+    def take(self, size: int) -> tuple[int, int]:
+        """A stack of at least `size` bytes: lowest address, bytes."""
+        room = pages(max(size, LEAST))
+        free = self._free.setdefault(room, [])
+        if free:
+            return free.pop(), room
+        below = self._arena.map(room + PAGE)
+        engine().protect(below, PAGE, 0)
+        return below + PAGE, room
+
+    def give(self, stack: int, size: int) -> None:
+        """Give one back."""
+        engine().clear(stack, size)
+        self._free[size].append(stack)

@@ -1,0 +1,57 @@
+"""Compiled code of applications and libraries: ELF files where a startup script names them.
+
+An ELF file is never taken for anything else: when it cannot be loaded, the application fails, and no Python file of the
+same name stands in for it. What loads it, `cfepy.c`, is imported when there is one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from cfepy.mission.loader import Code, Finder
+from cfepy.osal import FileSystem
+
+if TYPE_CHECKING:
+    from cfepy.c import CompiledLoader
+
+ELF = b"\x7fELF"
+
+
+class CompiledFiles(Finder):
+    """Finds shared objects in the mission's folder, and those that the mission itself wrote.
+
+    Args:
+        files: of the mission.
+        make_loader: makes what loads them, for the first one.
+    """
+
+    def __init__(self, files: FileSystem, make_loader: Callable[[], CompiledLoader]) -> None:
+        self._files = files
+        self._make_loader = make_loader
+        self._loader: CompiledLoader | None = None
+
+    def find(self, file: str, symbol: str | None) -> Code | None:
+        """See `Finder.find`."""
+        data = self._data(file)
+        if data is None:
+            return None
+        if self._loader is None:
+            self._loader = self._make_loader()
+        return self._loader.code(file, data)
+
+    def exists(self, file: str) -> bool:
+        """See `Finder.exists`."""
+        return self._data(file) is not None
+
+    def forget(self) -> None:
+        """See `Finder.forget`."""
+        if self._loader is not None:
+            self._loader.runtime.close()
+            self._loader = None
+
+    def _data(self, file: str) -> bytes | None:
+        node = self._files.find(file)
+        if node is None or bytes(node.data[: len(ELF)]) != ELF:
+            return None
+        return bytes(node.data)
