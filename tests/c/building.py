@@ -1,0 +1,82 @@
+"""Compiled applications for tests: C text to a shared object, and missions that fly it."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from cfepy.c.engine import compiler
+from cfepy.console import Console
+from cfepy.mission import Mission
+
+HERE = Path(__file__).parent
+FLAGS = ("-shared", "-fPIC", "-g", "-O1", "-Wall", "-Werror", "-fno-builtin", f"-I{HERE}")
+
+needs_compiler = pytest.mark.skipif(shutil.which(compiler()[0]) is None, reason="there is no C compiler")
+"""For modules that compile C."""
+
+APP = "CFE_APP, {0}, {0}_Main, {0}, 50, 16384, 0x0, {1};\n"
+
+
+def compile_c(folder: Path, name: str, source: str, *flags: str) -> Path:
+    """Compile C text to `folder/NAME.so`.
+
+    Args:
+        folder: where to.
+        name: of the file, without suffix.
+        source: the text, indented as it stands in the test; `declarations.h` is included before it.
+        flags: of the compiler, more than those that all tests have.
+    """
+    text = folder / f"{name}.c"
+    text.write_text(f'#include "declarations.h"\n#line 1 "{name}.c"\n{textwrap.dedent(source).lstrip()}')
+    made = folder / f"{name}.so"
+    command = [*compiler(), *FLAGS, *flags, str(text), "-o", str(made)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return made
+
+
+def write_mission(folder: Path, *names: str, action: int = 0, libraries: str = "") -> str:
+    """The startup script of a mission whose applications are NAME.so, with the main functions NAME_Main.
+
+    Args:
+        folder: of the mission.
+        names: of the applications.
+        action: what an exception does: 0 restarts the application, 1 resets the processor.
+        libraries: lines of libraries, which come first.
+
+    Returns:
+        What `Mission` takes.
+    """
+    (folder / "startup.scr").write_text(libraries + "".join(APP.format(name, action) for name in names) + "!")
+    return str(folder)
+
+
+def fly(folder: str, seconds: float = 2, tasks: str = "thread", **options: object) -> Mission:
+    """Fly a mission to its end."""
+    mission = Mission(folder, console=Console(quiet=True), tasks=tasks, **options)  # type: ignore[arg-type]
+    try:
+        mission.run_for(seconds)
+    finally:
+        mission.close()
+    return mission
+
+
+def fly_c(folder: Path, source: str, seconds: float = 2, *, flags: tuple[str, ...] = (), tasks: str = "thread") -> str:
+    """Fly an application TEST whose text has TEST_Main; what the console shows."""
+    compile_c(folder, "TEST", source, *flags)
+    return console_of(fly(write_mission(folder, "TEST"), seconds, tasks))
+
+
+def console_of(mission: Mission) -> str:
+    """What a mission's console shows."""
+    return "\n".join(mission.console.lines)
+
+
+def said(console: str) -> list[str]:
+    """What an application TEST wrote to the system log with "> " before it."""
+    return [line.partition("> ")[2] for line in console.splitlines() if "> " in line]
