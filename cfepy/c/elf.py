@@ -93,12 +93,17 @@ class SharedObject:
         return max(each.address + each.memory_size for each in self.segments)
 
 
-def _library() -> Any:
+def elf_file(stream: BytesIO) -> Any:
+    """An ELF file as pyelftools reads it.
+
+    Raises:
+        UsageError: pyelftools is not installed.
+    """
     try:
         from elftools.elf.elffile import ELFFile
     except ImportError:
         raise UsageError("compiled applications need pyelftools: pip install 'cfepy[c]'") from None
-    return ELFFile
+    return ELFFile(stream)
 
 
 def read_shared_object(data: bytes, name: str) -> SharedObject:
@@ -112,9 +117,8 @@ def read_shared_object(data: bytes, name: str) -> SharedObject:
         ElfError: it is none, or for another computer.
         UsageError: pyelftools is not installed.
     """
-    library = _library()
     try:
-        return _read(library(BytesIO(data)), data, name)
+        return _read(elf_file(BytesIO(data)), data, name)
     except (ElfError, UsageError):
         raise
     except Exception as error:  # pyelftools raises its own errors, and those of what it finds: KeyError, UnicodeError

@@ -33,8 +33,10 @@ def explained(fault: CFault, place_of: Callable[[int], str]) -> CFault:
     words = _WORDS.get(number, f"signal {number}")
     if -_NEAR_STACK < left < 512 and number in (signal.SIGSEGV, signal.SIGBUS):
         words = "stack overflow"
-    where = place_of(pc) if not caller else f"a function that {place_of(caller)} called"
-    if caller and pc == address:
-        where = f"a call by {place_of(caller)} of what is no function"
+    if not caller:
+        where = place_of(pc)
+    else:
+        by = place_of(caller - 1)  # it is a return address: the call is before it
+        where = f"a call by {by} of what is no function" if pc == address else f"a function that {by} called"
     used = f", address 0x{address:x}" if number in (signal.SIGSEGV, signal.SIGBUS) else ""
     return CFault(f"{words} in {where}{used}")

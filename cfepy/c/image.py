@@ -8,13 +8,13 @@ gone when it is unmapped.
 from __future__ import annotations
 
 import struct
-from bisect import bisect_right
 from collections.abc import Callable
 from functools import cached_property
 
 from cfepy.c.arena import Arena
 from cfepy.c.elf import ElfError, SharedObject
 from cfepy.c.engine import engine
+from cfepy.c.places import Place, Places
 
 _RELATIVE, _ABSOLUTE, _ADDRESS = "relative", "absolute", "address"
 _KINDS = {
@@ -100,16 +100,12 @@ class Image:
         return first + [each for each in array if each not in (0, _64_BITS)]
 
     @cached_property
-    def _sorted(self) -> list[tuple[int, str]]:
-        return sorted((address, name) for name, address in self.symbols.items())
+    def _places(self) -> Places:
+        return Places(self.source.data, self.source.name)
 
-    def name_at(self, address: int) -> str:
-        """`symbol+offset` of an address in this image."""
-        number = bisect_right(self._sorted, (address, "\U0010ffff"))
-        if not number:
-            return f"{self.source.name}+0x{address - self.base:x}"
-        at, name = self._sorted[number - 1]
-        return f"{name}+0x{address - at:x}"
+    def place_at(self, address: int) -> Place:
+        """Where in its source an address in this image is."""
+        return self._places.at(address - self.base)
 
     def __contains__(self, address: int) -> bool:
         return self.base <= address < self.base + self.size

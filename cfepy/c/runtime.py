@@ -149,7 +149,7 @@ class CRuntime:
         """Where an address of code is, in words."""
         for image in (*self.applications.values(), *self.libraries.values()):
             if address in image:
-                return image.name_at(address)
+                return str(image.place_at(address))
         return self._calls.name_at(address) or f"0x{address:x}"
 
     def close(self) -> None:

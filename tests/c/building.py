@@ -66,6 +66,13 @@ def fly(folder: str, seconds: float = 2, tasks: str = "thread", **options: objec
     return mission
 
 
+def digest_of(folder: str, tasks: str, seconds: float = 2) -> str:
+    """The digest of a mission's trace."""
+    with Mission(folder, console=Console(quiet=True), tasks=tasks) as mission:
+        mission.run_for(seconds)
+        return mission.finish()
+
+
 def fly_c(folder: Path, source: str, seconds: float = 2, *, flags: tuple[str, ...] = (), tasks: str = "thread") -> str:
     """Fly an application TEST whose text has TEST_Main; what the console shows."""
     compile_c(folder, "TEST", source, *flags)

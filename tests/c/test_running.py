@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.c.building import compile_c, console_of, fly, fly_c, needs_compiler, said, write_mission
+from tests.c.building import compile_c, console_of, digest_of, fly, fly_c, needs_compiler, said, write_mission
 
 pytestmark = needs_compiler
 
@@ -42,10 +42,10 @@ def test_formats_take_all_kinds_of_arguments(tmp_path: Path) -> None:
         void TEST_Main(void)
         {
             char text[40];
-            SAY("%d %u %ld %llx %c %s %5.2f %g %p", -1, 4000000000u, -5000000000l, 0xFEDCBA9876543210ull, 'c', "text", 3.14159,
-                1e-9, (void *)0x10);
-            SAY("%d %d %d %d %d %d %d %d %f %f %f %f %f %f %f %f %f %d", 1, 2, 3, 4, 5, 6, 7, 8, 1., 2., 3., 4., 5., 6., 7.,
-                8., 9., 10);
+            SAY("%d %u %ld %llx %c %s %5.2f %g %p", -1, 4000000000u, -5000000000l, 0xFEDCBA9876543210ull, 0x63, "text",
+                3.14159, 1e-9, (void *)0x10);
+            SAY("%d %d %d %d %d %d %d %d %f %f %f %f %f %f %f %f %f %d", 1, 2, 3, 4, 5, 6, 7, 8, 1., 2., 3., 4., 5., 6.,
+                7., 8., 9., 10);
             int length = snprintf(text, sizeof text, "%s is %.3f", "pi", 3.14159);
             SAY("%s: %d", text, length);
             SAY("%*d|%-4s|%%", 5, 42, "ab");
@@ -81,13 +81,13 @@ def test_floating_point_survives_calls_and_other_tasks(tmp_path: Path) -> None:
             CFE_ES_CreateChildTask(&id, "OTHER", other, NULL, 16384, 60, 0);
             for (int i = 0; i < 5; i++) {
                 sum += pow(1.5, i);
-                OS_TaskDelay(10);
+                OS_TaskDelay(50);
             }
             SAY("%.6f %.6f", sum, shared);
         }
         """,
     )
-    assert said(console) == ["13.312500 8.829787"]
+    assert said(console) == ["13.312500 8.586766"]
 
 
 def test_a_restart_finds_statics_as_new(tmp_path: Path) -> None:
@@ -161,10 +161,8 @@ def test_tasks_share_memory_of_each_others_stacks(tmp_path: Path) -> None:
     """
     compile_c(tmp_path, "TEST", source)
     folder = write_mission(tmp_path, "TEST")
-    first, second = fly(folder, tasks="thread"), fly(folder, tasks="greenlet")
-    assert said(console_of(first))[-1] == "main ends with 315"
-    assert console_of(first) == console_of(second)
-    assert first.trace_digest == second.trace_digest
+    assert said(console_of(fly(folder)))[-1] == "main ends with 315"
+    assert digest_of(folder, "thread") == digest_of(folder, "greenlet")
 
 
 def test_what_was_never_written_and_addresses_are_the_same_in_each_run(tmp_path: Path) -> None:
@@ -190,9 +188,8 @@ def test_what_was_never_written_and_addresses_are_the_same_in_each_run(tmp_path:
         "-Wno-maybe-uninitialized",
     )
     folder = write_mission(tmp_path, "TEST")
-    texts = {console_of(fly(folder, tasks=tasks)) for tasks in (*TASKS, "thread")}
-    assert len(texts) == 1
-    assert len(said(texts.pop())) == 5
+    assert len({digest_of(folder, tasks) for tasks in (*TASKS, "thread")}) == 1
+    assert len(said(console_of(fly(folder)))) == 5
 
 
 def test_a_library_is_called_by_applications(tmp_path: Path) -> None:
@@ -209,7 +206,7 @@ def test_a_library_is_called_by_applications(tmp_path: Path) -> None:
     for name in ("ONE", "TWO"):
         source = f"""
             int LIB_Twice(int); int LIB_Calls(void);
-            void {name}_Main(void) {{ SAY("{name} %d %d", LIB_Twice(21), LIB_Calls()); }}
+            void {name}_Main(void) {{ int twice = LIB_Twice(21); SAY("{name} %d %d", twice, LIB_Calls()); }}
         """
         compile_c(tmp_path, name, source)
     folder = write_mission(tmp_path, "ONE", "TWO", libraries="CFE_LIB, lib, LIB_Init, LIB, 0, 0, 0x0, 0;\n")

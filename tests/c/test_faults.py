@@ -1,0 +1,103 @@
+"""Faults in C code: exceptions of the application, with function, file and line; the others fly on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.c.building import compile_c, console_of, fly, fly_c, needs_compiler, said, write_mission
+
+pytestmark = needs_compiler
+
+WITNESS = """
+    void WITNESS_Main(void)
+    {
+        uint32_t run = RUN;
+        for (int i = 0; CFE_ES_RunLoop(&run); i++) {
+            if (i % 10 == 0)
+                SAY("witness %d", i);
+            OS_TaskDelay(100);
+        }
+        CFE_ES_ExitApp(run);
+    }
+"""
+
+FAULTS = {
+    "segv": ("*(volatile int *)16 = 1;", "SIGSEGV", "fail (TEST.c:4), address 0x10"),
+    "divide": ("zero = 5 / zero;", "SIGFPE", "fail (TEST.c:4)"),
+    "deep": ("zero = deep(0);", "stack overflow", "deep (TEST.c:2)"),
+    "nowhere": ("((void (*)(void))(void *)8)();", "SIGSEGV", "a call by fail (TEST.c:4) of what is no function"),
+    "argument": ('SAY("%d", (int)CFE_SB_TransmitMsg((void *)0x1234, true));', "bad address 0x1234 of a message", ""),
+    "text": ("zero = strlen((char *)24);", "SIGSEGV", "a function that fail (TEST.c:4) called, address 0x18"),
+    "format": ('SAY("%s", (char *)32);', "bad address 0x20 in a format or its arguments", ""),
+    "unmapped": ("memset(malloc(10), 0, (size_t)1 << 40);", "SIGSEGV", "a function that fail (TEST.c:4) called"),
+    "freed": ("free(once); free(once);", "which malloc did not give, or which was freed", ""),
+    "abort": ("abort();", "abort()", ""),
+    "nobody": ("NOBODY_HasThis();", "NOBODY_HasThis() was called", ""),
+}
+
+FAILING = """static volatile int zero; static char *once; void NOBODY_HasThis(void);
+static int deep(int n) { volatile char room[2000]; room[n % 2000] = 1; return n + deep(n + 1) + room[5]; }
+static void fail(void) {
+    @
+}
+void TEST_Main(void)
+{
+    uint32_t run = RUN;
+    CFE_ES_RunLoop(&run);
+    once = malloc(10);
+    OS_TaskDelay(300);
+    fail();
+    SAY("never %d", zero);
+}
+"""
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+@pytest.mark.parametrize("kind", FAULTS)
+def test_a_fault_restarts_the_application_and_the_others_fly_on(tmp_path: Path, kind: str, tasks: str) -> None:
+    code, what, where = FAULTS[kind]
+    compile_c(tmp_path, "TEST", FAILING.replace("@", code), "-O0", "-w")
+    compile_c(tmp_path, "WITNESS", WITNESS)
+    mission = fly(write_mission(tmp_path, "TEST", "WITNESS"), 12, tasks)
+    console = console_of(mission)
+    line = next(line for line in console.splitlines() if "CFE_ES_RunExceptionScan: ExceptionID" in line)
+    assert "never" not in console
+    error = mission.cfe.es.history["TEST"].last_error
+    assert what in str(error)
+    assert where in str(error)
+    assert what[:10] in line
+    assert "Restart Application TEST Completed" in console
+    assert said(console)[-1] == "witness 110"
+    assert not mission.record.resets
+    assert mission.cfe.es.history["TEST"].deaths >= 1
+
+
+def test_a_fault_resets_the_processor_where_the_startup_script_says_so(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", FAILING.replace("@", FAULTS["segv"][0]), "-O0", "-w")
+    mission = fly(write_mission(tmp_path, "TEST", action=1), 1.5)
+    assert "SIGSEGV" in mission.record.resets[0].reason
+
+
+def test_a_fault_in_a_child_task_is_told_with_its_place(tmp_path: Path) -> None:
+    console = fly_c(
+        tmp_path,
+        """
+        static void child(void)
+        {
+            OS_TaskDelay(50);
+            *(volatile int *)NULL = 1;
+        }
+        void TEST_Main(void)
+        {
+            uint32_t id, run = RUN;
+            CFE_ES_CreateChildTask(&id, "CHILD", child, NULL, 16384, 60, 0);
+            while (CFE_ES_RunLoop(&run))
+                OS_TaskDelay(100);
+            CFE_ES_ExitApp(run);
+        }
+        """,
+        flags=("-w",),
+    )
+    assert "child (TEST.c:4)" in console
