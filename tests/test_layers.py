@@ -32,6 +32,7 @@ TYPES_IN_CIRCLES = {
 NAMES_FROM_OUTSIDE = {
     "cfepy.faces": "a package gives it its own modules, which it names for type checkers too",
     "cfepy.cli.main": "a command is loaded by its name when it is given",
+    "cfepy.nodes.app_modules": "apps import what they like",
     "cfepy.nodes.importer": "nodes import what they like",
     "rospy_shim.msgs.modules": "nodes import messages by name",
 }

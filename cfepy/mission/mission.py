@@ -24,7 +24,7 @@ from cfepy.mission.finding import read_mission
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.outside import Outside
 from cfepy.mission.pieces import HeldBack, PieceLength
-from cfepy.mission.processor import Machine, NodeFiles, Processor
+from cfepy.mission.processor import Machine, Processor, RunFiles
 from cfepy.mission.python_code import find_code
 from cfepy.mission.record import Reset, RunRecord
 from cfepy.mission.spec import MissionSpec
@@ -151,7 +151,7 @@ class Mission:
             record=self.record,
             bus=bus,
             on_restart=_while_there_is_one(self._on_restart, None),
-            node_files=NodeFiles(),
+            run_files=RunFiles(),
         )
 
     def _provide_tables(self) -> None:
@@ -186,9 +186,9 @@ class Mission:
         return self.processor.ros
 
     @property
-    def node_files(self) -> Overlay | None:
-        """What nodes see of files, and wrote, until the mission is closed; None before the first node."""
-        return self._machine.node_files.made
+    def run_files(self) -> Overlay | None:
+        """What apps and nodes see of files, and wrote, until the mission is closed; None before it was needed."""
+        return self._machine.run_files.made
 
     @property
     def booted(self) -> int | None:
@@ -293,7 +293,7 @@ class Mission:
             self.stall_watch.end()
         for each in self._attachments:
             each.close()
-        self._machine.node_files.close()
+        self._machine.run_files.close()
 
     def __enter__(self) -> Mission:
         return self

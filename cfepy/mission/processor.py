@@ -26,6 +26,7 @@ from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
 from cfepy.mission.record import RunRecord
 from cfepy.mission.spec import MissionSpec
 from cfepy.mission.table_files import TableFiles
+from cfepy.nodes.app_modules import AppModules, make_universe
 from cfepy.osal import FileSystem, Network, Osal
 from cfepy.ports import Ports
 from cfepy.psp import BoardProfile, MemoryBudget, Psp, Retained, object_sizes
@@ -37,7 +38,7 @@ from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
     from cfepy.c import CompiledLoader
-    from cfepy.nodes import Overlay
+    from cfepy.nodes import Overlay, Universe
     from rospy_shim.graph.graph import TopicRow
     from rospy_shim.runtime import RosRuntime
 
@@ -54,8 +55,8 @@ class Machine:
     """What a reset leaves alone, and what a processor is made of.
 
     `retained` is the memory that outlives a processor reset, `network` what sockets are plugged into, `bus` the class
-    of the Software Bus, `on_restart` what the PSP calls for a reset: (type, reason, fault). `node_files` what nodes see
-    of files.
+    of the Software Bus, `on_restart` what the PSP calls for a reset: (type, reason, fault). `run_files` what apps and
+    nodes see of files.
     """
 
     spec: MissionSpec
@@ -70,7 +71,7 @@ class Machine:
     record: RunRecord
     bus: type[SoftwareBus]
     on_restart: Callable[[int, str, bool], object]
-    node_files: NodeFiles
+    run_files: RunFiles
 
     @property
     def epoch_ns(self) -> int:
@@ -78,8 +79,8 @@ class Machine:
         return (UNIX_AT_CFE_EPOCH + self.config.time_def_met_secs + self.config.time_def_stcf_secs) * NS_PER_S
 
 
-class NodeFiles:
-    """What nodes see of files, made for the first one: a mission without nodes does not import it.
+class RunFiles:
+    """What apps and nodes see of files, made when it is needed: a mission without nodes may not import it.
 
     Attributes:
         made: it; None before.
@@ -153,13 +154,25 @@ class Processor:
     def _finders(self) -> list[Finder]:
         """What is asked for the code of applications, in this order."""
         machine, folder = self.machine, self.machine.spec.folder
-        python = PythonLoader(machine.console, lambda: self.handle)
+        python = PythonLoader(machine.console, lambda: self.handle, AppModules(self._app_universe))
         return [
             BuiltInApps({ROS_FILE: self._ros_main}),
             NodeScripts(machine.files, folder, self._script_of, self._node_main),
             CompiledFiles(machine.files, self._make_compiled_loader),
             *python_finders(python, machine.files, folder),
         ]
+
+    def _app_universe(self) -> Universe:
+        """Where apps have those modules from that open files."""
+        machine = self.machine
+        return make_universe(
+            kernel=machine.kernel,
+            name="apps",
+            seed=machine.seed,
+            epoch_ns=machine.epoch_ns,
+            root=machine.spec.ros.root,
+            overlay=machine.run_files.of(machine),
+        )
 
     def _make_osal(self) -> Osal:
         machine = self.machine
@@ -267,7 +280,7 @@ class Processor:
             max_publish_hz=machine.board.max_publish_hz,
             console=machine.console,
             network=machine.network,
-            files=machine.node_files.of(machine),
+            files=machine.run_files.of(machine),
         )
 
     def _make_compiled_loader(self) -> CompiledLoader:

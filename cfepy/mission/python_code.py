@@ -23,6 +23,7 @@ from cfepy.console import Console
 from cfepy.es import SymbolError
 from cfepy.mission.loader import NO_SYMBOL, NODE_SYMBOL, Code, Finder, MainCode, RemovedCodeError
 from cfepy.mission.tracebacks import app_traceback, described
+from cfepy.nodes.app_modules import AppModules
 from cfepy.osal import FileSystem
 from cfepy.resources import shipped
 from cfepy.rtos import TaskExit
@@ -99,22 +100,29 @@ class PythonLoader:
     Args:
         console: for what goes wrong while a module is executed.
         handle: gives what the main function of an app gets.
+        modules: what the code has in place of the host's modules.
     """
 
-    def __init__(self, console: Console, handle: Callable[[], Any]) -> None:
+    def __init__(self, console: Console, handle: Callable[[], Any], modules: AppModules) -> None:
         self.handle = handle
         self.names = ModuleNames()
+        self._modules = modules
         self._console = console
 
     def module(self, file: str, found: Found, owner: str) -> ModuleType:
         """Execute code as a new module; errors as `ModuleLoader.load_module`."""
         try:
-            return execute(found, self.names.new(owner))
+            return execute(found, self.names.new(owner), self._modules)
         except (TaskExit, KeyboardInterrupt):
             raise
         except BaseException as error:  # also sys.exit(): it is the module that ends, not the process
             self._console.write(app_traceback(error))
             raise OsalError(OS_ERROR, f"{file}: {described(error)}") from error
+
+    def forget(self) -> None:
+        """Let go of the code and of what it has open."""
+        self.names.forget()
+        self._modules.close()
 
     def function(self, module: ModuleType, file: str, symbol: str) -> Callable[[Any], object]:
         """An entry point; errors as `ModuleLoader.load`."""
@@ -183,7 +191,7 @@ class PythonFinder(ABC):
 
     def forget(self) -> None:
         """See `Finder.forget`."""
-        self._python.names.forget()
+        self._python.forget()
 
     @abstractmethod
     def look(self, file: str) -> Found | None:
@@ -363,8 +371,13 @@ Found = Path | str | VirtualCode
 """Python code: a source file, the name of an installed module, or what the mission itself wrote."""
 
 
-def execute(found: Found, name: str) -> ModuleType:
+def execute(found: Found, name: str, modules: AppModules | None = None) -> ModuleType:
     """Execute Python code as a module of this name.
+
+    Args:
+        found: what is executed.
+        name: of the module.
+        modules: what it has in place of the host's; None, and the apps that cfepy brings along: nothing.
 
     Raises:
         ImportError: there is nothing to execute.
@@ -375,8 +388,15 @@ def execute(found: Found, name: str) -> ModuleType:
         raise ImportError(f"{found} cannot be executed")
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
+    if modules is None or _is_shipped(found):
+        spec.loader.exec_module(module)
+    else:
+        modules.execute(module)
     return module
+
+
+def _is_shipped(found: Found) -> bool:
+    return isinstance(found, Path) and found.is_relative_to(shipped("apps"))
 
 
 def _spec(found: Found, name: str) -> importlib.machinery.ModuleSpec | None:
@@ -388,7 +408,7 @@ def _spec(found: Found, name: str) -> importlib.machinery.ModuleSpec | None:
             return None
         found = Path(installed.origin)
     inner = [str(found.parent)] if found.name == "__init__.py" else None
-    loader = None if found.is_relative_to(shipped("apps")) else SourceAlone(name, str(found))
+    loader = None if _is_shipped(found) else SourceAlone(name, str(found))
     return importlib.util.spec_from_file_location(name, found, loader=loader, submodule_search_locations=inner)
 
 

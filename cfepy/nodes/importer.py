@@ -141,9 +141,8 @@ class Importer:
         libraries: folders of packages that are executed afresh for the node, searched next.
         fallbacks: folders of what is found there when it is nowhere else.
         ordered: set displays in the node's code make ordered sets.
-        factories: modules that are made, by name.
-        find_factory: asked for names that are not in `factories`; None is "not mine".
-        fixes: what is done to a module of the standard library after it was executed.
+        provision: what it has in place of the host's modules.
+        find_factory: asked for names of modules of which the provision has no factory; None is "not mine".
     """
 
     def __init__(
@@ -154,9 +153,8 @@ class Importer:
         libraries: Sequence[str],
         fallbacks: Sequence[str],
         ordered: bool,
-        factories: Mapping[str, Factory],
+        provision: sharing.Provision,
         find_factory: Callable[[str], Factory | None],
-        fixes: Mapping[str, Callable[[Universe, ModuleType], None]],
     ) -> None:
         self.modules: dict[str, ModuleType] = {}
         self.path: list[str] = [*folders, *libraries, *sys.path]
@@ -166,9 +164,8 @@ class Importer:
         self._libraries = list(libraries)
         self._fallbacks = list(fallbacks)
         self._hosts = frozenset((*libraries, *sys.path))
-        self._factories = factories
+        self._provision = provision
         self._find_factory = find_factory
-        self._fixes = fixes
         self._shared: set[str] = set()
         self._locks = ImportLocks(universe.kernel)
 
@@ -300,7 +297,7 @@ class Importer:
         if library is not None and library.loader is not None:
             return self._from_spec(library, own=False)
         if sharing.is_stdlib(name):
-            if not sharing.is_fresh_stdlib(name):
+            if not self._provision.executes(name):
                 return self._share(name)
             standard = _library_spec(name)
             return self._late(standard) if name in sharing.LATE else self._from_spec(standard, own=False)
@@ -312,7 +309,7 @@ class Importer:
             error = ModuleNotFoundError(f"No module named {name!r}", name=name)
             error.add_note(_WHERE)
             raise error
-        return self._from_spec(spec, own=False) if sharing.is_pure_python(spec) else self._share(name)
+        return self._from_spec(spec, own=False) if self._provision.executes_package(spec) else self._share(name)
 
     def _from_spec(self, spec: ModuleSpec, own: bool) -> ModuleType:
         """A module from a file; it is in the table, and in its package, before its code runs."""
@@ -331,7 +328,7 @@ class Importer:
             if parent:
                 vars(self.modules[parent]).pop(child, None)
             raise
-        fix = self._fixes.get(name)
+        fix = self._provision.fixes.get(name)
         if fix is not None and not own:
             fix(self._universe, module)
         return self.modules.get(name, module)
@@ -341,7 +338,7 @@ class Importer:
 
         def run() -> None:
             self._execute(module, spec, own=False)
-            fix = self._fixes.get(spec.name)
+            fix = self._provision.fixes.get(spec.name)
             if fix is not None:
                 fix(self._universe, module)
 
@@ -369,7 +366,7 @@ class Importer:
         """The host's own module; a copy of its names where a node that replaces one must not be seen by others."""
         builtins.__import__(name)
         module = sys.modules[name]
-        if sharing.is_copied(name):
+        if self._provision.copies(name):
             module = proxy(module)
             if package is not None:
                 setattr(package, name.rpartition(".")[2], module)
@@ -380,7 +377,7 @@ class Importer:
     # -- finding -----------------------------------------------------------------------------------------------------
 
     def _factory(self, name: str) -> Factory | None:
-        return self._factories.get(name) or self._find_factory(name)
+        return self._provision.factories.get(name) or self._find_factory(name)
 
     def _node_folders(self) -> list[str]:
         """The folders of the search path that are the node's: given to it, or added by itself."""

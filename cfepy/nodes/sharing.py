@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
 from importlib.machinery import EXTENSION_SUFFIXES, ModuleSpec
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -63,6 +64,37 @@ _THREADS_AS_PROCESSES = ("multiprocessing.dummy", "multiprocessing.dummy.connect
 _pure: dict[str, bool] = {}
 
 
+@dataclass(frozen=True, slots=True)
+class Provision:
+    """What a program has in place of the host's modules.
+
+    Attributes:
+        factories: of modules that are made for it, by full name.
+        fixes: what is done to modules of the standard library that were executed afresh, by full name.
+        fresh: modules of the standard library that are, by their first name.
+        is_process: it has a process of its own: packages in pure Python are executed afresh for it too, and names that
+            it gives to shared modules stay with it. Otherwise both are the host's.
+    """
+
+    factories: Mapping[str, Callable[[Universe], ModuleType]]
+    fixes: Mapping[str, Callable[[Universe, ModuleType], None]]
+    fresh: Collection[str] = FRESH
+    is_process: bool = True
+
+    def executes(self, name: str) -> bool:
+        """Whether it executes a module of the standard library, given by its full name, afresh."""
+        return name.partition(".")[0] in self.fresh and name not in HOST_SUBMODULES
+
+    def executes_package(self, spec: ModuleSpec) -> bool:
+        """Whether it executes an installed package, found by `spec`, afresh."""
+        return self.is_process and is_pure_python(spec)
+
+    def copies(self, name: str) -> bool:
+        """Whether a module of the host's gets a module of the program's to hold its names."""
+        top = name.partition(".")[0]
+        return self.is_process and (top == "numpy" or is_stdlib(top))
+
+
 def refused_modules() -> Mapping[str, Callable[[Universe], ModuleType]]:
     """The factories of the modules that refuse their use, by name."""
     named = {
@@ -78,17 +110,6 @@ def refused_modules() -> Mapping[str, Callable[[Universe], ModuleType]]:
     # Nodes import it for speed. To pickle itself, which asks while it is being loaded, it lacks all that matters.
     named["_pickle"] = lambda universe: universe.importer.load("pickle")
     return named
-
-
-def is_fresh_stdlib(name: str) -> bool:
-    """Whether a module of the standard library, given by its full name, is executed afresh for each node."""
-    return name.partition(".")[0] in FRESH and name not in HOST_SUBMODULES
-
-
-def is_copied(name: str) -> bool:
-    """Whether a module of the host's gets a node-owned module to hold its names."""
-    top = name.partition(".")[0]
-    return top == "numpy" or is_stdlib(top)
 
 
 def is_stdlib(top: str) -> bool:

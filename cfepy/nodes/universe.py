@@ -14,6 +14,7 @@ import random
 import sys
 import zlib
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from importlib.machinery import SourceFileLoader
 from types import ModuleType
@@ -22,14 +23,14 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from cfepy.nodes.files import OpenFiles
 from cfepy.nodes.importer import Factory, Importer
 from cfepy.nodes.report import traceback_text
-from cfepy.nodes.sharing import refused_modules
+from cfepy.nodes.sharing import Provision
 from cfepy.nodes.sources import code_of_file, doubts_of
 from cfepy.nodes.stdlib import os_module, signal_module, sys_module, time_module
 from cfepy.nodes.stdlib.descriptors import SocketTable
 from cfepy.nodes.stdlib.locks import make_lock_types
 from cfepy.nodes.stdlib.signal_module import NodeInterrupt
 from cfepy.nodes.stdlib.streams import ConsoleStream, NoInput, TypedInput
-from cfepy.nodes.stdlib.table import FIXES, MADE
+from cfepy.nodes.stdlib.table import for_nodes
 from cfepy.rtos import Task, TaskExit
 
 if TYPE_CHECKING:
@@ -68,6 +69,7 @@ class Universe:
         call_cost_ns: virtual CPU time of a call that polls (clock, lock, event); with 0 a polling loop never ends.
         stdout: takes each line that the program prints, with the node's name before it; None keeps the lines in
             `output`.
+        provision: what it has in place of the host's modules; None is what a node has.
         modules: factories of further modules by name, such as rospy; a name with dots needs its package to be there.
         find_module: asked for a factory of any name that `modules` does not have; None is "not mine".
         priority: of its tasks, 0 to 255.
@@ -98,6 +100,7 @@ class Universe:
         epoch_ns: int = 0,
         call_cost_ns: int = 1000,
         stdout: Callable[[str], object] | None = None,
+        provision: Provision | None = None,
         modules: Mapping[str, Factory] | None = None,
         find_module: Callable[[str], Factory | None] = lambda name: None,
         priority: int = 100,
@@ -148,15 +151,15 @@ class Universe:
         self.clock = time_module.VirtualClock(self, epoch_ns)
         self.locks = make_lock_types(self)
         folders = [os.path.dirname(self.script)] if self.script else []
+        provided = for_nodes() if provision is None else provision
         self.importer = Importer(
             self,
             folders=[*folders, *(os.fspath(folder) for folder in search_paths)],
             libraries=[os.fspath(folder) for folder in library_paths],
             fallbacks=[os.fspath(folder) for folder in fallback_paths],
             ordered=ordered_sets,
-            factories={**refused_modules(), **MADE, **(modules or {})},
+            provision=replace(provided, factories={**provided.factories, **(modules or {})}),
             find_factory=find_module,
-            fixes=FIXES,
         )
         self.builtins = sys_module.builtins_module(self, ordered_sets)
         self.importer.modules["builtins"] = self.builtins

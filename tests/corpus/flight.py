@@ -10,7 +10,7 @@ from pathlib import Path
 from string import ascii_uppercase
 from typing import Any
 
-from cfepy.cli.run.outputs import SavedNodeFiles
+from cfepy.cli.run.outputs import SavedRunFiles
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
 from cfepy.nodes.config import NodeConfig, RosConfig
@@ -49,7 +49,7 @@ class Flight:
         begun = time.perf_counter()
         console = Console(quiet=True)
         spec = self._prepare()
-        written = SavedNodeFiles(Path("/"), os.path.realpath(self._folder))  # where the nodes think that it is
+        written = SavedRunFiles(Path("/"), os.path.realpath(self._folder))  # where the nodes think that it is
         with Mission(spec, tasks=self._tasks, console=console, attachments=[written]) as mission:
             ended_itself = self._watch(mission)
             if not ended_itself:
@@ -114,7 +114,7 @@ class Flight:
     def _watch(self, mission: Mission) -> bool:
         """Run until the scenario is over; whether the node ended by itself before that."""
         done = os.path.realpath(self._folder / "done")
-        self._run_until(mission, lambda: mission.node_files is not None and mission.node_files.exists(done), LONGEST_S)
+        self._run_until(mission, lambda: mission.run_files is not None and mission.run_files.exists(done), LONGEST_S)
         if self._scenario.ends_itself:
             self._run_until(mission, lambda: NODE in mission.ros.ended, LONGEST_S)
         return NODE in mission.ros.ended

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cfepy.cli.run.outputs import SavedNodeFiles
+from cfepy.cli.run.outputs import SavedRunFiles
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
 from cfepy.nodes.config import NodeConfig, RosConfig, TopicConfig
@@ -63,7 +63,7 @@ def run_nodes(
     ros = RosConfig(nodes or {}, topics or {}, params or {}, connection_delay_ns=connection_delay_ns)
     console = Console(quiet=True)
     spec = MissionSpec("test", folder, startup, None, "linux", ros)
-    with Mission(spec, tasks=tasks, console=console, attachments=[SavedNodeFiles(Path("/"))]) as mission:
+    with Mission(spec, tasks=tasks, console=console, attachments=[SavedRunFiles(Path("/"))]) as mission:
         mission.run_for(seconds)
         mission.shut_down_nodes()
         rows = {row.name: row for row in mission.ros.topics()} if mission.ros is not None else {}

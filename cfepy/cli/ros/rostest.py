@@ -18,7 +18,7 @@ from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import launch_words
 from cfepy.cli.options import plan_of as run_plan_of
 from cfepy.cli.ros.view import NodesDisplay
-from cfepy.cli.run.outputs import SavedNodeFiles
+from cfepy.cli.run.outputs import SavedRunFiles
 from cfepy.markup import printable
 from cfepy.mission import launch_file, spec_of
 from cfepy.nodes import NodeConfig
@@ -208,7 +208,7 @@ class _Runner:
         run = replace(run, seed=run.seed + number)
         nodes = {**self._plan.nodes, node.app: node}
         spec = run.with_played_bag(replace(spec_of(self._file, nodes, self._plan.params), board=BOARD))
-        written = SavedNodeFiles(Path("/"), os.path.realpath(test.results.parent))
+        written = SavedRunFiles(Path("/"), os.path.realpath(test.results.parent))
         with WatchedHost(self._interrupts, self._display) as host:
             flown = fly(run, spec=spec, attachments=[written], console=host.console, host=host)
         tell(flown.results.never_struck)

@@ -79,8 +79,8 @@ class TraceFile(Recorder):
             self._error = error
 
 
-class SavedNodeFiles(Attachment):
-    """Copies what nodes wrote, at the end of the mission.
+class SavedRunFiles(Attachment):
+    """Copies what apps and nodes wrote among the host's files, at the end of the mission.
 
     Args:
         folder: where to.
@@ -104,7 +104,7 @@ class SavedNodeFiles(Attachment):
 
     def close(self) -> None:
         """See `Attachment.close`: the run's own files are about to go."""
-        files = None if self._mission is None else self._mission.node_files
+        files = None if self._mission is None else self._mission.run_files
         for name, place in files.written() if files is not None else ():
             if not name.startswith(self._below):
                 continue
@@ -137,7 +137,7 @@ class Outputs:
         self._arguments = arguments
         check_json(arguments)
         self._folder = None if arguments.save_files is None else _saving_to(arguments.save_files)
-        self._node_files = None if self._folder is None else SavedNodeFiles(self._folder)
+        self._run_files = None if self._folder is None else SavedRunFiles(self._folder)
         self._trace_file = TraceFile(arguments.trace) if arguments.trace else None
         self._bag = arguments.bag
         self._bag_topics = arguments.bag_topics
@@ -153,7 +153,7 @@ class Outputs:
             from cfepy.ground import BagRecorder
 
             self.attachments.append(self._open.enter_context(BagRecorder(self._bag, self._bag_topics)))
-        self.attachments += [each for each in (recorder, self._node_files) if each is not None]
+        self.attachments += [each for each in (recorder, self._run_files) if each is not None]
         return self
 
     def __exit__(self, *error: Any) -> None:
@@ -176,7 +176,7 @@ class Outputs:
         Raises:
             UsageError: one cannot be written.
         """
-        saved = self._node_files
+        saved = self._run_files
         if self._folder is None or saved is None:
             return
         if saved.error is not None:

@@ -57,7 +57,7 @@ def os_module(universe: Universe) -> ModuleType:
     """The module `os` of a universe."""
     names: dict[str, Any] = {name: refusal(universe, f"os.{name}", PROCESS) for name in _PROCESSES if hasattr(os, name)}
     names.update({name: lambda *args, **options: 0 for name in _NO_EFFECT if hasattr(os, name)})
-    names.update(_paths(universe))
+    names.update(paths(universe))
     names.update(_process(universe))
     module = rebind(os, **names)
     modules = universe.importer.modules
@@ -67,7 +67,8 @@ def os_module(universe: Universe) -> ModuleType:
     return module
 
 
-def _paths(universe: Universe) -> dict[str, Any]:
+def paths(universe: Universe) -> dict[str, Any]:
+    """The functions of `os` that take paths or descriptors."""
     names = _host_paths(universe) if universe.overlay is None else FileCalls(universe, universe.overlay).names()
     cwd = {"getcwd": lambda: universe.cwd, "getcwdb": lambda: os.fsencode(universe.cwd)}
     return {**names, **cwd, "chdir": universe.change_directory}

@@ -6,10 +6,12 @@ Modules that few nodes import, or that not every system has, are made by code th
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import cache
 from types import ModuleType
 from typing import TYPE_CHECKING
 
 from cfepy.nodes.report import hide_in
+from cfepy.nodes.sharing import Provision, refused_modules
 from cfepy.nodes.stdlib import (
     futures,
     lookup,
@@ -93,12 +95,12 @@ def _codecs(universe: Universe) -> ModuleType:
 
 def _fix_element_tree(universe: Universe, module: ModuleType) -> None:
     """Its half in C knows comments by the host's functions: what was loaded last must not be it."""
-    from importlib import import_module
+    import _elementtree  # type: ignore[import-not-found]
     from xml.etree import ElementTree
 
     names = {name: getattr(ElementTree, name) for name in ("Comment", "PI", "ProcessingInstruction")}
     vars(module).update(names)
-    import_module("_elementtree")._set_factories(ElementTree.Comment, ElementTree.ProcessingInstruction)
+    _elementtree._set_factories(ElementTree.Comment, ElementTree.ProcessingInstruction)
 
 
 def _termios(universe: Universe) -> ModuleType:
@@ -150,3 +152,9 @@ FIXES: Mapping[str, Callable[[Universe, ModuleType], None]] = {
     "traceback": lambda universe, module: hide_in(module),
 }
 """What is changed in modules of the standard library after their code has run for a node."""
+
+
+@cache
+def for_nodes() -> Provision:
+    """What a node has in place of the host's modules."""
+    return Provision({**refused_modules(), **MADE}, FIXES)
