@@ -9,7 +9,7 @@
  * A NULL where there must not be one is answered with the status that the function was declared with; the others are not
  * looked at then. Before the letters may be
  *   = the Python function gives the status and then the outputs   ~ outputs become 0 when it raises a status
- *   $ the call takes virtual time
+ *   & it gives the two words of a structure that is the result   $ the call takes virtual time
  * Otherwise the outputs alone, one value or a tuple; None and True are the status 0 and 1.
  */
 #include "engine.h"
@@ -262,6 +262,16 @@ static int give_answer(Coroutine *coroutine, PyObject *answer, const Outputs *ou
     return PyErr_Occurred() ? -1 : 0;
 }
 
+static int give_two_words(Coroutine *coroutine, PyObject *answer)
+{
+    unsigned long long low, high;
+    if (!PyArg_ParseTuple(answer, "KK", &low, &high))
+        return -1;
+    coroutine->result = low;
+    coroutine->result_high = high;
+    return 0;
+}
+
 /* Answer a call by its Python function; -1 with an exception that ends the coroutine. */
 HIDDEN int calls_serve(Coroutine *coroutine, const Function *function)
 {
@@ -305,7 +315,8 @@ HIDDEN int calls_serve(Coroutine *coroutine, const Function *function)
     if (answer == NULL)
         result = take_status(coroutine, &outputs, function->clears_outputs);
     else {
-        result = give_answer(coroutine, answer, &outputs, function->gives_status);
+        result = function->gives_two_words ? give_two_words(coroutine, answer)
+                                           : give_answer(coroutine, answer, &outputs, function->gives_status);
         Py_DECREF(answer);
     }
 done:

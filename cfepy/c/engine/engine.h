@@ -32,7 +32,7 @@ enum { REGISTER_ARGUMENTS = 8, STACK_ARGUMENTS = 20 };
 #endif
 enum { FLOAT_ARGUMENTS = 8 };
 
-/* The assembly knows the first eight members by their offsets. */
+/* The assembly knows the members down to `result_high` by their offsets. */
 typedef struct Coroutine {
     uint64_t arguments[8];                     /* 0: as many as the processor passes in registers */
     uint64_t *stack_pointer;                   /* 64: of the application, behind what the switch saved */
@@ -42,6 +42,7 @@ typedef struct Coroutine {
     double floats[FLOAT_ARGUMENTS];            /* 96 */
     double float_result;                       /* 160 */
     uint64_t host_float_modes, float_modes;    /* 168, 176 */
+    uint64_t result_high;                      /* 184: the second word of a result of two */
     /* not known to the assembly */
     char *stack;                               /* lowest byte */
     size_t size;
@@ -67,7 +68,7 @@ typedef struct Function {
     void *target;                              /* what a native stands for, such as a function of libm */
     uint64_t null_status;                      /* what a NULL is answered with, where one must not be */
     char kinds[MOST_PARAMETERS + 1];
-    bool gives_status, clears_outputs, costs;
+    bool gives_status, gives_two_words, clears_outputs, costs;
 } Function;
 
 /* The functions that the code of one processor can call, by number. */

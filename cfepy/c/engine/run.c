@@ -31,8 +31,9 @@ static PyObject *table_add(Table *table, PyObject *arguments)
         table->room = more;
     }
     Function made = {.null_status = (uint64_t)null_status};
-    for (; *signature && strchr("=~$", *signature); signature++) {
+    for (; *signature && strchr("=&~$", *signature); signature++) {
         made.gives_status |= *signature == '=';
+        made.gives_two_words |= *signature == '&';
         made.clears_outputs |= *signature == '~';
         made.costs |= *signature == '$';
     }
@@ -154,6 +155,7 @@ static __attribute__((noinline)) int serve_native(Coroutine *coroutine, const Fu
 
 static int serve(Coroutine *coroutine)
 {
+    coroutine->result_high = 0;
     if (coroutine->wanted == PREEMPTED) {
         running = NULL;
         PyObject *answer = PyObject_CallNoArgs(on_preemption);

@@ -21,9 +21,9 @@ engine_resume:                          /* rdi: the coroutine */
     fldcw 180(%rdi)
     mov 64(%rdi), %rsp
     mov 80(%rdi), %rax
+    mov 184(%rdi), %rdx
     movsd 160(%rdi), %xmm0
     xor %ecx, %ecx                      /* nothing of the host's gets into an application, not even by chance */
-    xor %edx, %edx
     xor %esi, %esi
     xor %edi, %edi
     xor %r8d, %r8d
