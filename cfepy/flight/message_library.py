@@ -53,7 +53,7 @@ def library_near(place: str | os.PathLike[str] | None = None) -> Library:
     from rospy_shim.msgs import Library, OnDisk, Packages, shipped
 
     path = Path.cwd() if place is None else Path(place).absolute()
-    packages = Packages(path / "any" if path.is_dir() else path, os.environ)
+    packages = Packages(path / "any" if os.path.isdir(path) else path, os.environ)
     return Library([OnDisk(packages)], base=shipped())
 
 

@@ -5,6 +5,7 @@ ROS's rules and tables are those of `rospy_shim.parameters`.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -83,7 +84,7 @@ def of_files(path: Path, problems: list[str]) -> Parameters:
 def is_source_of_files(source: str) -> bool:
     """Whether a word means table files, and not a mission."""
     path = Path(source)
-    return path.suffix == TABLE_SUFFIX or (path.is_dir() and not (path / STARTUP_SCRIPT).is_file())
+    return path.suffix == TABLE_SUFFIX or (os.path.isdir(path) and not os.path.isfile(path / STARTUP_SCRIPT))
 
 
 def changed(path: Path, name: str, value: Any) -> dict[Path, bytes]:
@@ -124,7 +125,7 @@ def table_files(source: Path, mission: str | None) -> dict[str, bytes]:
 def _contents(path: Path) -> dict[str, bytes]:
     """The parameter tables that a path means, by file name."""
     try:
-        if not path.is_dir():
+        if not os.path.isdir(path):
             return {str(path): path.read_bytes()}
         contents = {str(each): each.read_bytes() for each in sorted(path.rglob(f"*{TABLE_SUFFIX}"))}
     except OSError as error:

@@ -6,6 +6,7 @@ lock file of its MsgIds, both optional; or a launch file.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -43,10 +44,10 @@ def find_script(mission: str) -> Path:
         UsageError: nothing of the kind.
     """
     path = Path(mission)
-    if path.is_file():
+    if os.path.isfile(path):
         _check_kind(path)
         return path.resolve()
-    if (path / STARTUP_SCRIPT).is_file():
+    if os.path.isfile(path / STARTUP_SCRIPT):
         return (path / STARTUP_SCRIPT).resolve()
     if mission in shipped_missions():
         return shipped("missions") / mission / STARTUP_SCRIPT
@@ -68,7 +69,7 @@ def missions_near(path: Path) -> list[str]:
 def is_node(mission: str) -> bool:
     """Whether a text names a file that is a Python program: a ROS node by itself, which is flown as one."""
     path = Path(mission)
-    if not path.is_file():
+    if not os.path.isfile(path):
         return False
     with path.open("rb") as stream:
         first = stream.readline(_LONGEST_FIRST_LINE)
@@ -92,7 +93,7 @@ def _check_kind(path: Path) -> None:
 def mission_file_of(script: Path) -> Path | None:
     """The mission file that belongs to a startup script; None when there is none."""
     candidates = (script.with_suffix(".yaml"), script.parent / MISSION_FILE)
-    return next((path for path in candidates if path.is_file()), None)
+    return next((path for path in candidates if os.path.isfile(path)), None)
 
 
 def read_mission(mission: str, args: Mapping[str, str] | None = None) -> MissionSpec:
@@ -129,7 +130,7 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None) -> Mission
     if spec.has_nodes:
         spec = replace(spec, ros=replace(spec.ros, params={**ROSCORE_PARAMS, **spec.ros.params}))
     lock = spec.folder / LOCK_FILE
-    return replace(spec, ros=read_lock(lock, spec.ros)) if lock.is_file() else spec
+    return replace(spec, ros=read_lock(lock, spec.ros)) if os.path.isfile(lock) else spec
 
 
 def read_lock(path: Path, ros: RosConfig) -> RosConfig:

@@ -77,12 +77,12 @@ def launch_file(words: Sequence[str]) -> tuple[Path, dict[str, str]]:
     """
     args = dict(word.split(":=", 1) for word in words if ":=" in word)
     names = [word for word in words if ":=" not in word]
-    if len(names) > 1 and Path(names[0]).is_file():
+    if len(names) > 1 and os.path.isfile(names[0]):
         raise UsageError(f"{names[1]!r} is no argument for it; write NAME:=VALUE", file=names[0])
     if len(names) not in (1, 2):
         raise UsageError(f"{len(names)} names; give a launch file, or a package and the name of a launch file in it")
     file = Path(names[0])
-    if len(names) == 1 and file.is_file():
+    if len(names) == 1 and os.path.isfile(file):
         return file.resolve(), args
     found = launch_file_of_package(" ".join(names))
     if found is None:
@@ -170,12 +170,12 @@ def node_script(words: Sequence[str]) -> tuple[Path, list[str]]:
     Raises:
         UsageError: there is none.
     """
-    if Path(words[0]).is_file():
+    if os.path.isfile(words[0]):
         return Path(words[0]).resolve(), list(words[1:])
     if len(words) == 1 or words[0].endswith(".py"):
-        text = "there is no such script; give one, or a package and the name of a node in it"
-        hint = did_you_mean(words[0], files_near(Path(words[0]), (".py",)), text)
-        raise UsageError(hint if hint is text else f"there is no such script; {hint}", file=words[0])
+        otherwise = "give one, or a package and the name of a node in it"
+        hint = did_you_mean(words[0], files_near(Path(words[0]), (".py",)), otherwise)
+        raise UsageError(f"there is no such script; {hint}", file=words[0])
     from rospy_shim.roslaunch.plan import node_file
 
     return node_file(words[0], words[1], Path.cwd() / words[1], os.environ), list(words[2:])

@@ -68,7 +68,7 @@ class MissionSections:
     def board_in(self, folder: Path) -> str:
         """The board: a file of the mission's folder, or else a name or path; "linux" when nothing is said."""
         board = "linux" if self.board is None else self.board
-        return str(folder / board) if (folder / board).is_file() else board
+        return str(folder / board) if os.path.isfile(folder / board) else board
 
 
 def read_mission_file(path: Path, mistakes: Mistakes) -> MissionSections:
@@ -106,7 +106,7 @@ def _launch(item: Marked) -> LaunchFile:
     if "file" not in fields:
         raise item.fail("needs a file, such as `file: demo.launch`")
     path = Path(os.path.normpath(item.file.parent / fields["file"].text()))
-    if not path.is_file():
+    if not os.path.isfile(path):
         raise fields["file"].fail(f"is {path}, which is no file; give a launch file's path from the mission's folder")
     return path, _texts(fields["args"]) if "args" in fields else {}
 

@@ -6,6 +6,7 @@ not carry (nothing, a date, an integer of more than 32 bits) is an error with fi
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -58,7 +59,7 @@ def _files(section: Marked) -> Iterator[tuple[Path, str]]:
         if "file" not in said:
             raise entry.fail("names no file; write `params_from: [robot.yaml]` or {file: robot.yaml, namespace: arm}")
         path = entry.file.parent / said["file"].text()
-        if not path.is_file():
+        if not os.path.isfile(path):
             raise said["file"].fail(f"there is no file {path}; a path is seen from the folder of {entry.file.name}")
         yield path, said["namespace"].text() if "namespace" in said else ""
 

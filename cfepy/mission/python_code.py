@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import importlib.util
 import inspect
+import os
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -85,7 +86,7 @@ def find_node(file: str, folder: Path) -> Path | None:
     if ".." in file:
         return None
     plain = folder / file.removeprefix("/cf/").removesuffix(NODE_SUFFIX)
-    if plain.is_file():
+    if os.path.isfile(plain):
         return plain
     found = find_code(file, folder)
     return found if isinstance(found, Path) else None
@@ -292,7 +293,7 @@ def _in_folder(file: str, folder: Path) -> Path | None:
         return None
     stem = inside.with_suffix("")
     candidates = (folder / stem.with_suffix(".py"), folder / stem / "__init__.py")
-    return next((candidate for candidate in candidates if candidate.is_file()), None)
+    return next((candidate for candidate in candidates if os.path.isfile(candidate)), None)
 
 
 def _installed(file: str) -> str | None:

@@ -6,6 +6,7 @@ in time. Here they are read; `cfepy.monitors.invariant_watch` watches over them.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -170,7 +171,7 @@ def _function(entry: Marked, fields: Mapping[str, Marked]) -> tuple[Path | None,
     if "file" not in fields:
         raise entry.fail("names a function but not the file it is in; add `file: checks.py`")
     file, name = entry.file.parent / fields["file"].text(), fields["function"].text()
-    if not file.is_file():
+    if not os.path.isfile(file):
         raise fields["file"].fail(f"is {file}, which is no file; give its path from the mission's folder")
     broken = sources.syntax_error(file)
     if broken is not None:

@@ -114,7 +114,7 @@ def crawl(root: Path) -> Iterator[Path]:
     """Packages in a folder of ROS_PACKAGE_PATH, at any depth; none inside another."""
     if has_manifest(root):
         yield root
-    elif not any((root / fence).exists() for fence in _FENCES):
+    elif not any(os.path.exists(root / fence) for fence in _FENCES):
         for folder in _subfolders(root):
             yield from crawl(folder)
 
@@ -130,7 +130,7 @@ def name_of(folder: Path) -> str:
 
 def has_manifest(folder: Path) -> bool:
     """Whether a folder says that it is a package."""
-    return any((folder / manifest).is_file() for manifest in _MANIFESTS)
+    return any(os.path.isfile(folder / manifest) for manifest in _MANIFESTS)
 
 
 def has_definitions(folder: Path) -> bool:

@@ -8,6 +8,7 @@ actionlib_msgs' genaction makes of it.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Literal, NamedTuple, Protocol
@@ -127,7 +128,7 @@ class Shipped:
 
     def _read(self, name: str, kind: str) -> dict[str, Definition]:
         path = self._folder / f"{name}.{kind}s"
-        return dict(_sections(path.read_text(encoding="utf-8"), str(path))) if path.is_file() else {}
+        return dict(_sections(path.read_text(encoding="utf-8"), str(path))) if os.path.isfile(path) else {}
 
 
 class OnDisk:

@@ -108,14 +108,14 @@ def is_python(file: Path) -> bool:
 def _tool(package: str, node_type: str) -> Path | None:
     """Ours; the name has both, for a script that has a library's name would be imported in its place."""
     tool = _TOOLS / f"{package}__{node_type}.py"
-    return tool if tool.is_file() else None
+    return tool if os.path.isfile(tool) else None
 
 
 def _candidates(folders: list[Path], name: str) -> Iterator[Path]:
     """Files of a name in a package's folders, at any depth, and where an installed package has its programs."""
     for folder in folders:
         installed = folder.parent.parent / "lib" / folder.name / name
-        if folder.parent.name == "share" and installed.is_file():
+        if folder.parent.name == "share" and os.path.isfile(installed):
             yield installed
         for place, inner, files in os.walk(folder):
             inner[:] = sorted(each for each in inner if not each.startswith("."))
@@ -247,7 +247,7 @@ def packages_near(near: Path, environ: Mapping[str, str], package: str | None = 
     if package is not None and packages.folders(package):
         return packages
     sources = [near.parent / "src", *(folder for folder in near.parents if folder.name == "src")]
-    roots = [str(source) for source in sources[:2] if source.is_dir()]
+    roots = [str(source) for source in sources[:2] if os.path.isdir(source)]
     return Packages(
         near, {**environ, "ROS_PACKAGE_PATH": os.pathsep.join([environ.get("ROS_PACKAGE_PATH", ""), *roots])}
     )

@@ -55,7 +55,7 @@ def test_a_node_by_its_package(demo: Path, monkeypatch: pytest.MonkeyPatch, caps
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["no.py"], "no.py: there is no such script"),
+        (["no.py"], "no.py: there is no such script; give one, or a package and the name of a node in it"),
         (["no_package", "node"], "no_package node: there is no package 'no_package'"),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import os
 import re
 import sys
 from collections.abc import Iterable, Sequence
@@ -69,7 +70,7 @@ class ValueTable(NamedTuple):
 def _values(arguments: argparse.Namespace) -> int:
     write = _write_csv if arguments.format == "csv" else _write_parquet
     output = arguments.output
-    folder = Path(output) if output.endswith("/") or Path(output).is_dir() else None
+    folder = Path(output) if output.endswith("/") or os.path.isdir(output) else None
     if arguments.format == "parquet":
         _parquet()  # that it is installed is better known before a long run than after it
     if folder is None and output != STDOUT:

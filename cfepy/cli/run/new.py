@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import keyword
+import os
 import re
 import sys
 import zlib
@@ -42,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     kind, name = arguments.kind, arguments.name
     _check_name(kind, name)
     folder = Path(name)
-    if folder.exists():
+    if os.path.exists(folder):
         raise UsageError("is there already; choose another name, nothing is overwritten", file=folder)
     files = app_files(name) if kind == "app" else mission_files(name)
     try:

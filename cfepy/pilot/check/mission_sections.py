@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
@@ -42,7 +43,7 @@ def check_nodes_said(said: MissionSections, entries: list[StartupEntry]) -> Iter
 def check_lock(folder: Path, said: MissionSections) -> Iterator[MissionProblem]:
     """What is wrong with the lock file of a mission, if it has one: a MsgId that is given twice, or by nobody."""
     path = folder / LOCK_FILE
-    if not path.is_file():
+    if not os.path.isfile(path):
         return
     try:
         read_lock(path, RosConfig(topics=said.topics))

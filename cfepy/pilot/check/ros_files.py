@@ -146,10 +146,10 @@ def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
 def _is_code(package: str, script: NodeScript, packages: Packages) -> bool:
     """Whether there is Python code that may bring messages under this name."""
     paths = [Path(each) for each in script.environ.get("PYTHONPATH", "").split(os.pathsep) if each]
-    if any((folder / package / "__init__.py").is_file() for folder in (script.file.parent, *paths)):
+    if any(os.path.isfile(folder / package / "__init__.py") for folder in (script.file.parent, *paths)):
         return True
     if any(
-        (folder / package / kind / "__init__.py").is_file() for folder in packages.code_folders() for kind in _KINDS
+        os.path.isfile(folder / package / kind / "__init__.py") for folder in packages.code_folders() for kind in _KINDS
     ):
         return True
     try:
