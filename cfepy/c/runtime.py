@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 from cfepy.app import Cfe
@@ -10,9 +11,11 @@ from cfepy.c.calls import CallTable, Declarations
 from cfepy.c.elf import SharedObject
 from cfepy.c.engine import engine
 from cfepy.c.faults import CFault, explained
+from cfepy.c.frames import PreemptedFrames
 from cfepy.c.image import Image
 from cfepy.c.memory import Memory
 from cfepy.c.packets import PacketImages
+from cfepy.c.places import Place
 from cfepy.c.stacks import LEAST, Stacks
 from cfepy.console import Console
 from cfepy.rtos import Kernel
@@ -34,21 +37,25 @@ class CRuntime:
         kernel: the processor.
         polling_ns: what a call costs with which code may wait by asking again and again.
         console: for printf.
+        stall_s: after how many seconds without progress the stall watch ends a run; 0 for never.
 
     Attributes:
         arena, memory, packets: the parts of the memory.
         images: what is loaded, by the name of the application or the path of the library.
     """
 
-    def __init__(self, cfe: Cfe, handle: Cfe, kernel: Kernel, polling_ns: int, console: Console) -> None:
+    def __init__(
+        self, cfe: Cfe, handle: Cfe, kernel: Kernel, polling_ns: int, console: Console, stall_s: Callable[[], float]
+    ) -> None:
         from cfepy.c.api import declare
 
         made = engine()
-        made.begin(CfeError, CFault, _let_others_in)
+        made.begin(CfeError, CFault)
         self.cfe = cfe
         self.handle = handle
         self.kernel = kernel
         self.console = console
+        self._limit_s = stall_s
         self.arena = Arena()
         self.memory = Memory()
         self._stacks = Stacks(self.arena)
@@ -58,6 +65,7 @@ class CRuntime:
         self.table = made.Table(
             heap=self._heap,
             charge=partial(kernel.charge, polling_ns) if polling_ns else None,
+            preempted=PreemptedFrames(self._place, self._watch),
             highest_msg_id=config.sb_highest_valid_msg_id,
             largest_message=config.sb_max_msg_size,
             ctype=self._ctype_tables(),
@@ -145,11 +153,32 @@ class CRuntime:
         result = self.run(function, *args) & 0xFFFFFFFF
         return result - (result >> 31 << 32)
 
-    def place_of(self, address: int) -> str:
-        """Where an address of code is, in words."""
+    def _watch(self, cpu_s: float, called_from: int) -> None:
+        """Code has computed for a while without a call: Python does here what waits, such as Ctrl-C, or other threads.
+
+        Args:
+            cpu_s: CPU time since this was first seen.
+            called_from: where the last call returned to, which is the same in each run; where the code is now is not.
+
+        Raises:
+            CFault: it has computed for too long; the virtual clock stands still, so it would never end.
+        """
+        limit = self._limit_s() / 2  # before the stall watch ends the run
+        if limit and cpu_s >= limit:
+            after = f"after its last call, in {self.place_of(called_from - 1)}" if called_from else "from its start"
+            raise CFault(f"runaway loop: {limit:g} s of CPU time without a call, {after}")
+
+    def _place(self, address: int) -> Place | None:
         for image in (*self.applications.values(), *self.libraries.values()):
             if address in image:
-                return str(image.place_at(address))
+                return image.place_at(address)
+        return None
+
+    def place_of(self, address: int) -> str:
+        """Where an address of code is, in words."""
+        place = self._place(address)
+        if place is not None:
+            return str(place)
         return self._calls.name_at(address) or f"0x{address:x}"
 
     def close(self) -> None:
@@ -158,7 +187,3 @@ class CRuntime:
         self.libraries.clear()
         self.packets.close()
         self.arena.close()
-
-
-def _let_others_in() -> None:
-    """Called while C code computes for long: Python does here what waits, such as Ctrl-C, or another thread's turn."""

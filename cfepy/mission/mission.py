@@ -152,6 +152,7 @@ class Mission:
             bus=bus,
             on_restart=_while_there_is_one(self._on_restart, None),
             run_files=RunFiles(),
+            stall_watch=self.stall_watch,
         )
 
     def _provide_tables(self) -> None:

@@ -30,7 +30,7 @@ from cfepy.nodes.app_modules import AppModules, make_universe
 from cfepy.osal import FileSystem, Network, Osal
 from cfepy.ports import Ports
 from cfepy.psp import BoardProfile, MemoryBudget, Psp, Retained, object_sizes
-from cfepy.rtos import Kernel
+from cfepy.rtos import Kernel, StallWatch
 from cfepy.sb import SbTask, SoftwareBus
 from cfepy.tbl import TableServices
 from cfepy.time import TimeServices
@@ -56,7 +56,7 @@ class Machine:
 
     `retained` is the memory that outlives a processor reset, `network` what sockets are plugged into, `bus` the class
     of the Software Bus, `on_restart` what the PSP calls for a reset: (type, reason, fault). `run_files` what apps and
-    nodes see of files.
+    nodes see of files, `stall_watch` what ends a run that does not go on.
     """
 
     spec: MissionSpec
@@ -72,6 +72,7 @@ class Machine:
     bus: type[SoftwareBus]
     on_restart: Callable[[int, str, bool], object]
     run_files: RunFiles
+    stall_watch: StallWatch
 
     @property
     def epoch_ns(self) -> int:
@@ -288,7 +289,10 @@ class Processor:
         from cfepy.c import CompiledLoader, CRuntime
 
         machine = self.machine
-        runtime = CRuntime(self.cfe, self.handle, machine.kernel, self._costs.polling_ns, machine.console)
+        watch = machine.stall_watch
+        runtime = CRuntime(
+            self.cfe, self.handle, machine.kernel, self._costs.polling_ns, machine.console, lambda: watch.limit_s
+        )
         return CompiledLoader(runtime, machine.console)
 
     def _script_of(self, file: str) -> Path | None:

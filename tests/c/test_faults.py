@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.console import Console
+from cfepy.mission import Mission
 from tests.c.building import compile_c, console_of, fly, fly_c, needs_compiler, said, write_mission
 
 pytestmark = needs_compiler
@@ -78,6 +80,62 @@ def test_a_fault_resets_the_processor_where_the_startup_script_says_so(tmp_path:
     compile_c(tmp_path, "TEST", FAILING.replace("@", FAULTS["segv"][0]), "-O0", "-w")
     mission = fly(write_mission(tmp_path, "TEST", action=1), 1.5)
     assert "SIGSEGV" in mission.record.resets[0].reason
+
+
+LOOPING = """static volatile long turns;
+void TEST_Main(void)
+{
+    uint32_t run = RUN;
+    CFE_ES_RunLoop(&run);
+    OS_TaskDelay(300);
+    SAY("loops");
+    for (;;)
+        turns++;
+}
+"""
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_a_loop_without_an_end_is_a_fault_of_its_application(tmp_path: Path, tasks: str) -> None:
+    compile_c(tmp_path, "TEST", LOOPING)
+    compile_c(tmp_path, "WITNESS", WITNESS)
+    with Mission(write_mission(tmp_path, "TEST", "WITNESS"), console=Console(quiet=True), tasks=tasks) as mission:
+        mission.stall_watch.limit_s = 0.6
+        mission.run_for(12)
+        assert mission.record.resets == []
+        error = mission.cfe.es.history["TEST"].last_error
+        assert "runaway loop: 0.3 s of CPU time without a call" in str(error)
+        assert "in TEST_Main (TEST.c:7)" in str(error)
+        assert said(console_of(mission))[-1] == "witness 110"
+
+
+def test_a_computation_that_ends_is_no_fault_and_goes_on_where_it_was(tmp_path: Path) -> None:
+    console = fly_c(
+        tmp_path,
+        """
+        void TEST_Main(void)
+        {
+            uint32_t a = 1;
+            double x = 1;
+            for (uint32_t i = 0; i < 120000000; i++) {
+                a = a * 1664525 + 1013904223;
+                x = x * 1.0000001 - (a & 1) * 1e-9;
+            }
+            SAY("%u %.9f", a, x);
+        }
+        """,
+        flags=("-O2",),
+    )
+    a, x = 1, 1.0
+    step, add, bits = 1664525, 1013904223, 0xFFFFFFFF
+    power, total = 1, 0
+    for bit in f"{120000000:b}":
+        power, total = power * power & bits, (power * total + total) & bits
+        if bit == "1":
+            power, total = power * step & bits, (total * step + add) & bits
+    a = (power * a + total) & bits
+    assert said(console)[0].split()[0] == str(a)
+    assert float(said(console)[0].split()[1]) > x
 
 
 def test_a_fault_in_a_child_task_is_told_with_its_place(tmp_path: Path) -> None:

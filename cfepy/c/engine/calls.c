@@ -17,7 +17,7 @@
 #include <stdio.h>
 #include <string.h>
 
-HIDDEN PyObject *status_error, *fault_error, *on_preemption;
+HIDDEN PyObject *status_error, *fault_error;
 
 enum { MOST_TEXT = 64 << 10, FORMATTED = 2048 };
 

@@ -52,6 +52,8 @@ typedef struct Coroutine {
     uint32_t owner;                            /* of what it allocates: an application */
     sigjmp_buf native_fault;
     int signal;
+    double computes_since;                     /* CPU time at which it was first seen to compute without a call, or 0 */
+    uint64_t called_from;                      /* where its last call returns to */
     uint64_t fault_address, fault_pc, fault_stack_pointer;
     struct Table *table;
 } Coroutine;
@@ -77,6 +79,7 @@ typedef struct Table {
     Function *functions;
     int count, room;
     PyObject *charge;                          /* called before each function that costs virtual time; or NULL */
+    PyObject *preempted;                       /* by pc, what is called when code has computed for long */
     struct Heap *heap;                         /* malloc's */
     uint32_t highest_msg_id, largest_message;
     uint64_t ctype[3];                         /* of __ctype_b_loc, __ctype_toupper_loc, __ctype_tolower_loc */
@@ -104,7 +107,7 @@ extern HIDDEN volatile uint64_t switches;
 extern HIDDEN volatile int running_thread;
 
 /* calls.c */
-extern HIDDEN PyObject *status_error, *fault_error, *on_preemption;
+extern HIDDEN PyObject *status_error, *fault_error;
 HIDDEN int calls_serve(Coroutine *, const Function *);
 HIDDEN uint64_t argument(const Coroutine *, int number);
 HIDDEN int format_text(Coroutine *, char *to, size_t room, const char *format, int fixed);

@@ -101,6 +101,7 @@ static void on_watch(ucontext_t *context)
     } else if (coroutine != NULL && coroutine->thread == mine->id && !coroutine->is_native &&
                is_application(PROGRAM_COUNTER(context))) {
         keep_registers(context);
+        coroutine->fault_pc = PROGRAM_COUNTER(context);
         land(coroutine, context, PREEMPTED);
     }
 }

@@ -2,6 +2,7 @@
 #include "engine.h"
 
 #include <string.h>
+#include <time.h>
 
 /* ---- Table -------------------------------------------------------------------------------------------------------- */
 
@@ -58,6 +59,7 @@ static int table_traverse(Table *table, visitproc visit, void *arg)
     for (int i = 0; i < table->count; i++)
         Py_VISIT(table->functions[i].callable);
     Py_VISIT(table->charge);
+    Py_VISIT(table->preempted);
     Py_VISIT((PyObject *)table->heap);
     return 0;
 }
@@ -67,6 +69,7 @@ static int table_clear(Table *table)
     for (int i = 0; i < table->count; i++)
         Py_CLEAR(table->functions[i].callable);
     Py_CLEAR(table->charge);
+    Py_CLEAR(table->preempted);
     PyObject *heap = (PyObject *)table->heap;
     table->heap = NULL;
     Py_XDECREF(heap);
@@ -83,17 +86,18 @@ static void table_dealloc(Table *table)
 
 static PyObject *table_new(PyTypeObject *type, PyObject *arguments, PyObject *options)
 {
-    static char *names[] = {"heap", "charge", "highest_msg_id", "largest_message", "ctype", NULL};
-    PyObject *heap, *charge;
+    static char *names[] = {"heap", "charge", "preempted", "highest_msg_id", "largest_message", "ctype", NULL};
+    PyObject *heap, *charge, *preempted;
     unsigned highest, largest;
     unsigned long long ctype[3];
-    if (!PyArg_ParseTupleAndKeywords(arguments, options, "O!OII(KKK)", names, &heap_type, &heap, &charge, &highest, &largest,
-                                     &ctype[0], &ctype[1], &ctype[2]))
+    if (!PyArg_ParseTupleAndKeywords(arguments, options, "O!OOII(KKK)", names, &heap_type, &heap, &charge, &preempted, &highest,
+                                     &largest, &ctype[0], &ctype[1], &ctype[2]))
         return NULL;
     Table *table = (Table *)type->tp_alloc(type, 0);
     if (table != NULL) {
         table->heap = (Heap *)Py_NewRef(heap);
         table->charge = charge == Py_None ? NULL : Py_NewRef(charge);
+        table->preempted = Py_NewRef(preempted);
         table->highest_msg_id = highest;
         table->largest_message = largest;
         for (int i = 0; i < 3; i++)
@@ -116,7 +120,7 @@ HIDDEN PyTypeObject table_type = {
     .tp_traverse = (traverseproc)table_traverse,
     .tp_clear = (inquiry)table_clear,
     .tp_methods = table_methods,
-    .tp_doc = "Table(heap, charge, highest_msg_id, largest_message, ctype): the functions that C code can call",
+    .tp_doc = "Table(heap, charge, preempted, highest_msg_id, largest_message, ctype): the functions that C code can call",
 };
 
 /* ---- run ---------------------------------------------------------------------------------------------------------- */
@@ -153,17 +157,40 @@ static __attribute__((noinline)) int serve_native(Coroutine *coroutine, const Fu
     return PyErr_Occurred() ? -1 : 0;
 }
 
+static double thread_cpu_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return now.tv_sec + now.tv_nsec / 1e9;
+}
+
+/* It computes without a call: Python does what waits to be done, and may have it end. */
+static int let_others_in(Coroutine *coroutine)
+{
+    running = NULL;
+    double now = thread_cpu_s();
+    if (coroutine->computes_since == 0)
+        coroutine->computes_since = now;
+    PyObject *pc = PyLong_FromUnsignedLongLong(coroutine->fault_pc);
+    PyObject *function = pc ? PyObject_GetItem(coroutine->table->preempted, pc) : NULL;
+    PyObject *answer = function ? PyObject_CallFunction(function, "dK", now - coroutine->computes_since,
+                                                        (unsigned long long)coroutine->called_from)
+                                : NULL;
+    Py_XDECREF(pc);
+    Py_XDECREF(function);
+    Py_XDECREF(answer);
+    return answer == NULL ? -1 : 0;
+}
+
 static int serve(Coroutine *coroutine)
 {
-    coroutine->result_high = 0;
-    if (coroutine->wanted == PREEMPTED) {
-        running = NULL;
-        PyObject *answer = PyObject_CallNoArgs(on_preemption);
-        Py_XDECREF(answer);
-        return answer == NULL ? -1 : 0;
-    }
+    if (coroutine->wanted == PREEMPTED)
+        return let_others_in(coroutine);
     if (coroutine->wanted == FAULT)
         return fault_found(coroutine);
+    coroutine->result_high = 0;
+    coroutine->computes_since = 0;
+    coroutine->called_from = coroutine->stack_pointer[STACK_ARGUMENTS - 1];
     const Function *function = &coroutine->table->functions[coroutine->wanted];
     if (function->native != NULL) {
         if (serve_native(coroutine, function) < 0)
@@ -318,19 +345,18 @@ static PyObject *natives(PyObject *module, PyObject *unused)
 
 static PyObject *begin(PyObject *module, PyObject *arguments)
 {
-    PyObject *status, *fault, *preemption;
-    if (!PyArg_ParseTuple(arguments, "OOO", &status, &fault, &preemption))
+    PyObject *status, *fault;
+    if (!PyArg_ParseTuple(arguments, "OO", &status, &fault))
         return NULL;
     Py_XSETREF(status_error, Py_NewRef(status));
     Py_XSETREF(fault_error, Py_NewRef(fault));
-    Py_XSETREF(on_preemption, Py_NewRef(preemption));
     if (faults_begin() < 0)
         return NULL;
     Py_RETURN_NONE;
 }
 
 static PyMethodDef methods[] = {
-    {"begin", begin, METH_VARARGS, "begin(status error, fault error, what is called while C code computes)"},
+    {"begin", begin, METH_VARARGS, "begin(status error, fault error)"},
     {"run", (PyCFunction)(void *)run, METH_FASTCALL, "run(table, function, arguments, stack, size, owner) -> result"},
     {"peek", (PyCFunction)(void *)peek, METH_FASTCALL, "peek(address, size) -> bytes"},
     {"poke", (PyCFunction)(void *)poke, METH_FASTCALL, "poke(address, bytes)"},
