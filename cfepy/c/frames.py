@@ -9,7 +9,7 @@ from types import CodeType, FunctionType
 from cfepy.c.places import Place
 
 Watch = Callable[[float, int], object]
-"""Called with seconds of CPU since the last call of C code, and the address to which that returned."""
+"""Called with the seconds for which C code has computed without a call, and the address to which that returned."""
 
 
 class PreemptedFrames(dict[int, Watch]):
@@ -37,8 +37,8 @@ class PreemptedFrames(dict[int, Watch]):
         return function
 
 
-def _frame(cpu_s: float, called_from: int) -> object:
-    return watch(cpu_s, called_from)  # type: ignore[name-defined]  # noqa: F821
+def _frame(computed_s: float, called_from: int) -> object:
+    return watch(computed_s, called_from)  # type: ignore[name-defined]  # noqa: F821
 
 
 @lru_cache(512)

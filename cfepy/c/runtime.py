@@ -153,20 +153,20 @@ class CRuntime:
         result = self.run(function, *args) & 0xFFFFFFFF
         return result - (result >> 31 << 32)
 
-    def _watch(self, cpu_s: float, called_from: int) -> None:
+    def _watch(self, computed_s: float, called_from: int) -> None:
         """Code has computed for a while without a call: Python does here what waits, such as Ctrl-C, or other threads.
 
         Args:
-            cpu_s: CPU time since this was first seen.
+            computed_s: for how long.
             called_from: where the last call returned to, which is the same in each run; where the code is now is not.
 
         Raises:
             CFault: it has computed for too long; the virtual clock stands still, so it would never end.
         """
         limit = self._limit_s() / 2  # before the stall watch ends the run
-        if limit and cpu_s >= limit:
+        if limit and computed_s >= limit:
             after = f"after its last call, in {self.place_of(called_from - 1)}" if called_from else "from its start"
-            raise CFault(f"runaway loop: {limit:g} s of CPU time without a call, {after}")
+            raise CFault(f"runaway loop: {limit:g} s without a call, {after}")
 
     def _place(self, address: int) -> Place | None:
         for image in (*self.applications.values(), *self.libraries.values()):

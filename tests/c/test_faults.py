@@ -100,11 +100,11 @@ def test_a_loop_without_an_end_is_a_fault_of_its_application(tmp_path: Path, tas
     compile_c(tmp_path, "TEST", LOOPING)
     compile_c(tmp_path, "WITNESS", WITNESS)
     with Mission(write_mission(tmp_path, "TEST", "WITNESS"), console=Console(quiet=True), tasks=tasks) as mission:
-        mission.stall_watch.limit_s = 0.6
+        mission.stall_watch.limit_s = 2
         mission.run_for(12)
         assert mission.record.resets == []
         error = mission.cfe.es.history["TEST"].last_error
-        assert "runaway loop: 0.3 s of CPU time without a call" in str(error)
+        assert "runaway loop: 1 s without a call" in str(error)
         assert "in TEST_Main (TEST.c:7)" in str(error)
         assert said(console_of(mission))[-1] == "witness 110"
 

@@ -52,7 +52,7 @@ typedef struct Coroutine {
     uint32_t owner;                            /* of what it allocates: an application */
     sigjmp_buf native_fault;
     int signal;
-    double computes_since;                     /* CPU time at which it was first seen to compute without a call, or 0 */
+    double computes_since, computed_s;         /* when it was last seen to compute without a call; for how long */
     uint64_t called_from;                      /* where its last call returns to */
     uint64_t fault_address, fault_pc, fault_stack_pointer;
     struct Table *table;

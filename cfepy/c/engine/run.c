@@ -126,6 +126,7 @@ HIDDEN PyTypeObject table_type = {
 /* ---- run ---------------------------------------------------------------------------------------------------------- */
 
 enum { ENTRY_ARGUMENTS = 6 };
+#define LONGEST_LOOK_S 0.25
 
 static int fault_found(Coroutine *coroutine)
 {
@@ -157,23 +158,24 @@ static __attribute__((noinline)) int serve_native(Coroutine *coroutine, const Fu
     return PyErr_Occurred() ? -1 : 0;
 }
 
-static double thread_cpu_s(void)
+static double wall_s(void)
 {
     struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    clock_gettime(CLOCK_MONOTONIC, &now);
     return now.tv_sec + now.tv_nsec / 1e9;
 }
 
-/* It computes without a call: Python does what waits to be done, and may have it end. */
+/* It computes without a call: Python does what waits to be done, and may have it end. Time in which the whole process
+ * was stopped does not count. */
 static int let_others_in(Coroutine *coroutine)
 {
     running = NULL;
-    double now = thread_cpu_s();
-    if (coroutine->computes_since == 0)
-        coroutine->computes_since = now;
+    double now = wall_s(), since = coroutine->computes_since ? now - coroutine->computes_since : 0;
+    coroutine->computes_since = now;
+    coroutine->computed_s += since < LONGEST_LOOK_S ? since : LONGEST_LOOK_S;
     PyObject *pc = PyLong_FromUnsignedLongLong(coroutine->fault_pc);
     PyObject *function = pc ? PyObject_GetItem(coroutine->table->preempted, pc) : NULL;
-    PyObject *answer = function ? PyObject_CallFunction(function, "dK", now - coroutine->computes_since,
+    PyObject *answer = function ? PyObject_CallFunction(function, "dK", coroutine->computed_s,
                                                         (unsigned long long)coroutine->called_from)
                                 : NULL;
     Py_XDECREF(pc);
@@ -189,7 +191,7 @@ static int serve(Coroutine *coroutine)
     if (coroutine->wanted == FAULT)
         return fault_found(coroutine);
     coroutine->result_high = 0;
-    coroutine->computes_since = 0;
+    coroutine->computes_since = coroutine->computed_s = 0;
     coroutine->called_from = coroutine->stack_pointer[STACK_ARGUMENTS - 1];
     const Function *function = &coroutine->table->functions[coroutine->wanted];
     if (function->native != NULL) {
