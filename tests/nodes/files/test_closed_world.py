@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import glob
 import os
+import signal
+import subprocess
+import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,8 +18,10 @@ from cfepy.cli.main import main
 from cfepy.exploration.fork_server import ForkingJudge
 from cfepy.exploration.trial import Trial
 from cfepy.journal import read_journal, record
+from cfepy.nodes import PREFIX
 from cfepy.pilot.pilot import fly
 from cfepy.pilot.plan import NODE, RunPlan
+from cfepy.resources import import_path
 from cfepy.rtos.schedule import Schedule
 from tests.journal.replays import assert_same_again
 
@@ -97,6 +102,45 @@ def test_what_it_wrote_can_be_kept(node: Path, tmp_path: Path, capsys: pytest.Ca
     assert (out / str(node.parent).lstrip("/") / "starts").read_text() == "xxx"
     (log,) = glob.glob(f"{out}/tmp/tmp*/log")
     assert Path(log).read_text() == "WARNING:root:logged\n"
+
+
+WRITER = """
+import rospy
+rospy.init_node("writer")
+with open("note", "w") as file:
+    file.write("kept")
+while not rospy.is_shutdown():
+    rospy.sleep(0.01)
+"""
+
+
+@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["node", "--for", "100000"],
+        ["node", "--for", "100000", "--tasks", "greenlet"],
+        ["run", "--for", "100000", "--check-determinism", "2"],
+        ["explore", "--for", "3", "--seeds", "100000", "--jobs", "2"],
+        ["explore", "--for", "3", "--seeds", "100000", "--from", "1s"],
+    ],
+)
+def test_a_signal_takes_the_files_of_a_run_away(
+    words: list[str], how: signal.Signals, node: Path, tmp_path: Path
+) -> None:
+    node.write_text(WRITER)
+    folder = tmp_path / "scratch"
+    folder.mkdir()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "cfepy", words[0], str(node), *words[1:]],
+        stdout=subprocess.DEVNULL,
+        env={**os.environ, "TMPDIR": str(folder), "PYTHONPATH": import_path()},
+    )
+    while not glob.glob(f"{folder}/**/{PREFIX}*/**/note", recursive=True):
+        assert process.poll() is None
+    process.send_signal(how)
+    assert process.wait() == 130
+    assert list(folder.iterdir()) == []
 
 
 LIBRARY = """
