@@ -94,7 +94,6 @@ class CompiledCode:
     def main(self, symbol: str, app_name: str) -> Callable[[], object]:
         """See `Code.main`."""
         runtime = self._loader.runtime
-        runtime.forget_application(app_name)
         image = self._loader.load(self._file, self._data)
         runtime.applications[app_name] = image
         function = self._loader.symbol(image, self._file, symbol)

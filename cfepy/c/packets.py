@@ -3,28 +3,19 @@
 A packet on the Software Bus is immutable bytes of Python. When an application receives it, it gets an image of these
 bytes; another one that receives the same packet gets the same image, as in C, where both point to one buffer. The image
 is given back when the last pipe that has it asks for its next message and no pipe still holds the packet. A buffer
-that an application filled in place and sent becomes the image of that packet.
+that an application filled in place and sent becomes the image of that packet. Receiving is the engine's
+(`engine/images.c`).
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+from cfepy.c.engine import engine
 from cfepy.c.memory import Memory
 from cfepy.rtos import Task
 from cfepy.sb import MessageBuffer, SoftwareBus
 from cfepy.status import CFE_SB_BUFFER_INVALID, CfeError
-
-
-class _Image:
-    """The bytes of a packet in C memory; `holders` are the pipes whose application has it."""
-
-    __slots__ = ("address", "holders", "packet")
-
-    def __init__(self, address: int, packet: bytes) -> None:
-        self.address = address
-        self.packet = packet  # so that no other object gets its id
-        self.holders = 0
 
 
 class PacketImages:
@@ -34,57 +25,26 @@ class PacketImages:
         heap: the engine's heap for them.
         bus: the Software Bus as applications reach it.
         core: the Software Bus itself.
+
+    Attributes:
+        images: the engine's part.
     """
 
     def __init__(self, heap: Any, bus: SoftwareBus, core: SoftwareBus) -> None:
         self._heap = heap
+        self.images = engine().Images(heap, core.routes, self._waits)
         self._memory = Memory()
         self._bus = bus
         self._core = core
-        self._images: dict[int, _Image] = {}
-        self._held: dict[int, _Image] = {}
         self._buffers: dict[int, MessageBuffer] = {}
         self._sending: dict[Task, int] = {}
         self._listens = False
 
-    # -- receiving ---------------------------------------------------------------------------------------------------
-
-    def receive(self, pipe_id: int, packet: bytes) -> int:
-        """The address of a packet that came out of a pipe; what that pipe had before is given back."""
-        before = self._held.get(pipe_id)
-        image = self._images.get(id(packet))
-        if image is None:
-            image = self._image_of(packet)
-        image.holders += 1
-        self._held[pipe_id] = image
-        if before is not None:
-            before.holders -= 1
-            if not before.holders:
-                self._give(before)
-        return image.address
-
-    def _image_of(self, packet: bytes) -> _Image:
-        address = self._take(len(packet))
-        self._memory.poke(address, packet)
-        image = self._images[id(packet)] = _Image(address, packet)
-        return image
-
-    def _take(self, size: int) -> int:
-        address = self._heap.take(size)
-        if not address:
-            raise MemoryError(f"no {size} bytes are left for messages of compiled applications")
-        return int(address)
-
-    def _give(self, image: _Image) -> None:
-        """Nobody has it any more; it stays as long as the packet waits in another pipe."""
-        packet = image.packet
+    def _waits(self, packet: bytes) -> bool:
+        """Whether a packet that had several destinations still waits in a pipe."""
         route = self._core.routes.get(packet[0] << 8 | packet[1])
-        if route is not None and len(route.destinations) > 1:
-            for destination in route.destinations:
-                if any(item[0] is packet for item in destination.pipe.items):
-                    return
-        del self._images[id(packet)]
-        self._heap.give(image.address)
+        destinations = () if route is None else route.destinations
+        return any(item[0] is packet for each in destinations for item in each.pipe.items)
 
     # -- zero copy ---------------------------------------------------------------------------------------------------
 
@@ -94,7 +54,9 @@ class PacketImages:
             buffer = self._bus.allocate_message_buffer(size)
         except CfeError:
             return 0
-        address = self._take(size)
+        address = int(self._heap.take(size))
+        if not address:
+            raise MemoryError(f"no {size} bytes are left for messages of compiled applications")
         self._buffers[address] = buffer
         return address
 
@@ -128,13 +90,7 @@ class PacketImages:
         address = self._sending.get(task)
         if address is not None and self._memory.peek(address, 2) == packet[:2]:  # it may be an event about it
             del self._sending[task], self._buffers[address]
-            self._memory.poke(address, packet)
-            self._images[id(packet)] = _Image(address, packet)
-
-    def sweep(self) -> None:
-        """Give back images of packets that no application got."""
-        for image in [each for each in self._images.values() if not each.holders]:
-            self._give(image)
+            self.images.keep(packet, address)
 
     def _buffer(self, address: int) -> MessageBuffer:
         buffer = self._buffers.get(address)
@@ -150,14 +106,13 @@ class PacketImages:
 
     def forget_pipe(self, pipe_id: int) -> None:
         """A pipe was deleted: what it had is given back."""
-        image = self._held.pop(pipe_id, None)
-        if image is not None:
-            image.holders -= 1
-            if not image.holders:
-                self._give(image)
+        self.images.forget_pipe(pipe_id)
 
-    def close(self) -> None:
-        """The processor is at its end."""
-        self._images.clear()
-        self._held.clear()
-        self._buffers.clear()
+    def clean_up(self) -> None:
+        """An application has ended, and with it pipes and buffers: give back what they had."""
+        for pipe_id in self.images.pipes():
+            if self._core.find_pipe(pipe_id) is None:
+                self.images.forget_pipe(pipe_id)
+        for address in [each for each, buffer in self._buffers.items() if not self._core.is_held(buffer)]:
+            self._forget(address)
+        self.images.sweep()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 
 from cfepy.app import Cfe
 from cfepy.c.arena import Arena
@@ -64,7 +63,9 @@ class CRuntime:
         config = cfe.es.config
         self.table = made.Table(
             heap=self._heap,
-            charge=partial(kernel.charge, polling_ns) if polling_ns else None,
+            images=self.packets.images,
+            charge=kernel.charge if polling_ns else None,
+            cost=polling_ns,
             preempted=PreemptedFrames(self._place, self._watch),
             highest_msg_id=config.sb_highest_valid_msg_id,
             largest_message=config.sb_max_msg_size,
@@ -73,6 +74,7 @@ class CRuntime:
         self.declared = Declarations()
         declare(self.declared, self)
         self._calls = CallTable(self.arena, self.table, self.declared)
+        self._owners: set[int] = set()
         self.libraries: dict[str, Image] = {}
         self.applications: dict[str, Image] = {}
 
@@ -95,11 +97,16 @@ class CRuntime:
             self.run(function)
         return image
 
-    def forget_application(self, name: str) -> None:
-        """Take the code of an application out of memory: it is at its end, or about to be started again."""
-        image = self.applications.pop(name, None)
+    def unload(self, app_name: str) -> None:
+        """An application has ended: take its code out of memory, and what it had of malloc and of messages."""
+        image = self.applications.pop(app_name, None)
         if image is not None:
             image.unload()
+        apps = self.cfe.es.apps
+        for owner in [each for each in self._owners if apps.find(each) is None]:
+            self._heap.give_all(owner)
+            self._owners.discard(owner)
+        self.packets.clean_up()
 
     def _resolve(self, name: str) -> int:
         for image in self.libraries.values():
@@ -134,6 +141,8 @@ class CRuntime:
             CFault: the code failed.
         """
         owner = getattr(self.kernel.current.owner, "app_id", 0)
+        if owner:
+            self._owners.add(owner)
         given, room = (stack, size) if stack else self._stacks.take(size)
         try:
             return int(engine().run(self.table, function, args, given, room, owner))
@@ -185,5 +194,4 @@ class CRuntime:
         """The processor is at its end: give all memory back."""
         self.applications.clear()
         self.libraries.clear()
-        self.packets.close()
         self.arena.close()

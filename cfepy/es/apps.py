@@ -347,6 +347,7 @@ class AppEnd(AppServices):
         self.osal.delete_objects_of(app)
         self._release_pools(app)
         self.apps.delete(app.app_id)
+        self.loader.unload(app.name)
 
     def end_task(self, app: AppRecord, task_id: int) -> None:
         """End one task of an application."""

@@ -170,3 +170,6 @@ class Loader(Protocol):
 
     def load_library(self, file: str, symbol: str) -> Callable[[int], object]:
         """The init function of a library."""
+
+    def unload(self, app_name: str) -> None:
+        """An application has ended: its code may go."""

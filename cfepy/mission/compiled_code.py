@@ -44,6 +44,11 @@ class CompiledFiles(Finder):
         """See `Finder.exists`."""
         return self._data(file) is not None
 
+    def unload(self, app_name: str) -> None:
+        """See `Finder.unload`."""
+        if self._loader is not None:
+            self._loader.runtime.unload(app_name)
+
     def forget(self) -> None:
         """See `Finder.forget`."""
         if self._loader is not None:

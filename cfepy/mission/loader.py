@@ -51,6 +51,9 @@ class Finder(Protocol):
     def exists(self, file: str) -> bool:
         """Whether there is code behind a virtual path, whatever its entry point is; errors as `find`."""
 
+    def unload(self, app_name: str) -> None:
+        """An application has ended: let go of its code, where that takes more than forgetting it."""
+
     def forget(self) -> None:
         """The processor is at its end: let go of what was loaded."""
 
@@ -100,6 +103,11 @@ class ModuleLoader:
             OsalError: there is no such file, or executing it failed (the traceback is on the console).
         """
         return self._find(file, None).module(owner)
+
+    def unload(self, app_name: str) -> None:
+        """An application has ended: its code may go."""
+        for finder in self._finders:
+            finder.unload(app_name)
 
     def library_symbol(self, name: str) -> object | None:
         """What a name stands for in a library that was loaded, the first one that has it; None when none has it."""

@@ -142,8 +142,12 @@ class BufferServices(BusCore):
             if buffer.app_id == app_id:
                 self._forget_buffer(buffer)
 
+    def is_held(self, buffer: MessageBuffer) -> bool:
+        """Whether an application holds a buffer: it was neither sent nor released."""
+        return self._zero_copy.get(getattr(buffer, "number", 0)) is buffer
+
     def _check_buffer(self, buffer: MessageBuffer) -> None:
-        if self._zero_copy.get(getattr(buffer, "number", 0)) is not buffer:
+        if not self.is_held(buffer):
             raise CfeError(CFE_SB_BUFFER_INVALID, "no buffer that an application holds")
 
     def _forget_buffer(self, buffer: MessageBuffer) -> None:

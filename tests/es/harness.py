@@ -30,6 +30,9 @@ class Functions:
             raise OsalError(OS_ERROR, f"no {file}")
         return lambda: self.mains[file](self.cfe)
 
+    def unload(self, app_name: str) -> None:
+        pass
+
     def load_library(self, file: str, symbol: str) -> Callable[[int], object]:
         return lambda lib_id: self.mains[file](self.cfe)
 

@@ -9,10 +9,7 @@ from cfepy.msg import set_msg_time
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_SB_BAD_ARGUMENT,
-    CFE_SB_NO_MESSAGE,
     CFE_SB_PIPE_CR_ERR,
-    CFE_SB_TIME_OUT,
-    CfeError,
 )
 
 if TYPE_CHECKING:
@@ -64,13 +61,6 @@ def _declare_subscriptions(api: Declarations, c: CRuntime) -> None:
 
 def _declare_messages(api: Declarations, c: CRuntime) -> None:
     sb, packets, memory, time = c.handle.sb, c.packets, c.memory, c.handle.time
-    receive, image = sb.receive_buffer, packets.receive
-
-    def receive_buffer(pipe_id: int, timeout: int) -> int:
-        packet = receive(pipe_id, timeout)
-        if packet is None:
-            raise CfeError(CFE_SB_TIME_OUT if timeout else CFE_SB_NO_MESSAGE)
-        return image(pipe_id, packet)
 
     def release(buffer: int) -> None:
         need(BAD, buffer)
@@ -86,12 +76,12 @@ def _declare_messages(api: Declarations, c: CRuntime) -> None:
             set_msg_time(header, time.get_time())
             memory.poke(message, header)
 
-    api.add("CFE_SB_TransmitMsg", "$mb", sb.transmit_msg, BAD)
-    api.add("CFE_SB_ReceiveBuffer", "$~8Ii", receive_buffer, BAD)
+    api.add("CFE_SB_TransmitMsg", "mb", sb.transmit_msg, BAD)
+    api.add("CFE_SB_ReceiveBuffer", "$@~8Ii", sb.receive_buffer, BAD)
     api.add("CFE_SB_AllocateMessageBuffer", "Q", packets.allocate)
     api.add("CFE_SB_ReleaseMessageBuffer", "p", release)
-    api.add("CFE_SB_TransmitBuffer", "$pb", transmit_buffer)
-    api.add("CFE_SB_TimeStampMsg", "$p", time_stamp)
+    api.add("CFE_SB_TransmitBuffer", "pb", transmit_buffer)
+    api.add("CFE_SB_TimeStampMsg", "p", time_stamp)
 
 
 def _declare_user_data(api: Declarations, c: CRuntime) -> None:

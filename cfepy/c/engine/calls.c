@@ -10,6 +10,7 @@
  * looked at then. Before the letters may be
  *   = the Python function gives the status and then the outputs   ~ outputs become 0 when it raises a status
  *   & it gives the two words of a structure that is the result   $ the call takes virtual time
+ *   @ it gives a packet of the pipe in parameter 1, or None; the output is where the packet's image is
  * Otherwise the outputs alone, one value or a tuple; None and True are the status 0 and 1.
  */
 #include "engine.h"
@@ -18,6 +19,9 @@
 #include <string.h>
 
 HIDDEN PyObject *status_error, *fault_error;
+
+#define CFE_SB_TIME_OUT 0xCA000001u
+#define CFE_SB_NO_MESSAGE 0xCA000002u
 
 enum { MOST_TEXT = 64 << 10, FORMATTED = 2048 };
 
@@ -262,6 +266,21 @@ static int give_answer(Coroutine *coroutine, PyObject *answer, const Outputs *ou
     return PyErr_Occurred() ? -1 : 0;
 }
 
+/* A packet that came out of a pipe; without one, the status says whether the pipe was only looked at. */
+static int give_packet(Coroutine *coroutine, PyObject *answer, const Outputs *outputs)
+{
+    uint64_t address = 0;
+    coroutine->result = 0;
+    if (answer == Py_None)
+        coroutine->result = (int32_t)argument(coroutine, 2) == 0 ? CFE_SB_NO_MESSAGE : CFE_SB_TIME_OUT;
+    else if (!PyBytes_CheckExact(answer)) {
+        PyErr_SetString(PyExc_TypeError, "a packet is bytes");
+        return -1;
+    } else if ((address = images_receive(coroutine->table->images, (uint32_t)argument(coroutine, 1), answer)) == 0)
+        return -1;
+    return write_output(outputs, 0, address);
+}
+
 static int give_two_words(Coroutine *coroutine, PyObject *answer)
 {
     unsigned long long low, high;
@@ -305,7 +324,7 @@ HIDDEN int calls_serve(Coroutine *coroutine, const Function *function)
         goto done;
     }
     if (function->costs && coroutine->table->charge != NULL) {
-        PyObject *charged = PyObject_CallNoArgs(coroutine->table->charge);
+        PyObject *charged = PyObject_CallOneArg(coroutine->table->charge, coroutine->table->cost);
         if (charged == NULL)
             goto done;
         Py_DECREF(charged);
@@ -316,6 +335,7 @@ HIDDEN int calls_serve(Coroutine *coroutine, const Function *function)
         result = take_status(coroutine, &outputs, function->clears_outputs);
     else {
         result = function->gives_two_words ? give_two_words(coroutine, answer)
+                 : function->gives_packet  ? give_packet(coroutine, answer, &outputs)
                                            : give_answer(coroutine, answer, &outputs, function->gives_status);
         Py_DECREF(answer);
     }

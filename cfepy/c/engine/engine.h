@@ -70,7 +70,7 @@ typedef struct Function {
     void *target;                              /* what a native stands for, such as a function of libm */
     uint64_t null_status;                      /* what a NULL is answered with, where one must not be */
     char kinds[MOST_PARAMETERS + 1];
-    bool gives_status, gives_two_words, clears_outputs, costs;
+    bool gives_status, gives_two_words, gives_packet, clears_outputs, costs;
 } Function;
 
 /* The functions that the code of one processor can call, by number. */
@@ -78,9 +78,10 @@ typedef struct Table {
     PyObject_HEAD
     Function *functions;
     int count, room;
-    PyObject *charge;                          /* called before each function that costs virtual time; or NULL */
+    PyObject *charge, *cost;                   /* called before each function that costs virtual time; or NULL */
     PyObject *preempted;                       /* by pc, what is called when code has computed for long */
     struct Heap *heap;                         /* malloc's */
+    struct Images *images;                     /* of the Software Bus */
     uint32_t highest_msg_id, largest_message;
     uint64_t ctype[3];                         /* of __ctype_b_loc, __ctype_toupper_loc, __ctype_tolower_loc */
 } Table;
@@ -123,6 +124,11 @@ HIDDEN uint64_t heap_take(Heap *, size_t);
 HIDDEN void heap_own(Heap *, uint32_t owner);    /* whose the blocks are that are taken from now on */
 HIDDEN bool heap_give(Heap *, uint64_t);
 HIDDEN size_t heap_size_of(Heap *, uint64_t);
+
+/* images.c */
+typedef struct Images Images;
+extern HIDDEN PyTypeObject images_type;
+HIDDEN uint64_t images_receive(Images *, uint32_t pipe, PyObject *packet); /* its address; 0 with an exception */
 
 /* natives_*.c: their tables end with a row without a name */
 typedef struct {

@@ -32,9 +32,10 @@ static PyObject *table_add(Table *table, PyObject *arguments)
         table->room = more;
     }
     Function made = {.null_status = (uint64_t)null_status};
-    for (; *signature && strchr("=&~$", *signature); signature++) {
+    for (; *signature && strchr("=&~$@", *signature); signature++) {
         made.gives_status |= *signature == '=';
         made.gives_two_words |= *signature == '&';
+        made.gives_packet |= *signature == '@';
         made.clears_outputs |= *signature == '~';
         made.costs |= *signature == '$';
     }
@@ -59,8 +60,10 @@ static int table_traverse(Table *table, visitproc visit, void *arg)
     for (int i = 0; i < table->count; i++)
         Py_VISIT(table->functions[i].callable);
     Py_VISIT(table->charge);
+    Py_VISIT(table->cost);
     Py_VISIT(table->preempted);
     Py_VISIT((PyObject *)table->heap);
+    Py_VISIT((PyObject *)table->images);
     return 0;
 }
 
@@ -69,10 +72,14 @@ static int table_clear(Table *table)
     for (int i = 0; i < table->count; i++)
         Py_CLEAR(table->functions[i].callable);
     Py_CLEAR(table->charge);
+    Py_CLEAR(table->cost);
     Py_CLEAR(table->preempted);
     PyObject *heap = (PyObject *)table->heap;
     table->heap = NULL;
     Py_XDECREF(heap);
+    PyObject *images = (PyObject *)table->images;
+    table->images = NULL;
+    Py_XDECREF(images);
     return 0;
 }
 
@@ -86,17 +93,19 @@ static void table_dealloc(Table *table)
 
 static PyObject *table_new(PyTypeObject *type, PyObject *arguments, PyObject *options)
 {
-    static char *names[] = {"heap", "charge", "preempted", "highest_msg_id", "largest_message", "ctype", NULL};
-    PyObject *heap, *charge, *preempted;
+    static char *names[] = {"heap", "images", "charge", "cost", "preempted", "highest_msg_id", "largest_message", "ctype", NULL};
+    PyObject *heap, *images, *charge, *cost, *preempted;
     unsigned highest, largest;
     unsigned long long ctype[3];
-    if (!PyArg_ParseTupleAndKeywords(arguments, options, "O!OOII(KKK)", names, &heap_type, &heap, &charge, &preempted, &highest,
+    if (!PyArg_ParseTupleAndKeywords(arguments, options, "O!O!OOOII(KKK)", names, &heap_type, &heap, &images_type, &images, &charge, &cost, &preempted, &highest,
                                      &largest, &ctype[0], &ctype[1], &ctype[2]))
         return NULL;
     Table *table = (Table *)type->tp_alloc(type, 0);
     if (table != NULL) {
         table->heap = (Heap *)Py_NewRef(heap);
+        table->images = (Images *)Py_NewRef(images);
         table->charge = charge == Py_None ? NULL : Py_NewRef(charge);
+        table->cost = Py_NewRef(cost);
         table->preempted = Py_NewRef(preempted);
         table->highest_msg_id = highest;
         table->largest_message = largest;
@@ -120,7 +129,7 @@ HIDDEN PyTypeObject table_type = {
     .tp_traverse = (traverseproc)table_traverse,
     .tp_clear = (inquiry)table_clear,
     .tp_methods = table_methods,
-    .tp_doc = "Table(heap, charge, preempted, highest_msg_id, largest_message, ctype): the functions that C code can call",
+    .tp_doc = "Table(heap, images, charge, cost, preempted, highest_msg_id, largest_message, ctype): the functions that C code can call",
 };
 
 /* ---- run ---------------------------------------------------------------------------------------------------------- */
@@ -380,8 +389,9 @@ static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT, "_engine", "Compi
 PyMODINIT_FUNC PyInit__engine(void)
 {
     PyObject *module = PyModule_Create(&definition);
-    if (module == NULL || PyType_Ready(&heap_type) < 0 || PyType_Ready(&table_type) < 0 ||
+    if (module == NULL || PyType_Ready(&heap_type) < 0 || PyType_Ready(&images_type) < 0 || PyType_Ready(&table_type) < 0 ||
         PyModule_AddObjectRef(module, "Heap", (PyObject *)&heap_type) < 0 ||
+        PyModule_AddObjectRef(module, "Images", (PyObject *)&images_type) < 0 ||
         PyModule_AddObjectRef(module, "Table", (PyObject *)&table_type) < 0 ||
         PyModule_AddIntConstant(module, "ARENA_LOW", ARENA_LOW) < 0 ||
         PyModule_AddIntConstant(module, "ARENA_HIGH", ARENA_HIGH) < 0)
