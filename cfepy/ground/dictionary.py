@@ -18,7 +18,7 @@ from cfepy.ground.names import CORE_PACKETS
 from cfepy.ground.topics import Topic
 from cfepy.ground.values import int_of, line_of, texts_of
 from cfepy.mission import NODE_SYMBOL, MissionSpec, described, read_mission, sources
-from cfepy.mission.python_code import ModuleNames, execute, find_code
+from cfepy.mission.python_code import ModuleNames, execute, find_declarations
 from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Command, Layout, Telemetry
 from cfepy.resources import shipped
 from cfepy.status import CfeError, UsageError
@@ -241,7 +241,7 @@ def _codes(spec: MissionSpec | None) -> Iterator[tuple[str, Path | str]]:
         return
     files = dict.fromkeys(entry.path for entry in spec.entries if entry.symbol != NODE_SYMBOL)
     for file in files:
-        code = find_code(file, spec.folder)
+        code = find_declarations(file, spec.folder)
         if code is not None:
             yield file, code
     if spec.has_nodes:

@@ -16,7 +16,7 @@ from typing import Any
 from cfepy.es import packets as es
 from cfepy.evs import packets as evs
 from cfepy.mission import NODE_SYMBOL, Mission, MissionSpec
-from cfepy.mission.python_code import find_code
+from cfepy.mission.python_code import find_declarations
 from cfepy.msg import is_valid_msg_id, topics
 from cfepy.sb import packets as sb
 from cfepy.syntax_trees import parsed
@@ -35,7 +35,7 @@ def names_of(spec: MissionSpec) -> dict[int, str]:
     names = core_names()
     for entry in spec.entries:
         if entry.symbol != NODE_SYMBOL:
-            for name, msg_id in constants_in(find_code(entry.path, spec.folder)):
+            for name, msg_id in constants_in(find_declarations(entry.path, spec.folder)):
                 names.setdefault(msg_id, _with_prefix(name, entry.name))
     if spec.has_nodes:
         from rospy_shim.parameters import table
@@ -87,7 +87,7 @@ def constants_in(code: Path | str | None) -> Iterator[tuple[str, int]]:
     """(constant, MsgId) of everything called *_MID in an app's sources.
 
     Args:
-        code: what `find_code` found: a module's file or a package's `__init__.py`; others declare nothing.
+        code: what `find_declarations` found: a module's file or a package's `__init__.py`; others declare nothing.
     """
     if not isinstance(code, Path):
         return

@@ -7,6 +7,7 @@ same name stands in for it. What loads it, `cfepy.c`, is imported when there is 
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cfepy.mission.loader import Code, Finder
@@ -16,6 +17,24 @@ if TYPE_CHECKING:
     from cfepy.c import CompiledLoader
 
 ELF = b"\x7fELF"
+FILES = "/cf/"
+
+
+def find_compiled(file: str, folder: Path) -> Path | None:
+    """The ELF file on the host behind a virtual path below /cf, for tools that look at a mission from outside.
+
+    Args:
+        file: the virtual path.
+        folder: the mission's folder.
+    """
+    if not file.startswith(FILES) or ".." in file:
+        return None
+    found = folder / file.removeprefix(FILES)
+    try:
+        with found.open("rb") as stream:
+            return found if stream.read(len(ELF)) == ELF else None
+    except OSError:
+        return None
 
 
 class CompiledFiles(Finder):

@@ -53,6 +53,7 @@ class Finder(Protocol):
 
     def unload(self, app_name: str) -> None:
         """An application has ended: let go of its code, where that takes more than forgetting it."""
+        return
 
     def forget(self) -> None:
         """The processor is at its end: let go of what was loaded."""

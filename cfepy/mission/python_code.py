@@ -22,6 +22,7 @@ from typing import Any
 
 from cfepy.console import Console
 from cfepy.es import SymbolError
+from cfepy.mission.compiled_code import find_compiled
 from cfepy.mission.loader import NO_SYMBOL, NODE_SYMBOL, Code, Finder, MainCode, RemovedCodeError
 from cfepy.mission.tracebacks import app_traceback, described
 from cfepy.nodes.app_modules import AppModules
@@ -190,6 +191,10 @@ class PythonFinder(ABC):
         """See `Finder.exists`."""
         return self.look(file) is not None
 
+    def unload(self, app_name: str) -> None:
+        """See `Finder.unload`; the module goes when the application starts again."""
+        return
+
     def forget(self) -> None:
         """See `Finder.forget`."""
         self._python.forget()
@@ -276,7 +281,14 @@ def find_code(file: str, folder: Path) -> Path | str | None:
         folder: the mission's folder.
 
     Returns:
-        A source file, or the name of an installed module.
+        A source file, or the name of an installed module; None where compiled code is.
+    """
+    return None if find_compiled(file, folder) is not None else find_declarations(file, folder)
+
+
+def find_declarations(file: str, folder: Path) -> Path | str | None:
+    """As `find_code`, for tools that want the names and packets that Python code declares: for compiled code, those of
+    the Python application that goes by its name, such as one that cfepy brings along.
     """
     return _in_folder(file, folder) or _in_folder(file, shipped("apps")) or _installed(file)
 
