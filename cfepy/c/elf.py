@@ -87,6 +87,10 @@ class SharedObject:
     function_at_load: int = 0
     thread_local: tuple[int, int, int, int] | None = None
 
+    def wanted(self) -> list[str]:
+        """Names that it needs of others."""
+        return [each.name for each in self.symbols if each.name and not each.is_defined and not each.is_weak]
+
     @property
     def size(self) -> int:
         """Bytes of memory from its base."""

@@ -116,14 +116,11 @@ class CRuntime:
 
     def missing(self, source: SharedObject) -> list[str]:
         """Names that an object needs and nobody has."""
+        libraries = self.libraries.values()
         return [
-            each.name
-            for each in source.symbols
-            if each.name
-            and not each.is_defined
-            and not each.is_weak
-            and each.name not in self.declared
-            and not any(each.name in image.symbols for image in self.libraries.values())
+            name
+            for name in source.wanted()
+            if name not in self.declared and not any(name in image.symbols for image in libraries)
         ]
 
     # -- running -----------------------------------------------------------------------------------------------------

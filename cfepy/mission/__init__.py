@@ -8,6 +8,7 @@ anything comes in from outside, and the record of what happened. What the ground
 from __future__ import annotations
 
 from cfepy.mission.acts import CALL, FILE, PACKET, PARAM, PUBLISH, HostCall
+from cfepy.mission.compiled_code import find_compiled
 from cfepy.mission.finding import (
     LOCK_FILE,
     STARTUP_SCRIPT,
@@ -74,6 +75,7 @@ __all__ = [
     "app_traceback",
     "described",
     "find_code",
+    "find_compiled",
     "find_node",
     "find_script",
     "hearing",

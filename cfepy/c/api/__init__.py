@@ -7,7 +7,7 @@ raise `CfeError` or `OsalError` for a status, as the services do.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 from cfepy.c.api import es, evs, sb, text
 
@@ -25,3 +25,22 @@ def declare(api: Declarations, c: CRuntime) -> None:
     """
     for module in (text, es, evs, sb):
         module.declare(api, c)
+
+
+class _Anything:
+    """Stands for a processor where only the names of functions are wanted."""
+
+    def __getattr__(self, name: str) -> _Anything:
+        return self
+
+    def __call__(self, *args: object, **options: object) -> _Anything:
+        return self
+
+
+def function_names() -> set[str]:
+    """The functions that compiled code can call."""
+    from cfepy.c.calls import Declarations
+
+    api = Declarations()
+    declare(api, cast("Any", _Anything()))
+    return set(api.functions)

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from cfepy.es import CFE_APP, StartupEntry, startup_script
-from cfepy.mission import CORE_APPS, NODE_SYMBOL, find_code, find_node, sources
+from cfepy.mission import CORE_APPS, NODE_SYMBOL, find_code, find_compiled, find_node, sources
 from cfepy.osal import OS_MAX_FILE_NAME
+from cfepy.pilot.check.compiled import check_compiled
 from cfepy.pilot.check.problem import MissionProblem
 from cfepy.suggestions import did_you_mean
 
@@ -29,7 +30,7 @@ def check_startup(script: Path, data: bytes, entries: list[StartupEntry], longes
         yield MissionProblem(script, note.line, note.explanation, note.is_warning)
     yield from _check_names(script, entries)
     for entry in entries:
-        yield from _check_code(script, script.parent, entry)
+        yield from _check_code(script, entries, entry)
 
 
 def app_sources(folder: Path, entries: list[StartupEntry]) -> Iterator[tuple[Path, str]]:
@@ -59,7 +60,8 @@ def _check_names(script: Path, entries: list[StartupEntry]) -> Iterator[MissionP
         taken.setdefault(key, f"line {entry.line}")
 
 
-def _check_code(script: Path, folder: Path, entry: StartupEntry) -> Iterator[MissionProblem]:
+def _check_code(script: Path, entries: list[StartupEntry], entry: StartupEntry) -> Iterator[MissionProblem]:
+    folder = script.parent
     if not entry.path.startswith(FILES) or ".." in entry.path:
         text = f"{entry.path} is not below /cf, which is the mission's folder; write {FILES}..."
         yield MissionProblem(script, entry.line, text)
@@ -68,6 +70,10 @@ def _check_code(script: Path, folder: Path, entry: StartupEntry) -> Iterator[Mis
     if not is_node and len(entry.path.rpartition("/")[2]) >= OS_MAX_FILE_NAME:
         text = f"the file name in {entry.path} has {OS_MAX_FILE_NAME} characters or more; choose a shorter one"
         yield MissionProblem(script, entry.line, text)
+        return
+    compiled = None if is_node else find_compiled(entry.path, folder)
+    if compiled is not None:
+        yield from check_compiled(script, entries, entry, compiled)
         return
     code = (find_node(entry.path, folder) if is_node else None) or find_code(entry.path, folder)
     if code is None:
