@@ -12,6 +12,7 @@ from typing import Any
 
 from cfepy.contained_files import is_contained
 from cfepy.input_limits import JOURNAL_FILE_BYTES, JOURNAL_VALUES
+from cfepy.journal.looks import KINDS
 from cfepy.pilot import RunPlan
 
 FORMAT = 1  # of a journal
@@ -100,6 +101,14 @@ FRAMES: dict[str, dict[str, Check]] = {
     },
     "file": {"path": is_contained, "size": _whole, "sha256": _digits, "packed": _perhaps(_data), "mode": _whole},
     "folder": {"path": is_contained, "names": _table(_name_of_file, _flag)},
+    "look": {
+        "path": is_contained,
+        "kind": lambda value: value in KINDS,
+        "size": _whole,
+        "mode": _whole,
+        "time_ns": _whole,
+        "target": _text,
+    },
     "pause": {"until_ns": _whole, "visits": _whole, "events": _list(_named)},
     "answer": {"values": _list(_any)},
     "check": {"at": _point, "decisions": _gaps, "decided": _whole},

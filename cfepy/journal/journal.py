@@ -18,12 +18,14 @@ from typing import Any, NamedTuple
 
 from cfepy.input_limits import JOURNAL_FRAME_BYTES
 from cfepy.journal.frame_check import FORMAT, check_values, problem_of
+from cfepy.journal.looks import PathLook
 from cfepy.journal.mission_files import MissionFile, hash_of
 from cfepy.mission import Arrival
 from cfepy.pilot import STALLED, SUDDEN, Results, RunPlan
 from cfepy.status import UsageError
 
-HEADER, FILE, FOLDER, PAUSE, ANSWER, CHECK, END = "header", "file", "folder", "pause", "answer", "check", "end"
+HEADER, FILE, FOLDER, LOOK, PAUSE = "header", "file", "folder", "look", "pause"
+ANSWER, CHECK, END = "answer", "check", "end"
 MARK = b"cfepy journal\r\n\x1a"
 _head = struct.Struct("<II")
 _NOT_OF_THE_RUN = ("wall_s", "speed", "tasks", "trace")
@@ -126,6 +128,7 @@ class Journal:
         header: what was known when it began.
         files: the files that make the mission, by path on the computer of the run.
         folders: what nodes saw in folders that they looked into: by path, names and whether they are folders.
+        looks: what nodes and applications were told of paths that they asked for, by path.
         pauses: what came from outside.
         answers: which calls of the mission's to the outside were answered, in order.
         decisions: the answers of the policy that were not fifo's, by number of the decision.
@@ -138,6 +141,7 @@ class Journal:
     header: Header
     files: dict[str, MissionFile] = field(default_factory=dict)
     folders: dict[str, dict[str, bool]] = field(default_factory=dict)
+    looks: dict[str, PathLook] = field(default_factory=dict)
     pauses: list[Pause] = field(default_factory=list)
     answers: list[Arrival] = field(default_factory=list)
     decisions: dict[int, int] = field(default_factory=dict)
@@ -171,6 +175,8 @@ class Journal:
             self.files[body["path"]] = MissionFile(**body)
         elif kind == FOLDER:
             self.folders[body["path"]] = body["names"]
+        elif kind == LOOK:
+            self.looks[body["path"]] = PathLook(**body)
         elif kind == PAUSE:
             self._take_pause(Pause(body["until_ns"], body["visits"]), body["events"])
         elif kind == ANSWER:

@@ -24,7 +24,7 @@ from typing import Any
 
 from cfepy.journal.facts import own_places
 from cfepy.mission import MissionSpec
-from cfepy.nodes import LISTED, MADE, NEEDED
+from cfepy.nodes import ASKED, LISTED, MADE, NEEDED
 from cfepy.nodes.sources import AGAIN
 from cfepy.status import UsageError
 
@@ -146,13 +146,19 @@ class ReadFiles:
         seen: gets the absolute path. It may open files, which are not told.
         listed: gets the absolute path of a folder that a node looks into for the first time, and the names in it but
             for those of files that the run has written.
+        asked: gets the absolute path, without links but for its last part, of what the run looks for, whether it is
+            there or not.
     """
 
     def __init__(
-        self, seen: Callable[[str], object], listed: Callable[[str, list[str]], object] = lambda path, names: None
+        self,
+        seen: Callable[[str], object],
+        listed: Callable[[str, list[str]], object] = lambda path, names: None,
+        asked: Callable[[str], object] = lambda path: None,
     ) -> None:
         self._seen = seen
         self._listed = listed
+        self._asked = asked
         self._known: set[str] = set()
         self._written: set[str] = set()
         self._own: list[str] = []
@@ -209,6 +215,12 @@ class ReadFiles:
             found = [os.fsdecode(name) for name in names]
             self._listed(folder, [name for name in found if os.path.join(folder, name) not in self._written])
 
+    def looked_for(self, path: str) -> None:
+        """The run looks whether something is at a path."""
+        if self._busy or path in self._written or path.startswith((*_VOLATILE, *_left_out(), *self._own)):
+            return
+        self._asked(path)
+
     def _told(self, source: str) -> None:
         self._busy = True
         try:
@@ -229,6 +241,8 @@ def _listeners() -> list[ReadFiles]:
                 each.opened(values[0], values[2])
             elif event == AGAIN:
                 each.opened(values[0], os.O_RDONLY)
+            elif event == ASKED:
+                each.looked_for(values[0])
             elif event == NEEDED:
                 each.looked_into(values[0], ())
             elif event == MADE:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -22,12 +23,14 @@ from cfepy.journal.journal import (
     FILE,
     FOLDER,
     HEADER,
+    LOOK,
     PAUSE,
     FrameWriter,
     Header,
     digest_of,
     is_journal,
 )
+from cfepy.journal.looks import MOST_LOOKS, look_at
 from cfepy.journal.mission_files import CARRIED, MOST_FILES, Carrier, ReadFiles, files_of
 from cfepy.mission import Mission, outside
 from cfepy.pilot import Flown, RunPlan, fly
@@ -71,10 +74,11 @@ class JournalRecorder(Attachment):
         self._plan = plan
         self._paced = paced
         self._carrier = Carrier(carried)
-        self._reading = ReadFiles(self._file, self._folder)
+        self._reading = ReadFiles(self._file, self._folder, self._look)
         self._reading.forget(str(path))
         self._files: list[str] = []  # read before the header is written
         self._known: set[str] = set()
+        self._looks: set[str] = set()
         self._error: OSError | None = None
         self._finished = self._begun = False
         self._count = 0
@@ -178,6 +182,12 @@ class JournalRecorder(Attachment):
         """A node looks into a folder."""
         kinds = {name: os.path.isdir(os.path.join(path, name)) for name in names[:MOST_FILES]}
         self._write(FOLDER, {"path": path, "names": kinds})
+
+    def _look(self, path: str) -> None:
+        """A node or an application looks for something."""
+        if self._begun and path not in self._looks and len(self._looks) < MOST_LOOKS:
+            self._looks.add(path)
+            self._write(LOOK, asdict(look_at(path)))
 
     def _from_outside(self, event: outside.Arrival) -> None:
         """Something comes in; it is written at once, since the run may crash of it."""

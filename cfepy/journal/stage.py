@@ -12,7 +12,7 @@ import linecache
 import os
 import stat
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -23,6 +23,7 @@ from cfepy.contained_files import link_contained, make_folder, write_contained
 from cfepy.input_limits import JOURNAL_FILES_BYTES
 from cfepy.journal.facts import host_facts, versions
 from cfepy.journal.journal import Header, Journal, JournalError
+from cfepy.journal.looks import put_in_place
 from cfepy.journal.mission_files import MissionFile
 from cfepy.mission import LAUNCH_FILES, Mission, MissionSpec
 from cfepy.nodes import NodeConfig
@@ -39,6 +40,7 @@ class Stage:
     Attributes:
         plan: what to run, with paths of this computer.
         root: folder that stands for the root of the recorded computer; empty for this computer's own.
+        absent: paths at which there was nothing.
         notes: what the user should know before.
         reasons: why the run may be another one.
     """
@@ -47,6 +49,7 @@ class Stage:
     root: str
     notes: tuple[str, ...]
     reasons: tuple[str, ...]
+    absent: Collection[str] = frozenset()
 
     def spec(self) -> MissionSpec:
         """The mission.
@@ -54,7 +57,7 @@ class Stage:
         Raises:
             UsageError: it is not there, or something in it is wrong.
         """
-        return settled(self.plan.spec(), self.root)
+        return settled(self.plan.spec(), self.root, self.absent)
 
 
 @contextlib.contextmanager
@@ -76,10 +79,10 @@ def staged(journal: Journal, from_disk: bool = False) -> Iterator[Stage]:
             other = f"other files than then: {_named(changed)}"
             stage = Stage(plan, "", (_note(changed, from_disk, left_out), *warnings), (other, *reasons))
         else:
-            root = stack.enter_context(_unpacked(journal))
+            root, absent = stack.enter_context(_unpacked(journal))
             notes = (f"with the recorded files; on this computer others are now: {_named(changed)}",) if changed else ()
             moved = replace(moved_plan(journal.header, root), tasks=plan.tasks)
-            stage = Stage(moved, root, (*notes, *warnings), reasons)
+            stage = Stage(moved, root, (*notes, *warnings), reasons, absent)
         stack.enter_context(_in_place_of(journal.header, stage.root))
         yield stage
 
@@ -103,8 +106,11 @@ def _note(changed: Sequence[MissionFile], from_disk: bool, left_out: Sequence[Mi
 
 
 @contextlib.contextmanager
-def _unpacked(journal: Journal) -> Iterator[str]:
-    """A folder with files at the paths that they had; tracebacks show their lines, not those of other files there."""
+def _unpacked(journal: Journal) -> Iterator[tuple[str, Collection[str]]]:
+    """A folder with files at the paths that they had, and paths at which there was nothing.
+
+    Tracebacks show the lines of these files, not those of others there.
+    """
     with tempfile.TemporaryDirectory(prefix="cfepy-replay-") as folder:
         root = os.path.realpath(folder)
         try:
@@ -115,12 +121,14 @@ def _unpacked(journal: Journal) -> Iterator[str]:
                 _unpack(each, Path(root))
             for path, names in journal.folders.items():
                 _fill(Path(root), path, names)
+            make_folder(Path(root), journal.header.cwd)  # before a folder is closed to writers
+            absent = put_in_place(Path(root), journal.looks.values())
         except (OSError, UsageError) as error:
             why = error.strerror if isinstance(error, OSError) else error
             raise JournalError(f"its files cannot be unpacked: {why}", file=journal.path) from None
         lines = _show_lines(journal.files.values())
         try:
-            yield root
+            yield root, absent
         finally:
             for name in lines:
                 linecache.cache.pop(name, None)
@@ -240,12 +248,19 @@ def _folder_in(root: str) -> Any:
     return lambda word: root + word if root and word.startswith(os.sep) and os.path.isdir(root + word) else word
 
 
-def settled(spec: MissionSpec, root: str) -> MissionSpec:
-    """A mission that was read below a root, and does not see it."""
+def settled(spec: MissionSpec, root: str, absent: Collection[str] = frozenset()) -> MissionSpec:
+    """A mission that was read below a root, and does not see it.
+
+    Args:
+        spec: the mission.
+        root: the folder; empty for none.
+        absent: paths at which it finds nothing.
+    """
     if not root:
         return spec
     nodes = {app: _settled_node(node, root) for app, node in spec.ros.nodes.items()}
-    return replace(spec, ros=replace(spec.ros, nodes=nodes, params=_without(spec.ros.params, root), root=root))
+    params = _without(spec.ros.params, root)
+    return replace(spec, ros=replace(spec.ros, nodes=nodes, params=params, root=root, absent=absent))
 
 
 def _settled_node(node: NodeConfig, root: str) -> NodeConfig:

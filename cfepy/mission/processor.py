@@ -96,7 +96,9 @@ class RunFiles:
             from cfepy.nodes import Overlay, below_root
 
             epoch_ns, kernel = machine.epoch_ns, machine.kernel
-            self.made = Overlay(lambda: epoch_ns + kernel.now, below_root(machine.spec.ros.root))
+            self.made = Overlay(
+                lambda: epoch_ns + kernel.now, below_root(machine.spec.ros.root, machine.spec.ros.absent)
+            )
         return self.made
 
     def close(self) -> None:

@@ -18,11 +18,12 @@ from cfepy.faces import face
 from cfepy.nodes.config import ROSCORE_PARAMS, NodeConfig, RosConfig, TopicConfig
 
 if TYPE_CHECKING:
-    from cfepy.nodes.files import LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
+    from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
     from cfepy.nodes.refused import RefusedError
     from cfepy.nodes.universe import Factory, StartThread, Universe
 
 __all__ = [
+    "ASKED",
     "LISTED",
     "MADE",
     "NEEDED",
@@ -43,7 +44,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".files": ("LISTED", "MADE", "NEEDED", "PREFIX", "Overlay", "below_root"),
+            ".files": ("ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Overlay", "below_root"),
             ".refused": ("RefusedError",),
             ".universe": (
                 "Factory",

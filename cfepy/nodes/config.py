@@ -5,7 +5,7 @@ The mission reads them and ROS's side uses them; neither imports the other.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -71,7 +71,8 @@ class RosConfig:
     name, from the mission's `topics.lock`, for what `topics` does not pin. With `spread` a topic whose MsgId is taken
     gets the next free one, in order of registration; otherwise that is an error, since the id may be another in the
     next run. `ends_with_nodes`: the run is over when all its nodes have ended. `root` is a folder that stands for the
-    computer's root, for a mission that was brought from elsewhere (`Universe`). `connection_delay_ns` is how long
+    computer's root, for a mission that was brought from elsewhere (`Universe`), `absent` are paths at which there was
+    nothing. `connection_delay_ns` is how long
     it takes until a publisher and a subscriber are connected, in virtual ns.
     """
 
@@ -84,4 +85,5 @@ class RosConfig:
     locked_services: Mapping[str, int] = field(default_factory=dict)
     spread: bool = False
     root: str = ""
+    absent: Collection[str] = frozenset()
     connection_delay_ns: int = 0

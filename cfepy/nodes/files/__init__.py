@@ -10,6 +10,6 @@ from __future__ import annotations
 from cfepy.nodes.files.calls import Entries, FileCalls
 from cfepy.nodes.files.opened import OpenFiles
 from cfepy.nodes.files.overlay import PREFIX, Overlay, below_root
-from cfepy.nodes.files.stamps import LISTED, MADE, NEEDED
+from cfepy.nodes.files.stamps import ASKED, LISTED, MADE, NEEDED
 
-__all__ = ["LISTED", "MADE", "NEEDED", "PREFIX", "Entries", "FileCalls", "OpenFiles", "Overlay", "below_root"]
+__all__ = ["ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Entries", "FileCalls", "OpenFiles", "Overlay", "below_root"]

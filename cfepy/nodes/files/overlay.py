@@ -17,12 +17,12 @@ import stat
 import sys
 import tempfile
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Container, Iterator
 from contextlib import suppress
 from functools import cache
 from weakref import WeakSet, finalize
 
-from cfepy.nodes.files.stamps import LISTED, MADE, NEEDED, Stamps, key_of
+from cfepy.nodes.files.stamps import ASKED, LISTED, MADE, NEEDED, Stamps, key_of
 
 PREFIX = "cfepy-files-"  # of the folders that runs have in the temporary one
 _SYSTEM = ("/proc", "/sys", "/dev")  # no files, but questions to the operating system
@@ -46,7 +46,8 @@ class Overlay:
 
     def __init__(self, now_ns: Callable[[], int] = lambda: 0, host: Callable[[str], str] = lambda path: path) -> None:
         self.stamps = Stamps(now_ns)
-        self._host = host
+        self._place_of_host = host
+        self._asked: set[str] = set()  # paths of the host that were looked at
         self._top = ""
         self._gone: set[str] = set()  # what of the host does not show through, with all below it
         self._no_links: set[str] = set()  # folders of which this is known
@@ -109,6 +110,14 @@ class Overlay:
             if os.path.lexists(own) or self.is_hidden(path):
                 return own
         return self._host(path)
+
+    def _host(self, path: str) -> str:
+        """The place of a file of the host."""
+        place = self._place_of_host(path)
+        if path not in self._asked:
+            self._asked.add(path)
+            sys.audit(ASKED, place)
+        return place
 
     def own_place(self, path: str) -> str | None:
         """Where the run's own file at a path without links lies; None when it has none there."""
@@ -474,11 +483,16 @@ class Overlay:
             os.close(again)
 
 
-def below_root(root: str) -> Callable[[str], str]:
-    """The places of the host's files, some of which are below a folder that stands for the computer's root."""
+def below_root(root: str, absent: Container[str] = ()) -> Callable[[str], str]:
+    """The places of the host's files, some of which are below a folder that stands for the computer's root.
+
+    Args:
+        root: the folder; empty for none.
+        absent: paths at which nothing is to be found.
+    """
     if not root:
         return lambda path: path
-    return lambda path: root + path if os.path.lexists(root + path) else path
+    return lambda path: root + path if path in absent or os.path.lexists(root + path) else path
 
 
 def place_of(descriptor: int) -> str:

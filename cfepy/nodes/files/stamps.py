@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from cfepy.units import NS_PER_S
 
 LISTED = "cfepy.listing"  # Python's audit hooks are told of each folder that a node looks into, and what is in it,
+ASKED = "cfepy.look"  # of each path of the host at which it looks for something, once,
 NEEDED = "cfepy.folder"  # of each folder that must be there, since something is written into it,
 MADE = "cfepy.files"  # and of the folder in which a run has its own files
 DEVICE = 1

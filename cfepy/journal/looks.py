@@ -1,0 +1,99 @@
+"""What a run was told of paths without opening them: whether something is there, of which kind, how large, how old.
+
+A program that only asks whether a file exists gets the same answer in a replay, where that file may be missing, and one
+that is there now may not have been then.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from cfepy.contained_files import make_folder, write_contained
+
+ABSENT, REGULAR, FOLDER, LINK, OTHER = KINDS = ("absent", "file", "folder", "link", "other")
+MOST_LOOKS = 100_000  # that a journal keeps
+_LARGEST = 1 << 40  # bytes of a file that is put in place; it takes no room on the disk
+
+
+@dataclass(frozen=True, slots=True)
+class PathLook:
+    """What was at a path when a run first asked for it.
+
+    Attributes:
+        path: absolute, without links but for its last part.
+        kind: one of `KINDS`; "other" is a pipe, a device or the like.
+        size: of a file, in bytes.
+        mode: permissions of a file or folder.
+        time_ns: of the last change of its content, ns since 1970.
+        target: where a link leads, as it says.
+    """
+
+    path: str
+    kind: str
+    size: int = 0
+    mode: int = 0
+    time_ns: int = 0
+    target: str = ""
+
+
+def look_at(path: str) -> PathLook:
+    """What is at a path now."""
+    try:
+        found = os.lstat(path)
+        target = os.readlink(path) if stat.S_ISLNK(found.st_mode) else ""
+    except (OSError, ValueError):
+        return PathLook(path, ABSENT)
+    if target:
+        return PathLook(path, LINK, target=target)
+    mode, time_ns = stat.S_IMODE(found.st_mode), max(0, found.st_mtime_ns)
+    if stat.S_ISREG(found.st_mode):
+        return PathLook(path, REGULAR, found.st_size, mode, time_ns)
+    return PathLook(path, FOLDER if stat.S_ISDIR(found.st_mode) else OTHER, 0, mode, time_ns)
+
+
+def put_in_place(root: Path, looks: Iterable[PathLook]) -> frozenset[str]:
+    """Make files, folders and links below a root that answer as those did which a run asked for.
+
+    What is there already stays, with its content: it was opened, too. What was no file, such as a device, is left out.
+
+    Args:
+        root: stands for the root of the computer.
+        looks: what the run was told.
+
+    Returns:
+        The paths at which there was nothing.
+
+    Raises:
+        UsageError: a path leaves the root.
+        OSError: something cannot be made.
+    """
+    found = sorted(looks, key=lambda look: look.path)
+    for look in found:
+        if look.kind == FOLDER:
+            make_folder(root, look.path)
+    for look in found:
+        if look.kind == REGULAR and not os.path.lexists(f"{root}{look.path}"):
+            write_contained(root, look.path, b"")
+            os.truncate(f"{root}{look.path}", min(look.size, _LARGEST))
+    for look in found:
+        if look.kind == LINK and not os.path.lexists(f"{root}{look.path}"):
+            place = make_folder(root, os.path.dirname(look.path)) / os.path.basename(look.path)
+            place.symlink_to(look.target)
+    for look in reversed(found):  # what is in a folder before the folder, which may be closed then
+        _dress(root, look)
+    return frozenset(look.path for look in found if look.kind == ABSENT and not os.path.lexists(f"{root}{look.path}"))
+
+
+def _dress(root: Path, look: PathLook) -> None:
+    """Give a file or folder the permissions and the time that it had; its owner can always read it here."""
+    place = f"{root}{look.path}"
+    if look.kind not in (REGULAR, FOLDER) or look.path == "/" or os.path.islink(place):
+        return
+    with suppress(OverflowError):
+        os.utime(place, ns=(look.time_ns, look.time_ns))
+    os.chmod(place, stat.S_IMODE(look.mode) | (stat.S_IRUSR if look.kind == REGULAR else stat.S_IRUSR | stat.S_IXUSR))
