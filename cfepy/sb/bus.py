@@ -366,6 +366,7 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         while items and not begins:
             packet, destination = items.popleft()
             self._queued_bytes -= len(packet) + BUFFER_BYTES
+            destination = destination.counted_at()
             destination.puts -= 1
             destination.overflow_drops += 1
             begins = bool(items) and items[0][0][2] & FIRST_SEGMENT != 0
@@ -408,6 +409,8 @@ class SoftwareBus(PipeServices, SubscriptionServices):
             if item is None:
                 raise self._read_error(pipe)
             packet, destination = item
+        if destination.kin is not None:
+            destination = destination.counted_at()
         destination.gets += 1
         if self._record is not None:
             self._record(pipe.receive_mark)

@@ -25,9 +25,13 @@ Totals = tuple[int, int, int, int]
 
 
 class Destination:
-    """One pipe on a route (CFE_SB_DestinationD_t); `puts - gets` is NASA's BuffCount."""
+    """One pipe on a route (CFE_SB_DestinationD_t); `puts - gets` is NASA's BuffCount.
 
-    __slots__ = ("active", "block", "gets", "limit", "limit_drops", "overflow_drops", "pipe", "puts", "scope")
+    `kin` has the destinations of a pipe that was unsubscribed and subscribed again while messages waited in it, the
+    newest last; None for all others.
+    """
+
+    __slots__ = ("active", "block", "gets", "kin", "limit", "limit_drops", "overflow_drops", "pipe", "puts", "scope")
 
     def __init__(self, pipe: Pipe, limit: int, scope: int, block: Block | None = None) -> None:
         self.pipe = pipe
@@ -37,6 +41,17 @@ class Destination:
         self.active = True
         self.puts = self.gets = 0
         self.limit_drops = self.overflow_drops = 0
+        self.kin: list[Destination] | None = None
+
+    def counted_at(self) -> Destination:
+        """Where a message of this destination counts when it leaves the pipe.
+
+        That is the newest subscription, as long as something of it waits: NASA's bus looks the destination up by the
+        message's id, so a message that came under an older subscription makes room for one of the newer.
+        """
+        if self.kin is None:
+            return self
+        return next((each for each in reversed(self.kin) if each.puts > each.gets), self)
 
 
 class Route:
@@ -72,6 +87,11 @@ class Route:
 
     def add(self, destination: Destination) -> None:
         """Put a destination in front: the newest subscriber gets a message first (CFE_SB_AddDestNode)."""
+        kin = [each for each in self.gone if each.pipe is destination.pipe and each.puts != each.gets]
+        if kin:
+            kin.append(destination)
+            for each in kin:
+                each.kin = kin
         self.destinations.insert(0, destination)
         self.refresh()
 

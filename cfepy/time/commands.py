@@ -60,7 +60,6 @@ class TimeCommands:
         version_text: str,
     ) -> None:
         self.table = CommandTable(
-            (pk.SEND_HK, self._send_housekeeping),
             (pk.NOOP, self._noop),
             (pk.RESET_COUNTERS, self._reset_counters),
             (pk.SEND_DIAGNOSTIC, self._send_diagnostic),
@@ -78,6 +77,7 @@ class TimeCommands:
             (pk.ADD_ONE_HZ_ADJUSTMENT, partial(self._one_hz, ADD)),
             (pk.SUB_ONE_HZ_ADJUSTMENT, partial(self._one_hz, SUBTRACT)),
         )
+        self.table.handle(pk.SEND_HK, self._send_housekeeping, any_length=True)  # NASA's does not look
         self.replies = Replies(ports)
         self.data_store = RESET_AREA_NEW
         self._ports = ports

@@ -67,7 +67,7 @@ class TimeTask:
         self._tone = tone
         self._commands = commands
         self._tone_ready = tone_ready
-        self._one_hz_latch = 0
+        self._one_hz_latch: int | None = None  # of the signal whose message is still to come
         told = [pk.TONE_CMD, pk.SEND_CMD] if settings.fake_tone else [pk.TONE_CMD]
         self._signals = [command.packet() for command in told]
         self._one_hz_signal = pk.ONEHZ_CMD.packet()
@@ -157,12 +157,16 @@ class TimeTask:
     # -- messages about the tone -----------------------------------------------------------------------------------
 
     def _one_hz_command(self, packet: bytes) -> None:
-        """A second is over; it also makes the simulated tone (CFE_TIME_OneHzCmd)."""
+        """A second is over; it also makes the simulated tone (CFE_TIME_OneHzCmd).
+
+        A message that is not of the local signal, such as one of the ground's, makes a tone of now.
+        """
         self._ports.es.perf_log_entry(ONE_HZ_PERF_ID)
         self._tone.one_hz()
         self._ports.es.perf_log_exit(ONE_HZ_PERF_ID)
         if self._settings.fake_tone:
-            self.take_tone(self._one_hz_latch)
+            latch, self._one_hz_latch = self._one_hz_latch, None
+            self.take_tone(self._tone.clock.local() if latch is None else latch)
 
     def _data_command(self, packet: bytes) -> None:
         fields = pk.DATA_CMD.read(packet)

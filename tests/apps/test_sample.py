@@ -59,6 +59,15 @@ def test_its_way_through_a_session(sample: AppBench) -> None:
     assert sample.exit_status == APP_EXIT
 
 
+def test_a_request_for_housekeeping_may_have_any_length(sample: AppBench) -> None:
+    """NASA's does not look: one with a length field of 0, which says 7 bytes, was answered."""
+    short = bytearray(packets.SEND_HK.packet())[:7]
+    short[4:6] = bytes(2)
+    sample.run(SAMPLE_APP_Main, bytes(short), cmd(packets.SEND_HK_MID, 0, b"xyz"))
+    assert [(get_msg_id(each), each[16:]) for each in sample.sent] == [(0x0883, bytes(4))] * 2
+    assert len(sample.events) == 1 + 1  # of its table, and of its start
+
+
 def test_without_its_library_it_says_so(sample: AppBench) -> None:
     sample.run(SAMPLE_APP_Main, packets.PROCESS.packet(), packets.NOOP.packet())
     assert sample.log[-1] == "Sample App: no library has SAMPLE_LIB_Function"

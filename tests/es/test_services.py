@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from cfepy.app import Cfe
+from cfepy.es.packets import RESTART_APP as RESTART_APP_COMMAND
 from cfepy.es.records import APP_ERROR, APP_RUN, LATE_INIT, RUNNING, SYS_RESTART, SYSTEM_OPERATIONAL
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -23,6 +24,7 @@ from cfepy.status import (
     CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
     CfeError,
 )
+from cfepy.units import NS_PER_S
 from tests.es.harness import Lab
 
 Result = dict[str, Any]
@@ -99,6 +101,25 @@ def test_a_restart_request_ends_the_loop(make_lab: Callable[..., Lab]) -> None:
     assert starts[1] > first
     assert f"Restart Application ONE Completed, AppID={starts[1]}" in lab.log()
     assert status_of(lambda: lab.es.get_app_name(first)) == CFE_ES_ERR_RESOURCEID_NOT_VALID
+
+
+def test_an_app_has_as_long_for_its_end_as_in_nasas(make_lab: Callable[..., Lab]) -> None:
+    """NASA's cFE took 6.2497 s and 6.2494 s from the command to the start; 5 s of it are the kill timeout."""
+
+    def one(cfe: Cfe) -> None:
+        starts.append(cfe.es.kernel.now / NS_PER_S)
+        while cfe.es.run_loop():
+            cfe.os.task_delay(50)
+        cfe.es.exit_app()
+
+    starts: list[float] = []
+    lab = make_lab(one=one)
+    lab.start("one")
+    lab.mission.run_for(2.3)
+    commanded = lab.es.kernel.now / NS_PER_S
+    lab.cfe.sb.transmit_msg(RESTART_APP_COMMAND.packet(Application="ONE"))
+    lab.mission.run_for(8)
+    assert starts[1] - commanded == pytest.approx(6.25 + 0.05, abs=0.005)  # a task starts 50 ms after its creation
 
 
 def test_apps_that_cannot_be_controlled(make_lab: Callable[..., Lab]) -> None:

@@ -25,7 +25,7 @@ TALKER = """
 
 @BOTH
 def test_a_crash_is_an_exception_that_es_answers(tmp_path: Path, tasks: str) -> None:
-    mission = fly(tmp_path, {"crash": "TAKER", "at": 1.8}, tasks=tasks, seconds=10)
+    mission = fly(tmp_path, {"crash": "TAKER", "at": 1.8}, tasks=tasks, seconds=12)
     history = mission.record.history["TAKER"]
     assert (history.deaths, history.restarts) == (1, 1)
     assert type(history.last_error).__name__ == "InjectedCrash"

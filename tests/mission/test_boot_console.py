@@ -90,7 +90,7 @@ CFE_APP, ./bad/../name?.so, X_Main,      BADPATH,      50, 16384, 0x0, 0;
 
 
 def flight(folder: Path, startup: str, files: dict[str, str] = APPS) -> list[str]:
-    """The console lines of two seconds of a mission made of `files`."""
+    """The console lines of three seconds of a mission made of `files`."""
     for name, source in files.items():
         lines = source.splitlines()
         (folder / name).write_text("\n".join(line.removeprefix(" " * 8) for line in lines) + "\n")
@@ -99,7 +99,7 @@ def flight(folder: Path, startup: str, files: dict[str, str] = APPS) -> list[str
     (folder / "to_lab_sub.tbl").write_bytes(wrong_table())
     console = Console(quiet=True)
     with Mission(str(folder), console=console) as mission:
-        mission.run_for(2)
+        mission.run_for(3)
     return console.lines
 
 

@@ -121,7 +121,7 @@ def Main(cfe):
     finally:
         raise ValueError("while it was ended")
 """
-    mission = fly(tmp_path, source, seconds=8)
+    mission = fly(tmp_path, source, seconds=9)
     text = text_of(mission)
     assert "while it was ended" in text
     assert "kernel.py" not in text

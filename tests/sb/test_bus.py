@@ -114,6 +114,24 @@ def test_message_limit(bench: Bench) -> None:
     assert (bench.bus.counters.msg_limit_error, bench.bus.counters.msg_send_error) == (1, 1)
 
 
+def test_a_message_of_an_older_subscription_makes_room_for_the_newer(bench: Bench) -> None:
+    """As on NASA's cFE 7.0.0: the limit is counted by MsgId and pipe, whichever subscription a message came under."""
+    pipe = subscriber(bench, "A", limit=1)
+    bench.bus.transmit_msg(packet(MID, b"old"))
+    bench.do("A", lambda: (bench.bus.unsubscribe(MID, pipe), bench.bus.subscribe_ex(MID, pipe, msg_limit=1)))
+    bench.bus.transmit_msg(packet(MID, b"one"))
+    bench.bus.transmit_msg(packet(MID, b"too many"))
+    assert bench.bus.receive_buffer(pipe, 0)[16:] == b"old"
+    bench.bus.transmit_msg(packet(MID, b"two"))
+    assert bench.bus.counters.msg_limit_error == 1
+    bench.bus.transmit_msg(packet(MID, b"too many"))
+    assert [each[16:] for each in drain(bench, pipe)] == [b"one", b"two"]
+    assert bench.bus.routes[MID].totals() == (3, 0, 2, 0)
+    bench.bus.transmit_msg(packet(MID, b"last"))
+    bench.bus.transmit_msg(packet(MID, b"too many"))
+    assert [each[16:] for each in drain(bench, pipe)] == [b"last"]
+
+
 def test_pipe_overflow_does_not_keep_others_from_it(bench: Bench) -> None:
     small = subscriber(bench, "SMALL", depth=1, limit=9)
     large = subscriber(bench, "LARGE", depth=9, limit=9)

@@ -168,6 +168,26 @@ def test_a_tone_at_the_wrong_moment_is_not_good(world: World) -> None:
     assert world.time.get_clock_info() & 0x20
 
 
+def test_a_1_hz_message_from_the_ground_makes_a_tone_of_now(world: World) -> None:
+    """NASA's takes the time when the message comes: neither this tone nor the next is a second after the one before.
+
+    The clock misses a pair, flies for a moment, and is right again with the next one.
+    """
+    world.start()
+    world.run(5.5)
+    counters = world.time.tone.counters
+    good = counters.tone_interrupt
+    world.call(lambda: world.time.commands.process(pk.ONEHZ_CMD.packet()), TIME_ID)
+    assert world.time.get_clock_info() & 0x20 == 0
+    world.run(1)
+    assert (counters.tone_interrupt, counters.tone_interrupt_error) == (good, 2)
+    world.run(3)
+    assert (counters.tone_interrupt, counters.tone_interrupt_error) == (good + 3, 2)
+    assert not world.time.clock.reference.flying
+    assert world.time.get_met() == (1009, 0x80000000)
+    assert world.time.tone.virtual_met == 1009
+
+
 def test_a_board_may_give_the_local_signal_itself(world: World) -> None:
     world.start()
     world.run(0.5)

@@ -118,6 +118,13 @@ def test_a_strange_message_is_told_of_but_not_counted(running: World) -> None:
     assert running.command_counters()[1] == 0
 
 
+def test_a_request_for_housekeeping_may_have_any_length(running: World) -> None:
+    """NASA's TIME does not look, as EVS and SB do not."""
+    running.command(0, b"xyz", msg_id=pk.SEND_HK_MID)
+    assert running.events == []
+    assert running.command_counters() == (0, 0)
+
+
 def test_a_short_message_about_the_tone_does_no_harm(running: World) -> None:
     running.command(0, msg_id=pk.DATA_CMD_MID)
     assert running.events == [(49, "Invalid msg length: ID = 0x1860,  CC = 0, Len = 8, Expected = 28")]

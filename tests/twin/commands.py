@@ -19,8 +19,9 @@ from cfepy.sb import packets as sb
 from cfepy.tbl import packets as tbl
 from cfepy.time import packets as time
 
-PLAIN, BACKGROUND, CONTROL = "plain", "background", "control"
-"""How long a step takes: the answer of a task; a file in the background, or a start; the end of an application."""
+PLAIN, BACKGROUND, CONTROL, RESET = "plain", "background", "control", "reset"
+"""How long a step takes: the answer of a task; a file in the background, or a start; the end of an application; a boot,
+after which the question for housekeeping comes."""
 
 SERVICES: dict[str, tuple[Command, ...]] = {
     "ES": es.COMMANDS,

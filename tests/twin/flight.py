@@ -20,17 +20,19 @@ from cfepy.sb import packets as sb
 from cfepy.tbl import packets as tbl
 from cfepy.time import packets as time_packets
 from tests.twin import masks, mission
-from tests.twin.commands import APPS, BACKGROUND, CONTROL, HOUSEKEEPING, PLAIN, Step
-from tests.twin.real import RealCfe
+from tests.twin.commands import APPS, BACKGROUND, CONTROL, HOUSEKEEPING, PLAIN, RESET, Step
+from tests.twin.real import BOOT_LIMIT_S, CI_PORT, TO_PORT, RealCfe
 
-VIRTUAL_S = {PLAIN: 1.6, BACKGROUND: 4.0, CONTROL: 9.5}
+VIRTUAL_S = {PLAIN: 1.6, BACKGROUND: 4.0, CONTROL: 9.5, RESET: 1.6}
 """How long a step flies in the simulation: uplink, answer, and TO_LAB's pass every half a second."""
-LIMIT_S = {PLAIN: 4.0, BACKGROUND: 8.0, CONTROL: 14.0}
+LIMIT_S = {PLAIN: 4.0, BACKGROUND: 8.0, CONTROL: 14.0, RESET: 4.0}
 """How long the real one may take for the same, on a busy host."""
-LEAST_S = {PLAIN: 0.0, BACKGROUND: 1.2, CONTROL: 8.5}
+LEAST_S = {PLAIN: 0.0, BACKGROUND: 1.2, CONTROL: 8.5, RESET: 0.0}
 """How long the real one is given at least: the events that tell the end may be switched off."""
-BOOTS = 10
-"""How often NASA's is booted until its applications come up in the order of the startup script, which is chance."""
+VIRTUAL_RESET_S = 3.0
+"""How long the simulation gets for a reset; the applications are up, and what they say of it came down."""
+AFTER_BOOT_S = 1.0
+"""The same of the real one, after it has said that it is operational."""
 QUIET_S = 0.8
 """How long nothing comes down when a step without an answer is over: more than a pass of TO_LAB."""
 ENABLE = to_lab.packets.OUTPUT_ENABLE.packet(dest_IP="127.0.0.1")
@@ -56,7 +58,12 @@ class Computer(Protocol):
 
 def with_housekeeping(step: Step) -> tuple[bytes, ...]:
     """What a step sends, and then the question for its service's housekeeping."""
-    return (*step.packets, HOUSEKEEPING[step.service].packet())
+    return (*step.packets, *question(step))
+
+
+def question(step: Step) -> tuple[bytes, ...]:
+    """The question for the housekeeping of a step's service; none where it has none."""
+    return (HOUSEKEEPING[step.service].packet(),) if step.service in HOUSEKEEPING else ()
 
 
 def preparation() -> list[Step]:
@@ -69,25 +76,39 @@ def preparation() -> list[Step]:
 
 
 class Simulated:
-    """The mission in cfepy."""
+    """The mission in cfepy.
 
-    def __init__(self, flown: Mission) -> None:
+    Args:
+        flown: it.
+        line: the ports at which it hears the ground and the ground hears it.
+    """
+
+    def __init__(self, flown: Mission, line: tuple[int, int] = (CI_PORT, TO_PORT)) -> None:
         self._mission, self._ground = flown, GroundLink(flown)
+        self._up, self._down = line
         flown.run_for(3)
-        self._ground.send(ENABLE)
+        self._ground.send(ENABLE, self._up)
         flown.run_for(2)
-        self._ground.received()
+        self._ground.received(self._down)
         self._files = self._read_files()
 
     def fly(self, step: Step, expected: Observed | None = None) -> Observed:
-        for packet in with_housekeeping(step):
-            self._ground.send(packet)
+        if step.pace == RESET:
+            self._send(step.packets)
+            self._mission.run_for(VIRTUAL_RESET_S)
+            self._send(question(step))
+        else:
+            self._send(with_housekeeping(step))
         self._mission.run_for(VIRTUAL_S[step.pace])
-        packets = tuple(data for _, data in self._ground.received())
+        packets = tuple(data for _, data in self._ground.received(self._down))
         files = self._read_files()
         changed = {path: data for path, data in files.items() if self._files.get(path) != data}
-        self._files = files
+        self._files |= files
         return Observed(packets, changed)
+
+    def _send(self, packets: tuple[bytes, ...]) -> None:
+        for packet in packets:
+            self._ground.send(packet, self._up)
 
     def _read_files(self) -> dict[str, bytes]:
         read, names = self._mission.files.read_file, self._mission.files.list_dir
@@ -111,13 +132,23 @@ class Real:
         self._files = self._read_files()
 
     def fly(self, step: Step, expected: Observed | None = None) -> Observed:
-        for packet in with_housekeeping(step):
-            self._booted.send(packet)
+        if step.pace == RESET:
+            boots = self._booted.boots()
+            self._send(step.packets)
+            self._booted.wait(lambda: self._booted.boots() > boots, "reset", BOOT_LIMIT_S)
+            time.sleep(AFTER_BOOT_S)
+            self._send(question(step))
+        else:
+            self._send(with_housekeeping(step))
         packets = list(self._come_down(step, expected))
         files = self._read_files()
         changed = {path: data for path, data in files.items() if self._files.get(path) != data}
-        self._files = files
+        self._files |= files
         return Observed(tuple(packets), changed)
+
+    def _send(self, packets: tuple[bytes, ...]) -> None:
+        for packet in packets:
+            self._booted.send(packet)
 
     def _come_down(self, step: Step, expected: Observed | None) -> Iterator[bytes]:
         wanted = expected.told() if expected is not None else Counter[bytes]()
@@ -165,15 +196,11 @@ def simulated(release: str) -> Iterator[Simulated]:
 @contextmanager
 def real(built: Path) -> Iterator[Real]:
     """The mission in NASA's cFE, prepared."""
-    for attempt in range(BOOTS):
-        with tempfile.TemporaryDirectory() as folder, RealCfe(built, Path(folder) / "cfe", mission.files()) as booted:
-            computer = Real(booted)
-            if not mission.came_up_in_order(booted.console()) and attempt < BOOTS - 1:
-                continue
-            for step in preparation():
-                computer.fly(step)
-            yield computer
-            return
+    with tempfile.TemporaryDirectory() as folder, RealCfe(built, Path(folder) / "cfe", mission.files()) as booted:
+        computer = Real(booted)
+        for step in preparation():
+            computer.fly(step)
+        yield computer
 
 
 def differences(ours: Observed, theirs: Observed) -> list[str]:

@@ -24,6 +24,8 @@ from cfepy.time import packets as time
 FLYWHEEL = {("CFE_TIME", 20), ("CFE_TIME", 21)}
 BUILD = re.compile(rb"(cFS Versions: |Build |Version Info: |.*No-op |.*NOOP |.*[Nn]oop |.*Initialized)")
 """Events that tell versions of the build."""
+VERSIONS = re.compile(rb"Version Info: ")
+"""There is one for each module whose version the build knows."""
 TELEMETRY: tuple[Telemetry, ...] = (
     *(*es.TELEMETRY, *evs.TELEMETRY, *sb.TELEMETRY, *tbl.TELEMETRY, *time.TELEMETRY),
     *(*ci_lab.TELEMETRY, *sample_app.TELEMETRY, *to_lab.TELEMETRY),
@@ -79,6 +81,7 @@ LAYOUTS: dict[int, Layout] = {
     header.SUBTYPE_SB_PIPEDATA: sb.PIPE_FILE_ENTRY,
     header.SUBTYPE_SB_ROUTEDATA: sb.ROUTING_FILE_ENTRY,
     header.SUBTYPE_SB_MAPDATA: sb.MAP_FILE_ENTRY,
+    header.SUBTYPE_ES_ERLOG: es.ER_LOG_FILE_ENTRY,
 }
 OF_RECORDS = {
     header.SUBTYPE_ES_QUERYALL: {
@@ -90,12 +93,21 @@ OF_RECORDS = {
     header.SUBTYPE_EVS_APPDATA: {"EventCount": "flywheel events"},
     header.SUBTYPE_SB_PIPEDATA: {".*QueueDepth": "what waits at this instant", "SendErrors": "a host that stops"},
     header.SUBTYPE_SB_MAPDATA: {"Index": "which application subscribed first"},
+    header.SUBTYPE_ES_ERLOG: {
+        "BaseInfo.TimeCode.*": "a time",
+        "BaseInfo.DebugVars.*": "which application ran last",
+        "AppID": "a fault of NASA's, see docs/differences.md",
+        "ContextSize|Context.*": "registers",
+    },
     header.SUBTYPE_SB_ROUTEDATA: {"MsgCnt": "how many messages went there"},
 }
 IN_ANY_ORDER = (header.SUBTYPE_SB_ROUTEDATA, header.SUBTYPE_SB_MAPDATA)
 """Files of routes: the applications subscribe as they come up, on several processors."""
-ONLY_HEADERS = (header.SUBTYPE_ES_SYSLOG, header.SUBTYPE_ES_PERFDATA, header.SUBTYPE_ES_ERLOG)
-"""Files with the lines of the boot, the run of tasks, addresses: what they begin with is compared."""
+ONLY_HEADERS = (header.SUBTYPE_ES_PERFDATA, header.SUBTYPE_EVS_EVENTLOG)
+"""Files with the run of tasks; `same_log` compares the latter: what they begin with is compared."""
+STAMP = re.compile(rb"^\d{4}-\d{3}-\d\d:\d\d:\d\d\.\d{5} ")
+NOT_ALIKE = re.compile(rb"(Event Log restored), .*")
+"""Lines of the system log with counts of events, to which the modules' versions belong."""
 LAST_OF_NAME = 115
 """The last byte of the table's name in a dump, which NASA's never sets, as its first word; see docs/differences.md."""
 MOST_FLYWHEEL = 8
@@ -186,8 +198,8 @@ def of_file(data: bytes) -> bytes:
     begin = bytes(left[: HEADER_SIZE - 32]) + _text(left[HEADER_SIZE - 32 : HEADER_SIZE])
     if head.subtype in ONLY_HEADERS:
         return begin
-    if head.subtype == header.SUBTYPE_EVS_EVENTLOG:
-        return begin
+    if head.subtype == header.SUBTYPE_ES_SYSLOG:
+        return begin + b"\n".join(log_lines(data[HEADER_SIZE:]))
     layout = LAYOUTS.get(head.subtype)
     if layout is None:
         return bytes(left)
@@ -200,6 +212,12 @@ def of_file(data: bytes) -> bytes:
     return begin + b"".join(records)
 
 
+def log_lines(text: bytes) -> list[bytes]:
+    """The lines of a system log, without the times at their beginning."""
+    lines = (STAMP.sub(b"", line) for line in text.rstrip(b"\0").split(b"\n"))
+    return [NOT_ALIKE.sub(rb"\1", line) for line in lines]
+
+
 def _text(field: bytes | bytearray) -> bytes:
     """A text up to its NUL: NASA's headers have what the stack held behind it."""
     return bytes(field).partition(b"\0")[0].ljust(len(field), b"\0")
@@ -209,7 +227,7 @@ def logged(data: bytes) -> list[bytes]:
     """The events of an event log, as they are compared."""
     size = TLM_HEADER_SIZE + evs.LONG_EVENT.size
     events = (of_packet(data[at : at + size]) for at in range(HEADER_SIZE, len(data), size))
-    return [each for each in events if each is not None]
+    return [each for each in events if each is not None and not VERSIONS.search(each)]
 
 
 def same_log(ours: bytes, theirs: bytes) -> bool:

@@ -25,12 +25,6 @@ LAB_DOWN = (0x880, 0x881, 0x883, 0x884)
 LOOKS_PER_S = 20
 
 
-def came_up_in_order(console: bytes) -> bool:
-    """Whether the applications began in the order of the startup script, so that ids of pipes are as they are here."""
-    found = [console.find(each) for each in (b"Sample App Init", b"CI Lab Init", b"TO Lab Init", b"SCH Lab Init")]
-    return -1 not in found and found == sorted(found)
-
-
 def _table(name: str, data: bytes, offset: int = 0) -> bytes:
     return image.build(image.TableImage(name, data, offset=offset))
 

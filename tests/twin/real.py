@@ -53,6 +53,14 @@ def installed(variable: str = VARIABLE) -> Path | None:
     return Path(folder)
 
 
+def one_cpu() -> int:
+    """The only processor of the host that a cFE gets, so that its applications start in the order of their priorities.
+
+    On more of them it is chance which one subscribes first, and with it which ids pipes have.
+    """
+    return min(os.sched_getaffinity(0))
+
+
 class RealCfe:
     """NASA's cFE while it runs, as a context manager. Needs Linux and the rights of root for the namespaces.
 
@@ -60,13 +68,21 @@ class RealCfe:
         built: the folder of the executable and of its `cf`.
         folder: where its private copy goes.
         files: what to write over files of the copy, by virtual path ("/cf/x").
+        line: the ports at which it hears the ground and the ground hears it.
 
     Attributes:
         inside: id of the first process of its namespaces.
     """
 
-    def __init__(self, built: Path, folder: Path, files: Mapping[str, bytes]) -> None:
+    def __init__(
+        self,
+        built: Path,
+        folder: Path,
+        files: Mapping[str, bytes],
+        line: tuple[int, int] = (CI_PORT, TO_PORT),
+    ) -> None:
         self._folder = folder
+        self._up_port, self._down_port = line
         shutil.copytree(built / "cf", folder / "cf")
         shutil.copy(built / EXECUTABLE, folder)
         for path, content in files.items():
@@ -74,18 +90,18 @@ class RealCfe:
         self._log = folder / "console.log"
 
     def __enter__(self) -> RealCfe:
-        spaces = [*NOT_LONGER_THAN_US, *NAMESPACES]
+        spaces = [*NOT_LONGER_THAN_US, "taskset", "-c", str(one_cpu()), *NAMESPACES]
         with self._log.open("wb") as log:
             self._process = subprocess.Popen(
                 [*spaces, "bash", "-c", FOREVER, "-", f"./{EXECUTABLE}"], cwd=self._folder, stdout=log, stderr=log
             )
         try:
-            self.wait(lambda: OPERATIONAL in self.console(), "boot", BOOT_LIMIT_S)
+            self.wait(lambda: self.boots() > 0, "boot", BOOT_LIMIT_S)
             self.inside = int(Path(f"/proc/{self._process.pid}/task/{self._process.pid}/children").read_text())
             with in_network_of(self.inside):
                 self._up = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
                 self._down = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-                self._down.bind(("127.0.0.1", TO_PORT))
+                self._down.bind(("127.0.0.1", self._down_port))
         except BaseException:
             self._end()
             raise
@@ -103,11 +119,11 @@ class RealCfe:
         self._process.wait()
 
     def send(self, packet: bytes) -> None:
-        """Send a datagram to CI_LAB."""
-        self._up.sendto(packet, ("127.0.0.1", CI_PORT))
+        """Send a datagram up."""
+        self._up.sendto(packet, ("127.0.0.1", self._up_port))
 
     def receive(self, timeout_s: float) -> bytes | None:
-        """The next datagram of TO_LAB; None when none comes in so many seconds of the host."""
+        """The next datagram that comes down; None when none comes in so many seconds of the host."""
         if not select.select([self._down], [], [], max(0.0, timeout_s))[0]:
             return None
         return self._down.recv(65536)
@@ -115,6 +131,10 @@ class RealCfe:
     def console(self) -> bytes:
         """All that was printed since the start."""
         return self._log.read_bytes()
+
+    def boots(self) -> int:
+        """How often it has come up."""
+        return self.console().count(OPERATIONAL)
 
     def release(self) -> str:
         """Which release of cFE it is, as its first events say: "7.0.0"."""

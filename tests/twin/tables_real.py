@@ -31,12 +31,12 @@ ANSWER_LIMIT_S = 8.0
 TICKS_PER_S = 100
 
 
-def compile_app(built: Path, target: Path) -> None:
-    """Compile tables_app.c for a cFE."""
+def compile_app(built: Path, target: Path, source: Path = SOURCE) -> None:
+    """Compile tables_app.c, or another source, for a cFE."""
     said = dict(re.findall(r"^(C_\w+) = (.*)$", (built / FLAGS).read_text(), re.MULTILINE))
     modules = [f"-I{folder}/{part}" for folder in (built / "cfe/modules").iterdir() for part in ("fsw/inc", "fsw/src")]
     flags = [*shlex.split(said["C_DEFINES"]), *shlex.split(said["C_INCLUDES"]), *modules]
-    subprocess.run(["cc", "-std=gnu99", "-w", "-fPIC", "-shared", *flags, "-o", target, SOURCE], check=True)
+    subprocess.run(["cc", "-std=gnu99", "-w", "-fPIC", "-shared", *flags, "-o", target, source], check=True)
 
 
 class RealTables:
@@ -108,9 +108,9 @@ class RealTables:
         return self._cfe.files().get(path, b"")
 
     def _reset(self) -> None:
-        boots = self._cfe.console().count(b"entering OPERATIONAL state")
+        boots = self._cfe.boots()
         self._socket.sendto(b"C" + es.RESTART.packet(RestartType=1), ("127.0.0.1", LISTENER_PORT))
-        self._cfe.wait(lambda: self._cfe.console().count(b"entering OPERATIONAL state") > boots, "reset", 30)
+        self._cfe.wait(lambda: self._cfe.boots() > boots, "reset", 30)
         self._socket.close()
         self._listen()
 

@@ -6,25 +6,29 @@ import pytest
 
 from tests.twin.api import real, twin
 from tests.twin.api.compare import differences
-from tests.twin.api.recorded import read_record, records
+from tests.twin.api.recorded import Record, read_record, records
 from tests.twin.api.script import GROUPS, Writer, write_script
 from tests.twin.api.words import quote, unquote
 
 SHORT = 700
-LONG_ONES = [each for each in records() if each[1] > SHORT]
+LONG_ONES = [each for each in records() if each[2] > SHORT]
 
 
-@pytest.mark.parametrize(("seed", "count"), [each for each in records() if each[1] <= SHORT])
-def test_a_short_script_answers_as_the_real_cfe_did(seed: int, count: int) -> None:
+def differences_from(record: Record) -> list[str]:
+    release, seed, count = record
     script = write_script(seed, count)
-    assert differences(script, read_record(seed, count), twin.play(script)) == []
+    return differences(script, read_record(record), twin.play(script, release))
+
+
+@pytest.mark.parametrize("record", [each for each in records() if each[2] <= SHORT])
+def test_a_short_script_answers_as_the_real_cfe_did(record: Record) -> None:
+    assert differences_from(record) == []
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("seed", "count"), LONG_ONES)
-def test_a_long_script_answers_as_the_real_cfe_did(seed: int, count: int) -> None:
-    script = write_script(seed, count)
-    assert differences(script, read_record(seed, count), twin.play(script)) == []
+@pytest.mark.parametrize("record", LONG_ONES)
+def test_a_long_script_answers_as_the_real_cfe_did(record: Record) -> None:
+    assert differences_from(record) == []
 
 
 @pytest.mark.slow
@@ -33,7 +37,7 @@ def test_a_new_script_answers_as_the_real_cfe_does() -> None:
     if built is None:
         pytest.skip(f"{real.VARIABLE} names no real cFE")
     script = write_script(4711, 2000)
-    assert differences(script, real.play(built, script), twin.play(script)) == []
+    assert differences(script, real.play(built, script), twin.play(script, real.release(built))) == []
 
 
 def test_there_are_short_and_long_records() -> None:

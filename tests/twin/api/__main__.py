@@ -23,14 +23,15 @@ def main() -> int:
     built = real.installed()
     if built is None:
         parser.error(f"{real.VARIABLE} names no folder with a real cFE; tests/twin/api/real.py says how to build one")
+    release = real.release(built)
     totals: Counter[str] = Counter()
     found = 0
     for seed in range(options.seed, options.seed + options.scripts):
         script = write_script(seed, options.count)
         answers = real.play(built, script)
         if options.record:
-            write_record(seed, options.count, answers)
-        unlike = differences(script, answers, twin.play(script))
+            write_record((release, seed, options.count), answers)
+        unlike = differences(script, answers, twin.play(script, release))
         found += len(unlike)
         totals += counts(script)
         print(f"seed {seed}: {len(unlike)} differences", *unlike, sep="\n")

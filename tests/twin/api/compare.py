@@ -13,7 +13,8 @@ ADDRESS = re.compile(r"(ptr=0x|BufPtr 0x|block @ 0x|Addr 0x|Handle=(?:0x)?)[0-9a
 OSAL_NUMBER = re.compile(r"\b\d{5,6}\b")
 IN_FULL_HERE = re.compile(r"(Send Err:Invalid MsgId\(0x|Send Err:Msg Too Big .*size=)\w+")
 """NASA's code tells 0 there: rows of docs/differences.md."""
-ID = re.compile(r"(E CFE_SB (?:15|21) .*)")
+DIFFERENT = re.compile(r"\w MSG_Init 0 ")
+"""A call that NASA's 7.0.1 accepts: a row of docs/differences.md."""
 ID = re.compile(r"#([0-9a-f]+)")
 OSAL_KINDS = 0x10
 """Ids above are cFE's, and exactly the same on both sides. Ids of OSAL count what the core made, too."""
@@ -67,7 +68,7 @@ def differences(script: list[str], real: list[str], ours: list[str]) -> list[str
             continue
         first = [real_ids.plain(each) for each in theirs[number]]
         second = [own_ids.plain(each) for each in mine[number]]
-        if first != second:
+        if first != second and not DIFFERENT.match(line):
             sides = [f"  cFE   {each}" for each in first if each not in second]
             sides += [f"  cfepy {each}" for each in second if each not in first]
             found.append("\n".join([f"{number} {line[:200]}", *(sides or ["  another order"])]))

@@ -24,6 +24,11 @@ def installed() -> Path | None:
     return real.installed(VARIABLE)
 
 
+def release(built: Path) -> str:
+    """Which release of cFE it is: "7.0.0"."""
+    return "7.0.1" if b"v7.0.1+dev" in (built / real.EXECUTABLE).read_bytes() else "7.0.0"
+
+
 def play(built: Path, script: list[str]) -> list[str]:
     """The answers of the real cFE to a script.
 
@@ -36,7 +41,7 @@ def play(built: Path, script: list[str]) -> list[str]:
         shutil.copytree(built, here)
         (here / "script.txt").write_text("\n".join(script) + "\n")
         inside = f"{real.FURNISH}exec ./{real.EXECUTABLE} > console.txt 2>&1"
-        command = [*real.NAMESPACES, "bash", "-c", inside]
+        command = ["taskset", "-c", str(real.one_cpu()), *real.NAMESPACES, "bash", "-c", inside]
         subprocess.run(command, cwd=here, stdin=subprocess.DEVNULL, timeout=LIMIT_S, check=False)
         lines = (here / "answers.txt").read_text(errors="surrogateescape").splitlines()
         return lines[lines.index("begin") + 1 :]

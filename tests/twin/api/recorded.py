@@ -1,4 +1,4 @@
-"""Answers of a real cFE 7.0.0, kept for machines that have none: tests/data/api_answers/<seed>_<count>.txt.xz."""
+"""Answers of a real cFE, kept for machines that have none: tests/data/api_answers/<release>_<seed>_<count>.txt.xz."""
 
 from __future__ import annotations
 
@@ -8,20 +8,29 @@ from pathlib import Path
 FOLDER = Path(__file__).parents[2] / "data" / "api_answers"
 
 
-def write_record(seed: int, count: int, answers: list[str]) -> None:
+Record = tuple[str, int, int]
+"""Release, seed, and number of calls."""
+
+
+def write_record(record: Record, answers: list[str]) -> None:
     """Keep the answers to a script."""
     FOLDER.mkdir(exist_ok=True)
     data = "\n".join(answers).encode("utf-8", "surrogateescape")
-    (FOLDER / f"{seed}_{count}.txt.xz").write_bytes(lzma.compress(data, preset=9))
+    _path(record).write_bytes(lzma.compress(data, preset=9))
 
 
-def records() -> list[tuple[int, int]]:
-    """Seed and number of calls of each script that was recorded."""
-    names = sorted(each.name.partition(".")[0] for each in FOLDER.glob("*_*.txt.xz"))
-    return [(int(name.split("_")[0]), int(name.split("_")[1])) for name in names]
+def records() -> list[Record]:
+    """Each script that was recorded."""
+    names = sorted(each.name.partition(".txt")[0] for each in FOLDER.glob("*_*_*.txt.xz"))
+    parts = (name.split("_") for name in names)
+    return [(release, int(seed), int(count)) for release, seed, count in parts]
 
 
-def read_record(seed: int, count: int) -> list[str]:
+def read_record(record: Record) -> list[str]:
     """The answers to a script."""
-    data = lzma.decompress((FOLDER / f"{seed}_{count}.txt.xz").read_bytes())
-    return data.decode("utf-8", "surrogateescape").splitlines()
+    return lzma.decompress(_path(record).read_bytes()).decode("utf-8", "surrogateescape").splitlines()
+
+
+def _path(record: Record) -> Path:
+    release, seed, count = record
+    return FOLDER / f"{release}_{seed}_{count}.txt.xz"

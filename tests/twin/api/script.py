@@ -10,6 +10,7 @@ from __future__ import annotations
 from random import Random
 
 from cfepy import msg
+from tests.twin.api.ground import buffer_calls, debug_calls, notification_calls
 from tests.twin.api.words import quote
 
 LONG = "N" * 19
@@ -17,6 +18,8 @@ NAMES = ("A", "B", "C", "NAME_OF_19_LETTERS_", LONG, "TOO_LONG_BY_ONE_____", "M"
 CDS_NAMES = ("A", "B", "C", "SIXTEEN_LETTERS_", "SEVENTEEN_LETTERS", "", "M" * 40)
 PATHS = ("/cf/a.txt", "/cf/b.txt", "/cf/d/c.txt", "/ram/a.txt", "/ram/nn.txt", "/cf/none", "/no/a", "a.txt", "", "/cf",
          "/cf/" + "n" * 19, "/cf/" + "n" * 30, "/" + "p" * 70)  # fmt: skip
+FILES = tuple(each for each in PATHS if each not in ("/cf", "/cf/none"))
+"""Those that are no directories, which differ: rows of docs/differences.md."""
 FOLDERS = ("/cf", "/ram", "/cf/d", "/cf/none", "/no", "", "x", "/cf/d2")
 WRONG = (0, 0x110001, 0x1FFFF, 0x2FFFF, 0x130001, 0x140009, 0x160009, 0xFFFFFFFF, 0x1B0009, 0x150001)
 EDGES = (0, 1, 2, 3, 7, 8, 9, 15, 16, 17, 63, 64, 65, 255, 256, 1000)
@@ -381,7 +384,7 @@ def timer_calls(w: Writer) -> None:
 def file_calls(w: Writer) -> None:
     """Files."""
     file = w.slot("file")
-    w.add("OS_OpenCreate", file, quote(w.one(PATHS)), w.one((0, 1, 2, 3)), w.one((0, 1, 2)))
+    w.add("OS_OpenCreate", file, quote(w.one(FILES)), w.one((0, 1, 2, 3)), w.one((0, 1, 2)))
     for _ in range(4):
         which = w.id("file")
         call = w.one(("OS_read", "OS_write", "OS_lseek", "OS_TimedRead", "OS_TimedWrite", "OS_FileTruncate",
@@ -410,7 +413,7 @@ def path_calls(w: Writer) -> None:
     """Paths and folders."""
     first, second = quote(w.one(PATHS)), quote(w.one(PATHS))
     w.add("OS_stat", first)
-    w.add(w.one(("OS_cp", "OS_mv", "OS_rename")), quote(w.one(PATHS[:9])), quote(w.one(PATHS[:9])))
+    w.add(w.one(("OS_cp", "OS_mv", "OS_rename")), quote(w.one(FILES[:8])), quote(w.one(FILES[:8])))
     w.add("OS_remove", second)
     w.add("OS_chmod", first, 2)  # the real one runs as root, who may read and write what nobody may
     w.add("OS_mkdir", quote(w.one(FOLDERS[2:])), 2)
@@ -474,7 +477,7 @@ def psp_calls(w: Writer) -> None:
 
 
 GROUPS = (es_calls, es_calls, evs_calls, sb_calls, sb_calls, tbl_calls, time_calls, msg_calls, osal_calls, osal_calls,
-          osal_calls, psp_calls)  # fmt: skip
+          osal_calls, psp_calls, debug_calls, buffer_calls, notification_calls)  # fmt: skip
 
 
 def write_script(seed: int, count: int) -> list[str]:

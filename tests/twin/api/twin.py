@@ -28,7 +28,7 @@ CFE_APP, api_app, API_AuxMain, API_AUX, 100, 65536, 0x0, 0;
 CFE_APP, api_app, API_Main, API, 101, 65536, 0x0, 0;
 """
 LIMITS = """
-cfe_version: "7.0.0"
+cfe_version: "{release}"
 limits:
   evs_max_app_event_burst: 0
 """
@@ -138,10 +138,10 @@ WITHOUT_STATUS = ("PSP_PortRead", "PSP_Eeprom", "ResourceId")
 """Calls whose first output is no status of their own."""
 
 
-def play(script: list[str]) -> list[str]:
-    """The answers of cfepy to a script."""
+def play(script: list[str], release: str = "7.0.0") -> list[str]:
+    """The answers of cfepy to a script, on a release of cFE."""
     with tempfile.TemporaryDirectory() as folder:
-        path = write_mission(Path(folder), STARTUP, mission_yaml=LIMITS)
+        path = write_mission(Path(folder), STARTUP, mission_yaml=LIMITS.format(release=release))
         with Mission(path, console=Console(quiet=True)) as mission:
             player = Player(mission, script)
             while not player.is_over and mission.cfe.es.kernel.now < LONGEST_S * 10**9:
