@@ -22,6 +22,10 @@ def pages(size: int) -> int:
     return max(-(-size // PAGE), 1) * PAGE
 
 
+_left: dict[int, int] = {}
+"""Address and bytes of what processors of before left in place."""
+
+
 class Arena:
     """The region of one processor.
 
@@ -35,6 +39,7 @@ class Arena:
         self._top = self.base + _FIRST + PAGE
         self._free: list[tuple[int, int]] = []  # (address, bytes), in this order
         self._sizes: dict[int, int] = {}
+        self._shared: set[int] = set()
 
     def _take_region(self) -> int:
         """Whoever maps the first page of a region has it."""
@@ -47,11 +52,13 @@ class Arena:
             return base
         raise MemoryError(f"{(high - low) // REGION} processors with compiled applications live in this process")
 
-    def map(self, size: int) -> int:
+    def map(self, size: int, shares: bool = False) -> int:
         """New memory of zeros, readable and writable; its address.
 
         Args:
             size: bytes; rounded up to pages.
+            shares: objects of Python have it as well, and may do so longer than the processor lives: it stays where it
+                is until another processor has this region.
         """
         room = pages(size)
         address = self._reuse(room)
@@ -60,9 +67,16 @@ class Arena:
             if address + room > self.base + REGION:
                 raise MemoryError(f"no {size} bytes are left for compiled applications")
             self._top += room + PAGE
-        self._engine.map(address, room)
+        self._take(address, room)
         self._sizes[address] = room
+        if shares:
+            self._shared.add(address)
         return address
+
+    def _take(self, address: int, room: int) -> None:
+        for left in [each for each, size in _left.items() if each < address + room and address < each + size]:
+            self._engine.unmap(left, _left.pop(left))
+        self._engine.map(address, room)
 
     def _reuse(self, room: int) -> int | None:
         for number, (address, size) in enumerate(self._free):
@@ -79,6 +93,10 @@ class Arena:
 
     def close(self) -> None:
         """Give everything back, and the region with it."""
-        for address in list(self._sizes):
-            self._engine.unmap(address, self._sizes.pop(address))
+        for address, room in self._sizes.items():
+            if address in self._shared:
+                _left[address] = room
+            else:
+                self._engine.unmap(address, room)
+        self._sizes.clear()
         self._engine.unmap(self.base, _FIRST)

@@ -7,7 +7,7 @@ from struct import Struct
 from cfepy.c.engine import engine
 from cfepy.texts import to_bytes
 
-_U32, _U64 = Struct("<I"), Struct("<Q")
+_U16, _U32, _U64 = Struct("<H"), Struct("<I"), Struct("<Q")
 
 
 class Memory:
@@ -28,6 +28,10 @@ class Memory:
         self.peek, self.poke, self.text = made.peek, made.poke, made.text
         self.view, self.address_of = made.view, made.address_of
 
+    def u8(self, address: int) -> int:
+        """The byte at an address."""
+        return int(self.peek(address, 1)[0])
+
     def u32(self, address: int) -> int:
         """The uint32 at an address."""
         return int(_U32.unpack(self.peek(address, 4))[0])
@@ -35,6 +39,10 @@ class Memory:
     def u64(self, address: int) -> int:
         """The uint64, size_t or pointer at an address."""
         return int(_U64.unpack(self.peek(address, 8))[0])
+
+    def put_u16(self, address: int, value: int) -> None:
+        """Write a uint16 or int16."""
+        self.poke(address, _U16.pack(value & 0xFFFF))
 
     def put_u32(self, address: int, value: int) -> None:
         """Write a uint32."""

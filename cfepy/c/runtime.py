@@ -7,6 +7,7 @@ from collections.abc import Callable
 from cfepy.app import Cfe
 from cfepy.c.arena import Arena
 from cfepy.c.calls import CallTable, Declarations
+from cfepy.c.constants import Constants
 from cfepy.c.elf import SharedObject
 from cfepy.c.engine import engine
 from cfepy.c.faults import CFault, explained
@@ -37,14 +38,22 @@ class CRuntime:
         polling_ns: what a call costs with which code may wait by asking again and again.
         console: for printf.
         stall_s: after how many seconds without progress the stall watch ends a run; 0 for never.
+        omit_deprecated: whether the code was built with OMIT_DEPRECATED, which makes handles of tables ids.
 
     Attributes:
-        arena, memory, packets: the parts of the memory.
+        arena, memory, constants, packets: the parts of the memory.
         images: what is loaded, by the name of the application or the path of the library.
     """
 
     def __init__(
-        self, cfe: Cfe, handle: Cfe, kernel: Kernel, polling_ns: int, console: Console, stall_s: Callable[[], float]
+        self,
+        cfe: Cfe,
+        handle: Cfe,
+        kernel: Kernel,
+        polling_ns: int,
+        console: Console,
+        stall_s: Callable[[], float],
+        omit_deprecated: bool = False,
     ) -> None:
         from cfepy.c.api import declare
 
@@ -54,9 +63,11 @@ class CRuntime:
         self.handle = handle
         self.kernel = kernel
         self.console = console
+        self.omit_deprecated = omit_deprecated
         self._limit_s = stall_s
         self.arena = Arena()
         self.memory = Memory()
+        self.constants = Constants(self.arena)
         self._stacks = Stacks(self.arena)
         self._heap = made.Heap(self.arena.map(HEAP), HEAP)
         self.packets = PacketImages(made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK), handle.sb, cfe.sb)
@@ -101,12 +112,18 @@ class CRuntime:
         """An application has ended: take its code out of memory, and what it had of malloc and of messages."""
         image = self.applications.pop(app_name, None)
         if image is not None:
+            self.cfe.tbl.leave_memory(lambda data: self.memory.address_of(data) in image)
             image.unload()
         apps = self.cfe.es.apps
         for owner in [each for each in self._owners if apps.find(each) is None]:
             self._heap.give_all(owner)
             self._owners.discard(owner)
         self.packets.clean_up()
+
+    def core_memory(self, size: int) -> memoryview:
+        """Memory for a pool of the core's, such as that of tables, to whose bytes applications get addresses."""
+        memory: memoryview = self.memory.view(self.arena.map(size, shares=True), size)
+        return memory
 
     def _resolve(self, name: str) -> int:
         for image in self.libraries.values():
@@ -189,6 +206,7 @@ class CRuntime:
 
     def close(self) -> None:
         """The processor is at its end: give all memory back."""
+        self.cfe.tbl.leave_memory(lambda data: True)  # what tells of the run may look at tables later
         self.applications.clear()
         self.libraries.clear()
         self.arena.close()

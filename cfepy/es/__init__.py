@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from cfepy.es.apps import SymbolError
 from cfepy.es.boot import Boot, CoreApp, ObjectTable
+from cfepy.es.cds import DamagedData
 from cfepy.es.packets import COMMANDS, TELEMETRY
-from cfepy.es.pools import PoolBlock
+from cfepy.es.pools import MAX_BUCKETS, MemPool, PoolBlock, min_size
 from cfepy.es.records import (
     APP_ERROR,
     APP_EXIT,
@@ -37,6 +38,7 @@ __all__ = [
     "CFE_APP",
     "CFE_LIB",
     "COMMANDS",
+    "MAX_BUCKETS",
     "STATE_NAMES",
     "SYSTEM_APPS_INIT",
     "SYSTEM_CORE_READY",
@@ -50,14 +52,17 @@ __all__ = [
     "BadLine",
     "Boot",
     "CoreApp",
+    "DamagedData",
     "EsTask",
     "ExecutiveServices",
     "Loader",
+    "MemPool",
     "ObjectTable",
     "PoolBlock",
     "StartParams",
     "StartupEntry",
     "SymbolError",
     "entries",
+    "min_size",
     "parse",
 ]

@@ -97,6 +97,14 @@ def _with_check(record: bytes, check: int) -> bytes:
     return record[:_CHECK_AT] + check.to_bytes(4, "little") + record[_CHECK_AT + 4 :]
 
 
+class DamagedData(CfeError):
+    """The data of a block are damaged; `data` are they, which NASA's code leaves in the caller's memory."""
+
+    def __init__(self, text: str, data: bytes) -> None:
+        super().__init__(CFE_ES_CDS_BLOCK_CRC_ERR, text)
+        self.data = data
+
+
 class CriticalDataStore:
     """The CDS of one processor.
 
@@ -252,14 +260,15 @@ class CriticalDataStore:
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_POOL_BLOCK_INVALID or CFE_ES_CDS_INVALID_SIZE (the block's
-                descriptor is damaged), CFE_ES_CDS_BLOCK_CRC_ERR (its data are).
+                descriptor is damaged).
+            DamagedData: its data are (CFE_ES_CDS_BLOCK_CRC_ERR).
         """
         block = self.get(handle)
         self._check(block)
         raw = self._psp.read_from_cds(block.offset, block.size)
         data = raw[BLOCK_HEADER.size :]
         if BLOCK_HEADER.unpack_from(raw)[0] != calculate_crc(data):
-            raise CfeError(CFE_ES_CDS_BLOCK_CRC_ERR, f"the data of CDS block {block.name!r} are damaged")
+            raise DamagedData(f"the data of CDS block {block.name!r} are damaged", data)
         return data
 
     def delete(self, name: str) -> None:

@@ -8,7 +8,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from cfepy.es.pools import ALIGNMENT, BUCKETS, MAX_BUCKETS, MemPool, PoolBlock, PoolMemory, min_size
+from cfepy.es.pools import (
+    ALIGNMENT,
+    BUCKETS,
+    MAX_BUCKETS,
+    MemPool,
+    PoolBlock,
+    PoolMemory,
+    fresh_memory,
+    min_size,
+)
 from cfepy.es.tables import EsCore
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -20,6 +29,7 @@ from cfepy.status import (
     OsalError,
 )
 
+_ULONG_MAX = (1 << 64) - 1
 NO_CLAIM = 0
 """The token of nothing: the board's books give none of this number."""
 
@@ -27,7 +37,13 @@ _Result = TypeVar("_Result")
 
 
 class PoolApi(EsCore):
-    """The CFE_ES_Pool* part of Executive Services."""
+    """The CFE_ES_Pool* part of Executive Services.
+
+    Attributes:
+        core_memory: makes the bytes of a pool of the core's; with compiled applications, where these can reach them.
+    """
+
+    core_memory: Callable[[int], memoryview] = staticmethod(fresh_memory)
 
     def pool_create(self, size: int, owner: str = "", memory: PoolMemory | None = None) -> int:
         """Make a memory pool of the usual block sizes, protected by a mutex (CFE_ES_PoolCreate).
@@ -67,17 +83,19 @@ class PoolApi(EsCore):
         alignment: int = ALIGNMENT,
         owner: str = "",
         memory: PoolMemory | None = None,
+        address: int = 0,
     ) -> int:
         """Make a memory pool for the calling application (CFE_ES_PoolCreateEx_WithAlignment).
 
         Args:
             size: bytes.
-            block_sizes: of its blocks, at most 17; None for cFE's own.
+            block_sizes: of its blocks, 1 to 17; None for cFE's own.
             use_mutex: whether a mutex keeps its users apart.
             alignment: of blocks in bytes, a power of 2; 4 at least.
             owner: for the board's books, when no application calls.
             memory: the bytes of the pool, as C's callers bring them: the first `size` bytes of something writable. They
                 are not booked on the board, since their owner has them already. None makes new ones, and books them.
+            address: where C has this memory, for what is told of blocks; its blocks are not cleared, as in C.
 
         Returns:
             The pool's handle.
@@ -87,7 +105,7 @@ class PoolApi(EsCore):
                 block size of 0), CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CFE_STATUS_EXTERNAL_RESOURCE_FAIL (no room on the
                 board, no mutex).
         """
-        sizes = block_sizes or BUCKETS
+        sizes = BUCKETS if block_sizes is None else block_sizes
         self._check_sizes(size, sizes)
         app = self.app_of_caller()
         name = app.name if app is not None else owner or self.kernel.current.name
@@ -95,8 +113,10 @@ class PoolApi(EsCore):
             self.write_to_sys_log("CFE_ES_PoolCreateEx_WithAlignment: No free MemPool slots available")
             raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"there are {self.pools.capacity} memory pools already")
         claim = self.ports.memory.claim(name, "memory pool", size) if memory is None else NO_CLAIM
+        if memory is None and owner:
+            memory = self.core_memory(size)
         try:
-            pool = MemPool(name, size, sizes, alignment, self.write_to_sys_log, memory)
+            pool = self._make(name, size, sizes, alignment, memory, address)
             pool_id = self.pools.create(pool)
             self._add_mutex(pool_id, pool, use_mutex)
         except CfeError:
@@ -104,6 +124,15 @@ class PoolApi(EsCore):
             raise
         self.pool_owners[pool_id] = (app, claim)
         return pool_id
+
+    def _make(
+        self, name: str, size: int, sizes: Sequence[int], alignment: int, memory: PoolMemory | None, address: int
+    ) -> MemPool:
+        try:
+            return MemPool(name, size, sizes, alignment, self.write_to_sys_log, memory, address)
+        except CfeError:
+            self.pools.skip()  # NASA's code has taken the id by then
+            raise
 
     def _check_sizes(self, size: int, sizes: Sequence[int]) -> None:
         log = "CFE_ES_PoolCreateEx_WithAlignment: "
@@ -180,9 +209,9 @@ class PoolApi(EsCore):
             return self._alone(pool, lambda: pool.put(block))
         except CfeError as error:
             if error.status == CFE_ES_POOL_BLOCK_INVALID:
-                text = f"Deallocating invalid or corrupt memory block @ 0x{block.offset:08X}"
+                text = f"Deallocating invalid or corrupt memory block @ 0x{block.address:08X}"
             else:
-                text = f"Bad offset({block.offset}) outside pool boundary"
+                text = f"Bad offset({block.offset & _ULONG_MAX}) outside pool boundary"
             self.write_to_sys_log(f"CFE_ES_PutPoolBuf: Err:{text}")
             raise
 

@@ -31,6 +31,7 @@ DESCRIPTOR = struct.Struct("<HH4xQQ")
 _CHECK = 0x5A5A
 _IN_USE = 0xAAAA
 _FREE = 0xDDDD
+_ULONG_MAX = (1 << 64) - 1
 
 Read = Callable[[int, int], bytes]
 Write = Callable[[int, bytes], object]
@@ -217,7 +218,7 @@ def min_size(sizes: Sequence[int], blocks: int) -> int:
     return blocks * (min(sizes, default=0) + DESCRIPTOR.size)
 
 
-def _fresh(size: int) -> memoryview:
+def fresh_memory(size: int) -> memoryview:
     """Zeros that take no room in the computer's memory before they are written: a pool may be 256 MiB."""
     return memoryview(mmap(-1, size, access=ACCESS_COPY))
 
@@ -241,6 +242,11 @@ class PoolBlock:
     memory: memoryview
     offset: int
 
+    @property
+    def address(self) -> int:
+        """Where it is for a person: an address of C's, or else the offset."""
+        return self.pool.address + self.offset & _ULONG_MAX
+
 
 class MemPool:
     """A memory pool of an application.
@@ -252,7 +258,11 @@ class MemPool:
         alignment: of blocks, in bytes.
         log: the system log.
         memory: the bytes of the pool, which the caller keeps and may look at, as in C; the first `size` of them are
-            used, as they are. None makes new ones.
+            used, as they are. None makes new ones, of zeros.
+        address: where C has the memory; 0 for memory of Python.
+
+    Attributes:
+        memory: the bytes of the pool.
 
     Raises:
         CfeError: as `GenericPool`; CFE_ES_BAD_ARGUMENT for memory that cannot be written or is too small.
@@ -266,25 +276,32 @@ class MemPool:
         alignment: int = ALIGNMENT,
         log: Log = lambda text: None,
         memory: PoolMemory | None = None,
+        address: int = 0,
     ) -> None:
         self.name = name
+        self.address = address
         self.mutex_id = 0
-        self._data = _fresh(size) if memory is None else _writable(memory, size)
+        self.memory = fresh_memory(size) if memory is None else _writable(memory, size)
         self.blocks = GenericPool(
             self._read, self._write, log, start=0, size=size, alignment=max(alignment, MIN_ALIGNMENT), sizes=sizes
         )
 
     def _read(self, offset: int, size: int) -> bytes:
-        return bytes(self._data[offset : offset + size])
+        return bytes(self.memory[offset : offset + size])
 
     def _write(self, offset: int, data: bytes) -> None:
-        self._data[offset : offset + len(data)] = data
+        self.memory[offset : offset + len(data)] = data
 
     def get(self, size: int) -> PoolBlock:
-        """Take a block; its bytes are zero. Errors as `GenericPool.get`."""
+        """Take a block; its bytes are zero, but as they were before in memory of C. Errors as `GenericPool.get`."""
         offset = self.blocks.get(size)
-        self._write(offset, bytes(size))
-        return PoolBlock(self, self._data[offset : offset + size], offset)
+        if not self.address:
+            self._write(offset, bytes(size))
+        return PoolBlock(self, self.memory[offset : offset + size], offset)
+
+    def block_at(self, offset: int) -> PoolBlock:
+        """What somebody says is a block, to be given back or looked at: C knows blocks by their addresses."""
+        return PoolBlock(self, self.memory[:0], offset)
 
     def put(self, block: PoolBlock) -> int:
         """Give a block back; its size in bytes. Errors as `GenericPool.put`."""

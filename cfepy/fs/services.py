@@ -58,6 +58,16 @@ class FileServices:
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
         return header.read_header(data)
 
+    def stamp_header(self, file_header: FileHeader) -> FileHeader:
+        """A header as `write_header` writes it: with this processor's ids, the caller's AppId, and the time."""
+        return header.stamp_header(
+            file_header,
+            spacecraft_id=self._config.spacecraft_id,
+            processor_id=self._config.processor_id,
+            application_id=self._caller(),
+            time=self._ports.time.now(),
+        )
+
     def write_header(self, filedes: int, file_header: FileHeader) -> int:
         """Write a header at the start of an open file; ids, length and time are filled in (CFE_FS_WriteHeader).
 
@@ -72,15 +82,8 @@ class FileServices:
             CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL (not open for writing, or the disk is full),
                 CFE_FS_BAD_ARGUMENT (a subtype of more than 32 bits).
         """
-        stamped = header.stamp_header(
-            file_header,
-            spacecraft_id=self._config.spacecraft_id,
-            processor_id=self._config.processor_id,
-            application_id=self._caller(),
-            time=self._ports.time.now(),
-        )
         try:
-            data = stamped.pack()
+            data = self.stamp_header(file_header).pack()
             self._osal.lseek(filedes, 0, OS_SEEK_SET)
             return self._osal.write(filedes, data)
         except OsalError as error:

@@ -6,10 +6,11 @@ same name stands in for it. What loads it, `cfepy.c`, is imported when there is 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cfepy.es import StartupEntry
 from cfepy.mission.loader import Code, Finder
 from cfepy.osal import FileSystem
 
@@ -50,14 +51,20 @@ class CompiledFiles(Finder):
         self._make_loader = make_loader
         self._loader: CompiledLoader | None = None
 
+    def prepare(self, entries: Iterable[StartupEntry]) -> None:
+        """Make what loads them before a boot whose startup script names one: the core's memory is then in its reach."""
+        if any(self.exists(entry.path) for entry in entries):
+            self._loader_made()
+
     def find(self, file: str, symbol: str | None) -> Code | None:
         """See `Finder.find`."""
         data = self._data(file)
-        if data is None:
-            return None
+        return None if data is None else self._loader_made().code(file, data)
+
+    def _loader_made(self) -> CompiledLoader:
         if self._loader is None:
             self._loader = self._make_loader()
-        return self._loader.code(file, data)
+        return self._loader
 
     def exists(self, file: str) -> bool:
         """See `Finder.exists`."""

@@ -123,6 +123,7 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None) -> Mission
         ros=said.ros,
         limits=said.limits,
         cfe_version=said.cfe_version,
+        compiled=said.compiled,
         demands=said.demands,
     )
     if said.launch:

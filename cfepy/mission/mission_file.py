@@ -17,6 +17,7 @@ from typing import Any
 from cfepy.marked_yaml import Marked, Mistakes, load
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import merged, read_files, read_tree
+from cfepy.mission.spec import CompiledConfig
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import NodeConfig, RosConfig, TopicConfig
 from cfepy.versions import DEFAULT_RELEASE, RELEASES
@@ -33,8 +34,9 @@ class MissionSections:
     """What a mission file says, as far as it could be read.
 
     Attributes:
-        name, board, cfe_version, limits, nodes, topics, params, params_from, ordered_sets, connection_delay, launch:
-            the sections of these names, as their readers give them; `name` and `board` are None when nothing is said.
+        name, board, cfe_version, compiled, limits, nodes, topics, params, params_from, ordered_sets, connection_delay,
+        launch: the sections of these names, as their readers give them; `name` and `board` are None when nothing is
+            said.
         demands: the sections of `DEMANDS`, as they stand there.
         places: all sections that are there and known, as they stand there.
     """
@@ -42,6 +44,7 @@ class MissionSections:
     name: str | None = None
     board: str | None = None
     cfe_version: str = DEFAULT_RELEASE
+    compiled: CompiledConfig = field(default_factory=CompiledConfig)
     limits: MissionLimits = field(default_factory=MissionLimits)
     nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
     topics: Mapping[str, TopicConfig] = field(default_factory=dict)
@@ -109,6 +112,19 @@ def _launch(item: Marked) -> LaunchFile:
     if not os.path.isfile(path):
         raise fields["file"].fail(f"is {path}, which is no file; give a launch file's path from the mission's folder")
     return path, _texts(fields["args"]) if "args" in fields else {}
+
+
+def read_compiled(section: Marked, mistakes: Mistakes) -> CompiledConfig:
+    """The section `compiled:`.
+
+    Args:
+        section: its value.
+        mistakes: takes unknown keys, and values that are neither true nor false.
+    """
+    said = {
+        name: mistakes.attempt(partial(_truth, value)) for name, value in mistakes.fields(section, _COMPILED_FIELDS)
+    }
+    return CompiledConfig(**{name: value for name, value in said.items() if value is not None})
 
 
 # -- nodes and topics --------------------------------------------------------------------------------------------------
@@ -202,6 +218,8 @@ def _texts(section: Marked) -> Mapping[str, str]:
 
 # -- the tables --------------------------------------------------------------------------------------------------------
 
+_COMPILED_FIELDS = ("omit_deprecated",)
+
 _NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
     "name": Marked.text,
     "namespace": _namespace,
@@ -225,6 +243,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "name": _single(Marked.text),
     "board": _single(Marked.text),
     "cfe_version": _single(_release),
+    "compiled": read_compiled,
     "limits": read_limits,
     "nodes": read_nodes,
     "topics": read_topics,

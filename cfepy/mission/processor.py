@@ -157,11 +157,12 @@ class Processor:
     def _finders(self) -> list[Finder]:
         """What is asked for the code of applications, in this order."""
         machine, folder = self.machine, self.machine.spec.folder
+        self._compiled = CompiledFiles(machine.files, self._make_compiled_loader)
         python = PythonLoader(machine.console, lambda: self.handle, AppModules(self._app_universe))
         return [
             BuiltInApps({ROS_FILE: self._ros_main}),
             NodeScripts(machine.files, folder, self._script_of, self._node_main),
-            CompiledFiles(machine.files, self._make_compiled_loader),
+            self._compiled,
             *python_finders(python, machine.files, folder),
         ]
 
@@ -217,6 +218,7 @@ class Processor:
         if self._start_ns:
             self.machine.kernel.delay(self._start_ns)
         self.psp.boot()
+        self._compiled.prepare(self.machine.spec.entries)
         Boot(self.cfe.es, self._object_table(), self.machine.spec.startup_script, self._operational).main()
 
     def _object_table(self) -> ObjectTable:
@@ -293,8 +295,15 @@ class Processor:
         machine = self.machine
         watch = machine.stall_watch
         runtime = CRuntime(
-            self.cfe, self.handle, machine.kernel, self._costs.polling_ns, machine.console, lambda: watch.limit_s
+            self.cfe,
+            self.handle,
+            machine.kernel,
+            self._costs.polling_ns,
+            machine.console,
+            lambda: watch.limit_s,
+            machine.spec.compiled.omit_deprecated,
         )
+        self.cfe.es.core_memory = runtime.core_memory
         return CompiledLoader(runtime, machine.console)
 
     def _script_of(self, file: str) -> Path | None:

@@ -16,6 +16,17 @@ from cfepy.nodes import RosConfig
 from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 
+@dataclass(frozen=True, slots=True)
+class CompiledConfig:
+    """How compiled applications were built.
+
+    Attributes:
+        omit_deprecated: with OMIT_DEPRECATED, which makes CFE_TBL_Handle_t an id instead of an int16.
+    """
+
+    omit_deprecated: bool = False
+
+
 @dataclass(frozen=True)
 class MissionSpec:
     """What a mission is made of.
@@ -27,6 +38,7 @@ class MissionSpec:
         mission_file: None when there is none.
         board: what it is made for: a shipped board's name or a path.
         cfe_version: the release of cFE that it flies on.
+        compiled: how its compiled applications were built.
         ros: its ROS nodes, topics and parameters.
         limits: what it asks for of a platform.
         startup: the startup script of a mission that was made in memory; `script` then names what it was made from.
@@ -43,6 +55,7 @@ class MissionSpec:
     ros: RosConfig
     limits: MissionLimits = field(default_factory=MissionLimits)
     cfe_version: str = DEFAULT_RELEASE
+    compiled: CompiledConfig = field(default_factory=CompiledConfig)
     startup: bytes | None = None
     notes: tuple[str, ...] = ()
     demands: Mapping[str, Marked] = field(default_factory=dict)

@@ -32,6 +32,7 @@ from cfepy.tbl.registry import (
     OPT_SNGL_BUFFER,
     OPT_USR_DEF_ADDR,
     TableHandle,
+    Validator,
 )
 from cfepy.tbl.services import BAD_TABLE_HANDLE, TableInfo, TableServices
 
@@ -53,6 +54,7 @@ __all__ = [
     "TableInfo",
     "TableServices",
     "TableType",
+    "Validator",
     "build",
     "is_intact",
     "mark_for",

@@ -7,6 +7,8 @@ buffer with the first load, so that the buffer is no more protected by a lock, a
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from cfepy.fs import calculate_crc
 from cfepy.ids import SERIAL_MAX, TBL_LOADBUFFID_BASE, UNDEFINED, get_serial, make
 from cfepy.ports import Block, Ports
@@ -165,6 +167,10 @@ class BufferMemory:
         """
         self.pool_id = self._ports.es.pool_create(self._size, "CFE_TBL")
         self._shared = [self.allocate(self._shared_size) for _ in range(self._count)]
+
+    def __iter__(self) -> Iterator[Buffer]:
+        """The shared buffers."""
+        return iter(self._shared)
 
     @property
     def free_shared(self) -> int:

@@ -25,6 +25,8 @@ from cfepy.tbl.registry import TableRecord, TableRegistry
 from cfepy.tbl.table_file import LoadFile, Refused, TableStorage
 
 _SIGN_EXTENDED = 0xFFFFFFFFFFFFFFFF
+SRC_FILE, SRC_ADDRESS = 0, 1
+"""Where an image comes from (CFE_TBL_SrcEnum_t)."""
 
 
 class Loads:
@@ -39,8 +41,12 @@ class Loads:
         self._ports = ports
         self._files = files
 
-    def reserve(self, table: TableRecord, from_file: bool) -> None:
+    def reserve(self, table: TableRecord, source_type: int) -> None:
         """Check that a table can be loaded now, and reserve its working buffer (CFE_TBL_ValidateLoadRequest).
+
+        Args:
+            table: to be loaded.
+            source_type: SRC_FILE or SRC_ADDRESS; C code can say any number.
 
         Raises:
             Refused: a load is in progress, the table is dump-only, or no buffer is to be had.
@@ -51,8 +57,8 @@ class Loads:
         if table.dump_only and (not table.user_defined or table.is_loaded):
             text = "Attempted to load DUMP-ONLY table"
             raise Refused(CFE_TBL_ERR_DUMP_ONLY, ev.LOADING_A_DUMP_ONLY_ERR_EID, text, names_file=False)
-        if table.dump_only and from_file:
-            text = "Attempted to load from illegal source type=0"
+        if source_type != SRC_ADDRESS and (table.dump_only or source_type != SRC_FILE):
+            text = f"Attempted to load from illegal source type={source_type}"
             raise Refused(CFE_TBL_ERR_ILLEGAL_SRC_TYPE, ev.LOAD_TYPE_ERR_EID, text, names_file=False)
         if self._registry.working_buffer(table) is None:
             raise _no_buffer()
@@ -85,8 +91,13 @@ class Loads:
         buffer.recompute_crc()
         buffer.is_valid, buffer.activate_requested = table.validator is None, False
 
-    def fill_from_memory(self, table: TableRecord, source: Bytes) -> None:
+    def fill_from_memory(self, table: TableRecord, source: Bytes, address: int | None = None) -> None:
         """Copy an image into the working buffer, or, with a user-defined address, make it the working buffer.
+
+        Args:
+            table: to be loaded.
+            source: the image.
+            address: where C has it; None for bytes of Python, which get a number for telemetry.
 
         Raises:
             Refused: the source has no bytes, or is shorter than the table (C would read past its end).
@@ -100,10 +111,10 @@ class Loads:
         image = memoryview(source)[: table.size]
         buffer = self._loading(table)
         if table.user_defined:
-            buffer.refer_to(image, self._memory.address_for(table.size))
+            buffer.refer_to(image, self._memory.address_for(table.size) if address is None else address)
         else:
             buffer.copy(image)
-        buffer.source = f"Addr 0x{buffer.address:08X}"
+        buffer.source = f"Addr 0x{buffer.address if address is None else address:08X}"
         buffer.file_time = (0, 0)
         buffer.recompute_crc()
 

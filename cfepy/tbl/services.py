@@ -7,7 +7,7 @@ Host code may look tables up (`get_info`) but owns none and has no handles. The 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from cfepy.config import PlatformConfig
@@ -38,7 +38,7 @@ from cfepy.tbl import events as ev
 from cfepy.tbl.buffers import BufferMemory, Bytes
 from cfepy.tbl.critical import CriticalTables
 from cfepy.tbl.dumps import Dumps
-from cfepy.tbl.loads import Loads
+from cfepy.tbl.loads import SRC_ADDRESS, SRC_FILE, Loads
 from cfepy.tbl.registry import OPT_CRITICAL, Access, TableHandle, TableRecord, TableRegistry, Validator
 from cfepy.tbl.reports import Reports
 from cfepy.tbl.table_file import LoadFile, Refused, TableStorage
@@ -368,13 +368,17 @@ class TableServices(TableAccess):
 
     # --- loading ---
 
-    def load(self, handle: int, source: str | Bytes) -> int:
+    def load(
+        self, handle: int, source: str | Bytes, *, address: int | None = None, source_type: int | None = None
+    ) -> int:
         """Load a table of the calling app and switch to the new image (CFE_TBL_Load).
 
         Args:
             handle: the owner's.
             source: path of a table file, or the image's bytes (for OPT_USR_DEF_ADDR the app's own bytearray, which
                 then is the table).
+            address: where C has the image's bytes.
+            source_type: what C code says that the source is, when that is neither a file nor an address.
 
         Returns:
             CFE_SUCCESS, CFE_TBL_WARN_SHORT_FILE, CFE_TBL_WARN_PARTIAL_LOAD, or CFE_TBL_INFO_TABLE_LOCKED: an
@@ -390,13 +394,15 @@ class TableServices(TableAccess):
             self._load_denied(error, handle, caller)
             raise
         file = LoadFile(source, self._config) if isinstance(source, str) else None
+        if source_type is None:
+            source_type = SRC_FILE if file is not None else SRC_ADDRESS
         try:
-            self._loads.reserve(table, from_file=file is not None)
+            self._loads.reserve(table, source_type)
         except Refused as refused:
             self._reports.load_refused(refused, caller, table)
             raise
         try:
-            status = self._fill(table, file, source)
+            status = self._fill(table, file, source, address)
             faults = self._loads.validate(table)
         except Refused as refused:
             self.registry.discard_load(table)
@@ -425,13 +431,13 @@ class TableServices(TableAccess):
             refused = Refused(error.status, ev.NO_SUCH_TABLE_ERR_EID, "Unable to locate in Table Registry")
             self._reports.load_refused(refused, caller, None)
 
-    def _fill(self, table: TableRecord, file: LoadFile | None, source: str | Bytes) -> int:
+    def _fill(self, table: TableRecord, file: LoadFile | None, source: str | Bytes, address: int | None) -> int:
         if file is not None:
             self._loads.open(file)
             self._loads.fill_from_file(table, file)
             return file.completeness(table)
         if not isinstance(source, str):
-            self._loads.fill_from_memory(table, source)
+            self._loads.fill_from_memory(table, source, address)
         return CFE_SUCCESS
 
     def _finish_load(self, table: TableRecord, handle: int, caller: str, status: int) -> int:
@@ -565,6 +571,16 @@ class TableServices(TableAccess):
             self._log("NotifyByMessage", _NOT_NOTIFIED.format(app=app_id, handle=int(handle), status=status))
             raise CfeError(CFE_TBL_ERR_NO_ACCESS, f"{access.table.name!r} belongs to another app")
         access.table.notify = (msg_id, fcn_code, parameter & 0xFFFFFFFF)
+
+    def leave_memory(self, is_leaving: Callable[[memoryview], bool]) -> None:
+        """Let tables whose bytes are about to be taken out of memory keep copies of them.
+
+        Args:
+            is_leaving: tells whether a buffer's bytes are.
+        """
+        for buffer in (*self._memory, *(each for table in self.registry.tables for each in table.buffers)):
+            if len(buffer.data) and is_leaving(buffer.data):
+                buffer.data = memoryview(bytearray(buffer.data))
 
     def cleanup_app(self, app_id: int) -> None:
         """Give back all tables, handles and dumps of an app that ended (CFE_TBL_CleanUpApp)."""

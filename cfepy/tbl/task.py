@@ -30,7 +30,7 @@ from cfepy.tbl import packets as pk
 from cfepy.tbl.buffers import Buffer, BufferMemory
 from cfepy.tbl.critical import CriticalTables
 from cfepy.tbl.dumps import DumpRefused, Dumps, select_buffer
-from cfepy.tbl.loads import Loads
+from cfepy.tbl.loads import SRC_FILE, Loads
 from cfepy.tbl.packets import REGISTRY_RECORD
 from cfepy.tbl.registry import TableRecord, TableRegistry
 from cfepy.tbl.reports import UNKNOWN, Reports
@@ -229,7 +229,7 @@ class TableCommands:
                 text = "Unable to locate in Table Registry"
                 raise Refused(CFE_TBL_ERR_INVALID_NAME, ev.NO_SUCH_TABLE_ERR_EID, text, names_file=False)
             if not self._config.is_cfe_7_0_0:  # which forgets it, and so finds no buffer to load into
-                self._loads.reserve(table, from_file=True)
+                self._loads.reserve(table, SRC_FILE)
             self._loads.fill_from_file(table, file)
         except Refused as refused:
             self._reports.file_refused(refused, APP_NAME, file, table)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-from cfepy.c.api import es, evs, sb, text
+from cfepy.c.api import cds, config, es, evs, fs, memory_pools, msg, resource_ids, sb, tbl, text, time
 
 if TYPE_CHECKING:
     from cfepy.c.calls import Declarations
@@ -23,7 +23,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
         api: where they are added.
         c: the C side of the processor that answers.
     """
-    for module in (text, es, evs, sb):
+    for module in (text, es, memory_pools, cds, evs, sb, msg, tbl, time, fs, config, resource_ids):
         module.declare(api, c)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING
 
+from cfepy.ports import CRITICAL
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CFE_EVS_INVALID_PARAMETER, CfeError
 
 if TYPE_CHECKING:
@@ -35,3 +36,12 @@ def declare(api: Declarations, c: CRuntime) -> None:
     api.add("CFE_EVS_SendTimedEvent", "tHHf", evs.send_timed_event, CFE_EVS_INVALID_PARAMETER)
     api.add("CFE_EVS_ResetFilter", "H", evs.reset_filter)
     api.add("CFE_EVS_ResetAllFilters", "", evs.reset_all_filters)
+    api.add("CFE_EVS_SetTypeEnable", "Hb", lambda kind, enabled: _set_type_enable(c, kind, enabled))
+
+
+def _set_type_enable(c: CRuntime, event_type: int, enabled: bool) -> None:
+    """Of the core for the core (cfe_evs_core_internal.h), but NASA's functional tests call it."""
+    owner = c.kernel.current.owner
+    app = c.cfe.evs.apps.get(owner.app_id) if owner is not None else None
+    if app is not None and 0 < event_type <= CRITICAL:
+        app.set_types(1 << event_type - 1, enabled)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from cfepy import msg
 from cfepy.c.api.pointers import name_into, need
-from cfepy.msg import set_msg_time
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_SB_BAD_ARGUMENT,
@@ -27,6 +27,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
     _declare_subscriptions(api, c)
     _declare_messages(api, c)
     _declare_user_data(api, c)
+    _declare_ids(api)
 
 
 def _declare_pipes(api: Declarations, c: CRuntime) -> None:
@@ -73,7 +74,7 @@ def _declare_messages(api: Declarations, c: CRuntime) -> None:
     def time_stamp(message: int) -> None:
         if message:
             header = bytearray(memory.peek(message, TIMED_HEADER))
-            set_msg_time(header, time.get_time())
+            msg.set_msg_time(header, time.get_time())
             memory.poke(message, header)
 
     api.add("CFE_SB_TransmitMsg", "mb", sb.transmit_msg, BAD)
@@ -98,3 +99,17 @@ def _declare_user_data(api: Declarations, c: CRuntime) -> None:
 
     api.add("CFE_SB_GetUserData", "p", no_user_data)
     api.add("CFE_SB_SetUserDataLength", "pQ", bad_length)
+
+
+def _declare_ids(api: Declarations) -> None:
+    """Message ids of topics. As in NASA's code, a command to instance 0, which is all, has the id of telemetry."""
+
+    def command(topic: int, instance: int) -> int:
+        return msg.cmd_topic_id_to_msg_id(topic, instance) if instance else msg.global_tlm_topic_id_to_msg_id(topic)
+
+    api.add("CFE_SB_CmdTopicIdToMsgId", "HH", command)
+    api.add("CFE_SB_TlmTopicIdToMsgId", "HH", msg.tlm_topic_id_to_msg_id)
+    api.add("CFE_SB_GlobalCmdTopicIdToMsgId", "H", msg.global_cmd_topic_id_to_msg_id)
+    api.add("CFE_SB_GlobalTlmTopicIdToMsgId", "H", msg.global_tlm_topic_id_to_msg_id)
+    api.add("CFE_SB_LocalCmdTopicIdToMsgId", "H", msg.local_cmd_topic_id_to_msg_id)
+    api.add("CFE_SB_LocalTlmTopicIdToMsgId", "H", msg.local_tlm_topic_id_to_msg_id)
