@@ -12,6 +12,10 @@ Watch = Callable[[float, int], object]
 """Called with the seconds for which C code has computed without a call, and the address to which that returned."""
 
 
+Call = Callable[..., object]
+"""Called with a function and its arguments; calls it."""
+
+
 class PreemptedFrames(dict[int, Watch]):
     """What the engine calls when C code has computed for a while without a call, by the address where it was.
 
@@ -29,19 +33,43 @@ class PreemptedFrames(dict[int, Watch]):
         self._watch = watch
 
     def __missing__(self, address: int) -> Watch:
-        place = self._place_of(address)
-        if place is None or not place.file:
-            return self._watch
-        function: Watch = FunctionType(_code(place.function, place.file, place.line), {"watch": self._watch})
+        function: Watch = _seen_as(self._place_of(address), _watch.__code__, {"watch": self._watch}) or self._watch
         self[address] = function
         return function
 
 
-def _frame(computed_s: float, called_from: int) -> object:
+class CallFrames(dict[int, Call]):
+    """What the engine calls a function of the API through, by the address of the call, for tools that look at frames.
+
+    Args:
+        place_of: the place of an address, if it is known.
+    """
+
+    def __init__(self, place_of: Callable[[int], Place | None]) -> None:
+        super().__init__()
+        self._place_of = place_of
+
+    def __missing__(self, address: int) -> Call:
+        function: Call = _seen_as(self._place_of(address), _call.__code__, {}) or _call
+        self[address] = function
+        return function
+
+
+def _watch(computed_s: float, called_from: int) -> object:
     return watch(computed_s, called_from)  # type: ignore[name-defined]  # noqa: F821
 
 
-@lru_cache(512)
-def _code(function: str, file: str, line: int) -> CodeType:
-    """The code of `_frame`, whose one line is the line after its first."""
-    return _frame.__code__.replace(co_name=function, co_qualname=function, co_filename=file, co_firstlineno=line - 1)
+def _call(function: Call, *args: object) -> object:
+    return function(*args)
+
+
+def _seen_as(place: Place | None, code: CodeType, names: dict[str, object]) -> FunctionType | None:
+    """A function of this code whose one line is seen as a place; None for a place that is not known."""
+    if place is None or not place.file:
+        return None
+    return FunctionType(_renamed(code, place.function, place.file, place.line), names)
+
+
+@lru_cache(1024)
+def _renamed(code: CodeType, function: str, file: str, line: int) -> CodeType:
+    return code.replace(co_name=function, co_qualname=function, co_filename=file, co_firstlineno=line - 1)

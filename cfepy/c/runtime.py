@@ -11,7 +11,7 @@ from cfepy.c.constants import Constants
 from cfepy.c.elf import SharedObject
 from cfepy.c.engine import engine
 from cfepy.c.faults import CFault, explained
-from cfepy.c.frames import PreemptedFrames
+from cfepy.c.frames import CallFrames, PreemptedFrames
 from cfepy.c.image import Image
 from cfepy.c.memory import Memory
 from cfepy.c.packets import PacketImages
@@ -157,6 +157,8 @@ class CRuntime:
         owner = getattr(self.kernel.current.owner, "app_id", 0)
         if owner:
             self._owners.add(owner)
+        if self.kernel.frames_wanted and self.table.frames is None:
+            self.table.frames = CallFrames(self._place)
         given, room = (stack, size) if stack else self._stacks.take(size)
         try:
             return int(engine().run(self.table, function, args, given, room, owner))

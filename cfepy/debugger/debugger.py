@@ -106,6 +106,7 @@ class Debugger(Observer):
         for each in self._breakpoints:
             each.begin(mission)
         kernel: Any = mission.kernel
+        kernel.frames_wanted = True
         kernel.block = self._returning(kernel.block)
         kernel.spawn = self._starting(kernel.spawn)
 

@@ -84,6 +84,7 @@ class WaitWatch(Attachment):
     def begin(self, mission: Mission) -> None:
         """See `Attachment.begin`; every wait goes through the kernel's `block`, which is looked up anew each time."""
         self._mission = mission
+        mission.kernel.frames_wanted = True
         mission.kernel.block = self._blocking(mission.kernel.block)  # type: ignore[method-assign]
 
     def conclude(self) -> None:

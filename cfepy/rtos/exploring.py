@@ -52,6 +52,7 @@ class ExploringKernel(Kernel):
     ) -> None:
         super().__init__(context, trace, tick_ns, switch_cost_ns, seed)
         self.policy = policy
+        self.frames_wanted = True
         self._any = policy.any_priority
         self._hold_ns = policy.hold_ns
         self._decisions = 0

@@ -45,6 +45,7 @@ class Kernel(Scheduler):
         broken: why the run was broken off; None as long as it was not.
         is_lost: the running task will not give the CPU back; the host is about to go on without it.
         guard: held by who looks at these from another thread and acts on it.
+        frames_wanted: somebody looks at the Python frames of tasks, so code that is no Python shows itself in one.
     """
 
     def __init__(
@@ -69,6 +70,7 @@ class Kernel(Scheduler):
         self.broken: BaseException | None = None
         self.guard = threading.Lock()
         self._gave_up = False
+        self.frames_wanted = False
 
     def __enter__(self) -> Kernel:
         return self

@@ -291,6 +291,21 @@ static int give_two_words(Coroutine *coroutine, PyObject *answer)
     return 0;
 }
 
+/* Call a function from a frame that is seen as the place of the call in C; arguments[0] is free. */
+static PyObject *call_seen(Coroutine *coroutine, PyObject *callable, PyObject **arguments, int given)
+{
+    PyObject *at = PyLong_FromUnsignedLongLong(coroutine->called_from - 1);
+    PyObject *frame = at == NULL ? NULL : PyObject_GetItem(coroutine->table->frames, at);
+    Py_XDECREF(at);
+    if (frame == NULL)
+        return NULL;
+    arguments[0] = callable;
+    PyObject *answer = PyObject_Vectorcall(frame, arguments, given + 1, NULL);
+    arguments[0] = NULL;
+    Py_DECREF(frame);
+    return answer;
+}
+
 /* Answer a call by its Python function; -1 with an exception that ends the coroutine. */
 HIDDEN int calls_serve(Coroutine *coroutine, const Function *function)
 {
@@ -329,8 +344,9 @@ HIDDEN int calls_serve(Coroutine *coroutine, const Function *function)
             goto done;
         Py_DECREF(charged);
     }
-    PyObject *answer =
-        PyObject_Vectorcall(function->callable, arguments + 1, given | PY_VECTORCALL_ARGUMENTS_OFFSET, NULL);
+    PyObject *answer = coroutine->table->frames == NULL
+        ? PyObject_Vectorcall(function->callable, arguments + 1, given | PY_VECTORCALL_ARGUMENTS_OFFSET, NULL)
+        : call_seen(coroutine, function->callable, arguments, given);
     if (answer == NULL)
         result = take_status(coroutine, &outputs, function->clears_outputs);
     else {

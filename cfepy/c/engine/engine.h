@@ -79,6 +79,7 @@ typedef struct Table {
     Function *functions;
     int count, room;
     PyObject *charge, *cost;                   /* called before each function that costs virtual time; or NULL */
+    PyObject *frames;                          /* by address, what calls a function and is seen as C; or NULL */
     PyObject *preempted;                       /* by pc, what is called when code has computed for long */
     struct Heap *heap;                         /* malloc's */
     struct Images *images;                     /* of the Software Bus */

@@ -62,6 +62,7 @@ static int table_traverse(Table *table, visitproc visit, void *arg)
     Py_VISIT(table->charge);
     Py_VISIT(table->cost);
     Py_VISIT(table->preempted);
+    Py_VISIT(table->frames);
     Py_VISIT((PyObject *)table->heap);
     Py_VISIT((PyObject *)table->images);
     return 0;
@@ -74,6 +75,7 @@ static int table_clear(Table *table)
     Py_CLEAR(table->charge);
     Py_CLEAR(table->cost);
     Py_CLEAR(table->preempted);
+    Py_CLEAR(table->frames);
     PyObject *heap = (PyObject *)table->heap;
     table->heap = NULL;
     Py_XDECREF(heap);
@@ -115,6 +117,18 @@ static PyObject *table_new(PyTypeObject *type, PyObject *arguments, PyObject *op
     return (PyObject *)table;
 }
 
+static PyObject *table_get_frames(Table *table, void *unused) { return Py_NewRef(table->frames ? table->frames : Py_None); }
+static int table_set_frames(Table *table, PyObject *frames, void *unused)
+{
+    Py_XSETREF(table->frames, frames == NULL || frames == Py_None ? NULL : Py_NewRef(frames));
+    return 0;
+}
+
+static PyGetSetDef table_attributes[] = {
+    {"frames", (getter)table_get_frames, (setter)table_set_frames,
+     "by address, functions that call another one and are seen as the place in C; or None", NULL},
+    {NULL, NULL, NULL, NULL, NULL},
+};
 static PyMethodDef table_methods[] = {
     {"add", (PyCFunction)table_add, METH_VARARGS,
      "add(name, callable, signature, null_status) -> number; callable may be None for what the engine does itself"},
@@ -129,6 +143,7 @@ HIDDEN PyTypeObject table_type = {
     .tp_traverse = (traverseproc)table_traverse,
     .tp_clear = (inquiry)table_clear,
     .tp_methods = table_methods,
+    .tp_getset = table_attributes,
     .tp_doc = "Table(heap, images, charge, cost, preempted, highest_msg_id, largest_message, ctype): the functions that C code can call",
 };
 
