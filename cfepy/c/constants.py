@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import struct
+from collections.abc import Iterable
+
 from cfepy.c.arena import Arena, pages
 from cfepy.c.memory import Memory
 from cfepy.texts import to_bytes
@@ -26,6 +29,11 @@ class Constants:
     def text(self, text: str) -> int:
         """The address of a text, with its NUL."""
         return self.data(to_bytes(text) + b"\0")
+
+    def texts(self, texts: Iterable[str]) -> int:
+        """The address of an array of pointers to texts, with a NULL at its end, as argv is."""
+        pointers = [self.text(text) for text in texts]
+        return self.data(struct.pack(f"<{len(pointers) + 1}Q", *pointers, 0))
 
     def data(self, data: bytes) -> int:
         """The address of some bytes."""

@@ -113,3 +113,23 @@ class Image:
     def unload(self) -> None:
         """Take it out of memory."""
         self._arena.unmap(self.base)
+
+
+class LoadedCode:
+    """A loaded object, with its symbols as attributes: their addresses.
+
+    Args:
+        image: the object.
+
+    Attributes:
+        image_: the same; called so because symbols are attributes, too.
+    """
+
+    def __init__(self, image: Image) -> None:
+        self.image_ = image
+
+    def __getattr__(self, name: str) -> int:
+        try:
+            return self.image_.symbols[name]
+        except KeyError:
+            raise AttributeError(name) from None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cfepy.c.elf import ElfError, SharedObject, read_shared_object
-from cfepy.c.image import Image
+from cfepy.c.image import Image, LoadedCode
 from cfepy.c.runtime import CRuntime
 from cfepy.console import Console
 from cfepy.es import SymbolError
@@ -117,20 +117,3 @@ class CompiledCode:
     def module(self, owner: str) -> object:
         """See `Code.module`."""
         return LoadedCode(self._loader.load(self._file, self._data))
-
-
-class LoadedCode:
-    """A loaded object, with its symbols as attributes: their addresses.
-
-    Args:
-        image: the object.
-    """
-
-    def __init__(self, image: Image) -> None:
-        self._image = image
-
-    def __getattr__(self, name: str) -> int:
-        try:
-            return self._image.symbols[name]
-        except KeyError:
-            raise AttributeError(name) from None

@@ -7,7 +7,7 @@ from struct import Struct
 from cfepy.c.engine import engine
 from cfepy.texts import to_bytes
 
-_U16, _U32, _U64 = Struct("<H"), Struct("<I"), Struct("<Q")
+_U16, _U32, _U64, _I64 = Struct("<H"), Struct("<I"), Struct("<Q"), Struct("<q")
 
 
 class Memory:
@@ -39,6 +39,10 @@ class Memory:
     def u64(self, address: int) -> int:
         """The uint64, size_t or pointer at an address."""
         return int(_U64.unpack(self.peek(address, 8))[0])
+
+    def i64(self, address: int) -> int:
+        """The int64 at an address, such as an OS_time_t."""
+        return int(_I64.unpack(self.peek(address, 8))[0])
 
     def put_u16(self, address: int, value: int) -> None:
         """Write a uint16 or int16."""

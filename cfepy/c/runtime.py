@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NoReturn
 
 from cfepy.app import Cfe
 from cfepy.c.arena import Arena
@@ -42,7 +43,8 @@ class CRuntime:
 
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
-        images: what is loaded, by the name of the application or the path of the library.
+        applications, libraries: what is loaded, by the name of the application or the path of the library.
+        at_close: called at the end of the processor, while its memory is still there.
     """
 
     def __init__(
@@ -68,6 +70,7 @@ class CRuntime:
         self.arena = Arena()
         self.memory = Memory()
         self.constants = Constants(self.arena)
+        self.at_close: list[Callable[[], object]] = []
         self._stacks = Stacks(self.arena)
         self._heap = made.Heap(self.arena.map(HEAP), HEAP)
         self.packets = PacketImages(made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK), handle.sb, cfe.sb)
@@ -131,6 +134,12 @@ class CRuntime:
                 return image.symbols[name]
         return self._calls.address(name)
 
+    def symbol(self, name: str) -> int | None:
+        """Where a function or variable is that all code can see: one of the API, or of a library; None for neither."""
+        if name in self.declared:
+            return self._calls.address(name)
+        return next((image.symbols[name] for image in self.libraries.values() if name in image.symbols), None)
+
     def missing(self, source: SharedObject) -> list[str]:
         """Names that an object needs and nobody has."""
         libraries = self.libraries.values()
@@ -164,9 +173,15 @@ class CRuntime:
             return int(engine().run(self.table, function, args, given, room, owner))
         except CFault as fault:
             raise explained(fault, self.place_of) from None
+        except _Passing as passing:
+            raise passing.error from None
         finally:
             if not stack:
                 self._stacks.give(given, room)
+
+    def raise_through(self, error: CfeError) -> NoReturn:
+        """Raise an error in a function of the API that ends the C code, and is no status for it."""
+        raise _Passing(error)
 
     def run_main(self, function: int) -> None:
         """Run the main function of an application, on a stack of the size that its startup line says."""
@@ -208,7 +223,17 @@ class CRuntime:
 
     def close(self) -> None:
         """The processor is at its end: give all memory back."""
+        for function in self.at_close:
+            function()
         self.cfe.tbl.leave_memory(lambda data: True)  # what tells of the run may look at tables later
         self.applications.clear()
         self.libraries.clear()
         self.arena.close()
+
+
+class _Passing(Exception):
+    """Carries an error through C code, which would get it as a status otherwise."""
+
+    def __init__(self, error: CfeError) -> None:
+        super().__init__(error)
+        self.error = error

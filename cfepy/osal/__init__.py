@@ -62,13 +62,20 @@ from cfepy.osal.limits import (
 )
 from cfepy.osal.network import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Mailbox, Network, Place, Stream
 from cfepy.osal.osal import Osal
-from cfepy.osal.sockaddr import OS_SocketDomain_INET, OS_SocketDomain_INET6, OS_SocketDomain_INVALID
+from cfepy.osal.sockaddr import (
+    OS_SocketDomain_INET,
+    OS_SocketDomain_INET6,
+    OS_SocketDomain_INVALID,
+    SockAddr,
+    socket_addr_init,
+)
 from cfepy.osal.sockets import (
     OS_STREAM_STATE_BOUND,
     OS_STREAM_STATE_CONNECTED,
     OS_STREAM_STATE_LISTENING,
     OS_STREAM_STATE_READABLE,
     OS_STREAM_STATE_WRITABLE,
+    FdSet,
     OS_socket_option_IP_DSCP,
     OS_socket_option_UNDEFINED,
     OS_SocketShutdownMode_SHUT_READ,
@@ -134,6 +141,7 @@ __all__ = [
     "OS_WRITE_ONLY",
     "Datagram",
     "Endpoint",
+    "FdSet",
     "FileNode",
     "FileSystem",
     "Ledger",
@@ -155,7 +163,9 @@ __all__ = [
     "OsTime",
     "Osal",
     "Place",
+    "SockAddr",
     "Stream",
     "Volume",
+    "socket_addr_init",
     "time_from_total_nanoseconds",
 ]

@@ -211,6 +211,7 @@ class Core:
         self._task_ids: dict[Task, int] = {}
         self._tables: dict[int, OsObjectTable[Any]] = {}
         self._event_handler: EventHandler | None = None
+        self._is_shut_down = False
 
     def _table(self, kind: str, base: int, capacity: int, name_limit: int = OS_MAX_API_NAME) -> OsObjectTable[Any]:
         table: OsObjectTable[Any] = OsObjectTable(kind, base, capacity, name_limit)
@@ -219,6 +220,8 @@ class Core:
 
     def _register(self, table: OsObjectTable[Record], record: Record, kind: str, size: int, owner: Any = None) -> int:
         """Account for an object of an application, by default the current task's, and give it an id."""
+        if self._is_shut_down:
+            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"OSAL is shut down: no {table.kind} can be made")
         task = self.kernel.current
         record.owner = task.owner if owner is None else owner
         record.creator = self._task_ids.get(task, 0)

@@ -87,7 +87,7 @@ class DiskApi(Core):
             device = RAM_DEVICE if point == "/ram" else point
             self._disks.add(OsDisk(device, volume, RAM_BLOCK_BYTES, str(volume.host or ""), point))
 
-    def mkfs(self, devname: str, volname: str, blocksize: int, numblocks: int) -> None:
+    def mkfs(self, devname: str, volname: str, blocksize: int, numblocks: int, *, in_memory: bool = False) -> None:
         """Make an empty RAM disk, not mounted yet (OS_mkfs).
 
         Args:
@@ -95,6 +95,7 @@ class DiskApi(Core):
             volname: the volume; only one whose name begins with "RAM" can be mounted.
             blocksize: bytes of a block.
             numblocks: how many blocks.
+            in_memory: the caller says where in memory it is, so it can be mounted whatever its name is.
 
         Raises:
             OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_PATH_INVALID (an empty name), OS_ERR_NAME_TAKEN,
@@ -106,16 +107,16 @@ class DiskApi(Core):
             raise OsalError(OS_FS_ERR_PATH_INVALID, "a file system needs names for its device and its volume")
         size = blocksize * numblocks
         disk = OsDisk(devname, Volume(capacity=size), blocksize, f"{volname}:{devname}")
-        disk.is_known = volname.startswith("RAM")
+        disk.is_known = in_memory or volname.startswith("RAM")
         try:  # the board's own disk is memory beside the RAM that is counted
             self._register(self._disks, disk, "disk", 0 if devname == RAM_DEVICE else size)
         except OsalError as error:
             status = OS_FS_ERR_DEVICE_NOT_FREE if error.status == OS_ERR_NO_FREE_IDS else error.status
             raise OsalError(status, error.text) from error
 
-    def initfs(self, devname: str, volname: str, blocksize: int, numblocks: int) -> None:
+    def initfs(self, devname: str, volname: str, blocksize: int, numblocks: int, *, in_memory: bool = False) -> None:
         """As `mkfs`: a new RAM disk is always empty (OS_initfs)."""
-        self.mkfs(devname, volname, blocksize, numblocks)
+        self.mkfs(devname, volname, blocksize, numblocks, in_memory=in_memory)
 
     def rmfs(self, devname: str) -> None:
         """Remove a file system with all that is in it, mounted or not (OS_rmfs).
@@ -233,6 +234,13 @@ class DiskApi(Core):
         place = self._mounts.translate(virtual_path)
         physical = next((disk.physical for disk in self._disks if disk.volume is place.volume), "")
         return f"{physical}/{place.path}" if place.path else physical
+
+    def _forget_disks(self) -> None:
+        """Take all file systems away."""
+        for _, disk in self._disks.items():
+            if disk.mount_point:
+                self._mounts.unmount(disk.mount_point)
+            self._unregister(self._disks, disk)
 
     def _check(self, name: str, limit: int) -> None:
         if len(to_bytes(name)) >= limit:

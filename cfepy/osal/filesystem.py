@@ -203,15 +203,19 @@ class FileSystem:
         volume.remove(rest)
 
     def rename(self, old: str, new: str) -> None:
-        """Give a file another path in the same volume (OS_rename).
+        """Give a file or folder another path in the same volume (OS_rename).
 
         Raises:
-            OsalError: OS_ERROR when there is no such file or the volume is another; as `translate`.
+            OsalError: OS_ERROR when there is neither, the volume is another, or something else is in the way; as
+                `translate`.
         """
         (source, source_path), (target, target_path) = self.translate(old), self.translate(new)
-        if source is not target or source.node(source_path) is None:
+        if source is target and source.node(source_path) is not None:
+            source.rename(source_path, target_path)
+        elif source is target and _can_move_folder(source, source_path, target_path):
+            source.rename_folder(source_path, target_path)
+        else:
             raise OsalError(OS_ERROR, f"{old} cannot become {new}")
-        source.rename(source_path, target_path)
 
     def make_folder(self, path: str) -> None:
         """Add a folder (OS_mkdir); one that exists stays as it is.
@@ -245,3 +249,11 @@ class FileSystem:
         if not volume.is_folder(rest):
             raise OsalError(OS_ERROR, f"there is no folder {path}")
         return volume.names(rest)
+
+
+def _can_move_folder(volume: Volume, old: str, new: str) -> bool:
+    """Whether `old` is a folder that can become `new`: a path in a folder, with nothing or an empty folder there."""
+    if not old or not volume.is_folder(old) or f"{new}/".startswith(f"{old}/"):
+        return False
+    is_free = not volume.names(new) if volume.is_folder(new) else volume.node(new) is None
+    return is_free and bool(new) and volume.is_folder(new.rpartition("/")[0])

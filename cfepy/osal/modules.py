@@ -105,6 +105,10 @@ class ModuleApi(Core):
         """Forget a module (OS_ModuleUnload); what was taken out of it goes on. OS_ERR_INVALID_ID when there is none."""
         self._unregister(self._modules, self._module(module_id))
 
+    def module_code(self, module_id: int) -> object:
+        """What was loaded: an object with the module's symbols. OS_ERR_INVALID_ID when there is no such module."""
+        return self._module(module_id).code
+
     def module_info(self, module_id: int) -> ModuleInfo:
         """Facts about a module (OS_ModuleInfo), or OS_ERR_INVALID_ID."""
         record = self._module(module_id)

@@ -163,15 +163,20 @@ class ApplicationApi(CleanupApi):
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
         self.exit_code = OS_SUCCESS
-        self._is_shut_down = False
         self._idle = WaitList("shutdown")
         self._resource_type_config: dict[int, int] = {}
 
     def api_init(self) -> None:
-        """Nothing: OSAL is ready when it was made, and a second call is ignored in NASA's too (OS_API_Init)."""
+        """Make OSAL ready again after `api_teardown` (OS_API_Init): as after a start, but for the clock.
+
+        Before that there is nothing to do: an Osal is made ready to use, and a second call is ignored in NASA's too.
+        """
+        if self._is_shut_down:
+            self._is_shut_down = False
+            self._event_handler = None
 
     def api_teardown(self) -> None:
-        """Delete every object, then let the idle loop end (OS_API_Teardown)."""
+        """Delete every object, then let the idle loop end; new objects are refused from then on (OS_API_Teardown)."""
         self.delete_all_objects()
         self.application_shutdown(True)
 
@@ -203,7 +208,7 @@ class ApplicationApi(CleanupApi):
             self.kernel.wait_on(self._idle)
 
     def application_shutdown(self, flag: bool) -> None:
-        """Let `idle_loop` end, if `flag` is true (OS_ApplicationShutdown)."""
+        """Let `idle_loop` end, if `flag` is true, and no object be made any more (OS_ApplicationShutdown)."""
         self._is_shut_down |= flag
         self.kernel.wake_all(self._idle)
 
@@ -310,3 +315,11 @@ class Osal(ShellApi, ApplicationApi, DiskApi, IdMapApi):
                 epoch_ns,
             )
         )
+
+    def api_init(self) -> None:
+        """See `ApplicationApi.api_init`: file systems are gone after `api_teardown`, too, and OS_printf prints."""
+        was_shut_down = self._is_shut_down
+        super().api_init()
+        if was_shut_down:
+            self._forget_disks()
+            self.printf_enable()

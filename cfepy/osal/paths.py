@@ -113,7 +113,7 @@ class PathApi(ClockApi, FileApi):
         self.files.remove(path)
 
     def rename(self, old_filename: str, new_filename: str) -> None:
-        """Rename a file within a volume (OS_rename); OS_ERROR when that cannot be, OS_FS_ERR_* for the paths."""
+        """Rename a file or folder in a volume (OS_rename); OS_ERROR when that cannot be, OS_FS_ERR_* for the paths."""
         self.files.rename(old_filename, new_filename)
         for stream in self._streams:
             if stream.path == old_filename:

@@ -100,22 +100,25 @@ class QueueApi(Core):
         if not record.queue.put(data if type(data) is bytes else bytes(data)):
             raise OsalError(OS_QUEUE_FULL, f"queue {record.name} holds {record.queue.depth} messages")
 
-    def queue_get(self, queue_id: int, timeout_ms: int = OS_PEND) -> bytes | None:
+    def queue_get(self, queue_id: int, timeout_ms: int = OS_PEND, size: int | None = None) -> bytes | None:
         """Take the oldest message (OS_QueueGet).
 
         Args:
             queue_id: the queue.
             timeout_ms: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
+            size: bytes that there are for it; None for enough.
 
         Returns:
             The message; None when there was none in that time.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID.
+            OsalError: OS_ERR_INVALID_ID, OS_QUEUE_INVALID_SIZE for less room than the queue's messages may need.
         """
         record = self._find_queue(queue_id)
         if record is None:
             raise self._queues.missing(queue_id)
+        if size is not None and size < record.data_size:
+            raise OsalError(OS_QUEUE_INVALID_SIZE, f"{size} bytes for queue {record.name} of {record.data_size}")
         item = record.queue.get(timeout_ms * NS_PER_MS if timeout_ms > 0 else timeout_ms)
         if item:
             if self._cost:

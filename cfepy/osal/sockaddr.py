@@ -135,8 +135,14 @@ def check_address(addr: SockAddr | None, status: int = OS_ERR_BAD_ADDRESS) -> So
     Raises:
         OsalError: OS_INVALID_POINTER for None, or `status`.
     """
-    if addr is None:
-        raise OsalError(OS_INVALID_POINTER, "an address is missing")
+    check_given(addr)
+    assert addr is not None
     if addr.domain not in ANY_HOST:
         raise OsalError(status, "the address has no domain")
     return addr
+
+
+def check_given(addr: SockAddr | None) -> None:
+    """Raise OS_INVALID_POINTER for None."""
+    if addr is None:
+        raise OsalError(OS_INVALID_POINTER, "an address is missing")

@@ -16,7 +16,7 @@ from cfepy.osal.core import check_size
 from cfepy.osal.files import OsStream
 from cfepy.osal.limits import OS_MAX_API_NAME, OS_PEND
 from cfepy.osal.network import Place, Stream
-from cfepy.osal.sockaddr import SockAddr, check_address, from_place
+from cfepy.osal.sockaddr import SockAddr, check_address, check_given, from_place
 from cfepy.osal.streams import OS_SocketType_DATAGRAM, OS_SocketType_STREAM, OsSocket, StreamApi, ns_of
 from cfepy.status import (
     OS_ERR_INCORRECT_OBJ_STATE,
@@ -61,8 +61,9 @@ class DatagramApi(StreamApi):
                 OS_ERR_BAD_ADDRESS; OS_ERROR for an address of another domain or for more than UDP carries.
         """
         check_size(len(buffer), "datagram")
-        check_address(remote_addr)
+        check_given(remote_addr)
         record = self._socket(sock_id, OS_SocketType_DATAGRAM)
+        check_address(remote_addr)
         if remote_addr.domain != record.domain:
             raise record.error(f"cannot send to {remote_addr!r}: that is another domain")
         return self._send(record, bytes(buffer), remote_addr.place)
@@ -148,10 +149,11 @@ class SocketApi(DatagramApi):
                 OS_ERR_INCORRECT_OBJ_STATE when it is bound or connected, OS_ERR_BAD_ADDRESS; OS_ERROR when the
                 address is taken or is not on this network.
         """
-        check_address(addr)
+        check_given(addr)
         record = self._socket(sock_id)
         if record.bound or record.connected:
             raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} is bound or connected")
+        check_address(addr)
         self._take_place(record, addr.place)
         self._entitle(record, addr.place)
         record.bound = True
@@ -200,10 +202,11 @@ class SocketApi(DatagramApi):
         return self._connect(sock_id, addr, self._ns_until(abs_timeout))
 
     def _connect(self, sock_id: int, addr: SockAddr, timeout_ns: int) -> bool:
-        check_address(addr)
+        check_given(addr)
         record = self._socket(sock_id)
         if record.connected and record.kind == OS_SocketType_STREAM:
             raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} is connected")
+        check_address(addr)
         if addr.domain != record.domain:
             raise record.error(f"cannot be connected with {addr!r}: that is another domain")
         if record.kind == OS_SocketType_DATAGRAM:

@@ -66,6 +66,17 @@ class Volume:
             self.remove(old)
             self._nodes[new] = node
 
+    def rename_folder(self, old: str, new: str) -> None:
+        """Give a folder another path in this volume, with all that is in it."""
+        self.make_folder(new)
+        for name in self.names(old):
+            source, target = _join(old, name), _join(new, name)
+            if self.is_folder(source):
+                self.rename_folder(source, target)
+            else:
+                self.rename(source, target)
+        self.remove_folder(old)
+
     def is_folder(self, path: str) -> bool:
         """Whether there is a folder at a path."""
         real = self._on_host(path)

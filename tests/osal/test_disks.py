@@ -108,6 +108,13 @@ def test_only_ram_disks_can_be_mounted(bench: Bench) -> None:
     assert status_of(bench.os.mount, "/ramdev1", "scratch") == OS_ERR_NAME_NOT_FOUND
 
 
+def test_a_disk_in_memory_can_be_mounted_whatever_its_name_is(bench: Bench) -> None:
+    bench.os.mkfs("/ssrdev1", "SSR1", 512, 4, in_memory=True)
+    bench.os.initfs("/ssrdev2", "SSR2", 512, 4, in_memory=True)
+    bench.os.mount("/ssrdev1", "/ssr")
+    bench.os.mount("/ssrdev2", "/ssr2")
+
+
 @pytest.mark.parametrize(
     "function", ["rmfs", "unmount", "chkfs", "file_sys_stat_volume", "fs_get_phys_drive_name", "translate_path"]
 )

@@ -109,6 +109,32 @@ def test_folders(files: FileSystem) -> None:
     assert status_of(files.remove_folder, "/ram") == OS_ERROR
 
 
+def test_a_folder_is_renamed_with_all_that_is_in_it(files: FileSystem) -> None:
+    for folder in ("/ram/logs", "/ram/logs/old", "/ram/empty", "/ram/full"):
+        files.make_folder(folder)
+    files.write_file("/ram/logs/one", b"1")
+    files.write_file("/ram/logs/old/two", b"2")
+    files.write_file("/ram/full/x", b"")
+    for old, new in (("logs", "full"), ("logs", "full/x"), ("logs", "logs/new"), ("logs", "none/new"), ("logs", "")):
+        assert status_of(files.rename, f"/ram/{old}", f"/ram/{new}") == OS_ERROR
+    assert status_of(files.rename, "/ram", "/ram/new") == OS_ERROR
+    files.rename("/ram/logs", "/ram/empty")
+    assert files.list_dir("/ram") == ["empty", "full"]
+    assert files.list_dir("/ram/empty") == ["old", "one"]
+    assert files.read_file("/ram/empty/old/two") == b"2"
+
+
+def test_a_folder_of_the_host_is_renamed_for_the_run_alone(files: FileSystem, folder: Path) -> None:
+    (folder / "tables").mkdir()
+    (folder / "tables" / "x.tbl").write_bytes(b"x")
+    files.rename("/cf/tables", "/cf/old")
+    assert not files.exists("/cf/tables/x.tbl")
+    assert files.read_file("/cf/old/x.tbl") == b"x"
+    files.rename("/cf/old", "/cf/tables")
+    assert files.list_dir("/cf/tables") == ["x.tbl"]
+    assert (folder / "tables" / "x.tbl").exists()
+
+
 def test_a_full_disk_refuses(files: FileSystem) -> None:
     files.write_file("/ram/a", bytes(900))
     assert status_of(files.write_file, "/ram/b", bytes(200)) == OS_ERROR

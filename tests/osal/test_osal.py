@@ -10,7 +10,14 @@ from cfepy.osal.limits import (
     OS_EVENT_RESOURCE_DELETED,
     OS_EVENT_TASK_STARTUP,
 )
-from cfepy.status import OS_ERR_INVALID_SIZE, OS_ERR_NOT_IMPLEMENTED, OS_ERR_TRY_AGAIN, OS_ERROR, OS_INVALID_POINTER
+from cfepy.status import (
+    OS_ERR_INCORRECT_OBJ_STATE,
+    OS_ERR_INVALID_SIZE,
+    OS_ERR_NOT_IMPLEMENTED,
+    OS_ERR_TRY_AGAIN,
+    OS_ERROR,
+    OS_INVALID_POINTER,
+)
 from tests.osal.helpers import Bench, Ledger
 from tests.osal.test_queues import status_of
 
@@ -68,6 +75,30 @@ def test_teardown_deletes_everything(bench: Bench) -> None:
     assert log == ["torn down"]
     assert status_of(os.queue_get_info, queue)
     os.idle_loop()
+
+
+def test_nothing_can_be_made_between_a_teardown_and_an_init(bench: Bench) -> None:
+    os = bench.os
+    os.printf_disable()
+    os.register_event_handler(lambda event, object_id, data: bench.log.append(event))
+    os.api_teardown()
+    del bench.log[:]
+    assert status_of(os.queue_create, "Q", 1, 4) == OS_ERR_INCORRECT_OBJ_STATE
+    assert status_of(os.mkfs, "/ramdev1", "RAM1", 512, 4) == OS_ERR_INCORRECT_OBJ_STATE
+    os.api_init()
+    assert os.queue_get_info(os.queue_create("Q", 1, 4)).name == "Q"
+    assert bench.log == [], "the handler is forgotten"
+    os.printf("again")
+    assert os.console.lines[-1] == "again"
+
+
+def test_file_systems_are_gone_after_a_new_init(bench: Bench) -> None:
+    os = bench.os
+    os.api_teardown()
+    assert os.files.mount_points()
+    os.api_init()
+    assert not os.files.mount_points()
+    os.mkfs("/ramdev0", "RAM", 512, 4)
 
 
 def test_a_task_does_not_come_back_from_the_exit(bench: Bench) -> None:

@@ -55,6 +55,8 @@ def test_bad_arguments(bench: Bench) -> None:
     assert status_of(bench.os.queue_put, queue_id, b"") == OS_ERR_INVALID_SIZE
     assert status_of(bench.os.queue_put, 0, b"1") == OS_ERR_INVALID_ID
     assert status_of(bench.os.queue_get, queue_id + 1) == OS_ERR_INVALID_ID
+    assert status_of(bench.os.queue_get, queue_id, 0, 3) == OS_QUEUE_INVALID_SIZE
+    assert bench.os.queue_get(queue_id, 0, size=4) is None
     assert status_of(bench.os.queue_get_id_by_name, "R") == OS_ERR_NAME_NOT_FOUND
     assert status_of(bench.os.queue_get_info, 0x10001) == OS_ERR_INVALID_ID
 

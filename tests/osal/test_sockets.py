@@ -187,6 +187,15 @@ def test_binding(bench: Bench) -> None:
     os.socket_bind(other, address(9998))
 
 
+def test_the_id_of_a_socket_is_looked_at_before_the_address(bench: Bench) -> None:
+    os = bench.os
+    assert status_of(os.socket_send_to, NO_SOCKET, b"1", SockAddr()) == OS_ERR_INVALID_ID
+    assert status_of(os.socket_bind_address, NO_SOCKET, SockAddr()) == OS_ERR_INVALID_ID
+    assert status_of(os.socket_connect, NO_SOCKET, SockAddr()) == OS_ERR_INVALID_ID
+    assert status_of(os.socket_send_to, a_file(bench), b"1", SockAddr()) == OS_ERR_INCORRECT_OBJ_TYPE
+    assert status_of(os.socket_bind_address, bound(bench, 9), SockAddr()) == OS_ERR_INCORRECT_OBJ_STATE
+
+
 def test_port_0_is_any_free_port(bench: Bench) -> None:
     bound(bench, 32_768)
     first, second, receiver = bound(bench, 0), bound(bench, 0), bound(bench, 5000)

@@ -9,11 +9,43 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-from cfepy.c.api import cds, config, es, evs, fs, memory_pools, msg, resource_ids, sb, tbl, text, time
+from cfepy.c.api import (
+    cds,
+    config,
+    es,
+    evs,
+    fs,
+    memory_pools,
+    msg,
+    osal_clock,
+    osal_disks,
+    osal_files,
+    osal_locks,
+    osal_modules,
+    osal_objects,
+    osal_queues,
+    osal_select,
+    osal_semaphores,
+    osal_sockets,
+    osal_system,
+    osal_tasks,
+    osal_timers,
+    resource_ids,
+    sb,
+    tbl,
+    text,
+    time,
+)
 
 if TYPE_CHECKING:
     from cfepy.c.calls import Declarations
     from cfepy.c.runtime import CRuntime
+
+_OSAL = (
+    *(osal_tasks, osal_semaphores, osal_locks, osal_queues, osal_timers, osal_clock, osal_files, osal_disks),
+    *(osal_sockets, osal_select, osal_modules, osal_objects, osal_system),
+)
+_MODULES = (text, es, memory_pools, cds, evs, sb, msg, tbl, time, fs, config, resource_ids, *_OSAL)
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
@@ -23,7 +55,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
         api: where they are added.
         c: the C side of the processor that answers.
     """
-    for module in (text, es, memory_pools, cds, evs, sb, msg, tbl, time, fs, config, resource_ids):
+    for module in _MODULES:
         module.declare(api, c)
 
 
