@@ -22,6 +22,8 @@ from cfepy.console import Console
 from cfepy.rtos import Kernel
 from cfepy.status import CfeError
 
+POISON = b"\xa5"
+"""What is in memory that was never written, where that is to be found out."""
 HEAP = 1 << 30
 """Bytes of address space for malloc, and as many for messages."""
 CALLBACK_STACK = 65536
@@ -40,6 +42,7 @@ class CRuntime:
         console: for printf.
         stall_s: after how many seconds without progress the stall watch ends a run; 0 for never.
         omit_deprecated: whether the code was built with OMIT_DEPRECATED, which makes handles of tables ids.
+        guard: blocks of memory end where nobody may write, freed ones are gone, and fresh ones and stacks are not zero.
 
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
@@ -56,6 +59,7 @@ class CRuntime:
         console: Console,
         stall_s: Callable[[], float],
         omit_deprecated: bool = False,
+        guard: bool = False,
     ) -> None:
         from cfepy.c.api import declare
 
@@ -71,9 +75,10 @@ class CRuntime:
         self.memory = Memory()
         self.constants = Constants(self.arena)
         self.at_close: list[Callable[[], object]] = []
-        self._stacks = Stacks(self.arena)
-        self._heap = made.Heap(self.arena.map(HEAP), HEAP)
-        self.packets = PacketImages(made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK), handle.sb, cfe.sb)
+        self._stacks = Stacks(self.arena, POISON if guard else b"")
+        self._heap = made.Heap(self.arena.map(HEAP), HEAP, guarded=guard)
+        messages = made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK, guarded=guard, grain=4)
+        self.packets = PacketImages(messages, handle.sb, cfe.sb)
         config = cfe.es.config
         self.table = made.Table(
             heap=self._heap,

@@ -14,10 +14,12 @@ class Stacks:
 
     Args:
         arena: where they are.
+        poison: a byte that they are filled with before use; none for zeros.
     """
 
-    def __init__(self, arena: Arena) -> None:
+    def __init__(self, arena: Arena, poison: bytes = b"") -> None:
         self._arena = arena
+        self._poison = poison
         self._free: dict[int, list[int]] = {}
 
     def take(self, size: int) -> tuple[int, int]:
@@ -25,10 +27,14 @@ class Stacks:
         room = pages(max(size, LEAST))
         free = self._free.setdefault(room, [])
         if free:
-            return free.pop(), room
-        below = self._arena.map(room + PAGE)
-        engine().protect(below, PAGE, 0)
-        return below + PAGE, room
+            stack = free.pop()
+        else:
+            below = self._arena.map(room + PAGE)
+            engine().protect(below, PAGE, 0)
+            stack = below + PAGE
+        if self._poison:
+            engine().poke(stack, self._poison * room)
+        return stack, room
 
     def give(self, stack: int, size: int) -> None:
         """Give one back."""

@@ -110,6 +110,14 @@ def _add_stall(parser: Options) -> None:
     )
 
 
+def _add_guard(parser: Options) -> None:
+    parser.add_argument(
+        "--guard",
+        action="store_true",
+        help="let compiled applications fault where they write past a buffer, or use one that was freed",
+    )
+
+
 RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "launch_args": _add_launch_args,
     "seconds": _add_seconds,
@@ -122,6 +130,7 @@ RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "faults": _add_faults,
     "play": _add_play,
     "stall": _add_stall,
+    "guard": _add_guard,
 }
 """What adds the option for each attribute of `RunPlan`, but for the words and the command, which are what is run."""
 
@@ -199,6 +208,7 @@ _USUAL: Mapping[str, tuple[str, object]] = {
     "faults": ("--faults", None),
     "play": ("--play", None),
     "stall": ("--stall", DEFAULT_STALL_S),
+    "guard": ("--guard", False),
 }
 """The option for each attribute, and its value when nothing is said."""
 

@@ -35,6 +35,7 @@ class MissionOptions(TypedDict, total=False):
         play: a bag that is played into the mission.
         args: of a launch file.
         stall: seconds of wall time after which a task that does not give up the CPU ends the run; 0 waits for ever.
+        guard: compiled applications fault where they write past a buffer, or use one that was freed.
     """
 
     seed: int
@@ -45,6 +46,7 @@ class MissionOptions(TypedDict, total=False):
     play: str | os.PathLike[str] | None
     args: Mapping[str, object] | None
     stall: float
+    guard: bool
 
 
 class RunOptions(MissionOptions, total=False):

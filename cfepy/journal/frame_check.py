@@ -137,6 +137,7 @@ PLAN: dict[str, Check] = {
     "faults": _perhaps(_text),
     "play": _perhaps(_text),
     "stall": _number,
+    "guard": _flag,
 }
 _LATER = {"outcome", "mode"}  # may be missing
 

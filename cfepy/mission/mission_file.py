@@ -218,7 +218,7 @@ def _texts(section: Marked) -> Mapping[str, str]:
 
 # -- the tables --------------------------------------------------------------------------------------------------------
 
-_COMPILED_FIELDS = ("omit_deprecated",)
+_COMPILED_FIELDS = ("omit_deprecated", "guard")
 
 _NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
     "name": Marked.text,

@@ -301,7 +301,8 @@ class Processor:
             self._costs.polling_ns,
             machine.console,
             lambda: watch.limit_s,
-            machine.spec.compiled.omit_deprecated,
+            omit_deprecated=machine.spec.compiled.omit_deprecated,
+            guard=machine.spec.compiled.guard,
         )
         self.cfe.es.core_memory = runtime.core_memory
         return CompiledLoader(runtime, machine.console)

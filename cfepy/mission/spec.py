@@ -18,13 +18,15 @@ from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 @dataclass(frozen=True, slots=True)
 class CompiledConfig:
-    """How compiled applications were built.
+    """How compiled applications were built, and how they are flown.
 
     Attributes:
         omit_deprecated: with OMIT_DEPRECATED, which makes CFE_TBL_Handle_t an id instead of an int16.
+        guard: give them memory that nothing can be written past, and that is not zero, to find mistakes.
     """
 
     omit_deprecated: bool = False
+    guard: bool = False
 
 
 @dataclass(frozen=True)

@@ -42,6 +42,7 @@ class RunPlan:
         stall: seconds of wall time for which virtual time may stand still, because a task does not give up the CPU,
             until the run is ended for that; 0 for any time. It decides only whether a run comes to its end, and none of
             the trace of one that does.
+        guard: compiled applications get memory that nothing can be written past, and that is not zero.
     """
 
     words: tuple[str, ...]
@@ -57,6 +58,7 @@ class RunPlan:
     faults: str | None = None
     play: str | None = None
     stall: float = STALL_S
+    guard: bool = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.schedule, Schedule):
@@ -68,7 +70,10 @@ class RunPlan:
         Raises:
             UsageError: there is no such mission, or something in it is wrong.
         """
-        return self.with_played_bag(self._spec())
+        spec = self._spec()
+        if self.guard:
+            spec = replace(spec, compiled=replace(spec.compiled, guard=True))
+        return self.with_played_bag(spec)
 
     def _spec(self) -> MissionSpec:
         if self.command == LAUNCH:
@@ -120,8 +125,9 @@ class RunPlan:
                 options += [f"--{each}", str(getattr(plan, each))]
         if plan.stall != _USUAL.stall:
             options += ["--stall", f"{plan.stall:g}"]
-        if plan.stop_on_failure:
-            options.append("--stop-on-failure")
+        for each in ("stop_on_failure", "guard"):
+            if getattr(plan, each):
+                options.append(f"--{each.replace('_', '-')}")
         return join(["cfepy", plan.command, *options, *plan.words])
 
     def to_dict(self) -> dict[str, Any]:

@@ -32,9 +32,9 @@ def compile_c(folder: Path, name: str, source: str, *flags: str) -> Path:
         flags: of the compiler, more than those that all tests have.
     """
     text = folder / f"{name}.c"
-    text.write_text(f'#include "declarations.h"\n#line 1 "{name}.c"\n{textwrap.dedent(source).lstrip()}')
+    text.write_text(textwrap.dedent(source).lstrip())
     made = folder / f"{name}.so"
-    command = [*compiler(), *FLAGS, *flags, str(text), "-o", str(made)]
+    command = [*compiler(), *FLAGS, "-include", "declarations.h", *flags, str(text), "-o", str(made)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return made

@@ -90,6 +90,7 @@ OPTIONS: dict[str, tuple[list[str], Any]] = {
     "faults": (["--faults", "plan.yaml"], "plan.yaml"),
     "play": (["--play", "drive.bag"], "drive.bag"),
     "stall": (["--stall", "2.5"], 2.5),
+    "guard": (["--guard"], True),
 }
 SAID_OTHERWISE = {
     ("launch", "launch_args"): "its words have them, as for roslaunch",

@@ -29,6 +29,7 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--for": ("SECONDS", "seconds"),
     "--from": ("SECONDS", "begin at this virtual time"),
     "--from-disk": (None, "take the mission's files as they are on this computer now"),
+    "--guard": (None, "let compiled applications fault where they write past a buffer, or use one that was freed"),
     "--json": ("FILE|-", "as JSON to a file, or with - to standard output and nothing else there"),
     "--layout": ("FILE.yaml", "takes a table's layout from a YAML file"),
     "--mission": ("MISSION", "(names|tables)"),

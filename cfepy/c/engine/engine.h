@@ -122,8 +122,9 @@ extern HIDDEN PyTypeObject table_type;
 typedef struct Heap Heap;
 extern HIDDEN PyTypeObject heap_type;
 HIDDEN uint64_t heap_take(Heap *, size_t);
+HIDDEN uint64_t heap_take_any(Heap *, size_t);
 HIDDEN void heap_own(Heap *, uint32_t owner);    /* whose the blocks are that are taken from now on */
-HIDDEN bool heap_give(Heap *, uint64_t);
+HIDDEN int heap_give(Heap *, uint64_t);           /* 1; 0 for no block in use, -1 for one that was written past */
 HIDDEN size_t heap_size_of(Heap *, uint64_t);
 
 /* images.c */

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { GRAIN = 16, CLASSES = 64, PAGE = 4096 };
+enum { GRAIN = 16, CLASSES = 64, PAGE = 4096, POISON = 0xA5 };
 
 typedef struct {
     uint64_t address;
@@ -23,7 +23,7 @@ struct Heap {
     PyObject_HEAD
     uint64_t base, top, end;
     bool is_guarded;                            /* each block ends where a page does that nobody may touch */
-    size_t slack;
+    size_t slack, grain;
     Block *blocks;                              /* in the order of their addresses */
     int count, room;
     int *free_of[CLASSES];                      /* numbers of free blocks, by class */
@@ -68,7 +68,7 @@ static Block *new_block(Heap *heap, size_t size)
     uint64_t address = heap->top, next = address + room;
     if (heap->is_guarded) {
         size_t pages = (size + PAGE - 1) / PAGE * PAGE + (size == 0) * PAGE;
-        address = heap->top + pages - (size + GRAIN - 1) / GRAIN * GRAIN;
+        address = heap->top + pages - (size + heap->grain - 1) / heap->grain * heap->grain;
         next = heap->top + pages + PAGE;
         room = size;
         if (next <= heap->end)
@@ -90,6 +90,13 @@ static Block *new_block(Heap *heap, size_t size)
     return block;
 }
 
+/* The bytes between the end of a guarded block and that of its page; NULL for none. */
+static unsigned char *margin(const Heap *heap, const Block *block, size_t *size)
+{
+    *size = heap->is_guarded ? (block->size + heap->grain - 1) / heap->grain * heap->grain - block->size : 0;
+    return (unsigned char *)block->address + block->size;
+}
+
 /* A block of zeros, aligned to 16 bytes; 0 when there is no memory left. */
 HIDDEN uint64_t heap_take(Heap *heap, size_t size)
 {
@@ -109,7 +116,19 @@ HIDDEN uint64_t heap_take(Heap *heap, size_t size)
     block->owner = heap->owner;
     block->is_used = true;
     heap->used += size;
+    size_t rest;
+    unsigned char *bytes = margin(heap, block, &rest);
+    memset(bytes, POISON, rest);
     return block->address;
+}
+
+/* As heap_take, for malloc, which promises nothing of what is in the block: a guarded heap shows that. */
+HIDDEN uint64_t heap_take_any(Heap *heap, size_t size)
+{
+    uint64_t address = heap_take(heap, size);
+    if (address != 0 && heap->is_guarded)
+        memset((void *)address, POISON, size);
+    return address;
 }
 
 HIDDEN void heap_own(Heap *heap, uint32_t owner) { heap->owner = owner; }
@@ -134,11 +153,24 @@ static bool give(Heap *heap, Block *block)
     return true;
 }
 
-/* false for what is no block in use. */
-HIDDEN bool heap_give(Heap *heap, uint64_t address)
+static bool is_whole(const Heap *heap, const Block *block)
+{
+    size_t size;
+    const unsigned char *bytes = margin(heap, block, &size);
+    for (size_t i = 0; i < size; i++)
+        if (bytes[i] != POISON)
+            return false;
+    return true;
+}
+
+HIDDEN int heap_give(Heap *heap, uint64_t address)
 {
     Block *block = find(heap, address);
-    return block != NULL && block->is_used && give(heap, block);
+    if (block == NULL || !block->is_used)
+        return 0;
+    bool was_whole = is_whole(heap, block);
+    give(heap, block);
+    return was_whole ? 1 : -1;
 }
 
 HIDDEN size_t heap_size_of(Heap *heap, uint64_t address)
@@ -151,10 +183,10 @@ HIDDEN size_t heap_size_of(Heap *heap, uint64_t address)
 
 static PyObject *heap_new(PyTypeObject *type, PyObject *arguments, PyObject *options)
 {
-    static char *names[] = {"base", "size", "slack", "guarded", NULL};
-    unsigned long long base, size, slack = 0;
+    static char *names[] = {"base", "size", "slack", "guarded", "grain", NULL};
+    unsigned long long base, size, slack = 0, grain = GRAIN;
     int is_guarded = 0;
-    if (!PyArg_ParseTupleAndKeywords(arguments, options, "KK|Kp", names, &base, &size, &slack, &is_guarded))
+    if (!PyArg_ParseTupleAndKeywords(arguments, options, "KK|KpK", names, &base, &size, &slack, &is_guarded, &grain))
         return NULL;
     Heap *heap = (Heap *)type->tp_alloc(type, 0);
     if (heap != NULL) {
@@ -162,6 +194,7 @@ static PyObject *heap_new(PyTypeObject *type, PyObject *arguments, PyObject *opt
         heap->end = base + size;
         heap->slack = is_guarded ? 0 : slack;
         heap->is_guarded = is_guarded;
+        heap->grain = grain ? grain : GRAIN;
     }
     return (PyObject *)heap;
 }
@@ -182,7 +215,7 @@ static PyObject *take(Heap *heap, PyObject *size)
 
 static PyObject *give_back(Heap *heap, PyObject *address)
 {
-    return PyBool_FromLong(heap_give(heap, PyLong_AsUnsignedLongLongMask(address)));
+    return PyLong_FromLong(heap_give(heap, PyLong_AsUnsignedLongLongMask(address)));
 }
 
 static PyObject *size_of(Heap *heap, PyObject *address)
@@ -212,7 +245,7 @@ static PyObject *get_used(Heap *heap, void *unused) { return PyLong_FromSize_t(h
 
 static PyMethodDef heap_methods[] = {
     {"take", (PyCFunction)take, METH_O, "take(size) -> address of a block of zeros, 0 when there is no memory left"},
-    {"give", (PyCFunction)give_back, METH_O, "give(address) -> whether it was a block in use"},
+    {"give", (PyCFunction)give_back, METH_O, "give(address) -> 1; 0 for no block in use, -1 for one that was written past its end"},
     {"size_of", (PyCFunction)size_of, METH_O, "size_of(address) -> bytes of a block in use, or None"},
     {"give_all", (PyCFunction)give_all, METH_O, "give_all(owner): give back all blocks of an owner"},
     {NULL, NULL, 0, NULL},
@@ -230,5 +263,5 @@ HIDDEN PyTypeObject heap_type = {
     .tp_dealloc = (destructor)heap_dealloc,
     .tp_methods = heap_methods,
     .tp_getset = heap_attributes,
-    .tp_doc = "Heap(base, size, slack=0, guarded=False): blocks in a stretch of mapped memory",
+    .tp_doc = "Heap(base, size, slack=0, guarded=False, grain=16): blocks in a stretch of mapped memory",
 };

@@ -64,7 +64,18 @@ static uint64_t take(Coroutine *call, uint64_t size)
     if (call->table->heap == NULL)
         return 0;
     heap_own(call->table->heap, call->owner);
-    return heap_take(call->table->heap, size ? size : 1);
+    return heap_take_any(call->table->heap, size ? size : 1);
+}
+
+/* Give a block back; what is wrong with it is a fault of the caller's. */
+static bool give(Coroutine *call, uint64_t address, const char *function)
+{
+    int given = heap_give(call->table->heap, address);
+    if (given < 0)
+        PyErr_Format(fault_error, "%s() of %p, a block that was written past its end", function, (void *)address);
+    else if (given == 0)
+        PyErr_Format(fault_error, "%s() of %p, which malloc did not give, or which was freed", function, (void *)address);
+    return given > 0;
 }
 
 NATIVE(allocate) { return take(call, WORD(0)); }
@@ -72,13 +83,14 @@ NATIVE(allocate) { return take(call, WORD(0)); }
 NATIVE(allocate_many)
 {
     uint64_t size;
-    return __builtin_mul_overflow(WORD(0), WORD(1), &size) ? 0 : take(call, size);
+    uint64_t made = __builtin_mul_overflow(WORD(0), WORD(1), &size) ? 0 : take(call, size);
+    return made == 0 ? 0 : (uint64_t)memset((void *)made, 0, size);
 }
 
 NATIVE(let_go)
 {
-    if (WORD(0) != 0 && !heap_give(call->table->heap, WORD(0)))
-        PyErr_Format(fault_error, "free() of %p, which malloc did not give, or which was freed", (void *)WORD(0));
+    if (WORD(0) != 0)
+        give(call, WORD(0), "free");
     return 0;
 }
 
@@ -92,7 +104,7 @@ NATIVE(allocate_again)
     uint64_t made = take(call, WORD(1));
     if (made != 0 && WORD(0) != 0) {
         memcpy((void *)made, POINTER(0), had < WORD(1) ? had : WORD(1));
-        heap_give(call->table->heap, WORD(0));
+        give(call, WORD(0), "realloc");
     }
     return made;
 }
