@@ -7,7 +7,16 @@ from collections.abc import Callable
 
 
 class CFault(Exception):
-    """A processor exception in C code, or a bad address that it handed over: its text tells what and where."""
+    """A processor exception in C code, or a bad address that it handed over: its text tells what and where.
+
+    Attributes:
+        called_from: the address to which the last call of that code returns; 0 for none.
+        at: the address of the code whose fault it is; 0 when that is not known.
+    """
+
+    __module__ = "builtins"  # so that a report, which has 80 characters, begins with `CFault:`
+    called_from = 0
+    at = 0
 
 
 _WORDS = {
@@ -20,23 +29,34 @@ _NEAR_STACK = 1 << 16
 
 
 def explained(fault: CFault, place_of: Callable[[int], str]) -> CFault:
-    """A fault of the engine's, in words.
+    """A fault of the engine's, in words, with the address of the code whose fault it is.
 
     Args:
         fault: as the engine raised it: signal, address of the instruction, of the caller if the instruction is none
-            of an application's, address that was used, bytes from the stack's lowest to its pointer. Or a text.
-        place_of: where an address of code is: `CASE_Main+0x10 (case.c:12)`.
+            of an application's, address that was used, bytes from the stack's lowest to its pointer. Or a text: the
+            last call of the code is at fault then.
+        place_of: where an address of code is: `CASE_Main (case.c:12)`.
     """
     if len(fault.args) != 5:
-        return fault
+        return _of_call(fault, place_of)
     number, pc, caller, address, left = fault.args
     words = _WORDS.get(number, f"signal {number}")
     if -_NEAR_STACK < left < 512 and number in (signal.SIGSEGV, signal.SIGBUS):
         words = "stack overflow"
-    if not caller:
-        where = place_of(pc)
-    else:
-        by = place_of(caller - 1)  # it is a return address: the call is before it
-        where = f"a call by {by} of what is no function" if pc == address else f"a function that {by} called"
+    at = caller - 1 if caller else pc  # a return address: the call is before it
+    where = place_of(at)
+    if caller:
+        where = f"a call by {where} of what is no function" if pc == address else f"a function that {where} called"
     used = f", address 0x{address:x}" if number in (signal.SIGSEGV, signal.SIGBUS) else ""
-    return CFault(f"{words} in {where}{used}")
+    made = CFault(f"{words} in {where}{used}")
+    made.at = at
+    return made
+
+
+def _of_call(fault: CFault, place_of: Callable[[int], str]) -> CFault:
+    """A fault in what a call was given; one that has its place already stays as it is."""
+    if fault.at or not fault.called_from:
+        return fault
+    made = CFault(f"{fault}, in {place_of(fault.called_from - 1)}")
+    made.at = fault.called_from - 1
+    return made

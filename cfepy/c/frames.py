@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable
 from functools import lru_cache
 from types import CodeType, FunctionType
+from typing import NoReturn
 
 from cfepy.c.places import Place
 
@@ -33,9 +35,13 @@ class PreemptedFrames(dict[int, Watch]):
         self._watch = watch
 
     def __missing__(self, address: int) -> Watch:
-        function: Watch = _seen_as(self._place_of(address), _watch.__code__, {"watch": self._watch}) or self._watch
+        function: Watch = _seen_as(self._place_of(address), _WATCH, {"watch": self._watch}) or self._watch
         self[address] = function
         return function
+
+
+def _call(function: Call, *args: object) -> object:
+    return function(*args)
 
 
 class CallFrames(dict[int, Call]):
@@ -50,21 +56,25 @@ class CallFrames(dict[int, Call]):
         self._place_of = place_of
 
     def __missing__(self, address: int) -> Call:
-        function: Call = _seen_as(self._place_of(address), _call.__code__, {}) or _call
+        function: Call = _seen_as(self._place_of(address), _CALL, {}) or _call
         self[address] = function
         return function
 
 
-def _watch(computed_s: float, called_from: int) -> object:
-    return watch(computed_s, called_from)  # type: ignore[name-defined]  # noqa: F821
+def raise_at(place: Place | None, error: BaseException) -> NoReturn:
+    """Raise an error from a frame that is seen as a place of C, without what came before it.
 
-
-def _call(function: Call, *args: object) -> object:
-    return function(*args)
+    Raises:
+        BaseException: the error.
+    """
+    function = _seen_as(place, _RAISE, {})
+    if function is not None:
+        function(error)
+    raise error from None
 
 
 def _seen_as(place: Place | None, code: CodeType, names: dict[str, object]) -> FunctionType | None:
-    """A function of this code whose one line is seen as a place; None for a place that is not known."""
+    """A function of this code that is seen as a place; None for a place that is not known."""
     if place is None or not place.file:
         return None
     return FunctionType(_renamed(code, place.function, place.file, place.line), names)
@@ -72,4 +82,19 @@ def _seen_as(place: Place | None, code: CodeType, names: dict[str, object]) -> F
 
 @lru_cache(1024)
 def _renamed(code: CodeType, function: str, file: str, line: int) -> CodeType:
-    return code.replace(co_name=function, co_qualname=function, co_filename=file, co_firstlineno=line - 1)
+    return code.replace(co_name=function, co_qualname=function, co_filename=file, co_firstlineno=line)
+
+
+def _code(source: str) -> CodeType:
+    """The code of a function, all of it on its first line, and as wide as that: tracebacks mark no part of the line."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.expr | ast.stmt | ast.arg):
+            node.lineno, node.col_offset, node.end_lineno, node.end_col_offset = 1, 0, 2, 0
+    [function] = (each for each in compile(tree, "", "exec").co_consts if isinstance(each, CodeType))
+    return function
+
+
+_WATCH = _code("def frame(computed_s, called_from): return watch(computed_s, called_from)")
+_CALL = _code("def frame(function, *args): return function(*args)")
+_RAISE = _code("def frame(error): raise error from None")

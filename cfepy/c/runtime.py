@@ -12,7 +12,7 @@ from cfepy.c.constants import Constants
 from cfepy.c.elf import SharedObject
 from cfepy.c.engine import engine
 from cfepy.c.faults import CFault, explained
-from cfepy.c.frames import CallFrames, PreemptedFrames
+from cfepy.c.frames import CallFrames, PreemptedFrames, raise_at
 from cfepy.c.image import Image
 from cfepy.c.memory import Memory
 from cfepy.c.packets import PacketImages
@@ -177,7 +177,8 @@ class CRuntime:
         try:
             return int(engine().run(self.table, function, args, given, room, owner))
         except CFault as fault:
-            raise explained(fault, self.place_of) from None
+            made = explained(fault, self.place_of)
+            raise_at(self._place(made.at), made)
         except _Passing as passing:
             raise passing.error from None
         finally:
@@ -210,8 +211,7 @@ class CRuntime:
         """
         limit = self._limit_s() / 2  # before the stall watch ends the run
         if limit and computed_s >= limit:
-            after = f"after its last call, in {self.place_of(called_from - 1)}" if called_from else "from its start"
-            raise CFault(f"runaway loop: {limit:g} s without a call, {after}")
+            raise CFault(f"runaway loop: no call for {limit:g} s")
 
     def _place(self, address: int) -> Place | None:
         for image in (*self.applications.values(), *self.libraries.values()):

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cfepy.es import StartupEntry
-from cfepy.mission.loader import Code, Finder
+from cfepy.mission.loader import NODE_SYMBOL, Code, Finder
 from cfepy.osal import FileSystem
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class CompiledFiles(Finder):
 
     def prepare(self, entries: Iterable[StartupEntry]) -> None:
         """Make what loads them before a boot whose startup script names one: the core's memory is then in its reach."""
-        if any(self.exists(entry.path) for entry in entries):
+        if any(entry.symbol != NODE_SYMBOL and self.exists(entry.path) for entry in entries):
             self._loader_made()
 
     def find(self, file: str, symbol: str | None) -> Code | None:

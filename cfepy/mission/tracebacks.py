@@ -38,7 +38,8 @@ def reason(error: BaseException) -> str:
     frames = traceback.extract_tb(error.__traceback__, limit=-INNERMOST)
     own = [frame for frame in frames if not _is_ours(frame.filename)] or frames
     what = without_addresses(traceback.format_exception_only(error)[-1]).strip().partition("\n")[0].rstrip(":")
-    return f"{what} ({Path(own[-1].filename).name}:{own[-1].lineno})" if own else what
+    place = f"{Path(own[-1].filename).name}:{own[-1].lineno}" if own else ""
+    return f"{what} ({place})" if place and f"({place})" not in what else what
 
 
 def described(error: BaseException) -> str:

@@ -30,13 +30,17 @@ FAULTS = {
     "divide": ("zero = 5 / zero;", "SIGFPE", "fail (TEST.c:4)"),
     "deep": ("zero = deep(0);", "stack overflow", "deep (TEST.c:2)"),
     "nowhere": ("((void (*)(void))(void *)8)();", "SIGSEGV", "a call by fail (TEST.c:4) of what is no function"),
-    "argument": ('SAY("%d", (int)CFE_SB_TransmitMsg((void *)0x1234, true));', "bad address 0x1234 of a message", ""),
+    "argument": (
+        'SAY("%d", (int)CFE_SB_TransmitMsg((void *)0x1234, true));',
+        "bad address 0x1234 of a message",
+        "in fail (TEST.c:4)",
+    ),
     "text": ("zero = strlen((char *)24);", "SIGSEGV", "a function that fail (TEST.c:4) called, address 0x18"),
-    "format": ('SAY("%s", (char *)32);', "bad address 0x20 in a format or its arguments", ""),
+    "format": ('SAY("%s", (char *)32);', "bad address 0x20 in a format or its arguments", "in fail (TEST.c:4)"),
     "unmapped": ("memset(malloc(10), 0, (size_t)1 << 40);", "SIGSEGV", "a function that fail (TEST.c:4) called"),
-    "freed": ("free(once); free(once);", "which malloc did not give, or which was freed", ""),
-    "abort": ("abort();", "abort()", ""),
-    "nobody": ("NOBODY_HasThis();", "NOBODY_HasThis() was called", ""),
+    "freed": ("free(once); free(once);", "which malloc did not give, or which was freed", "in fail (TEST.c:4)"),
+    "abort": ("abort();", "abort()", "in fail (TEST.c:4)"),
+    "nobody": ("NOBODY_HasThis();", "NOBODY_HasThis() was called", "in fail (TEST.c:4)"),
 }
 
 FAILING = """static volatile int zero; static char *once; void NOBODY_HasThis(void);
@@ -104,7 +108,7 @@ def test_a_loop_without_an_end_is_a_fault_of_its_application(tmp_path: Path, tas
         mission.run_for(12)
         assert mission.record.resets == []
         error = mission.cfe.es.history["TEST"].last_error
-        assert "runaway loop: 1 s without a call" in str(error)
+        assert "runaway loop: no call for 1 s" in str(error)
         assert "in TEST_Main (TEST.c:7)" in str(error)
         assert said(console_of(mission))[-1] == "witness 110"
 

@@ -257,6 +257,19 @@ static void prepare(Coroutine *coroutine, uint64_t function, const uint64_t *val
     coroutine->stack_pointer = top;
 }
 
+/* A fault knows where the application's last call was: one in an argument is the fault of that. */
+static void tell_caller(const Coroutine *coroutine)
+{
+    PyObject *type, *error, *trace;
+    PyErr_Fetch(&type, &error, &trace);
+    PyErr_NormalizeException(&type, &error, &trace);
+    PyObject *from = PyLong_FromUnsignedLongLong(coroutine->called_from);
+    if (from == NULL || PyObject_SetAttrString(error, "called_from", from) < 0)
+        PyErr_Clear();
+    Py_XDECREF(from);
+    PyErr_Restore(type, error, trace);
+}
+
 static PyObject *run(PyObject *module, PyObject *const *arguments, Py_ssize_t count)
 {
     uint64_t values[ENTRY_ARGUMENTS] = {0};
@@ -282,6 +295,8 @@ static PyObject *run(PyObject *module, PyObject *const *arguments, Py_ssize_t co
             faults_resume(coroutine);
         while (coroutine->wanted != FINISHED && serve(coroutine) == 0);
         running = NULL;
+        if (PyErr_Occurred() && PyErr_ExceptionMatches(fault_error))
+            tell_caller(coroutine);
         if (coroutine->wanted == FINISHED && !PyErr_Occurred())
             result = PyLong_FromUnsignedLongLong(coroutine->arguments[0]);
     }
