@@ -28,6 +28,11 @@ class Caller(Protocol):
     is_core: bool
 
 
+def application_of(owner: Any) -> Caller | None:
+    """The application that `Task.owner` names; None for host code, and for tasks that belong to no application."""
+    return owner if getattr(owner, "app_id", 0) else None
+
+
 class SysLog(Protocol):
     """The ES system log (CFE_ES_WriteToSysLog)."""
 

@@ -12,7 +12,7 @@ from cfepy.evs.apps import AppEvents
 from cfepy.evs.events import ERR_UNREGISTERED_EVS_APP, ERROR, FILTER_MAX_EID, INFORMATION, SQUELCHED_ERR_EID
 from cfepy.evs.log import EventLog
 from cfepy.msg import PRIMARY_HEADER_SIZE, TLM_HEADER_SIZE, Layout, init
-from cfepy.ports import Ports
+from cfepy.ports import Ports, application_of
 from cfepy.rtos import Kernel
 from cfepy.status import CFE_EVS_APP_SQUELCHED, CFE_SUCCESS
 from cfepy.texts import shown, to_bytes
@@ -108,7 +108,7 @@ class EventCore:
         They are those of the application whose task sends it, which may be another one: events of SB come from
         everywhere. Of a sender that is not registered, they are those of the event's own application.
         """
-        owner = self.kernel.current.owner
+        owner = application_of(self.kernel.current.owner)
         sender = self.apps.get(owner.app_id) if owner is not None else None
         return (sender or app).types
 

@@ -19,7 +19,7 @@ from cfepy.evs.events import CRITICAL, DEBUG, ERROR, INFORMATION, STARTUP_EID
 from cfepy.evs.log import DISCARD, OVERWRITE, EventLog
 from cfepy.ids import ES_APPID_BASE, get_base
 from cfepy.osal import Osal
-from cfepy.ports import Caller, Ports
+from cfepy.ports import Caller, Ports, application_of
 from cfepy.rtos import Kernel
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -170,7 +170,7 @@ class EventServices(EventCore):
             CfeError: CFE_EVS_APP_ILLEGAL_APP_ID outside of an application, CFE_EVS_APP_NOT_REGISTERED,
                 CFE_EVS_INVALID_PARAMETER for a text or an id that is none, or values that do not fit the text.
         """
-        caller: Caller | None = self.kernel.current.owner
+        caller = application_of(self.kernel.current.owner)
         app = self.apps.get(caller.app_id) if caller is not None else None
         if app is None:
             app = self._registered_caller(report=True)
@@ -248,7 +248,7 @@ class EventServices(EventCore):
     # -- who calls -------------------------------------------------------------------------------------------------
 
     def _caller(self) -> Caller:
-        caller: Caller | None = self.kernel.current.owner
+        caller = application_of(self.kernel.current.owner)
         if caller is None:
             raise CfeError(CFE_EVS_APP_ILLEGAL_APP_ID, "the calling task belongs to no application")
         return caller

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from cfepy.es import StartupEntry
 from cfepy.mission.loader import NODE_SYMBOL, Code, Finder
 from cfepy.osal import FileSystem
+from cfepy.status import OsalError
 
 if TYPE_CHECKING:
     from cfepy.c import CompiledLoader
@@ -82,7 +83,10 @@ class CompiledFiles(Finder):
             self._loader = None
 
     def _data(self, file: str) -> bytes | None:
-        node = self._files.find(file)
+        try:
+            node = self._files.find(file)
+        except OsalError:  # a path that no file can have, such as one that is too long
+            return None
         if node is None or bytes(node.data[: len(ELF)]) != ELF:
             return None
         return bytes(node.data)

@@ -13,7 +13,7 @@ from cfepy.config import PlatformConfig
 from cfepy.ids import SB_PIPEID_BASE, IdTable
 from cfepy.msg import Packet
 from cfepy.osal import ObjectSizes
-from cfepy.ports import Ports
+from cfepy.ports import Ports, application_of
 from cfepy.rtos import CpuCosts, Kernel
 from cfepy.sb import events as ev
 from cfepy.sb.pipe import Pipe
@@ -106,8 +106,10 @@ class BusCore:
         self._sending: set[tuple[int, int]] = set()
 
     def caller_name(self) -> str:
-        """Name of the calling task as SB's events give it: "APP", or "APP.TASK" for a child task."""
+        """Name of the calling task as SB's events give it: "APP", "APP.TASK" for a child task, or "Unknown"."""
         task = self.kernel.current
+        if task.owner is not None and application_of(task.owner) is None:
+            return "Unknown"
         app: str | None = getattr(task.owner, "name", None)
         if app is None or app == task.name:
             return task.name

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from cfepy.config import PlatformConfig
 from cfepy.ids import UNDEFINED
-from cfepy.ports import Caller, Ports
+from cfepy.ports import Ports, application_of
 from cfepy.rtos import Kernel
 from cfepy.status import (
     CFE_ES_ERR_RESOURCEID_NOT_VALID,
@@ -203,7 +203,7 @@ class TableAccess:
         return handle_id != UNDEFINED
 
     def _caller(self) -> tuple[int, str]:
-        caller: Caller | None = self._kernel.current.owner
+        caller = application_of(self._kernel.current.owner)
         if caller is None:
             raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, "tables belong to apps; host code cannot make this call")
         return caller.app_id, caller.name

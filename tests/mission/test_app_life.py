@@ -183,6 +183,12 @@ NOBODYS = """
             cfe.es.get_app_id()
         except CfeError as error:
             cfe.es.write_to_sys_log(f"no application: {error.hex}")
+        for call in (lambda: cfe.evs.send_info(1, "hello"), lambda: cfe.tbl.register("TABLE", 8)):
+            try:
+                call()
+            except CfeError as error:
+                cfe.es.write_to_sys_log(f"refused: {error.hex}")
+        cfe.sb.create_pipe(1, "PIPE")
         cfe.os.task_delay(2000)
         raise ValueError("a stray pointer")
 
@@ -199,10 +205,12 @@ def test_an_exception_in_a_task_of_nobody_resets_the_processor(tmp_path: Path, a
     folder = write_mission(tmp_path, APP.format("maker", "MAKER", action) + "!", maker=NOBODYS)
     mission = fly(folder, 20)
     first = mission.record.resets[0]
-    assert first.reason == "task NESTED: ValueError: a stray pointer (maker.py:11)"
+    assert first.reason == "task NESTED: ValueError: a stray pointer (maker.py:17)"
     assert first.fault
     text = text_of(mission)
     assert "no application: 0xC4000001" in text  # CFE_ES_ERR_RESOURCEID_NOT_VALID
+    assert "refused: 0xC2000003" in text  # CFE_EVS_APP_ILLEGAL_APP_ID
+    assert "refused: 0xC4000001" in text
     assert "Exit Application MAKER Completed" in text  # before, and its tasks went on
     assert "system: task NESTED died of an exception" in text
     assert "CFE_ES_RunExceptionScan: Processor Reset count not reached (0/2)" in text

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING
 
-from cfepy.ports import CRITICAL
+from cfepy.ports import CRITICAL, application_of
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CFE_EVS_INVALID_PARAMETER, CfeError
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
 def _set_type_enable(c: CRuntime, event_type: int, enabled: bool) -> None:
     """Of the core for the core (cfe_evs_core_internal.h), but NASA's functional tests call it."""
-    owner = c.kernel.current.owner
+    owner = application_of(c.kernel.current.owner)
     app = c.cfe.evs.apps.get(owner.app_id) if owner is not None else None
     if app is not None and 0 < event_type <= CRITICAL:
         app.set_types(1 << event_type - 1, enabled)
