@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 # fmt: off
 FRESH = frozenset({
     "_pydatetime", "_pyio", "_threading_local", "aifc", "argparse", "asynchat", "asyncio", "asyncore", "bdb", "bz2",
-    "cProfile", "cmd", "code", "codeop", "concurrent", "configparser", "contextlib", "curses", "dbm", "email",
+    "cProfile", "chunk", "cmd", "code", "codeop", "concurrent", "configparser", "contextlib", "curses", "dbm", "email",
     "filecmp", "fileinput", "ftplib", "genericpath", "getopt", "getpass", "gettext", "glob", "gzip", "http", "imaplib",
     "imghdr", "json", "logging", "lzma", "mailbox", "mailcap", "mimetypes", "netrc", "nntplib", "optparse", "pathlib",
     "pdb", "pickle", "platform", "poplib", "posixpath", "pprint", "profile", "pstats", "queue", "quopri", "random",

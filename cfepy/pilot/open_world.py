@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
+import tempfile
 from functools import cache
 from types import FrameType
 from typing import Any
@@ -36,6 +37,7 @@ class OpenWorld:
         self._own: tuple[str, ...] = ()
 
     def __enter__(self) -> OpenWorld:
+        tempfile.gettempdir()  # found now, by a file that is made and removed, and not in the midst of what a node does
         _listeners().append(self)
         return self
 

@@ -12,10 +12,8 @@ from __future__ import annotations
 import errno
 import fcntl
 import os
-import shutil
 import stat
 import sys
-import tempfile
 from collections import deque
 from collections.abc import Callable, Container, Iterator
 from contextlib import suppress
@@ -54,7 +52,6 @@ class Overlay:
         self._descriptors: set[int] = set()
         self._remove: Callable[[], object] = bool
         _living().add(self)
-        tempfile.gettempdir()  # found now, by a file that is made and removed, and not in the midst of what a node does
 
     # -- where things are --------------------------------------------------------------------------------------------
 
@@ -212,7 +209,9 @@ class Overlay:
             raise _error(errno.EPERM, own)
         else:
             if with_data:
-                shutil.copyfile(place, own)
+                from shutil import copyfile  # a run that writes nothing does without
+
+                copyfile(place, own)
             else:
                 os.close(os.open(own, os.O_CREAT | os.O_WRONLY))
             os.chmod(own, stat.S_IMODE(real.st_mode))
@@ -243,7 +242,9 @@ class Overlay:
 
     def _home(self) -> str:
         if not self._top:
-            self._top = os.path.realpath(tempfile.mkdtemp(prefix=PREFIX))
+            from tempfile import mkdtemp
+
+            self._top = os.path.realpath(mkdtemp(prefix=PREFIX))
             sys.audit(MADE, self._top)
             self._remove = finalize(self, _remove_tree, self._top, os.getpid())
         return self._top
@@ -504,6 +505,8 @@ def place_of(descriptor: int) -> str:
 
 
 def _copy_tree(old: str, new: str, stamps: Stamps) -> None:
+    from shutil import copy2
+
     links: dict[tuple[int, int], str] = {}
     for folder, folders, names in os.walk(old):
         inside = new + folder.removeprefix(old)
@@ -517,7 +520,7 @@ def _copy_tree(old: str, new: str, stamps: Stamps) -> None:
                 os.link(links[key_of(real)], target)
                 continue
             else:
-                shutil.copy2(source, target, follow_symlinks=False)
+                copy2(source, target, follow_symlinks=False)
                 links[key_of(real)] = target
             stamps.moved(key_of(real), key_of(os.lstat(target)))
 
@@ -540,7 +543,9 @@ def _is_special(place: str) -> bool:
 
 def _remove_tree(top: str, process: int) -> None:
     if os.getpid() == process:  # a forked one has its own
-        shutil.rmtree(top, ignore_errors=True)
+        from shutil import rmtree
+
+        rmtree(top, ignore_errors=True)
 
 
 @cache
