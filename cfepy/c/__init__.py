@@ -2,14 +2,31 @@
 
 What belongs here: the engine, a C extension that runs such code as coroutines (`engine/`), what loads a shared object
 without the host's loader (`elf.py`, `image.py`), the memory that C code sees (`arena.py`), and in `api/` what the
-public functions of OSAL, the PSP and cFE mean for C: arguments, outputs, structures. What does not: the services.
+public functions of OSAL, the PSP and cFE mean for C: arguments, outputs, structures; and what builds applications from
+their sources (`toolchain/`, with `headers/`). What does not: the services.
 
-It is imported only when a mission has an ELF file where a startup script names one.
+It is imported only when a mission has an ELF file where a startup script names one, or when an application is built.
 """
 
 from __future__ import annotations
 
-from cfepy.c.loading import CompiledLoader
-from cfepy.c.runtime import CRuntime
+from typing import TYPE_CHECKING
 
-__all__ = ["CRuntime", "CompiledLoader"]
+from cfepy.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.c.loading import CompiledLoader
+    from cfepy.c.runtime import CRuntime
+    from cfepy.c.toolchain import Built, CompilerError, Options, build, headers_folder
+
+__all__ = ["Built", "CRuntime", "CompiledLoader", "CompilerError", "Options", "build", "headers_folder"]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".loading": ("CompiledLoader",),
+            ".runtime": ("CRuntime",),
+            ".toolchain": ("Built", "CompilerError", "Options", "build", "headers_folder"),
+        },
+    )

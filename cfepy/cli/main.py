@@ -37,7 +37,7 @@ ROOMS = {
     "journal": ("replay", "diff"),
     "look": ("trace", "report", "plot"),
     "ground": ("cmd", "tlm", "console", "mids", "graph", "export"),
-    "files": ("tbl", "log"),
+    "files": ("build", "tbl", "log"),
     "shell": ("completion",),
 }
 """The commands of each room of this package; only the room in question is asked, since setting up all takes 10 ms."""

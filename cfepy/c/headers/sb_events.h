@@ -1,0 +1,73 @@
+/* Ids of the events of CFE_SB. */
+#ifndef CFEPY_SB_EVENTS_H
+#define CFEPY_SB_EVENTS_H
+
+#define CFE_SB_INIT_EID                        1
+#define CFE_SB_CR_PIPE_BAD_ARG_EID             2
+#define CFE_SB_MAX_PIPES_MET_EID               3
+#define CFE_SB_CR_PIPE_ERR_EID                 4
+#define CFE_SB_PIPE_ADDED_EID                  5
+#define CFE_SB_SUB_ARG_ERR_EID                 6
+#define CFE_SB_DUP_SUBSCRIP_EID                7
+#define CFE_SB_MAX_MSGS_MET_EID                8
+#define CFE_SB_MAX_DESTS_MET_EID               9
+#define CFE_SB_SUBSCRIPTION_RCVD_EID           10
+#define CFE_SB_UNSUB_ARG_ERR_EID               11
+#define CFE_SB_UNSUB_NO_SUBS_EID               12
+#define CFE_SB_SEND_BAD_ARG_EID                13
+#define CFE_SB_SEND_NO_SUBS_EID                14
+#define CFE_SB_MSG_TOO_BIG_EID                 15
+#define CFE_SB_GET_BUF_ERR_EID                 16
+#define CFE_SB_MSGID_LIM_ERR_EID               17
+#define CFE_SB_RCV_BAD_ARG_EID                 18
+#define CFE_SB_BAD_PIPEID_EID                  19
+#define CFE_SB_DEST_BLK_ERR_EID                20
+#define CFE_SB_SEND_INV_MSGID_EID              21
+#define CFE_SB_SUBSCRIPTION_RPT_EID            22
+#define CFE_SB_HASHCOLLISION_EID               23
+#define CFE_SB_Q_FULL_ERR_EID                  25
+#define CFE_SB_Q_WR_ERR_EID                    26
+#define CFE_SB_Q_RD_ERR_EID                    27
+#define CFE_SB_CMD0_RCVD_EID                   28
+#define CFE_SB_CMD1_RCVD_EID                   29
+#define CFE_SB_SND_STATS_EID                   32
+#define CFE_SB_ENBL_RTE1_EID                   33
+#define CFE_SB_ENBL_RTE2_EID                   34
+#define CFE_SB_ENBL_RTE3_EID                   35
+#define CFE_SB_DSBL_RTE1_EID                   36
+#define CFE_SB_DSBL_RTE2_EID                   37
+#define CFE_SB_DSBL_RTE3_EID                   38
+#define CFE_SB_SND_RTG_EID                     39
+#define CFE_SB_SND_RTG_ERR1_EID                40
+#define CFE_SB_BAD_CMD_CODE_EID                42
+#define CFE_SB_BAD_MSGID_EID                   43
+#define CFE_SB_FULL_SUB_PKT_EID                44
+#define CFE_SB_PART_SUB_PKT_EID                45
+#define CFE_SB_DEL_PIPE_ERR1_EID               46
+#define CFE_SB_PIPE_DELETED_EID                47
+#define CFE_SB_SUBSCRIPTION_REMOVED_EID        48
+#define CFE_SB_FILEWRITE_ERR_EID               49
+#define CFE_SB_SUB_INV_PIPE_EID                50
+#define CFE_SB_SUB_INV_CALLER_EID              51
+#define CFE_SB_UNSUB_INV_PIPE_EID              52
+#define CFE_SB_UNSUB_INV_CALLER_EID            53
+#define CFE_SB_DEL_PIPE_ERR2_EID               54
+#define CFE_SB_SETPIPEOPTS_ID_ERR_EID          55
+#define CFE_SB_SETPIPEOPTS_OWNER_ERR_EID       56
+#define CFE_SB_SETPIPEOPTS_EID                 57
+#define CFE_SB_GETPIPEOPTS_ID_ERR_EID          58
+#define CFE_SB_GETPIPEOPTS_PTR_ERR_EID         59
+#define CFE_SB_GETPIPEOPTS_EID                 60
+#define CFE_SB_GETPIPENAME_EID                 62
+#define CFE_SB_GETPIPENAME_NULL_PTR_EID        63
+#define CFE_SB_GETPIPENAME_ID_ERR_EID          64
+#define CFE_SB_GETPIPEIDBYNAME_EID             65
+#define CFE_SB_GETPIPEIDBYNAME_NULL_ERR_EID    66
+#define CFE_SB_GETPIPEIDBYNAME_NAME_ERR_EID    67
+#define CFE_SB_LEN_ERR_EID                     68
+#define CFE_SB_CR_PIPE_NAME_TAKEN_EID          69
+#define CFE_SB_CR_PIPE_NO_FREE_EID             70
+#define CFE_SB_SEND_MESSAGE_INTEGRITY_FAIL_EID 71
+#define CFE_SB_RCV_MESSAGE_INTEGRITY_FAIL_EID  72
+
+#endif

@@ -1,0 +1,75 @@
+/* Ids of the events of CFE_TBL. */
+#ifndef CFEPY_TBL_EVENTS_H
+#define CFEPY_TBL_EVENTS_H
+
+#define CFE_TBL_INIT_INF_EID                  1
+#define CFE_TBL_NOOP_INF_EID                  10
+#define CFE_TBL_RESET_INF_EID                 11
+#define CFE_TBL_FILE_LOADED_INF_EID           12
+#define CFE_TBL_OVERWRITE_DUMP_INF_EID        13
+#define CFE_TBL_WRITE_DUMP_INF_EID            14
+#define CFE_TBL_OVERWRITE_REG_DUMP_INF_EID    15
+#define CFE_TBL_VAL_REQ_MADE_INF_EID          16
+#define CFE_TBL_LOAD_PEND_REQ_INF_EID         17
+#define CFE_TBL_TLM_REG_CMD_INF_EID           18
+#define CFE_TBL_LOAD_ABORT_INF_EID            21
+#define CFE_TBL_WRITE_REG_DUMP_INF_EID        22
+#define CFE_TBL_ASSUMED_VALID_INF_EID         23
+#define CFE_TBL_LOAD_SUCCESS_INF_EID          35
+#define CFE_TBL_VALIDATION_INF_EID            36
+#define CFE_TBL_UPDATE_SUCCESS_INF_EID        37
+#define CFE_TBL_CDS_DELETED_INFO_EID          38
+#define CFE_TBL_MID_ERR_EID                   50
+#define CFE_TBL_CC1_ERR_EID                   51
+#define CFE_TBL_LEN_ERR_EID                   52
+#define CFE_TBL_FILE_ACCESS_ERR_EID           53
+#define CFE_TBL_FILE_STD_HDR_ERR_EID          54
+#define CFE_TBL_FILE_TBL_HDR_ERR_EID          55
+#define CFE_TBL_FAIL_HK_SEND_ERR_EID          56
+#define CFE_TBL_NO_SUCH_TABLE_ERR_EID         57
+#define CFE_TBL_FILE_TYPE_ERR_EID             58
+#define CFE_TBL_FILE_SUBTYPE_ERR_EID          59
+#define CFE_TBL_NO_WORK_BUFFERS_ERR_EID       60
+#define CFE_TBL_CODEC_ERROR_ERR_EID           61
+#define CFE_TBL_CREATING_DUMP_FILE_ERR_EID    62
+#define CFE_TBL_WRITE_CFE_HDR_ERR_EID         63
+#define CFE_TBL_WRITE_TBL_HDR_ERR_EID         64
+#define CFE_TBL_WRITE_TBL_IMG_ERR_EID         65
+#define CFE_TBL_NO_INACTIVE_BUFFER_ERR_EID    66
+#define CFE_TBL_TOO_MANY_VALIDATIONS_ERR_EID  67
+#define CFE_TBL_WRITE_TBL_REG_ERR_EID         68
+#define CFE_TBL_LOAD_ABORT_ERR_EID            69
+#define CFE_TBL_ACTIVATE_ERR_EID              70
+#define CFE_TBL_FILE_INCOMPLETE_ERR_EID       71
+#define CFE_TBL_LOAD_EXCEEDS_SIZE_ERR_EID     72
+#define CFE_TBL_ZERO_LENGTH_LOAD_ERR_EID      73
+#define CFE_TBL_PARTIAL_LOAD_ERR_EID          74
+#define CFE_TBL_FILE_TOO_BIG_ERR_EID          75
+#define CFE_TBL_TOO_MANY_DUMPS_ERR_EID        76
+#define CFE_TBL_DUMP_PENDING_ERR_EID          77
+#define CFE_TBL_ACTIVATE_DUMP_ONLY_ERR_EID    78
+#define CFE_TBL_LOADING_A_DUMP_ONLY_ERR_EID   79
+#define CFE_TBL_ILLEGAL_BUFF_PARAM_ERR_EID    80
+#define CFE_TBL_UNVALIDATED_ERR_EID           81
+#define CFE_TBL_IN_REGISTRY_ERR_EID           82
+#define CFE_TBL_NOT_CRITICAL_TBL_ERR_EID      83
+#define CFE_TBL_NOT_IN_CRIT_REG_ERR_EID       84
+#define CFE_TBL_CDS_NOT_FOUND_ERR_EID         85
+#define CFE_TBL_CDS_DELETE_ERR_EID            86
+#define CFE_TBL_CDS_OWNER_ACTIVE_ERR_EID      87
+#define CFE_TBL_FAIL_NOTIFY_SEND_ERR_EID      89
+#define CFE_TBL_REGISTER_ERR_EID              90
+#define CFE_TBL_SHARE_ERR_EID                 91
+#define CFE_TBL_UNREGISTER_ERR_EID            92
+#define CFE_TBL_LOAD_VAL_ERR_EID              93
+#define CFE_TBL_LOAD_TYPE_ERR_EID             94
+#define CFE_TBL_UPDATE_ERR_EID                95
+#define CFE_TBL_VALIDATION_ERR_EID            96
+#define CFE_TBL_SPACECRAFT_ID_ERR_EID         97
+#define CFE_TBL_PROCESSOR_ID_ERR_EID          98
+#define CFE_TBL_LOAD_IN_PROGRESS_ERR_EID      100
+#define CFE_TBL_LOAD_FILENAME_LONG_ERR_EID    101
+#define CFE_TBL_LOAD_TBLNAME_MISMATCH_ERR_EID 102
+#define CFE_TBL_HANDLE_ACCESS_ERR_EID         103
+
+#endif

@@ -1,0 +1,42 @@
+/* Ids of the events of CFE_TIME. */
+#ifndef CFEPY_TIME_EVENTS_H
+#define CFEPY_TIME_EVENTS_H
+
+#define CFE_TIME_INIT_EID       1
+#define CFE_TIME_NOOP_EID       4
+#define CFE_TIME_RESET_EID      5
+#define CFE_TIME_DIAG_EID       6
+#define CFE_TIME_STATE_EID      7
+#define CFE_TIME_SOURCE_EID     8
+#define CFE_TIME_SIGNAL_EID     9
+#define CFE_TIME_DELAY_EID      11
+#define CFE_TIME_TIME_EID       12
+#define CFE_TIME_MET_EID        13
+#define CFE_TIME_STCF_EID       14
+#define CFE_TIME_DELTA_EID      15
+#define CFE_TIME_ONEHZ_EID      16
+#define CFE_TIME_LEAPS_EID      17
+#define CFE_TIME_FLY_ON_EID     20
+#define CFE_TIME_FLY_OFF_EID    21
+#define CFE_TIME_ID_ERR_EID     26
+#define CFE_TIME_CC_ERR_EID     27
+#define CFE_TIME_STATE_ERR_EID  30
+#define CFE_TIME_SOURCE_ERR_EID 31
+#define CFE_TIME_SIGNAL_ERR_EID 32
+#define CFE_TIME_DELAY_ERR_EID  33
+#define CFE_TIME_TIME_ERR_EID   34
+#define CFE_TIME_MET_ERR_EID    35
+#define CFE_TIME_STCF_ERR_EID   36
+#define CFE_TIME_DELTA_ERR_EID  37
+#define CFE_TIME_SOURCE_CFG_EID 40
+#define CFE_TIME_SIGNAL_CFG_EID 41
+#define CFE_TIME_DELAY_CFG_EID  42
+#define CFE_TIME_TIME_CFG_EID   43
+#define CFE_TIME_MET_CFG_EID    44
+#define CFE_TIME_STCF_CFG_EID   45
+#define CFE_TIME_LEAPS_CFG_EID  46
+#define CFE_TIME_DELTA_CFG_EID  47
+#define CFE_TIME_ONEHZ_CFG_EID  48
+#define CFE_TIME_LEN_ERR_EID    49
+
+#endif

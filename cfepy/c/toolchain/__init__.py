@@ -1,0 +1,29 @@
+"""Building compiled applications: from the sources of one to a shared object and table files that a mission flies.
+
+What belongs here calls the C compiler or reads what it made: the headers it is given (`headers`), what a folder of
+sources consists of (`sources`, `cmake`), a whole cFS tree in place of cfepy's headers (`tree`), the compiler itself
+(`compiler`), tables out of object files (`tables`). Loading and running a shared object is not of this package.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.c.toolchain.application import Built, Options, build
+    from cfepy.c.toolchain.compiler import CompilerError
+    from cfepy.c.toolchain.headers import headers_folder
+
+__all__ = ["Built", "CompilerError", "Options", "build", "headers_folder"]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".application": ("Built", "Options", "build"),
+            ".compiler": ("CompilerError",),
+            ".headers": ("headers_folder",),
+        },
+    )

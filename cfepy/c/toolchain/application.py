@@ -1,0 +1,157 @@
+"""Building an application: from its folder to a shared object and table files, in one go."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cfepy.c.toolchain.compiler import CompilerError, compile_file, link
+from cfepy.c.toolchain.headers import headers_folder
+from cfepy.c.toolchain.sources import Sources, find_sources
+from cfepy.c.toolchain.tables import TableObject, read_table
+from cfepy.c.toolchain.tree import CfsTree, read_tree
+
+WITHOUT_DEPRECATED = ("CFE_OMIT_DEPRECATED_6_8", "CFE_OMIT_DEPRECATED_6_7", "CFE_OMIT_DEPRECATED_6_6")
+WITHOUT_DEPRECATED_OSAL = "OSAL_OMIT_DEPRECATED"
+COVERAGE_FOLDER = ".coverage"
+"""Behind the name of a shared object: the folder of its object files, where gcov finds its notes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How an application is built.
+
+    Attributes:
+        cfs: a cFS tree whose headers are taken; None for cfepy's.
+        definitions: a folder of a mission's headers, which go before the application's own.
+        optimize: the compiler's -O, such as "2" or "g".
+        debug: whether debug data (-g) is there.
+        omit_deprecated: whether deprecated names are left out, as with OMIT_DEPRECATED in a cFS build: table handles
+            and ids of OSAL are other types then.
+        coverage: whether the code counts for gcov what is executed.
+        sanitize_thread: whether accesses to memory are told (-fsanitize=thread), to whom is left to the loader.
+        flags: more flags of the compiler.
+    """
+
+    cfs: Path | None = None
+    definitions: Path | None = None
+    optimize: str = "1"
+    debug: bool = True
+    omit_deprecated: bool = False
+    coverage: bool = False
+    sanitize_thread: bool = False
+    flags: Sequence[str] = ()
+
+
+@dataclass(slots=True)
+class Built:
+    """What was built.
+
+    Attributes:
+        library: the shared object.
+        tables: table files.
+        warnings: what the compiler and the reading of tables warned of.
+    """
+
+    library: Path
+    tables: list[Path] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+
+def build(folder: str | Path, library: str | Path | None = None, options: Options | None = None) -> Built:
+    """Build an application.
+
+    Args:
+        folder: of the application, in the form that cFS has: fsw/src, fsw/inc, fsw/tables, CMakeLists.txt.
+        library: the shared object to write; NAME.so in the folder itself when None. Table files come beside it.
+        options: how; the defaults when None.
+
+    Returns:
+        What was written.
+
+    Raises:
+        UsageError: the folder has nothing to build, or there is no compiler.
+        CompilerError: the compiler refused a file; the text is the compiler's.
+    """
+    options = options or Options()
+    sources = find_sources(Path(folder), options.definitions)
+    built = Built(Path(library) if library is not None else sources.folder / f"{sources.name}.so")
+    built.library.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="cfepy-build-") as scratch:
+        _Builder(sources, options, Path(scratch), built).build()
+    return built
+
+
+class _Builder:
+    """Builds one application.
+
+    Args:
+        sources: what it is made of.
+        options: how.
+        scratch: a folder for what is needed on the way.
+        built: gets what was made.
+    """
+
+    def __init__(self, sources: Sources, options: Options, scratch: Path, built: Built) -> None:
+        self._sources = sources
+        self._options = options
+        self._scratch = scratch
+        self._built = built
+        tree = CfsTree() if options.cfs is None else read_tree(options.cfs)
+        chosen = scratch / "include"
+        chosen.mkdir()
+        for name, file in (tree.chosen | sources.chosen).items():
+            (chosen / name).write_text("" if file is None else f'#include "{file}"\n', encoding="utf-8")
+        headers = [headers_folder()] if options.cfs is None else tree.includes
+        self._flags = [f"-I{each}" for each in (*sources.includes, chosen, *headers)]
+        self._flags += [f"-D{each}" for each in sources.definitions]
+        if options.omit_deprecated:
+            self._flags += [f"-D{each}" for each in (*WITHOUT_DEPRECATED, WITHOUT_DEPRECATED_OSAL)]
+
+    def build(self) -> None:
+        """Build code and tables; nothing is written before all is compiled."""
+        code = self._code()
+        tables = self._tables()
+        link(code, self._built.library, ["--coverage"] if self._options.coverage else [])
+        self._built.tables = [table.write(self._built.library.parent) for table in tables]
+
+    def _code(self) -> list[Path]:
+        options = self._options
+        flags = [*self._flags, f"-O{options.optimize}", *(["-g"] if options.debug else [])]
+        where = self._scratch
+        if options.coverage:  # its notes are written beside the object files, and gcov needs them later
+            flags.append("--coverage")
+            where = self._built.library.with_name(self._built.library.name + COVERAGE_FOLDER)
+            where.mkdir(exist_ok=True)
+        if options.sanitize_thread:
+            flags.append("-fsanitize=thread")
+        flags += options.flags
+        return [self._compile(source, where.resolve() / f"{source.name}.o", flags) for source in self._sources.code]
+
+    def _tables(self) -> list[TableObject]:
+        found = []
+        for source in self._sources.tables:
+            made = self._scratch / f"table-{source.name}.o"
+            names = [f'-DCFE_APP_NAME="{self._sources.name}"', f"-DCFE_TABLE_NAME={source.stem}", "-DCFE_CPU_NAME=cpu1"]
+            self._compile(source, made, [*self._flags, *names, *self._options.flags])
+            table = read_table(made.read_bytes(), source)
+            if table.addresses:
+                text = f"{table.addresses} words of the table are addresses, for which its file has 0"
+                self._built.warnings.append(f"{source}: warning: {text}")
+            found.append(table)
+        return found
+
+    def _compile(self, source: Path, made: Path, flags: Sequence[str]) -> Path:
+        try:
+            warnings = compile_file(source, made, flags)
+        except CompilerError as error:
+            hint = ""
+            if self._sources.missing and "No such file" in str(error):
+                missing = ", ".join(self._sources.missing)
+                hint = f"\n(It uses headers of {missing}: have that folder beside this one, or say --flag=-IFOLDER)"
+            raise CompilerError(f"{error}{hint}") from None
+        if warnings:
+            self._built.warnings.append(warnings)
+        return made

@@ -1,0 +1,151 @@
+"""The folder of a compiled application: what of it is compiled, and where its headers are.
+
+A cFS application keeps its code in `fsw/src`, its headers in `fsw/inc` and beside them, tables in `fsw/tables`, and
+what a mission may choose in `config`: a file `config/default_NAME.h` there is included as `NAME.h`, unless the mission
+has one. What the folder's CMakeLists.txt says goes before these habits.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cfepy.c.toolchain.cmake import FILE, read_cmake_lists
+from cfepy.c.toolchain.compiler import SOURCE_SUFFIXES
+from cfepy.status import UsageError
+
+INCLUDES = ("fsw/inc", "fsw/public_inc", "fsw/mission_inc", "fsw/platform_inc", "inc", "include")
+CODE = ("fsw/src", "src", ".")
+TABLES = ("fsw/tables", "tables")
+DEFINITIONS = (".", "inc", "mission_inc", "platform_inc", "fsw/mission_inc", "fsw/platform_inc")
+DEFAULT = "default_"
+NEIGHBOURS = (".", "apps", "libs")
+_FILE_LIST = re.compile(r"set\(\w+_FILE_LIST([^)]*)\)")
+_EDS = re.compile(r"_eds_\w+$")
+"""Sources that replace others where messages are described by electronic data sheets."""
+
+
+@dataclass(slots=True)
+class Sources:
+    """What an application is made of.
+
+    Attributes:
+        name: of the shared object.
+        folder: of the application.
+        code: files to be compiled and linked.
+        tables: files that define tables.
+        includes: folders of headers, the first searched first.
+        chosen: headers to be written for the compiler: a name, and the file that stands for it; None for an empty one.
+        definitions: the compiler's -D.
+        missing: applications and libraries that its headers come from and that were not found.
+    """
+
+    name: str
+    folder: Path
+    code: list[Path]
+    tables: list[Path]
+    includes: list[Path] = field(default_factory=list)
+    chosen: dict[str, Path | None] = field(default_factory=dict)
+    definitions: list[str] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+
+
+def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
+    """Look through the folder of an application.
+
+    Args:
+        folder: of the application.
+        definitions: a folder of a mission's headers, which go before the application's own.
+
+    Raises:
+        UsageError: there is no such folder, or nothing in it to compile.
+    """
+    if not folder.is_dir():
+        raise UsageError("there is no such folder; give the one that has the application's fsw/src", file=folder)
+    if definitions is not None and not definitions.is_dir():
+        raise UsageError("there is no such folder of a mission's headers", file=definitions)
+    said = read_cmake_lists(folder)
+    code = _files(folder, said.sources) or _code_in(folder)
+    if not code:
+        raise UsageError("has no C sources: none in fsw/src, and no CMakeLists.txt that names some", file=folder)
+    tables = _files(folder, said.tables) or _all_in(folder, TABLES)
+    found = Sources(said.name or folder.resolve().name, folder, code, tables, definitions=list(said.definitions))
+    headers = [] if definitions is None else _folders(definitions, DEFINITIONS)
+    found.includes += headers + _folders(folder, said.includes) + _folders(folder, INCLUDES)
+    _choose(found, folder, headers)
+    for name in said.dependencies:
+        other = _neighbour(folder, name)
+        if other is None:
+            found.missing.append(name)
+        else:
+            found.includes += _folders(other, [*read_cmake_lists(other).includes, *INCLUDES])
+            _choose(found, other, headers)
+    found.includes = list(dict.fromkeys(found.includes))
+    return found
+
+
+def chosen_headers(folders: Iterable[Path], overriding: Sequence[Path] = ()) -> dict[str, Path]:
+    """The headers `NAME.h` that files `default_NAME.h` stand for.
+
+    Args:
+        folders: that have such files.
+        overriding: folders that may have a `NAME.h` of their own, which is taken instead.
+    """
+    found: dict[str, Path] = {}
+    for folder in folders:
+        for file in sorted(folder.glob(f"{DEFAULT}*.h")):
+            name = file.name.removeprefix(DEFAULT)
+            found[name] = next((each / name for each in overriding if (each / name).is_file()), file)
+    return found
+
+
+def _choose(found: Sources, folder: Path, overriding: Sequence[Path]) -> None:
+    for name, file in chosen_headers([folder / "config"], overriding).items():
+        if not any((each / name).is_file() for each in found.includes if each.is_relative_to(folder)):
+            found.chosen.setdefault(name, file.resolve())
+    for name in _declared(folder):
+        if name not in found.chosen and not any((each / name).is_file() for each in (*overriding, *found.includes)):
+            found.chosen[name] = None
+
+
+def _declared(folder: Path) -> Iterator[str]:
+    """Headers that a mission makes for an application, those without a default among them: such a one is empty."""
+    for name in ("mission_build.cmake", "arch_build.cmake"):
+        file = folder / name
+        if file.is_file():
+            for words in _FILE_LIST.findall(file.read_text(encoding="utf-8", errors="replace")):
+                yield from (word for word in words.split() if word.endswith(".h"))
+
+
+def _files(folder: Path, names: Iterable[str]) -> list[Path]:
+    files = [folder / name for name in names if Path(name).suffix in SOURCE_SUFFIXES]
+    for file in files:
+        if not file.is_file():
+            raise UsageError(f"{FILE} names {file.relative_to(folder)}, which is not there", file=folder / FILE)
+    return files
+
+
+def _code_in(folder: Path) -> list[Path]:
+    for name in CODE:
+        files = _all_in(folder, (name,))
+        if files:
+            return files
+    return []
+
+
+def _all_in(folder: Path, names: Iterable[str]) -> list[Path]:
+    files = (file for name in names for suffix in SOURCE_SUFFIXES for file in (folder / name).glob(f"*{suffix}"))
+    return sorted(file for file in files if not _EDS.search(file.stem))
+
+
+def _folders(folder: Path, names: Iterable[str]) -> list[Path]:
+    return [folder / name for name in names if name[:1] != "/" and (folder / name).is_dir()]
+
+
+def _neighbour(folder: Path, name: str) -> Path | None:
+    """The folder of another application or library: beside this one, or in the `libs` or `apps` beside its parent."""
+    above = folder.resolve().parent
+    places = [above / name, *(above.parent / each / name for each in NEIGHBOURS)]
+    return next((each for each in places if each.is_dir() and each != folder.resolve()), None)
