@@ -82,6 +82,28 @@ class TableAccess:
         self._ports = ports
         self.registry = registry
 
+    def get_addresses_in_c(self, handles: Iterable[int]) -> tuple[list[memoryview | None], int]:
+        """As CFE_TBL_GetAddresses in C: what comes after a failure is looked at as well, and nothing is released.
+
+        Returns:
+            The images, None where there was a failure; and the first status that is not CFE_SUCCESS.
+        """
+        images: list[memoryview | None] = []
+        first = CFE_SUCCESS
+        for handle in handles:
+            image, status = None, CFE_SUCCESS
+            try:
+                image, updated = self._image_of(self._access("GetAddresses", handle, log=""))
+                status = CFE_TBL_INFO_UPDATED if updated else CFE_SUCCESS
+            except CfeError as error:
+                status = error.status
+            images.append(image)
+            first = first or status
+            if status == CFE_ES_ERR_RESOURCEID_NOT_VALID:
+                self._log("GetAddresses", "Bad AppId=0")
+                break
+        return images, first
+
     def get_address(self, handle: int) -> tuple[memoryview, bool]:
         """The active image, locked until `release_address` (CFE_TBL_GetAddress).
 
@@ -91,10 +113,14 @@ class TableAccess:
         Raises:
             CfeError: CFE_TBL_ERR_NEVER_LOADED, CFE_TBL_ERR_UNREGISTERED, or no access.
         """
-        access = self._access("GetAddress", handle, log="Bad AppId={app}")
+        return self._image_of(self._access("GetAddress", handle, log="Bad AppId={app}"))
+
+    def _image_of(self, access: Access) -> tuple[memoryview, bool]:
         table, active = access.table, self.registry.active(access.table)
         if table.owner == UNDEFINED:
-            self._log("TxnGetTableAddress", f"App({access.app_id}) attempt to access unowned Tbl Handle={int(handle)}")
+            self._log(
+                "TxnGetTableAddress", f"App({access.app_id}) attempt to access unowned Tbl Handle={int(access.handle)}"
+            )
             raise CfeError(CFE_TBL_ERR_UNREGISTERED, f"the owner of {table.name!r} gave it up")
         if active is None:
             raise CfeError(CFE_TBL_ERR_NEVER_LOADED, f"{table.name!r} was never loaded")
@@ -220,7 +246,12 @@ class TableAccess:
         Raises:
             CfeError: CFE_TBL_ERR_INVALID_HANDLE or CFE_TBL_ERR_NO_ACCESS.
         """
-        app_id, _ = self._caller()
+        try:
+            app_id, _ = self._caller()
+        except CfeError as refused:
+            if log:
+                self._log(function, log.format(app=0, handle=0, status=refused.status & _ULONG))
+            raise
         access = self.registry.accesses.find(handle)
         if access is None:
             error = CfeError(CFE_TBL_ERR_INVALID_HANDLE, f"0x{int(handle) & 0xFFFFFFFF:x} is no table handle")
@@ -296,7 +327,11 @@ class TableServices(TableAccess):
         Raises:
             CfeError: the status that NASA's function returns; an event tells the ground too.
         """
-        app_id, app_name = self._caller()
+        try:
+            app_id, app_name = self._caller()
+        except CfeError as error:
+            self._log("Register", f"Bad AppId(0), status={error.status & _ULONG:x}")
+            raise
         try:
             access = self._duplicate(full_name := self._checked(app_name, name, size, options), size, app_id)
             if access is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from cfepy.c.api.es import refuse
 from cfepy.c.api.pointers import need
 from cfepy.es import DamagedData
 from cfepy.status import CFE_ES_BAD_ARGUMENT
@@ -21,10 +22,9 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
     def register(out: int, size: int, name: str | None) -> int:
         if not out or name is None:
-            es.write_to_sys_log("CFE_ES_RegisterCDS: Failed invalid arguments")
-            need(BAD, out, name)
+            refuse(c, "CFE_ES_RegisterCDS: Failed invalid arguments")
         memory.put_u32(out, 0)
-        handle = es.register_cds(size, name or "")
+        handle = es.register_cds(size, name)
         memory.put_u32(out, handle)
         return handle.status
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from cfepy.c.api.pointers import name_into, need
 from cfepy.c.memory import chars
 from cfepy.c.stacks import LEAST
 from cfepy.es.records import AppInfo
-from cfepy.status import CFE_ES_BAD_ARGUMENT
+from cfepy.ids import ES_APPID_BASE, ES_LIBID_BASE, get_base
+from cfepy.status import CFE_ES_BAD_ARGUMENT, CfeError
 
 if TYPE_CHECKING:
     from cfepy.c.calls import Declarations
@@ -31,6 +32,16 @@ def declare(api: Declarations, c: CRuntime) -> None:
     _declare_tasks(api, c)
     _declare_counters(api, c)
     _declare_rest(api, c)
+
+
+def refuse(c: CRuntime, text: str) -> NoReturn:
+    """Say what a pointer is missing, and refuse the call.
+
+    Raises:
+        CfeError: CFE_ES_BAD_ARGUMENT.
+    """
+    c.handle.es.write_to_sys_log(text)
+    raise CfeError(BAD, text)
 
 
 def _declare_lives(api: Declarations, c: CRuntime) -> None:
@@ -130,14 +141,30 @@ def _declare_info(api: Declarations, c: CRuntime) -> None:
         )
         memory.poke(at, raw)
 
-    for what, get in (("App", es.get_app_info), ("Lib", es.get_lib_info), ("Module", es.get_module_info)):
+    def need_room(at: int, what: str) -> None:
+        if not at:
+            refuse(c, f"CFE_ES_Get{what}Info: Invalid Parameter ( Null Pointer )")
 
-        def get_info(at: int, key: int, get=get) -> None:  # type: ignore[no-untyped-def]  # mypy: a loop's variable
-            put_info(at, get(key))
+    def get_app_info(at: int, app_id: int) -> None:
+        need_room(at, "App")
+        put_info(at, es.get_app_info(app_id))
 
-        api.add(f"CFE_ES_Get{what}Info", "PI", get_info, BAD)
+    def get_lib_info(at: int, lib_id: int) -> None:
+        need_room(at, "Lib")
+        put_info(at, es.get_lib_info(lib_id))
+
+    def get_module_info(at: int, module_id: int) -> None:
+        what = {ES_APPID_BASE: "App", ES_LIBID_BASE: "Lib"}.get(get_base(module_id))
+        if what is not None:
+            need_room(at, what)
+        put_info(at, es.get_module_info(module_id))
+
+    api.add("CFE_ES_GetAppInfo", "pI", get_app_info)
+    api.add("CFE_ES_GetLibInfo", "pI", get_lib_info)
+    api.add("CFE_ES_GetModuleInfo", "pI", get_module_info)
 
     def get_task_info(at: int, task_id: int) -> None:
+        need_room(at, "Task")
         info = es.get_task_info(task_id)
         raw = TASK_INFO.pack(
             info.task_id,
@@ -150,19 +177,27 @@ def _declare_info(api: Declarations, c: CRuntime) -> None:
         )
         memory.poke(at, raw)
 
-    api.add("CFE_ES_GetTaskInfo", "PI", get_task_info, BAD)
+    api.add("CFE_ES_GetTaskInfo", "pI", get_task_info)
 
 
 def _declare_tasks(api: Declarations, c: CRuntime) -> None:
     """Child tasks."""
-    es = c.handle.es
+    es, memory = c.handle.es, c.memory
 
-    def create(name: str, entry: int, stack: int, size: int, priority: int, flags: int) -> int:
-        return es.create_child_task(
-            name, lambda: c.run(entry, stack=stack, size=size if stack else max(size, LEAST)), size, priority, flags
-        )
+    def create(out: int, name: str | None, entry: int, stack: int, size: int, priority: int, flags: int) -> None:
+        if not out:
+            lost = "and Name Pointer Parameters are" if name is None else "Pointer Parameter is"
+            end = "." if name is None else f" for Task '{name}'."
+            refuse(c, f"CFE_ES_CreateChildTask: Task Id {lost} NULL{end}")
+        if name is None:
+            refuse(c, "CFE_ES_CreateChildTask: TaskName Parameter is NULL")
+        if not entry:
+            refuse(c, f"CFE_ES_CreateChildTask: Function Pointer Parameter is NULL for Task '{name}'")
+        room = size if stack else max(size, LEAST)
+        made = es.create_child_task(name, lambda: c.run(entry, stack=stack, size=room), size, priority, flags)
+        memory.put_u32(out, made)
 
-    api.add("CFE_ES_CreateChildTask", "4SPpQHI", create, BAD)
+    api.add("CFE_ES_CreateChildTask", "psppQHI", create)
     api.add("CFE_ES_DeleteChildTask", "I", es.delete_child_task)
     api.add("CFE_ES_ExitChildTask", "", es.exit_child_task)
     api.add("CFE_ES_IncrementTaskCounter", "", es.increment_task_counter)

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 from cfepy.ids import TBL_HANDLE_BASE, UNDEFINED, make
 from cfepy.status import (
-    CFE_ES_ERR_RESOURCEID_NOT_VALID,
     CFE_SUCCESS,
     CFE_TBL_BAD_ARGUMENT,
     CFE_TBL_INFO_UPDATED,
@@ -122,7 +121,7 @@ def _declare_content(api: Declarations, c: CRuntime, handles: Handles) -> None:
     def on_handle(name: str, call: Callable[[int], object]) -> None:
         api.add(name, handles.letter, lambda handle: call(handles.to_id(handle)))
 
-    api.add("CFE_TBL_Load", f"{handles.letter}IP", load, BAD)
+    api.add("CFE_TBL_Load", f"{handles.letter}iP", load, BAD)
     on_handle("CFE_TBL_Unregister", tbl.unregister)
     on_handle("CFE_TBL_Update", tbl.update)
     on_handle("CFE_TBL_Validate", tbl.validate)
@@ -141,9 +140,6 @@ def _declare_addresses(api: Declarations, c: CRuntime, handles: Handles) -> None
         memory.put_u64(out, memory.address_of(image))
         return CFE_TBL_INFO_UPDATED if is_updated else CFE_SUCCESS
 
-    def release_address(handle: int) -> int:
-        return tbl.release_address(handles.to_id(handle))
-
     def each(at: int, count: int) -> list[int]:
         return [handle for (handle,) in handles.array.iter_unpack(memory.peek(at, count * handles.array.size))]
 
@@ -151,29 +147,18 @@ def _declare_addresses(api: Declarations, c: CRuntime, handles: Handles) -> None
         outs = [memory.u64(outputs + _POINTER * number) for number in range(count)]
         for out in outs:
             memory.put_u64(out, 0)
-        first = CFE_SUCCESS
-        for out, handle in zip(outs, each(array, count), strict=True):
-            status = _status_of(get_address, out, handle)
-            first = first or status
-            if status == CFE_ES_ERR_RESOURCEID_NOT_VALID:
-                break
-        return first
+        images, status = tbl.get_addresses_in_c([handles.to_id(handle) for handle in each(array, count)])
+        for out, image in zip(outs, images, strict=False):
+            memory.put_u64(out, 0 if image is None else memory.address_of(image))
+        return status
 
     def release_addresses(count: int, array: int) -> int:
-        statuses = [_status_of(release_address, handle) for handle in each(array, count)]
-        return next((status for status in statuses if status), CFE_SUCCESS)
+        return tbl.release_addresses([handles.to_id(handle) for handle in each(array, count)])
 
     api.add("CFE_TBL_GetAddress", f"P{handles.letter}", get_address, BAD)
-    api.add("CFE_TBL_ReleaseAddress", handles.letter, release_address)
+    api.add("CFE_TBL_ReleaseAddress", handles.letter, lambda handle: tbl.release_address(handles.to_id(handle)))
     api.add("CFE_TBL_GetAddresses", "PHP", get_addresses, BAD)
     api.add("CFE_TBL_ReleaseAddresses", "HP", release_addresses, BAD)
-
-
-def _status_of(call: Callable[..., int], *arguments: int) -> int:
-    try:
-        return call(*arguments)
-    except CfeError as error:
-        return error.status
 
 
 def _declare_rest(api: Declarations, c: CRuntime, handles: Handles) -> None:
