@@ -1,4 +1,4 @@
-"""The journal of a short run with every kind of frame, made once."""
+"""The journal of a short run with files, folders and paths that a node asked for, made once."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from cfepy.journal.journal import FrameWriter, read_frames
-from tests.journal.missions import race
+from tests.journal.missions import paths
 from tests.journal.replays import plan_for, record
 
 
@@ -16,7 +16,7 @@ def sample() -> bytes:
     """Its bytes."""
     with TemporaryDirectory() as folder:
         path = Path(folder, "run.cfepy")
-        record(plan_for(race(Path(folder)), 0.1, schedule="random:3"), path)
+        record(plan_for(paths(Path(folder)), 1, schedule="random:3"), path)
         return path.read_bytes()
 
 

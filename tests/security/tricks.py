@@ -89,6 +89,25 @@ def journal(name: str, said: str, change: Callable[[str, dict[str, Any], Path], 
     return Trick(f"journal: {name}", f"{words} {{}}/run.cfepy", said, make)
 
 
+def _look(**values: Any) -> Callable[[str, dict[str, Any], Path], object]:
+    def change(kind: str, body: dict[str, Any], folder: Path) -> None:
+        if kind == "look":
+            body.update(values)
+
+    return change
+
+
+def _look_through_link() -> Callable[[str, dict[str, Any], Path], object]:
+    """A link, and a link that is to be put through it."""
+    names = iter(["/way", f"/way/{CANARY}"])
+
+    def change(kind: str, body: dict[str, Any], folder: Path) -> None:
+        if kind == "look":
+            body.update(path=next(names, body["path"]), kind="link", target=str(folder))
+
+    return change
+
+
 def _path_of_file(path: str) -> Callable[[str, dict[str, Any], Path], object]:
     def change(kind: str, body: dict[str, Any], folder: Path) -> None:
         if kind == "file":
@@ -306,6 +325,9 @@ TRICKS = (
     journal("a link out of the folder", "cannot be unpacked", _linked, "replay"),
     journal("a file that unpacks to more", "is not the file that it says", _packed(10, bytes(2_000_000)), "replay"),
     journal("a file of a terabyte", "at most", _packed(1 << 40, b"x"), "replay --info"),
+    journal("a look outside", "'path' of a frame 'look'", _look(path="/../../canary"), "replay"),
+    journal("a look of a kind that there is not", "'kind' of a frame 'look'", _look(kind="canary"), "replay"),
+    journal("a look through a link", "cannot be unpacked", _look_through_link(), "replay"),
     journal("a working directory elsewhere", "'cwd' of a frame 'header'", _header(cwd="/../.."), "replay"),
     journal("variables that are none", "'environ' of a frame 'header'", _header(environ={"A=B\0": "x"}), "replay"),
     journal("a plan that is none", "'plan'", _header(plan={"words": [["x"]]}), "replay --info"),
