@@ -15,16 +15,31 @@ from typing import TYPE_CHECKING
 from cfepy.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.c.api import function_names
+    from cfepy.c.elf import ElfError, read_shared_object
     from cfepy.c.loading import CompiledLoader
     from cfepy.c.runtime import CRuntime
     from cfepy.c.toolchain import Built, CompilerError, Options, build, headers_folder
 
-__all__ = ["Built", "CRuntime", "CompiledLoader", "CompilerError", "Options", "build", "headers_folder"]
+__all__ = [
+    "Built",
+    "CRuntime",
+    "CompiledLoader",
+    "CompilerError",
+    "ElfError",
+    "Options",
+    "build",
+    "function_names",
+    "headers_folder",
+    "read_shared_object",
+]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".api": ("function_names",),
+            ".elf": ("ElfError", "read_shared_object"),
             ".loading": ("CompiledLoader",),
             ".runtime": ("CRuntime",),
             ".toolchain": ("Built", "CompilerError", "Options", "build", "headers_folder"),

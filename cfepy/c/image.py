@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
-from functools import cached_property
 
 from cfepy.c.arena import Arena
 from cfepy.c.elf import ElfError, SharedObject
 from cfepy.c.engine import engine
-from cfepy.c.places import Place, Places
+from cfepy.c.places import CodePlace, Places
+from cfepy.cached import CachedProperty
 
 _RELATIVE, _ABSOLUTE, _ADDRESS = "relative", "absolute", "address"
 _KINDS = {
@@ -99,11 +99,11 @@ class Image:
         first = [self.base + self.source.function_at_load] if self.source.function_at_load else []
         return first + [each for each in array if each not in (0, _64_BITS)]
 
-    @cached_property
+    @CachedProperty
     def _places(self) -> Places:
         return Places(self.source.data, self.source.name)
 
-    def place_at(self, address: int) -> Place:
+    def place_at(self, address: int) -> CodePlace:
         """Where in its source an address in this image is."""
         return self._places.at(address - self.base)
 

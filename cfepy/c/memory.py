@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import struct
+from collections.abc import Iterable
 from struct import Struct
 
+from cfepy.c.arena import Arena, pages
 from cfepy.c.engine import engine
 from cfepy.texts import to_bytes
 
 _U16, _U32, _U64, _I64 = Struct("<H"), Struct("<I"), Struct("<Q"), Struct("<q")
 
 
-class Memory:
+class CMemory:
     """The memory of C code. A bad address is a `CFault` of whoever gave it.
 
     Attributes:
@@ -73,3 +76,47 @@ class Memory:
 def chars(text: str, size: int) -> bytes:
     """A text as an array of `size` characters, cut so that a NUL follows, filled up with NULs."""
     return to_bytes(text)[: size - 1].ljust(size, b"\0")
+
+
+_ROOM = 1 << 16
+_ALIGNMENT = 16
+
+
+class Constants:
+    """Bytes in the arena that stay what they are; equal ones are there once.
+
+    Args:
+        arena: where they are.
+    """
+
+    def __init__(self, arena: Arena) -> None:
+        self._arena = arena
+        self._memory = CMemory()
+        self._known: dict[bytes, int] = {}
+        self._next = self._end = 0
+
+    def text(self, text: str) -> int:
+        """The address of a text, with its NUL."""
+        return self.data(to_bytes(text) + b"\0")
+
+    def texts(self, texts: Iterable[str]) -> int:
+        """The address of an array of pointers to texts, with a NULL at its end, as argv is."""
+        pointers = [self.text(text) for text in texts]
+        return self.data(struct.pack(f"<{len(pointers) + 1}Q", *pointers, 0))
+
+    def data(self, data: bytes) -> int:
+        """The address of some bytes."""
+        address = self._known.get(data)
+        if address is None:
+            address = self._known[data] = self._take(len(data))
+            self._memory.poke(address, data)
+        return address
+
+    def _take(self, size: int) -> int:
+        if self._next + size > self._end:
+            room = pages(max(size, _ROOM))
+            self._next = self._arena.map(room)
+            self._end = self._next + room
+        address = self._next
+        self._next += size + -size % _ALIGNMENT
+        return address

@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 from cfepy.c.engine import engine
-from cfepy.c.memory import Memory
+from cfepy.c.memory import CMemory
 from cfepy.rtos import Task
 from cfepy.sb import MessageBuffer, SoftwareBus
 from cfepy.status import CFE_SB_BUFFER_INVALID, CfeError
@@ -33,7 +33,7 @@ class PacketImages:
     def __init__(self, heap: Any, bus: SoftwareBus, core: SoftwareBus) -> None:
         self._heap = heap
         self.images = engine().Images(heap, core.routes, self._waits)
-        self._memory = Memory()
+        self._memory = CMemory()
         self._bus = bus
         self._core = core
         self._buffers: dict[int, MessageBuffer] = {}

@@ -1,17 +1,25 @@
-"""Where in its source an address of a shared object is: function, file and line, from its symbols and debug data."""
+"""Where in its source an address of a shared object is: function, file and line, from its symbols and debug data.
+
+Tracebacks, the stall watch, debuggers and timelines look at frames of Python. So what C code does is called, or raised,
+from frames that look like those places.
+"""
 
 from __future__ import annotations
 
+import ast
 from bisect import bisect_right
-from functools import cached_property
+from collections.abc import Callable
+from functools import lru_cache
 from io import BytesIO
 from pathlib import PurePath
-from typing import Any, NamedTuple
+from types import CodeType, FunctionType
+from typing import Any, NamedTuple, NoReturn
 
 from cfepy.c.elf import elf_file
+from cfepy.cached import CachedProperty
 
 
-class Place(NamedTuple):
+class CodePlace(NamedTuple):
     """A place in code; `file` is empty and `line` 0 without debug data."""
 
     function: str
@@ -47,23 +55,23 @@ class Places:
         self._data = data
         self._name = name
 
-    def at(self, address: int) -> Place:
+    def at(self, address: int) -> CodePlace:
         """The place of an address, counted from the object's base."""
         number = bisect_right(self._functions, (address, "\U0010ffff"))
         start, function = self._functions[number - 1] if number else (0, self._name)
         row = self._row(address)
-        return Place(function, address - start, *(row[1:] if row else ()))
+        return CodePlace(function, address - start, *(row[1:] if row else ()))
 
     def _row(self, address: int) -> _Row | None:
         number = bisect_right(self._rows, address, key=lambda row: row.address)
         found = self._rows[number - 1] if number else None
         return found if found is not None and found.line else None
 
-    @cached_property
+    @CachedProperty
     def _elf(self) -> Any:
         return elf_file(BytesIO(self._data))
 
-    @cached_property
+    @CachedProperty
     def _functions(self) -> list[tuple[int, str]]:
         """Functions by address, those that are not exported too."""
         found = set()
@@ -74,7 +82,7 @@ class Places:
                     found.add((symbol["st_value"], symbol.name))
         return sorted(found)
 
-    @cached_property
+    @CachedProperty
     def _rows(self) -> list[_Row]:
         """The line table of all compilation units; a row of line 0 ends a stretch."""
         if not self._elf.has_dwarf_info():
@@ -111,3 +119,96 @@ def _files_of(program: Any, unit: Any) -> dict[int, str]:
 
 def _text(raw: bytes | str) -> str:
     return raw if isinstance(raw, str) else raw.decode(errors="replace")
+
+
+# -- frames ------------------------------------------------------------------------------------------------------------
+
+
+Watch = Callable[[float, int], object]
+"""Called with the seconds for which C code has computed without a call, and the address to which that returned."""
+
+
+Call = Callable[..., object]
+"""Called with a function and its arguments; calls it."""
+
+
+class PreemptedFrames(dict[int, Watch]):
+    """What the engine calls when C code has computed for a while without a call, by the address where it was.
+
+    Each is a function that is seen as the place of that address: Python code that looks at the thread, such as the
+    stall watch, finds it there.
+
+    Args:
+        place_of: the place of an address, if it is known.
+        watch: what each of them calls.
+    """
+
+    def __init__(self, place_of: Callable[[int], CodePlace | None], watch: Watch) -> None:
+        super().__init__()
+        self._place_of = place_of
+        self._watch = watch
+
+    def __missing__(self, address: int) -> Watch:
+        function: Watch = _seen_as(self._place_of(address), _WATCH, {"watch": self._watch}) or self._watch
+        self[address] = function
+        return function
+
+
+def _call(function: Call, *args: object) -> object:
+    return function(*args)
+
+
+class CallFrames(dict[int, Call]):
+    """What the engine calls a function of the API through, by the address of the call, for tools that look at frames.
+
+    Args:
+        place_of: the place of an address, if it is known.
+    """
+
+    def __init__(self, place_of: Callable[[int], CodePlace | None]) -> None:
+        super().__init__()
+        self._place_of = place_of
+
+    def __missing__(self, address: int) -> Call:
+        function: Call = _seen_as(self._place_of(address), _CALL, {}) or _call
+        self[address] = function
+        return function
+
+
+def raise_at(place: CodePlace | None, error: BaseException) -> NoReturn:
+    """Raise an error from a frame that is seen as a place of C, without what came before it.
+
+    Raises:
+        BaseException: the error.
+    """
+    function = _seen_as(place, _RAISE, {})
+    if function is not None:
+        function(error)
+    raise error from None
+
+
+def _seen_as(place: CodePlace | None, code: CodeType, names: dict[str, object]) -> FunctionType | None:
+    """A function of this code that is seen as a place; None for a place that is not known."""
+    if place is None or not place.file:
+        return None
+    return FunctionType(_renamed(code, place.function, place.file, place.line), names)
+
+
+@lru_cache(1024)
+def _renamed(code: CodeType, function: str, file: str, line: int) -> CodeType:
+    return code.replace(co_name=function, co_qualname=function, co_filename=file, co_firstlineno=line)
+
+
+def _code(source: str) -> CodeType:
+    """The code of a function, all of it on its first line, and as wide as that: tracebacks mark no part of the line."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.expr | ast.stmt | ast.arg):
+            node.lineno, node.col_offset, node.end_lineno, node.end_col_offset = 1, 0, 2, 0
+    [function] = (each for each in compile(tree, "", "exec").co_consts if isinstance(each, CodeType))
+    return function
+
+
+_WATCH = _code("def frame(computed_s, called_from): return watch(computed_s, called_from)")
+_CALL = _code("def frame(function, *args): return function(*args)")
+_RAISE = _code("def frame(error): raise error from None")

@@ -8,15 +8,13 @@ from typing import NoReturn
 from cfepy.app import Cfe
 from cfepy.c.arena import Arena
 from cfepy.c.calls import CallTable, Declarations
-from cfepy.c.constants import Constants
 from cfepy.c.elf import SharedObject
 from cfepy.c.engine import engine
 from cfepy.c.faults import CFault, explained
-from cfepy.c.frames import CallFrames, PreemptedFrames, raise_at
 from cfepy.c.image import Image
-from cfepy.c.memory import Memory
+from cfepy.c.memory import CMemory, Constants
 from cfepy.c.packets import PacketImages
-from cfepy.c.places import Place
+from cfepy.c.places import CallFrames, CodePlace, PreemptedFrames, raise_at
 from cfepy.c.stacks import LEAST, Stacks
 from cfepy.console import Console
 from cfepy.rtos import Kernel
@@ -72,7 +70,7 @@ class CRuntime:
         self.omit_deprecated = omit_deprecated
         self._limit_s = stall_s
         self.arena = Arena()
-        self.memory = Memory()
+        self.memory = CMemory()
         self.constants = Constants(self.arena)
         self.at_close: list[Callable[[], object]] = []
         self._stacks = Stacks(self.arena, POISON if guard else b"")
@@ -213,7 +211,7 @@ class CRuntime:
         if limit and computed_s >= limit:
             raise CFault(f"runaway loop: no call for {limit:g} s")
 
-    def _place(self, address: int) -> Place | None:
+    def _place(self, address: int) -> CodePlace | None:
         for image in (*self.applications.values(), *self.libraries.values()):
             if address in image:
                 return image.place_at(address)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 from cfepy.c.api.pointers import name_into, need
 from cfepy.c.memory import chars
 from cfepy.c.stacks import LEAST
-from cfepy.es.records import AppInfo
+from cfepy.es import AppInfo
 from cfepy.ids import ES_APPID_BASE, ES_LIBID_BASE, get_base
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CfeError
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from cfepy.c.api.pointers import need
-from cfepy.c.memory import Memory
+from cfepy.c.memory import CMemory
 from cfepy.fs import DESCRIPTION_SIZE, HEADER_SIZE, FileHeader, FileNameError, FileWriteMetaData
 from cfepy.osal import OS_SEEK_SET
 from cfepy.status import CFE_FS_BAD_ARGUMENT, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError
@@ -32,7 +32,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
 # -- headers -----------------------------------------------------------------------------------------------------------
 
 
-def _put_header(memory: Memory, at: int, header: FileHeader) -> None:
+def _put_header(memory: CMemory, at: int, header: FileHeader) -> None:
     raw = HEADER.pack(
         header.content_type,
         header.subtype,
@@ -47,7 +47,7 @@ def _put_header(memory: Memory, at: int, header: FileHeader) -> None:
     memory.poke(at, raw)
 
 
-def _header_at(memory: Memory, at: int) -> FileHeader:
+def _header_at(memory: CMemory, at: int) -> FileHeader:
     content, subtype, length, spacecraft, processor, app, seconds, subseconds, description = HEADER.unpack(
         memory.peek(at, HEADER_SIZE)
     )
@@ -124,7 +124,7 @@ def _declare_names(api: Declarations, c: CRuntime) -> None:
     api.add("CFE_FS_ExtractFilenameFromPath", "SP", extract, BAD)
 
 
-def _text_within(memory: Memory, at: int, size: int) -> bytes:
+def _text_within(memory: CMemory, at: int, size: int) -> bytes:
     """The bytes of a text up to its NUL, or as many as there may be; nothing beyond is looked at."""
     found = bytearray()
     while len(found) < size:

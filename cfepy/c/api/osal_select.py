@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from cfepy.c.api.osal_values import BAD
-from cfepy.c.memory import Memory
+from cfepy.c.memory import CMemory
 from cfepy.osal import OS_MAX_NUM_OPEN_FILES, FdSet, OsTime
 from cfepy.status import OS_ERROR_TIMEOUT, OsalError
 
@@ -19,7 +19,7 @@ SET_BYTES = (OS_MAX_NUM_OPEN_FILES + 7) // 8
 """sizeof(OS_FdSet)."""
 
 
-def read_set(memory: Memory, at: int) -> FdSet | None:
+def read_set(memory: CMemory, at: int) -> FdSet | None:
     """The set at an address; None for NULL."""
     if not at:
         return None
@@ -29,7 +29,7 @@ def read_set(memory: Memory, at: int) -> FdSet | None:
     return made
 
 
-def write_set(memory: Memory, at: int, fd_set: FdSet | None) -> None:
+def write_set(memory: CMemory, at: int, fd_set: FdSet | None) -> None:
     """Write a set back; nothing for NULL."""
     if fd_set is not None:
         memory.poke(at, sum(1 << slot for slot in fd_set.slots).to_bytes(SET_BYTES, "little"))

@@ -10,7 +10,7 @@ from struct import Struct
 from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.c.api.osal_values import BAD, NAMED, check_size, in_time, new_id, properties
-from cfepy.c.memory import Memory
+from cfepy.c.memory import CMemory
 from cfepy.osal import (
     OS_SocketDomain_INET,
     OS_SocketDomain_INET6,
@@ -57,7 +57,7 @@ _BY_DOMAIN = {family.domain: family for family in FAMILIES}
 _BY_NUMBER = {family.number: family for family in FAMILIES}
 
 
-def read_address(memory: Memory, at: int) -> tuple[SockAddr, bool]:
+def read_address(memory: CMemory, at: int) -> tuple[SockAddr, bool]:
     """An OS_SockAddr_t, and whether its length is that of its family."""
     raw = memory.peek(at, ADDRESS_BYTES)
     (length,), data = _LENGTH.unpack_from(raw), raw[_LENGTH.size :]
@@ -68,7 +68,7 @@ def read_address(memory: Memory, at: int) -> tuple[SockAddr, bool]:
     return SockAddr(family.domain, str(host), _PORT.unpack_from(data, _FAMILY.size)[0]), length == family.size
 
 
-def write_address(memory: Memory, at: int, address: SockAddr) -> None:
+def write_address(memory: CMemory, at: int, address: SockAddr) -> None:
     """Write an OS_SockAddr_t."""
     family = _BY_DOMAIN[address.domain]
     raw = bytearray(ADDRESS_BYTES)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from struct import Struct
 from typing import Any
 
-from cfepy.c.memory import Memory, chars
+from cfepy.c.memory import CMemory, chars
 from cfepy.osal import OS_MAX_API_NAME
 from cfepy.status import OS_ERR_INVALID_SIZE, OS_INVALID_POINTER, CfeError, OsalError
 
@@ -17,7 +17,7 @@ NAMED = Struct(f"<{OS_MAX_API_NAME}sI")
 _TOO_LARGE = 0x7FFFFFFF
 
 
-def properties(memory: Memory, layout: Struct, fields: Callable[[int], Iterable[Any]]) -> Callable[[int, int], None]:
+def properties(memory: CMemory, layout: Struct, fields: Callable[[int], Iterable[Any]]) -> Callable[[int, int], None]:
     """A function `(id, structure *)` that fills a structure; it is all 0 when there is no such object.
 
     Args:

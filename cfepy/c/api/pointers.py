@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from cfepy.c.memory import Memory
+from cfepy.c.memory import CMemory
 from cfepy.status import CfeError
 
 
@@ -19,7 +19,7 @@ def need(status: int, *pointers: object) -> None:
 
 
 def name_into(
-    memory: Memory, get: Callable[[int], str], no_room: int, too_long: int
+    memory: CMemory, get: Callable[[int], str], no_room: int, too_long: int
 ) -> Callable[[int, int, int], None]:
     """A function `(char *buffer, id, size_t size)` that tells a name.
 
