@@ -17,6 +17,9 @@ from cfepy.mission import Mission
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = [
+    "cfepy/c/headers/es.h",
+    "cfepy/c/headers/names.txt",
+    "cfepy/cli/run/templates/c_app/fsw/src/NAME.c.in",
     "cfepy/py.typed",
     "cfepy/share/apps/hk/tables/hk_cpy_tbl.tbl",
     "cfepy/share/boards/rx64m.yaml",

@@ -79,6 +79,7 @@ def _add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     new = commands.add_parser("new", help="start an application or a mission from a skeleton that runs at once")
     new.add_argument("kind", choices=("app", "mission"), help="what to start")
     new.add_argument("name", metavar="NAME", help="also the name of the folder that is made")
+    new.add_argument("--c", action="store_true", help="an application in C, which `cfepy build` compiles")
     new.set_defaults(module="run.new")
 
 

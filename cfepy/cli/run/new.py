@@ -1,7 +1,7 @@
 """`cfepy new`: write the skeleton of an application or a mission, which runs as it is.
 
-The application is a copy of apps/sample_app under another name, so that there is one example to keep good; the files
-around it are in `templates`.
+An application in Python is a copy of apps/sample_app under another name, so that there is one example to keep good; one
+in C, and the files around the others, are in `templates`.
 """
 
 from __future__ import annotations
@@ -25,8 +25,10 @@ LONGEST_APP = 14  # its entry point, NAME_Main, must fit the 19 characters that 
 LONGEST = {"app": LONGEST_APP, "mission": LONGEST_APP - len(APP_SUFFIX)}
 SHIPPED = ("ci_lab", "hk", "sample_app", "sample_lib", "sch", "sch_lab", "sch_lib", "to_lab")
 TAKEN = ("cfepy", "rospy", "rospy_shim", "std_msgs", *SHIPPED)
+OF_CFE = ("cfe_", "ccsds_", "os_", "osal_")
 LIBRARY = "library"  # the sample's use of the sample library, which nothing of one's own needs
 FIRST_TOPIC, TOPIC_PAIRS = 0xA0, 0x30  # topic ids of new apps: behind those of NASA's apps, before those of ROS topics
+FIRST_PERF_ID, PERF_IDS = 100, 28  # behind those of NASA's apps, up to the last of cFE's 128
 
 Files = dict[str, bytes]
 
@@ -45,7 +47,9 @@ def run(arguments: argparse.Namespace) -> int:
     folder = Path(name)
     if os.path.exists(folder):
         raise UsageError("is there already; choose another name, nothing is overwritten", file=folder)
-    files = app_files(name) if kind == "app" else mission_files(name)
+    if arguments.c:
+        _check_c(kind, name)
+    files = mission_files(name) if kind != "app" else c_app_files(name) if arguments.c else app_files(name)
     try:
         for path, content in files.items():
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
@@ -54,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"cannot be written: {error.strerror}", file=error.filename) from None
     for path in files:
         print(folder / path)
-    print(f"\nNow: cfepy run {name}")
+    print(f"\nNow: cfepy build {name} && cfepy run {name}" if arguments.c else f"\nNow: cfepy run {name}")
     return ENDED_WELL
 
 
@@ -66,6 +70,13 @@ def app_files(name: str) -> Files:
         f"test_{name}.py": _rendered("app/test_app.py.in", name, name),
         **_package(name),
     }
+
+
+def c_app_files(name: str) -> Files:
+    """An application in C, in the form that cFS has, which is a mission, too: path to content."""
+    templates = sorted(file.relative_to(TEMPLATES) for file in (TEMPLATES / "c_app").rglob("*.in"))
+    made = {template: template.with_suffix("").relative_to("c_app").as_posix() for template in templates}
+    return {path.replace("NAME", name): _rendered(template.as_posix(), name, name) for template, path in made.items()}
 
 
 def mission_files(folder: str) -> Files:
@@ -88,11 +99,31 @@ def _check_name(kind: str, name: str) -> None:
         raise UsageError(f"{name!r} means something else already; choose another name", field="NAME")
 
 
+def _check_c(kind: str, name: str) -> None:
+    if kind != "app":
+        raise UsageError("makes an application: cfepy new app NAME --c", field="--c")
+    if name.startswith(OF_CFE):
+        raise UsageError(f"{name!r} would make names in C that are cFE's own; choose another name", field="NAME")
+
+
 def _rendered(template: str, name: str, folder: str) -> bytes:
     text = (TEMPLATES / template).read_text(encoding="utf-8")
-    for key, value in (("{{name}}", name), ("{{NAME}}", name.upper()), ("{{folder}}", folder)):
+    topic = _topic(name)
+    for key, value in (
+        ("{{name}}", name),
+        ("{{NAME}}", name.upper()),
+        ("{{folder}}", folder),
+        ("{{topic}}", f"0x{topic:02X}"),
+        ("{{hk_topic}}", f"0x{topic + 1:02X}"),
+        ("{{perf_id}}", str(FIRST_PERF_ID + topic % PERF_IDS)),
+    ):
         text = text.replace(key, value)
     return text.encode()
+
+
+def _topic(name: str) -> int:
+    """The first of the two topics of an application."""
+    return FIRST_TOPIC + 2 * (zlib.crc32(name.encode()) % TOPIC_PAIRS)
 
 
 def _package(name: str) -> Files:
@@ -113,7 +144,7 @@ def _package(name: str) -> Files:
 def _renamed(text: str, name: str) -> str:
     text = "".join(line for line in text.splitlines(keepends=True) if LIBRARY not in line)
     title = name.replace("_", " ").title()
-    topic = FIRST_TOPIC + 2 * (zlib.crc32(name.encode()) % TOPIC_PAIRS)
+    topic = _topic(name)
     for old, new in (
         ("the smallest real cFE app: ", "a cFE app: "),
         (" Start here, and copy it.", ""),
