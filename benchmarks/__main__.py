@@ -10,6 +10,7 @@ from pathlib import Path
 
 from benchmarks.bus import bus
 from benchmarks.codec import codec
+from benchmarks.compiled import compiled
 from benchmarks.crowd import crowd
 from benchmarks.frames import frames
 from benchmarks.measure import machine
@@ -32,6 +33,7 @@ def main(arguments: list[str] | None = None) -> int:
         "recording": lambda: recording(contexts),
         "frames": lambda: frames(contexts),
         "codec": codec,
+        "compiled": lambda: compiled(contexts),
         "universe": lambda: {f"{name}.{each}": value for each in contexts for name, value in universe(each).items()},
     }
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description="Measure cfepy on this machine.")

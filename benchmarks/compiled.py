@@ -1,0 +1,65 @@
+"""A compiled application against one in Python that does the same: ratios of the wall time of calls.
+
+`compiled_app/fsw/src/bench.c` also runs on NASA's cFE and says there how long it took.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from itertools import pairwise
+from pathlib import Path
+from time import perf_counter
+
+from cfepy.c import build
+from cfepy.console import Console
+from cfepy.mission import Mission
+
+HERE = Path(__file__).parent / "compiled_app"
+LINE = "CFE_APP, BENCH, BENCH_Main, BENCH, 50, 16384, 0x0, 0;\n!"
+REPEATS = 5
+FLIGHT_S = 5  # virtual
+MARK = " BENCH "
+
+
+class _Clock(Console):
+    """Notes the wall time of the application's lines."""
+
+    def __init__(self) -> None:
+        super().__init__(quiet=True)
+        self.times: list[tuple[str, float]] = []
+
+    def write(self, text: str) -> None:
+        if MARK in text and "CFE_ES_" not in text:
+            self.times.append((text.partition(MARK)[2].partition(":")[0], perf_counter()))
+        super().write(text)
+
+
+def _pieces(folder: Path, context: str) -> dict[str, float]:
+    """Seconds that each piece took."""
+    clock = _Clock()
+    with Mission(str(folder), tasks=context, console=clock) as flight:
+        flight.run_for(FLIGHT_S)
+    times = clock.times
+    return {what: end - begin for (_, begin), (what, end) in pairwise(times)}
+
+
+def compiled(contexts: tuple[str, ...]) -> dict[str, float]:
+    """C by Python, the best of some repeats in turns, by context and kind of call."""
+    figures: dict[str, float] = {}
+    with tempfile.TemporaryDirectory() as made:
+        folders = {kind: Path(made) / kind for kind in ("c", "python")}
+        for folder in folders.values():
+            folder.mkdir()
+            (folder / "startup.scr").write_text(LINE)
+        build(HERE, folders["c"] / "BENCH.so")
+        shutil.copy(HERE / "BENCH.py", folders["python"])
+        for context in contexts:
+            best: dict[tuple[str, str], float] = {}
+            for _ in range(REPEATS):
+                for kind, folder in folders.items():
+                    for what, seconds in _pieces(folder, context).items():
+                        best[what, kind] = min(seconds, best.get((what, kind), seconds))
+            for what in {what for what, _ in best}:
+                figures[f"{what.replace(' ', '_')}.{context}"] = best[what, "c"] / best[what, "python"]
+    return dict(sorted(figures.items()))
