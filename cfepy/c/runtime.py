@@ -17,7 +17,7 @@ from cfepy.c.packets import PacketImages
 from cfepy.c.places import CallFrames, CodePlace, PreemptedFrames, raise_at
 from cfepy.c.stacks import LEAST, Stacks
 from cfepy.console import Console
-from cfepy.rtos import Kernel
+from cfepy.rtos import Kernel, Task
 from cfepy.status import CfeError
 
 POISON = b"\xa5"
@@ -45,6 +45,7 @@ class CRuntime:
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
         applications, libraries: what is loaded, by the name of the application or the path of the library.
+        modules: what OS_ModuleLoad loaded, and whether code that is loaded later sees its symbols.
         at_close: called at the end of the processor, while its memory is still there.
     """
 
@@ -72,6 +73,7 @@ class CRuntime:
         self.arena = Arena()
         self.memory = CMemory()
         self.constants = Constants(self.arena)
+        self._in_code: set[Task] = set()
         self.at_close: list[Callable[[], object]] = []
         self._stacks = Stacks(self.arena, POISON if guard else b"")
         self._heap = made.Heap(self.arena.map(HEAP), HEAP, guarded=guard)
@@ -93,6 +95,7 @@ class CRuntime:
         self._calls = CallTable(self.arena, self.table, self.declared)
         self._owners: set[int] = set()
         self.libraries: dict[str, Image] = {}
+        self.modules: dict[Image, bool] = {}
         self.applications: dict[str, Image] = {}
 
     def _ctype_tables(self) -> tuple[int, ...]:
@@ -132,24 +135,32 @@ class CRuntime:
         return memory
 
     def _resolve(self, name: str) -> int:
-        for image in self.libraries.values():
-            if name in image.symbols:
-                return image.symbols[name]
-        return self._calls.address(name)
+        found = next((image.symbols[name] for image in self._shared() if name in image.symbols), None)
+        return self._calls.address(name) if found is None else found
+
+    def _shared(self) -> list[Image]:
+        """The images whose symbols all code sees."""
+        return [*self.libraries.values(), *(image for image, is_global in self.modules.items() if is_global)]
+
+    def unload_module(self, image: Image) -> None:
+        """Take what OS_ModuleLoad loaded out of memory."""
+        self.modules.pop(image, None)
+        image.unload()
 
     def symbol(self, name: str) -> int | None:
-        """Where a function or variable is that all code can see: one of the API, or of a library; None for neither."""
+        """Where a function or variable is: of the API, a library, a module or an application, in this order."""
         if name in self.declared:
             return self._calls.address(name)
-        return next((image.symbols[name] for image in self.libraries.values() if name in image.symbols), None)
+        images = (*self._shared(), *self.modules, *self.applications.values())
+        return next((image.symbols[name] for image in images if name in image.symbols), None)
 
     def missing(self, source: SharedObject) -> list[str]:
         """Names that an object needs and nobody has."""
-        libraries = self.libraries.values()
+        shared = self._shared()
         return [
             name
             for name in source.wanted()
-            if name not in self.declared and not any(name in image.symbols for image in libraries)
+            if name not in self.declared and not any(name in image.symbols for image in shared)
         ]
 
     # -- running -----------------------------------------------------------------------------------------------------
@@ -166,20 +177,27 @@ class CRuntime:
         Raises:
             CFault: the code failed.
         """
-        owner = getattr(self.kernel.current.owner, "app_id", 0)
+        task = self.kernel.current
+        owner = getattr(task.owner, "app_id", 0)
         if owner:
             self._owners.add(owner)
         if self.kernel.frames_wanted and self.table.frames is None:
             self.table.frames = CallFrames(self._place)
         given, room = (stack, size) if stack else self._stacks.take(size)
+        is_callback = task in self._in_code
+        self._in_code.add(task)
         try:
             return int(engine().run(self.table, function, args, given, room, owner))
         except CFault as fault:
             made = explained(fault, self.place_of)
             raise_at(self._place(made.at), made)
         except _Passing as passing:
+            if is_callback:
+                raise
             raise passing.error from None
         finally:
+            if not is_callback:
+                self._in_code.discard(task)
             if not stack:
                 self._stacks.give(given, room)
 
@@ -212,7 +230,7 @@ class CRuntime:
             raise CFault(f"runaway loop: no call for {limit:g} s")
 
     def _place(self, address: int) -> CodePlace | None:
-        for image in (*self.applications.values(), *self.libraries.values()):
+        for image in (*self.applications.values(), *self.libraries.values(), *self.modules):
             if address in image:
                 return image.place_at(address)
         return None
@@ -231,6 +249,7 @@ class CRuntime:
         self.cfe.tbl.leave_memory(lambda data: True)  # what tells of the run may look at tables later
         self.applications.clear()
         self.libraries.clear()
+        self.modules.clear()
         self.arena.close()
 
 

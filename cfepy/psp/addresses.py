@@ -15,7 +15,7 @@ The simulated processors are little-endian, so of CFE_PSP_HtoBE16 and the like t
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from cfepy.psp.profile import PortRange
 from cfepy.status import (
@@ -53,13 +53,23 @@ class MemRange(NamedTuple):
     attributes: int = MEM_ATTR_READWRITE
 
 
+class MemoryArea(Protocol):
+    """The bytes behind a range, such as a bytearray: read and written by slices with a start and a stop."""
+
+    def __getitem__(self, where: slice, /) -> bytes | bytearray | memoryview:
+        """Some of them."""
+
+    def __setitem__(self, where: slice, data: bytes, /) -> None:
+        """Change some of them to as many others."""
+
+
 class AddressSpace:
     """The memory ranges of a board, and their bytes."""
 
     def __init__(self) -> None:
         super().__init__()
         self._ranges = [MemRange()] * MEM_TABLE_SIZE
-        self._areas: dict[int, bytearray] = {}  # by number of the range
+        self._areas: dict[int, MemoryArea] = {}  # by number of the range, once they are needed
 
     def mem_ranges(self) -> int:
         """How many ranges the table holds (CFE_PSP_MemRanges)."""
@@ -73,7 +83,7 @@ class AddressSpace:
         size: int,
         word_size: int,
         attributes: int,
-        area: bytearray | None = None,
+        area: MemoryArea | None = None,
     ) -> None:
         """Define a range (CFE_PSP_MemRangeSet).
 
@@ -97,7 +107,9 @@ class AddressSpace:
         if attributes not in (MEM_ATTR_READ, MEM_ATTR_WRITE, MEM_ATTR_READWRITE):
             raise OsalError(CFE_PSP_INVALID_MEM_ATTR, f"memory attributes {attributes}")
         self._ranges[range_num] = MemRange(memory_type, start_addr, size, word_size, attributes)
-        self._areas[range_num] = bytearray(size) if area is None else area
+        self._areas.pop(range_num, None)
+        if area is not None:
+            self._areas[range_num] = area
 
     def mem_range_get(self, range_num: int) -> MemRange:
         """The definition of a range (CFE_PSP_MemRangeGet), or CFE_PSP_INVALID_MEM_RANGE."""
@@ -146,11 +158,11 @@ class AddressSpace:
 
     def mem_cpy(self, dest: int, src: int, size: int) -> None:
         """Copy bytes between addresses (CFE_PSP_MemCpy), or CFE_PSP_INVALID_MEM_*."""
-        self._view(dest, size, is_write=True)[:] = bytes(self._view(src, size))
+        self._store(dest, self._load(src, size))
 
     def mem_set(self, dest: int, value: int, size: int) -> None:
         """Set all bytes of a stretch (CFE_PSP_MemSet), or CFE_PSP_INVALID_MEM_*."""
-        self._view(dest, size, is_write=True)[:] = bytes([value & 0xFF]) * size
+        self._store(dest, bytes([value & 0xFF]) * size)
 
     def _check_number(self, range_num: int) -> None:
         if not 0 <= range_num < MEM_TABLE_SIZE:
@@ -163,24 +175,35 @@ class AddressSpace:
                 return number
         raise OsalError(CFE_PSP_INVALID_MEM_ADDR, f"there is no memory at {address:#x}")
 
-    def _view(self, address: int, size: int, memory_type: int = MEM_ANY, is_write: bool = False) -> memoryview:
+    def _load(self, address: int, size: int) -> bytes:
+        area, where = self._place(address, size, MEM_ANY, False)
+        return bytes(area[where])
+
+    def _store(self, address: int, data: bytes, memory_type: int = MEM_ANY) -> None:
+        area, where = self._place(address, len(data), memory_type, True)
+        area[where] = data
+
+    def _place(self, address: int, size: int, memory_type: int, is_write: bool) -> tuple[MemoryArea, slice]:
         self.mem_validate_range(address, size, memory_type)
         number = self._range_of(address)
-        self._check_access(self._ranges[number].memory_type, is_write)
-        offset = address - self._ranges[number].start_addr
-        return memoryview(self._areas[number])[offset : offset + size]
+        entry = self._ranges[number]
+        self._check_access(entry.memory_type, is_write)
+        if number not in self._areas:
+            self._areas[number] = bytearray(entry.size)
+        offset = address - entry.start_addr
+        return self._areas[number], slice(offset, offset + size)
 
     def _check_access(self, memory_type: int, is_write: bool) -> None:
         """For kinds of memory that cannot always be read or written; see `cfepy.psp.addresses`."""
 
     def _read(self, address: int, size: int) -> int:
         _check_alignment(address, size)
-        return int.from_bytes(self._view(address, size), "little")
+        return int.from_bytes(self._load(address, size), "little")
 
     def _write(self, address: int, value: int, size: int, memory_type: int) -> None:
         _check_alignment(address, size)
         data = (value & (1 << 8 * size) - 1).to_bytes(size, "little")
-        self._view(address, size, memory_type, is_write=True)[:] = data
+        self._store(address, data, memory_type)
 
 
 def _check_alignment(address: int, size: int) -> None:

@@ -335,6 +335,21 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         """The same for users (CFE_PSP_GetUserReservedArea)."""
         return memoryview(self.retained.user_reserved)
 
+    def move_area(self, name: str, make: Callable[[int], bytearray | memoryview]) -> None:
+        """Keep an area of the retained memory elsewhere from now on; its bytes stay what they are.
+
+        Args:
+            name: "reset_area", "user_reserved" or "eeprom".
+            make: gives room for so many bytes. A view that was taken of the area before still shows the old place.
+        """
+        before = getattr(self.retained, name)
+        after = make(len(before))
+        after[:] = before
+        setattr(self.retained, name, after)
+        for number, area in self._areas.items():
+            if area is before:
+                self._areas[number] = after
+
     def watchdog_get(self) -> int:
         """The watchdog's time in ms (CFE_PSP_WatchdogGet)."""
         return self.watchdog.value_ms

@@ -33,10 +33,10 @@ class Retained:
         user_bytes: int = USER_RESERVED_BYTES,
         eeprom_bytes: int = EEPROM_BYTES,
     ) -> None:
-        self.reset_area = bytearray(reset_bytes)
+        self.reset_area: bytearray | memoryview = bytearray(reset_bytes)
         self.cds = bytearray(cds_bytes)
-        self.user_reserved = bytearray(user_bytes)
-        self.eeprom = bytearray(eeprom_bytes)
+        self.user_reserved: bytearray | memoryview = bytearray(user_bytes)
+        self.eeprom: bytearray | memoryview = bytearray(eeprom_bytes)
         self.exceptions = ExceptionStorage()
         self.kept: dict[str, Any] = {}  # by service: system log, event log, reset counters
         self.next_reset_type = 0  # 0: nothing was recorded yet
@@ -47,7 +47,7 @@ class Retained:
         """A power-on reset: all but the EEPROM is gone, also for code that holds the areas."""
         for area in (self.reset_area, self.cds, self.user_reserved):
             blank = bytes(len(area))
-            if area != blank:  # an area that was never written to costs the host no memory, and stays so
+            if bytes(area) != blank:  # an area that was never written to costs the host no memory, and stays so
                 area[:] = blank
         self.exceptions.clear()
         self.kept.clear()

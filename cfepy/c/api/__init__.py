@@ -30,6 +30,9 @@ from cfepy.c.api import (
     osal_system,
     osal_tasks,
     osal_timers,
+    psp,
+    psp_iodriver,
+    psp_memory,
     resource_ids,
     sb,
     tbl,
@@ -45,7 +48,8 @@ _OSAL = (
     *(osal_tasks, osal_semaphores, osal_locks, osal_queues, osal_timers, osal_clock, osal_files, osal_disks),
     *(osal_sockets, osal_select, osal_modules, osal_objects, osal_system),
 )
-_MODULES = (text, es, memory_pools, cds, evs, sb, msg, tbl, time, fs, config, resource_ids, *_OSAL)
+_PSP = (psp, psp_memory, psp_iodriver)
+_MODULES = (text, es, memory_pools, cds, evs, sb, msg, tbl, time, fs, config, resource_ids, *_OSAL, *_PSP)
 
 
 def declare(api: Declarations, c: CRuntime) -> None:

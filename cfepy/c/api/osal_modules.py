@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from cfepy.c.api.osal_values import BAD, new_id
 from cfepy.c.image import LoadedCode
 from cfepy.c.memory import chars
-from cfepy.osal import OS_MAX_API_NAME, OS_MAX_PATH_LEN
+from cfepy.osal import OS_MAX_API_NAME, OS_MAX_PATH_LEN, OS_MODULE_FLAG_LOCAL_SYMBOLS
 from cfepy.status import (
     OS_ERROR,
     OS_FS_ERR_NAME_TOO_LONG,
@@ -45,13 +45,17 @@ def _declare_modules(api: Declarations, c: CRuntime) -> None:
     def load(name: str, file: str | None, flags: int) -> int:
         if file is None:
             raise OsalError(BAD, "no path")
-        return os.module_load(name, file, flags)
+        module_id = os.module_load(name, file, flags)
+        code = os.module_code(module_id)
+        if isinstance(code, LoadedCode):
+            c.modules[code.image_] = not flags & OS_MODULE_FLAG_LOCAL_SYMBOLS
+        return module_id
 
     def unload(module_id: int) -> None:
         code = os.module_code(module_id)
         os.module_unload(module_id)
         if isinstance(code, LoadedCode):
-            code.image_.unload()
+            c.unload_module(code.image_)
 
     def info(module_id: int, at: int) -> None:
         memory.poke(at, bytes(MODULE_INFO.size))
@@ -76,15 +80,6 @@ def _declare_symbols(api: Declarations, c: CRuntime) -> None:
         found = c.symbol(name)
         if found is not None:
             return found
-        try:
-            symbol = os.symbol_lookup(name)
-        except CfeError:
-            symbol = None
-        if isinstance(symbol, int):
-            return symbol
-        for image in c.applications.values():
-            if name in image.symbols:
-                return image.symbols[name]
         raise OsalError(OS_ERROR, f"nothing is called {name}")
 
     def look_up_in(module_id: int, at: int, name: str) -> None:
