@@ -116,6 +116,11 @@ class OsObject:
         self.claim = 0
         self.deleted = False
 
+    @property
+    def resource_name(self) -> str:
+        """What OS_GetResourceName tells."""
+        return self.name
+
 
 Record = TypeVar("Record", bound=OsObject)
 EventHandler = Callable[[int, int, Any], int | None]

@@ -74,6 +74,10 @@ class OsFile(OsStream):
         self.access = access
         self.position = 0
 
+    @property
+    def resource_name(self) -> str:
+        return self.path
+
 
 class FileApi(Core):
     """The functions on descriptors."""
@@ -256,12 +260,17 @@ class FileApi(Core):
 class OsDirectory(OsObject):
     """The record of an open folder."""
 
-    __slots__ = ("entries", "position")
+    __slots__ = ("entries", "path", "position")
 
-    def __init__(self, name: str, entries: list[str]) -> None:
+    def __init__(self, name: str, path: str, entries: list[str]) -> None:
         super().__init__(name)
+        self.path = path
         self.entries = entries
         self.position = 0
+
+    @property
+    def resource_name(self) -> str:
+        return self.path
 
 
 class DirectoryApi(Core):
@@ -293,7 +302,7 @@ class DirectoryApi(Core):
             OsalError: OS_ERROR when there is none; OS_FS_ERR_* for the path; OS_ERR_NO_FREE_IDS.
         """
         self._directories_opened += 1  # open folders have no names in OSAL, records here do
-        record = OsDirectory(f"#{self._directories_opened}", self.files.list_dir(path))
+        record = OsDirectory(f"#{self._directories_opened}", path, self.files.list_dir(path))
         return self._register(self._directories, record, "directory", 0)
 
     def directory_close(self, dir_id: int) -> None:

@@ -32,12 +32,12 @@ class IdMapApi(VersionFunctions, Core):
         self._printf_enabled = True
 
     def get_resource_name(self, object_id: int) -> str:
-        """The name of any OSAL object (OS_GetResourceName).
+        """The name of any OSAL object, of an open file or folder its path (OS_GetResourceName).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
         """
-        return self._object(object_id).name
+        return self._object(object_id).resource_name
 
     def identify_object(self, object_id: int) -> int:
         """The kind of an id, one of the OS_*_BASE numbers, or what another number has there (OS_IdentifyObject)."""

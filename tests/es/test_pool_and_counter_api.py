@@ -48,6 +48,19 @@ def in_app(tmp_path: Path) -> Iterator[Callable[[Callable[[Cfe], Any]], Lab]]:
         lab.mission.close()
 
 
+def test_a_pool_that_fails_for_its_block_sizes_uses_up_an_id(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
+    """As on NASA's cFE 7.0.1; one that is refused before that does not."""
+
+    def main(cfe: Cfe) -> None:
+        es = cfe.es
+        first = es.pool_create(1024)
+        assert status_of(lambda: es.pool_create(0)) == CFE_ES_BAD_ARGUMENT
+        assert status_of(lambda: es.pool_create_ex(1024, [16, 0])) == CFE_ES_ERR_MEM_BLOCK_SIZE
+        assert es.pool_create(1024) == first + 2
+
+    in_app(main)
+
+
 def test_pools_of_all_kinds(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
     def main(cfe: Cfe) -> None:
         es = cfe.es

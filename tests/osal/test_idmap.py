@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cfepy.ids import OS_MUTEX_BASE, OS_QUEUE_BASE, OS_TASK_BASE
-from cfepy.osal import Osal
+from cfepy.osal import OS_FILE_FLAG_CREATE, OS_WRITE_ONLY, Osal
 from cfepy.rtos import Kernel
 from cfepy.status import OS_ERR_INVALID_ID, OS_QUEUE_FULL, OS_SEM_FAILURE
 from tests.osal.helpers import Bench
@@ -33,6 +33,10 @@ def test_identify_and_index(bench: Bench) -> None:
 
 def test_names_of_objects(bench: Bench) -> None:
     assert bench.os.get_resource_name(bench.os.mut_sem_create("M")) == "M"
+    bench.os.mkdir("/cf/folder")
+    file = bench.os.open_create("/cf/a.txt", OS_FILE_FLAG_CREATE, OS_WRITE_ONLY)
+    assert bench.os.get_resource_name(file) == "/cf/a.txt"
+    assert bench.os.get_resource_name(bench.os.directory_open("/cf/folder")) == "/cf/folder"
     assert status_of(bench.os.get_resource_name, 0) == OS_ERR_INVALID_ID
     assert status_of(bench.os.get_resource_name, OS_MUTEX_BASE << 16 | 9) == OS_ERR_INVALID_ID
 
@@ -112,14 +116,16 @@ def test_an_application_leaves_nothing_behind(bench: Bench) -> None:
     assert os.delete_objects_of(app) == []
     left: list[str] = []
     os.for_each_object(0, lambda object_id, _: left.append(os.get_resource_name(object_id)))
-    assert {name for name in left if not name.startswith("#")} == {
+    assert set(left) == {
+        "/ram/OTHER",
+        "/ram",
         "OTHER",
         "OTHER_OWN",
         "cFS-Master",
         "/cf",
         "/ramdev0",
     }
-    assert sum(name.startswith("#") for name in left) == 2
+    assert (left.count("/ram/OTHER"), left.count("/ram")) == (1, 1)  # of others, open
     assert {task.name for task in bench.kernel.tasks} == {"OTHER", "OTHER_OWN", "cFS-Master"}
     assert os.files.exists("/ram/APP")
 

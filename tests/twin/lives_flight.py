@@ -21,7 +21,6 @@ from cfepy.evs import packets as evs
 from cfepy.fs import HEADER_SIZE, header
 from cfepy.mission import Mission
 from cfepy.msg import TLM_HEADER_SIZE
-from cfepy.sb import packets as sb
 from tests.twin import mission, recorded
 from tests.twin.commands import Step
 from tests.twin.flight import Observed, Real, Simulated, differences, preparation
@@ -60,8 +59,6 @@ def _without_overflow(packet: bytes) -> bytes:
         return packet[:2] + bytes(2) + packet[4:6] + bytes(6) + packet[12:]
     if msg_id == evs.LONG_EVENT_MSG_MID and OVERFLOW.match(packet[48:]):
         return b""
-    if msg_id == sb.HK_TLM_MID:
-        return _blanked(packet, TLM_HEADER_SIZE + sb.HOUSEKEEPING.offsets["MsgSendErrorCounter"], 1)
     if msg_id == evs.HK_TLM_MID:
         for number in SB_AS_APP:
             at = TLM_HEADER_SIZE + evs.HOUSEKEEPING.offsets["AppData"] + number * evs.APP_TLM.size

@@ -52,7 +52,7 @@ OF_TELEMETRY = {
     "CFE_SB_HK_TLM": {
         "NoSubscribersCounter": "the applications start on several processors",
         "MemInUse|UnmarkedMem": "the packet that is worked on is counted",
-        "MsgLimitErrorCounter": "a host that stops for a moment",
+        "MsgLimitErrorCounter": "a host that stops for a moment; MsgSendErrorCounter is compared without them",
     },
     "CFE_SB_STATS_TLM": {
         ".*MemInUse|.*SBBuffersInUse": "the packet that is worked on is counted",
@@ -161,8 +161,17 @@ def of_packet(packet: bytes) -> bytes | None:
         return packet[:2] + packet[4:6] + packet[12:48] + text
     if declared is sb.ALLSUBS_TLM:
         return packet[:2] + packet[4:6] + _subscriptions(packet)
+    if declared is sb.HK_TLM:
+        packet = _without_limit_errors(packet)
     patterns = OF_TELEMETRY.get(declared.name, {})
     return packet[:2] + packet[4:6] + _masked(declared.payload, patterns, packet[TLM_HEADER_SIZE:])
+
+
+def _without_limit_errors(packet: bytes) -> bytes:
+    """Housekeeping of SB; of the messages that could not be sent, those that met a message limit are taken out."""
+    errors = TLM_HEADER_SIZE + sb.HOUSEKEEPING.offsets["MsgSendErrorCounter"]
+    limits = TLM_HEADER_SIZE + sb.HOUSEKEEPING.offsets["MsgLimitErrorCounter"]
+    return packet[:errors] + bytes([packet[errors] - packet[limits] & 0xFF]) + packet[errors + 1 :]
 
 
 def fields_that_differ(ours: bytes, theirs: bytes) -> str:

@@ -22,6 +22,7 @@ class BusCalls:
         cfe = play.cfe
         self.cfe, self.evs, self.sb, self.tbl, self.time = cfe, cfe.evs, cfe.sb, cfe.tbl, cfe.time
         self.buffers: dict[int, object] = {}
+        self.image = bytearray(40000)  # one for all tables, as in C
         self.synchs = [0, 0]
         self.synch = [lambda: self._count(0), lambda: self._count(1)]
 
@@ -164,7 +165,8 @@ class BusCalls:
         return (self.tbl.load(w.num(1), w.text(2)),)
 
     def TBL_LoadAddress(self, w: Line):
-        return (self.tbl.load(w.num(1), bytearray(w.data(2).ljust(40000, b"\0"))),)
+        self.image[:] = w.data(2).ljust(len(self.image), b"\0")
+        return (self.tbl.load(w.num(1), self.image),)
 
     def TBL_GetAddress(self, w: Line):
         data, is_updated = self.tbl.get_address(w.num(1))

@@ -10,7 +10,9 @@ from tests.twin.api.words import unquote
 STAMP = re.compile(r"\d{4}-\d{3}-\d\d:\d\d:\d\d\.\d{5} ?")
 ADDRESS = re.compile(r"(ptr=0x|BufPtr 0x|block @ 0x|Addr 0x|Handle=(?:0x)?)[0-9a-fA-F]+")
 """Addresses are not told here; table handles are serial numbers in a build that has what is deprecated."""
-OSAL_NUMBER = re.compile(r"\b\d{5,6}\b")
+OSAL_NUMBER = re.compile(r"\b(?:[1-9]\d{4,5}|0x000[1-9A-Fa-f][0-9A-Fa-f]{4})\b")
+OF_ANOTHER_POOL = re.compile(r"(Bad offset\()\d+")
+"""The distance of a block of one pool to another pool."""
 IN_FULL_HERE = re.compile(r"(Send Err:Invalid MsgId\(0x|Send Err:Msg Too Big .*size=)\w+")
 """NASA's code tells 0 there: rows of docs/differences.md."""
 DIFFERENT = re.compile(r"\w MSG_Init 0 ")
@@ -35,8 +37,13 @@ def _blocks(answers: list[str]) -> dict[int, list[str]]:
 
 
 def _plain_text(text: str) -> str:
+    text = OF_ANOTHER_POOL.sub(r"\1", text)
     text = IN_FULL_HERE.sub(r"\1", ADDRESS.sub(r"\1", STAMP.sub("", text, 1)))
-    return OSAL_NUMBER.sub(lambda found: "an id" if 0 < int(found[0]) >> 16 < OSAL_KINDS else found[0], text)
+    return OSAL_NUMBER.sub(_plain_number, text)
+
+
+def _plain_number(found: re.Match[str]) -> str:
+    return "an id" if 0 < int(found[0], 0) >> 16 < OSAL_KINDS else found[0]
 
 
 class Ids:

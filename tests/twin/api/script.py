@@ -15,11 +15,16 @@ from tests.twin.api.words import quote
 
 LONG = "N" * 19
 NAMES = ("A", "B", "C", "NAME_OF_19_LETTERS_", LONG, "TOO_LONG_BY_ONE_____", "M" * 40, "x y")
+FEW = ("B", "C", "NAME_OF_19_LETTERS_")
+"""Names that no mutex gets: NASA's core has mutexes that ours does without, so fewer are left."""
+BLOCK_NAMES = ("D", "E", "F", "SIXTEEN_LETTERS+", "SEVENTEEN_LETTERS", "", "M" * 40)
+"""Of the CDS; no table has one, since NASA's copies what a block holds, wherever that ends."""
 CDS_NAMES = ("A", "B", "C", "SIXTEEN_LETTERS_", "SEVENTEEN_LETTERS", "", "M" * 40)
 PATHS = ("/cf/a.txt", "/cf/b.txt", "/cf/d/c.txt", "/ram/a.txt", "/ram/nn.txt", "/cf/none", "/no/a", "a.txt", "", "/cf",
          "/cf/" + "n" * 19, "/cf/" + "n" * 30, "/" + "p" * 70)  # fmt: skip
 FILES = tuple(each for each in PATHS if each not in ("/cf", "/cf/none"))
 """Those that are no directories, which differ: rows of docs/differences.md."""
+MADE = ("/cf/d", "/cf/d2", "/cf/d3", "/no", "", "x")
 FOLDERS = ("/cf", "/ram", "/cf/d", "/cf/none", "/no", "", "x", "/cf/d2")
 WRONG = (0, 0x110001, 0x1FFFF, 0x2FFFF, 0x130001, 0x140009, 0x160009, 0xFFFFFFFF, 0x1B0009, 0x150001)
 EDGES = (0, 1, 2, 3, 7, 8, 9, 15, 16, 17, 63, 64, 65, 255, 256, 1000)
@@ -109,8 +114,8 @@ def es_calls(w: Writer) -> None:
         w.add("ES_GetGenCounterIDByName", w.slot("counter"), w.name())
     elif kind == "cds":
         size = w.one((0, 1, 4, 10, 100, 1000, 5000, 200000, 2**30))
-        w.add("ES_RegisterCDS", w.slot("cds"), size, quote(w.one(CDS_NAMES)), task=w.task())
-        w.add("ES_GetCDSBlockIDByName", w.slot("cds"), quote(w.one(("API.A", "API.B", "API_AUX.A", "A", ""))))
+        w.add("ES_RegisterCDS", w.slot("cds"), size, quote(w.one(BLOCK_NAMES)), task=w.task())
+        w.add("ES_GetCDSBlockIDByName", w.slot("cds"), quote(w.one(("API.D", "API.E", "API_AUX.D", "D", ""))))
         w.add("ES_GetCDSBlockName", w.id("cds"), 40)
         w.add("ES_RestoreFromCDS", w.id("cds"), 0, task=w.task())
     elif kind == "pool":
@@ -244,7 +249,7 @@ def tbl_calls(w: Writer) -> None:
         more = {
             "LoadAddress": (w.one(("x00112233", "xee", "xdd", "x", "x01")),),
             "GetAddress": (1,),
-            "NotifyByMessage": (w.one(MSG_IDS), w.one((0, 1, 127)), w.num()),
+            "NotifyByMessage": (w.one((0x1890, 0x1891, 0x1FFF)), w.one((0, 1, 127)), w.num()),
             "LoadFile": (quote(w.one(("/cf/none.tbl", "", "x"))),),
         }
         w.add(f"TBL_{call}", table, *more.get(call, ()), task=w.task())
@@ -341,7 +346,8 @@ def semaphore_calls(w: Writer) -> None:
 def lock_calls(w: Writer) -> None:
     """Mutexes, condition variables, reader-writer locks."""
     for kind, stem in (("mutex", "MutSem"), ("cond", "CondVar"), ("rw", "RwLock")):
-        w.add(f"OS_{stem}Create", w.slot(kind), w.name(), 0)
+        names = [quote(each) for each in NAMES if kind != "mutex" or each not in FEW]
+        w.add(f"OS_{stem}Create", w.slot(kind), w.one(names), 0)
         w.add(f"OS_{stem}GetIdByName", w.slot(kind), w.name())
         w.add(f"OS_{stem}GetInfo", w.id(kind))
         if w.random.random() < 0.5:
@@ -416,8 +422,8 @@ def path_calls(w: Writer) -> None:
     w.add(w.one(("OS_cp", "OS_mv", "OS_rename")), quote(w.one(FILES[:8])), quote(w.one(FILES[:8])))
     w.add("OS_remove", second)
     w.add("OS_chmod", first, 2)  # the real one runs as root, who may read and write what nobody may
-    w.add("OS_mkdir", quote(w.one(FOLDERS[2:])), 2)
-    w.add("OS_rmdir", quote(w.one(FOLDERS[2:])))
+    w.add("OS_mkdir", quote(w.one(MADE)), 2)
+    w.add("OS_rmdir", quote(w.one(MADE)))
     w.add("OS_DirectoryOpen", w.slot("dir"), quote(w.one(FOLDERS)))
     w.add("OS_DirectoryRewind", w.id("dir"))
     w.add("OS_DirectoryClose", w.id("dir"))
