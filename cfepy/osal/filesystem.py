@@ -192,15 +192,18 @@ class FileSystem:
         return volume.is_folder(rest)
 
     def remove(self, path: str) -> None:
-        """Remove a file (OS_remove).
+        """Remove a file, or an empty folder (OS_remove).
 
         Raises:
-            OsalError: OS_ERROR when there is none; as `translate`.
+            OsalError: OS_ERROR when there is neither; as `translate`.
         """
         volume, rest = self.translate(path)
-        if volume.node(rest) is None:
+        if volume.node(rest) is not None:
+            volume.remove(rest)
+        elif volume.is_folder(rest):
+            self.remove_folder(path)
+        else:
             raise OsalError(OS_ERROR, f"there is no file {path}")
-        volume.remove(rest)
 
     def rename(self, old: str, new: str) -> None:
         """Give a file or folder another path in the same volume (OS_rename).
@@ -210,7 +213,7 @@ class FileSystem:
                 `translate`.
         """
         (source, source_path), (target, target_path) = self.translate(old), self.translate(new)
-        if source is target and source.node(source_path) is not None:
+        if source is target and source.node(source_path) is not None and _can_be_file(target, target_path):
             source.rename(source_path, target_path)
         elif source is target and _can_move_folder(source, source_path, target_path):
             source.rename_folder(source_path, target_path)
@@ -249,6 +252,11 @@ class FileSystem:
         if not volume.is_folder(rest):
             raise OsalError(OS_ERROR, f"there is no folder {path}")
         return volume.names(rest)
+
+
+def _can_be_file(volume: Volume, path: str) -> bool:
+    """Whether a path is in a folder, and none itself."""
+    return not volume.is_folder(path) and volume.is_folder(path.rpartition("/")[0])
 
 
 def _can_move_folder(volume: Volume, old: str, new: str) -> bool:

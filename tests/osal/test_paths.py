@@ -95,6 +95,16 @@ def test_bad_paths(bench: Bench, path: str, status: int) -> None:
     assert status_of(os.open_create, path, OS_FILE_FLAG_CREATE, OS_WRITE_ONLY) == status
 
 
+@pytest.mark.parametrize("new", ["/cf/nowhere/a.txt", "/cf/folder"])
+def test_a_file_becomes_no_folder_and_goes_into_none_that_is_not_there(bench: Bench, new: str) -> None:
+    """As on NASA's cFE."""
+    bench.os.files.write_file("/cf/a.txt", b"a")
+    bench.os.mkdir("/cf/folder")
+    assert status_of(bench.os.rename, "/cf/a.txt", new) == OS_ERROR
+    assert status_of(bench.os.mv, "/cf/a.txt", new) == OS_ERROR
+    assert bench.os.files.read_file("/cf/a.txt") == b"a"
+
+
 def test_what_is_gone_cannot_be_renamed_copied_or_moved(bench: Bench) -> None:
     os = bench.os
     os.files.write_file("/ram/x", b"content")

@@ -110,6 +110,8 @@ NOT_ALIKE = re.compile(rb"(Event Log restored), .*")
 """Lines of the system log with counts of events, to which the modules' versions belong."""
 LAST_OF_NAME = 115
 """The last byte of the table's name in a dump, which NASA's never sets, as its first word; see docs/differences.md."""
+NO_BYTES = b"\xfc" + b"\xff" * 7
+"""The size of a block of the CDS that lost its bytes; see docs/differences.md."""
 MOST_FLYWHEEL = 8
 """Events of flywheel mode that a log of 20 may have, at most."""
 APP_NAME, EVENT_ID, TEXT = slice(16, 36), slice(36, 38), slice(48, 170)
@@ -163,6 +165,8 @@ def of_packet(packet: bytes) -> bytes | None:
         return packet[:2] + packet[4:6] + _subscriptions(packet)
     if declared is sb.HK_TLM:
         packet = _without_limit_errors(packet)
+    if declared is evs.HK_TLM:
+        packet = _without_unused_entries(packet)
     patterns = OF_TELEMETRY.get(declared.name, {})
     return packet[:2] + packet[4:6] + _masked(declared.payload, patterns, packet[TLM_HEADER_SIZE:])
 
@@ -172,6 +176,15 @@ def _without_limit_errors(packet: bytes) -> bytes:
     errors = TLM_HEADER_SIZE + sb.HOUSEKEEPING.offsets["MsgSendErrorCounter"]
     limits = TLM_HEADER_SIZE + sb.HOUSEKEEPING.offsets["MsgLimitErrorCounter"]
     return packet[:errors] + bytes([packet[errors] - packet[limits] & 0xFF]) + packet[errors + 1 :]
+
+
+def _without_unused_entries(packet: bytes) -> bytes:
+    """Housekeeping of EVS; NASA's clears only the first entry that no application has any more."""
+    size = evs.APP_TLM.size
+    for at in range(TLM_HEADER_SIZE + evs.HOUSEKEEPING.offsets["AppData"], len(packet), size):
+        if not any(packet[at : at + size]):
+            return packet[:at].ljust(len(packet), b"\0")
+    return packet
 
 
 def fields_that_differ(ours: bytes, theirs: bytes) -> str:
@@ -213,6 +226,8 @@ def of_file(data: bytes) -> bytes:
     if layout is None:
         return bytes(left)
     body, size = data[HEADER_SIZE:], layout.size
+    if head.subtype == header.SUBTYPE_ES_CDS_REG:
+        body = body.replace(NO_BYTES, bytes(8))
     records = [
         _masked(layout, OF_RECORDS.get(head.subtype, {}), body[at : at + size]) for at in range(0, len(body), size)
     ]

@@ -16,9 +16,9 @@ DATA = Path(__file__).parent / "data"
 Flight = list[tuple[Step, Observed]]
 
 
-def of_release(release: str) -> Path:
-    """The record of a release of cFE such as "7.0.0"."""
-    return DATA / f"commands_{release.replace('.', '_')}.json.xz"
+def of_release(release: str, what: str = "commands") -> Path:
+    """The record of a release of cFE such as "7.0.0"; `what` begins its name."""
+    return DATA / f"{what}_{release.replace('.', '_')}.json.xz"
 
 
 def save(path: Path, flights: Iterable[Flight]) -> None:
