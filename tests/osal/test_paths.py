@@ -95,6 +95,17 @@ def test_bad_paths(bench: Bench, path: str, status: int) -> None:
     assert status_of(os.open_create, path, OS_FILE_FLAG_CREATE, OS_WRITE_ONLY) == status
 
 
+def test_remove_takes_an_empty_folder_too(bench: Bench) -> None:
+    """As C's remove() under NASA's OSAL does."""
+    bench.os.mkdir("/cf/folder")
+    bench.os.files.write_file("/cf/folder/a.txt", b"a")
+    assert status_of(bench.os.remove, "/cf/folder") == OS_ERROR
+    bench.os.remove("/cf/folder/a.txt")
+    bench.os.remove("/cf/folder")
+    assert status_of(bench.os.remove, "/cf/folder") == OS_ERROR
+    assert status_of(bench.os.remove, "/cf") == OS_ERROR
+
+
 @pytest.mark.parametrize("new", ["/cf/nowhere/a.txt", "/cf/folder"])
 def test_a_file_becomes_no_folder_and_goes_into_none_that_is_not_there(bench: Bench, new: str) -> None:
     """As on NASA's cFE."""

@@ -2,6 +2,7 @@
 
 A step is what goes up at once, to one service, and is answered before the next. What would cut the link itself is left
 out: resets, the end of CI_LAB, TO_LAB or SCH_LAB, their routes, other addresses for telemetry, tones from the ground.
+`lives` makes such steps.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ VIRTUAL_S = {PLAIN: 1.6, BACKGROUND: 4.0, CONTROL: 9.5, RESET: 1.6}
 """How long a step flies in the simulation: uplink, answer, and TO_LAB's pass every half a second."""
 LIMIT_S = {PLAIN: 4.0, BACKGROUND: 8.0, CONTROL: 14.0, RESET: 4.0}
 """How long the real one may take for the same, on a busy host."""
-LEAST_S = {PLAIN: 0.0, BACKGROUND: 1.2, CONTROL: 8.5, RESET: 0.0}
+LEAST_S = {PLAIN: 0.0, BACKGROUND: 2.2, CONTROL: 8.5, RESET: 0.0}
 """How long the real one is given at least: the events that tell the end may be switched off."""
 VIRTUAL_RESET_S = 3.0
 """How long the simulation gets for a reset; the applications are up, and what they say of it came down."""
