@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple, Protocol
@@ -44,9 +44,9 @@ class Observed(NamedTuple):
     packets: tuple[bytes, ...]
     files: dict[str, bytes]
 
-    def told(self) -> Counter[bytes]:
+    def told(self, of_packet: Callable[[bytes], bytes | None] = masks.of_packet) -> Counter[bytes]:
         """What is compared of the packets."""
-        return Counter(each for each in map(masks.of_packet, self.packets) if each is not None)
+        return Counter(each for each in map(of_packet, self.packets) if each is not None)
 
 
 class Computer(Protocol):
@@ -119,6 +119,8 @@ class Simulated:
 class Real:
     """The mission in NASA's cFE."""
 
+    of_packet = staticmethod(masks.of_packet)
+
     def __init__(self, booted: RealCfe) -> None:
         self._booted = booted
         self.release = booted.release()
@@ -151,7 +153,7 @@ class Real:
             self._booted.send(packet)
 
     def _come_down(self, step: Step, expected: Observed | None) -> Iterator[bytes]:
-        wanted = expected.told() if expected is not None else Counter[bytes]()
+        wanted = expected.told(self.of_packet) if expected is not None else Counter[bytes]()
         silent = bool(wanted)  # then the last answer is the end; otherwise it takes a while to know
         last = begin = time.monotonic()
         end = begin + LIMIT_S[step.pace]
@@ -159,7 +161,7 @@ class Real:
             packet = self._booted.receive(0.05 if wanted else QUIET_S)
             if packet is not None:
                 last = time.monotonic()
-                told = masks.of_packet(packet)
+                told = self.of_packet(packet)
                 if told is not None and wanted[told] > 0:
                     wanted -= Counter([told])
                 yield packet

@@ -18,8 +18,11 @@
 #define SHOWN 200
 #define REQUEST_MID 0x18E5
 #define REPLY_MID 0x08E5
+#ifndef MORE_WATCHED
+#define MORE_WATCHED
+#endif
 
-static const uint16 Watched[] = {0x800, 0x801, 0x803, 0x804, 0x805, 0x806, 0x808, 0x809, 0x80A, 0x80B, 0x80C,
+static const uint16 Watched[] = {MORE_WATCHED 0x800, 0x801, 0x803, 0x804, 0x805, 0x806, 0x808, 0x809, 0x80A, 0x80B, 0x80C,
                                  0x80D, 0x80E, 0x810, 0x880, 0x881, 0x883, 0x884, REPLY_MID};
 
 static int                Socket;
@@ -123,6 +126,7 @@ void LINK_Main(void)
     uint8              data[2048];
     ssize_t            length;
     size_t             at;
+    osal_id_t          counted;
 
     CFE_EVS_Register(NULL, 0, CFE_EVS_EventFilter_BINARY);
     CFE_SB_CreatePipe(&pipe, DEPTH, "LINK_PIPE");
@@ -130,6 +134,7 @@ void LINK_Main(void)
     {
         CFE_SB_SubscribeEx(CFE_SB_ValueToMsgId(Watched[at]), pipe, CFE_SB_DEFAULT_QOS, DEPTH);
     }
+    OS_SocketOpen(&counted, OS_SocketDomain_INET, OS_SocketType_DATAGRAM); /* its twin's socket is one of OSAL */
     Socket = socket(AF_INET, SOCK_DGRAM, 0);
     memset(&here, 0, sizeof(here));
     here.sin_family      = AF_INET;

@@ -31,12 +31,12 @@ ANSWER_LIMIT_S = 8.0
 TICKS_PER_S = 100
 
 
-def compile_app(built: Path, target: Path, source: Path = SOURCE) -> None:
-    """Compile tables_app.c, or another source, for a cFE."""
+def compile_app(built: Path, target: Path, source: Path = SOURCE, *more: str) -> None:
+    """Compile tables_app.c, or another source, for a cFE, with more flags of the compiler."""
     said = dict(re.findall(r"^(C_\w+) = (.*)$", (built / FLAGS).read_text(), re.MULTILINE))
     modules = [f"-I{folder}/{part}" for folder in (built / "cfe/modules").iterdir() for part in ("fsw/inc", "fsw/src")]
     flags = [*shlex.split(said["C_DEFINES"]), *shlex.split(said["C_INCLUDES"]), *modules]
-    subprocess.run(["cc", "-std=gnu99", "-w", "-fPIC", "-shared", *flags, "-o", target, source], check=True)
+    subprocess.run(["cc", "-std=gnu99", "-w", "-fPIC", "-shared", *flags, *more, "-o", target, source], check=True)
 
 
 class RealTables:

@@ -1,0 +1,187 @@
+"""Fly random commands of NASA's flight applications in cfepy and in NASA's cFE, and tell what differs.
+
+Usage: CFEPY_REAL_CFE=FOLDER python -m tests.twin.apps_flight [--seed N] [--count COMMANDS] [--apps LC SC ...]
+
+FOLDER is build/exe/cpu1 in the folder in which NASA's cFE was built together with the applications, release 7.0.0. The
+same shared objects and tables fly in both.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from cfepy import msg
+from cfepy.console import Console
+from cfepy.evs import packets as evs
+from cfepy.mission import Mission
+from cfepy.status import OsalError
+from tests.twin import masks
+from tests.twin.apps_commands import TELEMETRY_HEARD, AppsCommander
+from tests.twin.commands import PLAIN, Step
+from tests.twin.flight import Observed, Real, Simulated, _first_difference, _shown
+from tests.twin.flight_apps import CF, FLIGHT_APPS
+from tests.twin.link_app import DOWN_PORT, UP_PORT
+from tests.twin.real import VARIABLE, RealCfe, installed
+from tests.twin.tables_real import compile_app
+
+HERE = Path(__file__).parent
+LINE = UP_PORT, DOWN_PORT
+ROWS = "".join(
+    f"CFE_APP, {app.name.lower()}, {app.name}_AppMain, {app.name}, {90 + number}, 16384, 0x0, 0;\n"
+    for number, app in enumerate(FLIGHT_APPS)
+)
+STARTUP = f"CFE_APP, link, LINK_Main, LINK, 40, 65536, 0x0, 0;\n{ROWS}!\n"
+EVENTS = evs.LONG_EVENT_MSG_MID
+RESET_CODE = 1
+MASKED = {
+    0x8AD: [range(44, 180)],  # processor time in use, and how often tasks ran
+    0x8A4: [range(44, 56)],  # checksums of the computer's own code
+    0x88E: [range(16 + 64 + entry * 88, 16 + 88 + entry * 88) for entry in range(8)],  # room on the host's disks
+}
+"""Bytes of telemetry that the host decides."""
+
+
+def of_packet(packet: bytes) -> bytes | None:
+    """What is compared of a packet; None for one that is left out."""
+    told = masks.of_packet(packet)
+    msg_id = int.from_bytes(packet[:2], "big")
+    if told is None or masks.is_event(packet):
+        return told
+    left = bytearray(packet)
+    for at in itertools.chain(*MASKED.get(msg_id, ())):
+        if at < len(left):
+            left[at] = 0
+    return bytes(left[:2] + left[4:6] + left[16:])
+
+
+def differences(ours: Observed, theirs: Observed) -> list[str]:
+    """What is not the same in two observations of a step, a line each."""
+    mine, real_ones = ([told for told in map(of_packet, each.packets) if told is not None] for each in (ours, theirs))
+    found = []
+    for told in [*real_ones]:
+        if told in mine:
+            mine.remove(told)
+            real_ones.remove(told)
+    for told in [*real_ones]:
+        pair = next((each for each in mine if each[:2] == told[:2] and told[:2] != EVENTS.to_bytes(2, "big")), None)
+        if pair is not None:
+            mine.remove(pair)
+            real_ones.remove(told)
+            found.append(f"telemetry 0x{told[:2].hex()}: {_first_difference(pair[4:], told[4:])}, behind the header")
+    found += [f"only NASA's: {_shown(told)}" for told in real_ones]
+    found += [f"only ours:   {_shown(told)}" for told in mine]
+    for path in sorted({*ours.files, *theirs.files}):
+        one, other = (each.files.get(path) for each in (ours, theirs))
+        if one is None or other is None:
+            found.append(f"file {path}: {'not here' if one is None else 'not there'}")
+        elif len(one) != len(other):
+            found.append(f"file {path}: {len(one)} bytes of ours, {len(other)} of NASA's")
+    return found
+
+
+def preparation() -> list[Step]:
+    """What counted the boot begins anew; no flywheel event is counted by applications that listen to events."""
+    quiet = Step("EVS", (evs.DISABLE_APP_EVENTS.packet(AppName="CFE_TIME"),), PLAIN)
+    resets = [
+        Step(app.name, (bytes(msg.command(app.commands_mid, RESET_CODE, bytes(4 if app is CF else 0))),), PLAIN)
+        for app in FLIGHT_APPS
+    ]
+    return [quiet, *resets]
+
+
+class SimulatedApps(Simulated):
+    """The mission in cfepy."""
+
+    def _read_files(self) -> dict[str, bytes]:
+        found = {}
+        for name in self._mission.files.list_dir("/ram"):
+            with suppress(OsalError):  # a folder
+                found[f"/ram/{name}"] = self._mission.files.read_file(f"/ram/{name}")
+        return found
+
+
+class RealApps(Real):
+    """The mission in NASA's cFE."""
+
+    of_packet = staticmethod(of_packet)
+
+    def _read_files(self) -> dict[str, bytes]:
+        return self._booted.files()
+
+
+@contextmanager
+def simulated(built: Path) -> Iterator[Simulated]:
+    """The mission in cfepy, prepared."""
+    with tempfile.TemporaryDirectory() as folder:
+        for path in (built / "cf").iterdir():
+            if path.suffix == ".tbl" or any(path.name == f"{app.name.lower()}.so" for app in FLIGHT_APPS):
+                shutil.copy(path, folder)
+        (Path(folder) / "startup.scr").write_text(STARTUP)
+        more = ", ".join(map(hex, TELEMETRY_HEARD))
+        text = (HERE / "link_app.py").read_text().replace("WATCHED = (", f"WATCHED = ({more}, ")
+        (Path(folder) / "link.py").write_text(text)
+        (Path(folder) / "mission.yaml").write_text('cfe_version: "7.0.0"\n')
+        with Mission(folder, console=Console(quiet=True)) as flown:
+            computer = SimulatedApps(flown, LINE)
+            for step in preparation():
+                computer.fly(step)
+            yield computer
+
+
+@contextmanager
+def real(built: Path) -> Iterator[Real]:
+    """The mission in NASA's cFE, prepared."""
+    with tempfile.TemporaryDirectory() as folder:
+        app = Path(folder) / "link.so"
+        more = ",".join(map(hex, TELEMETRY_HEARD))
+        compile_app(built.parents[2], app, HERE / "link_app.c", f"-DMORE_WATCHED={more},")
+        files = {"/cf/cfe_es_startup.scr": STARTUP.encode(), "/cf/link.so": app.read_bytes()}
+        with RealCfe(built, Path(folder) / "cfe", files, LINE) as booted:
+            computer = RealApps(booted)
+            for step in preparation():
+                computer.fly(step)
+            yield computer
+
+
+def fly(built: Path, seed: int, count: int, names: list[str]) -> Iterator[tuple[Step, list[str]]]:
+    """Fly the steps of a seed in both: each, with what differs."""
+    with real(built) as theirs, simulated(built) as ours:
+        for step in itertools.islice(AppsCommander(seed, names).steps(), count):
+            expected = ours.fly(step)
+            yield step, differences(expected, theirs.fly(step, expected))
+
+
+def main() -> int:
+    """Fly until there were so many commands."""
+    parser = argparse.ArgumentParser(prog="python -m tests.twin.apps_flight", description=__doc__)
+    parser.add_argument("--seed", type=int, default=0, help="of the first flight; the next ones count up")
+    parser.add_argument("--count", type=int, default=100, help="commands in all")
+    parser.add_argument("--flight", type=int, default=400, help="steps of a flight")
+    parser.add_argument("--apps", nargs="*", default=[], help="names of the applications; all of them without")
+    given = parser.parse_args()
+    built = installed()
+    if built is None:
+        sys.exit(f"{VARIABLE} does not say where the folder of NASA's core-cpu1 is")
+    commands = unlike = 0
+    for seed in itertools.count(given.seed):
+        for number, (step, lines) in enumerate(fly(built, seed, given.flight, given.apps)):
+            commands += len(step.packets)
+            unlike += bool(lines)
+            if lines:
+                sent = " ".join(packet.hex() for packet in step.packets)
+                print(f"seed {seed}, step {number}, {step.service} {step.pace}: {sent}", *lines, sep="\n  ", flush=True)
+        print(f"seed {seed}: {commands} commands so far, {unlike} steps differ", flush=True)
+        if commands >= given.count:
+            return 1 if unlike else 0
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
