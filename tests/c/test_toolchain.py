@@ -174,6 +174,19 @@ def test_debug_data_is_there_unless_unwanted(app: Path) -> None:
     assert ".debug_info" not in sections(build(app, options=Options(debug=False)))
 
 
+def test_two_builds_give_the_same_bytes(app: Path, tmp_path: Path) -> None:
+    one, other = (build(app, tmp_path / name).library.read_bytes() for name in ("one.so", "other.so"))
+    assert one == other
+
+
+def test_sources_of_one_name_in_two_folders(app: Path) -> None:
+    write(
+        app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/a.c fsw/src/x/a.c ../shared.c)\n", "fsw/src/a.c": "int a;\n"}
+    )
+    write(app, {"fsw/src/x/a.c": "int b;\n", "../shared.c": "int c;\n"})
+    assert {"a", "b", "c"} <= symbols(build(app)).keys()
+
+
 def test_cpp_needs_no_library_of_the_host(app: Path) -> None:
     text = """
         #include "cfe.h"
@@ -212,7 +225,7 @@ def test_accesses_of_memory_are_told_to_whoever_loads_it(app: Path) -> None:
 
 def test_notes_for_gcov_stay_beside_the_library(app: Path, tmp_path: Path) -> None:
     built = build(app, tmp_path / "out/probe.so", Options(coverage=True))
-    assert (tmp_path / "out/probe.so.coverage/probe.c.gcno").is_file()
+    assert (tmp_path / "out/probe.so.coverage/fsw/src/probe.c.gcno").is_file()
     assert any(name.startswith("__gcov") for name in symbols(built)) or ".init_array" in sections(built)
 
 

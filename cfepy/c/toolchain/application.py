@@ -106,6 +106,7 @@ class _Builder:
             (chosen / name).write_text("" if file is None else f'#include "{file}"\n', encoding="utf-8")
         headers = [headers_folder()] if options.cfs is None else tree.includes
         self._flags = [f"-I{each}" for each in (*sources.includes, chosen, *headers)]
+        self._flags.append(f"-ffile-prefix-map={scratch}=.")  # so that two builds give the same bytes
         self._flags += [f"-D{each}" for each in sources.definitions]
         if options.omit_deprecated:
             self._flags += [f"-D{each}" for each in (*WITHOUT_DEPRECATED, WITHOUT_DEPRECATED_OSAL)]
@@ -128,7 +129,14 @@ class _Builder:
         if options.sanitize_thread:
             flags.append("-fsanitize=thread")
         flags += options.flags
-        return [self._compile(source, where.resolve() / f"{source.name}.o", flags) for source in self._sources.code]
+        return [self._compile(source, self._object(source, where.resolve()), flags) for source in self._sources.code]
+
+    def _object(self, source: Path, where: Path) -> Path:
+        """The object file of a source, in folders like its own: two of one name may be in different ones."""
+        inner = source.relative_to(self._sources.folder) if ".." not in source.parts else Path(source.name)
+        made = where / inner.with_name(f"{source.name}.o")
+        made.parent.mkdir(parents=True, exist_ok=True)
+        return made
 
     def _tables(self) -> list[TableObject]:
         found = []
