@@ -19,6 +19,10 @@ from cfepy.status import (
 from cfepy.units import NS_PER_MS
 
 
+LEAST_STACK = 16384
+"""PTHREAD_STACK_MIN of Linux, in bytes."""
+
+
 class TaskProperties(NamedTuple):
     """What `task_get_info` tells (OS_task_prop_t)."""
 
@@ -67,6 +71,7 @@ class TaskApi(Core):
         flags: int = 0,
         *,
         owner: Any = None,
+        brings_stack: bool = False,
     ) -> int:
         """Start a task (OS_TaskCreate). A more urgent one runs before this returns.
 
@@ -79,13 +84,14 @@ class TaskApi(Core):
             owner: the application it works for; None takes over the caller's. A task of NOBODY is what cFE makes of
                 every task that OS_TaskCreate starts: the end of an application does not end it, CFE_ES_GetAppID fails
                 in it and in what it starts, and an exception in it resets the processor.
+            brings_stack: the caller has the memory of the stack, of which Linux wants 16 KiB at least.
 
         Returns:
             The task's id.
 
         Raises:
             OsalError: OS_INVALID_POINTER, OS_ERR_NAME_TOO_LONG, OS_ERR_INVALID_SIZE, OS_ERR_INVALID_PRIORITY,
-                OS_ERR_NAME_TAKEN or OS_ERR_NO_FREE_IDS.
+                OS_ERR_NAME_TAKEN or OS_ERR_NO_FREE_IDS; OS_ERROR for a stack that is too small.
         """
         if self._cost:
             self.kernel.charge(self._cost)
@@ -94,6 +100,8 @@ class TaskApi(Core):
         self._tasks.check_name(name)
         check_size(stack_size, f"stack of task {name}")
         _check_priority(priority)
+        if brings_stack and stack_size < LEAST_STACK:
+            self._tasks.refuse(name, f"{stack_size} bytes are too few for the stack of task {name}")
         record = OsTask(name, entry, stack_size, priority)
         task_id = self._register(self._tasks, record, "stack", stack_size + self._setup.sizes.task, owner)
         record.task = self.kernel.spawn(name, lambda: self._live(record), priority, owner)

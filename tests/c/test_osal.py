@@ -49,6 +49,25 @@ def test_a_task_of_osal_belongs_to_no_application(tmp_path: Path, tasks: str) ->
     assert said == [*("-2", "-2", "-2", "-13", "-40", "9", "0"), "KID 60 5000 1", "-16", "[] -16"]
 
 
+def test_a_task_on_a_stack_that_the_application_brings(tmp_path: Path) -> None:
+    before = """
+    static char stack[16384] __attribute__((aligned(16)));
+    static void child(void)
+    {
+        char local;
+        SAY("%d", &local > stack && &local < stack + sizeof stack);
+    }
+    """
+    body = """
+        Id id = 9;
+        DID(OS_TaskCreate(&id, "KID", child, stack, sizeof stack - 16, 60, 0));
+        DID(id);
+        DID(OS_TaskCreate(&id, "KID", child, stack, sizeof stack, 60, 0));
+        OS_TaskDelay(10);
+    """
+    assert results(tmp_path, body, before=before) == ["-1", "0", "0", "1"]
+
+
 def test_a_delete_handler_is_called_and_system_data_is_the_id(tmp_path: Path) -> None:
     before = """
     static void gone(void) { SAY("gone"); }

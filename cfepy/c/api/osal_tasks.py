@@ -8,10 +8,10 @@ from __future__ import annotations
 from struct import Struct
 from typing import TYPE_CHECKING
 
-from cfepy.c.api.osal_values import BAD, properties
+from cfepy.c.api.osal_values import BAD, new_id, properties
 from cfepy.ids import OS_TASK_BASE, get_base
 from cfepy.osal import NOBODY
-from cfepy.status import OS_ERR_INVALID_ID, OS_ERR_NAME_NOT_FOUND, OsalError
+from cfepy.status import OS_ERR_INVALID_ID, OS_ERR_NAME_NOT_FOUND, OS_ERROR, OsalError
 
 if TYPE_CHECKING:
     from cfepy.c.calls import Declarations
@@ -31,7 +31,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
         def run() -> int:
             return c.run(entry, stack=stack, size=size)
 
-        return os.task_create(name, run, size, priority, flags, owner=NOBODY)
+        return os.task_create(name, run, size, priority, flags, owner=NOBODY, brings_stack=bool(stack))
 
     def set_priority(task_id: int, priority: int) -> None:
         os.task_set_priority(task_id, priority)
@@ -54,7 +54,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
         task_id = os.task_get_id()
         return task_id if get_base(task_id) == OS_TASK_BASE else 0
 
-    api.add("OS_TaskCreate", "4SPpQBI", create, BAD)
+    api.add("OS_TaskCreate", "=4SPpQBI", new_id(create, OS_ERROR), BAD)
     api.add("OS_TaskDelete", "I", os.task_delete)
     api.add("OS_TaskExit", "", os.task_exit)
     api.add("OS_TaskInstallDeleteHandler", "p", install_delete_handler)
