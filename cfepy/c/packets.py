@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 from cfepy.c.engine import engine
+from cfepy.c.faults import CFault
 from cfepy.c.memory import CMemory
 from cfepy.rtos import Task
 from cfepy.sb import MessageBuffer, SoftwareBus
@@ -25,12 +26,13 @@ class PacketImages:
         heap: the engine's heap for them.
         bus: the Software Bus as applications reach it.
         core: the Software Bus itself.
+        guard: a buffer that is used after it was sent or released is a fault, not a status.
 
     Attributes:
         images: the engine's part.
     """
 
-    def __init__(self, heap: Any, bus: SoftwareBus, core: SoftwareBus) -> None:
+    def __init__(self, heap: Any, bus: SoftwareBus, core: SoftwareBus, guard: bool) -> None:
         self._heap = heap
         self.images = engine().Images(heap, core.routes, self._waits)
         self._memory = CMemory()
@@ -39,6 +41,7 @@ class PacketImages:
         self._buffers: dict[int, MessageBuffer] = {}
         self._sending: dict[Task, int] = {}
         self._listens = False
+        self._gone: dict[int, str] | None = {} if guard else None
 
     def _waits(self, packet: bytes) -> bool:
         """Whether a packet that had several destinations still waits in a pipe."""
@@ -80,7 +83,7 @@ class PacketImages:
             self._sending.pop(task, None)
             raise
         if self._sending.pop(task, None) is not None:
-            self._forget(address)  # it had no route
+            self._forget(address, "sent")  # it had no route
 
     def _on_packet(self, packet: bytes) -> None:
         """A packet is on its way, and no pipe has it yet."""
@@ -90,16 +93,22 @@ class PacketImages:
         address = self._sending.get(task)
         if address is not None and self._memory.peek(address, 2) == packet[:2]:  # it may be an event about it
             del self._sending[task], self._buffers[address]
+            if self._gone is not None:
+                self._gone[address] = "sent"
             self.images.keep(packet, address)
 
     def _buffer(self, address: int) -> MessageBuffer:
         buffer = self._buffers.get(address)
         if buffer is None:
+            if self._gone is not None and address in self._gone:
+                raise CFault(f"the message buffer 0x{address:x} is used after it was {self._gone[address]}")
             raise CfeError(CFE_SB_BUFFER_INVALID, f"0x{address:x} is no buffer that an application holds")
         return buffer
 
-    def _forget(self, address: int) -> None:
+    def _forget(self, address: int, why: str = "released") -> None:
         del self._buffers[address]
+        if self._gone is not None:
+            self._gone[address] = why
         self._heap.give(address)
 
     # -- ends --------------------------------------------------------------------------------------------------------

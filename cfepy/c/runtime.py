@@ -78,7 +78,7 @@ class CRuntime:
         self._stacks = Stacks(self.arena, POISON if guard else b"")
         self._heap = made.Heap(self.arena.map(HEAP), HEAP, guarded=guard)
         messages = made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK, guarded=guard, grain=4)
-        self.packets = PacketImages(messages, handle.sb, cfe.sb)
+        self.packets = PacketImages(messages, handle.sb, cfe.sb, guard)
         config = cfe.es.config
         self.table = made.Table(
             heap=self._heap,

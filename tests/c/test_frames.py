@@ -54,8 +54,6 @@ def test_a_deadlock_tells_the_lines_of_c_that_wait(tmp_path: Path, capsys) -> No
         tmp_path,
         "TEST",
         """
-        int32_t OS_MutSemCreate(uint32_t *, const char *, uint32_t);
-        int32_t OS_MutSemTake(uint32_t);
         static uint32_t a, b;
         static void other(void)
         {

@@ -70,14 +70,18 @@ HIDDEN PyObject *text_at(uint64_t address)
     return result;
 }
 
-HIDDEN PyObject *message_at(uint64_t address)
+/* One that is larger than the bus takes is refused by it, so no more than its header is looked at. */
+HIDDEN PyObject *message_at(uint64_t address, size_t largest)
 {
     unsigned char header[6];
     if (engine_copy(header, (void *)address, sizeof header))
         return PyErr_Format(fault_error, "bad address %p of a message", (void *)address);
     size_t size = (header[4] << 8 | header[5]) + 7;
     PyObject *bytes = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)size);
-    if (bytes != NULL && engine_copy(PyBytes_AS_STRING(bytes), (void *)address, size)) {
+    size_t seen = size <= largest ? size : sizeof header;
+    if (bytes != NULL && seen < size)
+        memset(PyBytes_AS_STRING(bytes), 0, size);
+    if (bytes != NULL && engine_copy(PyBytes_AS_STRING(bytes), (void *)address, seen)) {
         Py_DECREF(bytes);
         return PyErr_Format(fault_error, "a message of %zu bytes at %p reaches beyond its memory", size, (void *)address);
     }
@@ -218,7 +222,7 @@ static PyObject *argument_object(Coroutine *coroutine, char kind, int number)
     case 'P': return value ? PyLong_FromUnsignedLongLong(value) : NULL;
     case 's': return value ? text_at(value) : Py_NewRef(Py_None);
     case 'S': return value ? text_at(value) : NULL;
-    case 'm': return value ? message_at(value) : NULL;
+    case 'm': return value ? message_at(value, coroutine->table->largest_message) : NULL;
     case 't': return Py_BuildValue("(II)", (uint32_t)value, (uint32_t)(value >> 32));
     case 'f': return value ? formatted(coroutine, number + 1) : NULL;
     default: return PyErr_Format(PyExc_SystemError, "signature letter %c", kind);

@@ -115,7 +115,7 @@ HIDDEN uint64_t argument(const Coroutine *, int number);
 HIDDEN int format_text(Coroutine *, char *to, size_t room, const char *format, int fixed);
 HIDDEN int format_list(Coroutine *, char *to, size_t room, const char *format, uint64_t list);
 HIDDEN PyObject *text_at(uint64_t address);
-HIDDEN PyObject *message_at(uint64_t address);
+HIDDEN PyObject *message_at(uint64_t address, size_t largest);
 extern HIDDEN PyTypeObject table_type;
 
 /* heap.c */
