@@ -9,6 +9,7 @@ application first opens a file or imports such a module; the others pay nothing.
 from __future__ import annotations
 
 import builtins
+import importlib
 import importlib.util
 import os
 import sys
@@ -23,10 +24,10 @@ if TYPE_CHECKING:
 
 # fmt: off
 REPLACED = frozenset({
-    "aifc", "bz2", "cProfile", "codecs", "configparser", "dbm", "filecmp", "fileinput", "genericpath", "gettext",
-    "glob", "gzip", "imghdr", "io", "logging", "lzma", "mailbox", "mailcap", "mimetypes", "netrc", "numpy", "os",
-    "pathlib", "posixpath", "profile", "pstats", "quopri", "runpy", "shelve", "shutil", "sndhdr", "sqlite3", "sunau",
-    "tarfile", "tempfile", "tokenize", "uu", "wave", "xml", "zipapp", "zipfile",
+    "aifc", "bz2", "cProfile", "chunk", "codecs", "configparser", "dbm", "filecmp", "fileinput", "genericpath",
+    "gettext", "glob", "gzip", "imghdr", "importlib", "io", "logging", "lzma", "mailbox", "mailcap", "mimetypes",
+    "netrc", "numpy", "os", "pathlib", "posixpath", "profile", "pstats", "quopri", "runpy", "shelve", "shutil",
+    "sndhdr", "sqlite3", "sunau", "tarfile", "tempfile", "tokenize", "uu", "wave", "xml", "zipapp", "zipfile",
 })
 # fmt: on
 """Modules, by their first name, that an application has over the run's files."""
@@ -185,6 +186,17 @@ def logging_module(universe: Universe) -> ModuleType:
     return rebind(logging, ("basicConfig",), FileHandler=FileHandler)
 
 
+def importlib_module(universe: Universe) -> ModuleType:
+    """The host's `importlib`, whose `import_module` gives an application its own modules."""
+    from cfepy.nodes.synth import proxy
+
+    def import_module(name: str, package: str | None = None) -> ModuleType:
+        is_own = name.partition(".")[0] in REPLACED
+        return universe.importer.load(name) if is_own else importlib.import_module(name, package)
+
+    return proxy(importlib, __getattr__=lambda name: getattr(importlib, name), import_module=import_module)
+
+
 def sys_module(universe: Universe) -> ModuleType:
     """The host's `sys` itself."""
     return sys
@@ -200,7 +212,13 @@ def make_universe(**options: Any) -> Universe:
     from cfepy.nodes.stdlib.table import FIXES, MADE
     from cfepy.nodes.universe import Universe
 
-    own = {"logging": logging_module, "numpy": numpy_module, "os": os_module, "sys": sys_module}
+    own = {
+        "importlib": importlib_module,
+        "logging": logging_module,
+        "numpy": numpy_module,
+        "os": os_module,
+        "sys": sys_module,
+    }
     like_nodes = {name: MADE[name] for name in ("codecs", "io", "sqlite3", "sqlite3.dbapi2")}
     fixes = {name: FIXES[name] for name in ("random", "xml.etree.ElementTree")}
     provision = Provision({**like_nodes, **own}, fixes, REPLACED | {"random"}, is_process=False)

@@ -178,11 +178,14 @@ def test_a_missing_file_is_told_with_the_line_that_asked(folder: Path, tmp_path:
 
 def test_all_else_is_the_hosts(folder: Path, tmp_path: Path) -> None:
     source = """
-    import os, pathlib, sys, threading, logging, numpy, json, io
+    import importlib, os, pathlib, sys, threading, logging, numpy, json, io
+    import importlib.resources
     import xml.etree.ElementTree as tree
     def Main(cfe):
         host = sys.modules
         assert threading is host["threading"] and json is host["json"]
+        assert importlib.import_module("json") is json and importlib.import_module("os") is os
+        assert importlib.util is host["importlib.util"] and importlib.resources is host["importlib.resources"]
         assert logging.getLogger() is host["logging"].getLogger()
         assert os.environ is host["os"].environ and isinstance(pathlib.Path(), os.PathLike)
         assert numpy.ndarray is host["numpy"].ndarray and numpy.random is host["numpy"].random
