@@ -17,6 +17,7 @@ from cfepy.faces import face
 if TYPE_CHECKING:
     from cfepy.c.api import function_names
     from cfepy.c.elf import ElfError, read_shared_object
+    from cfepy.c.linking import wanted_names
     from cfepy.c.loading import CompiledLoader
     from cfepy.c.runtime import CRuntime
     from cfepy.c.toolchain import Built, CompilerError, Options, build, headers_folder
@@ -32,6 +33,7 @@ __all__ = [
     "function_names",
     "headers_folder",
     "read_shared_object",
+    "wanted_names",
 ]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
@@ -40,6 +42,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         {
             ".api": ("function_names",),
             ".elf": ("ElfError", "read_shared_object"),
+            ".linking": ("wanted_names",),
             ".loading": ("CompiledLoader",),
             ".runtime": ("CRuntime",),
             ".toolchain": ("Built", "CompilerError", "Options", "build", "headers_folder"),

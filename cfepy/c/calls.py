@@ -30,17 +30,19 @@ class Declarations:
 
     Attributes:
         functions: what was declared.
+        data: variables of libc, by name: their first value.
     """
 
     def __init__(self) -> None:
         self.functions: dict[str, Declared] = {name: Declared(None, "", 0) for name in engine().natives()}
+        self.data: dict[str, bytes] = {}
 
     def add(self, name: str, signature: str, function: Callable[..., object], null_status: int = 0) -> None:
         """Declare a function; one that the engine has as well is asked only when the engine wants that."""
         self.functions[name] = Declared(function, signature, null_status)
 
     def __contains__(self, name: str) -> bool:
-        return name in self.functions
+        return name in self.functions or name in self.data
 
 
 class CallTable:

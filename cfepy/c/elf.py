@@ -12,6 +12,7 @@ from typing import Any
 from cfepy.status import UsageError
 
 MAGIC = b"\x7fELF"
+_MARK_OF_GCOV = b"GCOV_PREFIX\0"
 MACHINES = {"EM_X86_64": "x86_64", "EM_AARCH64": "aarch64"}
 
 
@@ -72,7 +73,11 @@ class SharedObject:
         symbols: those that the loader needs, by number.
         relocations: words to be filled in.
         needed: libraries that it was linked with.
-        functions_at_load: addresses of the array of functions to be called when it was loaded, and how many.
+        functions_at_load: address of the array of functions to be called when it was loaded, and how many.
+        function_at_load: address of one to be called before them, or 0.
+        functions_at_end, function_at_end: the same for its end.
+        headers: where its program headers are, and how many.
+        unwinding: address of the table by which exceptions of C++ find frames (PT_GNU_EH_FRAME), or 0.
         thread_local: (address, bytes in the file, bytes in memory, alignment) of its thread-local variables.
     """
 
@@ -85,11 +90,28 @@ class SharedObject:
     needed: list[str] = field(default_factory=list)
     functions_at_load: tuple[int, int] = (0, 0)
     function_at_load: int = 0
+    functions_at_end: tuple[int, int] = (0, 0)
+    function_at_end: int = 0
+    headers: tuple[int, int] = (0, 0)
+    unwinding: int = 0
     thread_local: tuple[int, int, int, int] | None = None
 
     def wanted(self) -> list[str]:
         """Names that it needs of others."""
         return [each.name for each in self.symbols if each.name and not each.is_defined and not each.is_weak]
+
+    def initial(self, address: int, size: int) -> bytes:
+        """Bytes of the file that belong to an address."""
+        for each in self.segments:
+            if each.address <= address < each.address + each.memory_size:
+                at = each.offset + address - each.address
+                return self.data[at : at + size]
+        return b""
+
+    @property
+    def has_coverage(self) -> bool:
+        """Whether libgcov is linked into it, which counts the lines that run."""
+        return _MARK_OF_GCOV in self.data
 
     @property
     def size(self) -> int:
@@ -137,6 +159,7 @@ def _read(elf: Any, data: bytes, name: str) -> SharedObject:
     if elf["e_type"] != "ET_DYN":
         raise ElfError(f"{name} is no shared object ({elf['e_type']}): link it with -shared")
     made = SharedObject(PurePath(name).name, data, machine)
+    made.headers = (elf["e_phoff"], elf["e_phnum"])
     dynamic = None
     for segment in elf.iter_segments():
         head = segment.header
@@ -146,6 +169,8 @@ def _read(elf: Any, data: bytes, name: str) -> SharedObject:
             dynamic = segment
         elif head.p_type == "PT_TLS":
             made.thread_local = (head.p_vaddr, head.p_filesz, head.p_memsz, head.p_align)
+        elif head.p_type == "PT_GNU_EH_FRAME":
+            made.unwinding = head.p_vaddr
     if dynamic is None or not made.segments:
         raise ElfError(f"{name} has nothing to load: link it with -shared")
     _read_dynamic(made, dynamic)
@@ -161,7 +186,10 @@ def _read_dynamic(made: SharedObject, dynamic: Any) -> None:
             tags.setdefault(tag.entry.d_tag, tag.entry.d_val)
     if "DT_INIT_ARRAY" in tags:
         made.functions_at_load = (tags["DT_INIT_ARRAY"], tags.get("DT_INIT_ARRAYSZ", 0) // 8)
+    if "DT_FINI_ARRAY" in tags:
+        made.functions_at_end = (tags["DT_FINI_ARRAY"], tags.get("DT_FINI_ARRAYSZ", 0) // 8)
     made.function_at_load = tags.get("DT_INIT", 0)
+    made.function_at_end = tags.get("DT_FINI", 0)
     made.symbols = list(_symbols(dynamic))
     for table in dynamic.get_relocation_tables().values():
         for each in table.iter_relocations():

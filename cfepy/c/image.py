@@ -8,21 +8,49 @@ gone when it is unmapped.
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
+from typing import Protocol
 
 from cfepy.c.arena import Arena
-from cfepy.c.elf import ElfError, SharedObject
+from cfepy.c.elf import ElfError, Relocation, SharedObject, Symbol
 from cfepy.c.engine import engine
 from cfepy.c.places import CodePlace, Places
 from cfepy.cached import CachedProperty
 
-_RELATIVE, _ABSOLUTE, _ADDRESS = "relative", "absolute", "address"
+_RELATIVE, _ABSOLUTE, _ADDRESS, _CHOSEN = "relative", "absolute", "address", "chosen"
+_MODULE, _OFFSET, _FIXED_OFFSET = "module", "offset", "fixed offset"
 _KINDS = {
-    "x86_64": {1: _ABSOLUTE, 6: _ADDRESS, 7: _ADDRESS, 8: _RELATIVE},
-    "aarch64": {257: _ABSOLUTE, 1025: _ABSOLUTE, 1026: _ABSOLUTE, 1027: _RELATIVE},
-}
+    "x86_64": {
+        1: _ABSOLUTE, 6: _ADDRESS, 7: _ADDRESS, 8: _RELATIVE, 37: _CHOSEN, 16: _MODULE, 17: _OFFSET, 18: _FIXED_OFFSET
+    },
+    "aarch64": {
+        257: _ABSOLUTE, 1025: _ABSOLUTE, 1026: _ABSOLUTE, 1027: _RELATIVE, 1032: _CHOSEN,
+        1028: _MODULE, 1029: _OFFSET, 1030: _FIXED_OFFSET,
+    },
+}  # fmt: skip
+_THREAD_LOCAL = "STT_TLS"
+_CHOSEN_FUNCTION = "STT_LOOS"
+"""STT_GNU_IFUNC, by the name that pyelftools has for its number."""
 _WORD = struct.Struct("<Q")
 _64_BITS = (1 << 64) - 1
+
+
+class Linker(Protocol):
+    """What an image sees of others."""
+
+    def resolve(self, name: str) -> int:
+        """The address of a symbol that it does not have itself."""
+
+    def resolve_weak(self, name: str) -> int:
+        """The same for one that need not be there; 0 if it is not."""
+
+    def resolve_thread_local(self, name: str) -> tuple[int, int]:
+        """Module and offset of a thread-local variable of another object."""
+
+    def module_of(self, image: Image) -> int:
+        """The number under which an image's thread-local variables are known."""
+
+    def run(self, function: int, *args: int) -> int:
+        """Call a function of the image, which is in its place by then."""
 
 
 class Image:
@@ -31,73 +59,120 @@ class Image:
     Args:
         source: its file.
         arena: where it is put.
-        resolve: the address of a symbol that it does not have itself.
+        linker: what it sees of others.
 
     Attributes:
         base: its lowest address.
         size: its bytes.
         symbols: addresses of what it exports.
+        thread_locals: offsets of thread-local variables that it exports.
 
     Raises:
         ElfError: it needs something of the loader that this one does not have.
     """
 
-    def __init__(self, source: SharedObject, arena: Arena, resolve: Callable[[str], int]) -> None:
+    def __init__(self, source: SharedObject, arena: Arena, linker: Linker) -> None:
         self.source = source
         self.size = source.size
         self.symbols: dict[str, int] = {}
+        self.thread_locals: dict[str, int] = {}
         self._arena = arena
+        self._linker = linker
         self._engine = engine()
         self.base = arena.map(self.size)
         try:
-            self._fill(resolve)
+            self._fill()
         except BaseException:
             self.unload()
             raise
 
-    def _fill(self, resolve: Callable[[str], int]) -> None:
+    def _fill(self) -> None:
         source, base = self.source, self.base
         for segment in source.segments:
             self._engine.poke(base + segment.address, source.data[segment.offset : segment.offset + segment.file_size])
-        self.symbols = {each.name: base + each.address for each in source.symbols if each.is_defined and each.name}
+        exported = [each for each in source.symbols if each.is_defined and each.name]
+        self.symbols = {each.name: base + each.address for each in exported if each.kind != _THREAD_LOCAL}
+        self.thread_locals = {each.name: each.address for each in exported if each.kind == _THREAD_LOCAL}
         memory = self._engine.view(base, self.size)
         try:
-            self._relocate(memory, resolve)
+            chosen = self._relocate(memory)
         finally:
             memory.release()
         for segment in source.segments:
             start = base + segment.address & ~4095
             self._engine.protect(start, base + segment.address + segment.memory_size - start, segment.rights)
 
-    def _relocate(self, memory: memoryview, resolve: Callable[[str], int]) -> None:
-        kinds, symbols, base = _KINDS[self.source.machine], self.source.symbols, self.base
+        if chosen:
+            self._choose(chosen)
+
+    def _relocate(self, memory: memoryview) -> list[tuple[int, int]]:
+        """Fill in the words; of those whose value a function of the image itself tells, where they are, and that."""
+        kinds, base = _KINDS[self.source.machine], self.base
         known: dict[int, int] = {}
+        chosen = []
         for each in self.source.relocations:
             kind = kinds.get(each.kind)
-            if kind is None:
-                raise ElfError(f"{self.source.name}: relocation {each.kind} of {self.source.machine} is not supported")
             if kind == _RELATIVE:
                 value = base + each.addend
-            else:
+            elif kind == _CHOSEN:
+                chosen.append((each.address, base + each.addend))
+                continue
+            elif kind in (_ABSOLUTE, _ADDRESS):
                 value = known.get(each.symbol, -1)
                 if value < 0:
-                    symbol = symbols[each.symbol]
-                    if symbol.is_defined:
-                        value = base + symbol.address
-                    else:
-                        value = 0 if symbol.is_weak else resolve(symbol.name)
-                    known[each.symbol] = value
+                    value = known[each.symbol] = self._address_of(self.source.symbols[each.symbol])
                 if kind == _ABSOLUTE:
                     value += each.addend
+                if self.source.symbols[each.symbol].kind == _CHOSEN_FUNCTION:
+                    chosen.append((each.address, value))
+            else:
+                value = self._thread_local(each, kind)
             _WORD.pack_into(memory, each.address, value & _64_BITS)
+        return chosen
+
+    def _address_of(self, symbol: Symbol) -> int:
+        if symbol.is_defined:
+            return self.base + symbol.address
+        return self._linker.resolve_weak(symbol.name) if symbol.is_weak else self._linker.resolve(symbol.name)
+
+    def _thread_local(self, word: Relocation, kind: str | None) -> int:
+        name = self.source.name
+        if kind == _FIXED_OFFSET:
+            raise ElfError(
+                f"{name} has thread-local variables at fixed places of a thread (the initial-exec model), which a "
+                "library that is loaded later cannot have: compile it with -fPIC -ftls-model=global-dynamic"
+            )
+        if kind is None:
+            raise ElfError(f"{name}: relocation {word.kind} of {self.source.machine} is not supported")
+        symbol = self.source.symbols[word.symbol]
+        if word.symbol == 0 or symbol.is_defined:
+            module, offset = self._linker.module_of(self), symbol.address if word.symbol else 0
+        else:
+            module, offset = self._linker.resolve_thread_local(symbol.name)
+        return module if kind == _MODULE else offset + word.addend
+
+    def _choose(self, chosen: list[tuple[int, int]]) -> None:
+        """Indirect functions (STT_GNU_IFUNC): the image says itself which of several it takes."""
+        for address, function in chosen:
+            self._engine.poke(self.base + address, _WORD.pack(self._linker.run(function)))
 
     @property
     def functions_at_load(self) -> list[int]:
         """Addresses of functions that are called when it was loaded, such as constructors of C++."""
-        at, count = self.source.functions_at_load
+        source = self.source
+        first = [self.base + source.function_at_load] if source.function_at_load else []
+        return first + self._array(*source.functions_at_load)
+
+    @property
+    def functions_at_end(self) -> list[int]:
+        """Addresses of functions that are called before it is unloaded, such as destructors of C++."""
+        source = self.source
+        last = [self.base + source.function_at_end] if source.function_at_end else []
+        return self._array(*source.functions_at_end)[::-1] + last
+
+    def _array(self, at: int, count: int) -> list[int]:
         array = struct.unpack(f"<{count}Q", self._engine.peek(self.base + at, 8 * count))
-        first = [self.base + self.source.function_at_load] if self.source.function_at_load else []
-        return first + [each for each in array if each not in (0, _64_BITS)]
+        return [each for each in array if each not in (0, _64_BITS)]
 
     @CachedProperty
     def _places(self) -> Places:

@@ -52,10 +52,10 @@ class CompiledLoader:
     def load(self, file: str, data: bytes) -> Image:
         """Load a shared object; errors as `read`."""
         source = self.read(file, data)
-        missing = self.runtime.missing(source)
-        if missing:
-            self._console.write(f"OS_ModuleLoad: {file} needs what nobody has: {', '.join(missing)}")
         try:
+            missing = self.runtime.missing(source)
+            if missing:
+                self._console.write(f"OS_ModuleLoad: {file} needs what nobody has: {', '.join(missing)}")
             return self.runtime.load(source)
         except (ElfError, MemoryError) as error:
             raise self._failed(error) from error

@@ -12,12 +12,14 @@ from cfepy.c.elf import SharedObject
 from cfepy.c.engine import engine
 from cfepy.c.faults import CFault, explained
 from cfepy.c.image import Image
+from cfepy.c.linking import LIBRARIES, Exports, LinkedWith, host_library, wanted_names
+from cfepy.c.lives import Ends, ThreadLocals
 from cfepy.c.memory import CMemory, Constants
 from cfepy.c.packets import PacketImages
 from cfepy.c.places import CallFrames, CodePlace, PreemptedFrames, raise_at
 from cfepy.c.stacks import LEAST, Stacks
 from cfepy.console import Console
-from cfepy.rtos import Kernel, Task
+from cfepy.rtos import Kernel
 from cfepy.status import CfeError
 
 POISON = b"\xa5"
@@ -47,6 +49,7 @@ class CRuntime:
         applications, libraries: what is loaded, by the name of the application or the path of the library.
         modules: what OS_ModuleLoad loaded, and whether code that is loaded later sees its symbols.
         at_close: called at the end of the processor, while its memory is still there.
+        on_unload: functions that get each image before it is unloaded.
     """
 
     def __init__(
@@ -61,6 +64,7 @@ class CRuntime:
         guard: bool = False,
     ) -> None:
         from cfepy.c.api import declare
+        from cfepy.c.api.streams import Streams
 
         made = engine()
         made.begin(CfeError, CFault)
@@ -73,7 +77,6 @@ class CRuntime:
         self.arena = Arena()
         self.memory = CMemory()
         self.constants = Constants(self.arena)
-        self._in_code: set[Task] = set()
         self.at_close: list[Callable[[], object]] = []
         self._stacks = Stacks(self.arena, POISON if guard else b"")
         self._heap = made.Heap(self.arena.map(HEAP), HEAP, guarded=guard)
@@ -91,12 +94,19 @@ class CRuntime:
             ctype=self._ctype_tables(),
         )
         self.declared = Declarations()
-        declare(self.declared, self)
-        self._calls = CallTable(self.arena, self.table, self.declared)
-        self._owners: set[int] = set()
+        self.thread_locals = ThreadLocals(kernel, self._heap, self.run)
+        self.streams = Streams(console.write)
+        self.ends = Ends(self.run, self.image_at)
         self.libraries: dict[str, Image] = {}
         self.modules: dict[Image, bool] = {}
         self.applications: dict[str, Image] = {}
+        self.on_unload: list[Callable[[Image], None]] = [self.ends.forget, self.thread_locals.forget]
+        self._images: list[Image] = []
+        self._own: dict[Image, tuple[Image, ...]] = {}
+        declare(self.declared, self)
+        self._calls = CallTable(self.arena, self.table, self.declared)
+        self._exports = Exports(self.shared, self._calls, self.declared, self.arena.map)
+        self._owners: set[int] = set()
 
     def _ctype_tables(self) -> tuple[int, ...]:
         """Copies of the tables of <ctype.h>: cells that point to their element 0."""
@@ -112,7 +122,17 @@ class CRuntime:
 
     def load(self, source: SharedObject) -> Image:
         """Load a shared object anew and call what it wants to be called at load."""
-        image = Image(source, self.arena, self._resolve)
+        own: tuple[Image, ...] = ()
+        for name in LIBRARIES:
+            if name in source.needed:
+                own += (self._loaded(host_library(name), own),)
+        image = self._loaded(source, own)
+        self._own[image] = own
+        return image
+
+    def _loaded(self, source: SharedObject, own: tuple[Image, ...]) -> Image:
+        image = Image(source, self.arena, LinkedWith(self._exports, self.thread_locals, own, self.run))
+        self._images.append(image)
         for function in image.functions_at_load:
             self.run(function)
         return image
@@ -122,46 +142,66 @@ class CRuntime:
         image = self.applications.pop(app_name, None)
         if image is not None:
             self.cfe.tbl.leave_memory(lambda data: self.memory.address_of(data) in image)
-            image.unload()
+            self.unload_image(image)
         apps = self.cfe.es.apps
         for owner in [each for each in self._owners if apps.find(each) is None]:
             self._heap.give_all(owner)
             self._owners.discard(owner)
         self.packets.clean_up()
 
+    def unload_image(self, image: Image) -> None:
+        """Take code out of memory, after what it wants to be called at its end."""
+        for each in (image, *self._own.pop(image, ())[::-1]):
+            self._finish(each)
+            for forget in self.on_unload:
+                forget(each)
+            self._images.remove(each)
+            each.unload()
+
     def core_memory(self, size: int) -> memoryview:
         """Memory for a pool of the core's, such as that of tables, to whose bytes applications get addresses."""
         memory: memoryview = self.memory.view(self.arena.map(size, shares=True), size)
         return memory
 
-    def _resolve(self, name: str) -> int:
-        found = next((image.symbols[name] for image in self._shared() if name in image.symbols), None)
-        return self._calls.address(name) if found is None else found
+    def _finish(self, image: Image) -> None:
+        """Call what an image wants at its end; a fault there ends only that."""
+        try:
+            self.ends.finish(image)
+        except CFault as fault:
+            self.console.write(f"OS_ModuleUnload: {image.source.name}: {fault}")
 
-    def _shared(self) -> list[Image]:
+    def images(self) -> list[Image]:
+        """What is loaded, in this order."""
+        return list(self._images)
+
+    def image_at(self, address: int) -> Image | None:
+        """The image that an address is in."""
+        return next((image for image in self._images if address in image), None)
+
+    def shared(self) -> list[Image]:
         """The images whose symbols all code sees."""
         return [*self.libraries.values(), *(image for image, is_global in self.modules.items() if is_global)]
 
     def unload_module(self, image: Image) -> None:
         """Take what OS_ModuleLoad loaded out of memory."""
         self.modules.pop(image, None)
-        image.unload()
+        self.unload_image(image)
 
     def symbol(self, name: str) -> int | None:
         """Where a function or variable is: of the API, a library, a module or an application, in this order."""
-        if name in self.declared:
-            return self._calls.address(name)
-        images = (*self._shared(), *self.modules, *self.applications.values())
+        found = self._exports.declared_symbol(name)
+        if found is not None:
+            return found
+        images = (*self.shared(), *self.modules, *self.applications.values())
         return next((image.symbols[name] for image in images if name in image.symbols), None)
 
     def missing(self, source: SharedObject) -> list[str]:
-        """Names that an object needs and nobody has."""
-        shared = self._shared()
-        return [
-            name
-            for name in source.wanted()
-            if name not in self.declared and not any(name in image.symbols for image in shared)
-        ]
+        """Names that an object needs and nobody has.
+
+        Raises:
+            ElfError: a library of the host is not there.
+        """
+        return [name for name in wanted_names(source) if self._exports.symbol(name) is None]
 
     # -- running -----------------------------------------------------------------------------------------------------
 
@@ -184,20 +224,22 @@ class CRuntime:
         if self.kernel.frames_wanted and self.table.frames is None:
             self.table.frames = CallFrames(self._place)
         given, room = (stack, size) if stack else self._stacks.take(size)
-        is_callback = task in self._in_code
-        self._in_code.add(task)
+        is_outermost = self.thread_locals.begin()
         try:
-            return int(engine().run(self.table, function, args, given, room, owner))
+            result = int(engine().run(self.table, function, args, given, room, owner))
+            if is_outermost:
+                self.thread_locals.finish()
+            return result
         except CFault as fault:
             made = explained(fault, self.place_of)
             raise_at(self._place(made.at), made)
         except _Passing as passing:
-            if is_callback:
+            if not is_outermost:
                 raise
             raise passing.error from None
         finally:
-            if not is_callback:
-                self._in_code.discard(task)
+            if is_outermost:
+                self.thread_locals.leave(task)
             if not stack:
                 self._stacks.give(given, room)
 
@@ -230,10 +272,8 @@ class CRuntime:
             raise CFault(f"runaway loop: no call for {limit:g} s")
 
     def _place(self, address: int) -> CodePlace | None:
-        for image in (*self.applications.values(), *self.libraries.values(), *self.modules):
-            if address in image:
-                return image.place_at(address)
-        return None
+        image = self.image_at(address)
+        return None if image is None else image.place_at(address)
 
     def place_of(self, address: int) -> str:
         """Where an address of code is, in words."""
@@ -246,6 +286,9 @@ class CRuntime:
         """The processor is at its end: give all memory back."""
         for function in self.at_close:
             function()
+        for image in self._images[::-1]:
+            if image.source.has_coverage:
+                self._finish(image)
         self.cfe.tbl.leave_memory(lambda data: True)  # what tells of the run may look at tables later
         self.applications.clear()
         self.libraries.clear()

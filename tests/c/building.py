@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import textwrap
@@ -16,8 +17,12 @@ from cfepy.mission import Mission
 HERE = Path(__file__).parent
 FLAGS = ("-shared", "-fPIC", "-g", "-O1", "-Wall", "-Werror", "-fno-builtin", f"-I{HERE}")
 
+CPP = os.environ.get("CXX", "c++").split()
+
 needs_compiler = pytest.mark.skipif(shutil.which(compiler()[0]) is None, reason="there is no C compiler")
 """For modules that compile C."""
+needs_cpp = pytest.mark.skipif(shutil.which(CPP[0]) is None, reason="there is no C++ compiler")
+"""For modules that compile C++."""
 
 APP = "CFE_APP, {0}, {0}_Main, {0}, 50, 16384, 0x0, {1};\n"
 
@@ -31,11 +36,19 @@ def compile_c(folder: Path, name: str, source: str, *flags: str) -> Path:
         source: the text, indented as it stands in the test; `declarations.h` is included before it.
         flags: of the compiler, more than those that all tests have.
     """
-    text = folder / f"{name}.c"
-    text.write_text(textwrap.dedent(source).lstrip())
-    made = folder / f"{name}.so"
-    command = [*compiler(), *FLAGS, "-include", "declarations.h", *flags, str(text), "-o", str(made)]
-    done = subprocess.run(command, capture_output=True, text=True)
+    return _compile(compiler(), folder, f"{name}.c", source, flags)
+
+
+def compile_cpp(folder: Path, name: str, source: str, *flags: str) -> Path:
+    """As `compile_c`, for C++; functions that cFE calls are declared as extern "C" in the text."""
+    return _compile(CPP, folder, f"{name}.cpp", source, flags)
+
+
+def _compile(command: list[str], folder: Path, file: str, source: str, flags: tuple[str, ...]) -> Path:
+    text = folder / file
+    text.write_text(f'#include "declarations.h"\n#line 1 "{file}"\n{textwrap.dedent(source).lstrip()}')
+    made = text.with_suffix(".so")
+    done = subprocess.run([*command, *FLAGS, *flags, str(text), "-o", str(made)], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return made
 

@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
 int32_t CFE_ES_WriteToSysLog(const char *, ...) __attribute__((format(printf, 1, 2)));
 bool CFE_ES_RunLoop(uint32_t *);
 void CFE_ES_ExitApp(uint32_t);
@@ -36,7 +39,12 @@ int32_t OS_BinSemCreate(uint32_t *, const char *, uint32_t, uint32_t);
 int32_t OS_BinSemTake(uint32_t);
 int32_t OS_BinSemGive(uint32_t);
 void OS_printf(const char *, ...) __attribute__((format(printf, 1, 2)));
+#ifndef __cplusplus
 int snprintf(char *, size_t, const char *, ...);
+#endif
+#ifdef __cplusplus
+}
+#endif
 
 #define SAY(...) CFE_ES_WriteToSysLog("> " __VA_ARGS__)
 #define RUN 1

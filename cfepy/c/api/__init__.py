@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any, cast
 from cfepy.c.api import (
     cds,
     config,
+    cpp,
     es,
     evs,
     fs,
+    gcov,
     memory_pools,
     msg,
     osal_clock,
@@ -33,8 +35,10 @@ from cfepy.c.api import (
     psp,
     psp_iodriver,
     psp_memory,
+    pthread,
     resource_ids,
     sb,
+    streams,
     tbl,
     text,
     time,
@@ -49,7 +53,9 @@ _OSAL = (
     *(osal_sockets, osal_select, osal_modules, osal_objects, osal_system),
 )
 _PSP = (psp, psp_memory, psp_iodriver)
-_MODULES = (text, es, memory_pools, cds, evs, sb, msg, tbl, time, fs, config, resource_ids, *_OSAL, *_PSP)
+_TOOLS = (streams, cpp, pthread, gcov)
+_CORE = (text, es, memory_pools, cds, evs, sb, msg, tbl, time, fs, config, resource_ids)
+_MODULES = (*_CORE, *_TOOLS, *_OSAL, *_PSP)
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
@@ -79,4 +85,4 @@ def function_names() -> set[str]:
 
     api = Declarations()
     declare(api, cast("Any", _Anything()))
-    return set(api.functions)
+    return {*api.functions, *api.data}

@@ -3,7 +3,7 @@
  * A signature has a letter for each parameter of the C function.
  *   in   i I int32 uint32   h H int16 uint16   B uint8   b bool   q int64   Q uint64, size_t
  *        p pointer as a number, 0 for NULL   P the same, not NULL   s S text, None for NULL / not NULL
- *        m message, as bytes, not NULL   t CFE_TIME_SysTime_t, as (seconds, subseconds)   f format and what follows
+ *        m message, as bytes, not NULL   t CFE_TIME_SysTime_t, as (seconds, subseconds)   f format and what follows   v format and va_list
  *        - is not handed over
  *   out  1 2 4 8 so many bytes at the pointer   w z like 4 and 8, where the pointer may be NULL
  * A NULL where there must not be one is answered with the status that the function was declared with; the others are not
@@ -170,11 +170,13 @@ HIDDEN int format_list(Coroutine *coroutine, char *to, size_t room, const char *
 }
 #endif
 
-static PyObject *formatted(Coroutine *coroutine, int fixed)
+static PyObject *formatted(Coroutine *coroutine, int fixed, bool has_list)
 {
     char text[FORMATTED];
-    uint64_t format = argument(coroutine, fixed - 1);
-    if (format_text(coroutine, text, sizeof text, (const char *)format, fixed) < 0)
+    const char *format = (const char *)argument(coroutine, fixed - 1);
+    int count = has_list ? format_list(coroutine, text, sizeof text, format, argument(coroutine, fixed))
+                         : format_text(coroutine, text, sizeof text, format, fixed);
+    if (count < 0)
         return NULL;
     return PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "surrogateescape");
 }
@@ -224,7 +226,8 @@ static PyObject *argument_object(Coroutine *coroutine, char kind, int number)
     case 'S': return value ? text_at(value) : NULL;
     case 'm': return value ? message_at(value, coroutine->table->largest_message) : NULL;
     case 't': return Py_BuildValue("(II)", (uint32_t)value, (uint32_t)(value >> 32));
-    case 'f': return value ? formatted(coroutine, number + 1) : NULL;
+    case 'f':
+    case 'v': return value ? formatted(coroutine, number + 1, kind == 'v') : NULL;
     default: return PyErr_Format(PyExc_SystemError, "signature letter %c", kind);
     }
 }

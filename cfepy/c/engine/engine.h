@@ -138,7 +138,7 @@ typedef struct {
     Native native;
     void *target;
 } NativeRow;
-extern HIDDEN const NativeRow natives_of_msg[], natives_of_libc[], natives_of_math[];
+extern HIDDEN const NativeRow natives_of_msg[], natives_of_libc[], natives_of_math[], natives_of_cpp[], natives_of_locale[];
 #define NATIVE(function) static uint64_t function(Coroutine *call, const Function *self)
 #define POINTER(number) ((unsigned char *)call->arguments[number])
 #define WORD(number) (call->arguments[number])

@@ -120,12 +120,6 @@ NATIVE(smashed)
     return 0;
 }
 
-NATIVE(aborted)
-{
-    PyErr_SetString(fault_error, "abort()");
-    return 0;
-}
-
 NATIVE(overflowed)
 {
     PyErr_SetString(fault_error, "buffer overflow detected");
@@ -217,7 +211,6 @@ HIDDEN const NativeRow natives_of_libc[] = {
     {"calloc", allocate_many},
     {"realloc", allocate_again},
     {"free", let_go},
-    {"abort", aborted},
     {"__assert_fail", asserted},
     {"__stack_chk_fail", smashed},
     {"__ctype_b_loc", ctype_table},

@@ -8,7 +8,7 @@
 
 static const NativeRow *find_native(const char *name)
 {
-    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math};
+    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
         for (const NativeRow *row = lists[i]; row->name != NULL; row++)
             if (strcmp(row->name, name) == 0)
@@ -39,7 +39,7 @@ static PyObject *table_add(Table *table, PyObject *arguments)
         made.clears_outputs |= *signature == '~';
         made.costs |= *signature == '$';
     }
-    if (strlen(signature) > MOST_PARAMETERS || strspn(signature, "iIhHBbqQpPsSmtf-1248wz") != strlen(signature))
+    if (strlen(signature) > MOST_PARAMETERS || strspn(signature, "iIhHBbqQpPsSmtfv-1248wz") != strlen(signature))
         return PyErr_Format(PyExc_ValueError, "bad signature %s of %s", signature, name);
     strcpy(made.kinds, signature);
     const NativeRow *row = find_native(name);
@@ -372,7 +372,7 @@ static PyObject *has_native(PyObject *module, PyObject *name)
 
 static PyObject *natives(PyObject *module, PyObject *unused)
 {
-    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math};
+    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale};
     PyObject *names = PyList_New(0);
     for (size_t i = 0; names != NULL && i < sizeof lists / sizeof *lists; i++)
         for (const NativeRow *row = lists[i]; row->name != NULL; row++) {

@@ -104,10 +104,11 @@ def _check_compiled(
         entry: the line that names the file.
         file: the shared object.
     """
-    from cfepy.c import ElfError, read_shared_object
+    from cfepy.c import ElfError, read_shared_object, wanted_names
 
     try:
         source = read_shared_object(file.read_bytes(), file.name)
+        wanted = wanted_names(source)
     except ElfError as error:
         yield MissionProblem(file, 0, str(error))
         return
@@ -115,7 +116,7 @@ def _check_compiled(
     if entry.symbol not in ("", NO_SYMBOL, *functions):
         hint = did_you_mean(entry.symbol, functions, "correct the name, or export the function (it may be static)")
         yield MissionProblem(script, entry.line, f"{file.name} has no function {entry.symbol}; {hint}")
-    yield from _check_needs(script, entries, entry, set(source.wanted()))
+    yield from _check_needs(script, entries, entry, set(wanted))
 
 
 def _check_needs(

@@ -1,0 +1,135 @@
+"""Thread-local variables: each task has its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.c.building import (
+    compile_c,
+    compile_cpp,
+    console_of,
+    fly,
+    fly_c,
+    needs_compiler,
+    needs_cpp,
+    said,
+    write_mission,
+)
+
+pytestmark = needs_compiler
+
+EACH_ITS_OWN = """
+    static __thread int count = 40;
+    __thread char zeros[100];
+    static void fly(const char *who)
+    {
+        for (int i = 0; i < 3; i++) {
+            zeros[99]++;
+            count++;
+            OS_TaskDelay(10);
+        }
+        SAY("%s %d %d", who, count, zeros[99]);
+    }
+    static void child(void) { fly("child"); }
+    void TEST_Main(void)
+    {
+        uint32_t id;
+        CFE_ES_CreateChildTask(&id, "CHILD", child, NULL, 16384, 60, 0);
+        fly("main");
+        OS_TaskDelay(200);
+        CFE_ES_CreateChildTask(&id, "CHILD", child, NULL, 16384, 60, 0);
+        OS_TaskDelay(200);
+    }
+"""
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+@pytest.mark.parametrize("model", ["global-dynamic", "local-dynamic"])
+def test_each_task_has_its_own(tmp_path: Path, model: str, tasks: str) -> None:
+    console = fly_c(tmp_path, EACH_ITS_OWN, flags=(f"-ftls-model={model}",), tasks=tasks)
+    assert sorted(said(console)) == ["child 43 3", "child 43 3", "main 43 3"]
+
+
+def test_a_library_has_some_that_applications_use(tmp_path: Path) -> None:
+    compile_c(tmp_path, "lib", "__thread int LIB_Level = 5; int LIB_Up(void) { return ++LIB_Level; }")
+    compile_c(
+        tmp_path,
+        "TEST",
+        """
+        extern __thread int LIB_Level;
+        int LIB_Up(void);
+        static void child(void) { SAY("child %d", LIB_Up()); }
+        void TEST_Main(void)
+        {
+            uint32_t id;
+            LIB_Level = 10;
+            CFE_ES_CreateChildTask(&id, "CHILD", child, NULL, 16384, 60, 0);
+            OS_TaskDelay(200);
+            int level = LIB_Up();
+            SAY("main %d %d", level, LIB_Level);
+        }
+        """,
+    )
+    folder = write_mission(tmp_path, "TEST", libraries="CFE_LIB, lib, NULL, LIB, 0, 0, 0x0, 0;\n")
+    assert said(console_of(fly(folder))) == ["child 6", "main 11 11"]
+
+
+def test_fixed_places_are_refused_with_what_helps(tmp_path: Path) -> None:
+    console = fly_c(tmp_path, EACH_ITS_OWN, flags=("-ftls-model=initial-exec",))
+    assert "TEST.so has thread-local variables at fixed places" in console
+    assert "compile it with -fPIC -ftls-model=global-dynamic" in console
+
+
+@needs_cpp
+def test_objects_end_with_their_task(tmp_path: Path) -> None:
+    compile_cpp(
+        tmp_path,
+        "TEST",
+        """
+        struct Own {
+            int number = 1;
+            ~Own() { SAY("own %d ends", number); }
+        };
+        static thread_local Own own;
+        static void child() { own.number = 2; }
+        extern "C" void TEST_Main()
+        {
+            uint32_t id;
+            own.number = 3;
+            CFE_ES_CreateChildTask(&id, "CHILD", child, NULL, 16384, 60, 0);
+            OS_TaskDelay(200);
+        }
+        """,
+    )
+    assert said(console_of(fly(write_mission(tmp_path, "TEST")))) == ["own 2 ends", "own 3 ends"]
+
+
+def test_an_indirect_function_is_chosen_when_it_is_loaded(tmp_path: Path) -> None:
+    source = """
+        static int one(void) { return 1; }
+        static int two(void) { return 2; }
+        static int (*choose(void))(void) { return sizeof(long) == 8 ? two : one; }
+        int number(void) __attribute__((ifunc("choose")));
+        int (*by_pointer)(void) = number;
+        void TEST_Main(void) { (void)one; SAY("%d %d", number(), by_pointer()); }
+    """
+    assert said(fly_c(tmp_path, source)) == ["2 2"]
+
+
+def test_errno_is_there_for_each_task(tmp_path: Path) -> None:
+    source = """
+        int *__errno_location(void);
+        static int *other;
+        static void child(void) { other = __errno_location(); *other = 7; }
+        void TEST_Main(void)
+        {
+            uint32_t id;
+            *__errno_location() = 3;
+            CFE_ES_CreateChildTask(&id, "CHILD", child, NULL, 16384, 40, 0);
+            OS_TaskDelay(200);
+            SAY("%d %d", *__errno_location(), other != __errno_location());
+        }
+    """
+    assert said(fly_c(tmp_path, source)) == ["3 1"]
