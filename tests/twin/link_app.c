@@ -108,8 +108,9 @@ static void Take(uint8 *data, size_t size)
         }
         return;
     }
-    buffer = CFE_SB_AllocateMessageBuffer(size);
+    buffer = CFE_SB_AllocateMessageBuffer(size + 1); /* some applications read a text to its NUL, behind the end */
     memcpy(buffer, data, size);
+    ((uint8 *)buffer)[size] = 0;
     if (CFE_SB_TransmitBuffer(buffer, false) != CFE_SUCCESS)
     {
         CFE_SB_ReleaseMessageBuffer(buffer);
