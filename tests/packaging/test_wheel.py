@@ -14,9 +14,13 @@ import pytest
 
 from cfepy.console import Console
 from cfepy.mission import Mission
+from tests.c.building import needs_compiler
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = [
+    "cfepy/c/engine/engine.h",
+    "cfepy/c/engine/run.c",
+    "cfepy/c/engine/switch_x86_64.S",
     "cfepy/c/headers/es.h",
     "cfepy/c/headers/names.txt",
     "cfepy/cli/run/templates/c_app/fsw/src/NAME.c.in",
@@ -83,3 +87,26 @@ def test_boards_are_found(home: Path) -> None:
     output = cfepy(home, "boards")
     assert "linux" in output
     assert "rx64m" in output
+
+
+@needs_compiler
+def test_a_compiled_application_is_made_built_and_flown_away_from_the_checkout(home: Path, wheel: Path) -> None:
+    execute([str(home / "venv/bin/python"), "-m", "pip", "install", "--quiet", f"{wheel}[c]"], home)
+    cfepy(home, "new", "app", "probe", "--c")
+    cfepy(home, "build", "probe")
+    assert cfepy(home, "check", "probe").splitlines()[-1] == "nothing found"
+    output = cfepy(home, "run", "probe", "--for", "2", "--quiet")
+    with Mission(str(home / "probe"), console=Console(quiet=True)) as mission:
+        mission.run_for(2)
+        assert output.splitlines()[-1] == f"trace: {mission.trace.digest()}"
+
+
+@needs_compiler
+def test_a_wheel_can_have_the_engine_inside(tmp_path: Path) -> None:
+    environment = os.environ | {"CFEPY_ENGINE": "1"}
+    command = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--wheel-dir", str(tmp_path), str(ROOT)]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    (built,) = tmp_path.glob("cfepy-*.whl")
+    assert not built.name.endswith("none-any.whl")
+    assert any(name.startswith("cfepy/c/_engine.") for name in zipfile.ZipFile(built).namelist())
