@@ -26,7 +26,7 @@ from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
 from cfepy.mission.record import RunRecord
 from cfepy.mission.spec import MissionSpec
 from cfepy.mission.table_files import TableFiles
-from cfepy.nodes.app_modules import AppModules, make_universe
+from cfepy.nodes import AppModules, make_app_universe
 from cfepy.osal import FileSystem, Network, Osal
 from cfepy.ports import Ports
 from cfepy.psp import BoardProfile, MemoryBudget, Psp, Retained, object_sizes
@@ -169,7 +169,7 @@ class Processor:
     def _app_universe(self) -> Universe:
         """Where apps have those modules from that open files."""
         machine = self.machine
-        return make_universe(
+        return make_app_universe(
             kernel=machine.kernel,
             name="apps",
             seed=machine.seed,

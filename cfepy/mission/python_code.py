@@ -25,7 +25,7 @@ from cfepy.es import SymbolError
 from cfepy.mission.compiled_code import find_compiled
 from cfepy.mission.loader import NO_SYMBOL, NODE_SYMBOL, Code, Finder, MainCode, RemovedCodeError
 from cfepy.mission.tracebacks import app_traceback, described
-from cfepy.nodes.app_modules import AppModules
+from cfepy.nodes import AppModules
 from cfepy.osal import FileSystem
 from cfepy.resources import shipped
 from cfepy.rtos import TaskExit

@@ -18,6 +18,7 @@ from cfepy.faces import face
 from cfepy.nodes.config import ROSCORE_PARAMS, NodeConfig, RosConfig, TopicConfig
 
 if TYPE_CHECKING:
+    from cfepy.nodes.app_modules import AppModules, make_app_universe
     from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
     from cfepy.nodes.refused import RefusedError
     from cfepy.nodes.universe import Factory, StartThread, Universe
@@ -29,6 +30,7 @@ __all__ = [
     "NEEDED",
     "PREFIX",
     "ROSCORE_PARAMS",
+    "AppModules",
     "Factory",
     "NodeConfig",
     "Overlay",
@@ -38,12 +40,14 @@ __all__ = [
     "TopicConfig",
     "Universe",
     "below_root",
+    "make_app_universe",
 ]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".app_modules": ("AppModules", "make_app_universe"),
             ".files": ("ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Overlay", "below_root"),
             ".refused": ("RefusedError",),
             ".universe": (

@@ -202,7 +202,7 @@ def sys_module(universe: Universe) -> ModuleType:
     return sys
 
 
-def make_universe(**options: Any) -> Universe:
+def make_app_universe(**options: Any) -> Universe:
     """A universe for `AppModules`.
 
     Args:

@@ -18,7 +18,6 @@ from cfepy.status import (
 )
 from cfepy.units import NS_PER_MS
 
-
 LEAST_STACK = 16384
 """PTHREAD_STACK_MIN of Linux, in bytes."""
 

@@ -10,7 +10,7 @@ import pytest
 from cfepy.console import Console
 from cfepy.mission.loader import NODE_SYMBOL, BuiltInApps, ModuleLoader
 from cfepy.mission.python_code import Code, NodeScripts, PythonLoader, RemovedCodeError, python_finders
-from cfepy.nodes.app_modules import AppModules, make_universe
+from cfepy.nodes import AppModules, make_app_universe
 from cfepy.osal import FileSystem
 from cfepy.status import OS_ERROR, OsalError
 
@@ -71,7 +71,7 @@ def console() -> Console:
 @pytest.fixture
 def loader(tmp_path: Path, files: FileSystem, console: Console) -> ModuleLoader:
     nodes = NodeScripts(files, tmp_path, lambda file: None, lambda script, app: lambda: f"{script.name} as {app}")
-    python = python_finders(PythonLoader(console, lambda: HANDLE, AppModules(make_universe)), files, tmp_path)
+    python = python_finders(PythonLoader(console, lambda: HANDLE, AppModules(make_app_universe)), files, tmp_path)
     built_in = BuiltInApps({"/cf/own.so": lambda: "built in"})
     return ModuleLoader(console, [CompiledApps(files), built_in, nodes, *python])
 
