@@ -24,6 +24,7 @@ _WORDS = {
     signal.SIGBUS: "SIGBUS (a bad address)",
     signal.SIGFPE: "SIGFPE (such as a division by zero)",
     signal.SIGILL: "SIGILL (no such instruction)",
+    signal.SIGTRAP: "SIGTRAP (a trap that the compiler put there)",
 }
 _NEAR_STACK = 1 << 16
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cfepy.c.elf import ElfError, SharedObject, read_shared_object
+from cfepy.c.faults import CFault
 from cfepy.c.image import Image, LoadedCode
 from cfepy.c.runtime import CRuntime
 from cfepy.console import Console
@@ -59,6 +60,8 @@ class CompiledLoader:
             return self.runtime.load(source)
         except (ElfError, MemoryError) as error:
             raise self._failed(error) from error
+        except CFault as error:
+            raise self._failed(CFault(f"{file}: {error}")) from error
 
     def symbol(self, image: Image, file: str, symbol: str) -> int:
         """The address of an entry point.

@@ -121,20 +121,32 @@ class CRuntime:
     # -- code --------------------------------------------------------------------------------------------------------
 
     def load(self, source: SharedObject) -> Image:
-        """Load a shared object anew and call what it wants to be called at load."""
+        """Load a shared object anew and call what it wants to be called at load.
+
+        Raises:
+            CFault: that failed; the object is gone again.
+        """
         own: tuple[Image, ...] = ()
-        for name in LIBRARIES:
-            if name in source.needed:
-                own += (self._loaded(host_library(name), own),)
-        image = self._loaded(source, own)
+        try:
+            for name in LIBRARIES:
+                if name in source.needed:
+                    own += (self._loaded(host_library(name), own),)
+            image = self._loaded(source, own)
+        except BaseException:
+            self._drop(*own[::-1])
+            raise
         self._own[image] = own
         return image
 
     def _loaded(self, source: SharedObject, own: tuple[Image, ...]) -> Image:
         image = Image(source, self.arena, LinkedWith(self._exports, self.thread_locals, own, self.run))
         self._images.append(image)
-        for function in image.functions_at_load:
-            self.run(function)
+        try:
+            for function in image.functions_at_load:
+                self.run(function)
+        except BaseException:
+            self._drop(image)
+            raise
         return image
 
     def unload(self, app_name: str) -> None:
@@ -153,6 +165,10 @@ class CRuntime:
         """Take code out of memory, after what it wants to be called at its end."""
         for each in (image, *self._own.pop(image, ())[::-1]):
             self._finish(each)
+            self._drop(each)
+
+    def _drop(self, *images: Image) -> None:
+        for each in images:
             for forget in self.on_unload:
                 forget(each)
             self._images.remove(each)

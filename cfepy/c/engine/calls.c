@@ -150,10 +150,13 @@ HIDDEN int format_text(Coroutine *coroutine, char *to, size_t room, const char *
     struct { double low; uint64_t high; } floats[FLOAT_ARGUMENTS];
     uint64_t general[REGISTER_ARGUMENTS];
     memcpy(general, coroutine->arguments, sizeof general);
-    for (int i = 0; i < FLOAT_ARGUMENTS; i++)
+    for (int i = 0; i < FLOAT_ARGUMENTS; i++) {
         floats[i].low = coroutine->floats[i];
-    List made = {coroutine->stack_pointer + STACK_ARGUMENTS, general + REGISTER_ARGUMENTS, floats + FLOAT_ARGUMENTS,
-                 -8 * (REGISTER_ARGUMENTS - fixed), -16 * FLOAT_ARGUMENTS};
+        floats[i].high = coroutine->float_highs[i];
+    }
+    int in_registers = fixed < REGISTER_ARGUMENTS ? fixed : REGISTER_ARGUMENTS;
+    List made = {coroutine->stack_pointer + STACK_ARGUMENTS + fixed - in_registers, general + REGISTER_ARGUMENTS,
+                 floats + FLOAT_ARGUMENTS, -8 * (REGISTER_ARGUMENTS - in_registers), -16 * FLOAT_ARGUMENTS};
     va_list list;
     memcpy(&list, &made, sizeof made);
     return format_guarded(coroutine, to, room, format, list);

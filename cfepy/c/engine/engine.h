@@ -26,13 +26,14 @@
 enum { FINISHED = -1, FAULT = -2, PREEMPTED = -3 };
 
 #if defined(__x86_64__)
-enum { REGISTER_ARGUMENTS = 6, STACK_ARGUMENTS = 7 };  /* words from a stopped stack pointer to the arguments there */
+/* Words from a stopped stack pointer: to where the call returns to, and to the arguments that are on the stack. */
+enum { RETURN_ADDRESS = 6, STACK_ARGUMENTS = 7, REGISTER_ARGUMENTS = 6 };
 #else
-enum { REGISTER_ARGUMENTS = 8, STACK_ARGUMENTS = 20 };
+enum { RETURN_ADDRESS = 11, STACK_ARGUMENTS = 20, REGISTER_ARGUMENTS = 8 };
 #endif
 enum { FLOAT_ARGUMENTS = 8 };
 
-/* The assembly knows the members down to `result_high` by their offsets. */
+/* The assembly knows the members down to `float_highs` by their offsets. */
 typedef struct Coroutine {
     uint64_t arguments[8];                     /* 0: as many as the processor passes in registers */
     uint64_t *stack_pointer;                   /* 64: of the application, behind what the switch saved */
@@ -43,6 +44,7 @@ typedef struct Coroutine {
     double float_result;                       /* 160 */
     uint64_t host_float_modes, float_modes;    /* 168, 176 */
     uint64_t result_high;                      /* 184: the second word of a result of two */
+    uint64_t float_highs[FLOAT_ARGUMENTS];     /* 192: of `floats` as long double, where registers are that wide */
     /* not known to the assembly */
     char *stack;                               /* lowest byte */
     size_t size;
@@ -55,8 +57,10 @@ typedef struct Coroutine {
     double computes_since, computed_s;         /* when it was last seen to compute without a call; for how long */
     uint64_t called_from;                      /* where its last call returns to */
     uint64_t fault_address, fault_pc, fault_stack_pointer;
+    uint64_t fault_link;                       /* the register with the return address, where the processor has one */
     struct Table *table;
 } Coroutine;
+_Static_assert(offsetof(Coroutine, float_highs) == 192, "the assembly has these offsets");
 
 struct Function;
 /* A call that is answered without Python; what it returns goes to the application. */

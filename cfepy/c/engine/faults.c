@@ -46,9 +46,13 @@ static pthread_key_t thread_end;
 #if defined(__x86_64__)
 #define PROGRAM_COUNTER(context) ((context)->uc_mcontext.gregs[REG_RIP])
 #define STACK_POINTER(context) ((context)->uc_mcontext.gregs[REG_RSP])
+#define LINK(context) 0
+#define FAULTS SIGSEGV, SIGBUS, SIGFPE, SIGILL
 #elif defined(__aarch64__)
 #define PROGRAM_COUNTER(context) ((context)->uc_mcontext.pc)
 #define STACK_POINTER(context) ((context)->uc_mcontext.sp)
+#define LINK(context) ((context)->uc_mcontext.regs[30])
+#define FAULTS SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP /* the last is that of __builtin_trap() */
 #else
 #error "cfepy runs compiled applications on x86-64 and aarch64"
 #endif
@@ -64,11 +68,12 @@ static size_t float_size(const ucontext_t *context)
     return magic == 0x46505853 && size <= FLOAT_STATE ? size : 512;
 }
 
-static void keep_registers(const ucontext_t *context)
+static bool keep_registers(const ucontext_t *context)
 {
     mine->registers = context->uc_mcontext;
     mine->float_size = float_size(context);
     memcpy(mine->float_state, context->uc_mcontext.fpregs, mine->float_size);
+    return true;
 }
 
 static void give_registers(ucontext_t *context)
@@ -77,7 +82,24 @@ static void give_registers(ucontext_t *context)
     memcpy(context->uc_mcontext.fpregs, mine->float_state, mine->float_size);
 }
 #else
-static void keep_registers(const ucontext_t *context) { mine->registers = context->uc_mcontext; }
+/* Vector registers are in records behind the others, each with its kind and size. What has no room there, such as vectors
+ * of 2048 bits, is elsewhere in the signal's frame, which another frame cannot give: such code is not stopped. */
+static bool keep_registers(const ucontext_t *context)
+{
+    enum { END = 0, ELSEWHERE = 0x45585401 }; /* EXTRA_MAGIC */
+    const unsigned char *record = context->uc_mcontext.__reserved, *end = record + sizeof context->uc_mcontext.__reserved;
+    uint32_t head[2];
+    for (; record + sizeof head <= end; record += head[1]) {
+        memcpy(head, record, sizeof head);
+        if (head[0] == ELSEWHERE)
+            return false;
+        if (head[0] == END || head[1] < sizeof head)
+            break;
+    }
+    mine->registers = context->uc_mcontext;
+    return true;
+}
+
 static void give_registers(ucontext_t *context) { context->uc_mcontext = mine->registers; }
 #endif
 
@@ -99,8 +121,7 @@ static void on_watch(ucontext_t *context)
         mine->is_resuming = false;
         give_registers(context);
     } else if (coroutine != NULL && coroutine->thread == mine->id && !coroutine->is_native &&
-               is_application(PROGRAM_COUNTER(context))) {
-        keep_registers(context);
+               is_application(PROGRAM_COUNTER(context)) && keep_registers(context)) {
         coroutine->fault_pc = PROGRAM_COUNTER(context);
         land(coroutine, context, PREEMPTED);
     }
@@ -133,6 +154,7 @@ static void on_signal(int signal, siginfo_t *info, void *interrupted)
         coroutine->fault_address = (uint64_t)info->si_addr;
         coroutine->fault_pc = pc;
         coroutine->fault_stack_pointer = STACK_POINTER(context);
+        coroutine->fault_link = LINK(context);
         if (coroutine->is_native)
             siglongjmp(coroutine->native_fault, 1);
         land(coroutine, context, FAULT);
@@ -240,7 +262,7 @@ HIDDEN void faults_resume(Coroutine *coroutine)
 
 HIDDEN int faults_begin(void)
 {
-    static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL};
+    static const int faults[] = {FAULTS};
     struct sigaction action = {.sa_sigaction = on_signal, .sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER | SA_RESTART};
     static bool has_begun;
     if (!has_begun) {

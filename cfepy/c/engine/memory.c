@@ -96,5 +96,6 @@ HIDDEN PyObject *memory_make_stub(PyObject *module, PyObject *arguments)
                        (uint32_t)target, (uint32_t)(target >> 32)};
 #endif
     memcpy((void *)at, code, sizeof code);
+    __builtin___clear_cache((char *)at, (char *)at + sizeof code);
     return PyLong_FromSize_t(sizeof code);
 }

@@ -152,19 +152,40 @@ HIDDEN PyTypeObject table_type = {
 enum { ENTRY_ARGUMENTS = 6 };
 #define LONGEST_LOOK_S 0.25
 
+/* Where a function was called that faulted, or that is not there; 0 for a fault of the application's own code. */
+static uint64_t caller_of_fault(const Coroutine *coroutine)
+{
+    if (!coroutine->is_native && coroutine->fault_pc >= ARENA_LOW && coroutine->fault_pc < ARENA_HIGH)
+        return 0;
+#if !defined(__x86_64__)
+    if (!coroutine->is_native)
+        return coroutine->fault_link;
+#endif
+    const uint64_t *at = coroutine->is_native ? coroutine->stack_pointer + RETURN_ADDRESS
+                                              : (const uint64_t *)coroutine->fault_stack_pointer;
+    uint64_t caller;
+    return engine_copy(&caller, at, sizeof caller) ? 0 : caller;
+}
+
+/* The address that was used. A function of libc reads whole vectors, from before the pointer that it was given, and how
+ * long they are is another on each computer: its pointer is what was wrong. */
+static uint64_t used_address(const Coroutine *coroutine)
+{
+    enum { POINTERS = 3, LONGEST_VECTOR = 64 };
+    for (int i = 0; coroutine->is_native && i < POINTERS; i++)
+        if (coroutine->arguments[i] - coroutine->fault_address < LONGEST_VECTOR)
+            return coroutine->arguments[i];
+    return coroutine->fault_address;
+}
+
 static int fault_found(Coroutine *coroutine)
 {
-    uint64_t caller = 0; /* where a function was called that faulted, or that is not there */
-    if (coroutine->is_native || coroutine->fault_pc < ARENA_LOW || coroutine->fault_pc >= ARENA_HIGH) {
-        const uint64_t *at = coroutine->is_native ? coroutine->stack_pointer + STACK_ARGUMENTS - 1
-                                                  : (const uint64_t *)coroutine->fault_stack_pointer;
-        if (engine_copy(&caller, at, sizeof caller))
-            caller = 0;
-    }
+    uint64_t address = used_address(coroutine);
+    uint64_t caller = caller_of_fault(coroutine);
     coroutine->is_native = false;
     PyObject *what = Py_BuildValue(
         "(iKKKL)", coroutine->signal, (unsigned long long)coroutine->fault_pc, (unsigned long long)caller,
-        (unsigned long long)coroutine->fault_address,
+        (unsigned long long)address,
         (long long)(coroutine->fault_stack_pointer - (uint64_t)coroutine->stack));
     PyErr_SetObject(fault_error, what);
     Py_XDECREF(what);
@@ -216,7 +237,7 @@ static int serve(Coroutine *coroutine)
         return fault_found(coroutine);
     coroutine->result_high = 0;
     coroutine->computes_since = coroutine->computed_s = 0;
-    coroutine->called_from = coroutine->stack_pointer[STACK_ARGUMENTS - 1];
+    coroutine->called_from = coroutine->stack_pointer[RETURN_ADDRESS];
     const Function *function = &coroutine->table->functions[coroutine->wanted];
     if (function->native != NULL) {
         if (serve_native(coroutine, function) < 0)
@@ -251,7 +272,7 @@ static void prepare(Coroutine *coroutine, uint64_t function, const uint64_t *val
     top[0] = function; /* x19 */
     for (int i = 0; i < ENTRY_ARGUMENTS; i++)
         top[1 + i] = values[i]; /* x20 and on */
-    top[11] = (uint64_t)engine_begin; /* x30 */
+    top[RETURN_ADDRESS] = (uint64_t)engine_begin;
     coroutine->float_modes = 0;
 #endif
     coroutine->stack_pointer = top;
