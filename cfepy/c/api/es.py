@@ -10,7 +10,7 @@ from cfepy.c.memory import chars
 from cfepy.c.stacks import LEAST
 from cfepy.es import AppInfo
 from cfepy.ids import ES_APPID_BASE, ES_LIBID_BASE, get_base
-from cfepy.status import CFE_ES_BAD_ARGUMENT, CfeError
+from cfepy.status import CFE_ES_BAD_ARGUMENT, CFE_SUCCESS, CfeError
 
 if TYPE_CHECKING:
     from cfepy.c.calls import Declarations
@@ -103,7 +103,8 @@ def _declare_ids(api: Declarations, c: CRuntime) -> None:
         ("GenCounter", es.get_gen_counter_name),
         ("CDSBlock", es.get_cds_block_name),
     ):
-        api.add(f"CFE_ES_Get{what}Name", "pIQ", name_into(c.memory, name_of, BAD, BAD))
+        too_long = BAD if what == "Task" else CFE_SUCCESS  # OSAL's names of tasks are told when they are cut
+        api.add(f"CFE_ES_Get{what}Name", "pIQ", name_into(c.memory, name_of, BAD, too_long))
 
 
 def _declare_info(api: Declarations, c: CRuntime) -> None:

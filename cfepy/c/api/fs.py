@@ -10,7 +10,13 @@ from cfepy.c.api.pointers import need
 from cfepy.c.memory import CMemory
 from cfepy.fs import DESCRIPTION_SIZE, HEADER_SIZE, FileHeader, FileNameError, FileWriteMetaData
 from cfepy.osal import OS_SEEK_SET
-from cfepy.status import CFE_FS_BAD_ARGUMENT, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError, OsalError
+from cfepy.status import (
+    CFE_FS_BAD_ARGUMENT,
+    CFE_FS_INVALID_PATH,
+    CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
+    CfeError,
+    OsalError,
+)
 from cfepy.texts import from_bytes, to_bytes
 
 if TYPE_CHECKING:
@@ -105,14 +111,18 @@ def _declare_names(api: Declarations, c: CRuntime) -> None:
             memory.poke(to, to_bytes(error.made) + b"\0")
             raise
 
+    def nothing() -> str:
+        raise FileNameError(CFE_FS_INVALID_PATH, "neither a name nor a default", "")
+
     def parse(to: int, name: str | None, size: int, category: int) -> None:
-        put_made(to, size, lambda: fs.parse_input_file_name(name or "", category, size))
+        put_made(to, size, nothing if name is None else lambda: fs.parse_input_file_name(name, category, size))
 
     def parse_ex(
         to: int, name: int, size: int, name_size: int, default: str | None, path: str | None, extension: str | None
     ) -> None:
         text = from_bytes(_text_within(memory, name, name_size)) if name and name_size else ""
-        put_made(to, size, lambda: fs.parse_input_file_name_ex(text, default, path, extension, size))
+        make = lambda: fs.parse_input_file_name_ex(text, default, path, extension, size)  # noqa: E731
+        put_made(to, size, make if text or default is not None else nothing)
 
     def extract(path: str, to: int) -> None:
         memory.poke(to, to_bytes(fs.extract_filename_from_path(path)) + b"\0")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cfepy.c.memory import CMemory
-from cfepy.status import CfeError
+from cfepy.status import CFE_SUCCESS, CfeError
 
 
 def need(status: int, *pointers: object) -> None:
@@ -27,7 +27,7 @@ def name_into(
         memory: of C.
         get: gives the name of an id.
         no_room: the status for no buffer, or one of size 0.
-        too_long: the status when the name had to be cut.
+        too_long: the status when the name had to be cut; CFE_SUCCESS where C does not tell.
     """
 
     def call(buffer: int, key: int, size: int) -> None:
@@ -38,7 +38,7 @@ def name_into(
         except CfeError:
             memory.poke(buffer, b"\0")
             raise
-        if not memory.put_text(buffer, name, size):
+        if not memory.put_text(buffer, name, size) and too_long != CFE_SUCCESS:
             raise CfeError(too_long, f"{size} bytes are too few for {name!r}")
 
     return call

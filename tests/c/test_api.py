@@ -1,0 +1,23 @@
+"""Functions of cFE for C: each application says here what it said on NASA's cFE."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.c.api.flights import NAMES, WITHOUT_DEPRECATED, expected, fly
+from tests.c.building import needs_compiler
+
+pytestmark = needs_compiler
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+@pytest.mark.parametrize("name", NAMES)
+def test_an_application_says_what_it_says_on_nasas_cfe(tmp_path: Path, name: str, tasks: str) -> None:
+    assert fly(name, tmp_path, tasks) == expected(name)
+
+
+def test_handles_of_tables_are_ids_without_deprecated_elements(tmp_path: Path) -> None:
+    lines = fly("tables", tmp_path, flags=WITHOUT_DEPRECATED, more="compiled: {omit_deprecated: true}\n")
+    assert lines == expected("tables")
