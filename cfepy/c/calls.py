@@ -17,12 +17,14 @@ _STUB_PAGES = 16 * PAGE
 class Declared(NamedTuple):
     """A function of the API: who answers, how its arguments are handed over, and what a NULL pointer is answered with.
 
-    `signature` has a letter for each parameter; the head of `engine/calls.c` tells them.
+    `signature` has a letter for each parameter; the head of `engine/calls.c` tells them. `on_null` is called before a
+    NULL is answered, with the first three arguments as they are, such as for an event.
     """
 
     function: Callable[..., object] | None
     signature: str
     null_status: int
+    on_null: Callable[[int, int, int], object] | None = None
 
 
 class Declarations:
@@ -37,9 +39,16 @@ class Declarations:
         self.functions: dict[str, Declared] = {name: Declared(None, "", 0) for name in engine().natives()}
         self.data: dict[str, bytes] = {}
 
-    def add(self, name: str, signature: str, function: Callable[..., object], null_status: int = 0) -> None:
+    def add(
+        self,
+        name: str,
+        signature: str,
+        function: Callable[..., object],
+        null_status: int = 0,
+        on_null: Callable[[int, int, int], object] | None = None,
+    ) -> None:
         """Declare a function; one that the engine has as well is asked only when the engine wants that."""
-        self.functions[name] = Declared(function, signature, null_status)
+        self.functions[name] = Declared(function, signature, null_status, on_null)
 
     def __contains__(self, name: str) -> bool:
         return name in self.functions or name in self.data
@@ -73,8 +82,8 @@ class CallTable:
         return next((name for name, at in self._stubs.items() if at <= address < at + STUB), None)
 
     def _make(self, name: str) -> int:
-        function, signature, null_status = self._declared.functions.get(name) or Declared(_absent(name), "", 0)
-        number = self._table.add(name, function, signature, null_status)
+        declared = self._declared.functions.get(name) or Declared(_absent(name), "", 0)
+        number = self._table.add(name, declared.function, declared.signature, declared.null_status, declared.on_null)
         if self._next == self._end:
             self._next = self._arena.map(_STUB_PAGES)
             self._end = self._next + _STUB_PAGES

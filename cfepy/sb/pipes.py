@@ -7,7 +7,14 @@ from cfepy.osal import OS_MAX_API_NAME
 from cfepy.sb import events as ev
 from cfepy.sb.buffers import BufferServices
 from cfepy.sb.pipe import Pipe
-from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_PIPES_MET, CFE_SB_PIPE_CR_ERR, OS_ERR_NAME_TOO_LONG, CfeError
+from cfepy.status import (
+    CFE_SB_BAD_ARGUMENT,
+    CFE_SB_MAX_PIPES_MET,
+    CFE_SB_PIPE_CR_ERR,
+    OS_ERR_NAME_TOO_LONG,
+    OS_INVALID_POINTER,
+    CfeError,
+)
 
 PIPEOPTS_IGNOREMINE = 1
 POINTER_BYTES = 4  # what is in a queue is the address of a buffer; boards whose RAM is counted have 32 bits
@@ -16,14 +23,15 @@ POINTER_BYTES = 4  # what is in a queue is the address of a buffer; boards whose
 class PipeServices(BufferServices):
     """The CFE_SB_*Pipe* functions."""
 
-    def create_pipe(self, depth: int, name: str) -> int:
+    def create_pipe(self, depth: int, name: str | None, pointer: int | None = None) -> int:
         """Make a pipe that belongs to the calling application (CFE_SB_CreatePipe).
 
         The id is reserved before the name is looked at: a refused name uses up an id.
 
         Args:
             depth: messages that fit in, 1 to OS_QUEUE_MAX_DEPTH.
-            name: unique, at most 19 characters.
+            name: unique, at most 19 characters; None is C's NULL.
+            pointer: where C wants the id, for what is told of an error; None outside of C.
 
         Returns:
             The pipe id.
@@ -33,15 +41,16 @@ class PipeServices(BufferServices):
         """
         app = self.caller_name()
         limit = self.config.os_queue_max_depth
-        if not 0 < depth <= limit or not name:
-            text = f"CreatePipeErr:Bad Input Arg:app={app},ptr=0x0,depth={depth},maxdepth={limit}"
+        if not 0 < depth <= limit or name == "" or pointer == 0:
+            text = f"CreatePipeErr:Bad Input Arg:app={app},ptr=0x{pointer or 0:x},depth={depth},maxdepth={limit}"
             raise self._create_error(ev.CR_PIPE_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
         if len(self.pipes) >= self.config.sb_max_pipes:
             text = f"CreatePipeErr:Max Pipes({self.config.sb_max_pipes})In Use.app {app}"
             raise self._create_error(ev.MAX_PIPES_MET_EID, CFE_SB_MAX_PIPES_MET, text)
-        if name_size(name) >= OS_MAX_API_NAME:
+        if name is None or name_size(name) >= OS_MAX_API_NAME:
             self.pipes.skip()
-            text = f"CreatePipeErr:OS_QueueCreate returned {OS_ERR_NAME_TOO_LONG},app {app}"
+            status = OS_INVALID_POINTER if name is None else OS_ERR_NAME_TOO_LONG
+            text = f"CreatePipeErr:OS_QueueCreate returned {status},app {app}"
             raise self._create_error(ev.CR_PIPE_ERR_EID, CFE_SB_PIPE_CR_ERR, text)
         if any(pipe.name == name for pipe in self.pipes):
             self.pipes.skip()

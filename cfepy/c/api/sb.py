@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from cfepy import msg
 from cfepy.c.api.pointers import name_into, need
+from cfepy.sb import events as ev
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_SB_BAD_ARGUMENT,
-    CFE_SB_PIPE_CR_ERR,
+    CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
+    CfeError,
+    to_signed,
 )
 
 if TYPE_CHECKING:
@@ -31,23 +34,51 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_pipes(api: Declarations, c: CRuntime) -> None:
-    sb, packets = c.handle.sb, c.packets
+    sb, core, memory, packets = c.handle.sb, c.cfe.sb, c.memory, c.packets
 
-    def create(depth: int, name: str | None) -> int:
-        need(CFE_SB_PIPE_CR_ERR, name)
-        return sb.create_pipe(depth, name or "")
+    def create(out: int, depth: int, name: str | None) -> None:
+        pipe_id = sb.create_pipe(depth, name, out)
+        memory.put_u32(out, pipe_id)
 
     def delete(pipe_id: int) -> None:
         sb.delete_pipe(pipe_id)
         packets.forget_pipe(pipe_id)
 
-    name_of = name_into(c.memory, sb.get_pipe_name, BAD, BAD)
-    api.add("CFE_SB_CreatePipe", "4Hs", create, BAD)
+    name_of = name_into(memory, sb.get_pipe_name, BAD, CFE_STATUS_EXTERNAL_RESOURCE_FAIL)
+
+    def get_name(buffer: int, size: int, pipe_id: int) -> None:
+        if not buffer or not size:
+            refuse(ev.GETPIPENAME_NULL_PTR_EID, "Pipe Name Error:NullPtr")
+        try:
+            name_of(buffer, pipe_id, size)
+        except CfeError as error:
+            if error.status == CFE_STATUS_EXTERNAL_RESOURCE_FAIL:
+                core.report_nameless(pipe_id)
+            raise
+
+    def get_opts(pipe_id: int, out: int) -> None:
+        if not out and core.find_pipe(pipe_id) is not None:
+            core.counters.pipe_opts_error += 1
+            refuse(ev.GETPIPEOPTS_PTR_ERR_EID, "Pipe Opts Error:Bad Argument")
+        options = sb.get_pipe_opts(pipe_id)
+        memory.poke(out, bytes([options]))
+
+    def get_id(out: int, name: str | None) -> None:
+        if not out or name is None:
+            core.counters.get_pipe_id_by_name_error += 1
+            refuse(ev.GETPIPEIDBYNAME_NULL_ERR_EID, "Pipe ID By Name Error:Bad Argument")
+        memory.put_u32(out, sb.get_pipe_id_by_name(name))
+
+    def refuse(event_id: int, text: str) -> NoReturn:
+        core.report(event_id, ev.ERROR, f"{text},Requestor {core.caller_name()}")
+        raise CfeError(BAD, text)
+
+    api.add("CFE_SB_CreatePipe", "pHs", create)
     api.add("CFE_SB_DeletePipe", "I", delete)
     api.add("CFE_SB_SetPipeOpts", "IB", sb.set_pipe_opts)
-    api.add("CFE_SB_GetPipeOpts", "I1", sb.get_pipe_opts, BAD)
-    api.add("CFE_SB_GetPipeName", "pQI", lambda at, size, pipe_id: name_of(at, pipe_id, size))
-    api.add("CFE_SB_GetPipeIdByName", "~4S", sb.get_pipe_id_by_name, BAD)
+    api.add("CFE_SB_GetPipeOpts", "Ip", get_opts)
+    api.add("CFE_SB_GetPipeName", "pQI", get_name)
+    api.add("CFE_SB_GetPipeIdByName", "ps", get_id)
     api.add("CFE_SB_PipeId_ToIndex", "I4", sb.pipe_id_to_index, CFE_ES_BAD_ARGUMENT)
 
 
@@ -61,14 +92,21 @@ def _declare_subscriptions(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_messages(api: Declarations, c: CRuntime) -> None:
-    sb, packets, memory, time = c.handle.sb, c.packets, c.memory, c.handle.time
+    sb, core, packets, memory, time = c.handle.sb, c.cfe.sb, c.packets, c.memory, c.handle.time
 
     def release(buffer: int) -> None:
         need(BAD, buffer)
         packets.release(buffer)
 
+    def no_message(*_: int) -> None:
+        core.send_error(ev.SEND_BAD_ARG_EID, BAD, f"Send Err:Bad input argument,Arg 0x0,App {core.caller_name()}")
+
+    def no_buffer(_: int, pipe_id: int, timeout: int) -> None:
+        core.counters.msg_receive_error += 1
+        text = f"Rcv Err:Bad Input Arg:BufPtr 0x0,pipe [n/a],t/o {to_signed(timeout)},app {core.caller_name()}"
+        core.report_once(ev.RCV_BAD_ARG_EID, ev.ERROR, text)
+
     def transmit_buffer(buffer: int, is_origination: bool) -> None:
-        need(BAD, buffer)
         packets.transmit(buffer, is_origination)
 
     def time_stamp(message: int) -> None:
@@ -77,11 +115,11 @@ def _declare_messages(api: Declarations, c: CRuntime) -> None:
             msg.set_msg_time(header, time.get_time())
             memory.poke(message, header)
 
-    api.add("CFE_SB_TransmitMsg", "mb", sb.transmit_msg, BAD)
-    api.add("CFE_SB_ReceiveBuffer", "$@~8Ii", sb.receive_buffer, BAD)
+    api.add("CFE_SB_TransmitMsg", "mb", sb.transmit_msg, BAD, no_message)
+    api.add("CFE_SB_ReceiveBuffer", "$@~8Ii", sb.receive_buffer, BAD, no_buffer)
     api.add("CFE_SB_AllocateMessageBuffer", "Q", packets.allocate)
     api.add("CFE_SB_ReleaseMessageBuffer", "p", release)
-    api.add("CFE_SB_TransmitBuffer", "pb", transmit_buffer)
+    api.add("CFE_SB_TransmitBuffer", "Pb", transmit_buffer, BAD, no_message)
     api.add("CFE_SB_TimeStampMsg", "p", time_stamp)
 
 

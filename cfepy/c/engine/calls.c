@@ -344,8 +344,12 @@ HIDDEN int calls_serve(Coroutine *coroutine, const Function *function)
             is_null = true;
     }
     if (is_null) {
+        PyObject *told = function->on_null == NULL ? Py_NewRef(Py_None) : PyObject_CallFunction(
+            function->on_null, "KKK", (unsigned long long)argument(coroutine, 0),
+            (unsigned long long)argument(coroutine, 1), (unsigned long long)argument(coroutine, 2));
         coroutine->result = function->null_status;
-        result = 0;
+        result = told == NULL ? -1 : 0;
+        Py_XDECREF(told);
         goto done;
     }
     if (function->costs && coroutine->table->charge != NULL) {

@@ -73,6 +73,7 @@ typedef struct Function {
     Native native;                             /* or NULL; asked first */
     void *target;                              /* what a native stands for, such as a function of libm */
     uint64_t null_status;                      /* what a NULL is answered with, where one must not be */
+    PyObject *on_null;                         /* called before that with three arguments; or NULL */
     char kinds[MOST_PARAMETERS + 1];
     bool gives_status, gives_two_words, gives_packet, clears_outputs, costs;
 } Function;

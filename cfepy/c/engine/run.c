@@ -18,10 +18,10 @@ static const NativeRow *find_native(const char *name)
 
 static PyObject *table_add(Table *table, PyObject *arguments)
 {
-    PyObject *callable;
+    PyObject *callable, *on_null = Py_None;
     const char *name, *signature;
     long long null_status;
-    if (!PyArg_ParseTuple(arguments, "sOsL", &name, &callable, &signature, &null_status))
+    if (!PyArg_ParseTuple(arguments, "sOsL|O", &name, &callable, &signature, &null_status, &on_null))
         return NULL;
     if (table->count == table->room) {
         int more = table->room ? 2 * table->room : 512;
@@ -51,14 +51,17 @@ static PyObject *table_add(Table *table, PyObject *arguments)
         made.callable = Py_NewRef(callable);
     else if (row == NULL)
         return PyErr_Format(PyExc_ValueError, "nobody answers %s", name);
+    made.on_null = on_null == Py_None ? NULL : Py_NewRef(on_null);
     table->functions[table->count] = made;
     return PyLong_FromLong(table->count++);
 }
 
 static int table_traverse(Table *table, visitproc visit, void *arg)
 {
-    for (int i = 0; i < table->count; i++)
+    for (int i = 0; i < table->count; i++) {
         Py_VISIT(table->functions[i].callable);
+        Py_VISIT(table->functions[i].on_null);
+    }
     Py_VISIT(table->charge);
     Py_VISIT(table->cost);
     Py_VISIT(table->preempted);
@@ -70,8 +73,10 @@ static int table_traverse(Table *table, visitproc visit, void *arg)
 
 static int table_clear(Table *table)
 {
-    for (int i = 0; i < table->count; i++)
+    for (int i = 0; i < table->count; i++) {
         Py_CLEAR(table->functions[i].callable);
+        Py_CLEAR(table->functions[i].on_null);
+    }
     Py_CLEAR(table->charge);
     Py_CLEAR(table->cost);
     Py_CLEAR(table->preempted);
@@ -131,7 +136,7 @@ static PyGetSetDef table_attributes[] = {
 };
 static PyMethodDef table_methods[] = {
     {"add", (PyCFunction)table_add, METH_VARARGS,
-     "add(name, callable, signature, null_status) -> number; callable may be None for what the engine does itself"},
+     "add(name, callable, signature, null_status, on_null=None) -> number; callable may be None for what the engine does itself"},
     {NULL, NULL, 0, NULL},
 };
 HIDDEN PyTypeObject table_type = {

@@ -21,8 +21,8 @@ LONGEST_S = 60
 END = "CFE_ES_ExitApp: Application APITEST called CFE_ES_ExitApp"
 MARK = "> "
 _TIME = re.compile(r"^(EVS Port1 )?\d{4}-\d{3}-\d\d:\d\d:\d\d\.\d{5} ")
-_ADDRESS = re.compile(r"0x[0-9A-Fa-f]{9,}")
-_BY_CHANCE = re.compile(r"FLYWHEEL|No subscribers|^OS_\w+\(\):\d+|^CFE_ES_Main|^CFE_PSP|^$|STARTUP|Startup")
+_ADDRESS = re.compile(r"0x[0-9A-Fa-f]{9,}|(?<=ptr=)0x0|(?<=BufPtr )0x0")
+_BY_CHANCE = re.compile(r"FLYWHEEL|No subscribers|^OS_\w+\(\):\d+|^CFE_ES_Main|^CFE_PSP|^$|STARTUP|Startup|BUG")
 WITHOUT_DEPRECATED = ("-DCFE_OMIT_DEPRECATED_6_8", "-DOSAL_OMIT_DEPRECATED")
 
 
