@@ -146,7 +146,7 @@ def declared() -> dict[str, str]:
     found: dict[str, str] = {}
 
     class Recorder:
-        def add(self, name: str, signature: str, function: Any, null_status: int = 0) -> None:
+        def add(self, name: str, signature: str, *_: Any) -> None:
             found[name] = signature.lstrip("=~$&@")
 
     api.declare(Recorder(), MagicMock())  # type: ignore[arg-type]  # a stand-in, since nothing is called
