@@ -12,6 +12,8 @@ from typing import Any
 from cfepy.status import UsageError
 
 MAGIC = b"\x7fELF"
+LARGEST = 1 << 30
+"""Bytes of memory that a shared object may take."""
 _MARK_OF_GCOV = b"GCOV_PREFIX\0"
 MACHINES = {"EM_X86_64": "x86_64", "EM_AARCH64": "aarch64"}
 
@@ -174,7 +176,24 @@ def _read(elf: Any, data: bytes, name: str) -> SharedObject:
     if dynamic is None or not made.segments:
         raise ElfError(f"{name} has nothing to load: link it with -shared")
     _read_dynamic(made, dynamic)
+    _check_bounds(made)
     return made
+
+
+def _check_bounds(made: SharedObject) -> None:
+    """Refuse a file whose parts do not lie in it, or in its memory: the loader takes them as they are."""
+    size, in_file = made.size, len(made.data)
+    if size > LARGEST:
+        raise ElfError(f"{made.name} wants {size:,} bytes of memory; at most {LARGEST:,} can be loaded")
+    segments = all(
+        each.file_size <= each.memory_size and each.offset + each.file_size <= in_file for each in made.segments
+    )
+    words = all(each.address + 8 <= size and each.symbol < len(made.symbols) for each in made.relocations)
+    arrays = all(at + 8 * count <= size for at, count in (made.functions_at_load, made.functions_at_end))
+    functions = all(each.address <= size for each in made.symbols if each.is_defined and each.kind == "STT_FUNC")
+    at, initial, total, _ = made.thread_local or (0, 0, 0, 0)
+    if not (segments and words and arrays and functions and initial <= total <= LARGEST and at + initial <= size):
+        raise ElfError(f"{made.name}: damaged ELF file: a part of it lies outside of the file, or of its memory")
 
 
 def _read_dynamic(made: SharedObject, dynamic: Any) -> None:

@@ -8,8 +8,11 @@ from collections.abc import Callable, Iterator
 from contextlib import redirect_stdout, suppress
 from functools import cache
 from pathlib import Path
+from shutil import which
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
+from cfepy.c.engine import compiler
 from cfepy.cli.ros.rostest import read_results as read_test_results
 from cfepy.debugger.breakpoints import breakpoints
 from cfepy.es.startup_script import check, entries
@@ -44,6 +47,7 @@ from rospy_shim.msgs.library import Library, from_full_text, shipped
 from rospy_shim.msgs.sources import Definition, Texts
 from rospy_shim.roslaunch.reader import read
 from rospy_shim.roslaunch.values import from_yaml
+from tests.c.building import compile_c
 from tests.es.test_cds import Board
 
 ROOT = Path(__file__).parents[2]
@@ -94,6 +98,22 @@ def startup(data: bytes, path: Path) -> None:
     """A startup script, as the boot and the check read it."""
     entries(data)
     check(data)
+
+
+@cache
+def shared_objects() -> list[bytes]:
+    """Compiled applications; none where there is no compiler."""
+    if which(compiler()[0]) is None:
+        return [b"\x7fELF, but not more"]
+    with TemporaryDirectory() as folder:
+        source = 'void BUG_Main(void) { SAY("%d", (int)strlen("text")); OS_TaskDelay(10); }'
+        return [compile_c(Path(folder), f"BUG{level}", source, level).read_bytes() for level in ("-O0", "-O2")]
+
+
+def shared_object(data: bytes, path: Path) -> None:
+    path.write_text("CFE_APP, BUG, BUG_Main, BUG, 50, 16384, 0x0, 0;\n!")
+    path.with_name("BUG.so").write_bytes(data)
+    check_mission(str(path.parent))
 
 
 def mission_file(data: bytes, path: Path) -> None:
@@ -483,6 +503,7 @@ KINDS = {
         Kind("test-results", texts(JUNIT), junit, "results.xml"),
         Kind("manifest", texts("<package><name>arm</name></package>", "setup(package_dir={'': 'src'})"), manifest),
         Kind("xtce-names", texts("capture", "a b/c", "\x1b[0m"), names),
+        Kind("shared-object", shared_objects, shared_object, "startup.scr"),
         Kind("yaml", files("missions/*/*.yaml", "boards/*.yaml"), yaml_file, "any.yaml"),
     )
 }
