@@ -12,7 +12,7 @@ from cfepy.c.elf import elf_file
 from cfepy.c.toolchain.cmake import read_cmake_lists
 from cfepy.fs import read_table_file
 from cfepy.status import UsageError
-from tests.c.building import needs_compiler
+from tests.c.building import console_of, fly, needs_compiler, needs_cpp, said, write_mission
 
 pytestmark = needs_compiler
 
@@ -187,18 +187,27 @@ def test_sources_of_one_name_in_two_folders(app: Path) -> None:
     assert {"a", "b", "c"} <= symbols(build(app)).keys()
 
 
-def test_cpp_needs_no_library_of_the_host(app: Path) -> None:
+@needs_cpp
+def test_cpp_has_its_library(app: Path, tmp_path: Path) -> None:
     text = """
+        #include <stdexcept>
+        #include <string>
+        #include <vector>
         #include "cfe.h"
-        class Counter { public: virtual ~Counter() = default; virtual int next() { return ++value; } int value = 0; };
-        static Counter *counter(void) { static Counter one; return &one; }
-        extern "C" int COUNTER_Next(void) { return counter()->next() + int(CFE_SB_INVALID_MSG_ID.Value); }
+        static std::vector<std::string> texts{"one", "two"};
+        extern "C" void TEST_Main(void)
+        {
+            try {
+                texts.at(2);
+            } catch (const std::out_of_range &) {
+                CFE_ES_WriteToSysLog("> %s", (texts[0] + texts[1]).c_str());
+            }
+            CFE_ES_ExitApp(CFE_ES_RunStatus_APP_EXIT);
+        }
     """
-    write(app, {"fsw/src/counter.cpp": text})
-    built = build(app)
-    assert symbols(built)["COUNTER_Next"]
-    needed = library(built).get_section_by_name(".dynamic").iter_tags("DT_NEEDED")  # type: ignore[attr-defined]
-    assert not [each.needed for each in needed if "stdc++" in each.needed]
+    write(app, {"fsw/src/test.cpp": text})
+    build(app, tmp_path / "TEST.so")
+    assert said(console_of(fly(write_mission(tmp_path, "TEST"), 1))) == ["onetwo"]
 
 
 def test_flags_and_optimisation_reach_the_compiler(app: Path) -> None:

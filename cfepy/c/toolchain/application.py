@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.c.toolchain.compiler import CompilerError, compile_file, link
+from cfepy.c.toolchain.compiler import CompilerError, compile_file, is_cpp, link
 from cfepy.c.toolchain.headers import headers_folder
 from cfepy.c.toolchain.sources import Sources, find_sources
 from cfepy.c.toolchain.tables import TableObject, read_table
@@ -115,7 +115,8 @@ class _Builder:
         """Build code and tables; nothing is written before all is compiled."""
         code = self._code()
         tables = self._tables()
-        link(code, self._built.library, ["--coverage"] if self._options.coverage else [])
+        flags = [*(["--coverage"] if self._options.coverage else []), *self._options.flags]
+        link(code, self._built.library, flags, with_cpp=any(is_cpp(each) for each in self._sources.code))
         self._built.tables = [table.write(self._built.library.parent) for table in tables]
 
     def _code(self) -> list[Path]:

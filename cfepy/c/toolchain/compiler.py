@@ -15,8 +15,7 @@ SOURCE_SUFFIXES = (".c", *CPP_SUFFIXES)
 COMMON = ("-fPIC", "-Wall", "-fno-stack-protector", "-U_FORTIFY_SOURCE", "-D_LINUX_OS_", "-D_POSIX_OS_")
 """What every source gets. The guards of distributions are left out: they look into memory that the host owns."""
 C_FLAGS = ("-std=gnu11",)
-CPP_FLAGS = ("-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics")
-"""C++ as flight software has it: what would need a run-time library of the host is left out."""
+CPP_FLAGS = ("-std=gnu++17",)
 
 
 class CompilerError(Exception):
@@ -43,14 +42,19 @@ def compile_file(source: Path, made: Path, flags: Sequence[str]) -> str:
         CompilerError: it refused the file.
         UsageError: there is no compiler.
     """
-    is_cpp = source.suffix in CPP_SUFFIXES
-    command = [*cpp_compiler(), *CPP_FLAGS] if is_cpp else [*compiler(), *C_FLAGS]
+    command = [*cpp_compiler(), *CPP_FLAGS] if is_cpp(source) else [*compiler(), *C_FLAGS]
     return _call([*command, *COMMON, *flags, "-c", str(source), "-o", str(made)])
 
 
-def link(objects: Sequence[Path], made: Path, flags: Sequence[str]) -> str:
-    """Link object files to a shared object, and no library of the host with it; see `compile_file`."""
-    return _call([*compiler(), "-shared", *flags, *map(str, objects), "-o", str(made)])
+def link(objects: Sequence[Path], made: Path, flags: Sequence[str], *, with_cpp: bool) -> str:
+    """Link object files to a shared object, with C++'s library when it is needed; see `compile_file`."""
+    command = cpp_compiler() if with_cpp else compiler()
+    return _call([*command, "-shared", *flags, *map(str, objects), "-o", str(made)])
+
+
+def is_cpp(source: Path) -> bool:
+    """Whether a source is C++."""
+    return source.suffix in CPP_SUFFIXES
 
 
 def _call(command: list[str]) -> str:
