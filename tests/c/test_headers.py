@@ -145,7 +145,7 @@ def declared() -> dict[str, str]:
     """The functions that Python answers, with the letters of their parameters."""
     found: dict[str, str] = {}
 
-    class Recorder:
+    class Recorder(MagicMock):
         def add(self, name: str, signature: str, *_: Any) -> None:
             found[name] = signature.lstrip("=~$&@")
 
