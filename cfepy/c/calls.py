@@ -11,6 +11,8 @@ from cfepy.c.faults import CFault
 
 STUB = 32
 """Bytes that are kept for one."""
+DESCRIPTOR = "(thread-local)"
+"""The function in descriptors of thread-local variables on aarch64, which is called as no other."""
 _STUB_PAGES = 16 * PAGE
 
 
@@ -89,7 +91,7 @@ class CallTable:
             self._end = self._next + _STUB_PAGES
             engine().protect(self._next, _STUB_PAGES, 7)
         stub = self._next
-        engine().make_stub(stub, number)
+        engine().make_stub(stub, number, name == DESCRIPTOR)
         self._next += STUB
         return stub
 

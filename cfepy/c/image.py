@@ -17,14 +17,14 @@ from cfepy.c.places import CodePlace, Places
 from cfepy.cached import CachedProperty
 
 _RELATIVE, _ABSOLUTE, _ADDRESS, _CHOSEN = "relative", "absolute", "address", "chosen"
-_MODULE, _OFFSET, _FIXED_OFFSET = "module", "offset", "fixed offset"
+_MODULE, _OFFSET, _FIXED_OFFSET, _DESCRIPTOR = "module", "offset", "fixed offset", "descriptor"
 _KINDS = {
     "x86_64": {
         1: _ABSOLUTE, 6: _ADDRESS, 7: _ADDRESS, 8: _RELATIVE, 37: _CHOSEN, 16: _MODULE, 17: _OFFSET, 18: _FIXED_OFFSET
     },
     "aarch64": {
         257: _ABSOLUTE, 1025: _ABSOLUTE, 1026: _ABSOLUTE, 1027: _RELATIVE, 1032: _CHOSEN,
-        1028: _MODULE, 1029: _OFFSET, 1030: _FIXED_OFFSET,
+        1028: _MODULE, 1029: _OFFSET, 1030: _FIXED_OFFSET, 1031: _DESCRIPTOR,
     },
 }  # fmt: skip
 _THREAD_LOCAL = "STT_TLS"
@@ -45,6 +45,9 @@ class Linker(Protocol):
 
     def resolve_thread_local(self, name: str) -> tuple[int, int]:
         """Module and offset of a thread-local variable of another object."""
+
+    def thread_local_function(self) -> int:
+        """What a descriptor of a thread-local variable calls (aarch64)."""
 
     def module_of(self, image: Image) -> int:
         """The number under which an image's thread-local variables are known."""
@@ -125,8 +128,14 @@ class Image:
                     value += each.addend
                 if self.source.symbols[each.symbol].kind == _CHOSEN_FUNCTION:
                     chosen.append((each.address, value))
+            elif kind == _DESCRIPTOR:
+                module, offset = self._thread_local(each)
+                _WORD.pack_into(memory, each.address + _WORD.size, module << 32 | offset)
+                value = self._linker.thread_local_function()
             else:
-                value = self._thread_local(each, kind)
+                self._check(each, kind)
+                module, offset = self._thread_local(each)
+                value = module if kind == _MODULE else offset
             _WORD.pack_into(memory, each.address, value & _64_BITS)
         return chosen
 
@@ -135,7 +144,7 @@ class Image:
             return self.base + symbol.address
         return self._linker.resolve_weak(symbol.name) if symbol.is_weak else self._linker.resolve(symbol.name)
 
-    def _thread_local(self, word: Relocation, kind: str | None) -> int:
+    def _check(self, word: Relocation, kind: str | None) -> None:
         name = self.source.name
         if kind == _FIXED_OFFSET:
             raise ElfError(
@@ -144,12 +153,14 @@ class Image:
             )
         if kind is None:
             raise ElfError(f"{name}: relocation {word.kind} of {self.source.machine} is not supported")
+
+    def _thread_local(self, word: Relocation) -> tuple[int, int]:
+        """Module and offset of a thread-local variable."""
         symbol = self.source.symbols[word.symbol]
         if word.symbol == 0 or symbol.is_defined:
-            module, offset = self._linker.module_of(self), symbol.address if word.symbol else 0
-        else:
-            module, offset = self._linker.resolve_thread_local(symbol.name)
-        return module if kind == _MODULE else offset + word.addend
+            return self._linker.module_of(self), (symbol.address if word.symbol else 0) + word.addend
+        module, offset = self._linker.resolve_thread_local(symbol.name)
+        return module, offset + word.addend
 
     def _choose(self, chosen: list[tuple[int, int]]) -> None:
         """Indirect functions (STT_GNU_IFUNC): the image says itself which of several it takes."""

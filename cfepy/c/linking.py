@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import Protocol
 
-from cfepy.c.calls import CallTable, Declarations
+from cfepy.c.calls import DESCRIPTOR, CallTable, Declarations
 from cfepy.c.elf import ElfError, SharedObject, read_shared_object
 from cfepy.c.image import Image
 from cfepy.c.lives import ThreadLocals
@@ -159,6 +159,10 @@ class LinkedWith:
             if name in image.thread_locals:
                 return self.module_of(image), image.thread_locals[name]
         raise ElfError(f"no library has the thread-local variable {name}")
+
+    def thread_local_function(self) -> int:
+        """See `Linker`."""
+        return self._exports.calls.address(DESCRIPTOR)
 
     def module_of(self, image: Image) -> int:
         """See `Linker`."""

@@ -10,6 +10,7 @@ import struct
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from cfepy.c.calls import DESCRIPTOR
 from cfepy.c.faults import CFault
 
 if TYPE_CHECKING:
@@ -65,6 +66,7 @@ def _declare_lives(api: Declarations, c: CRuntime) -> None:
         return thread_locals.address(memory.u64(index), memory.u64(index + 8))
 
     api.add("__tls_get_addr", "p", tls_get_addr)
+    api.add(DESCRIPTOR, "Q", lambda word: thread_locals.address(word >> 32, word & 0xFFFFFFFF))
 
     def wait_for_guard(guard: int) -> bool:
         while memory.u8(guard + 1):

@@ -99,6 +99,7 @@ HIDDEN void engine_reenter(Coroutine *);
 HIDDEN void engine_call(void);
 HIDDEN void engine_begin(void);
 HIDDEN void engine_land(void);
+HIDDEN void engine_thread_local(void);         /* aarch64: for descriptors of thread-local variables */
 HIDDEN int engine_copy(void *to, const void *from, size_t size);
 extern HIDDEN char engine_copy_end[], engine_copy_failed[];
 

@@ -74,26 +74,30 @@ HIDDEN PyObject *memory_ctype(PyObject *module, PyObject *unused)
                          (const char *)(*__ctype_tolower_loc() + LOWEST), (Py_ssize_t)(CHARACTERS * 4));
 }
 
-/* The code of a stub: the number of its function, and a jump to engine_call. */
+/* The code of a stub: the number of its function, and a jump to engine_call; or, on aarch64, to engine_thread_local. */
 HIDDEN PyObject *memory_make_stub(PyObject *module, PyObject *arguments)
 {
     unsigned long long at;
     unsigned number;
-    if (!PyArg_ParseTuple(arguments, "KI", &at, &number) || !is_in_arena(at, 32))
+    int is_thread_local = 0;
+    if (!PyArg_ParseTuple(arguments, "KI|p", &at, &number, &is_thread_local) || !is_in_arena(at, 32))
         return NULL;
-    uint64_t target = (uint64_t)engine_call;
 #if defined(__x86_64__)
+    uint64_t target = (uint64_t)engine_call;
     unsigned char code[] = {0x41, 0xBB, 0, 0, 0, 0,             /* mov r11d, number */
                             0x49, 0xBA, 0, 0, 0, 0, 0, 0, 0, 0, /* mov r10, engine_call */
                             0x41, 0xFF, 0xE2};                  /* jmp r10 */
     memcpy(code + 2, &number, 4);
     memcpy(code + 8, &target, 8);
 #else
-    uint32_t code[] = {0xD2800010u | (number & 0xFFFF) << 5,    /* movz x16, number */
+    uint64_t target = (uint64_t)(is_thread_local ? engine_thread_local : engine_call);
+    uint32_t code[] = {is_thread_local ? 0xA9BF47F0u            /* stp x16, x17, [sp, -16]! */
+                                       : 0xD503201Fu,           /* nop */
+                       0xD2800010u | (number & 0xFFFF) << 5,    /* movz x16, number */
                        0xF2A00010u | (number >> 16) << 5,       /* movk x16, number >> 16, lsl 16 */
-                       0x58000051u,                             /* ldr x17, 8 bytes on */
+                       0x58000071u,                             /* ldr x17, 12 bytes on */
                        0xD61F0220u,                             /* br x17 */
-                       (uint32_t)target, (uint32_t)(target >> 32)};
+                       0, (uint32_t)target, (uint32_t)(target >> 32)};
 #endif
     memcpy((void *)at, code, sizeof code);
     __builtin___clear_cache((char *)at, (char *)at + sizeof code);

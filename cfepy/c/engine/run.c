@@ -435,7 +435,7 @@ static PyMethodDef methods[] = {
     {"protect", memory_protect, METH_VARARGS, "protect(address, size, rights): 4 read, 2 write, 1 execute"},
     {"clear", memory_clear, METH_VARARGS, "clear(address, size): zeros again"},
     {"ctype", memory_ctype, METH_NOARGS, "ctype() -> the tables of <ctype.h>, as bytes from index -128 on"},
-    {"make_stub", memory_make_stub, METH_VARARGS, "make_stub(address, number) -> size: code there that calls a function"},
+    {"make_stub", memory_make_stub, METH_VARARGS, "make_stub(address, number, thread_local=False) -> size: code there that calls a function"},
     {"has_native", has_native, METH_O, "has_native(name) -> whether the engine has such a function"},
     {"natives", natives, METH_NOARGS, "natives() -> names of the functions that the engine answers"},
     {NULL, NULL, 0, NULL},

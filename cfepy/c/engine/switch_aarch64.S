@@ -47,6 +47,37 @@
     msr fpsr, x10
     .endm
 
+    .macro VECTORS operation                    /* stp or ldp, all of them, whole */
+    \operation q0, q1, [sp, #144]
+    \operation q2, q3, [sp, #176]
+    \operation q4, q5, [sp, #208]
+    \operation q6, q7, [sp, #240]
+    \operation q8, q9, [sp, #272]
+    \operation q10, q11, [sp, #304]
+    \operation q12, q13, [sp, #336]
+    \operation q14, q15, [sp, #368]
+    \operation q16, q17, [sp, #400]
+    \operation q18, q19, [sp, #432]
+    \operation q20, q21, [sp, #464]
+    \operation q22, q23, [sp, #496]
+    \operation q24, q25, [sp, #528]
+    \operation q26, q27, [sp, #560]
+    \operation q28, q29, [sp, #592]
+    \operation q30, q31, [sp, #624]
+    .endm
+
+    .macro OTHERS operation                     /* those that a called function may change, but x0, x16 and x17 */
+    \operation x1, x2, [sp, #0]
+    \operation x3, x4, [sp, #16]
+    \operation x5, x6, [sp, #32]
+    \operation x7, x8, [sp, #48]
+    \operation x9, x10, [sp, #64]
+    \operation x11, x12, [sp, #80]
+    \operation x13, x14, [sp, #96]
+    \operation x15, x18, [sp, #112]
+    \operation x29, x30, [sp, #128]
+    .endm
+
     .globl engine_resume
     .hidden engine_resume
     .type engine_resume, %function
@@ -112,6 +143,27 @@ engine_call:                                    /* a stub came here with the num
     RESTORE
     ret
     .size engine_call, . - engine_call
+
+    .globl engine_thread_local
+    .hidden engine_thread_local
+    .type engine_thread_local, %function
+engine_thread_local:                            /* where a variable is, from the thread's pointer on: the code that asks
+                                                   keeps all registers but x0, x30 and the flags. x0: its descriptor.
+                                                   A stub came here with the number of a function in x16; x16 and x17
+                                                   of the application are on the stack. */
+    sub sp, sp, #656
+    VECTORS stp
+    OTHERS stp
+    ldr x0, [x0, #8]
+    bl engine_call
+    mrs x1, tpidr_el0
+    sub x0, x0, x1
+    VECTORS ldp
+    OTHERS ldp
+    add sp, sp, #656
+    ldp x16, x17, [sp], #16
+    ret
+    .size engine_thread_local, . - engine_thread_local
 
     .globl engine_land
     .hidden engine_land
