@@ -45,6 +45,9 @@ ACCESS_BITS = {
 """What a file's mode must allow to be opened with an access mode, and what `chmod` makes of one."""
 
 
+_DOTS = (".", "..")
+
+
 class FileInfo(NamedTuple):
     """What `fd_get_info` tells (OS_file_prop_t)."""
 
@@ -295,14 +298,19 @@ class DirectoryApi(Core):
         """Remove an empty folder (OS_rmdir); OS_ERROR when it is none, OS_FS_ERR_* for the path."""
         self.files.remove_folder(path)
 
-    def directory_open(self, path: str) -> int:
+    def directory_open(self, path: str, *, with_dots: bool = False) -> int:
         """Open a folder to read its names, sorted (OS_DirectoryOpen).
+
+        Args:
+            path: virtual path.
+            with_dots: read "." and ".." before the others, as NASA's does.
 
         Raises:
             OsalError: OS_ERROR when there is none; OS_FS_ERR_* for the path; OS_ERR_NO_FREE_IDS.
         """
         self._directories_opened += 1  # open folders have no names in OSAL, records here do
-        record = OsDirectory(f"#{self._directories_opened}", path, self.files.list_dir(path))
+        names = [*(_DOTS if with_dots else ()), *self.files.list_dir(path)]
+        record = OsDirectory(f"#{self._directories_opened}", path, names)
         return self._register(self._directories, record, "directory", 0)
 
     def directory_close(self, dir_id: int) -> None:

@@ -73,9 +73,9 @@ def socket_addr_to_string(addr: SockAddr) -> str:
     """The host of an address as text, without the port (OS_SocketAddrToString).
 
     Raises:
-        OsalError: OS_INVALID_POINTER; OS_ERROR for an address without domain.
+        OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain.
     """
-    check_address(addr, OS_ERROR)
+    check_address(addr)
     return addr.host
 
 
@@ -87,11 +87,12 @@ def socket_addr_from_string(addr: SockAddr, string: str) -> None:
         string: numbers as inet_pton takes them, "127.0.0.1" or "::1"; names are not looked up.
 
     Raises:
-        OsalError: OS_INVALID_POINTER; OS_ERROR for a text that is no address of this domain.
+        OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain; OS_ERROR for a text that is no
+            address of this domain.
     """
     import ipaddress
 
-    check_address(addr, OS_ERROR)
+    check_address(addr)
     kind = ipaddress.IPv4Address if addr.domain == OS_SocketDomain_INET else ipaddress.IPv6Address
     try:
         host = str(kind(string))
@@ -125,20 +126,16 @@ def socket_addr_set_port(addr: SockAddr, port_num: int) -> None:
     addr.port = port_num
 
 
-def check_address(addr: SockAddr | None, status: int = OS_ERR_BAD_ADDRESS) -> SockAddr:
+def check_address(addr: SockAddr | None) -> SockAddr:
     """An address that can be used.
 
-    Args:
-        addr: what a caller gave.
-        status: for an address without domain.
-
     Raises:
-        OsalError: OS_INVALID_POINTER for None, or `status`.
+        OsalError: OS_INVALID_POINTER for None, OS_ERR_BAD_ADDRESS for one without domain.
     """
     check_given(addr)
     assert addr is not None
     if addr.domain not in ANY_HOST:
-        raise OsalError(status, "the address has no domain")
+        raise OsalError(OS_ERR_BAD_ADDRESS, "the address has no domain")
     return addr
 
 

@@ -81,7 +81,7 @@ def test_paths_and_folders(tmp_path: Path) -> None:
         DID(OS_rmdir("/ram/old"));
     """
     assert results(tmp_path, body) == [
-        *("0", "0", "0", "0", "0", "-2", "0", "-1", "0", "0", "b", "c", "0", "0", "-2", "0", "-16", "-1")
+        *("0", "0", "0", "0", "0", "-2", "0", "-1", "0", "0", ".", "..", "b", "c", "0", "0", "-2", "0", "-16", "-1")
     ]
 
 
@@ -146,12 +146,14 @@ def test_addresses_of_the_network(tmp_path: Path) -> None:
         SAY("%x", port);
         DID(OS_SocketAddrGetPort(&port, &none));
         DID(OS_SocketAddrSetPort(&none, 5));
+        DID(OS_SocketAddrToString(text, sizeof text, &none));
+        DID(OS_SocketAddrFromString(&none, "127.0.0.1"));
         DID(OS_SocketAddrInit(&none, 3));
         DID(OS_SocketAddrInit(NULL, 1));
     """
     assert results(tmp_path, body, before=ADDRESS) == [
         *("16 bytes: 2 0, port 12 34, 127.0.0.1", "0", "0", "28 bytes: 10, 1", "0", "::1"),
-        *("-1", "-40", "-1", "0", "1234", "-34", "-34", "-28", "-2"),
+        *("-1", "-40", "-1", "0", "1234", "-34", "-34", "-34", "-34", "-28", "-2"),
     ]
 
 

@@ -58,8 +58,8 @@ def test_addresses_without_domain_and_missing_ones(bench: Bench) -> None:
     assert status_of(os.socket_addr_init, OS_SocketDomain_INVALID) == OS_ERR_NOT_IMPLEMENTED
     assert status_of(os.socket_addr_set_port, empty, 0xFFFF) == OS_ERR_BAD_ADDRESS
     assert status_of(os.socket_addr_get_port, empty) == OS_ERR_BAD_ADDRESS
-    assert status_of(os.socket_addr_to_string, empty) == OS_ERROR
-    assert status_of(os.socket_addr_from_string, empty, "127.0.0.1") == OS_ERROR
+    assert status_of(os.socket_addr_to_string, empty) == OS_ERR_BAD_ADDRESS
+    assert status_of(os.socket_addr_from_string, empty, "127.0.0.1") == OS_ERR_BAD_ADDRESS
     for call in (os.socket_addr_to_string, os.socket_addr_get_port):
         assert status_of(call, None) == OS_INVALID_POINTER
     assert status_of(os.socket_addr_from_string, None, "127.0.0.1") == OS_INVALID_POINTER

@@ -107,6 +107,9 @@ def _declare_paths(api: Declarations, c: CRuntime) -> None:
 def _declare_folders(api: Declarations, c: CRuntime) -> None:
     os, memory = c.handle.os, c.memory
 
+    def open_directory(path: str) -> int:
+        return os.directory_open(path, with_dots=True)
+
     def read(dir_id: int, entry: int) -> None:
         name = os.directory_read(dir_id)
         if name is None:
@@ -115,7 +118,7 @@ def _declare_folders(api: Declarations, c: CRuntime) -> None:
 
     api.add("OS_mkdir", "SI", os.mkdir, BAD)
     api.add("OS_rmdir", "S", os.rmdir, BAD)
-    api.add("OS_DirectoryOpen", "=4S", new_id(os.directory_open, OS_ERROR), BAD)
+    api.add("OS_DirectoryOpen", "=4S", new_id(open_directory, OS_ERROR), BAD)
     api.add("OS_DirectoryClose", "I", os.directory_close)
     api.add("OS_DirectoryRead", "IP", read, BAD)
     api.add("OS_DirectoryRewind", "I", os.directory_rewind)
