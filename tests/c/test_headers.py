@@ -93,6 +93,15 @@ def test_functions_have_their_prototypes(flags: list[str], tmp_path: Path) -> No
     assert compile_text(tmp_path, text, *flags) == ""
 
 
+def test_swapped_integers(tmp_path: Path) -> None:
+    text = """
+        _Static_assert(CFE_MAKE_BIG16(0x1234) == 0x3412, "16");
+        _Static_assert(CFE_MAKE_BIG32(0x12345678u) == 0x78563412u, "32");
+        _Static_assert(CFE_MAKE_BIG32(0xF2345687u) == 0x875634F2u, "32, with high bits");
+    """
+    assert compile_text(tmp_path, text) == ""
+
+
 def test_every_public_name_is_declared(tmp_path: Path) -> None:
     functions = {name for name, _ in rows("functions.tsv")}
     text = ""

@@ -16,8 +16,8 @@
 #define CFE_STR_HELPER(x) #x
 #define CFE_STR(x)        CFE_STR_HELPER(x)
 
-#define CFE_MAKE_BIG16(n) ((((n)&0x00FF) << 8) | (((n)&0xFF00) >> 8))
+#define CFE_MAKE_BIG16(n) ((((n) >> 8) & 0xFF) | (((n) & 0xFF) << 8))
 #define CFE_MAKE_BIG32(n) \
-    ((((n)&0x000000FF) << 24) | (((n)&0x0000FF00) << 8) | (((n)&0x00FF0000) >> 8) | (((n)&0xFF000000) >> 24))
+    ((((n) >> 24) & 0xFF) | (((n) >> 8) & 0xFF00) | (((n) & 0xFF00) << 8) | (((n) & 0xFFu) << 24))
 
 #endif
