@@ -12,7 +12,7 @@ from random import Random
 
 from cfepy import msg
 from tests.twin.commands import BACKGROUND, PLAIN, Step
-from tests.twin.flight_apps import CF, CS, DS, FLIGHT_APPS, FM, HK, LC, MD, MM, Field, FlightApp, FlightCommand
+from tests.twin.flight_apps import CF, CS, DS, FLIGHT_APPS, FM, HK, HS, LC, MD, MM, Field, FlightApp, FlightCommand
 
 FILES = (
     *("/ram/a.dat", "/ram/b.dat", "/ram/c.dat", "/ram/d.log", "/ram/sub/e.dat", "/ram/none.dat", "/nowhere/f.dat"),
@@ -69,8 +69,9 @@ class AppsCommander:
         """What follows commands: what wakes it up, and the question for housekeeping."""
         wake = self.wakeup(app)
         question = bytes(msg.command(app.housekeeping_mid, 0))
-        if app.wakeup_mid and app.name == "HS":  # it looks at its commands when it is woken up
-            yield Step(app.name, (question,), PLAIN)
+        if app is HS:  # it looks at commands, and at questions, when it is woken up
+            yield Step(app.name, (wake,), PLAIN)
+            yield Step(app.name, (question, wake), PLAIN)
             return
         for _ in range(WAKEUPS.get(app.name, 1) if wake else 0):
             yield Step(app.name, (wake,), PLAIN)
@@ -137,7 +138,7 @@ class AppsCommander:
         if name in ("Address", "Offset"):
             return 0
         if (app.name, command.code) in UNSAFE and name in ("Size", "DataSize", "NumOfBytes"):
-            return random.choice((0, 3, 5))
+            return 0 if app is CS else random.choice((0, 3, 5))
         if app is DS and name == "Value":
             return random.choice(MSG_IDS)
         if app is CF and name == "value":

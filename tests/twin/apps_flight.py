@@ -21,12 +21,14 @@ from cfepy import msg
 from cfepy.console import Console
 from cfepy.evs import packets as evs
 from cfepy.mission import Mission
+from cfepy.msg import Layout
 from cfepy.status import OsalError
+from cfepy.tbl import TableType, build
 from tests.twin import masks
 from tests.twin.apps_commands import TELEMETRY_HEARD, AppsCommander
 from tests.twin.commands import PLAIN, Step
 from tests.twin.flight import Observed, Real, Simulated, _first_difference, _shown
-from tests.twin.flight_apps import CF, FLIGHT_APPS
+from tests.twin.flight_apps import CF, FLIGHT_APPS, HS
 from tests.twin.link_app import DOWN_PORT, UP_PORT
 from tests.twin.real import VARIABLE, RealCfe, installed
 from tests.twin.tables_real import compile_app
@@ -41,11 +43,15 @@ STARTUP = f"CFE_APP, link, LINK_Main, LINK, 40, 65536, 0x0, 0;\n{ROWS}!\n"
 EVENTS = evs.LONG_EVENT_MSG_MID
 RESET_CODE = 1
 MASKED = {
-    0x8AD: [range(44, 180)],  # processor time in use, and how often tasks ran
-    0x8A4: [range(44, 56)],  # checksums of the computer's own code
+    # events that HS counted, processor time in use, and how often tasks ran
+    0x8AD: [range(28, 36), range(44, 180)],
+    # checksums of the computer's own code, and how far CS is with all that it checks, of which that code is most
+    0x8A4: [range(40, 56), range(76, 80)],
     0x88E: [range(16 + 64 + entry * 88, 16 + 88 + entry * 88) for entry in range(8)],  # room on the host's disks
 }
 """Bytes of telemetry that the host decides."""
+EVENT_MONITOR = b"on HS_EVENT_PIPE,app HS"
+"""On a Linux without /proc/schedstat NASA's system monitor does not start, and then HS does not listen to events."""
 
 
 def of_packet(packet: bytes) -> bytes | None:
@@ -53,7 +59,7 @@ def of_packet(packet: bytes) -> bytes | None:
     told = masks.of_packet(packet)
     msg_id = int.from_bytes(packet[:2], "big")
     if told is None or masks.is_event(packet):
-        return told
+        return None if told is not None and EVENT_MONITOR in told else told
     left = bytearray(packet)
     for at in itertools.chain(*MASKED.get(msg_id, ())):
         if at < len(left):
@@ -86,6 +92,17 @@ def differences(ours: Observed, theirs: Observed) -> list[str]:
     return found
 
 
+def tables() -> dict[str, bytes]:
+    """Tables in place of NASA's, by virtual path.
+
+    FM looks at disks only: what it says of a folder counts the entry `..`, which cfepy does not list.
+    """
+    disk = Layout("FM_MonitorTableEntry_t", [("Type", "u8"), ("Enabled", "u8"), ("Name", "char[64]")])
+    monitor = TableType("FM.FreeSpace", disk, rows=8)
+    disks = [{"Type": 1, "Enabled": 1, "Name": "/ram"}, {"Type": 1, "Enabled": 1, "Name": "/cf"}]
+    return {"/cf/fm_monitor.tbl": build(monitor.image(disks))}
+
+
 def preparation() -> list[Step]:
     """What counted the boot begins anew; no flywheel event is counted by applications that listen to events."""
     quiet = Step("EVS", (evs.DISABLE_APP_EVENTS.packet(AppName="CFE_TIME"),), PLAIN)
@@ -93,7 +110,8 @@ def preparation() -> list[Step]:
         Step(app.name, (bytes(msg.command(app.commands_mid, RESET_CODE, bytes(4 if app is CF else 0))),), PLAIN)
         for app in FLIGHT_APPS
     ]
-    return [quiet, *resets]
+    woken = Step(HS.name, (bytes(msg.command(HS.wakeup_mid, 0)),), PLAIN)
+    return [quiet, *resets, resets[FLIGHT_APPS.index(HS)], woken]
 
 
 class SimulatedApps(Simulated):
@@ -120,9 +138,11 @@ class RealApps(Real):
 def simulated(built: Path) -> Iterator[Simulated]:
     """The mission in cfepy, prepared."""
     with tempfile.TemporaryDirectory() as folder:
-        for path in (built / "cf").iterdir():
-            if path.suffix == ".tbl" or any(path.name == f"{app.name.lower()}.so" for app in FLIGHT_APPS):
-                shutil.copy(path, folder)
+        for given in (built / "cf").iterdir():
+            if given.suffix == ".tbl" or any(given.name == f"{app.name.lower()}.so" for app in FLIGHT_APPS):
+                shutil.copy(given, folder)
+        for path, data in tables().items():
+            (Path(folder) / Path(path).name).write_bytes(data)
         (Path(folder) / "startup.scr").write_text(STARTUP)
         more = ", ".join(map(hex, TELEMETRY_HEARD))
         text = (HERE / "link_app.py").read_text().replace("WATCHED = (", f"WATCHED = ({more}, ")
@@ -142,7 +162,7 @@ def real(built: Path) -> Iterator[Real]:
         app = Path(folder) / "link.so"
         more = ",".join(map(hex, TELEMETRY_HEARD))
         compile_app(built.parents[2], app, HERE / "link_app.c", f"-DMORE_WATCHED={more},")
-        files = {"/cf/cfe_es_startup.scr": STARTUP.encode(), "/cf/link.so": app.read_bytes()}
+        files = {**tables(), "/cf/cfe_es_startup.scr": STARTUP.encode(), "/cf/link.so": app.read_bytes()}
         with RealCfe(built, Path(folder) / "cfe", files, LINE) as booted:
             computer = RealApps(booted)
             for step in preparation():
