@@ -166,7 +166,7 @@ class GroundEntity:
             packet = None
             before = len(sent)
             while (holder := handler.get_next_packet()) is not None:
-                sent.append(bytes(holder.packet.pack()))
+                sent.append(bytes(holder.pdu.pack()))
             if len(sent) == before:
                 break
         return sent

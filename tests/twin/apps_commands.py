@@ -32,6 +32,8 @@ MSG_IDS = (0x800, 0x801, 0x803, 0x808, 0x8A7, 0x890, 0x18A4, 0, 0x1FFF, 0x2000, 
 TELEMETRY_HEARD = tuple(each for app in FLIGHT_APPS for each in app.telemetry)
 UNSAFE = {(MM.name, code) for code in (2, 3, 4, 6, 7, 8)} | {(MD.name, 4), (CS.name, 2), (CS.name, 20), (CS.name, 27)}
 """Commands that take an address: what is asked for is bad enough that nothing is read or written."""
+ONLY_TOO_SHORT = {(CS.name, 2)}
+"""CS's one-shot checksum: there any address will do."""
 SLOW = {FM.name, CS.name, CF.name, DS.name}
 """Applications that work in the background, or for some wake-ups."""
 WAKEUPS = {CF.name: 3}
@@ -95,6 +97,8 @@ class AppsCommander:
 
     def _packet(self, app: FlightApp, command: FlightCommand) -> bytes:
         payload = b"".join(self._value(app, command, field) for field in command.fields)
+        if (app.name, command.code) in ONLY_TOO_SHORT:
+            payload = payload[:-4]
         return bytes(msg.command(app.commands_mid, command.code, payload))
 
     def _damaged(self, packet: bytes) -> bytes:
@@ -138,7 +142,7 @@ class AppsCommander:
         if name in ("Address", "Offset"):
             return 0
         if (app.name, command.code) in UNSAFE and name in ("Size", "DataSize", "NumOfBytes"):
-            return 0 if app is CS else random.choice((0, 3, 5))
+            return random.choice((0, 3, 5))
         if app is DS and name == "Value":
             return random.choice(MSG_IDS)
         if app is CF and name == "value":

@@ -283,8 +283,15 @@ def test_names_asked_of_the_handle(tmp_path: Path) -> None:
 SCRIPTS = sorted(
     path for folder in ("missions", "examples", "tests/quality") for path in (ROOT / folder).rglob("*.scr")
 )
+COMPILED = (ROOT / "missions/cfs/startup.scr",)
+"""A mission of NASA's applications, whose shared objects are not in this repository."""
 
 
 def test_the_missions_of_this_repository_are_good() -> None:
-    assert [problem for script in SCRIPTS for problem in check_mission(str(script))] == []
+    assert [problem for script in SCRIPTS if script not in COMPILED for problem in check_mission(str(script))] == []
     assert len(SCRIPTS) > 30
+
+
+def test_compiled_applications_that_are_not_there_are_named() -> None:
+    missing = [problem.text.partition(":")[0] for script in COMPILED for problem in check_mission(str(script))]
+    assert missing == [f"no code for /cf/{name}.so" for name in ("lc", "ds", "md", "cf", "sc", "hs", "fm", "mm", "cs")]

@@ -1,0 +1,52 @@
+"""The mission of NASA's applications: its tables are what its texts say; with the code, its scenario comes about."""
+
+from __future__ import annotations
+
+import os
+import runpy
+import shutil
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from cfepy.pilot import RunPlan, fly
+from tests.twin.flight_apps import FLIGHT_APPS
+
+FOLDER = Path(__file__).parents[2] / "missions" / "cfs"
+DEFINITIONS = sorted(
+    [*FOLDER.glob("*.yaml"), *(each for each in FOLDER.glob("*.py") if each.with_suffix(".tbl").exists())]
+)
+BUILT = os.environ.get("CFEPY_REAL_CFE", "")
+NAMES = [app.name.lower() for app in FLIGHT_APPS]
+
+
+def test_every_table_has_a_definition() -> None:
+    assert sorted(each.stem for each in FOLDER.glob("*.tbl")) == sorted(each.stem for each in DEFINITIONS)
+
+
+@pytest.mark.parametrize("definition", DEFINITIONS, ids=lambda path: path.name)
+def test_tables_are_what_their_definitions_say(
+    definition: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(FOLDER, tmp_path / "cfs")
+    made = tmp_path / "cfs" / f"{definition.stem}.tbl"
+    made.unlink()
+    if definition.suffix == ".yaml":
+        assert main(["tbl", "build", str(definition), "-o", str(made)]) == 0
+    else:
+        monkeypatch.syspath_prepend(str(tmp_path / "cfs"))
+        runpy.run_path(str(tmp_path / "cfs" / definition.name), run_name="__main__")
+    assert made.read_bytes() == definition.with_suffix(".tbl").read_bytes()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not (Path(BUILT) / "cf/lc.so").exists(), reason="CFEPY_REAL_CFE names no folder with LC's code")
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_the_scenario_comes_about(tasks: str, tmp_path: Path) -> None:
+    shutil.copytree(FOLDER, tmp_path / "cfs")
+    for name in NAMES:
+        shutil.copy(Path(BUILT) / "cf" / f"{name}.so", tmp_path / "cfs")
+    plan = RunPlan((str(tmp_path / "cfs"),), script=str(tmp_path / "cfs" / "scenario.txt"), tasks=tasks)
+    outcome = fly(plan).outcome
+    assert outcome.ok, outcome.text()
