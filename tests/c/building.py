@@ -46,9 +46,10 @@ def compile_cpp(folder: Path, name: str, source: str, *flags: str) -> Path:
 
 def _compile(command: list[str], folder: Path, file: str, source: str, flags: tuple[str, ...]) -> Path:
     text = folder / file
-    text.write_text(f'#include "declarations.h"\n#line 1 "{file}"\n{textwrap.dedent(source).lstrip()}')
+    text.write_text(textwrap.dedent(source).lstrip())
     made = text.with_suffix(".so")
-    done = subprocess.run([*command, *FLAGS, *flags, str(text), "-o", str(made)], capture_output=True, text=True)
+    given = [*command, *FLAGS, "-include", "declarations.h", *flags, str(text), "-o", str(made)]
+    done = subprocess.run(given, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return made
 
