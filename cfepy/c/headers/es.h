@@ -20,27 +20,34 @@ enum CFE_ES_ExceptionAction { CFE_ES_ExceptionAction_RESTART_APP = 0, CFE_ES_Exc
 typedef uint8 CFE_ES_ExceptionAction_Enum_t;
 enum CFE_ES_AppType { CFE_ES_AppType_CORE = 1, CFE_ES_AppType_EXTERNAL = 2, CFE_ES_AppType_LIBRARY = 3 };
 typedef uint8 CFE_ES_AppType_Enum_t;
+
 enum CFE_ES_RunStatus {
     CFE_ES_RunStatus_UNDEFINED = 0, CFE_ES_RunStatus_APP_RUN = 1, CFE_ES_RunStatus_APP_EXIT = 2,
     CFE_ES_RunStatus_APP_ERROR = 3, CFE_ES_RunStatus_SYS_EXCEPTION = 4, CFE_ES_RunStatus_SYS_RESTART = 5,
     CFE_ES_RunStatus_SYS_RELOAD = 6, CFE_ES_RunStatus_SYS_DELETE = 7, CFE_ES_RunStatus_CORE_APP_INIT_ERROR = 8,
     CFE_ES_RunStatus_CORE_APP_RUNTIME_ERROR = 9, CFE_ES_RunStatus_MAX
 };
+
 typedef uint32 CFE_ES_RunStatus_Enum_t;
+
 enum CFE_ES_SystemState {
     CFE_ES_SystemState_UNDEFINED = 0, CFE_ES_SystemState_EARLY_INIT = 1, CFE_ES_SystemState_CORE_STARTUP = 2,
     CFE_ES_SystemState_CORE_READY = 3, CFE_ES_SystemState_APPS_INIT = 4, CFE_ES_SystemState_OPERATIONAL = 5,
     CFE_ES_SystemState_SHUTDOWN = 6, CFE_ES_SystemState_MAX
 };
+
 typedef uint32 CFE_ES_SystemState_Enum_t;
 enum CFE_ES_LogEntryType { CFE_ES_LogEntryType_CORE = 1, CFE_ES_LogEntryType_APPLICATION = 2 };
 typedef uint8 CFE_ES_LogEntryType_Enum_t;
+
 enum CFE_ES_AppState {
     CFE_ES_AppState_UNDEFINED = 0, CFE_ES_AppState_EARLY_INIT = 1, CFE_ES_AppState_LATE_INIT = 2,
     CFE_ES_AppState_RUNNING = 3, CFE_ES_AppState_WAITING = 4, CFE_ES_AppState_STOPPED = 5, CFE_ES_AppState_MAX
 };
+
 typedef uint32 CFE_ES_AppState_Enum_t;
 typedef uint16 CFE_ES_TaskPriority_Atom_t;
+
 typedef struct CFE_ES_AppInfo {
     CFE_ResourceId_t ResourceId;
     uint32 Type;
@@ -61,6 +68,7 @@ typedef struct CFE_ES_AppInfo {
     char MainTaskName[CFE_MISSION_MAX_API_LEN];
     uint32 NumOfChildTasks;
 } CFE_ES_AppInfo_t;
+
 typedef struct CFE_ES_TaskInfo {
     CFE_ES_TaskId_t TaskId;
     uint32 ExecutionCounter;
@@ -71,6 +79,7 @@ typedef struct CFE_ES_TaskInfo {
     CFE_ES_TaskPriority_Atom_t Priority;
     uint8 Spare[2];
 } CFE_ES_TaskInfo_t;
+
 typedef struct CFE_ES_CDSRegDumpRec {
     CFE_ES_CDSHandle_t Handle;
     CFE_ES_MemOffset_t Size;
@@ -78,30 +87,36 @@ typedef struct CFE_ES_CDSRegDumpRec {
     char Name[40];
     uint8 ByteAlignSpare[3];
 } CFE_ES_CDSRegDumpRec_t;
+
 typedef struct CFE_ES_BlockStats {
     CFE_ES_MemOffset_t BlockSize;
     uint32 NumCreated, NumFree;
 } CFE_ES_BlockStats_t;
+
 typedef struct CFE_ES_MemPoolStats {
     CFE_ES_MemOffset_t PoolSize;
     uint32 NumBlocksRequested, CheckErrCtr;
     CFE_ES_MemOffset_t NumFreeBytes;
     CFE_ES_BlockStats_t BlockStats[17];
 } CFE_ES_MemPoolStats_t;
+
 typedef void (*CFE_ES_TaskEntryFuncPtr_t)(void);
 typedef int32 (*CFE_ES_LibraryEntryFuncPtr_t)(CFE_ES_LibId_t LibId);
 typedef CFE_ES_TaskEntryFuncPtr_t CFE_ES_ChildTaskMainFuncPtr_t;
 typedef void *CFE_ES_StackPointer_t;
+
 typedef enum CFE_ES_CrcType_Enum {
     CFE_ES_CrcType_NONE = 0, CFE_ES_CrcType_16_ARC = 1, CFE_ES_CrcType_MAX = 2,
     CFE_ES_CrcType_CRC_16 = CFE_ES_CrcType_16_ARC, CFE_ES_CrcType_CRC_8 = CFE_ES_CrcType_MAX + 1,
     CFE_ES_CrcType_CRC_32 = CFE_ES_CrcType_MAX + 2
 } CFE_ES_CrcType_Enum_t;
+
 typedef union CFE_ES_PoolAlign {
     void *Ptr;
     long long int LongInt;
     long double LongDouble;
 } CFE_ES_PoolAlign_t;
+
 typedef void *CFE_ES_MemPoolBuf_t;
 #define CFE_ES_NO_MUTEX    false
 #define CFE_ES_USE_MUTEX   true

@@ -19,6 +19,7 @@ enum CFE_ES_FunctionCode_ {
     CFE_ES_FunctionCode_SEND_MEM_POOL_STATS = 22, CFE_ES_FunctionCode_DUMP_CDS_REGISTRY = 23,
     CFE_ES_FunctionCode_QUERY_ALL_TASKS = 24
 };
+
 #define CFE_ES_NOOP_CC                  0
 #define CFE_ES_RESET_COUNTERS_CC        1
 #define CFE_ES_RESTART_CC               2
@@ -47,12 +48,15 @@ enum CFE_ES_FunctionCode_ {
 typedef struct CFE_ES_RestartCmd_Payload {
     uint16 RestartType;
 } CFE_ES_RestartCmd_Payload_t;
+
 typedef struct CFE_ES_FileNameCmd_Payload {
     char FileName[CFE_MISSION_MAX_PATH_LEN];
 } CFE_ES_FileNameCmd_Payload_t;
+
 typedef struct CFE_ES_OverWriteSysLogCmd_Payload {
     uint32 Mode;
 } CFE_ES_OverWriteSysLogCmd_Payload_t;
+
 typedef struct CFE_ES_StartAppCmd_Payload {
     char Application[CFE_MISSION_MAX_API_LEN], AppEntryPoint[CFE_MISSION_MAX_API_LEN],
         AppFileName[CFE_MISSION_MAX_PATH_LEN];
@@ -60,46 +64,60 @@ typedef struct CFE_ES_StartAppCmd_Payload {
     CFE_ES_ExceptionAction_Enum_t ExceptionAction;
     CFE_ES_TaskPriority_Atom_t Priority;
 } CFE_ES_StartAppCmd_Payload_t;
+
 typedef struct CFE_ES_AppNameCmd_Payload {
     char Application[CFE_MISSION_MAX_API_LEN];
 } CFE_ES_AppNameCmd_Payload_t;
+
 typedef struct CFE_ES_AppReloadCmd_Payload {
     char Application[CFE_MISSION_MAX_API_LEN], AppFileName[CFE_MISSION_MAX_PATH_LEN];
 } CFE_ES_AppReloadCmd_Payload_t;
+
 typedef struct CFE_ES_SetMaxPRCountCmd_Payload {
     uint16 MaxPRCount;
 } CFE_ES_SetMaxPRCountCmd_Payload_t;
+
 typedef struct CFE_ES_DeleteCDSCmd_Payload {
     char CdsName[40];
 } CFE_ES_DeleteCDSCmd_Payload_t;
+
 enum CFE_ES_PerfMode { CFE_ES_PerfTrigger_START = 0, CFE_ES_PerfTrigger_CENTER, CFE_ES_PerfTrigger_END };
 typedef uint32 CFE_ES_PerfMode_Enum_t;
+
 typedef struct CFE_ES_StartPerfCmd_Payload {
     CFE_ES_PerfMode_Enum_t TriggerMode;
 } CFE_ES_StartPerfCmd_Payload_t;
+
 typedef struct CFE_ES_StopPerfCmd_Payload {
     char DataFileName[CFE_MISSION_MAX_PATH_LEN];
 } CFE_ES_StopPerfCmd_Payload_t;
+
 typedef struct CFE_ES_SetPerfFilterMaskCmd_Payload {
     uint32 FilterMaskNum, FilterMask;
 } CFE_ES_SetPerfFilterMaskCmd_Payload_t;
+
 typedef struct CFE_ES_SetPerfTrigMaskCmd_Payload {
     uint32 TriggerMaskNum, TriggerMask;
 } CFE_ES_SetPerfTrigMaskCmd_Payload_t;
+
 typedef struct CFE_ES_SendMemPoolStatsCmd_Payload {
     char Application[CFE_MISSION_MAX_API_LEN];
     CFE_ES_MemHandle_t PoolHandle;
 } CFE_ES_SendMemPoolStatsCmd_Payload_t;
+
 typedef struct CFE_ES_DumpCDSRegistryCmd_Payload {
     char DumpFilename[CFE_MISSION_MAX_PATH_LEN];
 } CFE_ES_DumpCDSRegistryCmd_Payload_t;
+
 typedef struct CFE_ES_OneAppTlm_Payload {
     CFE_ES_AppInfo_t AppInfo;
 } CFE_ES_OneAppTlm_Payload_t;
+
 typedef struct CFE_ES_PoolStatsTlm_Payload {
     CFE_ES_MemHandle_t PoolHandle;
     CFE_ES_MemPoolStats_t PoolStats;
 } CFE_ES_PoolStatsTlm_Payload_t;
+
 typedef struct CFE_ES_HousekeepingTlm_Payload {
     uint8 CommandCounter, CommandErrorCounter;
     uint16 CFECoreChecksum;

@@ -11,21 +11,27 @@ enum CFE_EVS_MsgFormat { CFE_EVS_MsgFormat_SHORT = 0, CFE_EVS_MsgFormat_LONG = 1
 typedef uint8 CFE_EVS_MsgFormat_Enum_t;
 enum CFE_EVS_LogMode { CFE_EVS_LogMode_OVERWRITE = 0, CFE_EVS_LogMode_DISCARD = 1 };
 typedef uint8 CFE_EVS_LogMode_Enum_t;
+
 enum CFE_EVS_EventType {
     CFE_EVS_EventType_DEBUG = 1, CFE_EVS_EventType_INFORMATION = 2, CFE_EVS_EventType_ERROR = 3,
     CFE_EVS_EventType_CRITICAL = 4
 };
+
 typedef uint16 CFE_EVS_EventType_Enum_t;
 enum CFE_EVS_EventFilter { CFE_EVS_EventFilter_BINARY = 0 };
 typedef uint8 CFE_EVS_EventFilter_Enum_t;
+
 enum CFE_EVS_EventOutput {
     CFE_EVS_EventOutput_PORT1 = 1, CFE_EVS_EventOutput_PORT2 = 2, CFE_EVS_EventOutput_PORT3 = 3,
     CFE_EVS_EventOutput_PORT4 = 4
 };
+
 typedef uint8 CFE_EVS_EventOutput_Enum_t;
+
 typedef struct CFE_EVS_BinFilter {
     uint16 EventID, Mask;
 } CFE_EVS_BinFilter_t;
+
 /* Masks of filters, by how many events they let through. */
 #define CFE_EVS_EVERY_FOURTH_ONE 0x3
 #define CFE_EVS_EVERY_OTHER_ONE  0x1

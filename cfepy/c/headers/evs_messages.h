@@ -19,6 +19,7 @@ enum CFE_EVS_FunctionCode_ {
     CFE_EVS_FunctionCode_WRITE_LOG_DATA_FILE = 18, CFE_EVS_FunctionCode_SET_LOG_MODE = 19,
     CFE_EVS_FunctionCode_CLEAR_LOG = 20
 };
+
 #define CFE_EVS_NOOP_CC                   0
 #define CFE_EVS_RESET_COUNTERS_CC         1
 #define CFE_EVS_ENABLE_EVENT_TYPE_CC      2
@@ -44,40 +45,50 @@ enum CFE_EVS_FunctionCode_ {
 typedef struct CFE_EVS_LogFileCmd_Payload {
     char LogFilename[CFE_MISSION_MAX_PATH_LEN];
 } CFE_EVS_LogFileCmd_Payload_t;
+
 typedef struct CFE_EVS_AppDataCmd_Payload {
     char AppDataFilename[CFE_MISSION_MAX_PATH_LEN];
 } CFE_EVS_AppDataCmd_Payload_t;
+
 typedef struct CFE_EVS_SetLogMode_Payload {
     CFE_EVS_LogMode_Enum_t LogMode;
     uint8 Spare;
 } CFE_EVS_SetLogMode_Payload_t;
+
 typedef struct CFE_EVS_SetEventFormatCode_Payload {
     CFE_EVS_MsgFormat_Enum_t MsgFormat;
     uint8 Spare;
 } CFE_EVS_SetEventFormatMode_Payload_t;
+
 typedef struct CFE_EVS_BitMaskCmd_Payload {
     uint8 BitMask, Spare;
 } CFE_EVS_BitMaskCmd_Payload_t;
+
 typedef struct CFE_EVS_AppNameCmd_Payload {
     char AppName[CFE_MISSION_MAX_API_LEN];
 } CFE_EVS_AppNameCmd_Payload_t;
+
 typedef struct CFE_EVS_AppNameEventIDCmd_Payload {
     char AppName[CFE_MISSION_MAX_API_LEN];
     uint16 EventID;
 } CFE_EVS_AppNameEventIDCmd_Payload_t;
+
 typedef struct CFE_EVS_AppNameBitMaskCmd_Payload {
     char AppName[CFE_MISSION_MAX_API_LEN];
     uint8 BitMask, Spare;
 } CFE_EVS_AppNameBitMaskCmd_Payload_t;
+
 typedef struct CFE_EVS_AppNameEventIDMaskCmd_Payload {
     char AppName[CFE_MISSION_MAX_API_LEN];
     uint16 EventID, Mask;
 } CFE_EVS_AppNameEventIDMaskCmd_Payload_t;
+
 typedef struct CFE_EVS_AppTlmData {
     CFE_ES_AppId_t AppID;
     uint16 AppMessageSentCounter;
     uint8 AppEnableStatus, AppMessageSquelchedCounter;
 } CFE_EVS_AppTlmData_t;
+
 typedef struct CFE_EVS_HousekeepingTlm_Payload {
     uint8 CommandCounter, CommandErrorCounter, MessageFormatMode, MessageTruncCounter, UnregisteredAppCounter,
         OutputPort, LogFullFlag, LogMode;
@@ -85,20 +96,24 @@ typedef struct CFE_EVS_HousekeepingTlm_Payload {
     uint8 LogEnabled, Spare1, Spare2, Spare3;
     CFE_EVS_AppTlmData_t AppData[16];
 } CFE_EVS_HousekeepingTlm_Payload_t;
+
 typedef struct CFE_EVS_PacketID {
     char AppName[CFE_MISSION_MAX_API_LEN];
     uint16 EventID;
     CFE_EVS_EventType_Enum_t EventType;
     uint32 SpacecraftID, ProcessorID;
 } CFE_EVS_PacketID_t;
+
 typedef struct CFE_EVS_LongEventTlm_Payload {
     CFE_EVS_PacketID_t PacketID;
     char Message[122];
     uint8 Spare1, Spare2;
 } CFE_EVS_LongEventTlm_Payload_t;
+
 typedef struct CFE_EVS_ShortEventTlm_Payload {
     CFE_EVS_PacketID_t PacketID;
 } CFE_EVS_ShortEventTlm_Payload_t;
+
 #define CFE_EVS_DEBUG_BIT       1
 #define CFE_EVS_PORT1_BIT       1
 #define CFE_EVS_INFORMATION_BIT 2

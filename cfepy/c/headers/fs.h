@@ -14,22 +14,28 @@ enum CFE_FS_SubType {
     CFE_FS_SubType_SB_PIPEDATA = 20, CFE_FS_SubType_SB_ROUTEDATA = 21, CFE_FS_SubType_SB_MAPDATA = 22,
     CFE_FS_SubType_ES_QUERYALLTASKS = 23
 };
+
 typedef uint32 CFE_FS_SubType_Enum_t;
+
 typedef struct CFE_FS_Header {
     uint32 ContentType, SubType, Length, SpacecraftID, ProcessorID, ApplicationID, TimeSeconds, TimeSubSeconds;
     char Description[32];
 } CFE_FS_Header_t;
+
 typedef enum {
     CFE_FS_FileCategory_UNKNOWN, CFE_FS_FileCategory_DYNAMIC_MODULE, CFE_FS_FileCategory_BINARY_DATA_DUMP,
     CFE_FS_FileCategory_TEXT_LOG, CFE_FS_FileCategory_SCRIPT, CFE_FS_FileCategory_TEMP, CFE_FS_FileCategory_MAX
 } CFE_FS_FileCategory_t;
+
 typedef enum {
     CFE_FS_FileWriteEvent_UNDEFINED, CFE_FS_FileWriteEvent_COMPLETE, CFE_FS_FileWriteEvent_CREATE_ERROR,
     CFE_FS_FileWriteEvent_HEADER_WRITE_ERROR, CFE_FS_FileWriteEvent_RECORD_WRITE_ERROR, CFE_FS_FileWriteEvent_MAX
 } CFE_FS_FileWriteEvent_t;
+
 typedef bool (*CFE_FS_FileWriteGetData_t)(void *Meta, uint32 RecordNum, void **Buffer, size_t *BufSize);
 typedef void (*CFE_FS_FileWriteOnEvent_t)(void *Meta, CFE_FS_FileWriteEvent_t Event, int32 Status, uint32 RecordNum,
     size_t BlockSize, size_t Position);
+
 typedef struct CFE_FS_FileWriteMetaData {
     volatile bool IsPending;
     char FileName[CFE_MISSION_MAX_PATH_LEN];
@@ -38,6 +44,7 @@ typedef struct CFE_FS_FileWriteMetaData {
     CFE_FS_FileWriteGetData_t GetData;
     CFE_FS_FileWriteOnEvent_t OnEvent;
 } CFE_FS_FileWriteMetaData_t;
+
 void CFE_FS_InitHeader(CFE_FS_Header_t *Hdr, const char *Description, uint32 SubType);
 CFE_Status_t CFE_FS_ReadHeader(CFE_FS_Header_t *Hdr, osal_id_t FileDes);
 CFE_Status_t CFE_FS_WriteHeader(osal_id_t FileDes, CFE_FS_Header_t *Hdr);

@@ -8,9 +8,11 @@
 CFEPY_C_BEGIN
 
 typedef uint32 CFE_SB_MsgId_Atom_t;
+
 typedef struct {
     CFE_SB_MsgId_Atom_t Value;
 } CFE_SB_MsgId_t;
+
 typedef size_t CFE_MSG_Size_t;
 typedef uint32 CFE_MSG_Checksum_t;
 typedef uint16 CFE_MSG_FcnCode_t;
@@ -21,44 +23,57 @@ typedef uint16 CFE_MSG_EDSVersion_t;
 typedef uint16 CFE_MSG_Subsystem_t;
 typedef uint16 CFE_MSG_System_t;
 typedef enum CFE_MSG_Type { CFE_MSG_Type_Invalid, CFE_MSG_Type_Cmd, CFE_MSG_Type_Tlm } CFE_MSG_Type_t;
+
 typedef enum CFE_MSG_SegmentationFlag {
     CFE_MSG_SegFlag_Invalid, CFE_MSG_SegFlag_Continue, CFE_MSG_SegFlag_First, CFE_MSG_SegFlag_Last,
     CFE_MSG_SegFlag_Unsegmented
 } CFE_MSG_SegmentationFlag_t;
+
 typedef enum CFE_MSG_Endian { CFE_MSG_Endian_Invalid, CFE_MSG_Endian_Big, CFE_MSG_Endian_Little } CFE_MSG_Endian_t;
+
 typedef enum CFE_MSG_PlaybackFlag {
     CFE_MSG_PlayFlag_Invalid, CFE_MSG_PlayFlag_Original, CFE_MSG_PlayFlag_Playback
 } CFE_MSG_PlaybackFlag_t;
+
 typedef struct CFE_MSG_Message CFE_MSG_Message_t;
 typedef struct CFE_MSG_CommandHeader CFE_MSG_CommandHeader_t;
 typedef struct CFE_MSG_TelemetryHeader CFE_MSG_TelemetryHeader_t;
+
 typedef struct CCSDS_PrimaryHeader {
     uint8 StreamId[2], Sequence[2], Length[2];
 } CCSDS_PrimaryHeader_t;
+
 typedef struct CCSDS_ExtendedHeader {
     uint8 Subsystem[2], SystemId[2];
 } CCSDS_ExtendedHeader_t;
+
 typedef struct {
     uint8 FunctionCode, Checksum;
 } CFE_MSG_CommandSecondaryHeader_t;
+
 typedef struct {
     uint8 Time[6];
 } CFE_MSG_TelemetrySecondaryHeader_t;
+
 typedef struct {
     CCSDS_PrimaryHeader_t Pri;
 } CCSDS_SpacePacket_t;
+
 struct CFE_MSG_Message {
     CCSDS_SpacePacket_t CCSDS;
 };
+
 struct CFE_MSG_CommandHeader {
     CFE_MSG_Message_t Msg;
     CFE_MSG_CommandSecondaryHeader_t Sec;
 };
+
 struct CFE_MSG_TelemetryHeader {
     CFE_MSG_Message_t Msg;
     CFE_MSG_TelemetrySecondaryHeader_t Sec;
     uint8 Spare[4];
 };
+
 #define CFE_MSG_BAD_ARGUMENT    CFE_STATUS_C(0xca000003)
 #define CFE_MSG_WRONG_MSG_TYPE  CFE_STATUS_C(0xca00000d)
 #define CFE_MSG_NOT_IMPLEMENTED CFE_STATUS_C(0xca00ffff)

@@ -13,20 +13,24 @@ CFEPY_C_BEGIN
 #define OS_WRITE_ONLY 1
 #define OS_READ_WRITE 2
 #define OS_SEEK_END   2
+
 typedef struct {
     char Path[OS_MAX_PATH_LEN];
     osal_id_t User;
     uint8 IsValid;
 } OS_file_prop_t;
+
 typedef struct {
     uint32 FileModeBits;
     OS_time_t FileTime;
     size_t FileSize;
 } os_fstat_t;
+
 enum {
     OS_FILESTAT_MODE_EXEC = 0x00001, OS_FILESTAT_MODE_WRITE = 0x00002, OS_FILESTAT_MODE_READ = 0x00004,
     OS_FILESTAT_MODE_DIR = 0x10000
 };
+
 typedef enum { OS_FILE_FLAG_NONE = 0x00, OS_FILE_FLAG_CREATE = 0x01, OS_FILE_FLAG_TRUNCATE = 0x02 } OS_file_flag_t;
 #define OS_FILESTAT_MODE(stat)  ((stat).FileModeBits)
 #define OS_FILESTAT_ISDIR(stat) (OS_FILESTAT_MODE(stat) & OS_FILESTAT_MODE_DIR)
@@ -61,6 +65,7 @@ int32 OS_write(osal_id_t filedes, const void *buffer, size_t nbytes);
 typedef struct {
     char FileName[OS_MAX_API_NAME];
 } os_dirent_t;
+
 #define OS_DIRENTRY_NAME(entry) ((entry).FileName)
 int32 OS_DirectoryClose(osal_id_t dir_id);
 int32 OS_DirectoryOpen(osal_id_t *dir_id, const char *path);
@@ -72,13 +77,16 @@ int32 OS_rmdir(const char *path);
 /* ---- volumes and paths ---- */
 #define OS_CHK_ONLY 0
 #define OS_REPAIR   1
+
 typedef struct {
     uint32 MaxFds, FreeFds, MaxVolumes, FreeVolumes;
 } os_fsinfo_t;
+
 typedef struct {
     size_t block_size;
     osal_blockcount_t total_blocks, blocks_free;
 } OS_statvfs_t;
+
 int32 OS_FS_GetPhysDriveName(char *PhysDriveName, const char *MountPoint);
 int32 OS_FileSysAddFixedMap(osal_id_t *filesys_id, const char *phys_path, const char *virt_path);
 int32 OS_FileSysStatVolume(const char *name, OS_statvfs_t *statbuf);
@@ -95,20 +103,24 @@ int32 OS_unmount(const char *mountpoint);
 /* ---- modules and symbols ---- */
 #define OS_MODULE_FLAG_GLOBAL_SYMBOLS 0x0
 #define OS_MODULE_FLAG_LOCAL_SYMBOLS  0x1
+
 typedef struct {
     uint32 valid, flags;
     cpuaddr code_address, code_size, data_address, data_size, bss_address, bss_size;
 } OS_module_address_t;
+
 typedef struct {
     cpuaddr entry_point, host_module_id;
     char filename[OS_MAX_PATH_LEN], name[OS_MAX_API_NAME];
     OS_module_address_t addr;
 } OS_module_prop_t;
+
 typedef const struct {
     const char *Name;
     void (*Address)(void);
     const char *Module;
 } OS_static_symbol_record_t;
+
 int32 OS_ModuleInfo(osal_id_t module_id, OS_module_prop_t *module_info);
 int32 OS_ModuleLoad(osal_id_t *module_id, const char *module_name, const char *filename, uint32 flags);
 int32 OS_ModuleSymbolLookup(osal_id_t module_id, cpuaddr *symbol_address, const char *symbol_name);

@@ -137,12 +137,15 @@ typedef enum {
     OS_EVENT_RESERVED = 0, OS_EVENT_RESOURCE_ALLOCATED, OS_EVENT_RESOURCE_CREATED, OS_EVENT_RESOURCE_DELETED,
     OS_EVENT_TASK_STARTUP, OS_EVENT_MAX
 } OS_Event_t;
+
 typedef int32 (*OS_EventHandler_t)(OS_Event_t event, osal_id_t object_id, void *data);
+
 typedef struct {
     size_t free_bytes;
     osal_blockcount_t free_blocks;
     size_t largest_free_block;
 } OS_heap_prop_t;
+
 int32 OS_API_Init(void);
 void OS_API_Teardown(void);
 void OS_ApplicationExit(int32 Status);
@@ -167,12 +170,14 @@ size_t OS_strnlen(const char *s, size_t maxlen);
 #define OSAL_TASK_STACK_ALLOCATE OSAL_STACKPTR_C(NULL)
 #define OS_FP_ENABLED        1
 #define OS_MAX_TASK_PRIORITY 255
+
 typedef struct {
     char name[OS_MAX_API_NAME];
     osal_id_t creator;
     size_t stack_size;
     osal_priority_t priority;
 } OS_task_prop_t;
+
 typedef void osal_task;
 typedef osal_task (*osal_task_entry)(void);
 int32 OS_TaskCreate(osal_id_t *task_id, const char *task_name, osal_task_entry function_pointer,
@@ -192,6 +197,7 @@ typedef struct {
     char name[OS_MAX_API_NAME];
     osal_id_t creator;
 } OS_queue_prop_t;
+
 int32 OS_QueueCreate(osal_id_t *queue_id, const char *queue_name, osal_blockcount_t queue_depth, size_t data_size,
     uint32 flags);
 int32 OS_QueueDelete(osal_id_t queue_id);
@@ -203,28 +209,34 @@ int32 OS_QueuePut(osal_id_t queue_id, const void *data, size_t size, uint32 flag
 /* ---- semaphores, mutexes, condition variables, locks for readers and writers ---- */
 #define OS_SEM_EMPTY 0
 #define OS_SEM_FULL  1
+
 typedef struct {
     char name[OS_MAX_API_NAME];
     osal_id_t creator;
     int32 value;
 } OS_bin_sem_prop_t;
+
 typedef struct {
     char name[OS_MAX_API_NAME];
     osal_id_t creator;
 } OS_condvar_prop_t;
+
 typedef struct {
     char name[OS_MAX_API_NAME];
     osal_id_t creator;
     int32 value;
 } OS_count_sem_prop_t;
+
 typedef struct {
     char name[OS_MAX_API_NAME];
     osal_id_t creator;
 } OS_mut_sem_prop_t;
+
 typedef struct {
     char name[OS_MAX_API_NAME];
     osal_id_t creator;
 } OS_rwlock_prop_t;
+
 int32 OS_BinSemCreate(osal_id_t *sem_id, const char *sem_name, uint32 sem_initial_value, uint32 options);
 int32 OS_BinSemDelete(osal_id_t sem_id);
 int32 OS_BinSemFlush(osal_id_t sem_id);
@@ -267,17 +279,21 @@ int32 OS_RwLockWriteTake(osal_id_t rw_id);
 
 /* ---- timers ---- */
 typedef uint32 (*OS_TimerSync_t)(osal_id_t timer_id);
+
 typedef struct {
     char name[OS_MAX_API_NAME];
     osal_id_t creator;
     uint32 nominal_interval_time, freerun_time, accuracy;
 } OS_timebase_prop_t;
+
 typedef void (*OS_TimerCallback_t)(osal_id_t timer_id);
+
 typedef struct {
     char name[OS_MAX_API_NAME];
     osal_id_t creator;
     uint32 start_time, interval_time, accuracy;
 } OS_timer_prop_t;
+
 int32 OS_TimeBaseCreate(osal_id_t *timebase_id, const char *timebase_name, OS_TimerSync_t external_sync);
 int32 OS_TimeBaseDelete(osal_id_t timebase_id);
 int32 OS_TimeBaseGetFreeRun(osal_id_t timebase_id, uint32 *freerun_val);

@@ -9,6 +9,7 @@ CFEPY_C_BEGIN
 typedef struct {
     int64 ticks;
 } OS_time_t;
+
 enum {
     OS_TIME_TICK_RESOLUTION_NS = 100,
     OS_TIME_TICKS_PER_SECOND = 1000000000 / OS_TIME_TICK_RESOLUTION_NS,

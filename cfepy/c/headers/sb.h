@@ -12,14 +12,17 @@ enum CFE_SB_QosReliability { CFE_SB_QosReliability_LOW = 0, CFE_SB_QosReliabilit
 typedef uint8 CFE_SB_QosReliability_Enum_t;
 typedef uint16 CFE_SB_RouteId_Atom_t;
 typedef CFE_ResourceId_t CFE_SB_PipeId_t;
+
 typedef struct {
     uint8 Priority, Reliability;
 } CFE_SB_Qos_t;
+
 typedef union CFE_SB_Msg {
     CFE_MSG_Message_t Msg;
     long long int LongInt;
     long double LongDouble;
 } CFE_SB_Buffer_t;
+
 #define CFE_SB_PEND_FOREVER        (-1)
 #define CFE_SB_POLL                0
 #define CFE_SB_SUBSCRIPTION        0

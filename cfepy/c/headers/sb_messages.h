@@ -13,6 +13,7 @@ enum CFE_SB_FunctionCode_ {
     CFE_SB_FunctionCode_WRITE_MAP_INFO = 8, CFE_SB_FunctionCode_ENABLE_SUB_REPORTING = 9,
     CFE_SB_FunctionCode_DISABLE_SUB_REPORTING = 10, CFE_SB_FunctionCode_SEND_PREV_SUBS = 11
 };
+
 #define CFE_SB_NOOP_CC                  0
 #define CFE_SB_RESET_COUNTERS_CC        1
 #define CFE_SB_SEND_SB_STATS_CC         2
@@ -28,11 +29,13 @@ enum CFE_SB_FunctionCode_ {
 typedef struct CFE_SB_WriteFileInfoCmd_Payload {
     char Filename[CFE_MISSION_MAX_PATH_LEN];
 } CFE_SB_WriteFileInfoCmd_Payload_t;
+
 typedef struct CFE_SB_RouteCmd_Payload {
     CFE_SB_MsgId_t MsgId;
     CFE_SB_PipeId_t Pipe;
     uint8 Spare;
 } CFE_SB_RouteCmd_Payload_t;
+
 typedef struct CFE_SB_HousekeepingTlm_Payload {
     uint8 CommandCounter, CommandErrorCounter, NoSubscribersCounter, MsgSendErrorCounter, MsgReceiveErrorCounter,
         InternalErrorCounter, CreatePipeErrorCounter, SubscribeErrorCounter, PipeOptsErrorCounter,
@@ -41,10 +44,12 @@ typedef struct CFE_SB_HousekeepingTlm_Payload {
     CFE_ES_MemHandle_t MemPoolHandle;
     uint32 MemInUse, UnmarkedMem;
 } CFE_SB_HousekeepingTlm_Payload_t;
+
 typedef struct CFE_SB_PipeDepthStats {
     CFE_SB_PipeId_t PipeId;
     uint16 MaxQueueDepth, CurrentQueueDepth, PeakQueueDepth, Spare;
 } CFE_SB_PipeDepthStats_t;
+
 typedef struct CFE_SB_PipeInfoEntry {
     CFE_SB_PipeId_t PipeId;
     CFE_ES_AppId_t AppId;
@@ -52,12 +57,14 @@ typedef struct CFE_SB_PipeInfoEntry {
     uint16 MaxQueueDepth, CurrentQueueDepth, PeakQueueDepth, SendErrors;
     uint8 Opts, Spare[3];
 } CFE_SB_PipeInfoEntry_t;
+
 typedef struct CFE_SB_StatsTlm_Payload {
     uint32 MsgIdsInUse, PeakMsgIdsInUse, MaxMsgIdsAllowed, PipesInUse, PeakPipesInUse, MaxPipesAllowed, MemInUse,
         PeakMemInUse, MaxMemAllowed, SubscriptionsInUse, PeakSubscriptionsInUse, MaxSubscriptionsAllowed,
         SBBuffersInUse, PeakSBBuffersInUse, MaxPipeDepthAllowed;
     CFE_SB_PipeDepthStats_t PipeDepthStats[32];
 } CFE_SB_StatsTlm_Payload_t;
+
 typedef struct CFE_SB_RoutingFileEntry {
     CFE_SB_MsgId_t MsgId;
     CFE_SB_PipeId_t PipeId;
@@ -65,21 +72,25 @@ typedef struct CFE_SB_RoutingFileEntry {
     uint16 MsgCnt;
     char AppName[CFE_MISSION_MAX_API_LEN], PipeName[CFE_MISSION_MAX_API_LEN];
 } CFE_SB_RoutingFileEntry_t;
+
 typedef struct CFE_SB_MsgMapFileEntry {
     CFE_SB_MsgId_t MsgId;
     CFE_SB_RouteId_Atom_t Index;
 } CFE_SB_MsgMapFileEntry_t;
+
 typedef struct CFE_SB_SingleSubscriptionTlm_Payload {
     uint8 SubType;
     CFE_SB_MsgId_t MsgId;
     CFE_SB_Qos_t Qos;
     CFE_SB_PipeId_t Pipe;
 } CFE_SB_SingleSubscriptionTlm_Payload_t;
+
 typedef struct CFE_SB_SubEntries {
     CFE_SB_MsgId_t MsgId;
     CFE_SB_Qos_t Qos;
     CFE_SB_PipeId_t Pipe;
 } CFE_SB_SubEntries_t;
+
 typedef struct CFE_SB_AllSubscriptionsTlm_Payload {
     uint32 PktSegment, TotalSegments, Entries;
     CFE_SB_SubEntries_t Entry[20];

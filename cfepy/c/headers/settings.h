@@ -9,10 +9,12 @@ CFEPY_C_BEGIN
 
 typedef CFE_ResourceId_t CFE_ConfigId_t;
 typedef void (*CFE_Config_Callback_t)(void *Arg, CFE_ConfigId_t Id, const char *Name);
+
 typedef struct CFE_Config_ArrayValue {
     size_t NumElements;
     const void *ElementPtr;
 } CFE_Config_ArrayValue_t;
+
 #define CFE_CONFIGID_C(value)   ((CFE_ConfigId_t)CFE_RESOURCEID_WRAP(value))
 #define CFE_CONFIGID_UNDEFINED  CFE_CONFIGID_C(CFE_RESOURCEID_UNDEFINED)
 CFE_Config_ArrayValue_t CFE_Config_GetArrayValue(CFE_ConfigId_t ConfigId);

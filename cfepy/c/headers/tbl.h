@@ -10,18 +10,22 @@ CFEPY_C_BEGIN
 
 enum CFE_TBL_BufferSelect { CFE_TBL_BufferSelect_INACTIVE = 0, CFE_TBL_BufferSelect_ACTIVE = 1 };
 typedef uint16 CFE_TBL_BufferSelect_Enum_t;
+
 typedef struct CFE_TBL_File_Hdr {
     uint32 Reserved, Offset, NumBytes;
     char TableName[40];
 } CFE_TBL_File_Hdr_t;
+
 typedef struct CFE_TBL_CombinedFileHdr {
     CFE_FS_Header_t Std;
     CFE_TBL_File_Hdr_t Tbl;
 } CFE_TBL_CombinedFileHdr_t;
+
 typedef CFE_ResourceId_t CFE_TBL_RegId_t;
 typedef CFE_ResourceId_t CFE_TBL_HandleId_t;
 typedef int32 (*CFE_TBL_CallbackFuncPtr_t)(void *TblPtr);
 typedef enum CFE_TBL_SrcEnum { CFE_TBL_SRC_FILE = 0, CFE_TBL_SRC_ADDRESS } CFE_TBL_SrcEnum_t;
+
 typedef struct CFE_TBL_Info {
     size_t Size;
     uint32 NumUsers;
@@ -31,6 +35,7 @@ typedef struct CFE_TBL_Info {
     bool TableLoadedOnce, DumpOnly, DoubleBuffered, UserDefAddr, Critical;
     char LastFileLoaded[CFE_MISSION_MAX_PATH_LEN];
 } CFE_TBL_Info_t;
+
 #define CFE_TBL_OPT_DEFAULT      0
 #define CFE_TBL_OPT_LOAD_DUMP    0x0
 #define CFE_TBL_OPT_NOT_CRITICAL 0x0
@@ -107,6 +112,7 @@ typedef struct CFE_TBL_FileDef {
     char ObjectName[CFE_MISSION_MAX_PATH_LEN], TableName[40], Description[32], TgtFilename[CFE_MISSION_MAX_API_LEN];
     uint32 ObjectSize;
 } CFE_TBL_FileDef_t;
+
 /* With a NUL of its own, a text that fills its field to the last byte is one too long, and the compiler says so. */
 #define CFE_TBL_FILEDEF(Object, Table, Text, File) \
     CFE_TBL_FileDef_t CFE_TBL_FileDef = {#Object "\0", #Table "\0", #Text "\0", #File "\0", sizeof(Object)};

@@ -12,6 +12,7 @@ enum CFE_TBL_FunctionCode_ {
     CFE_TBL_FunctionCode_DUMP_REGISTRY = 6, CFE_TBL_FunctionCode_SEND_REGISTRY = 7,
     CFE_TBL_FunctionCode_DELETE_CDS = 8, CFE_TBL_FunctionCode_ABORT_LOAD = 9
 };
+
 #define CFE_TBL_NOOP_CC           0
 #define CFE_TBL_RESET_COUNTERS_CC 1
 #define CFE_TBL_LOAD_CC           2
@@ -26,32 +27,41 @@ enum CFE_TBL_FunctionCode_ {
 typedef struct CFE_TBL_LoadCmd_Payload {
     char LoadFilename[CFE_MISSION_MAX_PATH_LEN];
 } CFE_TBL_LoadCmd_Payload_t;
+
 typedef struct CFE_TBL_DumpCmd_Payload {
     CFE_TBL_BufferSelect_Enum_t ActiveTableFlag;
     char TableName[40], DumpFilename[CFE_MISSION_MAX_PATH_LEN];
 } CFE_TBL_DumpCmd_Payload_t;
+
 typedef struct CFE_TBL_ValidateCmd_Payload {
     CFE_TBL_BufferSelect_Enum_t ActiveTableFlag;
     char TableName[40];
 } CFE_TBL_ValidateCmd_Payload_t;
+
 typedef struct CFE_TBL_ActivateCmd_Payload {
     char TableName[40];
 } CFE_TBL_ActivateCmd_Payload_t;
+
 typedef struct CFE_TBL_DumpRegistryCmd_Payload {
     char DumpFilename[CFE_MISSION_MAX_PATH_LEN];
 } CFE_TBL_DumpRegistryCmd_Payload_t;
+
 typedef struct CFE_TBL_SendRegistryCmd_Payload {
     char TableName[40];
 } CFE_TBL_SendRegistryCmd_Payload_t;
+
 typedef struct CFE_TBL_DelCDSCmd_Payload {
     char TableName[40];
 } CFE_TBL_DelCDSCmd_Payload_t;
+
 typedef struct CFE_TBL_AbortLoadCmd_Payload {
     char TableName[40];
 } CFE_TBL_AbortLoadCmd_Payload_t;
+
 typedef struct CFE_TBL_NotifyCmd_Payload {
     uint32 Parameter;
 } CFE_TBL_NotifyCmd_Payload_t;
+
 typedef struct CFE_TBL_HousekeepingTlm_Payload {
     uint8 CommandCounter, CommandErrorCounter;
     uint16 NumTables, NumLoadPending, ValidationCounter;
@@ -65,6 +75,7 @@ typedef struct CFE_TBL_HousekeepingTlm_Payload {
     char LastUpdatedTable[40], LastFileLoaded[CFE_MISSION_MAX_PATH_LEN], LastFileDumped[CFE_MISSION_MAX_PATH_LEN],
         LastTableLoaded[40];
 } CFE_TBL_HousekeepingTlm_Payload_t;
+
 typedef struct CFE_TBL_TblRegPacket_Payload {
     CFE_ES_MemOffset_t Size;
     uint32 Crc;

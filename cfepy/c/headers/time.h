@@ -9,16 +9,20 @@ CFEPY_C_BEGIN
 typedef struct CFE_TIME_SysTime {
     uint32 Seconds, Subseconds;
 } CFE_TIME_SysTime_t;
+
 enum CFE_TIME_FlagBit {
     CFE_TIME_FlagBit_CLKSET = 0, CFE_TIME_FlagBit_FLYING = 1, CFE_TIME_FlagBit_SRCINT = 2,
     CFE_TIME_FlagBit_SIGPRI = 3, CFE_TIME_FlagBit_SRVFLY = 4, CFE_TIME_FlagBit_CMDFLY = 5,
     CFE_TIME_FlagBit_ADDADJ = 6, CFE_TIME_FlagBit_ADD1HZ = 7, CFE_TIME_FlagBit_ADDTCL = 8,
     CFE_TIME_FlagBit_SERVER = 9, CFE_TIME_FlagBit_GDTONE = 10
 };
+
 typedef uint8 CFE_TIME_FlagBit_Enum_t;
+
 enum CFE_TIME_ClockState {
     CFE_TIME_ClockState_INVALID = -1, CFE_TIME_ClockState_VALID = 0, CFE_TIME_ClockState_FLYWHEEL = 1
 };
+
 typedef int16 CFE_TIME_ClockState_Enum_t;
 enum CFE_TIME_SourceSelect { CFE_TIME_SourceSelect_INTERNAL = 1, CFE_TIME_SourceSelect_EXTERNAL = 2 };
 typedef uint8 CFE_TIME_SourceSelect_Enum_t;

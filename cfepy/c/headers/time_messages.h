@@ -15,6 +15,7 @@ enum CFE_TIME_FunctionCode_ {
     CFE_TIME_FunctionCode_SUB_ADJUST = 12, CFE_TIME_FunctionCode_ADD_ONE_HZ_ADJUSTMENT = 13,
     CFE_TIME_FunctionCode_SUB_ONE_HZ_ADJUSTMENT = 14, CFE_TIME_FunctionCode_SET_SIGNAL = 15
 };
+
 #define CFE_TIME_NOOP_CC                  0
 #define CFE_TIME_RESET_COUNTERS_CC        1
 #define CFE_TIME_SEND_DIAGNOSTIC_CC       2
@@ -35,26 +36,33 @@ enum CFE_TIME_FunctionCode_ {
 typedef struct CFE_TIME_LeapsCmd_Payload {
     int16 LeapSeconds;
 } CFE_TIME_LeapsCmd_Payload_t;
+
 typedef struct CFE_TIME_StateCmd_Payload {
     CFE_TIME_ClockState_Enum_t ClockState;
 } CFE_TIME_StateCmd_Payload_t;
+
 typedef struct CFE_TIME_SourceCmd_Payload {
     int16 TimeSource;
 } CFE_TIME_SourceCmd_Payload_t;
+
 typedef struct CFE_TIME_SignalCmd_Payload {
     int16 ToneSource;
 } CFE_TIME_SignalCmd_Payload_t;
+
 typedef struct CFE_TIME_TimeCmd_Payload {
     uint32 Seconds, MicroSeconds;
 } CFE_TIME_TimeCmd_Payload_t;
+
 typedef struct CFE_TIME_OneHzAdjustmentCmd_Payload {
     uint32 Seconds, Subseconds;
 } CFE_TIME_OneHzAdjustmentCmd_Payload_t;
+
 typedef struct CFE_TIME_ToneDataCmd_Payload {
     CFE_TIME_SysTime_t AtToneMET, AtToneSTCF;
     int16 AtToneLeapSeconds;
     CFE_TIME_ClockState_Enum_t AtToneState;
 } CFE_TIME_ToneDataCmd_Payload_t;
+
 typedef struct CFE_TIME_HousekeepingTlm_Payload {
     uint8 CommandCounter, CommandErrorCounter;
     uint16 ClockStateFlags;
@@ -62,6 +70,7 @@ typedef struct CFE_TIME_HousekeepingTlm_Payload {
     int16 LeapSeconds;
     CFE_TIME_SysTime_t MET, STCF, AdjustmentFactor;
 } CFE_TIME_HousekeepingTlm_Payload_t;
+
 typedef struct CFE_TIME_DiagnosticTlm_Payload {
     CFE_TIME_SysTime_t AtToneMET, AtToneSTCF, AtToneDelay, AtToneLatch;
     int16 AtToneLeapSeconds;
@@ -77,6 +86,7 @@ typedef struct CFE_TIME_DiagnosticTlm_Payload {
     CFE_TIME_SysTime_t MaxLocalClock;
     uint32 ToneOverLimit, ToneUnderLimit, DataStoreStatus;
 } CFE_TIME_DiagnosticTlm_Payload_t;
+
 #define CFE_TIME_FLAG_UNUSED 0xF
 #define CFE_TIME_FLAG_REFERR 0x10
 #define CFE_TIME_FLAG_GDTONE 0x20
