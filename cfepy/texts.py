@@ -10,7 +10,8 @@ import re
 
 _ESCAPES = range(0xDC80, 0xDD00)  # what PEP 383 makes of the bytes 0x80 to 0xFF
 _SURROGATES = range(0xD800, 0xE000)
-_ADDRESS = re.compile(r"(?<= at )0x[0-9a-fA-F]{9,16}\b")
+_ADDRESS = re.compile(r"(?<= at )0x(?![1-4][0-9a-fA-F]{9}\b)[0-9a-fA-F]{9,16}\b")
+"""Of an object of Python. Where compiled applications are (`cfepy.c.arena`), addresses are the same in each run."""
 
 
 def to_bytes(text: str) -> bytes:

@@ -48,6 +48,7 @@ def Main(cfe):
         ("reset at 0x1880", "reset at 0x1880"),
         ("it is 0x7f3709f8bb20", "it is 0x7f3709f8bb20"),
         ("at 0x7f3709f8bb20", "at 0x7f3709f8bb20"),  # no object's
+        ("a table at 0x10802240a0", "a table at 0x10802240a0"),  # of a compiled application
         ("", ""),
     ],
 )
