@@ -41,6 +41,12 @@ def test_its_own_tests_pass() -> None:
     assert done.returncode == 0, done.stdout
 
 
+def test_one_that_is_not_built_is_found_by_check(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["new", "app", "thermal", "--c"])
+    assert main(["check", "thermal"]) == 1
+    assert "if it is the application in fsw/src, compile it: cfepy build thermal" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("omit_deprecated", [False, True])
 def test_it_compiles_without_a_warning(omit_deprecated: bool) -> None:
     main(["new", "app", "--c", "thermal"])

@@ -14,6 +14,7 @@ from cfepy.suggestions import did_you_mean
 
 NO_SYMBOL = "NULL"
 FILES = "/cf/"
+C_SOURCES = "fsw/src"
 SHOWN = 8
 """Names of missing functions that are listed."""
 
@@ -174,7 +175,10 @@ def _check_symbol(script: Path, entry: StartupEntry, source: Path) -> Iterator[M
         return  # what becomes of an application without one, the reader of the script has told
     if not sources.defines(source, entry.symbol):
         functions = [name for file in sources.files_of(source) for name in sources.functions_of(file)]
-        hint = did_you_mean(entry.symbol, functions, f"write {NODE_SYMBOL} if it is a ROS node, or add the function")
+        add = f"write {NODE_SYMBOL} if it is a ROS node, or add the function"
+        if (script.parent / C_SOURCES).is_dir():
+            add = f"if it is the application in {C_SOURCES}, compile it: cfepy build {script.parent}"
+        hint = did_you_mean(entry.symbol, functions, add)
         yield MissionProblem(script, entry.line, f"{source} has no function {entry.symbol}; {hint}")
     else:
         yield from _check_entry_point(entry, source)
