@@ -7,6 +7,7 @@ its `Ports`.
 
 from __future__ import annotations
 
+from cfepy.tbl.access import TableInfo
 from cfepy.tbl.definition import TableType
 from cfepy.tbl.image import (
     PROCESSOR_ID,
@@ -34,7 +35,7 @@ from cfepy.tbl.registry import (
     TableHandle,
     Validator,
 )
-from cfepy.tbl.services import BAD_TABLE_HANDLE, TableInfo, TableServices
+from cfepy.tbl.services import BAD_TABLE_HANDLE, TableServices
 
 __all__ = [
     "BAD_TABLE_HANDLE",

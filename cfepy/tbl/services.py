@@ -1,30 +1,24 @@
 """Table Services for apps (CFE_TBL_*): register, load, validate, update and look at tables.
 
-`TableAccess` is what every app that has a handle may do, owner or not; `TableServices` adds what owners do. A failed
+What every app that has a handle may do is `TableAccess` (`access.py`); `TableServices` adds what owners do. A failed
 call raises CfeError with NASA's status; a call that NASA answers with a warning or information returns that number.
 Host code may look tables up (`get_info`) but owns none and has no handles. The ground's side is in `cfepy.tbl.task`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import NamedTuple
+from collections.abc import Callable
 
 from cfepy.config import PlatformConfig
-from cfepy.ids import UNDEFINED
-from cfepy.ports import Ports, application_of
+from cfepy.ports import Ports
 from cfepy.rtos import Kernel
 from cfepy.status import (
-    CFE_ES_ERR_RESOURCEID_NOT_VALID,
     CFE_SUCCESS,
     CFE_TBL_ERR_DUPLICATE_DIFF_SIZE,
     CFE_TBL_ERR_DUPLICATE_NOT_OWNED,
-    CFE_TBL_ERR_INVALID_HANDLE,
     CFE_TBL_ERR_INVALID_NAME,
     CFE_TBL_ERR_INVALID_OPTIONS,
-    CFE_TBL_ERR_NEVER_LOADED,
     CFE_TBL_ERR_NO_ACCESS,
-    CFE_TBL_ERR_UNREGISTERED,
     CFE_TBL_INFO_DUMP_PENDING,
     CFE_TBL_INFO_NO_VALIDATION_PENDING,
     CFE_TBL_INFO_UPDATE_PENDING,
@@ -35,6 +29,7 @@ from cfepy.status import (
     CfeError,
 )
 from cfepy.tbl import events as ev
+from cfepy.tbl.access import ULONG, TableAccess
 from cfepy.tbl.buffers import BufferMemory, Bytes
 from cfepy.tbl.critical import CriticalTables
 from cfepy.tbl.dumps import Dumps
@@ -46,227 +41,8 @@ from cfepy.tbl.task import Parts, TableTask
 from cfepy.tbl.validations import Validations
 
 BAD_TABLE_HANDLE = -1
-MODIFIED_MARK = "(*)"
-_ULONG = 0xFFFFFFFFFFFFFFFF
 _NO_ACCESS = "App({app}) does not have access to Tbl Handle={handle}"
 _NOT_NOTIFIED = "App={app} Handle={handle} status code={status:x}"
-
-
-class TableInfo(NamedTuple):
-    """What CFE_TBL_GetInfo tells; times are (seconds, subseconds)."""
-
-    size: int
-    num_users: int
-    file_time: tuple[int, int]
-    crc: int
-    time_of_last_update: tuple[int, int]
-    table_loaded_once: bool
-    dump_only: bool
-    double_buffered: bool
-    user_def_addr: bool
-    critical: bool
-    last_file_loaded: str
-
-
-class TableAccess:
-    """The part of Table Services that changes no table.
-
-    Args:
-        kernel: tells whose task is running.
-        ports: the other services.
-        registry: the tables.
-    """
-
-    def __init__(self, kernel: Kernel, ports: Ports, registry: TableRegistry) -> None:
-        self._kernel = kernel
-        self._ports = ports
-        self.registry = registry
-
-    def get_addresses_in_c(self, handles: Iterable[int]) -> tuple[list[memoryview | None], int]:
-        """As CFE_TBL_GetAddresses in C: what comes after a failure is looked at as well, and nothing is released.
-
-        Returns:
-            The images, None where there was a failure; and the first status that is not CFE_SUCCESS.
-        """
-        images: list[memoryview | None] = []
-        first = CFE_SUCCESS
-        for handle in handles:
-            image, status = None, CFE_SUCCESS
-            try:
-                image, updated = self._image_of(self._access("GetAddresses", handle, log=""))
-                status = CFE_TBL_INFO_UPDATED if updated else CFE_SUCCESS
-            except CfeError as error:
-                status = error.status
-            images.append(image)
-            first = first or status
-            if status == CFE_ES_ERR_RESOURCEID_NOT_VALID:
-                self._log("GetAddresses", "Bad AppId=0")
-                break
-        return images, first
-
-    def get_address(self, handle: int) -> tuple[memoryview, bool]:
-        """The active image, locked until `release_address` (CFE_TBL_GetAddress).
-
-        Returns:
-            A view of the bytes, and whether they changed since the last call (CFE_TBL_INFO_UPDATED).
-
-        Raises:
-            CfeError: CFE_TBL_ERR_NEVER_LOADED, CFE_TBL_ERR_UNREGISTERED, or no access.
-        """
-        return self._image_of(self._access("GetAddress", handle, log="Bad AppId={app}"))
-
-    def _image_of(self, access: Access) -> tuple[memoryview, bool]:
-        table, active = access.table, self.registry.active(access.table)
-        if table.owner == UNDEFINED:
-            self._log(
-                "TxnGetTableAddress", f"App({access.app_id}) attempt to access unowned Tbl Handle={int(access.handle)}"
-            )
-            raise CfeError(CFE_TBL_ERR_UNREGISTERED, f"the owner of {table.name!r} gave it up")
-        if active is None:
-            raise CfeError(CFE_TBL_ERR_NEVER_LOADED, f"{table.name!r} was never loaded")
-        updated, access.updated = access.updated, False
-        access.locked, access.buffer_id = True, active.load_id
-        return table.image(active), updated
-
-    def release_address(self, handle: int) -> int:
-        """Give the address back, so that updates can take place (CFE_TBL_ReleaseAddress).
-
-        Returns:
-            CFE_SUCCESS, or CFE_TBL_INFO_UPDATED when the table changed meanwhile.
-        """
-        access = self._access("ReleaseAddress", handle)
-        access.locked = False
-        if not access.table.is_loaded:
-            raise CfeError(CFE_TBL_ERR_NEVER_LOADED, f"{access.table.name!r} was never loaded")
-        return CFE_TBL_INFO_UPDATED if access.updated else CFE_SUCCESS
-
-    def get_addresses(self, handles: Iterable[int]) -> list[tuple[memoryview, bool]]:
-        """`get_address` of several tables; when one fails, those before it are released (CFE_TBL_GetAddresses)."""
-        taken: list[int] = []
-        found = []
-        try:
-            for handle in handles:
-                found.append(self.get_address(handle))
-                taken.append(handle)
-        except CfeError:
-            self.release_addresses(taken)
-            raise
-        return found
-
-    def release_addresses(self, handles: Iterable[int]) -> int:
-        """`release_address` of every one of several tables (CFE_TBL_ReleaseAddresses).
-
-        Returns:
-            The first status that is not CFE_SUCCESS.
-
-        Raises:
-            CfeError: instead, when that is an error; the tables behind are released all the same.
-        """
-        answers: list[int | CfeError] = []
-        for handle in handles:
-            try:
-                answers.append(self.release_address(handle))
-            except CfeError as error:
-                answers.append(error)
-        first = next((answer for answer in answers if answer != CFE_SUCCESS), CFE_SUCCESS)
-        if isinstance(first, CfeError):
-            raise first
-        return first
-
-    def get_status(self, handle: int) -> int:
-        """What a table waits for (CFE_TBL_GetStatus).
-
-        Returns:
-            CFE_SUCCESS, or CFE_TBL_INFO_VALIDATION_PENDING, _UPDATE_PENDING, _DUMP_PENDING; in that order.
-        """
-        table = self._access("GetStatus", handle).table
-        if table.validations:
-            return CFE_TBL_INFO_VALIDATION_PENDING
-        if self.registry.is_update_pending(table):
-            return CFE_TBL_INFO_UPDATE_PENDING
-        return CFE_TBL_INFO_DUMP_PENDING if table.dump_id != UNDEFINED else CFE_SUCCESS
-
-    def get_info(self, full_name: str) -> TableInfo:
-        """All about a table, by its full name (CFE_TBL_GetInfo).
-
-        Raises:
-            CfeError: CFE_TBL_ERR_INVALID_NAME.
-        """
-        table = self.registry.by_name(full_name)
-        active = self.registry.active(table)
-        return TableInfo(
-            size=table.size,
-            num_users=len(table.accesses),
-            file_time=active.file_time if active else (0, 0),
-            crc=active.crc if active else 0,
-            time_of_last_update=table.last_update,
-            table_loaded_once=active is not None,
-            dump_only=table.dump_only,
-            double_buffered=table.double_buffered,
-            user_def_addr=table.user_defined,
-            critical=table.critical,
-            last_file_loaded=table.last_file + MODIFIED_MARK * table.modified,
-        )
-
-    def handle_to_id(self, handle: int) -> int:
-        """The resource id of a handle, 0 for CFE_TBL_BAD_TABLE_HANDLE (CFE_TBL_HandleToID)."""
-        return UNDEFINED if handle == BAD_TABLE_HANDLE else int(handle)
-
-    def handle_from_id(self, handle_id: int) -> int:
-        """The handle of a resource id, CFE_TBL_BAD_TABLE_HANDLE for 0 (CFE_TBL_HandleFromID)."""
-        return BAD_TABLE_HANDLE if handle_id == UNDEFINED else handle_id
-
-    def handle_id_is_equal(self, first: int, second: int) -> bool:
-        """Whether two handle ids are the same (CFE_TBL_HandleID_IsEqual)."""
-        return first == second
-
-    def handle_id_as_int(self, handle_id: int) -> int:
-        """The number to show a person (CFE_TBL_HandleID_AsInt)."""
-        return int(handle_id)
-
-    def handle_id_is_defined(self, handle_id: int) -> bool:
-        """Whether it is the id of anything (CFE_TBL_HandleID_IsDefined)."""
-        return handle_id != UNDEFINED
-
-    def _caller(self) -> tuple[int, str]:
-        caller = application_of(self._kernel.current.owner)
-        if caller is None:
-            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, "tables belong to apps; host code cannot make this call")
-        return caller.app_id, caller.name
-
-    def _access(self, function: str, handle: int, owner_only: bool = False, log: str = _NO_ACCESS) -> Access:
-        """The access descriptor of a handle, once the caller is found to have the right to use it.
-
-        Args:
-            function: that was called.
-            handle: its argument.
-            owner_only: whether the table must be the caller's; else the handle must be.
-            log: what the system log says otherwise; "" for nothing.
-
-        Raises:
-            CfeError: CFE_TBL_ERR_INVALID_HANDLE or CFE_TBL_ERR_NO_ACCESS.
-        """
-        try:
-            app_id, _ = self._caller()
-        except CfeError as refused:
-            if log:
-                self._log(function, log.format(app=0, handle=0, status=refused.status & _ULONG))
-            raise
-        access = self.registry.accesses.find(handle)
-        if access is None:
-            error = CfeError(CFE_TBL_ERR_INVALID_HANDLE, f"0x{int(handle) & 0xFFFFFFFF:x} is no table handle")
-        elif app_id in (access.table.owner if owner_only else access.app_id, self.registry.services_app_id):
-            return access
-        elif owner_only:
-            error = CfeError(CFE_TBL_ERR_NO_ACCESS, f"{access.table.name!r} belongs to another app")
-        else:
-            error = CfeError(CFE_TBL_ERR_NO_ACCESS, f"this handle on {access.table.name!r} is another app's")
-        if log:
-            self._log(function, log.format(app=app_id, handle=int(handle), status=error.status & _ULONG))
-        raise error
-
-    def _log(self, function: str, text: str) -> None:
-        self._ports.syslog.write_to_sys_log(f"CFE_TBL_{function}: {text}")
 
 
 class TableServices(TableAccess):
@@ -330,7 +106,7 @@ class TableServices(TableAccess):
         try:
             app_id, app_name = self._caller()
         except CfeError as error:
-            self._log("Register", f"Bad AppId(0), status={error.status & _ULONG:x}")
+            self._log("Register", f"Bad AppId(0), status={error.status & ULONG:x}")
             raise
         try:
             access = self._duplicate(full_name := self._checked(app_name, name, size, options), size, app_id)
@@ -349,7 +125,7 @@ class TableServices(TableAccess):
             return self.registry.check(app_name, name, size, options)
         except CfeError as error:
             text = {
-                CFE_TBL_ERR_INVALID_NAME: f"bad table name: '{name}' (0x{error.status & _ULONG:x})",
+                CFE_TBL_ERR_INVALID_NAME: f"bad table name: '{name}' (0x{error.status & ULONG:x})",
                 CFE_TBL_ERR_INVALID_OPTIONS: f"bad TblOptionFlags combination for '{name}' (0x{options:x})",
             }.get(error.status, f"Table '{name}' has invalid size ({size})")
             self._log("TxnCheckConfig", text)
@@ -602,7 +378,7 @@ class TableServices(TableAccess):
         access = self._access("NotifyByMessage", handle, log=_NOT_NOTIFIED)
         app_id = self._caller()[0]
         if access.table.owner != app_id:
-            status = CFE_TBL_ERR_NO_ACCESS & _ULONG
+            status = CFE_TBL_ERR_NO_ACCESS & ULONG
             self._log("NotifyByMessage", _NOT_NOTIFIED.format(app=app_id, handle=int(handle), status=status))
             raise CfeError(CFE_TBL_ERR_NO_ACCESS, f"{access.table.name!r} belongs to another app")
         access.table.notify = (msg_id, fcn_code, parameter & 0xFFFFFFFF)
