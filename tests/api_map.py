@@ -4,7 +4,8 @@
 
 NASA's names are in tests/data/api, one file for each module; tests/api_names.py knows what they are called here. What
 differs and what is absent is read from the tables of docs/differences.md: a name that a row mentions differs as that
-row says, or is absent for its reason. So nothing is said twice, and a name that is nowhere is missing.
+row says, or is absent for its reason. So nothing is said twice, and a name that is nowhere is missing. What compiled
+applications can call is read from the declarations of `cfepy.c.api`, for which the engine is built.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
+from cfepy.c.api import function_names
 from cfepy.console import Console
 from cfepy.mission import Mission
 from tests.api_names import python_name
@@ -38,9 +40,15 @@ HEAD = """\
 Every public function and macro of NASA's cFE, OSAL and PSP 7.0.0 and its name here. `cfe` is the handle that an
 application's main function gets; `cfepy` a module to import. Everywhere failed calls raise and output pointers became
 return values. A function differs beyond that when a row of [differences.md](differences.md) names it; the last column
-leads there. `python -m tests.api_map` writes this page anew, and a test fails when it is stale or when a name is in
-neither place.
+leads there. C says what a [compiled application](c_apps.md) finds: `call`, a function; `header`, a macro or an inline
+function, which the application has inside; `core`, a function that no header for applications declares, and that only
+NASA's core calls. `python -m tests.api_map` writes this page anew, and a test fails when it is stale or when a name is
+in neither place.
 """
+
+CALL, HEADER, CORE, MISSING = "call", "header", "core", "missing"
+OF_THE_CORE = ("CFE_ES_Main", "CFE_SBR_*")
+"""Of core_private, or called once by the PSP: NASA's applications do not see them."""
 
 
 class Difference(NamedTuple):
@@ -56,13 +64,14 @@ class Difference(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """One function: NASA's header and name, the name here, and whether an object stands behind that."""
+    """One function: NASA's header and name, the name here, whether an object stands behind that; what C finds."""
 
     header: str
     name: str
     python: str
     exists: bool
     difference: Difference | None
+    c: str = CALL
 
     @property
     def is_missing(self) -> bool:
@@ -84,15 +93,15 @@ class Entry(NamedTuple):
         return f"[differs]({link})" if self.exists else f"[absent]({link}): {row.reason}"
 
 
-def listed(module: str) -> Iterator[tuple[str, str]]:
-    """(header, name) of all that a module's headers declare, each once."""
+def listed(module: str) -> Iterator[tuple[str, str, bool]]:
+    """(header, name, whether the header has it inside) of all that a module's headers declare, each once."""
     header, seen = "", set[str]()
     for line in (LISTS / f"api_{module}.txt").read_text().splitlines():
         if line.startswith("#"):
             header = line.partition(":")[0].rpartition("/")[2]
         elif (name := line.split()[0]) not in seen:
             seen.add(name)
-            yield header, name
+            yield header, name, line.rstrip().endswith(")")
 
 
 def differences() -> list[Difference]:
@@ -122,7 +131,7 @@ def resolve(dotted: str, cfe: Any) -> Any:
 
 def entries(module: str, cfe: Any) -> list[Entry]:
     """All that a module's headers declare, as it stands here."""
-    rows = differences()
+    rows, functions = differences(), function_names()
     return [
         Entry(
             header,
@@ -130,9 +139,19 @@ def entries(module: str, cfe: Any) -> list[Entry]:
             python_name(name),
             callable(resolve(python_name(name), cfe)),
             next((row for row in rows if row.mentions(name)), None),
+            _in_c(name, is_inside, functions),
         )
-        for header, name in listed(module)
+        for header, name, is_inside in listed(module)
     ]
+
+
+def _in_c(name: str, is_inside: bool, functions: set[str]) -> str:
+    """What a compiled application finds under a name."""
+    if name in functions:
+        return CALL
+    if is_inside:
+        return HEADER
+    return CORE if any(fnmatchcase(name, pattern) for pattern in OF_THE_CORE) else MISSING
 
 
 def booted() -> Mission:
@@ -146,13 +165,13 @@ def booted() -> Mission:
 def page(cfe: Any) -> str:
     """The text of docs/api_map.md."""
     sections = {TITLES.get(module, module): entries(module, cfe) for module in MODULES}
-    lines = [HEAD, "| module | names | same | differ | absent |", "|---|---|---|---|---|"]
+    lines = [HEAD, "| module | names | same | differ | absent | called in C |", "|---|---|---|---|---|---|"]
     lines += [f"| [{title}](#{_anchor(title)}) | {_counts(rows)} |" for title, rows in sections.items()]
     for title, rows in sections.items():
         lines += ["", f"## {title}"]
         for header, group in groupby(rows, key=lambda row: row.header):
-            lines += ["", f"{header}:", "", "| NASA | cfepy | |", "|---|---|---|"]
-            lines += [f"| {row.name} | {row.shown} | {row.status} |" for row in group]
+            lines += ["", f"{header}:", "", "| NASA | cfepy | C | |", "|---|---|---|---|"]
+            lines += [f"| {row.name} | {row.shown} | {row.c} | {row.status} |" for row in group]
     return "\n".join(lines) + "\n"
 
 
@@ -163,7 +182,8 @@ def _anchor(heading: str) -> str:
 def _counts(rows: list[Entry]) -> str:
     same = sum(row.status == "same" for row in rows)
     there = sum(row.exists for row in rows)
-    return f"{len(rows)} | {same} | {there - same} | {len(rows) - there}"
+    called = sum(row.c == CALL for row in rows)
+    return f"{len(rows)} | {same} | {there - same} | {len(rows) - there} | {called}"
 
 
 def main() -> None:
@@ -171,7 +191,9 @@ def main() -> None:
     with booted() as mission:
         PAGE.write_text(page(mission.cfe))
         for module in MODULES:
-            missing = [f"{row.name} ({row.python})" for row in entries(module, mission.cfe) if row.is_missing]
+            rows = entries(module, mission.cfe)
+            missing = [f"{row.name} ({row.python})" for row in rows if row.is_missing]
+            missing += [f"{row.name} (in C)" for row in rows if row.c == MISSING]
             print(f"{module}: {len(missing)} missing", *missing, sep="\n  ")
 
 

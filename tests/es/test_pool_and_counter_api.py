@@ -71,7 +71,10 @@ def test_pools_of_all_kinds(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> No
             assert status_of(lambda: create(0)) == CFE_ES_BAD_ARGUMENT  # noqa: B023
             assert status_of(lambda: es.pool_delete(pool)) == CFE_ES_ERR_RESOURCEID_NOT_VALID  # noqa: B023
         assert status_of(lambda: es.pool_create_ex(1024, range(1, 19))) == CFE_ES_BAD_ARGUMENT
+        before = es.pool_create(1024)
         assert status_of(lambda: es.pool_create_ex_with_alignment(1024, alignment=6)) == CFE_ES_BAD_ARGUMENT
+        assert status_of(lambda: es.pool_create_ex(1024, ())) == CFE_ES_BAD_ARGUMENT
+        assert es.pool_create(1024) == before + 3  # what failed late has used up its id
 
     lab = in_app(main)
     assert "CFE_ES_PoolCreateEx_WithAlignment: Pool size(0) too small, need >=32 bytes" in lab.log()

@@ -138,3 +138,13 @@ def test_views_of_any_item_size_are_counted_in_bytes() -> None:
 @pytest.mark.parametrize("memory", [bytes(1024), bytearray(1023), memoryview(bytearray(4096))[::2], "text"])
 def test_memory_that_cannot_hold_the_pool(memory: object) -> None:
     assert status_of(lambda: MemPool("P", 1024, memory=memory)) == CFE_ES_BAD_ARGUMENT  # type: ignore[arg-type]
+
+
+def test_memory_of_c_is_not_cleared_and_blocks_are_told_by_their_addresses() -> None:
+    memory = bytearray(b"\xaa" * 1024)
+    pool = MemPool("P", 1024, memory=memory, address=0x10_8000_0000)
+    block = pool.get(20)
+    assert bytes(block.memory) == b"\xaa" * 20
+    assert block.address == 0x10_8000_0000 + block.offset
+    assert pool.put(pool.block_at(block.offset)) == 20
+    assert status_of(lambda: pool.put(pool.block_at(-8))) == CFE_ES_BUFFER_NOT_IN_POOL

@@ -369,3 +369,33 @@ def test_a_file_with_a_wrong_mark_is_refused(bench: Bench) -> None:
     assert failure(bench.tbl.load, handle, "/cf/t.tbl") == CFE_STATUS_VALIDATION_FAILURE
     text = f"File is damaged, mark = 0x{mark_in(good):08x}, expected 0x{mark_for(good[:-1] + b'e'):08x}"
     assert bench.take_events() == [(61, 3, f"LoadFile,app=APP,file=/cf/t.tbl,tbl=APP.T:{text}")]
+
+
+def test_addresses_of_several_tables_as_c_has_them(bench: Bench) -> None:
+    first, second, third = (bench.tbl.register(name, 1) for name in ("A", "B", "C"))
+    bench.tbl.load(first, b"a")
+    bench.tbl.load(third, b"c", address=0x1234)
+    assert bench.tbl.get_info("APP.C").last_file_loaded == "Addr 0x00001234"
+    images, status = bench.tbl.get_addresses_in_c([first, second, -1, third])
+    assert [None if image is None else bytes(image) for image in images] == [b"a", None, None, b"c"]
+    assert status == CFE_TBL_INFO_UPDATED  # of the first one
+    assert bench.tbl.get_addresses_in_c([second, third])[1] == CFE_TBL_ERR_NEVER_LOADED
+
+
+def test_a_source_that_is_neither_a_file_nor_an_address(bench: Bench) -> None:
+    table = bench.tbl.register("A", 1)
+    assert failure(bench.tbl.load, table, b"a", source_type=-1) == CFE_TBL_ERR_ILLEGAL_SRC_TYPE
+    assert "Attempted to load from illegal source type=-1" in bench.events[-1][2]
+
+
+def test_tables_keep_copies_of_memory_that_leaves(bench: Bench) -> None:
+    single = bench.tbl.register("A", 1)
+    own = bytearray(b"mine")
+    user = bench.tbl.register("B", 4, OPT_USR_DEF_ADDR)
+    bench.tbl.load(single, b"a")
+    bench.tbl.load(user, own)
+    image, _ = bench.tbl.get_address(single)
+    bench.tbl.leave_memory(lambda data: True)
+    image[0], own[0] = 0, 0
+    assert bytes(bench.tbl.get_address(single)[0]) == b"a"
+    assert bytes(bench.tbl.get_address(user)[0]) == b"mine"
