@@ -23,7 +23,6 @@ from cfepy.status import (
 )
 from cfepy.tbl.registry import Access, TableRegistry
 
-BAD_TABLE_HANDLE = -1
 MODIFIED_MARK = "(*)"
 ULONG = 0xFFFFFFFFFFFFFFFF
 _NO_ACCESS = "App({app}) does not have access to Tbl Handle={handle}"

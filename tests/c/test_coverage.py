@@ -79,6 +79,7 @@ def test_counts_go_below_a_prefix(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 @needs_cpp
+@pytest.mark.slow
 def test_an_application_in_cpp_too(tmp_path: Path) -> None:
     source = SOURCE.replace("void TEST_Main", 'extern "C" void TEST_Main').replace("@", EXIT)
     compile_cpp(tmp_path, "TEST", source, "--coverage", "-O0")
@@ -87,6 +88,7 @@ def test_an_application_in_cpp_too(tmp_path: Path) -> None:
     assert [*tmp_path.glob("*.gcda")] == [notes.with_suffix(".gcda")]
 
 
+@pytest.mark.slow
 def test_all_runs_of_an_exploration_count(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     compile_c(tmp_path, "TEST", SOURCE.replace("@", STAY), "--coverage", "-O0")
     assert main(["explore", write_mission(tmp_path, "TEST"), "--for", "1", "--seeds", "4"]) == 0

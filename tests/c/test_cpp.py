@@ -62,7 +62,7 @@ LIBRARY = """
 """
 
 
-@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+@pytest.mark.parametrize("tasks", ["thread", pytest.param("greenlet", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("link", LINKS)
 def test_the_standard_library_and_exceptions(tmp_path: Path, link: str, tasks: str) -> None:
     compile_cpp(tmp_path, "TEST", LIBRARY, *LINKS[link])
@@ -102,6 +102,7 @@ def test_an_exception_that_nobody_catches_is_a_fault(tmp_path: Path, link: str) 
     assert "Restart Application TEST Completed" in console_of(mission)
 
 
+@pytest.mark.slow
 def test_exceptions_of_two_tasks_do_not_mix(tmp_path: Path) -> None:
     console = fly_cpp(
         tmp_path,

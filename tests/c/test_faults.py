@@ -39,7 +39,11 @@ FAULTS = {
     ),
     "text": ("zero = strlen((char *)24);", "SIGSEGV", "a function that fail (TEST.c:4) called, address 0x18"),
     "format": ('SAY("%s", (char *)32);', "bad address 0x20 in a format or its arguments", "in fail (TEST.c:4)"),
-    "unmapped": ("memset(malloc(10), 0, (size_t)1 << 40);", "SIGSEGV", "a function that fail (TEST.c:4) called"),
+    "unmapped": (
+        "memset((char *)once - ((size_t)1 << 40), 0, 10);",
+        "SIGSEGV",
+        "a function that fail (TEST.c:4) called",
+    ),
     "freed": ("free(once); free(once);", "which malloc did not give, or which was freed", "in fail (TEST.c:4)"),
     "abort": ("abort();", "abort()", "in fail (TEST.c:4)"),
     "nobody": ("NOBODY_HasThis();", "NOBODY_HasThis() was called", "in fail (TEST.c:4)"),

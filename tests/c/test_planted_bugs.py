@@ -59,6 +59,8 @@ def write(folder: Path, name: str, *flags: str) -> None:
     (folder / "startup.scr").write_text(MISSION)
 
 
+MARKS = {"explore": pytest.mark.slow}
+"""Searches that find nothing take their time."""
 SIMPLE = [name for name in BUGS if name not in ("uninitialised", "counter_wrap")]
 
 
@@ -71,7 +73,7 @@ def test_the_bug_is_found(tmp_path: Path, name: str, capsys: Any) -> None:
         assert each in told
 
 
-@pytest.mark.parametrize("name", SIMPLE)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=MARKS.get(BUGS[name].command[0], ())) for name in SIMPLE])
 def test_the_mended_form_is_clean(tmp_path: Path, name: str, capsys: Any) -> None:
     write(tmp_path, name, "-DMENDED")
     status, told = fly(tmp_path, BUGS[name], capsys)

@@ -224,6 +224,7 @@ def test_a_panic_ends_the_run(tmp_path: Path) -> None:
     assert "CFE_PSP_Panic called with error code = 0x00000007. Exiting." in "\n".join(console.lines)
 
 
+@pytest.mark.slow
 def test_the_load_of_the_cpu(tmp_path: Path) -> None:
     before = "static int32_t sample; static const Reading reading = {1, &sample};"
     body = """
