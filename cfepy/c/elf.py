@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from io import BytesIO
@@ -15,6 +16,10 @@ MAGIC = b"\x7fELF"
 LARGEST = 1 << 30
 """Bytes of memory that a shared object may take."""
 _MARK_OF_GCOV = b"GCOV_PREFIX\0"
+_SYMBOL = struct.Struct("<IBBHQQ")
+_RELOCATION = struct.Struct("<QQq")
+_WEAK = 2
+_KINDS = {1: "STT_OBJECT", 2: "STT_FUNC", 6: "STT_TLS", 10: "STT_GNU_IFUNC"}
 MACHINES = {"EM_X86_64": "x86_64", "EM_AARCH64": "aarch64"}
 
 
@@ -209,26 +214,22 @@ def _read_dynamic(made: SharedObject, dynamic: Any) -> None:
         made.functions_at_end = (tags["DT_FINI_ARRAY"], tags.get("DT_FINI_ARRAYSZ", 0) // 8)
     made.function_at_load = tags.get("DT_INIT", 0)
     made.function_at_end = tags.get("DT_FINI", 0)
-    made.symbols = list(_symbols(dynamic))
-    for table in dynamic.get_relocation_tables().values():
-        for each in table.iter_relocations():
-            entry = each.entry
-            if not each.is_RELA():
-                raise ElfError(f"{made.name}: relocations without addends, which this processor does not have")
-            made.relocations.append(
-                Relocation(entry["r_offset"], entry["r_info_type"], entry["r_info_sym"], entry["r_addend"])
-            )
-
-
-def _symbols(dynamic: Any) -> Iterator[Symbol]:
-    for each in dynamic.iter_symbols():
-        entry = each.entry
-        info = entry["st_info"]
-        yield Symbol(
-            each.name,
-            entry["st_value"],
-            entry["st_size"],
-            entry["st_shndx"] != "SHN_UNDEF",
-            info["bind"] == "STB_WEAK",
-            info["type"],
+    made.symbols = list(_symbols(made, tags, dynamic.num_symbols()))
+    if "DT_RELR" in tags or "DT_REL" in tags:
+        raise ElfError(
+            f"{made.name} has relocations of a form that is not supported: link without -z pack-relative-relocs"
         )
+    for table, size in (("DT_RELA", "DT_RELASZ"), ("DT_JMPREL", "DT_PLTRELSZ")):
+        raw = made.initial(tags.get(table, 0), tags.get(size, 0))
+        made.relocations += [
+            Relocation(at, info & 0xFFFFFFFF, info >> 32, addend) for at, info, addend in _RELOCATION.iter_unpack(raw)
+        ]
+
+
+def _symbols(made: SharedObject, tags: dict[str, int], count: int) -> Iterator[Symbol]:
+    """The dynamic symbols; by hand, since there may be thousands."""
+    names = made.initial(tags["DT_STRTAB"], tags["DT_STRSZ"])
+    raw = made.initial(tags["DT_SYMTAB"], count * _SYMBOL.size)
+    for name, info, _, section, address, size in _SYMBOL.iter_unpack(raw):
+        text = names[name : names.index(b"\0", name)].decode(errors="replace")
+        yield Symbol(text, address, size, section != 0, info >> 4 == _WEAK, _KINDS.get(info & 15, ""))

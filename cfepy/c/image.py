@@ -28,8 +28,7 @@ _KINDS = {
     },
 }  # fmt: skip
 _THREAD_LOCAL = "STT_TLS"
-_CHOSEN_FUNCTION = "STT_LOOS"
-"""STT_GNU_IFUNC, by the name that pyelftools has for its number."""
+_CHOSEN_FUNCTION = "STT_GNU_IFUNC"
 _WORD = struct.Struct("<Q")
 _64_BITS = (1 << 64) - 1
 
@@ -192,6 +191,10 @@ class Image:
     def place_at(self, address: int) -> CodePlace:
         """Where in its source an address in this image is."""
         return self._places.at(address - self.base)
+
+    def variable_at(self, address: int) -> str:
+        """The variable that an address in this image belongs to; empty without symbols."""
+        return self._places.variable_at(address - self.base)
 
     def __contains__(self, address: int) -> bool:
         return self.base <= address < self.base + self.size

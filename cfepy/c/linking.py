@@ -34,6 +34,8 @@ UNUSED = frozenset(
     )
 )
 """What libstdc++ needs of libc for files, other locales and wide characters: for these parts of it, it is not there."""
+GUARDS = ("__cxa_guard_acquire", "__cxa_guard_release", "__cxa_guard_abort")
+"""What libstdc++ has as well; the API's know how a task waits, and what orders tasks."""
 STATIC = "-static-libstdc++ -static-libgcc"
 FOLDERS = ("/lib", "/usr/lib", "/lib64", "/usr/lib64")
 
@@ -107,6 +109,8 @@ class Exports:
 
     def symbol(self, name: str, more: tuple[Image, ...] = ()) -> int | None:
         """The address of a name, in libraries first; None if nobody has it."""
+        if name in GUARDS:
+            return self.declared_symbol(name)
         for image in (*self.shared(), *more):
             if name in image.symbols:
                 return image.symbols[name]

@@ -7,6 +7,7 @@ from frames that look like those places.
 from __future__ import annotations
 
 import ast
+import sys
 from bisect import bisect_right
 from collections.abc import Callable
 from functools import lru_cache
@@ -62,6 +63,12 @@ class Places:
         row = self._row(address)
         return CodePlace(function, address - start, *(row[1:] if row else ()))
 
+    def variable_at(self, address: int) -> str:
+        """The variable that an address belongs to, counted from the object's base; empty if that is not known."""
+        number = bisect_right(self._variables, (address, sys.maxsize, ""))
+        start, size, name = self._variables[number - 1] if number else (0, 0, "")
+        return name if start <= address < start + size else ""
+
     def _row(self, address: int) -> _Row | None:
         number = bisect_right(self._rows, address, key=lambda row: row.address)
         found = self._rows[number - 1] if number else None
@@ -74,12 +81,20 @@ class Places:
     @CachedProperty
     def _functions(self) -> list[tuple[int, str]]:
         """Functions by address, those that are not exported too."""
+        return [(start, name) for start, _, name in self._symbols("STT_FUNC")]
+
+    @CachedProperty
+    def _variables(self) -> list[tuple[int, int, str]]:
+        """Variables: address, bytes, name."""
+        return self._symbols("STT_OBJECT")
+
+    def _symbols(self, kind: str) -> list[tuple[int, int, str]]:
         found = set()
         for section in (".symtab", ".dynsym"):
             table = self._elf.get_section_by_name(section)
             for symbol in table.iter_symbols() if table is not None else ():
-                if symbol["st_info"]["type"] == "STT_FUNC" and symbol["st_shndx"] != "SHN_UNDEF":
-                    found.add((symbol["st_value"], symbol.name))
+                if symbol["st_info"]["type"] == kind and symbol["st_shndx"] != "SHN_UNDEF":
+                    found.add((symbol["st_value"], symbol["st_size"], symbol.name))
         return sorted(found)
 
     @CachedProperty

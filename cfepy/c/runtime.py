@@ -17,9 +17,10 @@ from cfepy.c.lives import Ends, ThreadLocals
 from cfepy.c.memory import CMemory, Constants
 from cfepy.c.packets import PacketImages
 from cfepy.c.places import CallFrames, CodePlace, PreemptedFrames, raise_at
+from cfepy.c.races import Race, RaceWatch
 from cfepy.c.stacks import LEAST, Stacks
 from cfepy.console import Console
-from cfepy.rtos import Kernel
+from cfepy.rtos import ExploringKernel, Kernel
 from cfepy.status import CfeError
 
 POISON = b"\xa5"
@@ -43,6 +44,7 @@ class CRuntime:
         stall_s: after how many seconds without progress the stall watch ends a run; 0 for never.
         omit_deprecated: whether the code was built with OMIT_DEPRECATED, which makes handles of tables ids.
         guard: blocks of memory end where nobody may write, freed ones are gone, and fresh ones and stacks are not zero.
+        on_race: gets the data races that are found while schedules are explored.
 
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
@@ -62,6 +64,7 @@ class CRuntime:
         stall_s: Callable[[], float],
         omit_deprecated: bool = False,
         guard: bool = False,
+        on_race: Callable[[Race], object] = lambda race: None,
     ) -> None:
         from cfepy.c.api import declare
         from cfepy.c.api.streams import Streams
@@ -105,6 +108,11 @@ class CRuntime:
         self._own: dict[Image, tuple[Image, ...]] = {}
         declare(self.declared, self)
         self._calls = CallTable(self.arena, self.table, self.declared)
+        self._races = (
+            RaceWatch(kernel, self.table, self.declared, self.memory, self.place_of, self._describe, on_race)
+            if isinstance(kernel, ExploringKernel)
+            else None
+        )
         self._exports = Exports(self.shared, self._calls, self.declared, self.arena.map)
         self._owners: set[int] = set()
 
@@ -147,6 +155,8 @@ class CRuntime:
         except BaseException:
             self._drop(image)
             raise
+        if self._races is not None:
+            self._races.has_prepared()
         return image
 
     def unload(self, app_name: str) -> None:
@@ -241,8 +251,9 @@ class CRuntime:
             self.table.frames = CallFrames(self._place)
         given, room = (stack, size) if stack else self._stacks.take(size)
         is_outermost = self.thread_locals.begin()
+        number = self._races.begin(self.image_at(function)) if self._races is not None else 0
         try:
-            result = int(engine().run(self.table, function, args, given, room, owner))
+            result = int(engine().run(self.table, function, args, given, room, owner, number))
             if is_outermost:
                 self.thread_locals.finish()
             return result
@@ -256,6 +267,8 @@ class CRuntime:
         finally:
             if is_outermost:
                 self.thread_locals.leave(task)
+                if self._races is not None:
+                    self._races.leave(task)
             if not stack:
                 self._stacks.give(given, room)
 
@@ -290,6 +303,11 @@ class CRuntime:
     def _place(self, address: int) -> CodePlace | None:
         image = self.image_at(address)
         return None if image is None else image.place_at(address)
+
+    def _describe(self, address: int) -> str:
+        """A variable of an object, or just the address."""
+        image = self.image_at(address)
+        return (image.variable_at(address) if image is not None else "") or f"memory at 0x{address:x}"
 
     def place_of(self, address: int) -> str:
         """Where an address of code is, in words."""

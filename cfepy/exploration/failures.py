@@ -73,7 +73,7 @@ class FailureWatch(Attachment):
     def saw(self, group: str) -> bool:
         """Whether there has been a failure of this group so far, of those that show while the mission runs."""
         assert self._mission is not None
-        so_far = (*self._found, *self._tracebacks.found, *_violations(self._mission))
+        so_far = (*self._found, *self._tracebacks.found, *_violations(self._mission), *_races(self._mission))
         return any(failure.group == group for failure in so_far)
 
     def failures(self, outcome: Outcome | None) -> tuple[Failure, ...]:
@@ -85,6 +85,7 @@ class FailureWatch(Attachment):
         assert self._mission is not None
         mission = self._mission
         found = [*self._found, *self._tracebacks.found, *_resets(mission), *_violations(mission), *_missed(outcome)]
+        found += _races(mission)
         found += _overruns(mission)
         found.sort(key=lambda failure: failure.at_ns or 0)
         found += [*self._circles, *_bad_ends(mission, found, self._crashed)]
@@ -156,6 +157,15 @@ def _violations(mission: Mission) -> Iterator[Failure]:
             sender = f"sent by {each.first.sender}: " if each.first.sender else ""
             detail = f"{sender}{each.first.detail}"
             yield Failure(verdict.INVARIANT, each.name, each.first.text, each.first.at_ns, detail)
+
+
+def _races(mission: Mission) -> Iterator[Failure]:
+    """Accesses of compiled code that nothing orders."""
+    from cfepy.c import DataRaces
+
+    for race in mission.record.part(DataRaces):
+        detail = f"{race.before} came first, then {race.now}"
+        yield Failure(verdict.RACE, race.who, str(race), race.at_ns, detail, race.now.task)
 
 
 def _missed(outcome: Outcome | None) -> Iterator[Failure]:

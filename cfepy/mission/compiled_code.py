@@ -16,7 +16,7 @@ from cfepy.osal import FileSystem
 from cfepy.status import OsalError
 
 if TYPE_CHECKING:
-    from cfepy.c import CompiledLoader
+    from cfepy.c import CompiledLoader, CRuntime
 
 ELF = b"\x7fELF"
 FILES = "/cf/"
@@ -66,6 +66,11 @@ class CompiledFiles(Finder):
         if self._loader is None:
             self._loader = self._make_loader()
         return self._loader
+
+    @property
+    def runtime(self) -> CRuntime | None:
+        """The C side of the processor; None when nothing compiled was loaded."""
+        return None if self._loader is None else self._loader.runtime
 
     def exists(self, file: str) -> bool:
         """See `Finder.exists`."""

@@ -37,7 +37,7 @@ from cfepy.time import TimeServices
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
-    from cfepy.c import CompiledLoader
+    from cfepy.c import CompiledLoader, CRuntime
     from cfepy.nodes import Overlay, Universe
     from rospy_shim.graph.graph import TopicRow
     from rospy_shim.runtime import RosRuntime
@@ -288,9 +288,14 @@ class Processor:
             files=machine.run_files.of(machine),
         )
 
+    @property
+    def compiled(self) -> CRuntime | None:
+        """The C side of the processor; None when nothing compiled was loaded."""
+        return self._compiled.runtime
+
     def _make_compiled_loader(self) -> CompiledLoader:
         """What loads compiled code; a mission without any does not import it."""
-        from cfepy.c import CompiledLoader, CRuntime
+        from cfepy.c import CompiledLoader, CRuntime, DataRaces
 
         machine = self.machine
         watch = machine.stall_watch
@@ -303,6 +308,7 @@ class Processor:
             lambda: watch.limit_s,
             omit_deprecated=machine.spec.compiled.omit_deprecated,
             guard=machine.spec.compiled.guard,
+            on_race=machine.record.part(DataRaces).append,
         )
         self.cfe.es.core_memory = runtime.core_memory
         return CompiledLoader(runtime, machine.console)

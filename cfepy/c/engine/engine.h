@@ -51,6 +51,8 @@ typedef struct Coroutine {
     int thread;
     volatile bool is_native;                       /* a function of the engine runs on its behalf */
     bool wants_python;                         /* said by a native: the Python function has to answer after all */
+    bool wants_again, is_again;                /* said by it too: it is called again after that; and that it is */
+    uint32_t task;                             /* of `Races`; 0 for none */
     uint32_t owner;                            /* of what it allocates: an application */
     sigjmp_buf native_fault;
     int signal;
@@ -88,6 +90,7 @@ typedef struct Table {
     PyObject *preempted;                       /* by pc, what is called when code has computed for long */
     struct Heap *heap;                         /* malloc's */
     struct Images *images;                     /* of the Software Bus */
+    struct Races *races;                       /* looks at accesses to memory; or NULL */
     uint32_t highest_msg_id, largest_message;
     uint64_t ctype[3];                         /* of __ctype_b_loc, __ctype_toupper_loc, __ctype_tolower_loc */
 } Table;
@@ -138,13 +141,20 @@ typedef struct Images Images;
 extern HIDDEN PyTypeObject images_type;
 HIDDEN uint64_t images_receive(Images *, uint32_t pipe, PyObject *packet); /* its address; 0 with an exception */
 
+/* races.c */
+typedef struct Races Races;
+extern HIDDEN PyTypeObject races_type;
+HIDDEN void races_forget(uint64_t address, uint64_t size);
+HIDDEN bool races_shared(Coroutine *, uint64_t address, uint64_t size);
+HIDDEN void races_note(Coroutine *, uint64_t address, uint64_t size, bool is_write, bool is_atomic);
+
 /* natives_*.c: their tables end with a row without a name */
 typedef struct {
     const char *name;
     Native native;
     void *target;
 } NativeRow;
-extern HIDDEN const NativeRow natives_of_msg[], natives_of_libc[], natives_of_math[], natives_of_cpp[], natives_of_locale[];
+extern HIDDEN const NativeRow natives_of_msg[], natives_of_libc[], natives_of_math[], natives_of_cpp[], natives_of_locale[], natives_of_races[];
 #define NATIVE(function) static uint64_t function(Coroutine *call, const Function *self)
 #define POINTER(number) ((unsigned char *)call->arguments[number])
 #define WORD(number) (call->arguments[number])

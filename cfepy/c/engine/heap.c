@@ -116,6 +116,7 @@ HIDDEN uint64_t heap_take(Heap *heap, size_t size)
     block->owner = heap->owner;
     block->is_used = true;
     heap->used += size;
+    races_forget(block->address, size);
     size_t rest;
     unsigned char *bytes = margin(heap, block, &rest);
     memset(bytes, POISON, rest);

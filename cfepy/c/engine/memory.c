@@ -39,6 +39,7 @@ HIDDEN PyObject *memory_unmap(PyObject *module, PyObject *arguments)
     unsigned long long at, size;
     if (!PyArg_ParseTuple(arguments, "KK", &at, &size) || !is_in_arena(at, size))
         return NULL;
+    races_forget(at, size);
     munmap((void *)at, size);
     Py_RETURN_NONE;
 }
@@ -62,6 +63,7 @@ HIDDEN PyObject *memory_clear(PyObject *module, PyObject *arguments)
     unsigned long long at, size;
     if (!PyArg_ParseTuple(arguments, "KK", &at, &size) || !is_in_arena(at, size))
         return NULL;
+    races_forget(at, size);
     if (madvise((void *)at, size, MADV_DONTNEED) != 0)
         return PyErr_SetFromErrno(PyExc_OSError);
     Py_RETURN_NONE;

@@ -8,7 +8,7 @@
 
 static const NativeRow *find_native(const char *name)
 {
-    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale};
+    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale, natives_of_races};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
         for (const NativeRow *row = lists[i]; row->name != NULL; row++)
             if (strcmp(row->name, name) == 0)
@@ -68,6 +68,7 @@ static int table_traverse(Table *table, visitproc visit, void *arg)
     Py_VISIT(table->frames);
     Py_VISIT((PyObject *)table->heap);
     Py_VISIT((PyObject *)table->images);
+    Py_VISIT((PyObject *)table->races);
     return 0;
 }
 
@@ -87,6 +88,9 @@ static int table_clear(Table *table)
     PyObject *images = (PyObject *)table->images;
     table->images = NULL;
     Py_XDECREF(images);
+    PyObject *races = (PyObject *)table->races;
+    table->races = NULL;
+    Py_XDECREF(races);
     return 0;
 }
 
@@ -129,7 +133,24 @@ static int table_set_frames(Table *table, PyObject *frames, void *unused)
     return 0;
 }
 
+static PyObject *table_get_races(Table *table, void *unused)
+{
+    return Py_NewRef(table->races ? (PyObject *)table->races : Py_None);
+}
+static int table_set_races(Table *table, PyObject *races, void *unused)
+{
+    if (races == NULL || !Py_IS_TYPE(races, &races_type)) {
+        PyErr_SetString(PyExc_TypeError, "Races");
+        return -1;
+    }
+    PyObject *before = (PyObject *)table->races;
+    table->races = (Races *)Py_NewRef(races);
+    Py_XDECREF(before);
+    return 0;
+}
+
 static PyGetSetDef table_attributes[] = {
+    {"races", (getter)table_get_races, (setter)table_set_races, "what looks at accesses to memory, or None", NULL},
     {"frames", (getter)table_get_frames, (setter)table_set_frames,
      "by address, functions that call another one and are seen as the place in C; or None", NULL},
     {NULL, NULL, NULL, NULL, NULL},
@@ -201,7 +222,7 @@ static __attribute__((noinline)) int serve_native(Coroutine *coroutine, const Fu
 {
     if (sigsetjmp(coroutine->native_fault, 0))
         return fault_found(coroutine);
-    coroutine->wants_python = false;
+    coroutine->wants_python = coroutine->wants_again = false;
     coroutine->is_native = true;
     coroutine->result = function->native(coroutine, function);
     coroutine->is_native = false;
@@ -255,6 +276,12 @@ static int serve(Coroutine *coroutine)
     Py_INCREF(copy.callable);
     int result = calls_serve(coroutine, &copy);
     Py_DECREF(copy.callable);
+    if (result == 0 && coroutine->wants_again) {
+        running = coroutine;
+        coroutine->is_again = true;
+        result = serve_native(coroutine, &copy);
+        coroutine->is_again = false;
+    }
     return result;
 }
 
@@ -299,9 +326,9 @@ static void tell_caller(const Coroutine *coroutine)
 static PyObject *run(PyObject *module, PyObject *const *arguments, Py_ssize_t count)
 {
     uint64_t values[ENTRY_ARGUMENTS] = {0};
-    if (count != 6 || !Py_IS_TYPE(arguments[0], &table_type) || !PyTuple_Check(arguments[2]) ||
+    if (count != 7 || !Py_IS_TYPE(arguments[0], &table_type) || !PyTuple_Check(arguments[2]) ||
         PyTuple_GET_SIZE(arguments[2]) > ENTRY_ARGUMENTS) {
-        PyErr_SetString(PyExc_TypeError, "run(table, function, arguments, stack, size, owner)");
+        PyErr_SetString(PyExc_TypeError, "run(table, function, arguments, stack, size, owner, task)");
         return NULL;
     }
     for (Py_ssize_t i = 0; i < PyTuple_GET_SIZE(arguments[2]); i++)
@@ -314,6 +341,7 @@ static PyObject *run(PyObject *module, PyObject *const *arguments, Py_ssize_t co
     coroutine->stack = (char *)PyLong_AsUnsignedLongLongMask(arguments[3]);
     coroutine->size = PyLong_AsSize_t(arguments[4]);
     coroutine->owner = (uint32_t)PyLong_AsUnsignedLongMask(arguments[5]);
+    coroutine->task = (uint32_t)PyLong_AsUnsignedLongMask(arguments[6]);
     PyObject *result = NULL;
     if (!PyErr_Occurred() && faults_thread() == 0) {
         prepare(coroutine, function, values);
@@ -398,7 +426,7 @@ static PyObject *has_native(PyObject *module, PyObject *name)
 
 static PyObject *natives(PyObject *module, PyObject *unused)
 {
-    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale};
+    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale, natives_of_races};
     PyObject *names = PyList_New(0);
     for (size_t i = 0; names != NULL && i < sizeof lists / sizeof *lists; i++)
         for (const NativeRow *row = lists[i]; row->name != NULL; row++) {
@@ -424,7 +452,7 @@ static PyObject *begin(PyObject *module, PyObject *arguments)
 
 static PyMethodDef methods[] = {
     {"begin", begin, METH_VARARGS, "begin(status error, fault error)"},
-    {"run", (PyCFunction)(void *)run, METH_FASTCALL, "run(table, function, arguments, stack, size, owner) -> result"},
+    {"run", (PyCFunction)(void *)run, METH_FASTCALL, "run(table, function, arguments, stack, size, owner, task) -> result"},
     {"peek", (PyCFunction)(void *)peek, METH_FASTCALL, "peek(address, size) -> bytes"},
     {"poke", (PyCFunction)(void *)poke, METH_FASTCALL, "poke(address, bytes)"},
     {"text", text, METH_O, "text(address) -> str"},
@@ -445,9 +473,10 @@ static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT, "_engine", "Compi
 PyMODINIT_FUNC PyInit__engine(void)
 {
     PyObject *module = PyModule_Create(&definition);
-    if (module == NULL || PyType_Ready(&heap_type) < 0 || PyType_Ready(&images_type) < 0 || PyType_Ready(&table_type) < 0 ||
+    if (module == NULL || PyType_Ready(&heap_type) < 0 || PyType_Ready(&images_type) < 0 || PyType_Ready(&table_type) < 0 || PyType_Ready(&races_type) < 0 ||
         PyModule_AddObjectRef(module, "Heap", (PyObject *)&heap_type) < 0 ||
         PyModule_AddObjectRef(module, "Images", (PyObject *)&images_type) < 0 ||
+        PyModule_AddObjectRef(module, "Races", (PyObject *)&races_type) < 0 ||
         PyModule_AddObjectRef(module, "Table", (PyObject *)&table_type) < 0 ||
         PyModule_AddIntConstant(module, "ARENA_LOW", ARENA_LOW) < 0 ||
         PyModule_AddIntConstant(module, "ARENA_HIGH", ARENA_HIGH) < 0)
