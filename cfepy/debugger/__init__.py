@@ -7,5 +7,6 @@ watches a run without stopping it belongs to `cfepy.monitors`, what draws a run 
 from __future__ import annotations
 
 from cfepy.debugger.debugger import Debugger
+from cfepy.debugger.gdb import GdbSession
 
-__all__ = ["Debugger"]
+__all__ = ["Debugger", "GdbSession"]

@@ -24,6 +24,7 @@ from cfepy.pilot.determinism_look import stack_of
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
+    from cfepy.debugger.gdb import GdbSession
     from cfepy.rtos import Task
     from cfepy.sb import Pipe
 
@@ -48,6 +49,7 @@ class Debugger(Observer):
         app: open Python's debugger in the tasks of this application: at once, or at the first stop when there are
             `stops` or `from_ns`; and where an exception came from whose traceback is written to the console.
         from_ns: virtual time of the first stop; None for none.
+        gdb: open gdb on the process instead, once.
         on_quit: ends the run.
         commands, stream: where the user writes and reads; None for this process's own.
         root: folder that the mission's files lie below, and that their paths are shown without.
@@ -67,6 +69,7 @@ class Debugger(Observer):
         step: bool = False,
         app: str | None = None,
         from_ns: int | None = None,
+        gdb: GdbSession | None = None,
         on_quit: Callable[[], object] = lambda: None,
         commands: TextIO | None = None,
         stream: TextIO | None = None,
@@ -80,6 +83,7 @@ class Debugger(Observer):
         self._steps_from = from_ns
         self._then_steps = step
         self._app = app
+        self._gdb = gdb
         self._looks = app is not None and not stops and from_ns is None
         self._error: BaseException | None = None  # the last one that was looked at
         self._debuggers: dict[Task, AppDebugger] = {}
@@ -132,6 +136,12 @@ class Debugger(Observer):
 
         return start
 
+    def close(self) -> None:
+        """See `Attachment.close`."""
+        super().close()
+        if self._gdb is not None:
+            self._gdb.close()
+
     @property
     def missed(self) -> list[str]:
         """A line for each breakpoint that has stopped nothing, although the run went to its end."""
@@ -167,7 +177,7 @@ class Debugger(Observer):
     def _look_at(self, error: BaseException) -> None:
         """An exception that its application did not expect."""
         task = self._kernel.current
-        if app_of(task) == self._app and not self._is_over:
+        if app_of(task) == self._app and not self._is_over and self._gdb is None:
             self._say(f"{self._place(task)}: {type(error).__name__}: {error}")
             look_at_end(self._debugger_of(task), error)
 
@@ -269,6 +279,11 @@ class Debugger(Observer):
     # -- Python's debugger -------------------------------------------------------------------------------------------
 
     def _look_into(self, task: Task) -> None:
+        if self._gdb is not None:
+            self._say(f"{self._place(task)}: gdb")
+            with self._mission.stall_watch.paused():
+                self._gdb.begin(self._mission)
+            return
         self._say(f"{self._place(task)}: Python's debugger")
         look_into(self._debugger_of(task), own_frame())
 

@@ -61,6 +61,12 @@ def _add_stops(replay: argparse.ArgumentParser) -> None:
         help="open Python's debugger in this application: at its first line, at the first stop of --break, or from "
         "--until on; and where an exception ends it",
     )
+    replay.add_argument(
+        "--gdb",
+        metavar="APP",
+        help="open gdb on this process, with the symbols of compiled applications: it stops at the main function of "
+        "this application, or at the first stop of --break or --until",
+    )
 
 
 def _add_diff(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

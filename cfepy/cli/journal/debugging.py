@@ -1,4 +1,4 @@
-"""`cfepy replay` with --break, --step or --pdb: the debugger that the command line asks for."""
+"""`cfepy replay` with --break, --step, --pdb or --gdb: the debugger that the command line asks for."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 from cfepy.cli.display import Display, PlainDisplay, SilentDisplay
 from cfepy.cli.run.outputs import Outputs
 from cfepy.cli.run.run import View
-from cfepy.debugger import Debugger
+from cfepy.debugger import Debugger, GdbSession
 from cfepy.journal import Replay
 from cfepy.mission import CORE_APPS, MissionSpec
 from cfepy.pilot import Flown
@@ -21,14 +21,20 @@ def debugger_of(arguments: argparse.Namespace, replay: Replay) -> Debugger:
     """The debugger for a replay.
 
     Args:
-        arguments: of `cfepy replay`; with --step or --pdb, --until is where the first stop is, not the end.
+        arguments: of `cfepy replay`; with --step, --pdb or --gdb, --until is where the first stop is, not the end.
         replay: the replay.
 
     Raises:
         UsageError: a breakpoint that cannot be, or an application that there is not.
     """
     spec = replay.stage.spec()
-    app = None if arguments.pdb is None else _application(arguments.pdb, spec)
+    if arguments.pdb is not None and arguments.gdb is not None:
+        raise UsageError("one debugger at a time: --pdb or --gdb", field="--gdb")
+    app = None if arguments.pdb is None else _application(arguments.pdb, spec, "--pdb")
+    gdb = None
+    if arguments.gdb is not None:
+        app = _application(arguments.gdb, spec, "--gdb")
+        gdb = GdbSession(app)
     from_ns = None if arguments.until is None or arguments.stops else round(arguments.until * NS_PER_S)
     return Debugger(
         spec,
@@ -36,12 +42,13 @@ def debugger_of(arguments: argparse.Namespace, replay: Replay) -> Debugger:
         step=arguments.step,
         app=app,
         from_ns=from_ns,
+        gdb=gdb,
         on_quit=replay.end_here,
         root=replay.stage.root,
     )
 
 
-def _application(name: str, spec: MissionSpec) -> str:
+def _application(name: str, spec: MissionSpec, option: str) -> str:
     """The cFE name of the application or node that a user means."""
     apps = [entry.name for entry in spec.entries]
     nodes = {config.name: app for app, config in spec.ros.nodes.items() if config.name is not None}
@@ -51,7 +58,7 @@ def _application(name: str, spec: MissionSpec) -> str:
             return str(app)
     known = [*apps, *nodes]
     hint = did_you_mean(plain, known, f"there are {', '.join(known)}")
-    raise UsageError(f"the mission has no application {name!r}; {hint}", field="--pdb")
+    raise UsageError(f"the mission has no application {name!r}; {hint}", field=option)
 
 
 class DebugView(View):

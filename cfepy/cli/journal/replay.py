@@ -110,7 +110,7 @@ def replaying(arguments: argparse.Namespace, journal: Journal) -> Iterator[Repla
     with staged(journal, arguments.from_disk) as stage:
         for note in stage.notes:
             print(f"cfepy: {note}", file=sys.stderr, flush=True)
-        begins_there = (arguments.step or arguments.pdb is not None) and not arguments.stops
+        begins_there = (arguments.step or _looks_into(arguments)) and not arguments.stops
         until_ns = None if arguments.until is None or begins_there else round(arguments.until * NS_PER_S)
         tasks = arguments.tasks if arguments.pdb is None else "thread"  # only a thread has a debugger of its own
         replay = Replay(journal, stage, tasks=tasks, until_ns=until_ns, describe=lines.describe)
@@ -127,7 +127,7 @@ def _fly(arguments: argparse.Namespace, replay: Replay) -> int:
     """
     debugger: Debugger | None = None
     view = _view(replay.plan.command, arguments)
-    if arguments.stops or arguments.step or arguments.pdb is not None:
+    if arguments.stops or arguments.step or _looks_into(arguments):
         from cfepy.cli.journal.debugging import DebugView, debugger_of
 
         debugger, view = debugger_of(arguments, replay), DebugView(view)
@@ -135,6 +135,11 @@ def _fly(arguments: argparse.Namespace, replay: Replay) -> int:
     status = fly_again(arguments, replay, view)
     tell(debugger.missed if debugger is not None else ())
     return status
+
+
+def _looks_into(arguments: argparse.Namespace) -> bool:
+    """Whether a debugger is opened in an application."""
+    return arguments.pdb is not None or arguments.gdb is not None
 
 
 def _view(command: str, arguments: argparse.Namespace) -> View:
