@@ -189,7 +189,7 @@ class AddressSpace:
         entry = self._ranges[number]
         self._check_access(entry.memory_type, is_write)
         if number not in self._areas:
-            self._areas[number] = bytearray(entry.size)
+            self._areas[number] = _new_area(entry)
         offset = address - entry.start_addr
         return self._areas[number], slice(offset, offset + size)
 
@@ -209,6 +209,18 @@ class AddressSpace:
 def _check_alignment(address: int, size: int) -> None:
     if address % size:
         raise OsalError(CFE_PSP_ERROR_ADDRESS_MISALIGNED, f"{address:#x} is not divisible by {size}")
+
+
+def _new_area(entry: MemRange) -> bytearray:
+    """The bytes of a range; a range may be all that can be addressed, which nobody has.
+
+    Raises:
+        OsalError: CFE_PSP_INVALID_MEM_ADDR when there is no room for so many.
+    """
+    try:
+        return bytearray(entry.size)
+    except (MemoryError, OverflowError):
+        raise OsalError(CFE_PSP_INVALID_MEM_ADDR, f"a range of {entry.size} bytes has no bytes here") from None
 
 
 class EepromSpace(AddressSpace):

@@ -6,7 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from tests.c.building import fly_c, needs_compiler, said
+from tests.c.building import (
+    compile_c,
+    console_of,
+    digest_of,
+    fly,
+    fly_c,
+    needs_compiler,
+    said,
+    write_mission,
+)
 
 pytestmark = needs_compiler
 HEADER = '#include "osal.h"\n#define DID(call) SAY("%d", (int)(call))\n'
@@ -281,6 +290,49 @@ def test_clocks(tmp_path: Path) -> None:
     """
     said = results(tmp_path, body)
     assert said == ["-2", "-2", "0", "0", "1", "1", "0", "499", "-1", "0", "polled"]
+
+
+TALK = (
+    HEADER
+    + """
+static Id queue, mutex;
+static int sum;
+static void child(void)
+{
+    size_t size;
+    int number;
+    while (OS_QueueGet(queue, &number, sizeof number, &size, 500) == 0) {
+        OS_MutSemTake(mutex);
+        sum += number;
+        OS_MutSemGive(mutex);
+    }
+    DID(sum);
+}
+static void tick(Id id) { static int number; number++; OS_QueuePut(queue, &number, sizeof number, 0); }
+void TEST_Main(void)
+{
+    Id id, timer;
+    uint32_t accuracy;
+    OS_MutSemCreate(&mutex, "M", 0);
+    OS_QueueCreate(&queue, "Q", 5, sizeof(int), 0);
+    OS_TaskCreate(&id, "A", child, NULL, 8192, 60, 0);
+    OS_TaskCreate(&id, "B", child, NULL, 8192, 60, 0);
+    OS_TimerCreate(&timer, "T", &accuracy, tick);
+    OS_TimerSet(timer, 1000, 1000);
+    OS_TaskDelay(200);
+    OS_TimerDelete(timer);
+    OS_TaskDelay(1000);
+}
+"""
+)
+
+
+def test_a_run_is_the_same_on_threads_and_greenlets(tmp_path: Path) -> None:
+    pytest.importorskip("greenlet")
+    compile_c(tmp_path, "TEST", TALK)
+    folder = write_mission(tmp_path, "TEST")
+    assert digest_of(folder, "thread") == digest_of(folder, "greenlet")
+    assert said(console_of(fly(folder))) == ["20100", "20100"]
 
 
 def test_events_about_objects(tmp_path: Path) -> None:

@@ -64,6 +64,39 @@ def test_copy_and_set(memory: EepromSpace) -> None:
     assert memory.mem_read32(EEPROM + 4) == 0x0000AAAA
 
 
+def test_a_range_gets_its_bytes_when_they_are_needed(memory: EepromSpace) -> None:
+    memory.mem_range_set(5, MEM_RAM, 1 << 20, 1 << 62, 4, MEM_ATTR_READWRITE)
+    memory.mem_validate_range(1 << 60, 4, MEM_RAM)
+    with pytest.raises(OsalError) as caught:
+        memory.mem_read8(1 << 60)
+    assert caught.value.status == CFE_PSP_INVALID_MEM_ADDR
+    memory.mem_range_set(5, MEM_RAM, 1 << 20, 16, 4, MEM_ATTR_READWRITE)
+    memory.mem_write8(1 << 20, 7)
+    assert memory.mem_read8(1 << 20) == 7
+
+
+def test_an_area_of_the_retained_memory_can_be_moved() -> None:
+    board = Board()
+    board.psp.boot()
+    psp, places = board.psp, []
+    address = psp.mem_range_get(2).start_addr
+    psp.mem_write8(address + 1, 5)
+
+    def make(size: int) -> memoryview:
+        places.append(bytearray(size))
+        return memoryview(places[0])
+
+    psp.move_area("user_reserved", make)
+    assert places[0][1] == 5
+    places[0][2] = 6
+    assert psp.get_user_reserved_area()[:3] == b"\0\5\6"
+    psp.mem_write8(address, 4)
+    assert places[0][0] == 4
+    psp.move_area("user_reserved", bytearray)
+    places[0][0] = 0
+    assert psp.mem_read8(address) == 4
+
+
 def test_eeprom_is_written_by_its_own_functions(memory: EepromSpace) -> None:
     memory.eeprom_write32(EEPROM, 0x01020304)
     memory.eeprom_write16(EEPROM + 4, 0x0506)
