@@ -82,8 +82,12 @@ class DiskApi(Core):
         self._disks: OsObjectTable[OsDisk] = self._table(
             "file system", OS_FILESYS_BASE, OS_MAX_FILE_SYSTEMS, OS_MAX_PATH_LEN
         )
+        self._folder = Path()
+        """Where relative paths of the host begin: the folder behind /cf."""
         for point in setup.files.mount_points():
             volume = setup.files.volume(point)
+            if point == "/cf" and volume.host is not None:
+                self._folder = volume.host
             device = RAM_DEVICE if point == "/ram" else point
             self._disks.add(OsDisk(device, volume, RAM_BLOCK_BYTES, str(volume.host or ""), point))
 
@@ -162,7 +166,7 @@ class DiskApi(Core):
         """Show a folder of the host at a virtual path for good (OS_FileSysAddFixedMap); it is only ever read.
 
         Args:
-            phys_path: the folder; one that does not exist shows as an empty one.
+            phys_path: the folder, from that of the mission on; one that does not exist shows as an empty one.
             virt_path: where, e.g. "/data".
 
         Returns:
@@ -172,7 +176,7 @@ class DiskApi(Core):
             OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_PATH_INVALID, OS_ERR_NAME_TAKEN, OS_ERR_NO_FREE_IDS.
         """
         self._check(virt_path, OS_MAX_PATH_LEN)
-        volume = Volume(Path(phys_path))
+        volume = Volume(self._folder / phys_path)
         disk = OsDisk(virt_path, volume, RAM_BLOCK_BYTES, str(phys_path), virt_path)
         disk_id = self._register(self._disks, disk, "disk", 0)
         try:

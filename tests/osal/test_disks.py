@@ -92,6 +92,15 @@ def test_a_fixed_map(bench: Bench, tmp_path: Path) -> None:
     assert not bench.os.files.exists("/data/x")
 
 
+def test_a_relative_path_of_a_fixed_map_begins_at_the_missions_folder(tmp_path: Path) -> None:
+    (tmp_path / "more").mkdir()
+    (tmp_path / "more" / "x").write_bytes(b"x")
+    os = Bench(files=FileSystem(tmp_path)).os
+    os.file_sys_add_fixed_map("./more", "/more")
+    assert os.files.read_file("/more/x") == b"x"
+    assert os.fs_get_phys_drive_name("/more") == "./more"
+
+
 def test_a_disk_that_is_removed_while_it_is_mounted(bench: Bench) -> None:
     bench.os.mkfs("/ramdev1", "RAM1", 512, 4)
     bench.os.mount("/ramdev1", "/scratch")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import tempfile
 from pathlib import Path
 
@@ -26,7 +25,7 @@ def main() -> None:
 
 
 def fly_all(sources: Path, folder: Path, names: list[str], tasks: str, shows: bool) -> list[Result]:
-    """Fly each test in a folder of its own, which is the host's working directory then: some look for files there."""
+    """Fly each test in a folder of its own."""
     builder = Builder(sources, folder / "include")
     results = []
     for test in builder.tests():
@@ -35,9 +34,7 @@ def fly_all(sources: Path, folder: Path, names: list[str], tasks: str, shows: bo
         place = folder / test.name
         place.mkdir()
         builder.build(test, place)
-        os.chdir(place)
         result = fly(place, test.name, tasks)
-        os.chdir("/")
         results.append(result)
         if shows:
             print("\n".join(result.lines))
