@@ -50,3 +50,19 @@ def test_the_scenario_comes_about(tasks: str, tmp_path: Path) -> None:
     plan = RunPlan((str(tmp_path / "cfs"),), script=str(tmp_path / "cfs" / "scenario.txt"), tasks=tasks)
     outcome = fly(plan).outcome
     assert outcome.ok, outcome.text()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not (Path(BUILT) / "cf/cf.so").exists(), reason="CFEPY_REAL_CFE names no folder with CF's code")
+def test_files_come_down_and_go_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("cfdppy", reason="cfdp-py is not installed")
+    shutil.copytree(FOLDER, tmp_path / "cfs")
+    for name in NAMES:
+        shutil.copy(Path(BUILT) / "cf" / f"{name}.so", tmp_path / "cfs")
+    received = tmp_path / "received"
+    monkeypatch.setattr("sys.argv", ["downlink.py", str(tmp_path / "cfs"), str(received)])
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_path(str(FOLDER / "downlink.py"), run_name="__main__")
+    assert ended.value.code == 0
+    sent = (FOLDER / "lc_def_adt.tbl").read_bytes()
+    assert [(received / name).read_bytes() == sent for name in ("class_1.tbl", "class_2.tbl")] == [True, True]

@@ -19,6 +19,7 @@ FILES = (
     *("", "/ram", "/ram/sub", "a.dat", "/ram/" + "y" * 40, "/ram/" + "y" * 58, "z" * 63, "z" * 64, "/ram/bad name"),
     *("/ram/*.dat", "/ram/g", "/ram/a.dat/h", "/cf/lc_def_wdt.tbl"),
 )
+THERE = ("/ram/a.dat", "/ram/b.dat", "/cf/lc_def_wdt.tbl", "/ram/c.dat")
 FOLDERS = ("/ram", "/ram/", "/ram/sub", "/ram/sub/", "/ram/new", "/nowhere", "", "/", "/ram/a.dat", "/ram/" + "p" * 58)
 NAMES = (
     *("LC", "CS", "CFE_ES", "NOBODY", "", "X" * 19, "X" * 20, "LC.LC_ADT", "LC.LC_WDT", "CS.DefAppTbl", "NO.Table"),
@@ -27,13 +28,14 @@ NAMES = (
 SYMBOLS = ("", "nothing", "NoSuchSymbol", "s" * 63, "s" * 64)
 SMALL = (0, 1, 2, 3, 4, 5, 7, 8, 15, 16)
 LIMITS = (20, 32, 63, 64, 65, 127, 128, 174, 175, 176, 255, 256, 1000, 0x7FFF, 0x8000, 0xFFFE, 0xFFFF)
+POWER_HK = 0x08D0
 LARGE = (0x10000, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)
 MSG_IDS = (0x800, 0x801, 0x803, 0x808, 0x8A7, 0x890, 0x18A4, 0, 0x1FFF, 0x2000, 0xFFFFFFFF)
 TELEMETRY_HEARD = tuple(each for app in FLIGHT_APPS for each in app.telemetry)
 UNSAFE = {(MM.name, code) for code in (2, 3, 4, 6, 7, 8)} | {(MD.name, 4), (CS.name, 2), (CS.name, 20), (CS.name, 27)}
 """Commands that take an address: what is asked for is bad enough that nothing is read or written."""
-ONLY_TOO_SHORT = {(CS.name, 2)}
-"""CS's one-shot checksum: there any address will do."""
+ONLY_BAD_LENGTH = {(CS.name, 2), (CS.name, 9)}
+"""CS's checksums of any address, and of cFE's own code, which is there or not."""
 SLOW = {FM.name, CS.name, CF.name, DS.name}
 """Applications that work in the background, or for some wake-ups."""
 WAKEUPS = {CF.name: 3}
@@ -63,6 +65,8 @@ class AppsCommander:
             else:
                 app = self._random.choice(self._apps)
                 packets = [self._any(app) for _ in range(self._random.choice((1, 1, 2)))]
+            if app in (LC, DS, HK) and self._random.random() < 0.5:
+                yield Step(app.name, (self._charge(),), PLAIN)
             pace = BACKGROUND if app.name in SLOW else PLAIN
             yield Step(app.name, tuple(packets), pace)
             yield from self.after(app)
@@ -91,14 +95,20 @@ class AppsCommander:
             payload = struct.pack("<I", random.choice((0x89C, 0x89D, 0x89E, 0x89F, 0x8A0, 0)))
         return bytes(msg.command(app.wakeup_mid, 0, payload))
 
+    def _charge(self) -> bytes:
+        """What LC watches, DS stores and HK copies: POWER's housekeeping, with little charge or much."""
+        random = self._random
+        payload = struct.pack("<HBB", random.choice((0, 39, 40, 41, 100, 0xFFFF)), random.randrange(2), 0)
+        return bytes(msg.telemetry(POWER_HK, payload))
+
     def _any(self, app: FlightApp) -> bytes:
         packet = self._packet(app, self._random.choice(app.commands))
         return self._damaged(packet) if self._random.random() < 0.3 else packet
 
     def _packet(self, app: FlightApp, command: FlightCommand) -> bytes:
         payload = b"".join(self._value(app, command, field) for field in command.fields)
-        if (app.name, command.code) in ONLY_TOO_SHORT:
-            payload = payload[:-4]
+        if (app.name, command.code) in ONLY_BAD_LENGTH:
+            payload = payload[:-4] or bytes(4)
         return bytes(msg.command(app.commands_mid, command.code, payload))
 
     def _damaged(self, packet: bytes) -> bytes:
@@ -128,7 +138,7 @@ class AppsCommander:
         if "directory" in field or field == "pathname":
             text = random.choice(FOLDERS)
         elif "file" in field or field.startswith(("source", "target")):
-            text = random.choice(FILES)
+            text = random.choice(FILES if random.random() < 0.5 else THERE)
         elif field == "symname":
             text = random.choice(SYMBOLS[1:])
         elif field in ("basename", "extension", "signature"):

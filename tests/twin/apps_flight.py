@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import itertools
 import shutil
+import struct
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -21,19 +22,18 @@ from cfepy import msg
 from cfepy.console import Console
 from cfepy.evs import packets as evs
 from cfepy.mission import Mission
-from cfepy.msg import Layout
 from cfepy.status import OsalError
-from cfepy.tbl import TableType, build
 from tests.twin import masks
 from tests.twin.apps_commands import TELEMETRY_HEARD, AppsCommander
 from tests.twin.commands import PLAIN, Step
 from tests.twin.flight import Observed, Real, Simulated, _first_difference, _shown
-from tests.twin.flight_apps import CF, FLIGHT_APPS, HS
+from tests.twin.flight_apps import CF, DS, FLIGHT_APPS, FM, HS, FlightApp
 from tests.twin.link_app import DOWN_PORT, UP_PORT
 from tests.twin.real import VARIABLE, RealCfe, installed
 from tests.twin.tables_real import compile_app
 
 HERE = Path(__file__).parent
+TABLES = HERE.parents[1] / "missions" / "cfs"
 LINE = UP_PORT, DOWN_PORT
 ROWS = "".join(
     f"CFE_APP, {app.name.lower()}, {app.name}_AppMain, {app.name}, {90 + number}, 16384, 0x0, 0;\n"
@@ -42,6 +42,10 @@ ROWS = "".join(
 STARTUP = f"CFE_APP, link, LINK_Main, LINK, 40, 65536, 0x0, 0;\n{ROWS}!\n"
 EVENTS = evs.LONG_EVENT_MSG_MID
 RESET_CODE = 1
+SET_DEST_COUNT, CLOSE_ALL, COPY_FILE, DELETE_ALL_FILES = 13, 18, 2, 7
+FIRST_FILE = 100
+FILES = (b"/cf/cf_def_config.tbl", b"/ram/a.dat"), (b"/cf/sc_rts001.tbl", b"/ram/b.dat")
+"""What lies in /ram at the beginning, and where it is from."""
 MASKED = {
     # events that HS counted, processor time in use, and how often tasks ran
     0x8AD: [range(28, 36), range(44, 180)],
@@ -93,25 +97,35 @@ def differences(ours: Observed, theirs: Observed) -> list[str]:
 
 
 def tables() -> dict[str, bytes]:
-    """Tables in place of NASA's, by virtual path.
+    """Tables of missions/cfs in place of NASA's, which have hardly anything in them, by virtual path.
 
-    FM looks at disks only: what it says of a folder counts the entry `..`, which cfepy does not list.
+    FM looks at a disk only: what it says of a folder counts the entry `..`, which cfepy does not list.
     """
-    disk = Layout("FM_MonitorTableEntry_t", [("Type", "u8"), ("Enabled", "u8"), ("Name", "char[64]")])
-    monitor = TableType("FM.FreeSpace", disk, rows=8)
-    disks = [{"Type": 1, "Enabled": 1, "Name": "/ram"}, {"Type": 1, "Enabled": 1, "Name": "/cf"}]
-    return {"/cf/fm_monitor.tbl": build(monitor.image(disks))}
+    given = [each for each in TABLES.glob("*.tbl") if each.name.startswith(("lc_", "sc_", "ds_", "cf_", "hk_", "fm_"))]
+    return {f"/cf/{each.name}": each.read_bytes() for each in given}
+
+
+def command(app: FlightApp, code: int, payload: bytes = b"") -> Step:
+    """A step of one command."""
+    return Step(app.name, (bytes(msg.command(app.commands_mid, code, payload)),), PLAIN)
 
 
 def preparation() -> list[Step]:
-    """What counted the boot begins anew; no flywheel event is counted by applications that listen to events."""
+    """What counted the boot begins anew; no flywheel event is counted by applications that listen to events.
+
+    DS begins with new files, since the boot has not as many events in both.
+    """
     quiet = Step("EVS", (evs.DISABLE_APP_EVENTS.packet(AppName="CFE_TIME"),), PLAIN)
-    resets = [
-        Step(app.name, (bytes(msg.command(app.commands_mid, RESET_CODE, bytes(4 if app is CF else 0))),), PLAIN)
-        for app in FLIGHT_APPS
-    ]
+    resets = [command(app, RESET_CODE, bytes(4 if app is CF else 0)) for app in FLIGHT_APPS]
     woken = Step(HS.name, (bytes(msg.command(HS.wakeup_mid, 0)),), PLAIN)
-    return [quiet, *resets, resets[FLIGHT_APPS.index(HS)], woken]
+    counts = [command(DS, SET_DEST_COUNT, struct.pack("<HHI", number, 0, FIRST_FILE)) for number in range(2)]
+    files = [
+        *counts,
+        command(DS, CLOSE_ALL),
+        command(FM, DELETE_ALL_FILES, struct.pack("<64s", b"/ram")),
+        *(command(FM, COPY_FILE, struct.pack("<H64s64s", 1, *names)) for names in FILES),
+    ]
+    return [quiet, *files, *resets, resets[FLIGHT_APPS.index(HS)], woken]
 
 
 class SimulatedApps(Simulated):
