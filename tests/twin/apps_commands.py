@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from random import Random
 
 from cfepy import msg
+from tests.twin import cfdp_pdus
 from tests.twin.commands import BACKGROUND, PLAIN, Step
 from tests.twin.flight_apps import CF, CS, DS, FLIGHT_APPS, FM, HK, HS, LC, MD, MM, Field, FlightApp, FlightCommand
 
@@ -28,7 +29,7 @@ NAMES = (
 SYMBOLS = ("", "nothing", "NoSuchSymbol", "s" * 63, "s" * 64)
 SMALL = (0, 1, 2, 3, 4, 5, 7, 8, 15, 16)
 LIMITS = (20, 32, 63, 64, 65, 127, 128, 174, 175, 176, 255, 256, 1000, 0x7FFF, 0x8000, 0xFFFE, 0xFFFF)
-POWER_HK = 0x08D0
+POWER_HK, PDUS_UP = 0x08D0, 0x18C8
 LARGE = (0x10000, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)
 MSG_IDS = (0x800, 0x801, 0x803, 0x808, 0x8A7, 0x890, 0x18A4, 0, 0x1FFF, 0x2000, 0xFFFFFFFF)
 TELEMETRY_HEARD = tuple(each for app in FLIGHT_APPS for each in app.telemetry)
@@ -55,6 +56,7 @@ class AppsCommander:
         self._apps = [app for app in FLIGHT_APPS if not wanted or app.name in wanted]
         self._fresh = [(app, command) for app in self._apps for command in app.commands]
         self._random.shuffle(self._fresh)
+        self._transfers = 0
 
     def steps(self) -> Iterator[Step]:
         """Steps without an end; the first ones have every command once, as it should be."""
@@ -65,6 +67,8 @@ class AppsCommander:
             else:
                 app = self._random.choice(self._apps)
                 packets = [self._any(app) for _ in range(self._random.choice((1, 1, 2)))]
+            if app is CF and self._random.random() < 0.3:
+                yield from self._uplink()
             if app in (LC, DS, HK) and self._random.random() < 0.5:
                 yield Step(app.name, (self._charge(),), PLAIN)
             pace = BACKGROUND if app.name in SLOW else PLAIN
@@ -94,6 +98,13 @@ class AppsCommander:
         elif app is HK:
             payload = struct.pack("<I", random.choice((0x89C, 0x89D, 0x89E, 0x89F, 0x8A0, 0)))
         return bytes(msg.command(app.wakeup_mid, 0, payload))
+
+    def _uplink(self) -> Iterator[Step]:
+        """A file on its way up to CF, and wake-ups between its PDUs."""
+        self._transfers += 1
+        for pdu in cfdp_pdus.transfer(self._random, self._transfers):
+            yield Step(CF.name, (bytes(msg.command(PDUS_UP, 0, pdu)),), PLAIN)
+            yield Step(CF.name, (self.wakeup(CF),), PLAIN)
 
     def _charge(self) -> bytes:
         """What LC watches, DS stores and HK copies: POWER's housekeeping, with little charge or much."""
