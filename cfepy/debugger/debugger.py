@@ -282,7 +282,7 @@ class Debugger(Observer):
         if self._gdb is not None:
             self._say(f"{self._place(task)}: gdb")
             with self._mission.stall_watch.paused():
-                self._gdb.begin(self._mission)
+                self._gdb.begin(self._mission, is_running=own_frame() is not None)
             return
         self._say(f"{self._place(task)}: Python's debugger")
         look_into(self._debugger_of(task), own_frame())

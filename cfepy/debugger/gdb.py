@@ -49,6 +49,8 @@ def gdb_script(mission: Mission, folder: Path, function: str) -> str:
         lines.append(f"add-symbol-file {file} -o 0x{image.base:x}")
     if function:
         lines += [f"tbreak {function}", "continue"]
+    else:
+        lines.append(r"echo \nThe run waits: set breakpoints, then continue\n")
     return "\n".join(lines) + "\n"
 
 
@@ -64,11 +66,12 @@ class GdbSession:
         self._process: subprocess.Popen[bytes] | None = None
         self._folder = contextlib.ExitStack()
 
-    def begin(self, mission: Mission) -> None:
+    def begin(self, mission: Mission, is_running: bool) -> None:
         """Start gdb on this process, and wait until its user lets the process go on.
 
         Args:
             mission: that flies.
+            is_running: whether the application is past the beginning of its main function.
 
         Raises:
             UsageError: there is no gdb, or it may not trace this process.
@@ -82,7 +85,7 @@ class GdbSession:
         folder = Path(self._folder.enter_context(tempfile.TemporaryDirectory(prefix="cfepy-gdb-")))
         script = folder / "commands"
         entry = next((each.symbol for each in mission.spec.entries if each.name == self._app), "")
-        script.write_text(gdb_script(mission, folder, entry))
+        script.write_text(gdb_script(mission, folder, "" if is_running else entry))
         ctypes.CDLL(None).prctl(PR_SET_PTRACER, ANYBODY)  # a child may trace its parent
         self._process = subprocess.Popen(
             [gdb, "-q", "-nx", "-iex", "set auto-load no", "-p", str(os.getpid()), "-x", str(script)]

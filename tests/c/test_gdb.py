@@ -54,6 +54,18 @@ def test_gdb_stops_at_the_main_function_and_sees_lines_and_variables(tmp_path: P
     assert "the same run as run.cfepy" in shown
 
 
+def test_gdb_takes_breakpoints_at_a_time(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", SOURCE, "-O0")
+    cfepy(tmp_path, "run", write_mission(tmp_path, "TEST"), "--for", "2", "--record", "run.cfepy")
+    typed = "break twice\ncontinue\ndelete\ncontinue\nquit\n"
+    shown = cfepy(tmp_path, "replay", "run.cfepy", "--gdb", "TEST", "--until", "0.6", typed=typed)
+    if "ptrace: Operation not permitted" in shown:
+        pytest.skip("this computer lets nobody trace a process")
+    assert "The run waits: set breakpoints, then continue" in shown
+    assert "twice (number=21) at" in shown
+    assert "the same run as run.cfepy" in shown
+
+
 def test_one_debugger_at_a_time_and_an_application_that_there_is(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", SOURCE)
     folder = write_mission(tmp_path, "TEST")
