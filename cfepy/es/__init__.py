@@ -10,7 +10,7 @@ from cfepy.es.apps import SymbolError
 from cfepy.es.boot import Boot, CoreApp, ObjectTable
 from cfepy.es.cds import DamagedData
 from cfepy.es.packets import COMMANDS, TELEMETRY
-from cfepy.es.pools import MAX_BUCKETS, MemPool, PoolBlock, min_size
+from cfepy.es.pools import MAX_BUCKETS, ForeignMemory, MemPool, PoolBlock, min_size
 from cfepy.es.records import (
     APP_ERROR,
     APP_EXIT,
@@ -57,6 +57,7 @@ __all__ = [
     "DamagedData",
     "EsTask",
     "ExecutiveServices",
+    "ForeignMemory",
     "Loader",
     "MemPool",
     "ObjectTable",

@@ -83,7 +83,6 @@ class PoolApi(EsCore):
         alignment: int = ALIGNMENT,
         owner: str = "",
         memory: PoolMemory | None = None,
-        address: int = 0,
     ) -> int:
         """Make a memory pool for the calling application (CFE_ES_PoolCreateEx_WithAlignment).
 
@@ -95,7 +94,6 @@ class PoolApi(EsCore):
             owner: for the board's books, when no application calls.
             memory: the bytes of the pool, as C's callers bring them: the first `size` bytes of something writable. They
                 are not booked on the board, since their owner has them already. None makes new ones, and books them.
-            address: where C has this memory, for what is told of blocks; its blocks are not cleared, as in C.
 
         Returns:
             The pool's handle.
@@ -116,7 +114,7 @@ class PoolApi(EsCore):
         if memory is None and owner:
             memory = self.core_memory(size)
         try:
-            pool = self._make(name, size, sizes, alignment, memory, address)
+            pool = self._make(name, size, sizes, alignment, memory)
             pool_id = self.pools.create(pool)
             self._add_mutex(pool_id, pool, use_mutex)
         except CfeError:
@@ -125,11 +123,9 @@ class PoolApi(EsCore):
         self.pool_owners[pool_id] = (app, claim)
         return pool_id
 
-    def _make(
-        self, name: str, size: int, sizes: Sequence[int], alignment: int, memory: PoolMemory | None, address: int
-    ) -> MemPool:
+    def _make(self, name: str, size: int, sizes: Sequence[int], alignment: int, memory: PoolMemory | None) -> MemPool:
         try:
-            return MemPool(name, size, sizes, alignment, self.write_to_sys_log, memory, address)
+            return MemPool(name, size, sizes, alignment, self.write_to_sys_log, memory)
         except CfeError:
             self.pools.skip()  # NASA's code has taken the id by then
             raise

@@ -36,7 +36,25 @@ _ULONG_MAX = (1 << 64) - 1
 Read = Callable[[int, int], bytes]
 Write = Callable[[int, bytes], object]
 Log = Callable[[str], object]
-PoolMemory = bytearray | memoryview | mmap
+
+
+@dataclass(frozen=True, slots=True)
+class ForeignMemory:
+    """Memory of compiled code: it may go while there is a pool in it, so it is reached by functions that fail then.
+
+    Attributes:
+        address: where it is.
+        view: its bytes, which are not looked at.
+        read, write: as those of a pool, with offsets.
+    """
+
+    address: int
+    view: memoryview
+    read: Read
+    write: Write
+
+
+PoolMemory = bytearray | memoryview | mmap | ForeignMemory
 """What a caller may bring as the bytes of a pool: anything writable."""
 
 
@@ -223,7 +241,7 @@ def fresh_memory(size: int) -> memoryview:
     return memoryview(mmap(-1, size, access=ACCESS_COPY))
 
 
-def _writable(memory: PoolMemory, size: int) -> memoryview:
+def _writable(memory: bytearray | memoryview | mmap, size: int) -> memoryview:
     try:
         view = memoryview(memory).cast("B")
     except TypeError as error:  # no buffer, or one with gaps
@@ -259,10 +277,10 @@ class MemPool:
         log: the system log.
         memory: the bytes of the pool, which the caller keeps and may look at, as in C; the first `size` of them are
             used, as they are. None makes new ones, of zeros.
-        address: where C has the memory; 0 for memory of Python.
 
     Attributes:
         memory: the bytes of the pool.
+        address: where C has them; 0 for memory of Python.
 
     Raises:
         CfeError: as `GenericPool`; CFE_ES_BAD_ARGUMENT for memory that cannot be written or is too small.
@@ -276,20 +294,24 @@ class MemPool:
         alignment: int = ALIGNMENT,
         log: Log = lambda text: None,
         memory: PoolMemory | None = None,
-        address: int = 0,
     ) -> None:
         self.name = name
-        self.address = address
         self.mutex_id = 0
-        self.memory = fresh_memory(size) if memory is None else _writable(memory, size)
+        if isinstance(memory, ForeignMemory):
+            self.address, self.memory = memory.address, memory.view
+            self._read, self._write = memory.read, memory.write
+        else:
+            self.address = 0
+            self.memory = fresh_memory(size) if memory is None else _writable(memory, size)
+            self._read, self._write = self._read_own, self._write_own
         self.blocks = GenericPool(
             self._read, self._write, log, start=0, size=size, alignment=max(alignment, MIN_ALIGNMENT), sizes=sizes
         )
 
-    def _read(self, offset: int, size: int) -> bytes:
+    def _read_own(self, offset: int, size: int) -> bytes:
         return bytes(self.memory[offset : offset + size])
 
-    def _write(self, offset: int, data: bytes) -> None:
+    def _write_own(self, offset: int, data: bytes) -> None:
         self.memory[offset : offset + len(data)] = data
 
     def get(self, size: int) -> PoolBlock:

@@ -6,7 +6,7 @@ import tracemalloc
 
 import pytest
 
-from cfepy.es.pools import BUCKETS, DESCRIPTOR, MemPool
+from cfepy.es.pools import BUCKETS, DESCRIPTOR, ForeignMemory, MemPool
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_ES_BUFFER_NOT_IN_POOL,
@@ -142,7 +142,15 @@ def test_memory_that_cannot_hold_the_pool(memory: object) -> None:
 
 def test_memory_of_c_is_not_cleared_and_blocks_are_told_by_their_addresses() -> None:
     memory = bytearray(b"\xaa" * 1024)
-    pool = MemPool("P", 1024, memory=memory, address=0x10_8000_0000)
+
+    def read(offset: int, size: int) -> bytes:
+        return bytes(memory[offset : offset + size])
+
+    def write(offset: int, data: bytes) -> None:
+        memory[offset : offset + len(data)] = data
+
+    foreign = ForeignMemory(0x10_8000_0000, memoryview(memory), read, write)
+    pool = MemPool("P", 1024, memory=foreign)
     block = pool.get(20)
     assert bytes(block.memory) == b"\xaa" * 20
     assert block.address == 0x10_8000_0000 + block.offset

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.c.api.pointers import need
 from cfepy.config import ES_MEM_BLOCK_SIZES
-from cfepy.es import MAX_BUCKETS, MemPool, PoolBlock, min_size
+from cfepy.es import MAX_BUCKETS, ForeignMemory, MemPool, PoolBlock, min_size
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CfeError
 
 if TYPE_CHECKING:
@@ -20,6 +20,8 @@ ALIGNMENT = 16
 """Of CFE_ES_PoolAlign_t, the largest of pointer, long long, double and long double, on x86-64 and aarch64."""
 DEFAULT_SIZES = ES_MEM_BLOCK_SIZES[::-1]
 """As the configuration registry has them: the largest first."""
+MOST = 1 << 40
+"""Bytes of the view of a pool: no pool is larger, whatever somebody says."""
 POOL_STATS = struct.Struct("<QIIQ")
 """The head of CFE_ES_MemPoolStats_t; then there are 17 of these: size, created, free."""
 POOL_FIELDS = ("PoolSize", "NumBlocksRequested", "CheckErrCtr", "NumFreeBytes")
@@ -38,14 +40,17 @@ def _declare_pools(api: Declarations, c: CRuntime) -> None:
     def create(
         pool: int, at: int, size: int, sizes: tuple[int, ...], use_mutex: bool, alignment: int = ALIGNMENT
     ) -> None:
-        is_looked_at = len(sizes) <= MAX_BUCKETS and size >= min_size(sizes, 1)
-        if is_looked_at:
-            memory.poke(at, memory.peek(at, size))  # memory that is not there is a fault of whoever brings it
+        brought = ForeignMemory(
+            at,
+            memory.view(at, min(size, MOST)),
+            lambda offset, count: memory.peek(at + offset, count),
+            lambda offset, data: memory.poke(at + offset, data),
+        )
         try:
-            brought = memory.view(at, size) if is_looked_at else memoryview(bytearray())
-            handle = es.pool_create_ex_with_alignment(size, sizes, use_mutex, alignment, memory=brought, address=at)
+            handle = es.pool_create_ex_with_alignment(size, sizes, use_mutex, alignment, memory=brought)
         except CfeError as error:
-            if is_looked_at and error.status != CFE_ES_NO_RESOURCE_IDS_AVAILABLE:
+            is_late = len(sizes) <= MAX_BUCKETS and size >= min_size(sizes, 1)
+            if is_late and error.status != CFE_ES_NO_RESOURCE_IDS_AVAILABLE:
                 memory.put_u32(pool, 0)
             raise
         memory.put_u32(pool, handle)
