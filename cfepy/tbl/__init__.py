@@ -7,7 +7,7 @@ its `Ports`.
 
 from __future__ import annotations
 
-from cfepy.tbl.access import TableInfo
+from cfepy.tbl.access import BAD_TABLE_HANDLE, TableInfo
 from cfepy.tbl.definition import TableType
 from cfepy.tbl.image import (
     PROCESSOR_ID,
@@ -35,7 +35,7 @@ from cfepy.tbl.registry import (
     TableHandle,
     Validator,
 )
-from cfepy.tbl.services import BAD_TABLE_HANDLE, TableServices
+from cfepy.tbl.services import TableServices
 
 __all__ = [
     "BAD_TABLE_HANDLE",

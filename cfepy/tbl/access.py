@@ -24,9 +24,9 @@ from cfepy.status import (
 from cfepy.tbl.registry import Access, TableRegistry
 
 MODIFIED_MARK = "(*)"
+BAD_TABLE_HANDLE = -1
 ULONG = 0xFFFFFFFFFFFFFFFF
 _NO_ACCESS = "App({app}) does not have access to Tbl Handle={handle}"
-_NOT_NOTIFIED = "App={app} Handle={handle} status code={status:x}"
 
 
 class TableInfo(NamedTuple):

@@ -40,7 +40,6 @@ from cfepy.tbl.table_file import LoadFile, Refused, TableStorage
 from cfepy.tbl.task import Parts, TableTask
 from cfepy.tbl.validations import Validations
 
-BAD_TABLE_HANDLE = -1
 _NO_ACCESS = "App({app}) does not have access to Tbl Handle={handle}"
 _NOT_NOTIFIED = "App={app} Handle={handle} status code={status:x}"
 
