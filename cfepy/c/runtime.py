@@ -74,6 +74,7 @@ class CRuntime:
         self.cfe = cfe
         self.handle = handle
         self.kernel = kernel
+        self.polling_ns = polling_ns
         self.console = console
         self.omit_deprecated = omit_deprecated
         self._limit_s = stall_s

@@ -58,6 +58,23 @@ def test_a_task_of_osal_belongs_to_no_application(tmp_path: Path, tasks: str) ->
     assert said == [*("-2", "-2", "-2", "-13", "-40", "9", "0"), "KID 60 5000 1", "-16", "[] -16"]
 
 
+def test_a_delay_takes_no_more_than_its_time_and_one_of_0_ms_gets_on(tmp_path: Path) -> None:
+    body = """
+        Time then, now;
+        OS_GetMonotonicTime(&then);
+        for (int i = 0; i < 50; i++)
+            OS_TaskDelay(1);
+        OS_GetMonotonicTime(&now);
+        DID(now - then);
+        do {
+            OS_TaskDelay(0);
+            OS_GetMonotonicTime(&now);
+        } while (now < then + 600000);
+        SAY("polled");
+    """
+    assert results(tmp_path, body) == ["500010", "polled"]
+
+
 def test_a_task_on_a_stack_that_the_application_brings(tmp_path: Path) -> None:
     before = """
     static char stack[16384] __attribute__((aligned(16)));
