@@ -89,6 +89,8 @@ _TABLES = (
     *("CFE_TBL_GetAddress", "CFE_TBL_GetAddresses", "CFE_TBL_ReleaseAddress", "CFE_TBL_ReleaseAddresses"),
     *("CFE_TBL_Load", "CFE_TBL_Update", "CFE_TBL_Manage", "CFE_TBL_Modified", "CFE_TBL_Share", "CFE_TBL_Validate"),
 )
+_COPYING = ("memcpy", "memmove", "memset", "memcmp", "__memcpy_chk", "__memmove_chk", "__memset_chk")
+"""Functions of libc whose accesses count when code that tells of its own is there."""
 _STARTED, _ENDED, _TABLE, _STARTUP = "started", "ended", "tables", "startup"
 
 LETS_GO: dict[str, Key] = {
@@ -243,6 +245,8 @@ class RaceWatch:
                 declared.add(name, "p", self._order_atomics)
             else:
                 declared.add(name, "", self._kernel.point)
+        for name in _COPYING:
+            declared.add(name, "", self._kernel.point)
 
     def _order_atomics(self, address: int) -> None:
         self._kernel.point()

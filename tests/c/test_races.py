@@ -65,6 +65,7 @@ def test_the_race_is_found_wherever_the_memory_is(tmp_path: Path) -> None:
         "static char *heap; if (who) heap = malloc(4); else heap[1]++;",
         "static struct { char one, two; short both; } all; if (who) all.two = 1; else memset(&all, 0, sizeof all);"
         ' struct { char one, two; short both; } copy = {all.one, all.two, 0}; SAY("%d", copy.two);',
+        "static char from[8], to[8]; if (who) memcpy(to, from, sizeof to); else to[3] = 1;",
     ):
         assert {each["kind"] for each in explore(tmp_path, code)} == {"data race"}
 

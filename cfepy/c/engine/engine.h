@@ -145,6 +145,8 @@ HIDDEN uint64_t images_receive(Images *, uint32_t pipe, PyObject *packet); /* it
 typedef struct Races Races;
 extern HIDDEN PyTypeObject races_type;
 HIDDEN void races_forget(uint64_t address, uint64_t size);
+HIDDEN void races_begin(Races *);              /* code that tells of its accesses was loaded */
+HIDDEN bool races_asks_first(Coroutine *, uint64_t address, uint64_t size); /* a native returns; it is called again */
 HIDDEN bool races_shared(Coroutine *, uint64_t address, uint64_t size);
 HIDDEN void races_note(Coroutine *, uint64_t address, uint64_t size, bool is_write, bool is_atomic);
 

@@ -13,10 +13,40 @@
 
 #define TEXT(number) ((char *)call->arguments[number])
 
-NATIVE(memory_copy) { return (uint64_t)memcpy(POINTER(0), POINTER(1), WORD(2)); }
-NATIVE(memory_move) { return (uint64_t)memmove(POINTER(0), POINTER(1), WORD(2)); }
-NATIVE(memory_set) { return (uint64_t)memset(POINTER(0), (int)WORD(1), WORD(2)); }
-NATIVE(memory_compare) { return (uint64_t)(int64_t)memcmp(POINTER(0), POINTER(1), WORD(2)); }
+/* Whether Python has to let others in before these accesses; they are noted otherwise, where somebody looks at them. */
+static bool waits_for_others(Coroutine *call, uint64_t written, uint64_t read, uint64_t other, uint64_t size)
+{
+    if (call->table->races == NULL || size == 0)
+        return false;
+    if (races_asks_first(call, written ? written : other, size) || (read && races_asks_first(call, read, size)))
+        return true;
+    if (written)
+        races_note(call, written, size, true, false);
+    if (read)
+        races_note(call, read, size, false, false);
+    if (other)
+        races_note(call, other, size, false, false);
+    return false;
+}
+
+NATIVE(memory_copy)
+{
+    return waits_for_others(call, WORD(0), WORD(1), 0, WORD(2)) ? 0 : (uint64_t)memcpy(POINTER(0), POINTER(1), WORD(2));
+}
+NATIVE(memory_move)
+{
+    return waits_for_others(call, WORD(0), WORD(1), 0, WORD(2)) ? 0 : (uint64_t)memmove(POINTER(0), POINTER(1), WORD(2));
+}
+NATIVE(memory_set)
+{
+    return waits_for_others(call, WORD(0), 0, 0, WORD(2)) ? 0 : (uint64_t)memset(POINTER(0), (int)WORD(1), WORD(2));
+}
+NATIVE(memory_compare)
+{
+    return waits_for_others(call, 0, WORD(0), WORD(1), WORD(2))
+               ? 0
+               : (uint64_t)(int64_t)memcmp(POINTER(0), POINTER(1), WORD(2));
+}
 NATIVE(memory_find) { return (uint64_t)memchr(POINTER(0), (int)WORD(1), WORD(2)); }
 
 NATIVE(text_length) { return strlen(TEXT(0)); }

@@ -16,11 +16,16 @@ static bool asks_first(Coroutine *call)
     return true;
 }
 
+HIDDEN bool races_asks_first(Coroutine *call, uint64_t address, uint64_t size)
+{
+    return races_shared(call, address, size) && asks_first(call);
+}
+
 static uint64_t access_memory(Coroutine *call, uint64_t size, bool is_write)
 {
     if (call->table->races == NULL)
         return 0;
-    if (!(races_shared(call, WORD(0), size) && asks_first(call)))
+    if (!races_asks_first(call, WORD(0), size))
         races_note(call, WORD(0), size, is_write, false);
     return 0;
 }
@@ -33,6 +38,11 @@ NATIVE(access_sized)
 NATIVE(read_range) { return access_memory(call, WORD(1), false); }
 NATIVE(write_range) { return access_memory(call, WORD(1), true); }
 NATIVE(nothing) { return 0; }
+NATIVE(begin)
+{
+    races_begin(call->table->races);
+    return 0;
+}
 
 #define ATOMIC(bits, name, is_write, code)                                  \
     NATIVE(name##_##bits)                                                   \
@@ -99,7 +109,7 @@ ATOMICS(64)
         {"__tsan_atomic" #bits "_compare_exchange_val", compare_value_##bits}
 
 HIDDEN const NativeRow natives_of_races[] = {
-    {"__tsan_init", nothing},
+    {"__tsan_init", begin},
     {"__tsan_func_entry", nothing},
     {"__tsan_func_exit", nothing},
     {"__tsan_atomic_thread_fence", nothing},

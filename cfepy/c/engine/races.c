@@ -23,6 +23,7 @@ struct Races {
     Clock *tasks, *things;                     /* by number; task 0 is nobody */
     int task_count, thing_count;
     PyObject *report;
+    bool has_begun;                            /* code that tells of its accesses is there */
 };
 
 typedef struct {
@@ -112,6 +113,8 @@ HIDDEN void races_forget(uint64_t address, uint64_t size)
 HIDDEN bool races_shared(Coroutine *call, uint64_t address, uint64_t size)
 {
     Races *races = call->table->races;
+    if (!races->has_begun)
+        return false;
     bool is_local = address >= (uint64_t)call->stack && address < (uint64_t)call->stack + call->size;
     if (!is_local && call->task < (uint32_t)races->task_count) {
         int group = races->tasks[call->task].group;
@@ -125,6 +128,12 @@ HIDDEN bool races_shared(Coroutine *call, uint64_t address, uint64_t size)
             return true;
     }
     return false;
+}
+
+HIDDEN void races_begin(Races *races)
+{
+    if (races != NULL)
+        races->has_begun = true;
 }
 
 /* ---- clocks ------------------------------------------------------------------------------------------------------- */
@@ -203,7 +212,7 @@ static void note_granule(Coroutine *call, uint64_t key, const Access *now)
 HIDDEN void races_note(Coroutine *call, uint64_t address, uint64_t size, bool is_write, bool is_atomic)
 {
     Races *races = call->table->races;
-    if (call->task == 0 || call->task >= (uint32_t)races->task_count || address < GRANULE)
+    if (!races->has_begun || call->task == 0 || call->task >= (uint32_t)races->task_count || address < GRANULE)
         return;
     Access now = {call->called_from - 1, call->task, known(&races->tasks[call->task], call->task), 0, is_write, is_atomic};
     uint64_t end = address + size;
