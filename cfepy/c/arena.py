@@ -7,11 +7,13 @@ each piece.
 
 from __future__ import annotations
 
+import mmap
 from bisect import insort
 
 from cfepy.c.engine import engine
 
-PAGE = 4096
+PAGE = mmap.PAGESIZE
+"""4096 bytes on x86-64; kernels for aarch64 may have 16 or 64 KiB."""
 REGION = 8 << 30
 _FIRST = PAGE
 """The first page of a region only holds its place."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import struct
 from typing import Protocol
 
-from cfepy.c.arena import Arena
+from cfepy.c.arena import PAGE, Arena
 from cfepy.c.elf import ElfError, Relocation, SharedObject, Symbol
 from cfepy.c.engine import engine
 from cfepy.c.places import CodePlace, Places
@@ -101,7 +101,7 @@ class Image:
         finally:
             memory.release()
         for segment in source.segments:
-            start = base + segment.address & ~4095
+            start = base + segment.address & -PAGE
             self._engine.protect(start, base + segment.address + segment.memory_size - start, segment.rights)
 
         if chosen:

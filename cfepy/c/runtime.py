@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from cfepy.app import Cfe
-from cfepy.c.arena import Arena
+from cfepy.c.arena import PAGE, Arena
 from cfepy.c.calls import CallTable, Declarations
 from cfepy.c.elf import SharedObject
 from cfepy.c.engine import engine
@@ -83,8 +83,8 @@ class CRuntime:
         self.constants = Constants(self.arena)
         self.at_close: list[Callable[[], object]] = []
         self._stacks = Stacks(self.arena, POISON if guard else b"")
-        self._heap = made.Heap(self.arena.map(HEAP), HEAP, guarded=guard)
-        messages = made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK, guarded=guard, grain=4)
+        self._heap = made.Heap(self.arena.map(HEAP), HEAP, guarded=guard, page=PAGE)
+        messages = made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK, guarded=guard, grain=4, page=PAGE)
         self.packets = PacketImages(messages, handle.sb, cfe.sb, guard)
         config = cfe.es.config
         self.table = made.Table(

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { GRAIN = 16, CLASSES = 64, PAGE = 4096, POISON = 0xA5 };
+enum { GRAIN = 16, CLASSES = 64, POISON = 0xA5 };
 
 typedef struct {
     uint64_t address;
@@ -23,7 +23,7 @@ struct Heap {
     PyObject_HEAD
     uint64_t base, top, end;
     bool is_guarded;                            /* each block ends where a page does that nobody may touch */
-    size_t slack, grain;
+    size_t slack, grain, page;
     Block *blocks;                              /* in the order of their addresses */
     int count, room;
     int *free_of[CLASSES];                      /* numbers of free blocks, by class */
@@ -67,12 +67,12 @@ static Block *new_block(Heap *heap, size_t size)
     int class = class_of(size + heap->slack, &room);
     uint64_t address = heap->top, next = address + room;
     if (heap->is_guarded) {
-        size_t pages = (size + PAGE - 1) / PAGE * PAGE + (size == 0) * PAGE;
+        size_t pages = (size + heap->page - 1) / heap->page * heap->page + (size == 0) * heap->page;
         address = heap->top + pages - (size + heap->grain - 1) / heap->grain * heap->grain;
-        next = heap->top + pages + PAGE;
+        next = heap->top + pages + heap->page;
         room = size;
         if (next <= heap->end)
-            mprotect((void *)(heap->top + pages), PAGE, PROT_NONE);
+            mprotect((void *)(heap->top + pages), heap->page, PROT_NONE);
     }
     if (class < 0 || next > heap->end || next < heap->top)
         return NULL;
@@ -148,7 +148,8 @@ static bool give(Heap *heap, Block *block)
     block->is_used = false;
     heap->used -= block->size;
     if (heap->is_guarded) /* never given out again: who still uses it is found out */
-        mprotect((void *)(block->address & ~(uint64_t)(PAGE - 1)), (block->size + PAGE - 1) / PAGE * PAGE, PROT_NONE);
+        mprotect((void *)(block->address & -(uint64_t)heap->page),
+                 (block->size + heap->page - 1) / heap->page * heap->page, PROT_NONE);
     else
         heap->free_of[class][heap->free_count[class]++] = (int)(block - heap->blocks);
     return true;
@@ -184,10 +185,10 @@ HIDDEN size_t heap_size_of(Heap *heap, uint64_t address)
 
 static PyObject *heap_new(PyTypeObject *type, PyObject *arguments, PyObject *options)
 {
-    static char *names[] = {"base", "size", "slack", "guarded", "grain", NULL};
-    unsigned long long base, size, slack = 0, grain = GRAIN;
+    static char *names[] = {"base", "size", "slack", "guarded", "grain", "page", NULL};
+    unsigned long long base, size, slack = 0, grain = GRAIN, page = 4096;
     int is_guarded = 0;
-    if (!PyArg_ParseTupleAndKeywords(arguments, options, "KK|KpK", names, &base, &size, &slack, &is_guarded, &grain))
+    if (!PyArg_ParseTupleAndKeywords(arguments, options, "KK|KpKK", names, &base, &size, &slack, &is_guarded, &grain, &page))
         return NULL;
     Heap *heap = (Heap *)type->tp_alloc(type, 0);
     if (heap != NULL) {
@@ -196,6 +197,7 @@ static PyObject *heap_new(PyTypeObject *type, PyObject *arguments, PyObject *opt
         heap->slack = is_guarded ? 0 : slack;
         heap->is_guarded = is_guarded;
         heap->grain = grain ? grain : GRAIN;
+        heap->page = page;
     }
     return (PyObject *)heap;
 }
@@ -264,5 +266,5 @@ HIDDEN PyTypeObject heap_type = {
     .tp_dealloc = (destructor)heap_dealloc,
     .tp_methods = heap_methods,
     .tp_getset = heap_attributes,
-    .tp_doc = "Heap(base, size, slack=0, guarded=False, grain=16): blocks in a stretch of mapped memory",
+    .tp_doc = "Heap(base, size, slack=0, guarded=False, grain=16, page=4096): blocks in a stretch of mapped memory",
 };
