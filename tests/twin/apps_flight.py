@@ -51,9 +51,13 @@ MASKED = {
     0x8AD: [range(28, 36), range(44, 180)],
     # checksums of the computer's own code, and how far CS is with all that it checks, of which that code is most
     0x8A4: [range(40, 56), range(76, 80)],
+    0x88B: [range(28, 32)],  # when a file was changed
+    0x88C: [range(92 + 68 + entry * 76, 92 + 72 + entry * 76) for entry in range(20)],  # the same of files in a folder
     0x88E: [range(16 + 64 + entry * 88, 16 + 88 + entry * 88) for entry in range(8)],  # room on the host's disks
 }
 """Bytes of telemetry that the host decides."""
+IN_ANY_ORDER = {0x88C: (92, 76), 0x88D: (20, 84)}
+"""Lists of files, first byte and size of an entry: a folder has the host's order, files that are open that of ids."""
 EVENT_MONITOR = b"on HS_EVENT_PIPE,app HS"
 """On a Linux without /proc/schedstat NASA's system monitor does not start, and then HS does not listen to events."""
 
@@ -68,6 +72,9 @@ def of_packet(packet: bytes) -> bytes | None:
     for at in itertools.chain(*MASKED.get(msg_id, ())):
         if at < len(left):
             left[at] = 0
+    if msg_id in IN_ANY_ORDER:
+        first, size = IN_ANY_ORDER[msg_id]
+        left[first:] = b"".join(sorted(left[at : at + size] for at in range(first, len(left), size)))
     return bytes(left[:2] + left[4:6] + left[16:])
 
 
@@ -125,7 +132,8 @@ def preparation() -> list[Step]:
         command(FM, DELETE_ALL_FILES, struct.pack("<64s", b"/ram")),
         *(command(FM, COPY_FILE, struct.pack("<H64s64s", 1, *names)) for names in FILES),
     ]
-    return [quiet, *files, *resets, resets[FLIGHT_APPS.index(HS)], woken]
+    growth = Step(DS.name, (bytes(msg.command(DS.housekeeping_mid, 0)),), PLAIN)  # of its files, counted from now on
+    return [quiet, *files, *resets, resets[FLIGHT_APPS.index(HS)], woken, growth]
 
 
 class SimulatedApps(Simulated):
