@@ -33,6 +33,8 @@ MODULES = ("ES", "EVS", "SB", "TBL", "TIME", "FS", "MSG", "SBR", "ResourceId", "
 TITLES = {"osal": "OSAL", "psp": "PSP"}
 NAME = re.compile(r"\b(?:CFE|OS)_\w+\*?")
 NO_REASON = "not yet"
+NOT_OF_PYTHON = ("ROS", "Compiled applications")
+"""Sections that say nothing of NASA's functions as Python calls them."""
 
 HEAD = """\
 # API map
@@ -110,7 +112,7 @@ def differences() -> list[Difference]:
     for line in DIFFERENCES.read_text().splitlines():
         if line.startswith("## "):
             section = line.removeprefix("## ")
-        elif line.startswith("|") and not section.startswith("ROS") and (names := NAME.findall(line)):
+        elif line.startswith("|") and not section.startswith(NOT_OF_PYTHON) and (names := NAME.findall(line)):
             found.append(Difference(section, tuple(names), line.strip("| ").rpartition("|")[2].strip()))
     return found
 
