@@ -1,0 +1,64 @@
+"""Ground commands of NASA's flight applications: what is sent, and, where they are built, that both answer alike."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import pytest
+
+from cfepy import msg
+from tests.twin import apps_flight, cfdp_pdus
+from tests.twin.apps_commands import AppsCommander
+from tests.twin.apps_flight import Observed, differences, of_packet
+from tests.twin.flight_apps import FLIGHT_APPS
+from tests.twin.real import VARIABLE, installed
+
+BUILT = installed()
+needs_apps = pytest.mark.skipif(
+    BUILT is None or not (BUILT / "cf/lc.so").exists(), reason=f"{VARIABLE} names no folder with LC's code"
+)
+ENOUGH = 1500  # steps in which every command was
+
+
+def test_every_command_is_flown() -> None:
+    wanted = {(app.commands_mid, command.code) for app in FLIGHT_APPS for command in app.commands}
+    packets = [packet for step in islice(AppsCommander(1).steps(), ENOUGH) for packet in step.packets]
+    flown = {(msg.get_msg_id(each), each[6]) for each in packets if len(each) >= 8}
+    assert len(wanted) == 154
+    assert wanted <= flown
+
+
+def test_a_seed_says_all() -> None:
+    first, second = (list(islice(AppsCommander(5, ["CF", "FM"]).steps(), 100)) for _ in range(2))
+    assert first == second
+    assert {step.service for step in first} == {"CF", "FM"}
+
+
+def test_a_difference_is_seen() -> None:
+    packet = bytes(msg.telemetry(0x8A7, bytes(range(40))))
+    other = packet[:20] + b"\xff" + packet[21:]
+    assert differences(Observed((packet,), {}), Observed((packet,), {})) == []
+    assert len(differences(Observed((packet,), {}), Observed((other,), {}))) == 1
+    assert len(differences(Observed((packet,), {}), Observed((), {}))) == 1
+    assert differences(Observed((), {"/ram/a": b"12"}), Observed((), {"/ram/a": b"1"})) == [
+        "file /ram/a: 2 bytes of ours, 1 of NASA's"
+    ]
+
+
+def test_lists_of_files_are_compared_in_any_order() -> None:
+    names = [name.ljust(84, b"\0") for name in (b"/ram/a", b"/ram/b")]
+    one, other = (bytes(msg.telemetry(0x88D, bytes(4) + b"".join(order))) for order in (names, names[::-1]))
+    assert of_packet(one) == of_packet(other)
+
+
+def test_the_checksum_of_cfdp() -> None:
+    assert cfdp_pdus.checksum(b"") == 0
+    assert cfdp_pdus.checksum(b"\x01\x02\x03\x04\x05") == 0x06020304
+
+
+@needs_apps
+@pytest.mark.slow
+def test_commands_flown_beside_nasas() -> None:
+    assert BUILT is not None
+    found = [(step, lines) for step, lines in apps_flight.fly(BUILT, 2, 60, []) if lines]
+    assert found == []
