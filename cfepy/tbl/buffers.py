@@ -7,7 +7,7 @@ buffer with the first load, so that the buffer is no more protected by a lock, a
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from cfepy.fs import calculate_crc
 from cfepy.ids import SERIAL_MAX, TBL_LOADBUFFID_BASE, UNDEFINED, get_serial, make
@@ -35,6 +35,7 @@ class Buffer:
         source: where the image came from, for LastFileLoaded.
         file_time: (seconds, subseconds) of the file it came from.
         crc: CRC-16 of the content at load time.
+        read: gives the content of memory of compiled code, which may be gone; None for other memory.
         is_valid: the image passed its validation.
         activate_requested: the owner may switch to it.
     """
@@ -50,6 +51,7 @@ class Buffer:
         "is_external",
         "is_valid",
         "load_id",
+        "read",
         "source",
     )
 
@@ -59,6 +61,7 @@ class Buffer:
         self.is_external = block is None
         self.address = address
         self.load_id = UNDEFINED
+        self.read: Callable[[], bytes] | None = None
         self.content_size = 0
         self.source = ""
         self.file_time = (0, 0)
@@ -68,7 +71,7 @@ class Buffer:
 
     def view(self) -> memoryview:
         """The content, writable in place."""
-        return self.data[: self.content_size]
+        return self.data[: self.content_size] if self.read is None else memoryview(self.read())
 
     def copy(self, image: Bytes) -> None:
         """Replace the content, unless it does not fit (CFE_TBL_LoadBuffCopyData)."""
@@ -78,9 +81,15 @@ class Buffer:
         self.content_size = len(image)
         self.crc = 0
 
-    def refer_to(self, memory: memoryview, address: int) -> None:
+    def refer_to(self, memory: memoryview, address: int, read: Callable[[], bytes] | None = None) -> None:
         """Become the memory of an app (CFE_TBL_LoadBuffSetExternalBlock)."""
         self.data, self.address, self.content_size, self.crc = memory, address, len(memory), 0
+        self.read = read
+
+    def leave(self) -> None:
+        """Keep a copy of the memory, which is about to go."""
+        self.data = memoryview(bytearray(self.data if self.read is None else self.read()))
+        self.read = None
 
     def clear(self) -> None:
         """Overwrite the memory with zeros; there is no content then (CFE_TBL_LoadBuffClearData)."""

@@ -5,6 +5,8 @@ Stands for the second half of cfe_tbl_load.c.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from cfepy.ports import Ports
 from cfepy.status import (
     CFE_STATUS_VALIDATION_FAILURE,
@@ -91,13 +93,20 @@ class Loads:
         buffer.recompute_crc()
         buffer.is_valid, buffer.activate_requested = table.validator is None, False
 
-    def fill_from_memory(self, table: TableRecord, source: Bytes, address: int | None = None) -> None:
+    def fill_from_memory(
+        self,
+        table: TableRecord,
+        source: Bytes,
+        address: int | None = None,
+        read: Callable[[], bytes] | None = None,
+    ) -> None:
         """Copy an image into the working buffer, or, with a user-defined address, make it the working buffer.
 
         Args:
             table: to be loaded.
             source: the image.
             address: where C has it; None for bytes of Python, which get a number for telemetry.
+            read: gives it later on, when C's memory may be gone.
 
         Raises:
             Refused: the source has no bytes, or is shorter than the table (C would read past its end).
@@ -111,7 +120,7 @@ class Loads:
         image = memoryview(source)[: table.size]
         buffer = self._loading(table)
         if table.user_defined:
-            buffer.refer_to(image, self._memory.address_for(table.size) if address is None else address)
+            buffer.refer_to(image, self._memory.address_for(table.size) if address is None else address, read)
         else:
             buffer.copy(image)
         buffer.source = f"Addr 0x{buffer.address if address is None else address:08X}"

@@ -179,7 +179,13 @@ class TableServices(TableAccess):
     # --- loading ---
 
     def load(
-        self, handle: int, source: str | Bytes, *, address: int | None = None, source_type: int | None = None
+        self,
+        handle: int,
+        source: str | Bytes,
+        *,
+        address: int | None = None,
+        read: Callable[[], bytes] | None = None,
+        source_type: int | None = None,
     ) -> int:
         """Load a table of the calling app and switch to the new image (CFE_TBL_Load).
 
@@ -188,6 +194,7 @@ class TableServices(TableAccess):
             source: path of a table file, or the image's bytes (for OPT_USR_DEF_ADDR the app's own bytearray, which
                 then is the table).
             address: where C has the image's bytes.
+            read: gives them later on, when they may be gone.
             source_type: what C code says that the source is, when that is neither a file nor an address.
 
         Returns:
@@ -212,7 +219,7 @@ class TableServices(TableAccess):
             self._reports.load_refused(refused, caller, table)
             raise
         try:
-            status = self._fill(table, file, source, address)
+            status = self._fill(table, file, source, address, read)
             faults = self._loads.validate(table)
         except Refused as refused:
             self.registry.discard_load(table)
@@ -241,13 +248,20 @@ class TableServices(TableAccess):
             refused = Refused(error.status, ev.NO_SUCH_TABLE_ERR_EID, "Unable to locate in Table Registry")
             self._reports.load_refused(refused, caller, None)
 
-    def _fill(self, table: TableRecord, file: LoadFile | None, source: str | Bytes, address: int | None) -> int:
+    def _fill(
+        self,
+        table: TableRecord,
+        file: LoadFile | None,
+        source: str | Bytes,
+        address: int | None,
+        read: Callable[[], bytes] | None,
+    ) -> int:
         if file is not None:
             self._loads.open(file)
             self._loads.fill_from_file(table, file)
             return file.completeness(table)
         if not isinstance(source, str):
-            self._loads.fill_from_memory(table, source, address)
+            self._loads.fill_from_memory(table, source, address, read)
         return CFE_SUCCESS
 
     def _finish_load(self, table: TableRecord, handle: int, caller: str, status: int) -> int:
@@ -390,7 +404,7 @@ class TableServices(TableAccess):
         """
         for buffer in (*self._memory, *(each for table in self.registry.tables for each in table.buffers)):
             if len(buffer.data) and is_leaving(buffer.data):
-                buffer.data = memoryview(bytearray(buffer.data))
+                buffer.leave()
 
     def cleanup_app(self, app_id: int) -> None:
         """Give back all tables, handles and dumps of an app that ended (CFE_TBL_CleanUpApp)."""

@@ -158,3 +158,29 @@ def test_a_critical_table_comes_back_after_a_processor_reset(tmp_path: Path) -> 
     console = console_of(fly(write_mission(tmp_path, "TEST"), 4))
     recovered = ["register: 4C000027", "address: 4C00000E", "values 1 2"]
     assert said(console) == ["register: 00000000", "address: CC000005", *recovered]
+
+
+def test_a_table_in_memory_that_was_freed_is_zeros_for_the_ground(tmp_path: Path) -> None:
+    source = """
+        int32_t CFE_TBL_Modified(int16_t);
+        void TEST_Main(void)
+        {
+            int16_t table;
+            uint32_t run = RUN;
+            Table *mine = malloc(sizeof *mine);
+            mine->first = 5;
+            CFE_TBL_Register(&table, "Mine", sizeof *mine, MINE, NULL);
+            CFE_TBL_Load(table, ADDRESS, mine);
+            free(mine);
+            SAY("modified: %08X", (unsigned)CFE_TBL_Modified(table));
+            while (CFE_ES_RunLoop(&run))
+                OS_TaskDelay(100);
+        }
+    """
+    compile_c(tmp_path, "TEST", DECLARED + source, "-Wno-use-after-free")
+    folder = write_mission(tmp_path, "TEST")
+    (tmp_path / "mission.yaml").write_text("compiled: {guard: true}\n")
+    with Mission(folder, console=Console(quiet=True)) as mission:
+        mission.run_for(2)
+        assert said(console_of(mission)) == ["modified: 00000000"]
+    assert table_of(mission.cfe.tbl, "TEST.Mine") == bytes(8)

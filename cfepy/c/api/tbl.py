@@ -11,6 +11,7 @@ import struct
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from cfepy.c.faults import CFault
 from cfepy.ids import TBL_HANDLE_BASE, UNDEFINED, make
 from cfepy.status import (
     CFE_SUCCESS,
@@ -116,7 +117,15 @@ def _declare_content(api: Declarations, c: CRuntime, handles: Handles) -> None:
         access = accesses.find(handle_id)
         size = 0 if access is None else access.table.size
         memory.peek(source, size)  # bytes that are not there are a fault of whoever brings them
-        return tbl.load(handle_id, memory.view(source, size), address=source)
+
+        def read() -> bytes:
+            try:
+                image: bytes = memory.peek(source, size)
+                return image
+            except CFault:  # of a table at an address of the application's, which has gone with its memory
+                return bytes(size)
+
+        return tbl.load(handle_id, memory.view(source, size), address=source, read=read)
 
     def on_handle(name: str, call: Callable[[int], object]) -> None:
         api.add(name, handles.letter, lambda handle: call(handles.to_id(handle)))
