@@ -82,7 +82,7 @@ def test_others_run_between_accesses(tmp_path: Path) -> None:
             CFE_EVS_SendEvent(1, counter == 2 ? 2 : 3, "counter %d of 2", counter);
         }
     """
-    found = explore(tmp_path, code, "--first-seed", "24")
+    found = explore(tmp_path, code, "--policy", "random", "--seeds", "40")
     assert {each["kind"] for each in found} == {"data race", "event"}
     [event] = [each for each in found if each["kind"] == "event"]
     assert "counter 1 of 2" in event["text"]
