@@ -380,7 +380,18 @@ def problems_in(mission: Mission) -> list[RunProblem]:
         if result.problem is not None:
             first_s = result.first_at_s
             found.append(RunProblem(result.problem, None if first_s is None else round(first_s * NS_PER_S)))
+    found += _races(mission)
     return found
+
+
+def _races(mission: Mission) -> list[RunProblem]:
+    """Data races of compiled code, which are looked for under a given schedule."""
+    from cfepy.c import DataRaces
+
+    return [
+        RunProblem(f"data race at {each.at_ns / NS_PER_S:g} s: {each}", each.at_ns)
+        for each in mission.record.part(DataRaces)
+    ]
 
 
 def _own_errors(mission: Mission) -> dict[str, int]:

@@ -60,6 +60,16 @@ def test_accesses_that_nothing_orders_are_told_with_both_places(tmp_path: Path) 
     )
 
 
+def test_a_run_under_a_given_schedule_tells_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    compile_c(tmp_path, "TEST", START.replace("@", "counter++;"), "-fsanitize=thread", "-O0", "-w")
+    folder = write_mission(tmp_path, "TEST")
+    assert main(["run", folder, "--for", "2", "--quiet", "--schedule", "random:1"]) == 1
+    told = capsys.readouterr().err
+    assert "cfepy: data race at " in told
+    assert "counter: read in add (TEST.c:26) of " in told
+    assert main(["run", folder, "--for", "2", "--quiet"]) == 0
+
+
 def test_the_race_is_found_wherever_the_memory_is(tmp_path: Path) -> None:
     for code in (
         "static char *heap; if (who) heap = malloc(4); else heap[1]++;",
