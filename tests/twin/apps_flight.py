@@ -56,7 +56,8 @@ MASKED = {
     0x88E: [range(16 + 64 + entry * 88, 16 + 88 + entry * 88) for entry in range(8)],  # room on the host's disks
 }
 """Bytes of telemetry that the host decides."""
-IN_ANY_ORDER = {0x88C: (92, 76), 0x88D: (20, 84)}
+FM_LISTING = 0x88C
+IN_ANY_ORDER = {FM_LISTING: (92, 76), 0x88D: (20, 84)}
 """Lists of files, first byte and size of an entry: a folder has the host's order, files that are open that of ids."""
 EVENT_MONITOR = b"on HS_EVENT_PIPE,app HS"
 """On a Linux without /proc/schedstat NASA's system monitor does not start, and then HS does not listen to events."""
@@ -72,6 +73,8 @@ def of_packet(packet: bytes) -> bytes | None:
     for at in itertools.chain(*MASKED.get(msg_id, ())):
         if at < len(left):
             left[at] = 0
+    if msg_id == FM_LISTING and any(packet[88:92]):  # from a later file on: in another order, other files
+        left[92:] = b""
     if msg_id in IN_ANY_ORDER:
         first, size = IN_ANY_ORDER[msg_id]
         left[first:] = b"".join(sorted(left[at : at + size] for at in range(first, len(left), size)))
