@@ -135,8 +135,8 @@ def preparation() -> list[Step]:
         command(FM, DELETE_ALL_FILES, struct.pack("<64s", b"/ram")),
         *(command(FM, COPY_FILE, struct.pack("<H64s64s", 1, *names)) for names in FILES),
     ]
-    growth = Step(DS.name, (bytes(msg.command(DS.housekeeping_mid, 0)),), PLAIN)  # of its files, counted from now on
-    return [quiet, *files, *resets, resets[FLIGHT_APPS.index(HS)], woken, growth]
+    growth = Step(DS.name, (bytes(msg.command(DS.housekeeping_mid, 0)),), PLAIN)  # of files, between two
+    return [quiet, *files, *resets, resets[FLIGHT_APPS.index(HS)], woken, growth, growth]
 
 
 class SimulatedApps(Simulated):
