@@ -250,6 +250,7 @@ def _listeners() -> list[ReadFiles]:
             elif event == LISTED:
                 each.looked_into(*values)
 
+    _left_out()  # now: it asks sysconfig, which may be in the middle of its own files when the hook is called
     sys.addaudithook(hook)
     return found
 
