@@ -27,6 +27,7 @@ _KINDS = {
         1028: _MODULE, 1029: _OFFSET, 1030: _FIXED_OFFSET, 1031: _DESCRIPTOR,
     },
 }  # fmt: skip
+_X86_DESCRIPTOR = 36
 _THREAD_LOCAL = "STT_TLS"
 _CHOSEN_FUNCTION = "STT_GNU_IFUNC"
 _WORD = struct.Struct("<Q")
@@ -150,6 +151,8 @@ class Image:
                 f"{name} has thread-local variables at fixed places of a thread (the initial-exec model), which a "
                 "library that is loaded later cannot have: compile it with -fPIC -ftls-model=global-dynamic"
             )
+        if self.source.machine == "x86_64" and word.kind == _X86_DESCRIPTOR:
+            raise ElfError(f"{name} finds its thread-local variables by descriptors: compile it with -mtls-dialect=gnu")
         if kind is None:
             raise ElfError(f"{name}: relocation {word.kind} of {self.source.machine} is not supported")
 

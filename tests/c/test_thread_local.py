@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 from pathlib import Path
 
 import pytest
@@ -80,6 +81,12 @@ def test_fixed_places_are_refused_with_what_helps(tmp_path: Path) -> None:
     console = fly_c(tmp_path, EACH_ITS_OWN, flags=("-ftls-model=initial-exec",))
     assert "TEST.so has thread-local variables at fixed places" in console
     assert "compile it with -fPIC -ftls-model=global-dynamic" in console
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="elsewhere descriptors are what compilers make, and work")
+def test_descriptors_are_refused_with_what_helps(tmp_path: Path) -> None:
+    console = fly_c(tmp_path, EACH_ITS_OWN, flags=("-mtls-dialect=gnu2",))
+    assert "TEST.so finds its thread-local variables by descriptors: compile it with -mtls-dialect=gnu" in console
 
 
 @needs_cpp
