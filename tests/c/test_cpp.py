@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.c.linking import host_library
 from cfepy.pilot.check import check_mission
 from tests.c.building import compile_cpp, console_of, digest_of, fly, needs_compiler, needs_cpp, said, write_mission
 
@@ -233,3 +234,14 @@ def test_a_mutex_of_the_standard_library_keeps_others_out(tmp_path: Path) -> Non
         """,
     )
     assert said(console) == ["once", "main in", "main out", "child in", "child out"]
+
+
+def test_a_computer_without_libstdcpp_says_how_to_link(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    compile_cpp(tmp_path, "TEST", LIBRARY)
+    folder = write_mission(tmp_path, "TEST")
+    host_library.cache_clear()
+    monkeypatch.setattr("cfepy.c.linking.find_library", lambda name: None)
+    what = "is not on this computer; an object that is linked with -static-libstdc++ -static-libgcc does not need it"
+    [problem] = check_mission(tmp_path / "startup.scr")
+    assert what in problem.text
+    assert f"OS_ModuleLoad: libgcc_s.so.1 {what}" in console_of(fly(folder, 1))
