@@ -8,7 +8,7 @@ gone when it is unmapped.
 from __future__ import annotations
 
 import struct
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from cfepy.c.arena import PAGE, Arena
 from cfepy.c.elf import ElfError, Relocation, SharedObject, Symbol
@@ -205,6 +205,13 @@ class Image:
     def unload(self) -> None:
         """Take it out of memory."""
         self._arena.unmap(self.base)
+
+
+class LoadedModule(NamedTuple):
+    """What OS_ModuleLoad loaded: its id, and whether code that is loaded later sees its symbols."""
+
+    id: int
+    is_global: bool
 
 
 class LoadedCode:

@@ -11,7 +11,7 @@ from cfepy.c.calls import CallTable, Declarations
 from cfepy.c.elf import SharedObject
 from cfepy.c.engine import engine
 from cfepy.c.faults import CFault, explained
-from cfepy.c.image import Image
+from cfepy.c.image import Image, LoadedModule
 from cfepy.c.linking import LIBRARIES, Exports, LinkedWith, host_library, wanted_names
 from cfepy.c.lives import Ends, ThreadLocals
 from cfepy.c.memory import CMemory, Constants
@@ -21,7 +21,7 @@ from cfepy.c.races import Race, RaceWatch
 from cfepy.c.stacks import LEAST, Stacks
 from cfepy.console import Console
 from cfepy.rtos import ExploringKernel, Kernel
-from cfepy.status import CfeError
+from cfepy.status import CfeError, OsalError
 
 POISON = b"\xa5"
 """What is in memory that was never written, where that is to be found out."""
@@ -49,7 +49,7 @@ class CRuntime:
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
         applications, libraries: what is loaded, by the name of the application or the path of the library.
-        modules: what OS_ModuleLoad loaded, and whether code that is loaded later sees its symbols.
+        modules: what OS_ModuleLoad loaded.
         at_close: called at the end of the processor, while its memory is still there.
         on_unload: functions that get each image before it is unloaded.
     """
@@ -102,7 +102,7 @@ class CRuntime:
         self.streams = Streams(console.write)
         self.ends = Ends(self.run, self.image_at)
         self.libraries: dict[str, Image] = {}
-        self.modules: dict[Image, bool] = {}
+        self.modules: dict[Image, LoadedModule] = {}
         self.applications: dict[str, Image] = {}
         self.on_unload: list[Callable[[Image], None]] = [self.ends.forget, self.thread_locals.forget]
         self._images: list[Image] = []
@@ -166,6 +166,9 @@ class CRuntime:
         if image is not None:
             self.cfe.tbl.leave_memory(lambda data: self.memory.address_of(data) in image)
             self.unload_image(image)
+        for each, module in list(self.modules.items()):
+            if not self._is_known(module.id):  # it was given back with what else the application had
+                self.unload_module(each)
         apps = self.cfe.es.apps
         for owner in [each for each in self._owners if apps.find(each) is None]:
             self._heap.give_all(owner)
@@ -207,12 +210,19 @@ class CRuntime:
 
     def shared(self) -> list[Image]:
         """The images whose symbols all code sees."""
-        return [*self.libraries.values(), *(image for image, is_global in self.modules.items() if is_global)]
+        return [*self.libraries.values(), *(image for image, module in self.modules.items() if module.is_global)]
 
     def unload_module(self, image: Image) -> None:
         """Take what OS_ModuleLoad loaded out of memory."""
         self.modules.pop(image, None)
         self.unload_image(image)
+
+    def _is_known(self, module_id: int) -> bool:
+        try:
+            self.cfe.os.module_code(module_id)
+        except OsalError:
+            return False
+        return True
 
     def symbol(self, name: str) -> int | None:
         """Where a function or variable is: of the API, a library, a module or an application, in this order."""

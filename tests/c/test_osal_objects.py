@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.c.building import compile_c, fly_c, needs_compiler, said
+from tests.c.building import compile_c, console_of, fly, fly_c, needs_compiler, said, write_mission
 from tests.c.test_osal import HEADER, results
 
 pytestmark = needs_compiler
@@ -71,6 +71,37 @@ def test_code_that_is_loaded_later_sees_the_symbols_of_global_modules(tmp_path: 
     assert said(console)[:5] == ["0", "0", "2", "0", "0"]
     assert "/cf/SECOND.so needs what nobody has: first" in console
     assert "first() was called, which neither cfepy nor a library of the mission has" in console
+
+
+def test_the_modules_of_an_application_are_gone_with_it(tmp_path: Path) -> None:
+    compile_c(tmp_path, "MODULE", "int answer(void) { return 42; }")
+    compile_c(
+        tmp_path,
+        "LOADER",
+        f"""{HEADER}
+        void LOADER_Main(void)
+        {{
+            Id id;
+            OS_ModuleLoad(&id, "M", "/cf/MODULE.so", 0);
+            OS_TaskDelay(100);
+        }}
+        """,
+    )
+    compile_c(
+        tmp_path,
+        "TEST",
+        f"""{HEADER}
+        void TEST_Main(void)
+        {{
+            uint64_t at;
+            OS_TaskDelay(50);
+            DID(OS_SymbolLookup(&at, "answer"));
+            OS_TaskDelay(2000);
+            DID(OS_SymbolLookup(&at, "answer"));
+        }}
+        """,
+    )
+    assert said(console_of(fly(write_mission(tmp_path, "LOADER", "TEST"), 4))) == ["0", "-1"]
 
 
 def test_ids_and_names(tmp_path: Path) -> None:

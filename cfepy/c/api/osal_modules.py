@@ -10,7 +10,7 @@ from struct import Struct
 from typing import TYPE_CHECKING
 
 from cfepy.c.api.osal_values import BAD, new_id
-from cfepy.c.image import LoadedCode
+from cfepy.c.image import LoadedCode, LoadedModule
 from cfepy.c.memory import chars
 from cfepy.osal import OS_MAX_API_NAME, OS_MAX_PATH_LEN, OS_MODULE_FLAG_LOCAL_SYMBOLS
 from cfepy.status import (
@@ -48,7 +48,7 @@ def _declare_modules(api: Declarations, c: CRuntime) -> None:
         module_id = os.module_load(name, file, flags)
         code = os.module_code(module_id)
         if isinstance(code, LoadedCode):
-            c.modules[code.image_] = not flags & OS_MODULE_FLAG_LOCAL_SYMBOLS
+            c.modules[code.image_] = LoadedModule(module_id, not flags & OS_MODULE_FLAG_LOCAL_SYMBOLS)
         return module_id
 
     def unload(module_id: int) -> None:
