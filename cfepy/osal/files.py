@@ -263,12 +263,13 @@ class FileApi(Core):
 class OsDirectory(OsObject):
     """The record of an open folder."""
 
-    __slots__ = ("entries", "path", "position")
+    __slots__ = ("entries", "path", "position", "with_dots")
 
-    def __init__(self, name: str, path: str, entries: list[str]) -> None:
+    def __init__(self, name: str, path: str, with_dots: bool) -> None:
         super().__init__(name)
         self.path = path
-        self.entries = entries
+        self.with_dots = with_dots
+        self.entries: list[str] | None = None
         self.position = 0
 
     @property
@@ -299,7 +300,7 @@ class DirectoryApi(Core):
         self.files.remove_folder(path)
 
     def directory_open(self, path: str, *, with_dots: bool = False) -> int:
-        """Open a folder to read its names, sorted (OS_DirectoryOpen).
+        """Open a folder to read its names, sorted: those that it has at the first read (OS_DirectoryOpen).
 
         Args:
             path: virtual path.
@@ -309,8 +310,8 @@ class DirectoryApi(Core):
             OsalError: OS_ERROR when there is none; OS_FS_ERR_* for the path; OS_ERR_NO_FREE_IDS.
         """
         self._directories_opened += 1  # open folders have no names in OSAL, records here do
-        names = [*(_DOTS if with_dots else ()), *self.files.list_dir(path)]
-        record = OsDirectory(f"#{self._directories_opened}", path, names)
+        self.files.list_dir(path)
+        record = OsDirectory(f"#{self._directories_opened}", path, with_dots)
         return self._register(self._directories, record, "directory", 0)
 
     def directory_close(self, dir_id: int) -> None:
@@ -324,14 +325,23 @@ class DirectoryApi(Core):
             OsalError: OS_ERR_INVALID_ID.
         """
         directory = self._directory(dir_id)
+        if directory.entries is None:
+            directory.entries = self._names_in(directory)
         if directory.position >= len(directory.entries):
             return None
         directory.position += 1
         return directory.entries[directory.position - 1]
 
+    def _names_in(self, directory: OsDirectory) -> list[str]:
+        try:
+            return [*(_DOTS if directory.with_dots else ()), *self.files.list_dir(directory.path)]
+        except OsalError:  # it was removed while it was open
+            return []
+
     def directory_rewind(self, dir_id: int) -> None:
         """Begin again with the first name (OS_DirectoryRewind), or OS_ERR_INVALID_ID."""
-        self._directory(dir_id).position = 0
+        directory = self._directory(dir_id)
+        directory.position, directory.entries = 0, None
 
     def _directory(self, dir_id: int) -> OsDirectory:
         directory = self._directories.lookup(dir_id)

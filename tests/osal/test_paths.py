@@ -159,6 +159,27 @@ def test_directories(bench: Bench) -> None:
     assert status_of(os.rmdir, "/ram/d") == OS_ERROR
 
 
+def test_a_directory_has_what_is_in_it_at_the_first_read(bench: Bench) -> None:
+    """And again after a rewind, as the C library under NASA's OSAL has it; FM's listing names itself."""
+    os = bench.os
+    os.mkdir("/ram/d")
+    dir_id = os.directory_open("/ram/d")
+    os.files.write_file("/ram/d/a", b"")
+    assert os.directory_read(dir_id) == "a"
+    os.files.write_file("/ram/d/b", b"")
+    assert os.directory_read(dir_id) is None
+    os.directory_rewind(dir_id)
+    assert [os.directory_read(dir_id) for _ in range(3)] == ["a", "b", None]
+
+
+def test_a_directory_that_goes_while_it_is_open_has_nothing(bench: Bench) -> None:
+    os = bench.os
+    os.mkdir("/ram/d")
+    dir_id = os.directory_open("/ram/d")
+    os.rmdir("/ram/d")
+    assert os.directory_read(dir_id) is None
+
+
 def test_there_are_4_open_directories(bench: Bench) -> None:
     for _ in range(OS_MAX_NUM_OPEN_DIRS):
         bench.os.directory_open("/ram")
