@@ -72,8 +72,11 @@ static void resource_ids(void)
     SAY("wraps %lX",
         CFE_ResourceId_ToInteger(CFE_ResourceId_FindNext(CFE_ResourceId_FromInteger(0x11FFFE), 16, is_used)));
     used = 1 << 7;
-    SAY("ex %lX, left %d", CFE_ResourceId_ToInteger(CFE_ResourceId_FindNextEx(start, two_on, &left, is_used)), left);
-    SAY("ex none %lX, left %d", CFE_ResourceId_ToInteger(CFE_ResourceId_FindNextEx(start, two_on, &left, always)), left);
+    int before = left;
+    SAY("ex %lX, left %d", CFE_ResourceId_ToInteger(CFE_ResourceId_FindNextEx(start, two_on, &left, is_used)), before);
+    before = left;
+    SAY("ex none %lX, left %d", CFE_ResourceId_ToInteger(CFE_ResourceId_FindNextEx(start, two_on, &left, always)),
+        before);
     SAY("ex none %lX", CFE_ResourceId_ToInteger(CFE_ResourceId_FindNextEx(start, NULL, &left, always)));
     SAY("ex none %lX", CFE_ResourceId_ToInteger(CFE_ResourceId_FindNextEx(start, two_on, &left, NULL)));
     TELL(CFE_ResourceId_ToIndex(start, 0x110000, 16, NULL));
