@@ -35,8 +35,9 @@ MSG_IDS = (0x800, 0x801, 0x803, 0x808, 0x8A7, 0x890, 0x18A4, 0, 0x1FFF, 0x2000, 
 TELEMETRY_HEARD = tuple(each for app in FLIGHT_APPS for each in app.telemetry)
 UNSAFE = {(MM.name, code) for code in (2, 3, 4, 6, 7, 8)} | {(MD.name, 4), (CS.name, 2), (CS.name, 20), (CS.name, 27)}
 """Commands that take an address: what is asked for is bad enough that nothing is read or written."""
-ONLY_BAD_LENGTH = {(CS.name, 2), (CS.name, 9)}
-"""CS's checksums of any address, and of cFE's own code, which is there or not."""
+ONLY_BAD_LENGTH = {(CS.name, 2), (CS.name, 9), (HS.name, 5)}
+"""CS's checksums of any address, and of cFE's own code, which is there or not; the end of HS's event monitor, which on
+some hosts never began."""
 SLOW = {FM.name, CS.name, CF.name, DS.name}
 """Applications that work in the background, or for some wake-ups."""
 WAKEUPS = {CF.name: 3}
