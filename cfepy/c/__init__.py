@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from cfepy.c.elf import ElfError, read_shared_object
     from cfepy.c.linking import wanted_names
     from cfepy.c.loading import CompiledLoader
-    from cfepy.c.races import DataRaces
     from cfepy.c.runtime import CRuntime
     from cfepy.c.toolchain import Built, CompilerError, Options, build, headers_folder
 
@@ -28,7 +27,6 @@ __all__ = [
     "CRuntime",
     "CompiledLoader",
     "CompilerError",
-    "DataRaces",
     "ElfError",
     "Options",
     "build",
@@ -46,7 +44,6 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".elf": ("ElfError", "read_shared_object"),
             ".linking": ("wanted_names",),
             ".loading": ("CompiledLoader",),
-            ".races": ("DataRaces",),
             ".runtime": ("CRuntime",),
             ".toolchain": ("Built", "CompilerError", "Options", "build", "headers_folder"),
         },

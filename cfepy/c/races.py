@@ -47,9 +47,9 @@ class Race(NamedTuple):
         first, second = sorted((str(self.before), str(self.now)))
         return f"{self.what}: {first}, {second}: nothing orders them"
 
-
-class DataRaces(list[Race]):
-    """The races of a run."""
+    def told(self) -> tuple[int, str, str, str, str]:
+        """Itself as plain values: virtual ns, text, which came first, application, task."""
+        return self.at_ns, str(self), f"{self.before} came first, then {self.now}", self.who, self.now.task
 
 
 def _first(arguments: tuple[Any, ...]) -> Hashable:

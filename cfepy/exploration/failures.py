@@ -161,11 +161,8 @@ def _violations(mission: Mission) -> Iterator[Failure]:
 
 def _races(mission: Mission) -> Iterator[Failure]:
     """Accesses of compiled code that nothing orders."""
-    from cfepy.c import DataRaces
-
-    for race in mission.record.part(DataRaces):
-        detail = f"{race.before} came first, then {race.now}"
-        yield Failure(verdict.RACE, race.who, str(race), race.at_ns, detail, race.now.task)
+    for race in mission.record.data_races:
+        yield Failure(verdict.RACE, race.app, race.text, race.at_ns, race.detail, race.task)
 
 
 def _missed(outcome: Outcome | None) -> Iterator[Failure]:

@@ -23,7 +23,7 @@ from cfepy.mission.compiled_code import CompiledFiles
 from cfepy.mission.launch import scripts_of
 from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
 from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
-from cfepy.mission.record import RunRecord
+from cfepy.mission.record import DataRace, RunRecord
 from cfepy.mission.spec import MissionSpec
 from cfepy.mission.table_files import TableFiles
 from cfepy.nodes import AppModules, make_app_universe
@@ -295,7 +295,7 @@ class Processor:
 
     def _make_compiled_loader(self) -> CompiledLoader:
         """What loads compiled code; a mission without any does not import it."""
-        from cfepy.c import CompiledLoader, CRuntime, DataRaces
+        from cfepy.c import CompiledLoader, CRuntime
 
         machine = self.machine
         watch = machine.stall_watch
@@ -308,7 +308,7 @@ class Processor:
             lambda: watch.limit_s,
             omit_deprecated=machine.spec.compiled.omit_deprecated,
             guard=machine.spec.compiled.guard,
-            on_race=machine.record.part(DataRaces).append,
+            on_race=lambda race: machine.record.data_races.append(DataRace(*race.told())),
         )
         self.cfe.es.core_memory = runtime.core_memory
         return CompiledLoader(runtime, machine.console)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from cfepy.es import AppHistory
 from cfepy.mission.tracebacks import described
@@ -52,6 +52,16 @@ class Traffic:
             setattr(self, each.name, getattr(self, each.name) + getattr(other, each.name))
 
 
+class DataRace(NamedTuple):
+    """Two accesses of compiled code that nothing orders: when the second came, what is told, of whom, in which task."""
+
+    at_ns: int
+    text: str
+    detail: str
+    app: str
+    task: str
+
+
 @dataclass(slots=True)
 class RunRecord:
     """Everything that outlives a reset for the sake of the report.
@@ -59,7 +69,7 @@ class RunRecord:
     Attachments keep what they have to tell in a part of their own. `history` is by application name, `event_counts` by
     event type, `errors_by_app` counts ERROR and CRITICAL events: the services of each processor write into these three
     themselves. `topics` has rows of ROS topics by MsgId. `tables` gives further rows for the report, by their title
-    there; an attachment that has some puts a function here.
+    there; an attachment that has some puts a function here. `data_races` are those of compiled code.
     """
 
     resets: list[Reset] = field(default_factory=list)
@@ -68,6 +78,7 @@ class RunRecord:
     errors_by_app: dict[str, int] = field(default_factory=dict)
     topics: dict[int, TopicRow] = field(default_factory=dict)
     tables: dict[str, Callable[[], list[dict[str, Any]]]] = field(default_factory=dict)
+    data_races: list[DataRace] = field(default_factory=list)
     _parts: dict[type, object] = field(default_factory=dict)
     _traffic: dict[int, Traffic] = field(default_factory=dict)
 

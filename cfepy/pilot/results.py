@@ -386,12 +386,8 @@ def problems_in(mission: Mission) -> list[RunProblem]:
 
 def _races(mission: Mission) -> list[RunProblem]:
     """Data races of compiled code, which are looked for under a given schedule."""
-    from cfepy.c import DataRaces
-
-    return [
-        RunProblem(f"data race at {each.at_ns / NS_PER_S:g} s: {each}", each.at_ns)
-        for each in mission.record.part(DataRaces)
-    ]
+    races = mission.record.data_races
+    return [RunProblem(f"data race at {each.at_ns / NS_PER_S:g} s: {each.text}", each.at_ns) for each in races]
 
 
 def _own_errors(mission: Mission) -> dict[str, int]:
