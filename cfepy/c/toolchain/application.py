@@ -8,10 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cfepy.c.toolchain.compiler import CompilerError, compile_file, is_cpp, link
-from cfepy.c.toolchain.headers import headers_folder
+from cfepy.c.toolchain.headers import CfsTree, headers_folder, read_tree
 from cfepy.c.toolchain.sources import Sources, find_sources
 from cfepy.c.toolchain.tables import TableObject, read_table
-from cfepy.c.toolchain.tree import CfsTree, read_tree
 
 WITHOUT_DEPRECATED = ("CFE_OMIT_DEPRECATED_6_8", "CFE_OMIT_DEPRECATED_6_7", "CFE_OMIT_DEPRECATED_6_6")
 WITHOUT_DEPRECATED_OSAL = "OSAL_OMIT_DEPRECATED"

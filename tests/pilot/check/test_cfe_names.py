@@ -73,7 +73,7 @@ def test_wherever_the_handle_goes(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        ("cfe.sb.create_pipe(10)", "missing a required argument: 'name'; write create_pipe(depth, name)"),
+        ("cfe.sb.create_pipe(10)", "missing a required argument: 'name'; write create_pipe(depth, name, pointer=None)"),
         ("cfe.os.task_delay(5, 6)", "cfe.os.task_delay: too many positional arguments; write task_delay(milliseconds)"),
         ("cfe.evs.send_info(1, 'x', colour=3)", "got an unexpected keyword argument 'colour'"),
         ("cfe.sb.create_pipe(*arguments)", ""),
