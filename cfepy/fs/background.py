@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Protocol
 
 from cfepy.fs.header import HEADER_SIZE, FileHeader, init_header
 from cfepy.osal import OS_FILE_FLAG_CREATE, OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY, Osal
@@ -32,6 +33,32 @@ class FileWriteEvent(IntEnum):
     CREATE_ERROR = 2
     HEADER_WRITE_ERROR = 3
     RECORD_WRITE_ERROR = 4
+
+
+class FileWrite(Protocol):
+    """A file to be written, as the queue sees it; see `FileWriteMetaData`."""
+
+    is_pending: bool
+
+    @property
+    def file_name(self) -> str:
+        """Full path."""
+
+    @property
+    def file_subtype(self) -> int:
+        """SUBTYPE_* of its header."""
+
+    @property
+    def description(self) -> str:
+        """Text of its header."""
+
+    @property
+    def get_data(self) -> Callable[[int], tuple[bytes, bool]]:
+        """Gives a record by its number, and whether it is the last one."""
+
+    @property
+    def on_event(self) -> Callable[[FileWriteEvent, int, int, int, int], object]:
+        """Told how it ended."""
 
 
 @dataclass(eq=False)
@@ -68,13 +95,13 @@ class BackgroundWriter:
         self._osal = osal
         self._write_header = write_header
         self._wake = wake
-        self._waiting: list[FileWriteMetaData] = []
+        self._waiting: list[FileWrite] = []
         self._filedes = 0
         self._credit = 0
         self._record = 0
         self._size = 0
 
-    def request(self, meta: FileWriteMetaData) -> None:
+    def request(self, meta: FileWrite) -> None:
         """Put a file into the queue; see `FileServices.background_file_dump_request`."""
         if not callable(meta.get_data) or not callable(meta.on_event):
             raise CfeError(CFE_FS_BAD_ARGUMENT, "a background write needs a function for its data and one for its end")
@@ -100,7 +127,7 @@ class BackgroundWriter:
             meta.is_pending = False
         return bool(self._waiting)
 
-    def _begin(self, meta: FileWriteMetaData) -> bool:
+    def _begin(self, meta: FileWrite) -> bool:
         """Make the file with its header; False after an error."""
         try:
             flags = OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE
@@ -118,7 +145,7 @@ class BackgroundWriter:
         self._credit -= HEADER_SIZE
         return True
 
-    def _write_record(self, meta: FileWriteMetaData) -> bool:
+    def _write_record(self, meta: FileWrite) -> bool:
         """Write the next record; True when that was the last one, or went wrong."""
         data, is_last = meta.get_data(self._record)
         try:

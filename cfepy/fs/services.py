@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from cfepy.config import PlatformConfig
 from cfepy.fs import filename, header
-from cfepy.fs.background import BackgroundWriter, FileWriteMetaData
+from cfepy.fs.background import BackgroundWriter, FileWrite
 from cfepy.fs.header import HEADER_SIZE, TIMESTAMP_OFFSET, FileHeader
 from cfepy.osal import OS_SEEK_SET, Osal
 from cfepy.ports import Ports
@@ -114,7 +114,7 @@ class FileServices:
             self._ports.syslog.write_to_sys_log(f"CFE_FS_SetTimestamp: Failed to {what} (Status={error.status})")
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
 
-    def background_file_dump_request(self, meta: FileWriteMetaData) -> None:
+    def background_file_dump_request(self, meta: FileWrite) -> None:
         """Have a file written by the background task (CFE_FS_BackgroundFileDumpRequest).
 
         Args:
@@ -126,7 +126,7 @@ class FileServices:
         """
         self._background.request(meta)
 
-    def background_file_dump_is_pending(self, meta: FileWriteMetaData) -> bool:
+    def background_file_dump_is_pending(self, meta: FileWrite) -> bool:
         """Whether a background write has not ended yet (CFE_FS_BackgroundFileDumpIsPending)."""
         return meta.is_pending
 

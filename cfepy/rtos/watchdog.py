@@ -428,7 +428,8 @@ def _places(frame: FrameType | None) -> tuple[_Place, ...]:
     """Where a thread is, outermost frame first."""
     found: list[_Place] = []
     while frame is not None:
-        found.append(_Place(frame, frame.f_code, frame.f_lasti, frame.f_lineno))
+        line = frame.f_lineno or frame.f_code.co_firstlineno  # a step that belongs to no line has none
+        found.append(_Place(frame, frame.f_code, frame.f_lasti, line))
         frame = frame.f_back
     return tuple(reversed(found))
 

@@ -181,9 +181,9 @@ def test_two_builds_give_the_same_bytes(app: Path, tmp_path: Path) -> None:
 
 def test_sources_of_one_name_in_two_folders(app: Path) -> None:
     write(
-        app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/a.c fsw/src/x/a.c ../shared.c)\n", "fsw/src/a.c": "int a;\n"}
+        app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/a.c fsw/src/x/a.c ../common.c)\n", "fsw/src/a.c": "int a;\n"}
     )
-    write(app, {"fsw/src/x/a.c": "int b;\n", "../shared.c": "int c;\n"})
+    write(app, {"fsw/src/x/a.c": "int b;\n", "../common.c": "int c;\n"})
     assert {"a", "b", "c"} <= symbols(build(app)).keys()
 
 

@@ -10,6 +10,7 @@ import time
 import weakref
 from collections.abc import Callable
 from pathlib import Path
+from types import FunctionType
 
 import pytest
 
@@ -322,3 +323,13 @@ def test_time_in_which_others_have_the_cpu_counts(tmp_path: Path, monkeypatch: p
     assert watchdog.spent() == Spent(wall_s=9.0, used_s=1.0, ready_s=2.5)
     monkeypatch.setattr(watchdog, "THREADS", str(tmp_path / "none"))
     assert watchdog.spent() == Spent(wall_s=9.0, used_s=1.0, ready_s=0.0)
+
+
+def test_code_that_belongs_to_no_line_is_told_with_that_of_its_function() -> None:
+    def spin() -> None:
+        while True:
+            pass
+
+    lineless = FunctionType(spin.__code__.replace(co_linetable=b""), {})
+    stalled = ended(Kernel("thread"), lineless)
+    assert stalled.place == f"test_watchdog.py:{spin.__code__.co_firstlineno}"

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from cfepy.c.api.pointers import need
 from cfepy.c.memory import CMemory
-from cfepy.fs import DESCRIPTION_SIZE, HEADER_SIZE, FileHeader, FileNameError, FileWriteMetaData
+from cfepy.fs import DESCRIPTION_SIZE, HEADER_SIZE, FileHeader, FileNameError
 from cfepy.osal import OS_SEEK_SET
 from cfepy.status import (
     CFE_FS_BAD_ARGUMENT,
@@ -121,7 +122,7 @@ def _declare_names(api: Declarations, c: CRuntime) -> None:
         to: int, name: int, size: int, name_size: int, default: str | None, path: str | None, extension: str | None
     ) -> None:
         text = from_bytes(_text_within(memory, name, name_size)) if name and name_size else ""
-        make = lambda: fs.parse_input_file_name_ex(text, default, path, extension, size)  # noqa: E731
+        make = partial(fs.parse_input_file_name_ex, text, default, path, extension, size)
         put_made(to, size, make if text or default is not None else nothing)
 
     def extract(path: str, to: int) -> None:
@@ -149,8 +150,8 @@ def _text_within(memory: CMemory, at: int, size: int) -> bytes:
 # -- background writes -------------------------------------------------------------------------------------------------
 
 
-class CFileWrite(FileWriteMetaData):
-    """A background write as C describes it (CFE_FS_FileWriteMetaData_t): all stands in the memory of C.
+class CFileWrite:
+    """A background write as C describes it (CFE_FS_FileWriteMetaData_t), a `FileWrite`: all stands in the memory of C.
 
     Args:
         c: the C side of the processor.
@@ -167,6 +168,11 @@ class CFileWrite(FileWriteMetaData):
         self._outputs = outputs
         self._memory = c.memory
 
+    def has_functions(self) -> bool:
+        """Whether both functions are there; C code may say NULL."""
+        at = self._at
+        return bool(self._memory.u64(at + self._GET_DATA_AT) and self._memory.u64(at + self._ON_EVENT_AT))
+
     @property
     def is_pending(self) -> bool:
         """IsPending of the structure, at which C code may look itself."""
@@ -177,31 +183,31 @@ class CFileWrite(FileWriteMetaData):
         self._memory.poke(self._at, bytes([value]))
 
     @property
-    def file_name(self) -> str:  # type: ignore[override]
+    def file_name(self) -> str:
         """The path."""
         return from_bytes(self._memory.peek(self._at + self._NAME_AT, self._NAME_SIZE))
 
     @property
-    def description(self) -> str:  # type: ignore[override]
+    def description(self) -> str:
         """For the header of the file."""
         return from_bytes(self._memory.peek(self._at + self._DESCRIPTION_AT, DESCRIPTION_SIZE))
 
     @property
-    def file_subtype(self) -> int:  # type: ignore[override]
+    def file_subtype(self) -> int:
         """For the header of the file."""
         return self._memory.u32(self._at + self._SUBTYPE_AT)
 
     @property
-    def get_data(self) -> Callable[[int], tuple[bytes, bool]] | None:  # type: ignore[override]
+    def get_data(self) -> Callable[[int], tuple[bytes, bool]]:
         """GetData(Meta, RecordNum, &Buffer, &BufSize), which says whether the record is the last one."""
         function = self._memory.u64(self._at + self._GET_DATA_AT)
-        return (lambda record: self._ask(function, record)) if function else None
+        return lambda record: self._ask(function, record)
 
     @property
-    def on_event(self) -> Callable[..., object] | None:  # type: ignore[override]
+    def on_event(self) -> Callable[..., object]:
         """OnEvent(Meta, Event, Status, RecordNum, BlockSize, Position)."""
         function = self._memory.u64(self._at + self._ON_EVENT_AT)
-        return (lambda *arguments: self._c.run(function, self._at, *arguments)) if function else None
+        return lambda *arguments: self._c.run(function, self._at, *arguments)
 
     def _ask(self, function: int, record: int) -> tuple[bytes, bool]:
         outputs = self._outputs
@@ -215,7 +221,10 @@ def _declare_dumps(api: Declarations, c: CRuntime) -> None:
     fs, outputs = c.handle.fs, c.arena.map(16)
 
     def request(at: int) -> None:
-        fs.background_file_dump_request(CFileWrite(c, at, outputs))
+        meta = CFileWrite(c, at, outputs)
+        if not meta.has_functions():
+            raise CfeError(BAD, "a background write needs a function for its data and one for its end")
+        fs.background_file_dump_request(meta)
 
     def is_pending(at: int) -> bool:
         return bool(at) and CFileWrite(c, at, outputs).is_pending
