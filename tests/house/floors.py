@@ -30,7 +30,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("script", "faults"),
     ("pilot",),
     ("journal",),
-    ("io", "exploration", "reports", "debugger"),
+    ("io", "exploration", "reports", "debugger", "convert"),
     ("flight",),
     ("testing",),
     ("cli", "__main__"),
