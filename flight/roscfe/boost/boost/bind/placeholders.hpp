@@ -1,0 +1,7 @@
+// Boost's newer place for it.
+#ifndef BOOST_BIND_PLACEHOLDERS_HPP_INCLUDED
+#define BOOST_BIND_PLACEHOLDERS_HPP_INCLUDED
+
+#include "boost/bind.hpp"
+
+#endif
