@@ -17,19 +17,23 @@ from cfepy.faces import face
 if TYPE_CHECKING:
     from cfepy.c.api import function_names
     from cfepy.c.elf import ElfError, read_shared_object
+    from cfepy.c.engine import cache_folder
     from cfepy.c.linking import wanted_names
     from cfepy.c.loading import CompiledLoader
     from cfepy.c.runtime import CRuntime
-    from cfepy.c.toolchain import Built, CompilerError, Options, build, headers_folder
+    from cfepy.c.toolchain import Built, CMakeScript, CompilerError, Options, build, cpp_compiler, headers_folder
 
 __all__ = [
     "Built",
+    "CMakeScript",
     "CRuntime",
     "CompiledLoader",
     "CompilerError",
     "ElfError",
     "Options",
     "build",
+    "cache_folder",
+    "cpp_compiler",
     "function_names",
     "headers_folder",
     "read_shared_object",
@@ -42,9 +46,13 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         {
             ".api": ("function_names",),
             ".elf": ("ElfError", "read_shared_object"),
+            ".engine": ("cache_folder",),
             ".linking": ("wanted_names",),
             ".loading": ("CompiledLoader",),
             ".runtime": ("CRuntime",),
-            ".toolchain": ("Built", "CompilerError", "Options", "build", "headers_folder"),
+            ".toolchain": (
+                *("Built", "CMakeScript", "CompilerError", "Options"),
+                *("build", "cpp_compiler", "headers_folder"),
+            ),
         },
     )

@@ -13,17 +13,19 @@ from cfepy.faces import face
 
 if TYPE_CHECKING:
     from cfepy.c.toolchain.application import Built, Options, build
-    from cfepy.c.toolchain.compiler import CompilerError
+    from cfepy.c.toolchain.cmake_script import CMakeScript
+    from cfepy.c.toolchain.compiler import CompilerError, cpp_compiler
     from cfepy.c.toolchain.headers import headers_folder
 
-__all__ = ["Built", "CompilerError", "Options", "build", "headers_folder"]
+__all__ = ["Built", "CMakeScript", "CompilerError", "Options", "build", "cpp_compiler", "headers_folder"]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
             ".application": ("Built", "Options", "build"),
-            ".compiler": ("CompilerError",),
+            ".cmake_script": ("CMakeScript",),
+            ".compiler": ("CompilerError", "cpp_compiler"),
             ".headers": ("headers_folder",),
         },
     )

@@ -12,7 +12,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.c.toolchain.cmake import FILE, read_cmake_lists
+from cfepy.c.toolchain.cmake import read_cmake_lists
+from cfepy.c.toolchain.cmake_script import FILE
 from cfepy.c.toolchain.compiler import SOURCE_SUFFIXES
 from cfepy.status import UsageError
 
