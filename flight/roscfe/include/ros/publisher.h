@@ -1,0 +1,71 @@
+// ros::Publisher: CFE_SB_TransmitBuffer of a message that is serialized into memory of the Software Bus.
+#ifndef ROS_PUBLISHER_H
+#define ROS_PUBLISHER_H
+
+#include "ros/forwards.h"
+#include "roscfe/publication.h"
+#include "roscfe/wire.h"
+
+namespace ros
+{
+
+class Publisher
+{
+  public:
+    Publisher() = default;
+    explicit Publisher(const boost::shared_ptr<roscfe::Publication> &publication);
+
+    template <class M>
+    void publish(const boost::shared_ptr<M> &message) const
+    {
+        publish(*message);
+    }
+
+    template <class M>
+    void publish(const M &message) const
+    {
+        if (!handle_ || !handle_->publication)
+        {
+            return; // roscpp asserts in a debug build only
+        }
+        roscfe::Publication &publication = *handle_->publication;
+        if (!publication.is_wanted())
+        {
+            ++publication.seq_;
+            return;
+        }
+        const std::size_t size = roscfe::wire::length(message);
+        std::uint8_t *    at   = publication.begin(size);
+        if (at != nullptr)
+        {
+            roscfe::wire::write(message, at, size);
+            publication.send();
+        }
+    }
+
+    void          shutdown();
+    std::string   getTopic() const;
+    std::uint32_t getNumSubscribers() const;
+    bool          isLatched() const;
+
+    explicit operator bool() const { return handle_ && handle_->publication; }
+    operator void *() const { return *this ? const_cast<void *>(static_cast<const void *>(handle_.get())) : nullptr; }
+    bool operator<(const Publisher &other) const { return handle_ < other.handle_; }
+    bool operator==(const Publisher &other) const { return handle_ == other.handle_; }
+    bool operator!=(const Publisher &other) const { return handle_ != other.handle_; }
+
+  private:
+    // What copies of one publisher share; the topic is given up with the last of them.
+    struct Handle
+    {
+        explicit Handle(const boost::shared_ptr<roscfe::Publication> &of);
+        ~Handle() { release(); }
+        void                                   release();
+        boost::shared_ptr<roscfe::Publication> publication;
+    };
+    boost::shared_ptr<Handle> handle_;
+};
+
+} // namespace ros
+
+#endif

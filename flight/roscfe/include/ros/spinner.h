@@ -1,0 +1,52 @@
+// Spinners. A node has one task on cFE, so callbacks of all of them run one after the other.
+#ifndef ROS_SPINNER_H
+#define ROS_SPINNER_H
+
+#include <cstdint>
+
+#include "ros/callback_queue.h"
+#include "ros/forwards.h"
+
+namespace ros
+{
+
+class Spinner
+{
+  public:
+    virtual ~Spinner() = default;
+    virtual void spin(CallbackQueue *queue = nullptr) = 0;
+};
+
+class SingleThreadedSpinner : public Spinner
+{
+  public:
+    void spin(CallbackQueue *queue = nullptr) override;
+};
+
+class MultiThreadedSpinner : public SingleThreadedSpinner
+{
+  public:
+    explicit MultiThreadedSpinner(std::uint32_t = 0) {}
+};
+
+// While it is started, callbacks run whenever the node waits: in Rate::sleep, Duration::sleep, waitForShutdown.
+class AsyncSpinner
+{
+  public:
+    explicit AsyncSpinner(std::uint32_t, CallbackQueue *queue = nullptr);
+    ~AsyncSpinner() { stop(); }
+    AsyncSpinner(const AsyncSpinner &) = delete;
+    AsyncSpinner &operator=(const AsyncSpinner &) = delete;
+
+    bool canStart() const { return true; }
+    void start();
+    void stop();
+
+  private:
+    CallbackQueue *queue_;
+    bool           started_ = false;
+};
+
+} // namespace ros
+
+#endif

@@ -1,0 +1,4 @@
+#ifndef ROSCFE_XMLRPCPP_XMLRPCEXCEPTION_H
+#define ROSCFE_XMLRPCPP_XMLRPCEXCEPTION_H
+#include "../XmlRpcException.h"
+#endif

@@ -1,0 +1,420 @@
+// The node's pipe: what comes through it, who else listens, and packets that go out (CFE_SB).
+#include <algorithm>
+#include <cstring>
+
+#include "internal.h"
+#include "ros/single_subscriber_publisher.h"
+#include "roscfe/refuse.h"
+
+namespace roscfe
+{
+
+namespace
+{
+
+static_assert(kTelemetryHeader == 16, "topics have packets with a header of 16 bytes, as cfepy's have");
+
+constexpr std::size_t   kSpare           = 12;   // of a telemetry header: whom a repetition is for
+constexpr std::uint8_t  kAddressed       = 0x01; // in its last byte
+constexpr std::size_t   kKnownAtOnce     = 512;  // subscriptions of the whole processor, before memory is needed for more
+constexpr std::int64_t  kReportTimeout   = kSecond;
+constexpr std::int32_t  kLongestWaitMs   = 100000;
+
+// A subscription of any application, as the Software Bus reports it.
+struct Known
+{
+    std::uint16_t   msg_id;
+    CFE_SB_PipeId_t pipe;
+};
+std::vector<Known> g_known;
+bool               g_all_reported = false;
+
+// A long message that comes in several packets.
+struct Assembly
+{
+    std::uint16_t             msg_id = 0;
+    std::vector<std::uint8_t> bytes;
+    std::uint16_t             next_sequence = 0;
+    bool                      under_way     = false;
+};
+std::vector<Assembly> g_assemblies;
+
+std::uint32_t pipe_number(CFE_SB_PipeId_t pipe)
+{
+    return static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(pipe)) & 0x00FFFFFF;
+}
+
+bool same_pipe(CFE_SB_PipeId_t one, CFE_SB_PipeId_t other)
+{
+    return CFE_RESOURCEID_TO_ULONG(one) == CFE_RESOURCEID_TO_ULONG(other);
+}
+
+bool is_there(CFE_SB_PipeId_t pipe)
+{
+    char name[OS_MAX_API_NAME];
+    return CFE_SB_GetPipeName(name, sizeof name, pipe) == CFE_SUCCESS;
+}
+
+void know(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
+{
+    for (const Known &known : g_known)
+    {
+        if (known.msg_id == msg_id && same_pipe(known.pipe, pipe))
+        {
+            return;
+        }
+    }
+    g_known.push_back({msg_id, pipe});
+    if (!same_pipe(pipe, g_node.pipe) || g_node.started)
+    {
+        publication_has_subscriber(msg_id, pipe);
+    }
+}
+
+void forget(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
+{
+    g_known.erase(std::remove_if(g_known.begin(), g_known.end(),
+                                 [&](const Known &known) {
+                                     return known.msg_id == msg_id && same_pipe(known.pipe, pipe);
+                                 }),
+                  g_known.end());
+    publication_lost_subscriber(msg_id, pipe);
+}
+
+void read_report(const CFE_SB_Buffer_t *buffer, std::uint16_t msg_id)
+{
+    if (msg_id == CFE_SB_ONESUB_TLM_MID)
+    {
+        const auto &report = reinterpret_cast<const CFE_SB_SingleSubscriptionTlm_t *>(buffer)->Payload;
+        const auto  id     = static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(report.MsgId));
+        report.SubType == CFE_SB_SUBSCRIPTION ? know(id, report.Pipe) : forget(id, report.Pipe);
+        return;
+    }
+    const auto &report = reinterpret_cast<const CFE_SB_AllSubscriptionsTlm_t *>(buffer)->Payload;
+    for (std::uint32_t i = 0; i < report.Entries; ++i)
+    {
+        know(static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(report.Entry[i].MsgId)), report.Entry[i].Pipe);
+    }
+    g_all_reported = g_all_reported || report.PktSegment >= report.TotalSegments;
+}
+
+// Join a segment to its message; true when that is whole, and the first bytes are those of its first packet's header.
+bool assemble(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size, CFE_MSG_SegmentationFlag_t flag,
+              Assembly *&whole)
+{
+    const auto sequence = static_cast<std::uint16_t>((packet[2] & 0x3F) << 8 | packet[3]);
+    auto       found    = std::find_if(g_assemblies.begin(), g_assemblies.end(),
+                              [&](const Assembly &each) { return each.msg_id == msg_id; });
+    if (found == g_assemblies.end())
+    {
+        g_assemblies.emplace_back();
+        found         = g_assemblies.end() - 1;
+        found->msg_id = msg_id;
+    }
+    if (flag == CFE_MSG_SegFlag_First)
+    {
+        found->bytes.assign(packet, packet + size);
+        found->under_way = true;
+    }
+    else if (found->under_way && sequence == found->next_sequence)
+    {
+        found->bytes.insert(found->bytes.end(), packet + kTelemetryHeader, packet + size);
+    }
+    else
+    {
+        found->under_way = false;
+        return false;
+    }
+    found->next_sequence = (sequence + 1) & 0x3FFF;
+    whole                = &*found;
+    found->under_way     = flag != CFE_MSG_SegFlag_Last;
+    return flag == CFE_MSG_SegFlag_Last;
+}
+
+void give_to_subscriptions(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size)
+{
+    for (std::size_t i = 0; i < g_node.subscriptions.size(); ++i)
+    {
+        const boost::shared_ptr<Subscription> &each = g_node.subscriptions[i];
+        if (each->msg_id_ != msg_id || !each->alive_)
+        {
+            continue;
+        }
+        bool more = false;
+        if (each->raw_)
+        {
+            // std_msgs/UInt8MultiArray: no dimensions, no offset, and the whole packet as data.
+            static std::vector<std::uint8_t> message;
+            message.assign(12, 0);
+            for (int byte = 0; byte < 4; ++byte)
+            {
+                message[8 + static_cast<std::size_t>(byte)] = static_cast<std::uint8_t>(size >> (8 * byte));
+            }
+            message.insert(message.end(), packet, packet + size);
+            more = each->receive(message.data(), message.size());
+        }
+        else if (size >= kTelemetryHeader)
+        {
+            more = each->receive(packet + kTelemetryHeader, size - kTelemetryHeader);
+        }
+        if (more)
+        {
+            each->callbacks_->addCallback(each, reinterpret_cast<std::uintptr_t>(each.get()));
+        }
+    }
+}
+
+void dispatch(const CFE_SB_Buffer_t *buffer)
+{
+    CFE_SB_MsgId_t             id   = CFE_SB_INVALID_MSG_ID;
+    CFE_MSG_Size_t             size = 0;
+    CFE_MSG_SegmentationFlag_t flag = CFE_MSG_SegFlag_Unsegmented;
+    CFE_MSG_GetMsgId(&buffer->Msg, &id);
+    CFE_MSG_GetSize(&buffer->Msg, &size);
+    CFE_MSG_GetSegmentationFlag(&buffer->Msg, &flag);
+    const auto          msg_id = static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(id));
+    const std::uint8_t *packet = reinterpret_cast<const std::uint8_t *>(buffer);
+    if (msg_id == CFE_SB_ONESUB_TLM_MID || msg_id == CFE_SB_ALLSUBS_TLM_MID)
+    {
+        read_report(buffer, msg_id);
+        return;
+    }
+    if (take_request(msg_id, packet, size) || take_answer(msg_id, packet, size))
+    {
+        return;
+    }
+    if (size >= kTelemetryHeader && packet[kSpare + 3] == kAddressed)
+    {
+        const std::uint32_t whom = static_cast<std::uint32_t>(packet[kSpare]) << 16 |
+                                   static_cast<std::uint32_t>(packet[kSpare + 1]) << 8 | packet[kSpare + 2];
+        if (whom != pipe_number(g_node.pipe))
+        {
+            return;
+        }
+    }
+    Assembly *whole = nullptr;
+    if (flag == CFE_MSG_SegFlag_Unsegmented)
+    {
+        give_to_subscriptions(msg_id, packet, size);
+    }
+    else if (size >= kTelemetryHeader && assemble(msg_id, packet, size, flag, whole))
+    {
+        give_to_subscriptions(msg_id, whole->bytes.data(), whole->bytes.size());
+    }
+}
+
+void address(std::uint8_t *packet, std::uint32_t pipe)
+{
+    packet[kSpare]     = static_cast<std::uint8_t>(pipe >> 16);
+    packet[kSpare + 1] = static_cast<std::uint8_t>(pipe >> 8);
+    packet[kSpare + 2] = static_cast<std::uint8_t>(pipe);
+    packet[kSpare + 3] = kAddressed;
+}
+
+std::uint32_t g_addressee = 0; // of what is sent at the moment; 0 is everybody
+
+} // namespace
+
+void open_bus()
+{
+    char pipe_name[OS_MAX_API_NAME];
+    std::snprintf(pipe_name, sizeof pipe_name, "%.14s_PIPE", g_node.description->app);
+    const CFE_Status_t status = CFE_SB_CreatePipe(&g_node.pipe, g_node.description->pipe_depth, pipe_name);
+    if (status != CFE_SUCCESS)
+    {
+        refuse("CFE_SB_CreatePipe failed", pipe_name);
+    }
+    g_known.reserve(kKnownAtOnce);
+    // As SBN does it: the Software Bus tells who subscribes, and who has. Without, every message is sent.
+    if (!listen(CFE_SB_ONESUB_TLM_MID) || !listen(CFE_SB_ALLSUBS_TLM_MID))
+    {
+        return;
+    }
+    for (CFE_MSG_FcnCode_t code : {CFE_SB_ENABLE_SUB_REPORTING_CC, CFE_SB_SEND_PREV_SUBS_CC})
+    {
+        CFE_SB_Buffer_t *buffer = CFE_SB_AllocateMessageBuffer(kCommandHeader);
+        if (buffer == nullptr)
+        {
+            return;
+        }
+        CFE_MSG_Init(&buffer->Msg, CFE_SB_ValueToMsgId(CFE_SB_SUB_RPT_CTRL_MID), kCommandHeader);
+        CFE_MSG_SetFcnCode(&buffer->Msg, code);
+        send_packet(buffer);
+    }
+    const std::int64_t until = now_ns() + kReportTimeout;
+    while (!g_all_reported && pump(until))
+    {
+    }
+    g_node.knows_subscribers = g_all_reported;
+    g_node.has_master        = g_all_reported && pipes_on(kMasterMsgId | kCommandBit) > 0;
+}
+
+bool listen(std::uint16_t msg_id)
+{
+    return CFE_SB_SubscribeEx(CFE_SB_ValueToMsgId(msg_id), g_node.pipe, CFE_SB_DEFAULT_QOS,
+                              g_node.description->pipe_depth) == CFE_SUCCESS;
+}
+
+void listen_no_more(std::uint16_t msg_id)
+{
+    CFE_SB_Unsubscribe(CFE_SB_ValueToMsgId(msg_id), g_node.pipe);
+    if (!g_node.knows_subscribers)
+    {
+        return;
+    }
+    // The Software Bus reports no subscription that ends; publishers are to know all the same.
+    CFE_SB_Buffer_t *buffer = CFE_SB_AllocateMessageBuffer(sizeof(CFE_SB_SingleSubscriptionTlm_t));
+    if (buffer != nullptr)
+    {
+        CFE_MSG_Init(&buffer->Msg, CFE_SB_ValueToMsgId(CFE_SB_ONESUB_TLM_MID), sizeof(CFE_SB_SingleSubscriptionTlm_t));
+        auto &report   = reinterpret_cast<CFE_SB_SingleSubscriptionTlm_t *>(buffer)->Payload;
+        report.SubType = CFE_SB_UNSUBSCRIPTION;
+        report.MsgId   = CFE_SB_ValueToMsgId(msg_id);
+        report.Pipe    = g_node.pipe;
+        send_packet(buffer);
+    }
+}
+
+std::uint32_t pipes_on(std::uint16_t msg_id)
+{
+    std::uint32_t count = 0;
+    for (std::size_t i = g_known.size(); i > 0; --i)
+    {
+        const Known known = g_known[i - 1];
+        if (known.msg_id != msg_id)
+        {
+            continue;
+        }
+        if (is_there(known.pipe))
+        {
+            ++count;
+        }
+        else
+        {
+            forget(msg_id, known.pipe); // its application has ended
+        }
+    }
+    return count;
+}
+
+bool pump(std::int64_t until_ns)
+{
+    CFE_SB_Buffer_t *buffer = nullptr;
+    bool             came   = false;
+    while (CFE_SB_ReceiveBuffer(&buffer, g_node.pipe, CFE_SB_POLL) == CFE_SUCCESS)
+    {
+        dispatch(buffer);
+        came = true;
+    }
+    std::int64_t now = now_ns();
+    queue_due_timers(now);
+    if (came)
+    {
+        return true;
+    }
+    if (until_ns != kForever && now >= until_ns)
+    {
+        return false;
+    }
+    std::int64_t       end   = until_ns;
+    const std::int64_t timer = next_timer_ns();
+    if (timer != kForever && (end == kForever || timer < end))
+    {
+        end = timer;
+    }
+    // Never too early: what is due is due at the next millisecond.
+    std::int32_t wait_ms = CFE_SB_PEND_FOREVER;
+    if (end != kForever)
+    {
+        const std::int64_t rest = std::max<std::int64_t>((end - now + kMillisecond - 1) / kMillisecond, 1);
+        wait_ms                 = static_cast<std::int32_t>(std::min<std::int64_t>(rest, kLongestWaitMs));
+    }
+    if (CFE_SB_ReceiveBuffer(&buffer, g_node.pipe, wait_ms) == CFE_SUCCESS)
+    {
+        dispatch(buffer);
+    }
+    now = now_ns();
+    queue_due_timers(now);
+    return true;
+}
+
+void wait_until(std::int64_t until_ns)
+{
+    while (now_ns() < until_ns && pump(until_ns))
+    {
+        run_async();
+    }
+}
+
+std::uint8_t *bytes_of(CFE_SB_Buffer_t *buffer)
+{
+    return reinterpret_cast<std::uint8_t *>(buffer);
+}
+
+CFE_SB_Buffer_t *begin_packet(std::uint16_t msg_id, std::size_t size)
+{
+    CFE_SB_Buffer_t *buffer = CFE_SB_AllocateMessageBuffer(size);
+    if (buffer == nullptr)
+    {
+        CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: no memory of the Software Bus for %lu bytes on 0x%04X",
+                          g_node.name.c_str(), static_cast<unsigned long>(size), msg_id);
+        return nullptr;
+    }
+    std::memset(bytes_of(buffer), 0, std::min(size, kTelemetryHeader));
+    CFE_MSG_Init(&buffer->Msg, CFE_SB_ValueToMsgId(msg_id), size);
+    if (g_addressee != 0)
+    {
+        address(bytes_of(buffer), g_addressee);
+    }
+    return buffer;
+}
+
+void send_packet(CFE_SB_Buffer_t *buffer)
+{
+    if (CFE_SB_TransmitBuffer(buffer, true) != CFE_SUCCESS)
+    {
+        CFE_SB_ReleaseMessageBuffer(buffer);
+    }
+}
+
+void send_bytes(std::uint16_t msg_id, const std::uint8_t *lead, std::size_t lead_size, const std::uint8_t *bytes,
+                std::size_t size)
+{
+    const std::size_t header = (msg_id & kCommandBit) != 0 ? kCommandHeader : kTelemetryHeader;
+    const std::size_t room   = CFE_MISSION_SB_MAX_SB_MSG_SIZE - header - lead_size;
+    std::size_t       at     = 0;
+    do
+    {
+        const std::size_t part   = std::min(room, size - at);
+        CFE_SB_Buffer_t * buffer = begin_packet(msg_id, header + lead_size + part);
+        if (buffer == nullptr)
+        {
+            return;
+        }
+        if (size > room)
+        {
+            CFE_MSG_SetSegmentationFlag(&buffer->Msg, at == 0             ? CFE_MSG_SegFlag_First
+                                                      : at + part >= size ? CFE_MSG_SegFlag_Last
+                                                                          : CFE_MSG_SegFlag_Continue);
+        }
+        if (lead_size > 0)
+        {
+            std::memcpy(bytes_of(buffer) + header, lead, lead_size);
+        }
+        if (part > 0)
+        {
+            std::memcpy(bytes_of(buffer) + header + lead_size, bytes + at, part);
+        }
+        send_packet(buffer);
+        at += part;
+    } while (at < size);
+}
+
+void send_to(Publication &publication, std::uint32_t pipe, const std::uint8_t *bytes, std::size_t size)
+{
+    g_addressee = pipe & 0x00FFFFFF;
+    send_bytes(publication.msg_id_, nullptr, 0, bytes, size);
+    g_addressee = 0;
+}
+
+} // namespace roscfe

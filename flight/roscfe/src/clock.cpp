@@ -1,0 +1,232 @@
+// Time and timers: the clock below OS_GetLocalTime, and waiting, which takes the node's messages over meanwhile.
+#include <algorithm>
+
+#include "internal.h"
+#include "ros/time.h"
+
+namespace roscfe
+{
+
+std::int64_t now_ns()
+{
+    OS_time_t now;
+    OS_GetLocalTime(&now);
+    return OS_TimeGetTotalNanoseconds(now);
+}
+
+// -- timers ------------------------------------------------------------------------------------------------------------
+
+void add_timer(const boost::shared_ptr<TimerState> &timer)
+{
+    auto &all = g_node.timers;
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [](const boost::weak_ptr<TimerState> &each) {
+                                 const boost::shared_ptr<TimerState> there = each.lock();
+                                 return !there || !there->alive;
+                             }),
+              all.end());
+    all.push_back(timer);
+    if (timer->callbacks == nullptr)
+    {
+        timer->callbacks = &g_node.queue;
+    }
+    timer->callbacks->expect(1);
+}
+
+void TimerState::start()
+{
+    if (running)
+    {
+        return;
+    }
+    running          = true;
+    next_expected_ns = now_ns() + period_ns;
+}
+
+void TimerState::set_period(std::int64_t period, bool reset)
+{
+    const std::int64_t now = now_ns();
+    if (reset)
+    {
+        next_expected_ns = now + period;
+    }
+    else
+    {
+        // In the middle of a cycle the new period counts from the cycle's beginning, but not into the past.
+        const std::int64_t begun = next_expected_ns - period_ns;
+        next_expected_ns         = std::max(begun + period, now);
+    }
+    period_ns = period;
+}
+
+ros::CallbackInterface::CallResult TimerState::call()
+{
+    waiting = false;
+    if (!alive || !running)
+    {
+        return Invalid;
+    }
+    const ros::VoidConstPtr held = tracked.lock();
+    if (has_tracked && !held)
+    {
+        return Invalid;
+    }
+    const std::int64_t begun = now_ns();
+    if (oneshot)
+    {
+        running = false;
+    }
+    fire(begun);
+    const std::int64_t ended = now_ns();
+    last_duration_ns         = ended - begun;
+    last_real_ns             = begun;
+    last_expected_ns         = due_ns;
+    if (!oneshot && next_expected_ns == due_ns)
+    {
+        next_expected_ns += period_ns;
+        if (next_expected_ns + period_ns < ended) // too slow by more than a period: begin anew
+        {
+            next_expected_ns = ended;
+        }
+    }
+    return Success;
+}
+
+void queue_due_timers(std::int64_t now)
+{
+    // In the order in which they are due, as roscpp's list of waiting timers is sorted.
+    for (;;)
+    {
+        boost::shared_ptr<TimerState> first;
+        for (const boost::weak_ptr<TimerState> &each : g_node.timers)
+        {
+            const boost::shared_ptr<TimerState> timer = each.lock();
+            if (timer && timer->alive && timer->running && !timer->waiting && timer->next_expected_ns <= now &&
+                (!first || timer->next_expected_ns < first->next_expected_ns))
+            {
+                first = timer;
+            }
+        }
+        if (!first)
+        {
+            return;
+        }
+        first->waiting = true;
+        first->due_ns  = first->next_expected_ns;
+        first->callbacks->addCallback(first, reinterpret_cast<std::uintptr_t>(first.get()));
+    }
+}
+
+std::int64_t next_timer_ns()
+{
+    std::int64_t next = kForever;
+    for (const boost::weak_ptr<TimerState> &each : g_node.timers)
+    {
+        const boost::shared_ptr<TimerState> timer = each.lock();
+        if (timer && timer->alive && timer->running && !timer->waiting &&
+            (next == kForever || timer->next_expected_ns < next))
+        {
+            next = timer->next_expected_ns;
+        }
+    }
+    return next;
+}
+
+} // namespace roscfe
+
+// -- of roscpp ---------------------------------------------------------------------------------------------------------
+
+namespace ros
+{
+
+namespace
+{
+
+template <class T>
+T time_now()
+{
+    T now;
+    now.fromNSec(static_cast<std::uint64_t>(roscfe::now_ns()));
+    return now;
+}
+
+bool sleep_for(std::int64_t ns)
+{
+    if (ns > 0)
+    {
+        roscfe::wait_until(roscfe::now_ns() + ns);
+    }
+    return !roscfe::g_node.shutting_down;
+}
+
+template <class T>
+bool sleep_until(const T &end)
+{
+    roscfe::wait_until(static_cast<std::int64_t>(end.toNSec()));
+    return !roscfe::g_node.shutting_down;
+}
+
+} // namespace
+
+Time Time::now()
+{
+    return time_now<Time>();
+}
+WallTime WallTime::now()
+{
+    return time_now<WallTime>();
+}
+SteadyTime SteadyTime::now()
+{
+    return time_now<SteadyTime>();
+}
+bool Time::sleepUntil(const Time &end)
+{
+    return sleep_until(end);
+}
+bool WallTime::sleepUntil(const WallTime &end)
+{
+    return sleep_until(end);
+}
+bool SteadyTime::sleepUntil(const SteadyTime &end)
+{
+    return sleep_until(end);
+}
+bool Duration::sleep() const
+{
+    return sleep_for(toNSec());
+}
+bool WallDuration::sleep() const
+{
+    return sleep_for(toNSec());
+}
+
+void Time::init() {}
+void Time::shutdown() {}
+void Time::setNow(const Time &) {} // the processor's clock is not a node's to set
+bool Time::useSystemTime()
+{
+    return true;
+}
+bool Time::isSimTime()
+{
+    return false;
+}
+bool Time::isSystemTime()
+{
+    return true;
+}
+bool Time::isValid()
+{
+    return true;
+}
+bool Time::waitForValid()
+{
+    return true;
+}
+bool Time::waitForValid(const WallDuration &)
+{
+    return true;
+}
+
+} // namespace ros

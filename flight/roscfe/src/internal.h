@@ -1,0 +1,132 @@
+// What the parts of the core share: the state of the one node that this shared object is.
+#ifndef ROSCFE_INTERNAL_H
+#define ROSCFE_INTERNAL_H
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+extern "C" {
+#include "cfe.h"
+}
+
+#include "ros/callback_queue.h"
+#include "ros/forwards.h"
+#include "ros/timer.h"
+#include "roscfe/node.h"
+#include "roscfe/publication.h"
+#include "roscfe/service.h"
+#include "roscfe/subscription.h"
+
+namespace roscfe
+{
+
+// Ids of the events that the library sends for its node.
+enum EventId : std::uint16_t
+{
+    kRefusedEid   = 1,
+    kStartedEid   = 2,
+    kBusEid       = 3,
+    kParameterEid = 4,
+    kLogEid       = 5,
+    kLogLostEid   = 6,
+    kLossEid      = 7
+};
+
+constexpr std::size_t   kTelemetryHeader = sizeof(CFE_MSG_TelemetryHeader_t);
+constexpr std::size_t   kCommandHeader   = sizeof(CFE_MSG_CommandHeader_t);
+constexpr std::uint16_t kCommandBit      = 0x1000; // requests of a service are commands, its answers telemetry
+constexpr std::uint16_t kMasterMsgId     = 0x08FC; // of the answers of cfepy's ROS application, as of a service
+constexpr std::uint16_t kRosoutMsgId     = 0x0900;
+constexpr std::int64_t  kMillisecond     = 1000000;
+constexpr std::int64_t  kSecond          = 1000000000;
+constexpr std::int64_t  kForever         = -1;
+
+struct Node
+{
+    const NodeDescription *description = nullptr;
+    std::string            name; // full
+    std::string            ns;
+    bool                   initialized   = false;
+    bool                   started       = false;
+    bool                   shutting_down = false;
+    bool                   ended         = false; // the task is gone; objects that are destroyed now leave the bus alone
+    ros::CallbackQueue     queue;
+    ros::M_string          remappings; // resolved
+
+    CFE_SB_PipeId_t  pipe{};
+    CFE_TBL_Handle_t table{};
+    bool             has_table = false;
+    bool             knows_subscribers = false; // the Software Bus reports subscriptions
+    bool             has_master        = false; // cfepy's ROS application is there
+
+    std::vector<boost::shared_ptr<Subscription>>   subscriptions;
+    std::vector<boost::shared_ptr<Publication>>    publications;
+    std::vector<boost::shared_ptr<Service>>        services;
+    std::vector<boost::weak_ptr<TimerState>>       timers;
+};
+extern Node g_node;
+
+// -- bus.cpp: the node's pipe ------------------------------------------------------------------------------------------
+
+void open_bus();
+
+// Take over what waits in the pipe; when nothing does, wait for it until a time. Timers that are due are queued, too.
+// The clock is the processor's, in nanoseconds; kForever waits without an end. False when the time is over.
+bool pump(std::int64_t until_ns);
+
+// Wait until a time, and take the node's messages over meanwhile.
+void wait_until(std::int64_t until_ns);
+
+bool          listen(std::uint16_t msg_id);
+void          listen_no_more(std::uint16_t msg_id);
+std::uint32_t pipes_on(std::uint16_t msg_id);
+
+// A packet under way: memory of the Software Bus behind a header of its own. Null when there is none, which an event says.
+CFE_SB_Buffer_t *begin_packet(std::uint16_t msg_id, std::size_t size);
+void             send_packet(CFE_SB_Buffer_t *buffer);
+std::uint8_t *   bytes_of(CFE_SB_Buffer_t *buffer);
+
+// Send bytes behind a header and a lead that each packet repeats, in as many packets as it takes.
+void send_bytes(std::uint16_t msg_id, const std::uint8_t *lead, std::size_t lead_size, const std::uint8_t *bytes,
+                std::size_t size);
+
+// -- others ------------------------------------------------------------------------------------------------------------
+
+void start_async(ros::CallbackQueue *queue);
+void stop_async(ros::CallbackQueue *queue);
+void run_async(); // callbacks of asynchronous spinners, while the node waits
+
+std::int64_t now_ns();
+std::int64_t next_timer_ns(); // kForever when no timer runs
+void         queue_due_timers(std::int64_t now);
+
+void publication_has_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe);
+void publication_lost_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe);
+bool take_request(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size);
+bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size);
+
+void open_parameters();
+void close_logging();
+
+// What a master says of a name; of cfepy's when it is there, else of the tables that the convertor has made.
+enum class Kind : std::uint8_t
+{
+    publisher  = 0,
+    subscriber = 1,
+    server     = 2,
+    client     = 3,
+    gone       = 4 // added to the others: the node does not do that any more
+};
+struct Registration
+{
+    std::uint16_t msg_id = 0;
+    bool          raw    = false;
+};
+Registration enroll(Kind kind, const std::string &name, const char *type, const char *md5, const char *definition);
+void         withdraw_name(Kind kind, const std::string &name);
+
+} // namespace roscfe
+
+#endif

@@ -1,0 +1,289 @@
+// The life of a node: from the application's entry point to its end.
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+
+#include <unistd.h>
+
+#include "internal.h"
+#include "ros/init.h"
+#include "ros/names.h"
+#include "ros/rate.h"
+#include "ros/time.h"
+#include "roscfe/refuse.h"
+
+namespace roscfe
+{
+
+Node g_node;
+
+namespace
+{
+
+int (*g_main_with_arguments)(int, char **) = nullptr;
+int (*g_main)()                            = nullptr;
+constexpr int kMostArguments               = 64;
+
+[[noreturn]] void end(std::uint32_t status)
+{
+    g_node.ended = true;
+    for (;;)
+    {
+        CFE_ES_ExitApp(status); // ends the task
+    }
+}
+
+[[noreturn]] void run_main()
+{
+    static char *arguments[kMostArguments + 2];
+    int          count = 0;
+    arguments[count++] = const_cast<char *>(g_node.description->app);
+    for (int i = 0; i < g_node.description->arg_count && i < kMostArguments; ++i)
+    {
+        arguments[count++] = const_cast<char *>(g_node.description->args[i]);
+    }
+    const int status = g_main != nullptr ? g_main() : g_main_with_arguments(count, arguments);
+    end(status == 0 ? CFE_ES_RunStatus_APP_EXIT : CFE_ES_RunStatus_APP_ERROR);
+}
+
+[[noreturn]] void run_node(const NodeDescription &node)
+{
+    g_node.description = &node;
+    g_node.ns          = node.ns;
+    CFE_EVS_Register(nullptr, 0, CFE_EVS_EventFilter_BINARY);
+    run_main();
+}
+
+} // namespace
+
+void run(const NodeDescription &node, int (*main_function)(int, char **))
+{
+    g_main_with_arguments = main_function;
+    run_node(node);
+}
+
+void run(const NodeDescription &node, int (*main_function)())
+{
+    g_main = main_function;
+    run_node(node);
+}
+
+void refuse(const char *what, const char *detail)
+{
+    const char *who = g_node.description != nullptr ? g_node.description->app : "roscfe";
+    CFE_EVS_SendEvent(kRefusedEid, CFE_EVS_EventType_CRITICAL, "%s: %s: %s", who, what, detail);
+    end(CFE_ES_RunStatus_APP_ERROR);
+}
+
+} // namespace roscfe
+
+namespace ros
+{
+
+namespace
+{
+
+using roscfe::g_node;
+
+void remap(const std::string &from, const std::string &to)
+{
+    g_node.remappings[names::resolve(g_node.ns, from, false)] = names::resolve(g_node.ns, to, false);
+}
+
+void initialize(const std::string &name)
+{
+    if (g_node.initialized)
+    {
+        return;
+    }
+    std::string given = *g_node.description->name != '\0' ? g_node.description->name : name;
+    if (given.find('/') != std::string::npos)
+    {
+        roscfe::refuse("a node's name has no slash", given.c_str());
+    }
+    g_node.initialized = true;
+    g_node.name        = names::append(g_node.ns == "/" ? "" : g_node.ns, given);
+    if (g_node.name[0] != '/')
+    {
+        g_node.name = "/" + g_node.name;
+    }
+    for (int i = 0; i < g_node.description->remap_count; ++i)
+    {
+        remap(g_node.description->remaps[i].from, g_node.description->remaps[i].to);
+    }
+}
+
+// "from:=to", but for "_param:=" and "__name:=", which the convertor has read.
+bool is_remapping(const char *argument)
+{
+    return std::strstr(argument, ":=") != nullptr;
+}
+
+} // namespace
+
+void init(int &argc, char **argv, const std::string &name, std::uint32_t)
+{
+    initialize(name);
+    int kept = 0;
+    for (int i = 0; i < argc; ++i)
+    {
+        const char *mark = i > 0 ? std::strstr(argv[i], ":=") : nullptr;
+        if (mark == nullptr)
+        {
+            argv[kept++] = argv[i];
+        }
+        else if (argv[i][0] != '_')
+        {
+            remap(std::string(argv[i], static_cast<std::size_t>(mark - argv[i])), mark + 2);
+        }
+    }
+    argc = kept;
+    argv[argc] = nullptr;
+}
+
+void init(const M_string &remappings, const std::string &name, std::uint32_t)
+{
+    initialize(name);
+    for (const auto &each : remappings)
+    {
+        remap(each.first, each.second);
+    }
+}
+
+void init(const VP_string &remappings, const std::string &name, std::uint32_t)
+{
+    initialize(name);
+    for (const auto &each : remappings)
+    {
+        remap(each.first, each.second);
+    }
+}
+
+bool isInitialized()
+{
+    return g_node.initialized;
+}
+
+bool isStarted()
+{
+    return g_node.started;
+}
+
+bool isShuttingDown()
+{
+    return g_node.shutting_down;
+}
+
+void start()
+{
+    if (g_node.started)
+    {
+        return;
+    }
+    if (!g_node.initialized)
+    {
+        roscfe::refuse("You must call ros::init() before creating the first NodeHandle", g_node.description->app);
+    }
+    g_node.started = true;
+    roscfe::open_bus();
+    roscfe::open_parameters();
+    CFE_EVS_SendEvent(roscfe::kStartedEid, CFE_EVS_EventType_INFORMATION, "%s started", g_node.name.c_str());
+}
+
+void shutdown()
+{
+    g_node.shutting_down = true;
+}
+
+void requestShutdown()
+{
+    shutdown();
+}
+
+bool ok()
+{
+    if (!g_node.shutting_down)
+    {
+        std::uint32_t status = CFE_ES_RunStatus_APP_RUN;
+        if (!CFE_ES_RunLoop(&status))
+        {
+            shutdown();
+        }
+    }
+    return !g_node.shutting_down;
+}
+
+void waitForShutdown()
+{
+    while (ok())
+    {
+        WallDuration(0.5).sleep();
+    }
+}
+
+void removeROSArgs(int argc, const char *const *argv, V_string &args)
+{
+    args.clear();
+    for (int i = 0; i < argc; ++i)
+    {
+        if (!is_remapping(argv[i]))
+        {
+            args.push_back(argv[i]);
+        }
+    }
+}
+
+std::string getROSArg(int argc, const char *const *argv, const std::string &arg)
+{
+    const std::string lead = arg + ":=";
+    for (int i = 0; i < argc; ++i)
+    {
+        if (std::strncmp(argv[i], lead.c_str(), lead.size()) == 0)
+        {
+            return argv[i] + lead.size();
+        }
+    }
+    return std::string();
+}
+
+} // namespace ros
+
+// -- functions of C that a node would block or end the processor with; the linker puts these in their place (--wrap) ---
+
+extern "C" {
+
+[[noreturn]] void __wrap_exit(int status)
+{
+    CFE_EVS_SendEvent(roscfe::kStartedEid, CFE_EVS_EventType_INFORMATION, "%s: exit(%d)", roscfe::g_node.name.c_str(),
+                      status);
+    roscfe::end(status == 0 ? CFE_ES_RunStatus_APP_EXIT : CFE_ES_RunStatus_APP_ERROR);
+}
+
+[[noreturn]] void __wrap_abort()
+{
+    roscfe::refuse("abort", roscfe::g_node.name.c_str());
+}
+
+unsigned int __wrap_sleep(unsigned int seconds)
+{
+    roscfe::wait_until(roscfe::now_ns() + seconds * roscfe::kSecond);
+    return 0;
+}
+
+int __wrap_usleep(useconds_t microseconds)
+{
+    roscfe::wait_until(roscfe::now_ns() + static_cast<std::int64_t>(microseconds) * 1000);
+    return 0;
+}
+
+int __wrap_nanosleep(const struct timespec *request, struct timespec *rest)
+{
+    roscfe::wait_until(roscfe::now_ns() + request->tv_sec * roscfe::kSecond + request->tv_nsec);
+    if (rest != nullptr)
+    {
+        *rest = timespec();
+    }
+    return 0;
+}
+
+} // extern "C"

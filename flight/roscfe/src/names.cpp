@@ -1,0 +1,226 @@
+// Names and their resolution (http://wiki.ros.org/Names), and ros::this_node.
+#include "internal.h"
+#include "ros/exceptions.h"
+#include "ros/names.h"
+#include "ros/node_handle.h"
+#include "ros/this_node.h"
+#include "roscfe/refuse.h"
+
+namespace ros
+{
+
+namespace this_node
+{
+
+const std::string &getName()
+{
+    return roscfe::g_node.name;
+}
+
+const std::string &getNamespace()
+{
+    return roscfe::g_node.ns;
+}
+
+} // namespace this_node
+
+namespace names
+{
+
+namespace
+{
+
+bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+[[noreturn]] void invalid(const std::string &what)
+{
+    ROSCFE_THROW(InvalidNameException(what));
+}
+
+} // namespace
+
+bool validate(const std::string &name, std::string &error)
+{
+    if (name.empty())
+    {
+        return true;
+    }
+    if (!is_letter(name[0]) && name[0] != '/' && name[0] != '~')
+    {
+        error = "Character [" + name.substr(0, 1) + "] is not valid as the first character in Graph Resource Name [" +
+                name + "].  Valid characters are a-z, A-Z, / and in some cases ~.";
+        return false;
+    }
+    for (std::size_t i = 1; i < name.size(); ++i)
+    {
+        const char c = name[i];
+        if (!is_letter(c) && !(c >= '0' && c <= '9') && c != '/' && c != '_')
+        {
+            error = "Character [" + name.substr(i, 1) + "] at element [" + std::to_string(i) +
+                    "] is not valid in Graph Resource Name [" + name +
+                    "].  Valid characters are a-z, A-Z, 0-9, / and _.";
+            return false;
+        }
+    }
+    return true;
+}
+
+std::string clean(const std::string &name)
+{
+    std::string cleaned;
+    for (const char c : name)
+    {
+        if (c != '/' || cleaned.empty() || cleaned.back() != '/')
+        {
+            cleaned += c;
+        }
+    }
+    if (cleaned.size() > 1 && cleaned.back() == '/')
+    {
+        cleaned.pop_back();
+    }
+    return cleaned;
+}
+
+std::string append(const std::string &left, const std::string &right)
+{
+    return clean(left + "/" + right);
+}
+
+std::string remap(const std::string &name)
+{
+    return resolve(name, true);
+}
+
+std::string resolve(const std::string &name, bool remap)
+{
+    return resolve(this_node::getNamespace(), name, remap);
+}
+
+std::string resolve(const std::string &ns, const std::string &name, bool remap)
+{
+    std::string error;
+    if (!validate(name, error))
+    {
+        invalid(error);
+    }
+    if (name.empty())
+    {
+        return ns.empty() ? "/" : ns[0] == '/' ? ns : append("/", ns);
+    }
+    std::string full = name;
+    if (full[0] == '~')
+    {
+        full = append(this_node::getName(), full.substr(1));
+    }
+    if (full[0] != '/')
+    {
+        full = append("/", append(ns, full));
+    }
+    full = clean(full);
+    if (remap)
+    {
+        const auto found = getRemappings().find(full);
+        if (found != getRemappings().end())
+        {
+            full = found->second;
+        }
+    }
+    return full;
+}
+
+std::string parentNamespace(const std::string &name)
+{
+    std::string error;
+    if (!validate(name, error))
+    {
+        invalid(error);
+    }
+    if (name.empty() || name == "/")
+    {
+        return name;
+    }
+    const std::string cleaned = clean(name);
+    const std::size_t slash   = cleaned.rfind('/');
+    return slash == std::string::npos ? "" : slash == 0 ? "/" : cleaned.substr(0, slash);
+}
+
+const M_string &getRemappings()
+{
+    return roscfe::g_node.remappings;
+}
+
+const M_string &getUnresolvedRemappings()
+{
+    return roscfe::g_node.remappings;
+}
+
+} // namespace names
+
+// -- ros::NodeHandle ---------------------------------------------------------------------------------------------------
+
+NodeHandle::NodeHandle(const std::string &ns, const M_string &remappings)
+{
+    start();
+    std::string given = ns;
+    if (!given.empty() && given[0] == '~')
+    {
+        given = names::resolve(given);
+    }
+    unresolved_namespace_ = given;
+    namespace_            = given.empty() ? this_node::getNamespace() : names::resolve(given);
+    for (const auto &each : remappings)
+    {
+        remappings_[resolveName(each.first, false)] = resolveName(each.second, false);
+    }
+}
+
+NodeHandle::NodeHandle(const NodeHandle &other) = default;
+
+NodeHandle::NodeHandle(const NodeHandle &parent, const std::string &ns) : NodeHandle(parent, ns, M_string()) {}
+
+NodeHandle::NodeHandle(const NodeHandle &parent, const std::string &ns, const M_string &remappings)
+    : namespace_(parent.resolveName(ns)),
+      unresolved_namespace_(names::append(parent.unresolved_namespace_, ns)),
+      queue_(parent.queue_),
+      remappings_(parent.remappings_)
+{
+    for (const auto &each : remappings)
+    {
+        remappings_[resolveName(each.first, false)] = resolveName(each.second, false);
+    }
+}
+
+NodeHandle::~NodeHandle() = default;
+
+NodeHandle &NodeHandle::operator=(const NodeHandle &other) = default;
+
+std::string NodeHandle::resolveName(const std::string &name, bool remap) const
+{
+    if (!name.empty() && name[0] == '~')
+    {
+        ROSCFE_THROW(InvalidNameException("Using ~ names with NodeHandle methods is not allowed.  If you want to use "
+                                          "private names with the NodeHandle interface, construct a NodeHandle using a "
+                                          "private name as its namespace.  e.g. ros::NodeHandle nh(\"~\");  "
+                                          "nh.getParam(\"my_private_name\");  (name = [" +
+                                          name + "])"));
+    }
+    std::string full = name.empty() ? namespace_ : name;
+    if (full[0] != '/')
+    {
+        full = names::append(namespace_, full);
+    }
+    full = names::clean(full);
+    return remap ? remapped(names::resolve(full, false)) : names::resolve(full, false);
+}
+
+std::string NodeHandle::remapped(const std::string &resolved) const
+{
+    const auto found = remappings_.find(resolved);
+    return found != remappings_.end() ? found->second : names::remap(resolved);
+}
+
+} // namespace ros

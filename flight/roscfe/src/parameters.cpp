@@ -1,0 +1,479 @@
+// Parameters: rows of the application's table, which the ground loads and dumps like any other (CFE_TBL).
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "internal.h"
+#include "json.h"
+#include "ros/param.h"
+#include "ros/this_node.h"
+
+namespace roscfe
+{
+
+using XmlRpc::Access;
+using XmlRpc::XmlRpcValue;
+
+namespace
+{
+
+// The rows, from CFE_TBL_GetAddress to CFE_TBL_ReleaseAddress.
+class Rows
+{
+  public:
+    Rows()
+    {
+        void *             address = nullptr;
+        const CFE_Status_t status  = g_node.has_table ? CFE_TBL_GetAddress(&address, g_node.table) : CFE_TBL_ERR_NEVER_LOADED;
+        if (status == CFE_SUCCESS || status == CFE_TBL_INFO_UPDATED)
+        {
+            rows_ = static_cast<ParamRow *>(address);
+        }
+    }
+    ~Rows()
+    {
+        if (g_node.has_table)
+        {
+            CFE_TBL_ReleaseAddress(g_node.table);
+        }
+    }
+    Rows(const Rows &) = delete;
+    Rows &operator=(const Rows &) = delete;
+
+    int       count() const { return rows_ != nullptr ? g_node.description->param_rows : 0; }
+    ParamRow &operator[](int index) { return rows_[index]; }
+
+    // The end of the parameter that begins in a row: those that begin with "+" go on with it.
+    int end_of(int first) const
+    {
+        int end = first + 1;
+        while (end < count() && rows_[end].name[0] == '+')
+        {
+            ++end;
+        }
+        return end;
+    }
+
+    std::string name_of(int first, int end) const
+    {
+        std::string name = field(rows_[first].name, sizeof rows_[first].name);
+        for (int i = first + 1; i < end; ++i)
+        {
+            name += field(rows_[i].name, sizeof rows_[i].name).substr(1);
+        }
+        return name;
+    }
+
+    std::string text_of(int first, int end) const
+    {
+        std::string text;
+        for (int i = first; i < end; ++i)
+        {
+            text += field(rows_[i].value, sizeof rows_[i].value);
+        }
+        return text;
+    }
+
+  private:
+    static std::string field(const char *at, std::size_t size) { return std::string(at, strnlen(at, size)); }
+
+    ParamRow *rows_ = nullptr;
+};
+
+bool is_below(const std::string &name, const std::string &ns)
+{
+    return name.size() > ns.size() && name.compare(0, ns.size(), ns) == 0 && (ns == "/" || name[ns.size()] == '/');
+}
+
+// Put a parameter into the tree of those that are below a namespace.
+void put_below(XmlRpcValue &root, const std::string &path, const XmlRpcValue &value)
+{
+    XmlRpcValue *at    = &root;
+    std::size_t  begin = 0;
+    for (;;)
+    {
+        Access::make(*at, XmlRpcValue::TypeStruct);
+        const std::size_t slash = path.find('/', begin);
+        at                      = &Access::members(*at)[path.substr(begin, slash - begin)];
+        if (slash == std::string::npos)
+        {
+            break;
+        }
+        begin = slash + 1;
+    }
+    *at = value;
+}
+
+void erase(Rows &rows, const std::string &name)
+{
+    for (int i = 0; i < rows.count();)
+    {
+        const int end = rows.end_of(i);
+        if (rows[i].name[0] != '\0')
+        {
+            const std::string there = rows.name_of(i, end);
+            if (there == name || is_below(there, name))
+            {
+                std::memset(static_cast<void *>(&rows[i]), 0, sizeof(ParamRow) * static_cast<std::size_t>(end - i));
+            }
+        }
+        i = end;
+    }
+}
+
+// Rows that are free one after the other; -1 when there are not so many.
+int free_rows(Rows &rows, int wanted)
+{
+    for (int i = 0; i + wanted <= rows.count(); ++i)
+    {
+        int found = 0;
+        while (found < wanted && rows[i + found].name[0] == '\0')
+        {
+            ++found;
+        }
+        if (found == wanted)
+        {
+            return i;
+        }
+    }
+    return -1;
+}
+
+bool put(Rows &rows, const std::string &name, const std::string &text)
+{
+    const std::size_t name_room  = sizeof(ParamRow::name) - 1;
+    const std::size_t value_room = sizeof(ParamRow::value) - 1;
+    const std::size_t of_value   = std::max<std::size_t>((text.size() + value_room - 1) / value_room, 1);
+    std::size_t       of_name    = 1;
+    if (name.size() > name_room)
+    {
+        of_name += (name.size() - name_room + name_room - 2) / (name_room - 1);
+    }
+    const int wanted = static_cast<int>(std::max(of_name, of_value));
+    const int first  = free_rows(rows, wanted);
+    if (first < 0)
+    {
+        return false;
+    }
+    std::size_t name_at = 0, value_at = 0;
+    for (int i = 0; i < wanted; ++i)
+    {
+        ParamRow &  row  = rows[first + i];
+        std::string part = i == 0 ? "" : "+";
+        const std::string more = name.substr(std::min(name_at, name.size()), name_room - part.size());
+        name_at += more.size();
+        part += more;
+        std::memcpy(row.name, part.c_str(), part.size() + 1);
+        const std::string value = text.substr(std::min(value_at, text.size()), value_room);
+        value_at += value.size();
+        std::memcpy(row.value, value.c_str(), value.size() + 1);
+    }
+    return true;
+}
+
+std::string text_of(const XmlRpcValue &value)
+{
+    return value.toJson();
+}
+
+// The leaves of a tree, each a parameter of its own; an empty namespace is one.
+bool put_all(Rows &rows, const std::string &name, const XmlRpcValue &value)
+{
+    if (value.getType() != XmlRpcValue::TypeStruct || Access::members(value).empty())
+    {
+        return put(rows, name, text_of(value));
+    }
+    bool good = true;
+    for (const auto &each : Access::members(value))
+    {
+        good = put_all(rows, ros::names::append(name, each.first), each.second) && good;
+    }
+    return good;
+}
+
+} // namespace
+
+void open_parameters()
+{
+    const NodeDescription &node = *g_node.description;
+    if (node.param_rows == 0)
+    {
+        return;
+    }
+    const std::size_t size   = static_cast<std::size_t>(node.param_rows) * sizeof(ParamRow);
+    CFE_Status_t      status = CFE_TBL_Register(&g_node.table, "Params", size, CFE_TBL_OPT_DEFAULT, nullptr);
+    if (status == CFE_SUCCESS)
+    {
+        status = CFE_TBL_Load(g_node.table, CFE_TBL_SRC_ADDRESS, node.params);
+    }
+    g_node.has_table = status == CFE_SUCCESS;
+    if (!g_node.has_table)
+    {
+        CFE_EVS_SendEvent(kParameterEid, CFE_EVS_EventType_ERROR, "%s: no table of parameters: 0x%08lX",
+                          g_node.name.c_str(), static_cast<unsigned long>(status));
+    }
+}
+
+bool get_param(const std::string &name, XmlRpcValue &value)
+{
+    if (g_node.has_table)
+    {
+        CFE_TBL_Manage(g_node.table); // what the ground has loaded counts from now on
+    }
+    Rows        rows;
+    bool        found  = false;
+    const std::string prefix = name == "/" ? "/" : name + "/";
+    for (int i = 0; i < rows.count();)
+    {
+        const int end = rows.end_of(i);
+        if (rows[i].name[0] != '\0')
+        {
+            const std::string there = rows.name_of(i, end);
+            if (there == name)
+            {
+                from_json(rows.text_of(i, end).c_str(), value);
+                return true;
+            }
+            if (is_below(there, name))
+            {
+                XmlRpcValue leaf;
+                from_json(rows.text_of(i, end).c_str(), leaf);
+                if (!found)
+                {
+                    value = XmlRpcValue();
+                }
+                put_below(value, there.substr(prefix.size()), leaf);
+                found = true;
+            }
+        }
+        i = end;
+    }
+    return found;
+}
+
+void set_param(const std::string &name, const XmlRpcValue &value)
+{
+    bool good = false;
+    {
+        Rows rows;
+        erase(rows, name);
+        good = put_all(rows, name, value);
+    }
+    if (g_node.has_table)
+    {
+        CFE_TBL_Modified(g_node.table);
+    }
+    if (!good)
+    {
+        CFE_EVS_SendEvent(kParameterEid, CFE_EVS_EventType_ERROR, "%s: no row is free for the parameter %s",
+                          g_node.name.c_str(), name.c_str());
+    }
+}
+
+bool has_param(const std::string &name)
+{
+    XmlRpcValue value;
+    return get_param(name, value);
+}
+
+bool delete_param(const std::string &name)
+{
+    if (!has_param(name))
+    {
+        return false;
+    }
+    {
+        Rows rows;
+        erase(rows, name);
+    }
+    CFE_TBL_Modified(g_node.table);
+    return true;
+}
+
+void param_names(std::vector<std::string> &names)
+{
+    names.clear();
+    Rows rows;
+    for (int i = 0; i < rows.count();)
+    {
+        const int end = rows.end_of(i);
+        if (rows[i].name[0] != '\0')
+        {
+            names.push_back(rows.name_of(i, end));
+        }
+        i = end;
+    }
+}
+
+// -- types -------------------------------------------------------------------------------------------------------------
+
+bool param_to(XmlRpcValue &value, std::string &to)
+{
+    if (value.getType() != XmlRpcValue::TypeString)
+    {
+        return false;
+    }
+    to = Access::text(value);
+    return true;
+}
+
+bool param_to(XmlRpcValue &value, double &to)
+{
+    if (value.getType() == XmlRpcValue::TypeInt)
+    {
+        to = Access::integer(value);
+        return true;
+    }
+    if (value.getType() != XmlRpcValue::TypeDouble)
+    {
+        return false;
+    }
+    to = Access::number(value);
+    return true;
+}
+
+bool param_to(XmlRpcValue &value, float &to)
+{
+    double number = 0;
+    if (!param_to(value, number))
+    {
+        return false;
+    }
+    to = static_cast<float>(number);
+    return true;
+}
+
+bool param_to(XmlRpcValue &value, int &to)
+{
+    if (value.getType() == XmlRpcValue::TypeDouble)
+    {
+        const double number = Access::number(value);
+        to = static_cast<int>(std::fmod(number, 1.0) < 0.5 ? std::floor(number) : std::ceil(number));
+        return true;
+    }
+    if (value.getType() != XmlRpcValue::TypeInt)
+    {
+        return false;
+    }
+    to = Access::integer(value);
+    return true;
+}
+
+bool param_to(XmlRpcValue &value, bool &to)
+{
+    if (value.getType() != XmlRpcValue::TypeBoolean)
+    {
+        return false;
+    }
+    to = Access::boolean(value);
+    return true;
+}
+
+bool param_to(XmlRpcValue &value, XmlRpcValue &to)
+{
+    to = value;
+    return true;
+}
+
+namespace
+{
+bool number_of(XmlRpcValue &value, double &number)
+{
+    if (value.getType() == XmlRpcValue::TypeBoolean)
+    {
+        number = Access::boolean(value) ? 1 : 0;
+        return true;
+    }
+    return param_to(value, number);
+}
+} // namespace
+
+bool element_to(XmlRpcValue &value, std::string &to)
+{
+    return param_to(value, to);
+}
+
+bool element_to(XmlRpcValue &value, double &to)
+{
+    return number_of(value, to);
+}
+
+bool element_to(XmlRpcValue &value, float &to)
+{
+    double number = 0;
+    const bool good = number_of(value, number);
+    to              = static_cast<float>(number);
+    return good;
+}
+
+bool element_to(XmlRpcValue &value, int &to)
+{
+    double number = 0;
+    const bool good = number_of(value, number);
+    to              = static_cast<int>(number);
+    return good;
+}
+
+bool element_to(XmlRpcValue &value, bool &to)
+{
+    double number = 0;
+    const bool good = number_of(value, number);
+    to              = number != 0;
+    return good;
+}
+
+} // namespace roscfe
+
+namespace ros
+{
+namespace param
+{
+
+bool has(const std::string &key)
+{
+    return roscfe::has_param(names::resolve(key));
+}
+
+bool del(const std::string &key)
+{
+    return roscfe::delete_param(names::resolve(key));
+}
+
+bool search(const std::string &key, std::string &result)
+{
+    return search(this_node::getName(), key, result);
+}
+
+// From the namespace upwards, the first that has the key's first part.
+bool search(const std::string &ns, const std::string &key, std::string &result)
+{
+    if (!key.empty() && (key[0] == '/' || key[0] == '~'))
+    {
+        result = names::resolve(key);
+        return roscfe::has_param(result);
+    }
+    const std::string first = key.substr(0, key.find('/'));
+    std::string       at    = names::resolve(ns);
+    for (;;)
+    {
+        if (roscfe::has_param(names::append(at, first)))
+        {
+            result = names::append(at, key);
+            return true;
+        }
+        if (at == "/" || at.empty())
+        {
+            return false;
+        }
+        at = names::parentNamespace(at);
+    }
+}
+
+bool getParamNames(std::vector<std::string> &keys)
+{
+    roscfe::param_names(keys);
+    return true;
+}
+
+} // namespace param
+} // namespace ros

@@ -1,0 +1,376 @@
+// Services: requests that come, calls that go out, and answers both ways.
+#include <algorithm>
+#include <cstring>
+
+#include "internal.h"
+#include "ros/node_handle.h"
+#include "ros/service.h"
+
+namespace roscfe
+{
+
+namespace
+{
+
+constexpr std::size_t  kRequestLead  = 4;           // number of the call
+constexpr std::size_t  kAnswerLead   = 5;           // and whether it succeeded
+constexpr std::int64_t kLook         = kSecond / 2; // how often a caller looks whether the service is still there
+constexpr std::int64_t kPoll         = kSecond / 50; // how often somebody who waits for a service looks
+
+// The one call that the node waits for. A callback that runs meanwhile may call, too, and comes back first.
+struct Call
+{
+    std::uint16_t              msg_id;
+    std::uint32_t              number;
+    std::vector<std::uint8_t> *answer;
+    bool                       is_over;
+    bool                       good;
+    Call *                     outer;
+};
+Call *        g_call  = nullptr;
+std::uint32_t g_calls = 0;
+
+std::vector<std::uint8_t> g_pieces; // of a long request that comes
+
+std::uint32_t number_at(const std::uint8_t *at)
+{
+    return static_cast<std::uint32_t>(at[0]) | static_cast<std::uint32_t>(at[1]) << 8 |
+           static_cast<std::uint32_t>(at[2]) << 16 | static_cast<std::uint32_t>(at[3]) << 24;
+}
+
+void put_number(std::uint8_t *at, std::uint32_t number)
+{
+    for (int byte = 0; byte < 4; ++byte)
+    {
+        at[byte] = static_cast<std::uint8_t>(number >> (8 * byte));
+    }
+}
+
+// Numbers of calls are the node's own, whoever else calls: the pipe's number is in them.
+std::uint32_t new_number()
+{
+    const auto pipe = static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(g_node.pipe));
+    g_calls         = (g_calls + 1) & 0xFFFF;
+    return 0x80000000U | (pipe & 0x7FFF) << 16 | g_calls;
+}
+
+// Answers of a service that was called once are always taken; those to others are passed over.
+bool listen_to_answers(std::uint16_t answer_id)
+{
+    static std::vector<std::uint16_t> listened;
+    if (std::find(listened.begin(), listened.end(), answer_id) != listened.end())
+    {
+        return true;
+    }
+    if (!listen(answer_id))
+    {
+        return false;
+    }
+    listened.push_back(answer_id);
+    return true;
+}
+
+std::uint8_t segment_flags(const std::uint8_t *packet)
+{
+    return packet[2] >> 6; // 3 whole, 1 first, 0 in the middle, 2 last
+}
+
+} // namespace
+
+// -- the side that serves ----------------------------------------------------------------------------------------------
+
+bool Service::receive(std::uint32_t number, const std::uint8_t *bytes, std::size_t size)
+{
+    if (count_ == waiting_.size())
+    {
+        ++dropped_;
+        return false;
+    }
+    Request &place = waiting_[(head_ + count_) % waiting_.size()];
+    place.number   = number;
+    place.bytes.assign(bytes, bytes + size);
+    ++count_;
+    return true;
+}
+
+ros::CallbackInterface::CallResult Service::call()
+{
+    if (count_ == 0 || !alive_)
+    {
+        return Invalid;
+    }
+    Request &request = waiting_[head_];
+    head_            = (head_ + 1) % waiting_.size();
+    --count_;
+    const ros::VoidConstPtr held = tracked_.lock();
+    const std::uint32_t     number = request.number;
+    const bool              good =
+        (!has_tracked_ || held) && serve(request.bytes.data(), request.bytes.size());
+    std::uint8_t lead[kAnswerLead];
+    put_number(lead, number);
+    lead[4] = good ? 1 : 0;
+    static std::vector<std::uint8_t> answer;
+    answer.resize(good ? answer_length() : 0);
+    if (good)
+    {
+        write_answer(answer.data(), answer.size());
+    }
+    send_bytes(answer_id_, lead, sizeof lead, answer.data(), answer.size());
+    return Success;
+}
+
+bool take_request(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size)
+{
+    if ((msg_id & kCommandBit) == 0)
+    {
+        return false;
+    }
+    for (const boost::shared_ptr<Service> &each : g_node.services)
+    {
+        if ((each->answer_id_ | kCommandBit) != msg_id)
+        {
+            continue;
+        }
+        const std::size_t lead = kCommandHeader + kRequestLead;
+        if (size < lead)
+        {
+            return true;
+        }
+        const std::uint32_t number = number_at(packet + kCommandHeader);
+        const std::uint8_t  flags  = segment_flags(packet);
+        const std::uint8_t *bytes  = packet + lead;
+        std::size_t         length = size - lead;
+        if (flags != 3)
+        {
+            // One long request at a time: its number is in front of what is kept.
+            if (flags == 1)
+            {
+                g_pieces.assign(packet + kCommandHeader, packet + lead);
+            }
+            else if (g_pieces.size() < kRequestLead || number_at(g_pieces.data()) != number)
+            {
+                return true;
+            }
+            g_pieces.insert(g_pieces.end(), bytes, bytes + length);
+            if (flags != 2)
+            {
+                return true;
+            }
+            bytes  = g_pieces.data() + kRequestLead;
+            length = g_pieces.size() - kRequestLead;
+        }
+        if (each->receive(number, bytes, length))
+        {
+            each->callbacks_->addCallback(each, reinterpret_cast<std::uintptr_t>(each.get()));
+        }
+        return true;
+    }
+    return false;
+}
+
+void offer(const boost::shared_ptr<Service> &service, const char *type, const char *md5)
+{
+    service->answer_id_ = enroll(Kind::server, service->name_, type, md5, "").msg_id;
+    service->callbacks_->expect(16);
+    g_node.services.push_back(service);
+    if (!listen(service->answer_id_ | kCommandBit))
+    {
+        CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: no subscription for service %s", g_node.name.c_str(),
+                          service->name_.c_str());
+    }
+}
+
+void withdraw(const boost::shared_ptr<Service> &service)
+{
+    service->alive_ = false;
+    auto &all       = g_node.services;
+    all.erase(std::remove(all.begin(), all.end(), service), all.end());
+    if (!g_node.ended)
+    {
+        service->callbacks_->removeByID(reinterpret_cast<std::uintptr_t>(service.get()));
+        listen_no_more(service->answer_id_ | kCommandBit);
+        withdraw_name(Kind::server, service->name_);
+    }
+}
+
+// -- the side that calls -----------------------------------------------------------------------------------------------
+
+Client::Client(const std::string &name, const char *type, const char *md5)
+    : name_(name), answer_id_(enroll(Kind::client, name, type, md5, "").msg_id)
+{
+}
+
+bool Client::exists() const
+{
+    pump(0);
+    return !g_node.knows_subscribers || pipes_on(answer_id_ | kCommandBit) > 0;
+}
+
+bool Client::wait_for_existence(std::int64_t timeout_ns)
+{
+    const std::int64_t until = now_ns() + timeout_ns;
+    while (!exists())
+    {
+        const std::int64_t now = now_ns();
+        if (g_node.shutting_down || (timeout_ns >= 0 && now >= until))
+        {
+            return false;
+        }
+        pump(timeout_ns >= 0 ? std::min(until, now + kPoll) : now + kPoll);
+    }
+    return true;
+}
+
+std::uint8_t *Client::begin(std::size_t size)
+{
+    if (!exists())
+    {
+        return nullptr;
+    }
+    size_ = size;
+    long_request_.resize(size);
+    return long_request_.data();
+}
+
+bool Client::call()
+{
+    Call this_call = {answer_id_, new_number(), &answer_, false, false, g_call};
+    if (!listen_to_answers(answer_id_))
+    {
+        return false;
+    }
+    g_call = &this_call;
+    answer_.clear();
+    std::uint8_t lead[kRequestLead];
+    put_number(lead, this_call.number);
+    send_bytes(answer_id_ | kCommandBit, lead, sizeof lead, long_request_.data(), size_);
+    while (!this_call.is_over && !g_node.shutting_down)
+    {
+        if (!pump(now_ns() + kLook) && !exists())
+        {
+            break; // whoever served has ended
+        }
+    }
+    g_call = this_call.outer;
+    return this_call.is_over && this_call.good;
+}
+
+bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size)
+{
+    const std::size_t lead = kTelemetryHeader + kAnswerLead;
+    for (Call *call = g_call; call != nullptr; call = call->outer)
+    {
+        if (call->msg_id != msg_id)
+        {
+            continue;
+        }
+        if (size < lead || number_at(packet + kTelemetryHeader) != call->number || call->is_over)
+        {
+            continue; // an answer to somebody else
+        }
+        const std::uint8_t flags = segment_flags(packet);
+        call->answer->insert(call->answer->end(), packet + lead, packet + size);
+        call->good    = packet[lead - 1] != 0;
+        call->is_over = flags == 3 || flags == 2;
+        return true;
+    }
+    return false;
+}
+
+bool wait_for_service(const std::string &name, std::int64_t timeout_ns)
+{
+    return Client(name, "*", "*").wait_for_existence(timeout_ns);
+}
+
+bool service_exists(const std::string &name)
+{
+    return Client(name, "*", "*").exists();
+}
+
+} // namespace roscfe
+
+namespace ros
+{
+
+ServiceServer NodeHandle::advertiseService(AdvertiseServiceOptions &options)
+{
+    CallbackQueueInterface *queue = options.callback_queue != nullptr ? options.callback_queue : getCallbackQueue();
+    auto                    made  = options.make(resolveName(options.service), queue);
+    made->tracked_                = options.tracked_object;
+    made->has_tracked_            = options.tracked_object != nullptr;
+    roscfe::offer(made, options.type, options.service_md5);
+    return ServiceServer(made);
+}
+
+ServiceClient NodeHandle::serviceClient(ServiceClientOptions &options)
+{
+    return ServiceClient(resolveName(options.service), options.persistent, options.type.c_str(),
+                         options.md5sum.c_str());
+}
+
+ServiceServer::ServiceServer(const boost::shared_ptr<roscfe::Service> &service)
+    : handle_(boost::make_shared<Handle>(service))
+{
+}
+
+void ServiceServer::Handle::release()
+{
+    if (service)
+    {
+        const boost::shared_ptr<roscfe::Service> was = service;
+        service.reset();
+        roscfe::withdraw(was);
+    }
+}
+
+void ServiceServer::shutdown()
+{
+    if (handle_)
+    {
+        handle_->release();
+    }
+}
+
+std::string ServiceServer::getService() const
+{
+    return *this ? handle_->service->name_ : std::string();
+}
+
+ServiceClient::ServiceClient(const std::string &name, bool persistent, const char *type, const char *md5)
+    : client_(boost::make_shared<roscfe::Client>(name, type, md5)), persistent_(persistent)
+{
+}
+
+bool ServiceClient::waitForExistence(Duration timeout)
+{
+    return client_ && client_->wait_for_existence(timeout.toNSec());
+}
+
+namespace service
+{
+
+bool exists(const std::string &name, bool print_failure_reason)
+{
+    const std::string resolved = names::resolve(name);
+    const bool        there    = roscfe::service_exists(resolved);
+    if (!there && print_failure_reason)
+    {
+        CFE_EVS_SendEvent(roscfe::kBusEid, CFE_EVS_EventType_INFORMATION, "waitForService: Service [%s] has not been "
+                          "advertised, waiting...", resolved.c_str());
+    }
+    return there;
+}
+
+bool waitForService(const std::string &name, std::int32_t timeout_ms)
+{
+    return roscfe::wait_for_service(names::resolve(name), timeout_ms * roscfe::kMillisecond);
+}
+
+bool waitForService(const std::string &name, Duration timeout)
+{
+    return roscfe::wait_for_service(names::resolve(name), timeout.toNSec());
+}
+
+} // namespace service
+
+} // namespace ros
