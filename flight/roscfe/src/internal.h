@@ -9,6 +9,8 @@
 
 extern "C" {
 #include "cfe.h"
+#include "cfe_msgids.h"
+#include "cfe_sb_msg.h"
 }
 
 #include "ros/callback_queue.h"
