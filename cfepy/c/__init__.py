@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from cfepy.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.c.abi import AbiProfile, abi_profile
     from cfepy.c.api import function_names
     from cfepy.c.elf import ElfError, read_shared_object
     from cfepy.c.engine import cache_folder
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from cfepy.c.toolchain import Built, CMakeScript, CompilerError, Options, build, cpp_compiler, headers_folder
 
 __all__ = [
+    "AbiProfile",
     "Built",
     "CMakeScript",
     "CRuntime",
@@ -31,6 +33,7 @@ __all__ = [
     "CompilerError",
     "ElfError",
     "Options",
+    "abi_profile",
     "build",
     "cache_folder",
     "cpp_compiler",
@@ -44,6 +47,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".abi": ("AbiProfile", "abi_profile"),
             ".api": ("function_names",),
             ".elf": ("ElfError", "read_shared_object"),
             ".engine": ("cache_folder",),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from cfepy.c.abi import abi_profile
 from cfepy.c.elf import ElfError, SharedObject, read_shared_object
 from cfepy.c.faults import CFault
 from cfepy.c.image import Image, LoadedCode
@@ -57,6 +58,9 @@ class CompiledLoader:
             missing = self.runtime.missing(source)
             if missing:
                 self._console.write(f"OS_ModuleLoad: {file} needs what nobody has: {', '.join(missing)}")
+            profile = abi_profile(source)
+            if profile.contradicts(self.runtime.omit_deprecated):
+                self._console.write(f"OS_ModuleLoad: {file} was built {profile.value}; the mission says otherwise")
             return self.runtime.load(source)
         except (ElfError, MemoryError) as error:
             raise self._failed(error) from error

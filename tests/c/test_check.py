@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.pilot.check import check_mission
-from tests.c.building import compile_c, needs_compiler, write_mission
+from tests.c.building import compile_c, console_of, fly, needs_compiler, write_mission
 
 pytestmark = needs_compiler
 
@@ -15,7 +15,7 @@ GOOD = "void TEST_Main(void) { OS_TaskDelay(1); }"
 
 
 def problems(folder: str) -> list[str]:
-    return [each.text for each in check_mission(Path(folder) / "startup.scr")]
+    return [each.text for each in check_mission(folder)]
 
 
 def test_a_good_one_has_no_problem(tmp_path: Path) -> None:
@@ -69,3 +69,46 @@ def test_an_elf_file_never_falls_back_to_a_python_application(tmp_path: Path) ->
     (tmp_path / "hk.so").write_bytes(b"\x7fELF, but not more")
     folder = write_mission(tmp_path, "hk")
     assert "hk.so" in problems(folder)[0]
+
+
+TABLES = """
+    typedef struct { uint32_t id; } CFE_TBL_HandleId_t;
+    typedef HANDLE CFE_TBL_Handle_t;
+    int32_t CFE_TBL_Update(CFE_TBL_Handle_t);
+    static CFE_TBL_Handle_t handle;
+    void TEST_Main(void) { CFE_TBL_Update(handle); }
+"""
+HANDLES = {False: "int16_t", True: "CFE_TBL_HandleId_t"}
+OMITS = "compiled: {{omit_deprecated: {}}}\n"
+
+
+@pytest.mark.parametrize("of_file", [False, True])
+@pytest.mark.parametrize("of_mission", [None, False, True])
+def test_an_object_of_the_other_abi_profile(tmp_path: Path, of_file: bool, of_mission: bool | None) -> None:
+    made = compile_c(tmp_path, "TEST", TABLES, f"-DHANDLE={HANDLES[of_file]}")
+    folder = write_mission(tmp_path, "TEST")
+    if of_mission is not None:
+        (tmp_path / "mission.yaml").write_text(OMITS.format(str(of_mission).lower()))
+    found = check_mission(str(tmp_path / "startup.scr"))
+    console = console_of(fly(folder, 1))
+    if of_file is bool(of_mission):
+        assert found == []
+        assert "OMIT_DEPRECATED" not in console
+        return
+    [problem] = found
+    assert not problem.is_warning
+    assert problem.file == made
+    word = str(of_file).lower()
+    assert problem.text.startswith(f"was built with OMIT_DEPRECATED={word}, where handles of tables are")
+    assert f"write `compiled: {{omit_deprecated: {word}}}` into the mission file" in problem.text
+    assert f"OS_ModuleLoad: /cf/TEST.so was built with OMIT_DEPRECATED={word}" in console
+
+
+def test_without_debug_data_the_abi_profile_cannot_be_told(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", TABLES, "-DHANDLE=int16_t", "-g0")
+    folder = write_mission(tmp_path, "TEST")
+    [problem] = check_mission(folder)
+    assert problem.is_warning
+    assert "whether TEST.so have OMIT_DEPRECATED cannot be told" in problem.text
+    (tmp_path / "mission.yaml").write_text(OMITS.format("false"))
+    assert check_mission(folder) == []

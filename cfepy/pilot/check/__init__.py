@@ -25,6 +25,7 @@ from cfepy.mission import (
 )
 from cfepy.monitors import read_demands
 from cfepy.pilot.check.cfe_names import wrong_names
+from cfepy.pilot.check.compiled import check_profiles
 from cfepy.pilot.check.mission_sections import check_board, check_deadlines, check_lock, check_nodes_said, check_packets
 from cfepy.pilot.check.problem import MissionProblem, problem_of
 from cfepy.pilot.check.ros_files import NodeScript, check_definitions_of, check_launch, check_nodes
@@ -87,6 +88,7 @@ def _check_folder(script: Path, board: str | None) -> list[MissionProblem]:
     started = entries(data, longest)
     demands = read_demands(said.demands, mistakes)
     found = [*check_startup(script, data, started, longest), *(problem_of(error, script) for error in mistakes.errors)]
+    found += check_profiles(script, started, said)
     for source, entry_point in dict.fromkeys(app_sources(script.parent, started)):
         found += wrong_names(source, entry_point)
     nodes = _nodes_of(script.parent, started, said)
