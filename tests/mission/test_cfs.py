@@ -15,7 +15,7 @@ from tests.twin.flight_apps import FLIGHT_APPS
 
 FOLDER = Path(__file__).parents[2] / "missions" / "cfs"
 DEFINITIONS = sorted(
-    [*FOLDER.glob("*.yaml"), *(each for each in FOLDER.glob("*.py") if each.with_suffix(".tbl").exists())]
+    each for each in FOLDER.iterdir() if each.suffix in (".yaml", ".py") and each.with_suffix(".tbl").exists()
 )
 BUILT = os.environ.get("CFEPY_REAL_CFE", "")
 NAMES = [app.name.lower() for app in FLIGHT_APPS]
