@@ -20,6 +20,7 @@ from cfepy.units import NS_PER_S
 from rospy_shim.client.modules import RosModules
 from rospy_shim.client.node import Node
 from rospy_shim.client.tasks import NodeTasks
+from rospy_shim.graph.compiled import CompiledNodes
 from rospy_shim.graph.graph import Graph, TopicEntry, TopicRow
 from rospy_shim.library_parts import FOLDER, STAND_INS, ConfigModules, library_names, library_parts
 from rospy_shim.master import MASTER_PORT, Switchboard, xmlrpc_client
@@ -173,7 +174,7 @@ class RosRuntime:
         if files is not None:
             files.stamps.now_ns = lambda: self._epoch_ns + kernel.now
         self.monitor = ProcessMonitor(config, console, kernel.stop)
-        self.parameters = ParameterApp(cfe, self.graph.params)
+        self.parameters = ParameterApp(cfe, self.graph.params, CompiledNodes(self.graph, cfe.sb))
         self._started: dict[str, NodeConfig] = {}
         self._running: list[Node] = []
         self._pids = {MASTER_PORT}

@@ -14,6 +14,8 @@ from cfepy.es import SymbolError
 from cfepy.status import OS_ERROR, OsalError
 
 NO_SYMBOL = "NULL"
+NODE_MARK = "roscfe_node"
+"""The symbol that marks a ROS node: what the convertor wrote around it."""
 
 
 class CompiledLoader:
@@ -22,10 +24,12 @@ class CompiledLoader:
     Args:
         runtime: the C side of the processor.
         console: for what cannot be loaded, and for what nobody has.
+        on_node: called before an application runs that is a ROS node.
     """
 
-    def __init__(self, runtime: CRuntime, console: Console) -> None:
+    def __init__(self, runtime: CRuntime, console: Console, on_node: Callable[[], object]) -> None:
         self.runtime = runtime
+        self.on_node = on_node
         self._console = console
         self._read: dict[bytes, SharedObject] = {}
 
@@ -104,6 +108,8 @@ class CompiledCode:
         image = self._loader.load(self._file, self._data)
         runtime.applications[app_name] = image
         function = self._loader.symbol(image, self._file, symbol)
+        if NODE_MARK in image.symbols:
+            self._loader.on_node()
         return lambda: runtime.run_main(function)
 
     def library(self, symbol: str) -> tuple[object, Callable[[int], object]]:

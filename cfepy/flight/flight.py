@@ -123,13 +123,14 @@ class RosSide:
 
     def call(self, name: str, request: Any, fields: Mapping[str, Any]) -> HostCall:
         """Begin to call a service; the mission has to run for the answer to come."""
-        services = self._started().graph.services
+        graph = self._started().graph
+        services = graph.services
         full = name if name.startswith("/") else f"/{name}"
         if full not in services:
             raise ExpectationError(f"nobody offers the service {full}; {near(full, sorted(services))}")
-        service = services[full].service
         if request is None:
-            request = filled(service.node.library, service.request_class._type, fields)
+            node, service_class = graph.caller(full)
+            request = filled(node.library, service_class._request_class._type, fields)
         call: HostCall = self._mission.outside.act(CALL, full, serialized(request))
         return call
 

@@ -124,9 +124,9 @@ class HostActs:
         self._ros.graph.params.set(name, value)
 
     def _call(self, name: str, request: bytes) -> HostCall:
-        """Call from a task of the node that offers the service, so that no node has to be added for it."""
-        service = self._ros.graph.services[name].service
-        call, message = HostCall(), service.request_class().deserialize(request)
-        proxy = service.node.ServiceProxy(name, service.service_class)
-        service.node.start_task("host", lambda: call.make(proxy, message))
+        """Call from a task of a node that is there already; see `Graph.caller`."""
+        node, service_class = self._ros.graph.caller(name)
+        call, message = HostCall(), service_class._request_class().deserialize(request)
+        proxy = node.ServiceProxy(name, service_class)
+        node.start_task("host", lambda: call.make(proxy, message))
         return call

@@ -264,11 +264,16 @@ class Processor:
 
     def _node_main(self, script: Path, app_name: str) -> Callable[[], object]:
         """The main function of a node; ROS itself starts before the first one."""
+        ros = self._start_ros()
+        return lambda: ros.run_node(script, app_name)
+
+    def _start_ros(self) -> RosRuntime:
+        """ROS, which starts before the first node, compiled or not."""
         ros = self.ros
         if ros is None:
             ros = self.ros = self._make_ros()
         ros.parameters.ensure()
-        return lambda: ros.run_node(script, app_name)
+        return ros
 
     def _make_ros(self) -> RosRuntime:
         """The ROS side; a mission without nodes does not import it."""
@@ -311,7 +316,7 @@ class Processor:
             on_race=lambda race: machine.record.data_races.append(DataRace(*race.told())),
         )
         self.cfe.es.core_memory = runtime.core_memory
-        return CompiledLoader(runtime, machine.console)
+        return CompiledLoader(runtime, machine.console, self._start_ros)
 
     def _script_of(self, file: str) -> Path | None:
         """The script of a node that came with a launch file, or that another node has started."""

@@ -17,7 +17,7 @@ from rospy_shim.client import connecting
 from rospy_shim.client.exceptions import ROSException
 from rospy_shim.client.message import packer, unpacker
 from rospy_shim.client.topic_side import INBOUND, TopicConnection, TopicSide
-from rospy_shim.client.transport import HEADER_BYTES, Assembler, sequence_of
+from rospy_shim.client.transport import EVERYBODY, HEADER_BYTES, SPARE_AT, Assembler, is_for_another, sequence_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -290,6 +290,8 @@ class Subscription(TopicSide):
                 return
             packet = receive(pipe)
             if packet is None:
+                continue
+            if packet[SPARE_AT:HEADER_BYTES] != EVERYBODY and not topic.raw and is_for_another(packet, pipe):
                 continue
             if packet[2] < WHOLE and not topic.raw:
                 packet = self._assemble(packet, topic)

@@ -10,6 +10,8 @@ import struct
 from collections.abc import Iterator
 
 HEADER_BYTES = 16  # of a cFE telemetry packet
+SPARE_AT = 12  # in the header; its bytes are 0 but in packets for one subscriber alone
+EVERYBODY = bytes(HEADER_BYTES - SPARE_AT)
 WHOLE = 0xC0  # sequence flags, as they stand in byte 2 of a packet
 FIRST = 0x40
 MIDDLE = 0x00
@@ -21,6 +23,25 @@ _header = struct.Struct(">HBBH10x").pack
 def whole_header(msg_id: int) -> bytes:
     """The header of a packet that holds a whole message; the bus fills in sequence count, length and time."""
     return _header(msg_id, WHOLE, 0, 0)
+
+
+def addressed(packet: bytes, pipe: int) -> bytes:
+    """The same packet for one subscriber alone.
+
+    Args:
+        packet: of a topic.
+        pipe: the id of the subscriber's pipe.
+    """
+    return packet[:SPARE_AT] + _address(pipe) + packet[HEADER_BYTES:]
+
+
+def is_for_another(packet: bytes, pipe: int) -> bool:
+    """Whether a packet whose spare bytes are not 0 is for another subscriber than the one with this pipe."""
+    return len(packet) >= HEADER_BYTES and packet[SPARE_AT:HEADER_BYTES] != _address(pipe)
+
+
+def _address(pipe: int) -> bytes:
+    return ((pipe & 0xFFFFFF) << 8 | 1).to_bytes(4, "big")
 
 
 def segments(msg_id: int, payload: bytes, room: int) -> Iterator[bytes]:

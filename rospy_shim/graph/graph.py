@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from cfepy.cached import CachedProperty
 from rospy_shim.client.exceptions import ServiceException
 from rospy_shim.client.transport import sequence_of
+from rospy_shim.graph.compiled import CompiledNode, CompiledService, DeclaredType
 from rospy_shim.graph.msg_ids import COMMAND_BIT, MsgIds
 from rospy_shim.parameters.tree import ParameterTree
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from rospy_shim.client.node import Node
     from rospy_shim.client.service import Service
     from rospy_shim.client.subscription import Subscription
-    from rospy_shim.msgs import MessageClass
+    from rospy_shim.msgs import MessageClass, ServiceClass
 
 Header = dict[str, str]
 """What ROS tells the two ends of a connection: caller, type, md5sum, topic, ..."""
@@ -67,8 +68,8 @@ class TopicEntry:
         self.lost = 0  # long messages of which a segment is missing, once per subscriber
         self.notes: dict[int, tuple[Header, int]] = {}  # by sequence count: publisher, and number of the segment
 
-    def join(self, data_class: MessageClass) -> bool:
-        """A node wants to connect: whether the message class is the topic's. The first one that comes decides."""
+    def join(self, data_class: MessageClass | DeclaredType) -> bool:
+        """A node wants to connect: whether the message's type is the topic's. The first one that comes decides."""
         if self._members == 0 or not self.type:
             concrete = data_class._type != "*"
             self.type, self.md5sum = (data_class._type, data_class._md5sum) if concrete else (self.type, "")
@@ -101,6 +102,16 @@ class TopicEntry:
         for link in self.links:
             if link.leftovers is not None:
                 link.leftovers.reconnect()
+
+    def add_compiled_publisher(self, name: str) -> None:
+        """A compiled node publishes; its packets are anybody's, since the Software Bus does not know senders."""
+        _remember(self.publisher_names, name)
+        self._shared = True
+        self._refresh()
+
+    def add_compiled_subscriber(self, name: str) -> None:
+        """A compiled node subscribes."""
+        _remember(self.subscriber_names, name)
 
     def add_subscription(self, subscription: Subscription) -> None:
         """A subscriber came."""
@@ -146,7 +157,7 @@ class ServiceEntry:
         ids: gives it its MsgIds when they are first asked for.
     """
 
-    def __init__(self, service: Service, ids: MsgIds) -> None:
+    def __init__(self, service: Service | CompiledService, ids: MsgIds) -> None:
         self.service = service
         self.calls: dict[int, ServiceCall] = {}  # by number
         self.half_answered: set[int] = set()  # calls whose response could not be serialized
@@ -182,6 +193,7 @@ class Graph:
         self.connection_delay_ns = config.connection_delay_ns
         self.topics: dict[str, TopicEntry] = {}
         self.nodes: dict[str, Node] = {}
+        self.compiled: dict[str, CompiledNode] = {}
         self.services: dict[str, ServiceEntry] = {}
         self.params = ParameterTree(config.params)
         self.ids = MsgIds(config)
@@ -211,7 +223,7 @@ class Graph:
         if self.nodes.get(node.names.name) is node:
             del self.nodes[node.names.name]
 
-    def register_service(self, service: Service) -> ServiceEntry:
+    def register_service(self, service: Service | CompiledService) -> ServiceEntry:
         """A node offers a service; one of another node under that name is shut down, as ROS forgets it.
 
         Raises:
@@ -226,6 +238,24 @@ class Graph:
             former.service.shutdown("another node offers the service")
         self.services[name] = entry
         return entry
+
+    def caller(self, name: str) -> tuple[Node, ServiceClass]:
+        """The node from which a service is called for a test or a tool, and the class of the service.
+
+        That is the node that offers it, so that none has to be added; of a compiled one, any node in Python.
+
+        Args:
+            name: resolved name of a service that is offered.
+
+        Raises:
+            ServiceException: a compiled node offers it, and there is no node in Python.
+        """
+        service = self.services[name].service
+        if isinstance(service, CompiledService):
+            for node in self.nodes.values():
+                return node, node.library.service_class(service.type)
+            raise ServiceException(f"service [{name}] is of a compiled node, and no node in Python is there to call it")
+        return service.node, service.service_class
 
     def forget_service(self, service: Service) -> None:
         """A service is offered no longer."""

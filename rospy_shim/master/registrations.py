@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rospy_shim.client.names import ANYTYPE
+from rospy_shim.graph.compiled import CompiledNode
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
@@ -19,9 +20,9 @@ Entries = dict[str, dict[str, str]]
 """By topic or service, or by parameter: names of nodes and their URIs."""
 
 
-def uri_of(node: Node) -> str:
-    """The URI at which a node answers."""
-    return node.client.get_node_uri() or ""
+def uri_of(node: Node | CompiledNode) -> str:
+    """The URI at which a node answers; nobody does at that of a compiled node."""
+    return node.uri if isinstance(node, CompiledNode) else node.client.get_node_uri() or ""
 
 
 class Registrations:
@@ -48,12 +49,14 @@ class Registrations:
         found = self._of_nodes(
             (name, node) for node in self._nodes() for name, link in node.links.items() if link.topic
         )
-        return _merged(found, self._publishers)
+        compiled = ((name, node) for node in self._graph.compiled.values() for name in node.published)
+        return _merged(_merged(found, self._of_nodes(compiled)), self._publishers)
 
     def subscribers(self) -> Entries:
         """Topics that nodes subscribe to, with the nodes."""
         pairs = ((name, node) for node in self._nodes() for name, each in node.subscriptions.items() if each.topic)
-        return _merged(self._of_nodes(pairs), self._subscribers)
+        compiled = ((name, node) for node in self._graph.compiled.values() for name in node.subscribed)
+        return _merged(_merged(self._of_nodes(pairs), self._of_nodes(compiled)), self._subscribers)
 
     def providers(self) -> Entries:
         """Services that nodes offer, with the nodes."""
@@ -69,7 +72,7 @@ class Registrations:
 
     def node_uri(self, name: str) -> str | None:
         """Where a node answers; None for one that is unknown."""
-        node = self._graph.nodes.get(name)
+        node = self._graph.nodes.get(name) or self._graph.compiled.get(name)
         return self._uris.get(name) if node is None else uri_of(node)
 
     def service_uri(self, name: str) -> str | None:
@@ -80,7 +83,7 @@ class Registrations:
     def _nodes(self) -> Iterator[Node]:
         yield from self._graph.nodes.values()
 
-    def _of_nodes(self, pairs: Iterator[tuple[str, Node]]) -> Entries:
+    def _of_nodes(self, pairs: Iterator[tuple[str, Node | CompiledNode]]) -> Entries:
         found: Entries = {}
         for name, node in pairs:
             found.setdefault(name, {})[node.names.name] = uri_of(node)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from cfepy.es import APP_ERROR, StartParams
-from cfepy.msg import BAD_CODE, BAD_LENGTH, CommandTable
+from cfepy.msg import BAD_CODE, BAD_LENGTH, CommandTable, get_msg_id
 from cfepy.status import CFE_TBL_INFO_RECOVERED_TBL, CFE_TBL_INFO_UPDATED, CFE_TBL_WARN_NOT_CRITICAL, CfeError
 from cfepy.tbl import OPT_CRITICAL, OPT_DBL_BUFFER
 from rospy_shim.parameters import table
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from cfepy.app import Cfe
     from cfepy.tbl import TableHandle
     from cfepy.tbl.registry import Validator
+    from rospy_shim.graph.compiled import CompiledNodes
 
 FILE = "/cf/roscore.so"
 SYMBOL = "ROS_AppMain"
@@ -142,11 +143,13 @@ class ParameterApp:
     Args:
         cfe: the handle of cFE's services.
         tree: the parameters.
+        master: answers compiled nodes.
     """
 
-    def __init__(self, cfe: Cfe, tree: ParameterTree) -> None:
+    def __init__(self, cfe: Cfe, tree: ParameterTree, master: CompiledNodes | None = None) -> None:
         self._cfe = cfe
         self._tree = tree
+        self._master = master
         self._is_starting = False
         self._has_run = False
         self._reset()
@@ -203,7 +206,7 @@ class ParameterApp:
         cfe = self._cfe
         cfe.evs.register()
         self._pipe = cfe.sb.create_pipe(PIPE_DEPTH, "ROS_CMD_PIPE")
-        for msg_id in (table.CMD_MID, table.SEND_HK_MID, table.WAKEUP_MID):
+        for msg_id in (table.CMD_MID, table.SEND_HK_MID, table.WAKEUP_MID, table.MASTER_MID):
             cfe.sb.subscribe(msg_id, self._pipe)
         self._images.register(table.WAKEUP_MID)
         self._read(is_start=self._has_run or not self._images.survived)
@@ -255,6 +258,10 @@ class ParameterApp:
     # -- commands ----------------------------------------------------------------------------------------------------
 
     def _handle(self, packet: bytes) -> None:
+        if self._master is not None and get_msg_id(packet) == table.MASTER_MID:
+            for answer in self._master.answer(packet):
+                self._cfe.sb.transmit_msg(answer)
+            return
         done = self._commands.dispatch(packet)
         if done.outcome == BAD_CODE:
             self._rejected += 1

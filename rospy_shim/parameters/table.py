@@ -24,6 +24,8 @@ MOST_ROWS = 127
 
 ROW = Layout("ROS_Parameter_t", [("Name", f"char[{NAME_BYTES}]"), ("Value", f"char[{VALUE_BYTES}]")])
 CMD_MID, SEND_HK_MID, WAKEUP_MID, HK_TLM_MID = 0x18FD, 0x18FE, 0x18FF, 0x08FE
+MASTER_MID, MASTER_TLM_MID = 0x18FC, 0x08FC
+"""What compiled nodes ask, and the answers: packets as of a service (`rospy_shim.graph.compiled`)."""
 
 _HK = Layout(
     "ROS_HkTlm_Payload_t",

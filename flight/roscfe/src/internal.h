@@ -119,14 +119,18 @@ enum class Kind : std::uint8_t
     subscriber = 1,
     server     = 2,
     client     = 3,
-    gone       = 4 // added to the others: the node does not do that any more
+    begun      = 0, // added to the others
+    gone       = 4, // the node does not do that any more
+    subscribed = 8  // the subscription is on the bus
 };
 struct Registration
 {
-    std::uint16_t msg_id = 0;
-    bool          raw    = false;
+    std::uint16_t msg_id  = 0;
+    bool          raw     = false;
+    bool          latched = false; // there are messages for a subscriber that comes now
 };
 Registration enroll(Kind kind, const std::string &name, const char *type, const char *md5, const char *definition);
+void         ask_for_latched(const std::string &topic);
 void         withdraw_name(Kind kind, const std::string &name);
 
 } // namespace roscfe

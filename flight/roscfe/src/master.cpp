@@ -21,14 +21,19 @@ void put_text(std::vector<std::uint8_t> &to, const char *text)
     to.insert(to.end(), text, text + size);
 }
 
-// Ask the ROS application, as a service is called: node, what, name, type, md5 sum, definition.
-bool ask(Kind kind, bool gone, const std::string &name, const char *type, const char *md5, const char *definition,
+// Ask the ROS application, as a service is called: the node's pipe, what, node, name, type, md5 sum, definition.
+bool ask(Kind kind, Kind about, const std::string &name, const char *type, const char *md5, const char *definition,
          Registration &answer)
 {
     static Client             master("", nullptr, nullptr);
     std::vector<std::uint8_t> request;
+    const auto pipe = static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(g_node.pipe));
+    for (int byte = 0; byte < 4; ++byte)
+    {
+        request.push_back(static_cast<std::uint8_t>(pipe >> (8 * byte)));
+    }
+    request.push_back(static_cast<std::uint8_t>(static_cast<int>(kind) | static_cast<int>(about)));
     put_text(request, g_node.name.c_str());
-    request.push_back(static_cast<std::uint8_t>(static_cast<int>(kind) | (gone ? static_cast<int>(Kind::gone) : 0)));
     put_text(request, name.c_str());
     put_text(request, type);
     put_text(request, md5);
@@ -52,8 +57,9 @@ bool ask(Kind kind, bool gone, const std::string &name, const char *type, const 
     {
         return false;
     }
-    answer.msg_id = static_cast<std::uint16_t>(master.answer_[0] | master.answer_[1] << 8);
-    answer.raw    = master.answer_[2] != 0;
+    answer.msg_id  = static_cast<std::uint16_t>(master.answer_[0] | master.answer_[1] << 8);
+    answer.raw     = (master.answer_[2] & 1) != 0;
+    answer.latched = (master.answer_[2] & 2) != 0;
     return true;
 }
 
@@ -67,7 +73,7 @@ Registration enroll(Kind kind, const std::string &name, const char *type, const 
         place.msg_id = kMasterMsgId; // the master itself, which needs nobody to find it
         return place;
     }
-    if (g_node.has_master && ask(kind, false, name, type, md5, definition, place))
+    if (g_node.has_master && ask(kind, Kind::begun, name, type, md5, definition, place))
     {
         return place;
     }
@@ -105,8 +111,14 @@ void withdraw_name(Kind kind, const std::string &name)
     Registration place;
     if (g_node.has_master)
     {
-        ask(kind, true, name, "", "", "", place);
+        ask(kind, Kind::gone, name, "", "", "", place);
     }
+}
+
+void ask_for_latched(const std::string &topic)
+{
+    Registration place;
+    ask(Kind::subscriber, Kind::subscribed, topic, "", "", "", place);
 }
 
 } // namespace roscfe

@@ -172,6 +172,10 @@ void subscribe(const boost::shared_ptr<Subscription> &subscription, const char *
         CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: no subscription of %s", g_node.name.c_str(),
                           subscription->topic_.c_str());
     }
+    if (place.latched)
+    {
+        ask_for_latched(subscription->topic_);
+    }
 }
 
 void unsubscribe(const boost::shared_ptr<Subscription> &subscription)

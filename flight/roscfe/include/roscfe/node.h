@@ -37,6 +37,9 @@ struct ParamRow
     char value[80];
 };
 
+// What is generated has it as `extern "C" const roscfe::NodeDescription roscfe_node`, which marks the shared object as a
+// ROS node: cfepy starts its application ROS before it.
+//
 // One node of a launch file, or one executable of a package.
 struct NodeDescription
 {

@@ -1,0 +1,256 @@
+"""Compiled nodes: roscpp nodes that are cFE applications, and what the graph knows of them.
+
+Such a node tells the application ROS what it publishes, hears and offers, with a request as of a service, and gets the
+MsgId of each name. Everything else it learns from the Software Bus, as on a flight computer without that application.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterator
+from enum import IntEnum
+from typing import TYPE_CHECKING, NamedTuple
+
+from cfepy.status import UsageError
+from rospy_shim.client.service import answer_packets, call_of_request, room_of
+from rospy_shim.client.transport import HEADER_BYTES, addressed, segments, whole_header
+from rospy_shim.parameters.table import MASTER_TLM_MID
+
+if TYPE_CHECKING:
+    from cfepy.sb import SoftwareBus
+    from rospy_shim.client.link import Link
+    from rospy_shim.graph.graph import Graph, TopicEntry
+
+_BODY_AT = 12  # behind the command header and the number of the call
+
+
+class Kind(IntEnum):
+    """What a request is about."""
+
+    PUBLISHER = 0
+    SUBSCRIBER = 1
+    SERVER = 2
+    CLIENT = 3
+    GONE = 4  # added to the others: no longer
+    SUBSCRIBED = 8  # a subscriber's pipe is on the bus now: it wants the latched messages
+
+
+class Answer(NamedTuple):
+    """What a node is told of a name."""
+
+    msg_id: int
+    raw: bool = False
+    latched: bool = False
+
+    def packed(self) -> bytes:
+        """Its bytes: the MsgId, and a byte of flags."""
+        return struct.pack("<HB", self.msg_id, self.raw | self.latched << 1)
+
+
+class DeclaredType:
+    """A type as a compiled node names it: there is no class for it.
+
+    Args:
+        name: "package/Name"; "*" for any.
+        md5sum: of its definition.
+        definition: its full text; empty for a service.
+    """
+
+    def __init__(self, name: str, md5sum: str, definition: str) -> None:
+        self._type = name
+        self._md5sum = md5sum
+        self._full_text = definition
+
+
+class CompiledService:
+    """A service that a compiled node offers, as those who call it see it.
+
+    Args:
+        node: which one.
+        name: resolved name of the service.
+        declared: its type.
+    """
+
+    def __init__(self, node: CompiledNode, name: str, declared: DeclaredType) -> None:
+        self.node = node
+        self.resolved_name = name
+        self.service_class = declared
+        self.type = declared._type
+        self.uri = f"rosrpc://cfepy{name}"
+
+    def has_room(self, packet: bytes) -> bool:
+        """Whether a packet of a request may be sent."""
+        pipe = self.node.bus.find_pipe(self.node.pipe)
+        return pipe is not None and len(pipe.items) < room_of(pipe, packet)
+
+    def attend(self) -> None:
+        """Nothing: the node takes its requests when it spins."""
+
+    def shutdown(self, reason: str = "") -> None:
+        """Nothing: another node offers the service now, and this one is called no more."""
+
+
+class _Names(NamedTuple):
+    name: str
+
+
+class CompiledNode:
+    """A compiled node in the graph.
+
+    Args:
+        name: its full name.
+        pipe: through which it hears everything.
+        bus: the Software Bus.
+    """
+
+    def __init__(self, name: str, pipe: int, bus: SoftwareBus) -> None:
+        self.names = _Names(name)
+        self.pipe = pipe
+        self.bus = bus
+        self.published: dict[str, str] = {}  # types by topic
+        self.subscribed: dict[str, str] = {}
+
+    @property
+    def uri(self) -> str:
+        """A URI for lists of nodes."""
+        return f"http://cfepy{self.names.name}"
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether its application still runs."""
+        return self.bus.find_pipe(self.pipe) is not None
+
+
+class CompiledNodes:
+    """The compiled nodes of a mission, and the application ROS as their master.
+
+    Args:
+        graph: the mission's ROS graph.
+        bus: the Software Bus.
+    """
+
+    def __init__(self, graph: Graph, bus: SoftwareBus) -> None:
+        self._graph = graph
+        self._bus = bus
+
+    def answer(self, packet: bytes) -> Iterator[bytes]:
+        """The packets that answer a request."""
+        number = call_of_request(packet)
+        try:
+            good, body = True, self._enter(packet[_BODY_AT:]).packed()
+        except (UsageError, struct.error, UnicodeDecodeError) as error:
+            good, body = False, str(error).encode()
+        return answer_packets(MASTER_TLM_MID, number, good, body, self._bus.config.sb_max_msg_size)
+
+    def forget_ended(self) -> None:
+        """Nodes whose applications have ended leave the graph."""
+        for node in [each for each in self._graph.compiled.values() if not each.is_alive]:
+            del self._graph.compiled[node.names.name]
+            for name in [*node.published, *node.subscribed]:
+                self._graph.topic(name).leave()
+            services = self._graph.services
+            for name in [name for name, entry in services.items() if entry.service.node is node]:
+                del services[name]
+
+    def _enter(self, body: bytes) -> Answer:
+        """Take what a node says.
+
+        Raises:
+            UsageError: the name has no MsgId, or another type.
+        """
+        self.forget_ended()
+        pipe, kind = struct.unpack_from("<IB", body)
+        who, name, kind_of, md5sum, definition = _texts(body, 5)
+        node = self._graph.compiled.get(who)
+        if node is None or node.pipe != pipe:
+            node = self._graph.compiled[who] = CompiledNode(who, pipe, self._bus)
+        declared = DeclaredType(kind_of, md5sum, definition)
+        does: dict[int, Callable[[CompiledNode, str, DeclaredType], Answer]] = {
+            Kind.PUBLISHER: self._publish,
+            Kind.SUBSCRIBER: self._subscribe,
+            Kind.SERVER: self._serve,
+            Kind.CLIENT: self._call,
+            Kind.PUBLISHER + Kind.GONE: self._publish_no_more,
+            Kind.SUBSCRIBER + Kind.GONE: self._subscribe_no_more,
+            Kind.SERVER + Kind.GONE: self._serve_no_more,
+            Kind.SUBSCRIBER + Kind.SUBSCRIBED: self._give_latched,
+        }
+        if kind not in does:
+            raise UsageError(f"{who} asks for something of kind {kind}, which is unknown; build it with this cfepy")
+        return does[kind](node, name, declared)
+
+    def _topic(self, node: CompiledNode, name: str, declared: DeclaredType) -> TopicEntry:
+        topic = self._graph.topic(name)
+        if not topic.join(declared):
+            raise UsageError(
+                f"[{node.names.name}] has the type {declared._type} [{declared._md5sum}] for topic {name}, which is"
+                f" {topic.type} [{topic.md5sum}] on the graph"
+            )
+        return topic
+
+    def _publish(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+        topic = self._topic(node, name, declared)
+        node.published[name] = declared._type
+        topic.add_compiled_publisher(node.names.name)
+        return Answer(topic.msg_id, topic.raw)
+
+    def _publish_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+        topic = self._graph.topic(name)
+        if node.published.pop(name, None) is not None:
+            topic.leave()
+        return Answer(topic.msg_id)
+
+    def _subscribe(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+        if name in node.subscribed:
+            topic = self._graph.topic(name)
+        else:
+            topic = self._topic(node, name, declared)
+            node.subscribed[name] = declared._type
+            topic.add_compiled_subscriber(node.names.name)
+        return Answer(topic.msg_id, topic.raw, any(link.is_latch for link in topic.links))
+
+    def _subscribe_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+        topic = self._graph.topic(name)
+        if node.subscribed.pop(name, None) is not None:
+            topic.leave()
+        return Answer(topic.msg_id)
+
+    def _serve(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+        return Answer(self._graph.register_service(CompiledService(node, name, declared)).answer_id)
+
+    def _serve_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+        entry = self._graph.services.get(name)
+        if entry is not None and entry.service.node is node:
+            del self._graph.services[name]
+        return Answer(0)
+
+    def _call(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+        return Answer(self._graph.ids.of_service(name))
+
+    def _give_latched(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+        """Python nodes' latched messages, for the one subscriber that has just come."""
+        topic = self._graph.topic(name)
+        for link in topic.links:
+            if link.is_latch and link.latch is not None and not topic.raw:
+                for packet in self._addressed(link, node.pipe):
+                    self._bus.transmit_msg(packet)
+                topic.latched += 1
+        return Answer(topic.msg_id)
+
+    def _addressed(self, link: Link, pipe: int) -> Iterator[bytes]:
+        payload = link.serialize(link.latch)
+        room = self._bus.config.sb_max_msg_size - HEADER_BYTES
+        whole = [whole_header(link.msg_id) + payload]
+        for packet in whole if len(payload) <= room else segments(link.msg_id, payload, room):
+            yield addressed(packet, pipe)
+
+
+def _texts(body: bytes, count: int) -> list[str]:
+    found, at = [], 5
+    for _ in range(count):
+        (size,) = struct.unpack_from("<I", body, at)
+        if at + 4 + size > len(body):
+            raise UsageError("a request of a compiled node is cut off")
+        found.append(body[at + 4 : at + 4 + size].decode())
+        at += 4 + size
+    return found
