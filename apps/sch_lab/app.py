@@ -5,6 +5,8 @@ The first 1 Hz packet of TIME starts it, so that it keeps step with the spacecra
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 from cfepy.app import Cfe
 from cfepy.es import APP_ERROR
 from cfepy.msg import local_cmd_topic_id_to_msg_id
@@ -18,6 +20,7 @@ VERSION = version_string("SCH Lab", "equuleus-rc1+dev29", "Equuleus", "v2.3.0")
 TIME_ONEHZ_MID = local_cmd_topic_id_to_msg_id(0x11)
 PIPE_NAME = "SCH_LAB_CMD_PIPE"
 PIPE_DEPTH = 8
+NO_PIPE = 0
 OBJECT_NAME = "SCH_LAB"
 TIMEBASE = "cFS-Master"
 SECOND_US = 1_000_000
@@ -45,6 +48,7 @@ class SchLab:
     def __init__(self, cfe: Cfe) -> None:
         self._cfe = cfe
         self._started = False
+        self._pipe = NO_PIPE
 
     def start(self) -> None:
         """Everything before the first tick.
@@ -56,7 +60,10 @@ class SchLab:
         timer = self._make_timer()
         self._load_table()
         self._listen()
-        cfe.os.timer_set(timer, SECOND_US, self._period_us)
+        try:
+            cfe.os.timer_set(timer, SECOND_US, self._period_us)
+        except OsalError as error:
+            cfe.es.write_to_sys_log(f"SCH_LAB_AppInit: OS_TimerSet failed:RC={error.status}")
         cfe.os.printf(f"SCH Lab Initialized.{VERSION}\n")
 
     def _make_timer(self) -> int:
@@ -94,15 +101,16 @@ class SchLab:
         self._period_us = self._tick_period(tick_rate)
 
     def _listen(self) -> None:
-        cfe, step = self._cfe, ""
+        """Without its pipe or the subscription it ticks on, and sends nothing."""
+        cfe = self._cfe
         try:
-            step = "creating pipe"
             self._pipe = cfe.sb.create_pipe(PIPE_DEPTH, PIPE_NAME)
-            step = "subscribing to 1hz"
+        except CfeError:
+            cfe.os.printf("SCH Error creating pipe!\n")
+        try:
             cfe.sb.subscribe(TIME_ONEHZ_MID, self._pipe)
         except CfeError:
-            cfe.os.printf(f"SCH Error {step}!\n")
-            raise
+            cfe.os.printf("SCH Error subscribing to 1hz!\n")
 
     def _tick_period(self, tick_rate: int) -> int:
         """Microseconds of a tick, from ticks a second."""
@@ -116,13 +124,17 @@ class SchLab:
         return max(1, SECOND_US // tick_rate)
 
     def wait(self) -> None:
-        """One tick: wait for it, then send the commands that are due."""
+        """One tick: wait for it, then send the commands that are due. Failures are for the events that tell them."""
         cfe = self._cfe
-        cfe.os.count_sem_take(self._ticks)
-        if cfe.sb.receive_buffer(self._pipe, POLL) is not None:
-            self._started = True
+        has_ticked = False
+        with suppress(CfeError):
+            cfe.os.count_sem_take(self._ticks)
+            has_ticked = True
+            if cfe.sb.receive_buffer(self._pipe, POLL) is not None:
+                self._started = True
         cfe.es.perf_log_entry(PERF_ID)
-        if self._started:
+        if has_ticked and self._started:
             for entry in self._entries:
                 if entry.tick():
-                    cfe.sb.transmit_msg(entry.packet)
+                    with suppress(CfeError):
+                        cfe.sb.transmit_msg(entry.packet)

@@ -12,6 +12,7 @@ from cfepy.evs.apps import AppEvents
 from cfepy.evs.events import ERR_UNREGISTERED_EVS_APP, ERROR, FILTER_MAX_EID, INFORMATION, SQUELCHED_ERR_EID
 from cfepy.evs.log import EventLog
 from cfepy.msg import PRIMARY_HEADER_SIZE, TLM_HEADER_SIZE, Layout, init
+from cfepy.osal.limits import OS_MAX_API_NAME
 from cfepy.ports import Ports, application_of
 from cfepy.rtos import Kernel
 from cfepy.status import CFE_EVS_APP_SQUELCHED, CFE_SUCCESS
@@ -22,6 +23,8 @@ PORTS = (1, 2, 3, 4)
 
 U16_MAX = 0xFFFF
 _SPARE = bytes(4)
+_MORE_THAN_A_MESSAGE = OS_MAX_API_NAME + 18
+"""How many bytes a line on a port may have beyond the size of a message (CFE_EVS_MAX_PORT_MSG_LENGTH)."""
 
 
 def _primary_header(msg_id: int, payload: Layout) -> bytes:
@@ -155,7 +158,8 @@ class EventCore:
 
     def _write_ports(self, time: str, app_name: str, event_id: int, message: bytes) -> None:
         origin = f"{self.config.spacecraft_id}/{self.config.processor_id}/{shown(app_name)}"
-        line = f"{time} {origin} {event_id}: {message.decode('utf-8', 'replace')}"
+        whole = f"{time} {origin} {event_id}: ".encode() + message
+        line = whole[: self.config.evs_max_message_length + _MORE_THAN_A_MESSAGE].decode("utf-8", "replace")
         for port in PORTS:
             if self.ports_mask >> port - 1 & 1:
                 self._console.write(f"EVS Port{port} {line}")

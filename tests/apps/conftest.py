@@ -12,11 +12,12 @@ import pytest
 from cfepy.es import APP_EXIT
 from cfepy.es.pools import MemPool, PoolBlock
 from cfepy.msg import command
-from cfepy.status import OS_ERROR, CfeError, OsalError
+from cfepy.status import CFE_SB_BAD_ARGUMENT, OS_ERROR, CfeError, OsalError
 from tests.tbl.conftest import Bench
 
 APPS = Path(__file__).parents[2] / "apps"
 POOL_ID = 0x140003
+PIPE_ID = 0x160001
 Step = bytes | None | Callable[[], object]
 
 
@@ -60,7 +61,7 @@ class AppBench(Bench):
                 create_pipe=self._create_pipe,
                 subscribe=self._subscribe,
                 unsubscribe=lambda msg_id, pipe: self.subscriptions.discard(msg_id),
-                transmit_msg=lambda packet: self.sent.append(bytes(packet)),
+                transmit_msg=self._transmit,
                 receive_buffer=self._receive,
             ),
             evs=SimpleNamespace(
@@ -112,10 +113,11 @@ class AppBench(Bench):
 
     def _create_pipe(self, depth: int, name: str) -> int:
         self._check("sb.create_pipe")
-        return 0x160001
+        return PIPE_ID
 
     def _subscribe(self, msg_id: int, pipe: int) -> None:
         self._check("sb.subscribe")
+        self._check_pipe(pipe)
         self.subscriptions.add(msg_id)
 
     def _receive(self, pipe: int, timeout_ms: int) -> bytes | None:
@@ -123,8 +125,17 @@ class AppBench(Bench):
         while self._script and callable(self._script[0]):
             self._script.pop(0)()  # type: ignore[operator,misc]
         step = self._script.pop(0) if self._script else None
+        self._check_pipe(pipe)
         assert step is None or isinstance(step, bytes)
         return step
+
+    def _check_pipe(self, pipe: int) -> None:
+        if pipe != PIPE_ID:
+            raise CfeError(CFE_SB_BAD_ARGUMENT, "no such pipe")
+
+    def _transmit(self, packet: bytes) -> None:
+        self._check("sb.transmit_msg")
+        self.sent.append(bytes(packet))
 
 
 def cmd(msg_id: int, fcn_code: int = 0, payload: bytes = b"") -> bytes:

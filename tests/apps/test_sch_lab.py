@@ -10,7 +10,7 @@ from apps.sch_lab import TABLES, SCH_LAB_AppMain, schedule
 from apps.sch_lab.tables import sch_lab_table
 from cfepy.es import APP_ERROR, APP_EXIT
 from cfepy.msg import Layout, get_fcn_code, get_msg_id, validate_checksum
-from cfepy.status import CFE_SB_BAD_ARGUMENT, OS_ERR_NAME_NOT_FOUND, OsalError, UsageError
+from cfepy.status import CFE_SB_BAD_ARGUMENT, OS_ERR_INCORRECT_OBJ_STATE, OS_ERR_NAME_NOT_FOUND, OsalError, UsageError
 from cfepy.tbl import build
 from tests.apps.conftest import APPS, AppBench, cmd
 from tests.layouts import DATA, assert_same
@@ -129,14 +129,35 @@ def test_too_much_for_the_table() -> None:
 
 
 @pytest.mark.parametrize(
-    ("function", "text"),
-    [("sb.create_pipe", "SCH Error creating pipe!\n"), ("sb.subscribe", "SCH Error subscribing to 1hz!\n")],
+    ("function", "texts"),
+    [
+        ("sb.create_pipe", ["SCH Error creating pipe!\n", "SCH Error subscribing to 1hz!\n"]),
+        ("sb.subscribe", ["SCH Error subscribing to 1hz!\n"]),
+    ],
 )
-def test_without_the_second_it_ends(sch: SchBench, function: str, text: str) -> None:
+def test_without_the_second_it_ticks_and_sends_nothing(sch: SchBench, function: str, texts: list[str]) -> None:
+    sch.use(100, (0x1882, 1, 0, b""))
     sch.refuse[function] = CFE_SB_BAD_ARGUMENT
+    sch.run(SCH_LAB_AppMain, None, None)
+    assert sch.printed[:-1] == texts
+    assert sch.printed[-1].startswith("SCH Lab Initialized.")
+    assert (sch.timer_set, sch.sent, sch.log, sch.exit_status) == ((1_000_000, 10_000), [], [], APP_EXIT)
+
+
+def test_what_the_bus_refuses_is_left_out(sch: SchBench) -> None:
+    sch.use(100, (0x1882, 1, 0, b""))
+    sch.run(SCH_LAB_AppMain, ONE_HZ, lambda: sch.refuse.update({"sb.transmit_msg": CFE_SB_BAD_ARGUMENT}), None)
+    assert (len(sch.sent), sch.exit_status) == (1, APP_EXIT)
+
+
+def test_a_timer_that_cannot_be_set_is_logged(sch: SchBench) -> None:
+    def refused(timer: int, start: int, interval: int) -> None:
+        raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, "the test says so")
+
+    sch.cfe.os.timer_set = refused
     sch.run(SCH_LAB_AppMain)
-    assert (sch.printed, sch.exit_status) == ([text], APP_ERROR)
-    assert sch.log == ["SCH_LAB: Error Initializing RC = 0xFFFFFFFFCA000003"]
+    assert sch.log == ["SCH_LAB_AppInit: OS_TimerSet failed:RC=-35"]
+    assert (len(sch.printed), sch.exit_status) == (1, APP_EXIT)
 
 
 def test_declarations() -> None:

@@ -109,6 +109,15 @@ def test_an_event_goes_out_in_the_name_of_another_with_the_types_of_its_sender(w
     assert world.sent()[1:] == [Sent("HK", 6, DEBUG, "for HK")]  # of a sender that is not registered nothing is known
 
 
+def test_a_long_line_on_the_console_is_cut_as_nasas(world: World) -> None:
+    world.evs.apps[APP_ID].name = "N" * 19
+    world.send(65535, text="x" * 130)
+    line = f"T1001000 66/1/{'N' * 19} 65535: {'x' * 120}$"
+    assert len(line) == 162
+    assert world.console.lines[-1] == f"EVS Port1 {line[:160]}"
+    assert world.sent()[-1].text.endswith("$")
+
+
 def test_ports_are_lines_on_the_console(world: World) -> None:
     world.evs.ports_mask = 0b1010
     world.send(1)
