@@ -8,32 +8,37 @@ same shared objects and tables fly in both.
 
 from __future__ import annotations
 
-import argparse
 import itertools
-import shutil
 import struct
 import sys
-import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 
 from cfepy import msg
-from cfepy.console import Console
 from cfepy.evs import packets as evs
-from cfepy.mission import Mission
 from cfepy.status import OsalError
-from tests.twin import masks
+from tests.twin import compare, masks
 from tests.twin.apps_commands import TELEMETRY_HEARD, AppsCommander
 from tests.twin.commands import PLAIN, Step
-from tests.twin.flight import Observed, Real, Simulated, _first_difference, _shown
+from tests.twin.flight import (
+    STARTUP_PATH,
+    Observed,
+    Real,
+    Simulated,
+    file_differences,
+    first_difference,
+    only,
+    prepared_real,
+    prepared_simulation,
+)
 from tests.twin.flight_apps import CF, DS, FLIGHT_APPS, FM, HS, FlightApp
 from tests.twin.link_app import DOWN_PORT, UP_PORT
-from tests.twin.real import VARIABLE, RealCfe, installed
-from tests.twin.tables_real import compile_app
+from tests.twin.tables_real import compiled_app
 
-HERE = Path(__file__).parent
-TABLES = HERE.parents[1] / "missions" / "cfs"
+LINK_APP = Path(__file__).with_name("link_app.c")
+TABLES = Path(__file__).parents[2] / "missions" / "cfs"
+STEPS_OF_A_FLIGHT = 400
 LINE = UP_PORT, DOWN_PORT
 ROWS = "".join(
     f"CFE_APP, {app.name.lower()}, {app.name}_AppMain, {app.name}, {90 + number}, 16384, 0x0, 0;\n"
@@ -94,16 +99,12 @@ def differences(ours: Observed, theirs: Observed) -> list[str]:
         if pair is not None:
             mine.remove(pair)
             real_ones.remove(told)
-            found.append(f"telemetry 0x{told[:2].hex()}: {_first_difference(pair[4:], told[4:])}, behind the header")
-    found += [f"only NASA's: {_shown(told)}" for told in real_ones]
-    found += [f"only ours:   {_shown(told)}" for told in mine]
-    for path in sorted({*ours.files, *theirs.files}):
-        one, other = (each.files.get(path) for each in (ours, theirs))
-        if one is None or other is None:
-            found.append(f"file {path}: {'not here' if one is None else 'not there'}")
-        elif len(one) != len(other):
-            found.append(f"file {path}: {len(one)} bytes of ours, {len(other)} of NASA's")
-    return found
+            found.append(f"telemetry 0x{told[:2].hex()}: {first_difference(pair[4:], told[4:])}, behind the header")
+    return [*found, *only(real_ones, mine), *file_differences(ours, theirs, _of_file)]
+
+
+def _of_file(path: str, ours: bytes, theirs: bytes) -> str:
+    return "" if len(ours) == len(theirs) else f"{len(ours)} bytes of ours, {len(theirs)} of NASA's"
 
 
 def tables() -> dict[str, bytes]:
@@ -159,73 +160,42 @@ class RealApps(Real):
         return self._booted.files()
 
 
-@contextmanager
-def simulated(built: Path) -> Iterator[Simulated]:
+def simulated(built: Path) -> AbstractContextManager[Simulated]:
     """The mission in cfepy, prepared."""
-    with tempfile.TemporaryDirectory() as folder:
-        for given in (built / "cf").iterdir():
-            if given.suffix == ".tbl" or any(given.name == f"{app.name.lower()}.so" for app in FLIGHT_APPS):
-                shutil.copy(given, folder)
-        for path, data in tables().items():
-            (Path(folder) / Path(path).name).write_bytes(data)
-        (Path(folder) / "startup.scr").write_text(STARTUP)
-        more = ", ".join(map(hex, TELEMETRY_HEARD))
-        text = (HERE / "link_app.py").read_text().replace("WATCHED = (", f"WATCHED = ({more}, ")
-        (Path(folder) / "link.py").write_text(text)
-        (Path(folder) / "mission.yaml").write_text('cfe_version: "7.0.0"\n')
-        with Mission(folder, console=Console(quiet=True)) as flown:
-            computer = SimulatedApps(flown, LINE)
-            for step in preparation():
-                computer.fly(step)
-            yield computer
+    flown = [f"{app.name.lower()}.so" for app in FLIGHT_APPS]
+    files = {
+        f"/cf/{each.name}": each.read_bytes()
+        for each in (built / "cf").iterdir()
+        if each.suffix == ".tbl" or each.name in flown
+    }
+    heard = ", ".join(map(hex, TELEMETRY_HEARD))
+    link = LINK_APP.with_suffix(".py").read_text().replace("WATCHED = (", f"WATCHED = ({heard}, ")
+    files |= {**tables(), STARTUP_PATH: STARTUP.encode(), "/cf/link.py": link.encode()}
+    return prepared_simulation(files, preparation(), lambda flown: SimulatedApps(flown, LINE))
 
 
-@contextmanager
-def real(built: Path) -> Iterator[Real]:
+def real(built: Path) -> AbstractContextManager[Real]:
     """The mission in NASA's cFE, prepared."""
-    with tempfile.TemporaryDirectory() as folder:
-        app = Path(folder) / "link.so"
-        more = ",".join(map(hex, TELEMETRY_HEARD))
-        compile_app(built.parents[2], app, HERE / "link_app.c", f"-DMORE_WATCHED={more},")
-        files = {**tables(), "/cf/cfe_es_startup.scr": STARTUP.encode(), "/cf/link.so": app.read_bytes()}
-        with RealCfe(built, Path(folder) / "cfe", files, LINE) as booted:
-            computer = RealApps(booted)
-            for step in preparation():
-                computer.fly(step)
-            yield computer
+    heard = ",".join(map(hex, TELEMETRY_HEARD))
+    link = compiled_app(built.parents[2], LINK_APP, f"-DMORE_WATCHED={heard},")
+    files = {**tables(), STARTUP_PATH: STARTUP.encode(), "/cf/link.so": link}
+    return prepared_real(built, files, preparation(), RealApps, LINE)
 
 
-def fly(built: Path, seed: int, count: int, names: list[str]) -> Iterator[tuple[Step, list[str]]]:
-    """Fly the steps of a seed in both: each, with what differs."""
+def fly(built: Path, seed: int, count: int, names: list[str]) -> Iterator[compare.Flown]:
+    """Fly the steps of a seed in both."""
     with real(built) as theirs, simulated(built) as ours:
-        for step in itertools.islice(AppsCommander(seed, names).steps(), count):
-            expected = ours.fly(step)
-            yield step, differences(expected, theirs.fly(step, expected))
+        steps = itertools.islice(AppsCommander(seed, names).steps(), count)
+        yield from compare.fly(ours, theirs, steps, differences)
 
 
 def main() -> int:
     """Fly until there were so many commands."""
-    parser = argparse.ArgumentParser(prog="python -m tests.twin.apps_flight", description=__doc__)
-    parser.add_argument("--seed", type=int, default=0, help="of the first flight; the next ones count up")
-    parser.add_argument("--count", type=int, default=100, help="commands in all")
-    parser.add_argument("--flight", type=int, default=400, help="steps of a flight")
+    parser = compare.parser_of("tests.twin.apps_flight", __doc__, STEPS_OF_A_FLIGHT)
     parser.add_argument("--apps", nargs="*", default=[], help="names of the applications; all of them without")
     given = parser.parse_args()
-    built = installed()
-    if built is None:
-        sys.exit(f"{VARIABLE} does not say where the folder of NASA's core-cpu1 is")
-    commands = unlike = 0
-    for seed in itertools.count(given.seed):
-        for number, (step, lines) in enumerate(fly(built, seed, given.flight, given.apps)):
-            commands += len(step.packets)
-            unlike += bool(lines)
-            if lines:
-                sent = " ".join(packet.hex() for packet in step.packets)
-                print(f"seed {seed}, step {number}, {step.service} {step.pace}: {sent}", *lines, sep="\n  ", flush=True)
-        print(f"seed {seed}: {commands} commands so far, {unlike} steps differ", flush=True)
-        if commands >= given.count:
-            return 1 if unlike else 0
-    return 0
+    built = compare.real_folder()
+    return compare.run(given, lambda seed: fly(built, seed, given.flight, given.apps))
 
 
 if __name__ == "__main__":

@@ -5,10 +5,10 @@ from __future__ import annotations
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, TypeVar
 
 from apps import to_lab
 from cfepy.console import Console
@@ -35,6 +35,8 @@ AFTER_BOOT_S = 1.0
 """The same of the real one, after it has said that it is operational."""
 QUIET_S = 0.8
 """How long nothing comes down when a step without an answer is over: more than a pass of TO_LAB."""
+RELEASE = "7.0.0"
+STARTUP_PATH = "/cf/cfe_es_startup.scr"
 ENABLE = to_lab.packets.OUTPUT_ENABLE.packet(dest_IP="127.0.0.1")
 
 
@@ -52,8 +54,11 @@ class Observed(NamedTuple):
 class Computer(Protocol):
     """One that flies steps."""
 
-    def fly(self, step: Step, expected: Observed | None) -> Observed:
+    def fly(self, step: Step, expected: Observed | None = None) -> Observed:
         """Send a step up, and wait for what comes of it; `expected` says when that is all there."""
+
+
+Flyer = TypeVar("Flyer", bound=Computer)
 
 
 def with_housekeeping(step: Step) -> tuple[bytes, ...]:
@@ -181,28 +186,64 @@ class Real:
 
 
 @contextmanager
-def simulated(release: str) -> Iterator[Simulated]:
-    """The mission in cfepy, prepared, on a release of cFE such as "7.0.0"."""
+def prepared_simulation(
+    files: Mapping[str, bytes],
+    steps: Iterable[Step],
+    make: Callable[[Mission], Simulated] = Simulated,
+    release: str = RELEASE,
+) -> Iterator[Simulated]:
+    """A mission in cfepy.
+
+    Args:
+        files: its files, by virtual path.
+        steps: what it flies first.
+        make: makes the computer of the mission.
+        release: of cFE, such as "7.0.0".
+    """
     with tempfile.TemporaryDirectory() as folder:
-        for path, data in mission.files().items():
+        for path, data in files.items():
             (Path(folder) / Path(path).name).write_bytes(data)
-        (Path(folder) / "startup.scr").write_text(mission.STARTUP)
+        (Path(folder) / "startup.scr").write_bytes(files[STARTUP_PATH])
         (Path(folder) / "mission.yaml").write_text(f'cfe_version: "{release}"\n')
         with Mission(folder, console=Console(quiet=True)) as flown:
-            computer = Simulated(flown)
-            for step in preparation():
-                computer.fly(step)
-            yield computer
+            yield _after(steps, make(flown))
 
 
 @contextmanager
-def real(built: Path) -> Iterator[Real]:
-    """The mission in NASA's cFE, prepared."""
-    with tempfile.TemporaryDirectory() as folder, RealCfe(built, Path(folder) / "cfe", mission.files()) as booted:
-        computer = Real(booted)
-        for step in preparation():
-            computer.fly(step)
-        yield computer
+def prepared_real(
+    built: Path,
+    files: Mapping[str, bytes],
+    steps: Iterable[Step],
+    make: Callable[[RealCfe], Real] = Real,
+    line: tuple[int, int] = (CI_PORT, TO_PORT),
+) -> Iterator[Real]:
+    """The same in NASA's cFE.
+
+    Args:
+        built: the folder of its executable.
+        files: what to write over its files, by virtual path.
+        steps: what it flies first.
+        make: makes the computer of it.
+        line: the ports at which it hears the ground and the ground hears it.
+    """
+    with tempfile.TemporaryDirectory() as folder, RealCfe(built, Path(folder) / "cfe", files, line) as booted:
+        yield _after(steps, make(booted))
+
+
+def _after(steps: Iterable[Step], computer: Flyer) -> Flyer:
+    for step in steps:
+        computer.fly(step)
+    return computer
+
+
+def simulated(release: str) -> AbstractContextManager[Simulated]:
+    """The mission of the lab applications in cfepy, prepared, on a release of cFE such as "7.0.0"."""
+    return prepared_simulation(mission.files(), preparation(), release=release)
+
+
+def real(built: Path) -> AbstractContextManager[Real]:
+    """The same in NASA's cFE, prepared."""
+    return prepared_real(built, mission.files(), preparation())
 
 
 def differences(ours: Observed, theirs: Observed) -> list[str]:
@@ -216,20 +257,43 @@ def differences(ours: Observed, theirs: Observed) -> list[str]:
             missing.remove(each)
             added.remove(pair)
             found.append(f"telemetry 0x{int.from_bytes(each[:2], 'big'):04X}: {masks.fields_that_differ(pair, each)}")
-    found += [f"only NASA's: {_shown(each)}" for each in missing]
-    found += [f"only ours:   {_shown(each)}" for each in added]
+    return [*found, *only(missing, added), *file_differences(ours, theirs, _of_file)]
+
+
+def _of_file(path: str, ours: bytes, theirs: bytes) -> str:
+    if masks.is_log(ours) and masks.is_log(theirs):
+        return "" if masks.same_log(ours, theirs) else "other events"
+    return first_difference(masks.of_file(ours), masks.of_file(theirs))
+
+
+def only(missing: Iterable[bytes], added: Iterable[bytes]) -> list[str]:
+    """Lines of what was told by one side alone."""
+    return [
+        *(f"only NASA's: {shown(told)}" for told in missing),
+        *(f"only ours:   {shown(told)}" for told in added),
+    ]
+
+
+def file_differences(ours: Observed, theirs: Observed, compare: Callable[[str, bytes, bytes], str]) -> list[str]:
+    """A line for each file that is not alike.
+
+    Args:
+        ours: what came of a step in cfepy.
+        theirs: the same of NASA's.
+        compare: gets a path and two contents, and says what is not alike; nothing when they are.
+    """
+    found = []
     for path in sorted({*ours.files, *theirs.files}):
         one, other = (each.files.get(path) for each in (ours, theirs))
         if one is None or other is None:
             found.append(f"file {path}: {'not here' if one is None else 'not there'}")
-        elif masks.is_log(one) and masks.is_log(other):
-            found += [] if masks.same_log(one, other) else [f"file {path}: other events"]
-        elif masks.of_file(one) != masks.of_file(other):
-            found.append(f"file {path}: {_first_difference(masks.of_file(one), masks.of_file(other))}")
+        elif line := compare(path, one, other):
+            found.append(f"file {path}: {line}")
     return found
 
 
-def _shown(told: bytes) -> str:
+def shown(told: bytes) -> str:
+    """What is compared of a packet, for people."""
     msg_id = int.from_bytes(told[:2], "big")
     if msg_id == evs.LONG_EVENT_MSG_MID:
         app, number = told[8:28].partition(b"\0")[0], int.from_bytes(told[28:30], "little")
@@ -237,7 +301,10 @@ def _shown(told: bytes) -> str:
     return f"0x{msg_id:04X} {told[2:].hex()}"
 
 
-def _first_difference(ours: bytes, theirs: bytes) -> str:
+def first_difference(ours: bytes, theirs: bytes) -> str:
+    """Where two pieces of data begin to differ, and how; nothing where they are the same."""
+    if ours == theirs:
+        return ""
     at = next((at for at, (one, other) in enumerate(zip(ours, theirs, strict=False)) if one != other), None)
     if at is None:
         return f"{len(ours)} bytes of ours, {len(theirs)} of NASA's are compared"

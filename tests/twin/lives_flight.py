@@ -7,31 +7,34 @@ FOLDER is build/exe/cpu1 in the folder in which NASA's cFE was built: LINK (link
 
 from __future__ import annotations
 
-import argparse
 import itertools
 import re
 import sys
-import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from pathlib import Path
 
-from cfepy.console import Console
 from cfepy.evs import packets as evs
 from cfepy.fs import HEADER_SIZE, header
-from cfepy.mission import Mission
 from cfepy.msg import TLM_HEADER_SIZE
 from cfepy.sb.events import MSGID_LIM_ERR_EID
 from cfepy.time import packets as time
-from tests.twin import mission, recorded
-from tests.twin.commands import Step
-from tests.twin.flight import Observed, Real, Simulated, differences, preparation
+from tests.twin import compare, mission, recorded
+from tests.twin.flight import (
+    STARTUP_PATH,
+    Observed,
+    Real,
+    Simulated,
+    differences,
+    preparation,
+    prepared_real,
+    prepared_simulation,
+)
 from tests.twin.link_app import DOWN_PORT, REPLY_MID, UP_PORT
 from tests.twin.lives import LivesCommander
-from tests.twin.real import VARIABLE, RealCfe, installed
-from tests.twin.tables_real import compile_app
+from tests.twin.tables_real import compiled_app
 
-HERE = Path(__file__).parent
+LINK_APP = Path(__file__).with_name("link_app.c")
 LINE = UP_PORT, DOWN_PORT
 STEPS_OF_A_FLIGHT = 40
 OVERFLOW = re.compile(rb"Msg Limit Err,MsgId 0x1811,pipe SCH_LAB_CMD_PIPE|.*sender SCH_LAB\0")
@@ -97,73 +100,43 @@ def _blanked(data: bytes, at: int, size: int) -> bytes:
     return data[:at] + bytes(size) + data[at + size :]
 
 
-@contextmanager
-def simulated(release: str) -> Iterator[Simulated]:
+def simulated(release: str) -> AbstractContextManager[Simulated]:
     """The mission in cfepy, prepared, on a release of cFE such as "7.0.0"."""
-    with tempfile.TemporaryDirectory() as folder:
-        for path, data in mission.files().items():
-            (Path(folder) / Path(path).name).write_bytes(data)
-        (Path(folder) / "startup.scr").write_text(STARTUP)
-        (Path(folder) / "link.py").write_text((HERE / "link_app.py").read_text())
-        (Path(folder) / "mission.yaml").write_text(f'cfe_version: "{release}"\n')
-        with Mission(folder, console=Console(quiet=True)) as flown:
-            computer = Simulated(flown, LINE)
-            for step in preparation():
-                computer.fly(step)
-            yield computer
+    files = {**mission.files(), STARTUP_PATH: STARTUP.encode(), "/cf/link.py": LINK_APP.with_suffix(".py").read_bytes()}
+    return prepared_simulation(files, preparation(), lambda flown: Simulated(flown, LINE), release)
 
 
-@contextmanager
-def real(built: Path) -> Iterator[Real]:
+def real(built: Path) -> AbstractContextManager[Real]:
     """The mission in NASA's cFE, prepared."""
-    with tempfile.TemporaryDirectory() as folder:
-        app = Path(folder) / "link.so"
-        compile_app(built.parents[2], app, HERE / "link_app.c")
-        files = {**mission.files(), "/cf/cfe_es_startup.scr": STARTUP.encode(), "/cf/link.so": app.read_bytes()}
-        with RealCfe(built, Path(folder) / "cfe", files, LINE) as booted:
-            computer = Real(booted)
-            for step in preparation():
-                computer.fly(step)
-            yield computer
+    link = compiled_app(built.parents[2], LINK_APP)
+    files = {**mission.files(), STARTUP_PATH: STARTUP.encode(), "/cf/link.so": link}
+    return prepared_real(built, files, preparation(), line=LINE)
 
 
-def fly(built: Path, seed: int, count: int) -> Iterator[tuple[Step, Observed, list[str]]]:
-    """Fly the steps of a seed in both: each, with what came of it in NASA's and what differs."""
+def fly(built: Path, seed: int, count: int) -> Iterator[compare.Flown]:
+    """Fly the steps of a seed in both."""
     with real(built) as theirs, simulated(theirs.release) as ours:
-        for step in itertools.islice(LivesCommander(seed).steps(), count):
-            expected = ours.fly(step)
-            observed = theirs.fly(step, expected)
-            yield step, observed, differences(settled(expected), settled(observed))
+        steps = itertools.islice(LivesCommander(seed).steps(), count)
+        yield from compare.fly(ours, theirs, steps, lambda *both: differences(*map(settled, both)))
 
 
 def main() -> int:
     """Fly until there were so many commands."""
-    parser = argparse.ArgumentParser(prog="python -m tests.twin.lives_flight", description=__doc__)
-    parser.add_argument("--seed", type=int, default=0, help="of the first flight; the next ones count up")
-    parser.add_argument("--count", type=int, default=100, help="commands in all")
-    parser.add_argument("--flight", type=int, default=STEPS_OF_A_FLIGHT, help="steps of a flight")
+    parser = compare.parser_of("tests.twin.lives_flight", __doc__, STEPS_OF_A_FLIGHT)
     parser.add_argument("--record", type=Path, help="where to put the flights on record")
     given = parser.parse_args()
-    built = installed()
-    if built is None:
-        sys.exit(f"{VARIABLE} does not say where the folder of NASA's core-cpu1 is")
-    commands = unlike = 0
-    flights: list[recorded.Flight] = []
-    for seed in itertools.count(given.seed):
+    built, flights = compare.real_folder(), list[recorded.Flight]()
+
+    def flight(seed: int) -> Iterator[compare.Flown]:
         flights.append([])
-        for number, (step, observed, lines) in enumerate(fly(built, seed, given.flight)):
-            flights[-1].append((step, observed))
-            commands += len(step.packets)
-            unlike += bool(lines)
-            if lines:
-                sent = " ".join(packet.hex() for packet in step.packets)
-                print(f"seed {seed}, step {number}, {step.service} {step.pace}: {sent}", *lines, sep="\n  ", flush=True)
-        print(f"seed {seed}: {commands} commands so far, {unlike} steps differ", flush=True)
-        if commands >= given.count:
-            break
+        for flown in fly(built, seed, given.flight):
+            flights[-1].append((flown.step, flown.observed))
+            yield flown
+
+    status = compare.run(given, flight)
     if given.record is not None:
         recorded.save(given.record, flights)
-    return 1 if unlike else 0
+    return status
 
 
 if __name__ == "__main__":

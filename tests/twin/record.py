@@ -3,23 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import itertools
-import sys
 from pathlib import Path
 
 from tests.twin import recorded
-from tests.twin.commands import Commander
-from tests.twin.flight import real, simulated
-from tests.twin.real import VARIABLE, installed
-
-
-def fly(built: Path, seed: int, count: int, without: list[str]) -> recorded.Flight:
-    """The steps of a seed, and what came of them."""
-    flight: recorded.Flight = []
-    with real(built) as theirs, simulated(theirs.release) as ours:
-        for step in itertools.islice(Commander(seed, without).steps(), count):
-            flight.append((step, theirs.fly(step, ours.fly(step))))
-    return flight
+from tests.twin.__main__ import fly
+from tests.twin.compare import real_folder
 
 
 def main() -> None:
@@ -30,10 +18,9 @@ def main() -> None:
     parser.add_argument("--flight", type=int, default=60, help="steps of a flight")
     parser.add_argument("--without", nargs="*", default=[], help="names of commands to leave out")
     given = parser.parse_args()
-    built = installed()
-    if built is None:
-        sys.exit(f"{VARIABLE} does not say where the folder of NASA's core-cpu1 is")
-    recorded.save(given.file, [fly(built, seed, given.flight, given.without) for seed in given.seeds])
+    built = real_folder()
+    flights = (fly(built, seed, given.flight, given.without) for seed in given.seeds)
+    recorded.save(given.file, [[(flown.step, flown.observed) for flown in flight] for flight in flights])
 
 
 if __name__ == "__main__":

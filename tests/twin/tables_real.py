@@ -31,12 +31,15 @@ ANSWER_LIMIT_S = 8.0
 TICKS_PER_S = 100
 
 
-def compile_app(built: Path, target: Path, source: Path = SOURCE, *more: str) -> None:
-    """Compile tables_app.c, or another source, for a cFE, with more flags of the compiler."""
+def compiled_app(built: Path, source: Path = SOURCE, *more: str) -> bytes:
+    """The shared object of tables_app.c, or of another source, for a cFE; with more flags of the compiler."""
     said = dict(re.findall(r"^(C_\w+) = (.*)$", (built / FLAGS).read_text(), re.MULTILINE))
     modules = [f"-I{folder}/{part}" for folder in (built / "cfe/modules").iterdir() for part in ("fsw/inc", "fsw/src")]
     flags = [*shlex.split(said["C_DEFINES"]), *shlex.split(said["C_INCLUDES"]), *modules]
-    subprocess.run(["cc", "-std=gnu99", "-w", "-fPIC", "-shared", *flags, *more, "-o", target, source], check=True)
+    with tempfile.TemporaryDirectory() as folder:
+        target = Path(folder) / "app.so"
+        subprocess.run(["cc", "-std=gnu99", "-w", "-fPIC", "-shared", *flags, *more, "-o", target, source], check=True)
+        return target.read_bytes()
 
 
 class RealTables:
@@ -129,10 +132,8 @@ def _split(data: bytes) -> list[bytes]:
 def fly(built: Path, steps: list[Step]) -> list[Answer]:
     """What NASA's cFE answers to the steps of a flight."""
     with tempfile.TemporaryDirectory() as folder:
-        app = Path(folder) / "tt.so"
-        compile_app(built, app)
         startup = re.sub("tt[ab],", "tt,", flight.STARTUP)
-        files = {"/cf/tt.so": app.read_bytes(), "/cf/cfe_es_startup.scr": startup.encode()}
+        files = {"/cf/tt.so": compiled_app(built), "/cf/cfe_es_startup.scr": startup.encode()}
         with RealCfe(built / "build/exe/cpu1", Path(folder) / "cfe", files) as cfe:
             tables = RealTables(cfe)
             return [tables.answer(step) for step in steps]

@@ -9,7 +9,8 @@ import pytest
 from cfepy import msg
 from tests.twin import apps_flight, cfdp_pdus
 from tests.twin.apps_commands import AppsCommander
-from tests.twin.apps_flight import Observed, differences, of_packet
+from tests.twin.apps_flight import differences, of_packet
+from tests.twin.flight import Observed
 from tests.twin.flight_apps import FLIGHT_APPS
 from tests.twin.real import VARIABLE, installed
 
@@ -60,5 +61,4 @@ def test_the_checksum_of_cfdp() -> None:
 @pytest.mark.slow
 def test_commands_flown_beside_nasas() -> None:
     assert BUILT is not None
-    found = [(step, lines) for step, lines in apps_flight.fly(BUILT, 2, 60, []) if lines]
-    assert found == []
+    assert [flown for flown in apps_flight.fly(BUILT, 2, 60, []) if flown.lines] == []
