@@ -19,14 +19,19 @@ namespace detail
 
 constexpr int64_t kNanoseconds = 1000000000; // in a second
 
-// Print seconds, a point and nine digits. The stream's width is for the seconds; its fill stays as it was.
+// Print a sign, seconds, a point and nine digits. As in ROS the stream's width is for what comes first, and is there
+// again afterwards.
 template <class Seconds>
-std::ostream &print_seconds(std::ostream &os, Seconds sec, uint32_t nsec)
+std::ostream &print_seconds(std::ostream &os, const char *sign, Seconds sec, uint32_t nsec)
 {
+    const std::streamsize width = os.width();
+    if (sign)
+        os << sign;
     os << sec << '.';
     const char fill = os.fill('0');
     os << std::setw(9) << nsec;
     os.fill(fill);
+    os.width(width);
     return os;
 }
 
@@ -169,11 +174,11 @@ class WallDuration : public DurationBase<WallDuration>
 template <class T>
 std::ostream &operator<<(std::ostream &os, const DurationBase<T> &duration)
 {
+    using roscfe::detail::print_seconds;
     if (duration.sec >= 0 || duration.nsec == 0)
-        return roscfe::detail::print_seconds(os, duration.sec, static_cast<uint32_t>(duration.nsec));
-    if (duration.sec == -1)
-        os << '-';
-    return roscfe::detail::print_seconds(os, duration.sec + 1, static_cast<uint32_t>(1000000000 - duration.nsec));
+        return print_seconds(os, nullptr, duration.sec, static_cast<uint32_t>(duration.nsec));
+    const char *sign = duration.sec == -1 ? "-" : "";
+    return print_seconds(os, sign, duration.sec + 1, static_cast<uint32_t>(1000000000 - duration.nsec));
 }
 
 inline constexpr Duration DURATION_MAX(std::numeric_limits<int32_t>::max(), 999999999);

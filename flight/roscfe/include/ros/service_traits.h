@@ -1,7 +1,10 @@
-// Type names and md5 sums of services.
-#ifndef ROSCPP_SERVICE_TRAITS_H
-#define ROSCPP_SERVICE_TRAITS_H
+// Names and md5 sums of services. Generated services and their messages bring them along (roscfe::wire::Traits).
+#ifndef ROSCFE_ROS_SERVICE_TRAITS_H
+#define ROSCFE_ROS_SERVICE_TRAITS_H
 
+#include <type_traits>
+
+#include "ros/message_traits.h"
 #include "roscfe/wire.h"
 
 namespace ros
@@ -9,25 +12,65 @@ namespace ros
 namespace service_traits
 {
 
-template <class S>
-inline const char *md5sum()
+namespace detail
 {
-    return roscfe::wire::Traits<S>::md5();
+
+using message_traits::detail::Plain;
+
+// Of a service itself, or of its request or response.
+template <class M>
+constexpr bool is_message = roscfe::wire::HasFields<M>::value;
+
+} // namespace detail
+
+template <class M>
+struct MD5Sum
+{
+    static const char *value()
+    {
+        if constexpr (detail::is_message<M>)
+            return roscfe::wire::Traits<M>::service_md5();
+        else
+            return roscfe::wire::Traits<M>::md5();
+    }
+    static const char *value(const M &) { return value(); }
+};
+
+template <class M>
+struct DataType
+{
+    static const char *value()
+    {
+        if constexpr (detail::is_message<M>)
+            return roscfe::wire::Traits<M>::service_type();
+        else
+            return roscfe::wire::Traits<M>::type();
+    }
+    static const char *value(const M &) { return value(); }
+};
+
+template <class M>
+const char *md5sum()
+{
+    return MD5Sum<detail::Plain<M>>::value();
 }
-template <class S>
-inline const char *md5sum(const S &)
+
+template <class M>
+const char *md5sum(const M &)
 {
-    return md5sum<S>();
+    return md5sum<M>();
 }
-template <class S>
-inline const char *datatype()
+
+template <class M>
+const char *datatype()
 {
-    return roscfe::wire::Traits<S>::type();
+    return DataType<detail::Plain<M>>::value();
 }
-template <class S>
-inline const char *datatype(const S &)
+
+template <class M>
+const char *datatype(const M &)
 {
-    return datatype<S>();
+    return datatype<M>();
 }
 
 } // namespace service_traits

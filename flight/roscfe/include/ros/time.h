@@ -143,7 +143,7 @@ class TimeBase
 template <class T, class D>
 std::ostream &operator<<(std::ostream &os, const TimeBase<T, D> &time)
 {
-    return roscfe::detail::print_seconds(os, time.sec, time.nsec);
+    return roscfe::detail::print_seconds(os, nullptr, time.sec, time.nsec);
 }
 
 // The mission's time.
