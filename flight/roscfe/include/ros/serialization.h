@@ -77,11 +77,12 @@ struct Serializer
     }
 
   private:
-    static constexpr void check()
+    static void check()
     {
-        using namespace roscfe::wire;
-        static_assert(std::is_arithmetic<T>::value || detail::is_time<T> || detail::IsText<T>::value ||
-                          detail::IsVector<T>::value || detail::IsArray<T>::value || HasFields<T>::value,
+        namespace wire = roscfe::wire;
+        static_assert(std::is_arithmetic<T>::value || wire::detail::is_time<T> || wire::detail::IsText<T>::value ||
+                          wire::detail::IsVector<T>::value || wire::detail::IsArray<T>::value ||
+                          wire::HasFields<T>::value,
                       "neither a message nor a type of a field: specialise ros::serialization::Serializer for it");
     }
 };
