@@ -214,7 +214,8 @@ def _read_dynamic(made: SharedObject, dynamic: Any) -> None:
         made.functions_at_end = (tags["DT_FINI_ARRAY"], tags.get("DT_FINI_ARRAYSZ", 0) // 8)
     made.function_at_load = tags.get("DT_INIT", 0)
     made.function_at_end = tags.get("DT_FINI", 0)
-    made.symbols = list(_symbols(made, tags, dynamic.num_symbols()))
+    names = made.initial(tags["DT_STRTAB"], tags["DT_STRSZ"])
+    made.symbols = list(symbols_in(made.initial(tags["DT_SYMTAB"], dynamic.num_symbols() * _SYMBOL.size), names))
     if "DT_RELR" in tags or "DT_REL" in tags:
         raise ElfError(
             f"{made.name} has relocations of a form that is not supported: link without -z pack-relative-relocs"
@@ -226,10 +227,13 @@ def _read_dynamic(made: SharedObject, dynamic: Any) -> None:
         ]
 
 
-def _symbols(made: SharedObject, tags: dict[str, int], count: int) -> Iterator[Symbol]:
-    """The dynamic symbols; by hand, since there may be thousands."""
-    names = made.initial(tags["DT_STRTAB"], tags["DT_STRSZ"])
-    raw = made.initial(tags["DT_SYMTAB"], count * _SYMBOL.size)
+def symbols_in(raw: bytes, names: bytes) -> Iterator[Symbol]:
+    """The symbols of a table; by hand, since there may be thousands.
+
+    Args:
+        raw: the table.
+        names: the table of their names.
+    """
     for name, info, _, section, address, size in _SYMBOL.iter_unpack(raw):
         text = names[name : names.index(b"\0", name)].decode(errors="replace")
         yield Symbol(text, address, size, section != 0, info >> 4 == _WEAK, _KINDS.get(info & 15, ""))

@@ -13,8 +13,7 @@ from typing import NamedTuple, Protocol
 from cfepy.c.arena import PAGE, Arena
 from cfepy.c.elf import ElfError, Relocation, SharedObject, Symbol
 from cfepy.c.engine import engine
-from cfepy.c.places import CodePlace, Places
-from cfepy.cached import CachedProperty
+from cfepy.c.places import CodePlace, Places, places_of
 
 _RELATIVE, _ABSOLUTE, _ADDRESS, _CHOSEN = "relative", "absolute", "address", "chosen"
 _MODULE, _OFFSET, _FIXED_OFFSET, _DESCRIPTOR = "module", "offset", "fixed offset", "descriptor"
@@ -187,9 +186,9 @@ class Image:
         array = struct.unpack(f"<{count}Q", self._engine.peek(self.base + at, 8 * count))
         return [each for each in array if each not in (0, _64_BITS)]
 
-    @CachedProperty
+    @property
     def _places(self) -> Places:
-        return Places(self.source.data, self.source.name)
+        return places_of(self.source.data, self.source.name)
 
     def place_at(self, address: int) -> CodePlace:
         """Where in its source an address in this image is."""

@@ -16,7 +16,7 @@ from pathlib import PurePath
 from types import CodeType, FunctionType
 from typing import Any, NamedTuple, NoReturn
 
-from cfepy.c.elf import elf_file
+from cfepy.c.elf import elf_file, symbols_in
 from cfepy.cached import CachedProperty
 
 
@@ -45,7 +45,7 @@ class _Row(NamedTuple):
 
 
 class Places:
-    """The places of one shared object.
+    """The places of one shared object; `places_of` gives them.
 
     Args:
         data: its file.
@@ -89,12 +89,16 @@ class Places:
         return self._symbols("STT_OBJECT")
 
     def _symbols(self, kind: str) -> list[tuple[int, int, str]]:
-        found = set()
+        found: set[tuple[int, int, str]] = set()
         for section in (".symtab", ".dynsym"):
             table = self._elf.get_section_by_name(section)
-            for symbol in table.iter_symbols() if table is not None else ():
-                if symbol["st_info"]["type"] == kind and symbol["st_shndx"] != "SHN_UNDEF":
-                    found.add((symbol["st_value"], symbol["st_size"], symbol.name))
+            if table is not None:
+                names = self._elf.get_section(table["sh_link"]).data()
+                found.update(
+                    (each.address, each.size, each.name)
+                    for each in symbols_in(table.data(), names)
+                    if each.kind == kind and each.is_defined
+                )
         return sorted(found)
 
     @CachedProperty
@@ -116,6 +120,17 @@ class Places:
                     rows.append(_Row(state.address, files.get(state.file, ""), line))
         rows.sort(key=lambda row: (row.address, row.line == 0))
         return rows
+
+
+@lru_cache(32)
+def places_of(data: bytes, name: str) -> Places:
+    """The places of a shared object, read once for all its copies: each run of an exploration loads it anew.
+
+    Args:
+        data: its file.
+        name: of the file.
+    """
+    return Places(data, name)
 
 
 def _files_of(program: Any, unit: Any) -> dict[int, str]:

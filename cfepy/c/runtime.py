@@ -238,7 +238,8 @@ class CRuntime:
         Raises:
             ElfError: a library of the host is not there.
         """
-        return [name for name in wanted_names(source) if self._exports.symbol(name) is None]
+        variables = {name for image in self.shared() for name in image.thread_locals}
+        return [name for name in wanted_names(source) if self._exports.symbol(name) is None and name not in variables]
 
     # -- running -----------------------------------------------------------------------------------------------------
 

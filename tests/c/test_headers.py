@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 import subprocess
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 from unittest.mock import MagicMock
@@ -15,6 +16,7 @@ from unittest.mock import MagicMock
 import pytest
 
 from cfepy.c import api
+from cfepy.c.elf import elf_file
 from cfepy.c.engine import compiler
 from cfepy.c.toolchain.application import WITHOUT_DEPRECATED, WITHOUT_DEPRECATED_OSAL
 from cfepy.c.toolchain.compiler import cpp_compiler
@@ -164,20 +166,21 @@ def declared() -> dict[str, str]:
 
 def kinds(folder: Path, functions: dict[str, str]) -> dict[str, str]:
     """The parameters of functions: `*` for pointers, else their size."""
-    text = '#include <stdio.h>\n#include "cfe.h"\n#include "cfe_config.h"\n#include "iodriver_base.h"\n'
+    text = '#include "cfe.h"\n#include "cfe_config.h"\n#include "iodriver_base.h"\n'
     text += "#define CFE_TBL_Handle_t uint32\n"  # the engine takes it so: of 16 bits or 32, as the application has it
     text += "#define K(type) (__builtin_classify_type(*(type *)0) == 5 ? '*' : (char)('0' + sizeof(type)))\n"
-    text += "int main(void)\n{\n"
-    for name, kind in functions.items():
+    text += "const char kinds[] = {\n"
+    for kind in functions.values():
         types = [each.strip() for each in kind[kind.rindex("(") + 1 : -1].split(",")]
         types = [re.sub(r"\s*\[\d*\]", "*", each) for each in types if each not in ("void", "...")]
-        text += f'    printf("{name} ");\n'
-        text += "".join(f"    putchar(K({each}));\n" for each in types) + '    puts("");\n'
-    (folder / "kinds.c").write_text(text + "    return 0;\n}\n")
-    made = folder / "kinds"
-    subprocess.run([*compiler(), f"-I{headers_folder()}", str(folder / "kinds.c"), "-o", str(made)], check=True)
-    said = subprocess.run([str(made)], capture_output=True, text=True, check=True).stdout
-    return {line.split(" ")[0]: line.split(" ")[1] for line in said.splitlines()}
+        text += "".join(f"    K({each}),\n" for each in types) + "    '\\n',\n"
+    (folder / "kinds.c").write_text(text + "};\n")
+    made = folder / "kinds.o"  # not run: it may be for another computer than the one that compiles
+    subprocess.run([*compiler(), f"-I{headers_folder()}", "-c", str(folder / "kinds.c"), "-o", str(made)], check=True)
+    elf = elf_file(BytesIO(made.read_bytes()))
+    [symbol] = elf.get_section_by_name(".symtab").get_symbol_by_name("kinds")
+    data = elf.get_section(symbol["st_shndx"]).data()[symbol["st_value"] :][: symbol["st_size"]]
+    return dict(zip(functions, data.decode().splitlines(), strict=True))
 
 
 def test_the_engine_declares_functions_as_the_headers_do(tmp_path: Path) -> None:

@@ -74,7 +74,34 @@ def test_a_library_has_some_that_applications_use(tmp_path: Path) -> None:
         """,
     )
     folder = write_mission(tmp_path, "TEST", libraries="CFE_LIB, lib, NULL, LIB, 0, 0, 0x0, 0;\n")
-    assert said(console_of(fly(folder))) == ["child 6", "main 11 11"]
+    console = console_of(fly(folder))
+    assert said(console) == ["child 6", "main 11 11"]
+    assert "needs what nobody has" not in console
+
+
+@pytest.mark.slow
+def test_many_libraries_have_some(tmp_path: Path) -> None:
+    numbers = range(10)  # as many libraries as there may be
+    for number in numbers:
+        compile_c(tmp_path, f"lib{number}", f"__thread int LIB{number} = {number};")
+    declared = "".join(f"extern __thread int LIB{number};\n" for number in numbers)
+    added = "".join(f"sum = sum * 3 + (LIB{number} += 2);\n" for number in numbers)
+    compile_c(
+        tmp_path,
+        "TEST",
+        declared
+        + f"static void fly(const char *who) {{ unsigned sum = 0;\n for (int i = 0; i < 3; i++) {{\n{added}"
+        + 'OS_TaskDelay(10); }\nSAY("%s %u", who, sum); }\nstatic void child(void) { fly("child"); }\n'
+        'void TEST_Main(void)\n{\nuint32_t id;\nCFE_ES_CreateChildTask(&id, "CHILD", child, NULL, 16384, 60, 0);\n'
+        'fly("main");\nOS_TaskDelay(200);\n}\n',
+    )
+    lines = "".join(f"CFE_LIB, lib{number}, NULL, LIB{number}, 0, 0, 0x0, 0;\n" for number in numbers)
+    sum_ = 0
+    for turn in range(3):
+        for number in numbers:
+            sum_ = (sum_ * 3 + number + 2 * (turn + 1)) % 2**32
+    console = console_of(fly(write_mission(tmp_path, "TEST", libraries=lines)))
+    assert sorted(said(console)) == [f"child {sum_}", f"main {sum_}"]
 
 
 def test_fixed_places_are_refused_with_what_helps(tmp_path: Path) -> None:

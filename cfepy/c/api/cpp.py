@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from cfepy.c.calls import DESCRIPTOR
+from cfepy.c.engine import engine
 from cfepy.c.faults import CFault
 
 if TYPE_CHECKING:
@@ -82,6 +83,7 @@ def _declare_lives(api: Declarations, c: CRuntime) -> None:
     api.add("__cxa_atexit", "ppp", c.ends.add)
     api.add("__cxa_finalize", "p", c.ends.finalize)
     api.data["__libc_single_threaded"] = b"\1"
+    api.data["__stack_chk_guard"] = engine().STACK_GUARD.to_bytes(8, "little")
 
 
 def _declare_unwinding(api: Declarations, c: CRuntime) -> None:

@@ -70,6 +70,8 @@ def _declare_files(api: Declarations, c: CRuntime) -> None:
         return failing(lambda: os.close(number))
 
     def access(name: str, mode: int) -> int:
+        if not any(image.source.has_coverage for image in c.images()):
+            raise CFault(f"access() of {name}: applications ask for files with OS_stat")
         return 0 if os.access(name, mode) else FAILED
 
     def make_folder(name: str, mode: int) -> int:

@@ -15,6 +15,7 @@
  */
 #include "engine.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -102,6 +103,7 @@ static int format_guarded(Coroutine *coroutine, char *to, size_t room, const cha
         PyErr_Format(fault_error, "bad address %p in a format or its arguments", (void *)coroutine->fault_address);
         return -1;
     }
+    errno = application_errno(coroutine); /* for %m */
     int count = vsnprintf(to, room, format, list);
     coroutine->is_native = false;
     running = before;

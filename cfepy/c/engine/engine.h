@@ -31,9 +31,11 @@ enum { RETURN_ADDRESS = 6, STACK_ARGUMENTS = 7, REGISTER_ARGUMENTS = 6 };
 #else
 enum { RETURN_ADDRESS = 11, STACK_ARGUMENTS = 20, REGISTER_ARGUMENTS = 8 };
 #endif
-enum { FLOAT_ARGUMENTS = 8 };
+/* What -fstack-protector puts on stacks, the same in each run; as libc's, its first byte ends texts. */
+#define STACK_GUARD 0x5AFE57AC4B0A2D00ll
+enum { FLOAT_ARGUMENTS = 8, KEPT_BLOCKS = 8 };
 
-/* The assembly knows the members down to `float_highs` by their offsets. */
+/* The assembly knows the members down to `guard` by their offsets. */
 typedef struct Coroutine {
     uint64_t arguments[8];                     /* 0: as many as the processor passes in registers */
     uint64_t *stack_pointer;                   /* 64: of the application, behind what the switch saved */
@@ -45,6 +47,7 @@ typedef struct Coroutine {
     uint64_t host_float_modes, float_modes;    /* 168, 176 */
     uint64_t result_high;                      /* 184: the second word of a result of two */
     uint64_t float_highs[FLOAT_ARGUMENTS];     /* 192: of `floats` as long double, where registers are that wide */
+    uint64_t guard;                            /* 256: of stacks, x86-64: the other side's while one runs */
     /* not known to the assembly */
     char *stack;                               /* lowest byte */
     size_t size;
@@ -60,9 +63,12 @@ typedef struct Coroutine {
     uint64_t called_from;                      /* where its last call returns to */
     uint64_t fault_address, fault_pc, fault_stack_pointer;
     uint64_t fault_link;                       /* the register with the return address, where the processor has one */
+    struct {
+        uint64_t module, block;
+    } thread_locals[KEPT_BLOCKS];              /* where blocks of thread-local variables are that it has asked for */
     struct Table *table;
 } Coroutine;
-_Static_assert(offsetof(Coroutine, float_highs) == 192, "the assembly has these offsets");
+_Static_assert(offsetof(Coroutine, guard) == 256, "the assembly has these offsets");
 
 struct Function;
 /* A call that is answered without Python; what it returns goes to the application. */
@@ -150,13 +156,16 @@ HIDDEN bool races_asks_first(Coroutine *, uint64_t address, uint64_t size); /* a
 HIDDEN bool races_shared(Coroutine *, uint64_t address, uint64_t size);
 HIDDEN void races_note(Coroutine *, uint64_t address, uint64_t size, bool is_write, bool is_atomic);
 
+/* natives_threads.c */
+HIDDEN int application_errno(const Coroutine *);
+
 /* natives_*.c: their tables end with a row without a name */
 typedef struct {
     const char *name;
     Native native;
     void *target;
 } NativeRow;
-extern HIDDEN const NativeRow natives_of_msg[], natives_of_libc[], natives_of_math[], natives_of_cpp[], natives_of_locale[], natives_of_races[];
+extern HIDDEN const NativeRow natives_of_msg[], natives_of_libc[], natives_of_math[], natives_of_cpp[], natives_of_locale[], natives_of_races[], natives_of_threads[];
 #define NATIVE(function) static uint64_t function(Coroutine *call, const Function *self)
 #define POINTER(number) ((unsigned char *)call->arguments[number])
 #define WORD(number) (call->arguments[number])

@@ -8,7 +8,7 @@
 
 static const NativeRow *find_native(const char *name)
 {
-    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale, natives_of_races};
+    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale, natives_of_races, natives_of_threads};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
         for (const NativeRow *row = lists[i]; row->name != NULL; row++)
             if (strcmp(row->name, name) == 0)
@@ -299,6 +299,7 @@ static void prepare(Coroutine *coroutine, uint64_t function, const uint64_t *val
     top[6] = (uint64_t)engine_begin;
     top[7] = values[5];
     coroutine->float_modes = 0x1F80ull | 0x37Full << 32;
+    coroutine->guard = STACK_GUARD;
 #else
     top -= STACK_ARGUMENTS;
     top[0] = function; /* x19 */
@@ -426,7 +427,7 @@ static PyObject *has_native(PyObject *module, PyObject *name)
 
 static PyObject *natives(PyObject *module, PyObject *unused)
 {
-    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale, natives_of_races};
+    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale, natives_of_races, natives_of_threads};
     PyObject *names = PyList_New(0);
     for (size_t i = 0; names != NULL && i < sizeof lists / sizeof *lists; i++)
         for (const NativeRow *row = lists[i]; row->name != NULL; row++) {
@@ -478,6 +479,7 @@ PyMODINIT_FUNC PyInit__engine(void)
         PyModule_AddObjectRef(module, "Images", (PyObject *)&images_type) < 0 ||
         PyModule_AddObjectRef(module, "Races", (PyObject *)&races_type) < 0 ||
         PyModule_AddObjectRef(module, "Table", (PyObject *)&table_type) < 0 ||
+        PyModule_AddIntConstant(module, "STACK_GUARD", STACK_GUARD) < 0 ||
         PyModule_AddIntConstant(module, "ARENA_LOW", ARENA_LOW) < 0 ||
         PyModule_AddIntConstant(module, "ARENA_HIGH", ARENA_HIGH) < 0)
         return NULL;

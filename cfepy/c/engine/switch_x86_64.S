@@ -1,13 +1,16 @@
 /* The switch between an application's stack and the host's: x86-64, System V calling convention.
  *
  * engine.h has the members of Coroutine behind the numbers. Registers that a called function keeps are pushed on either
- * side; the modes of floating point (MXCSR and the x87 control word) belong to each side. Above the six saved registers
+ * side; the modes of floating point (MXCSR and the x87 control word) belong to each side. So does the word that guards
+ * stacks (-fstack-protector): the host's is random, and applications have it on their stacks. Above the six saved registers
  * of a stopped coroutine are the return address into the application and its arguments from the seventh on.
  */
     .text
 
 #define KEEP push %rbp; push %rbx; push %r12; push %r13; push %r14; push %r15
 #define RESTORE pop %r15; pop %r14; pop %r13; pop %r12; pop %rbx; pop %rbp
+#define GUARD %fs:0x28                  /* where compilers expect it */
+#define SWAP_GUARD(coroutine) mov GUARD, %rax; mov 256(coroutine), %rcx; mov %rcx, GUARD; mov %rax, 256(coroutine)
 
     .globl engine_resume
     .hidden engine_resume
@@ -19,6 +22,7 @@ engine_resume:                          /* rdi: the coroutine */
     fnstcw 172(%rdi)
     ldmxcsr 176(%rdi)
     fldcw 180(%rdi)
+    SWAP_GUARD(%rdi)
     mov 64(%rdi), %rsp
     mov 80(%rdi), %rax
     mov 184(%rdi), %rdx
@@ -30,6 +34,9 @@ engine_resume:                          /* rdi: the coroutine */
     xor %r9d, %r9d
     xor %r10d, %r10d
     xor %r11d, %r11d
+    .irp number, 1,2,3,4,5,6,7,8,9,10,11,12,13,14,15
+    pxor %xmm\number, %xmm\number
+    .endr
     RESTORE
     ret
     .size engine_resume, . - engine_resume
@@ -42,6 +49,7 @@ engine_reenter:                         /* rdi: a coroutine that a signal stoppe
     mov %rsp, 72(%rdi)
     stmxcsr 168(%rdi)
     fnstcw 172(%rdi)
+    SWAP_GUARD(%rdi)
     sub $8, %rsp
     call faults_raise
     ud2
@@ -68,6 +76,7 @@ engine_call:                            /* a stub came here with the number of i
     movsd %xmm6, 144(%r10)
     movsd %xmm7, 152(%r10)
     mov %r11, 88(%r10)
+    SWAP_GUARD(%r10)
     mov %rsp, 64(%r10)
     stmxcsr 176(%r10)
     fnstcw 180(%r10)
@@ -87,6 +96,7 @@ engine_land:                            /* a signal handler put the host's stack
     ldmxcsr 168(%r10)
     fninit
     fldcw 172(%r10)
+    SWAP_GUARD(%r10)
     RESTORE
     ret
     .size engine_land, . - engine_land
