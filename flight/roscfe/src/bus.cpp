@@ -18,16 +18,18 @@ constexpr std::size_t   kSpare           = 12;   // of a telemetry header: whom 
 constexpr std::uint8_t  kAddressed       = 0x01; // in its last byte
 constexpr std::size_t   kKnownAtOnce     = 512;  // subscriptions of the whole processor, before memory is needed for more
 constexpr std::int64_t  kReportTimeout   = kSecond;
+constexpr std::int64_t  kNextReport      = kSecond / 20;
 constexpr std::int32_t  kLongestWaitMs   = 100000;
 
-// A subscription of any application, as the Software Bus reports it.
+// A subscription of any application, as the Software Bus reports it: with its pipe when it is new. The list of those that
+// there were before tells no pipes (0), and a MsgId once however many pipes have subscribed to it.
 struct Known
 {
     std::uint16_t   msg_id;
     CFE_SB_PipeId_t pipe;
 };
 std::vector<Known> g_known;
-bool               g_all_reported = false;
+bool               g_reports_end = false; // the last packet of the list of those that there were came
 
 // A long message that comes in several packets.
 struct Assembly
@@ -51,6 +53,10 @@ bool same_pipe(CFE_SB_PipeId_t one, CFE_SB_PipeId_t other)
 
 bool is_there(CFE_SB_PipeId_t pipe)
 {
+    if (CFE_RESOURCEID_TO_ULONG(pipe) == 0)
+    {
+        return true; // nobody can say
+    }
     char name[OS_MAX_API_NAME];
     return CFE_SB_GetPipeName(name, sizeof name, pipe) == CFE_SUCCESS;
 }
@@ -65,10 +71,7 @@ void know(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
         }
     }
     g_known.push_back({msg_id, pipe});
-    if (!same_pipe(pipe, g_node.pipe) || g_node.started)
-    {
-        publication_has_subscriber(msg_id, pipe);
-    }
+    publication_has_subscriber(msg_id, pipe);
 }
 
 void forget(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
@@ -93,9 +96,14 @@ void read_report(const CFE_SB_Buffer_t *buffer, std::uint16_t msg_id)
     const auto &report = reinterpret_cast<const CFE_SB_AllSubscriptionsTlm_t *>(buffer)->Payload;
     for (std::uint32_t i = 0; i < report.Entries; ++i)
     {
-        know(static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(report.Entry[i].MsgId)), report.Entry[i].Pipe);
+        // Other nodes ask for the list, too; it tells nothing of a MsgId that is known already.
+        const auto id = static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(report.Entry[i].MsgId));
+        if (pipes_on(id) == 0)
+        {
+            g_known.push_back({id, report.Entry[i].Pipe});
+        }
     }
-    g_all_reported = g_all_reported || report.PktSegment >= report.TotalSegments;
+    g_reports_end = report.Entries < CFE_MISSION_SB_SUB_ENTRIES_PER_PKT;
 }
 
 // Join a segment to its message; true when that is whole, and the first bytes are those of its first packet's header.
@@ -230,7 +238,7 @@ void open_bus()
     {
         return;
     }
-    for (CFE_MSG_FcnCode_t code : {CFE_SB_ENABLE_SUB_REPORTING_CC, CFE_SB_SEND_PREV_SUBS_CC})
+    for (CFE_MSG_FcnCode_t code : {CFE_SB_SEND_PREV_SUBS_CC, CFE_SB_ENABLE_SUB_REPORTING_CC})
     {
         CFE_SB_Buffer_t *buffer = CFE_SB_AllocateMessageBuffer(kCommandHeader);
         if (buffer == nullptr)
@@ -241,12 +249,19 @@ void open_bus()
         CFE_MSG_SetFcnCode(&buffer->Msg, code);
         send_packet(buffer);
     }
-    const std::int64_t until = now_ns() + kReportTimeout;
-    while (!g_all_reported && pump(until))
+    // A packet that is full may be the last one; then no other comes soon.
+    bool         some  = false;
+    std::int64_t until = now_ns() + kReportTimeout;
+    while (!g_reports_end && pump(until))
     {
+        if (!some && !g_known.empty())
+        {
+            some  = true;
+            until = now_ns() + kNextReport;
+        }
     }
-    g_node.knows_subscribers = g_all_reported;
-    g_node.has_master        = g_all_reported && pipes_on(kMasterMsgId | kCommandBit) > 0;
+    g_node.knows_subscribers = !g_known.empty();
+    g_node.has_master        = pipes_on(kMasterMsgId | kCommandBit) > 0;
 }
 
 bool listen(std::uint16_t msg_id)

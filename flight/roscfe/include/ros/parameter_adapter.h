@@ -6,6 +6,30 @@
 
 #include "ros/message_event.h"
 
+// Pointers to it, and events, by value or by reference; a pointer to a message that may be changed gets it as it is.
+namespace roscfe
+{
+
+template <class X>
+struct PointerAdapter
+{
+    typedef typename std::remove_const<X>::type Message;
+    typedef ros::MessageEvent<Message const>         Event;
+    static boost::shared_ptr<X> getParameter(const Event &event)
+    {
+        return boost::const_pointer_cast<X>(event.getConstMessage());
+    }
+};
+
+template <class X>
+struct EventAdapter
+{
+    typedef typename std::remove_const<X>::type Message;
+    typedef ros::MessageEvent<Message const>         Event;
+    static ros::MessageEvent<X> getParameter(const Event &event) { return ros::MessageEvent<X>(event); }
+};
+} // namespace roscfe
+
 namespace ros
 {
 
@@ -18,50 +42,28 @@ struct ParameterAdapter
     static const Message &getParameter(const Event &event) { return *event.getConstMessage(); }
 };
 
-// Pointers to it, and events, by value or by reference; a pointer to a message that may be changed gets it as it is.
-namespace detail
-{
 template <class X>
-struct PointerAdapter
-{
-    typedef typename std::remove_const<X>::type Message;
-    typedef MessageEvent<Message const>         Event;
-    static boost::shared_ptr<X> getParameter(const Event &event)
-    {
-        return boost::const_pointer_cast<X>(event.getConstMessage());
-    }
-};
-template <class X>
-struct EventAdapter
-{
-    typedef typename std::remove_const<X>::type Message;
-    typedef MessageEvent<Message const>         Event;
-    static MessageEvent<X> getParameter(const Event &event) { return MessageEvent<X>(event); }
-};
-} // namespace detail
-
-template <class X>
-struct ParameterAdapter<boost::shared_ptr<X>> : detail::PointerAdapter<X>
+struct ParameterAdapter<boost::shared_ptr<X>> : roscfe::PointerAdapter<X>
 {
 };
 template <class X>
-struct ParameterAdapter<const boost::shared_ptr<X>> : detail::PointerAdapter<X>
+struct ParameterAdapter<const boost::shared_ptr<X>> : roscfe::PointerAdapter<X>
 {
 };
 template <class X>
-struct ParameterAdapter<const boost::shared_ptr<X> &> : detail::PointerAdapter<X>
+struct ParameterAdapter<const boost::shared_ptr<X> &> : roscfe::PointerAdapter<X>
 {
 };
 template <class X>
-struct ParameterAdapter<MessageEvent<X>> : detail::EventAdapter<X>
+struct ParameterAdapter<MessageEvent<X>> : roscfe::EventAdapter<X>
 {
 };
 template <class X>
-struct ParameterAdapter<const MessageEvent<X>> : detail::EventAdapter<X>
+struct ParameterAdapter<const MessageEvent<X>> : roscfe::EventAdapter<X>
 {
 };
 template <class X>
-struct ParameterAdapter<const MessageEvent<X> &> : detail::EventAdapter<X>
+struct ParameterAdapter<const MessageEvent<X> &> : roscfe::EventAdapter<X>
 {
 };
 
