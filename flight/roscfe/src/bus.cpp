@@ -27,6 +27,7 @@ struct Known
 {
     std::uint16_t   msg_id;
     CFE_SB_PipeId_t pipe;
+    osal_id_t       queue; // of the pipe; OSAL tells whether it is there without an event
 };
 std::vector<Known> g_known;
 bool               g_reports_end = false; // the last packet of the list of those that there were came
@@ -51,14 +52,11 @@ bool same_pipe(CFE_SB_PipeId_t one, CFE_SB_PipeId_t other)
     return CFE_RESOURCEID_TO_ULONG(one) == CFE_RESOURCEID_TO_ULONG(other);
 }
 
-bool is_there(CFE_SB_PipeId_t pipe)
+bool is_there(const Known &known)
 {
-    if (CFE_RESOURCEID_TO_ULONG(pipe) == 0)
-    {
-        return true; // nobody can say
-    }
-    char name[OS_MAX_API_NAME];
-    return CFE_SB_GetPipeName(name, sizeof name, pipe) == CFE_SUCCESS;
+    OS_queue_prop_t properties;
+    return CFE_RESOURCEID_TO_ULONG(known.pipe) == 0 // nobody can say
+           || OS_QueueGetInfo(known.queue, &properties) == OS_SUCCESS;
 }
 
 void know(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
@@ -70,7 +68,13 @@ void know(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
             return;
         }
     }
-    g_known.push_back({msg_id, pipe});
+    char      name[OS_MAX_API_NAME];
+    osal_id_t queue = OS_OBJECT_ID_UNDEFINED;
+    if (CFE_SB_GetPipeName(name, sizeof name, pipe) != CFE_SUCCESS || OS_QueueGetIdByName(&queue, name) != OS_SUCCESS)
+    {
+        return; // gone already
+    }
+    g_known.push_back({msg_id, pipe, queue});
     publication_has_subscriber(msg_id, pipe);
 }
 
@@ -100,7 +104,7 @@ void read_report(const CFE_SB_Buffer_t *buffer, std::uint16_t msg_id)
         const auto id = static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(report.Entry[i].MsgId));
         if (pipes_on(id) == 0)
         {
-            g_known.push_back({id, report.Entry[i].Pipe});
+            g_known.push_back({id, report.Entry[i].Pipe, OS_OBJECT_ID_UNDEFINED});
         }
     }
     g_reports_end = report.Entries < CFE_MISSION_SB_SUB_ENTRIES_PER_PKT;
@@ -300,7 +304,7 @@ std::uint32_t pipes_on(std::uint16_t msg_id)
         {
             continue;
         }
-        if (is_there(known.pipe))
+        if (is_there(known))
         {
             ++count;
         }

@@ -3,6 +3,7 @@
 #define ROS_NODE_HANDLE_H
 
 #include <string>
+#include <type_traits>
 
 #include "ros/advertise_options.h"
 #include "ros/callback_queue.h"
@@ -132,9 +133,10 @@ class NodeHandle
     {
         return hear<P>(topic, queue_size, function, hints);
     }
-    template <class M>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size,
-                         void (*function)(const boost::shared_ptr<M const> &),
+    // A lambda is no function, although it may become one: it is for the next overload.
+    template <class M, class F,
+              typename std::enable_if<std::is_same<F, void (*)(const boost::shared_ptr<M const> &)>::value, int>::type = 0>
+    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, F function,
                          const TransportHints &hints = TransportHints())
     {
         return hear<const boost::shared_ptr<M const> &>(topic, queue_size, function, hints);
