@@ -139,6 +139,16 @@ def check_address(addr: SockAddr | None) -> SockAddr:
     return addr
 
 
+def check_target(addr: SockAddr) -> None:
+    """Look at an address that something is sent to. One without domain, as of zeros, gets as far as the network.
+
+    Raises:
+        OsalError: OS_ERR_BAD_ADDRESS for a domain that there is not.
+    """
+    if addr.domain != OS_SocketDomain_INVALID:
+        check_address(addr)
+
+
 def check_given(addr: SockAddr | None) -> None:
     """Raise OS_INVALID_POINTER for None."""
     if addr is None:

@@ -16,7 +16,7 @@ from cfepy.osal.core import check_size
 from cfepy.osal.files import OsStream
 from cfepy.osal.limits import OS_MAX_API_NAME, OS_PEND
 from cfepy.osal.network import Place, Stream
-from cfepy.osal.sockaddr import SockAddr, check_address, check_given, from_place
+from cfepy.osal.sockaddr import SockAddr, check_address, check_given, check_target, from_place
 from cfepy.osal.streams import OS_SocketType_DATAGRAM, OS_SocketType_STREAM, OsSocket, StreamApi, ns_of
 from cfepy.status import (
     OS_ERR_INCORRECT_OBJ_STATE,
@@ -58,12 +58,12 @@ class DatagramApi(StreamApi):
 
         Raises:
             OsalError: OS_ERR_INVALID_SIZE, OS_INVALID_POINTER, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE,
-                OS_ERR_BAD_ADDRESS; OS_ERROR for an address of another domain or for more than UDP carries.
+                OS_ERR_BAD_ADDRESS; OS_ERROR for an address of another domain or of none, or for more than UDP carries.
         """
         check_size(len(buffer), "datagram")
         check_given(remote_addr)
         record = self._socket(sock_id, OS_SocketType_DATAGRAM)
-        check_address(remote_addr)
+        check_target(remote_addr)
         if remote_addr.domain != record.domain:
             raise record.error(f"cannot send to {remote_addr!r}: that is another domain")
         return self._send(record, bytes(buffer), remote_addr.place)
@@ -193,7 +193,7 @@ class SocketApi(DatagramApi):
         Raises:
             OsalError: OS_INVALID_POINTER, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for a file,
                 OS_ERR_INCORRECT_OBJ_STATE for a connected stream socket, OS_ERR_BAD_ADDRESS; OS_ERROR when no
-                socket listens there.
+                socket listens there, and for an address of another domain or of none.
         """
         return self._connect(sock_id, addr, ns_of(timeout_ms))
 
@@ -206,7 +206,7 @@ class SocketApi(DatagramApi):
         record = self._socket(sock_id)
         if record.connected and record.kind == OS_SocketType_STREAM:
             raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} is connected")
-        check_address(addr)
+        check_target(addr)
         if addr.domain != record.domain:
             raise record.error(f"cannot be connected with {addr!r}: that is another domain")
         if record.kind == OS_SocketType_DATAGRAM:

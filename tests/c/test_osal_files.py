@@ -194,6 +194,24 @@ def test_datagrams(tmp_path: Path) -> None:
     ]
 
 
+def test_addresses_of_no_family(tmp_path: Path) -> None:
+    """As OSAL 7.0.0 on Linux answers them: without a length they come to the kernel, which refuses them."""
+    body = """
+        for (int domain = 1; domain <= 2; domain++)
+            for (int type = 1; type <= 2; type++)
+                for (int length = 0; length <= 16; length += 16) {
+                    SockAddr none = {length, {0}};
+                    Id socket;
+                    OS_SocketOpen(&socket, domain, type);
+                    int sent = OS_SocketSendTo(socket, "x", 1, &none), connected = OS_SocketConnect(socket, &none, 0);
+                    SAY("%d %d %d", sent, connected, OS_SocketBind(socket, &none));
+                    OS_close(socket);
+                }
+    """
+    datagram, stream = ["-1 -1 -34", "-34 -34 -34"], ["-36 -1 -34", "-36 -34 -34"]
+    assert results(tmp_path, body) == 2 * (datagram + stream)
+
+
 def test_connections_and_select(tmp_path: Path) -> None:
     before = (
         ADDRESS

@@ -20,7 +20,6 @@ from cfepy.osal import (
     socket_addr_init,
 )
 from cfepy.status import (
-    OS_ERR_BAD_ADDRESS,
     OS_ERR_INVALID_ARGUMENT,
     OS_ERR_NOT_IMPLEMENTED,
     OS_ERROR,
@@ -37,6 +36,8 @@ ADDRESS_BYTES = 40
 """sizeof(OS_SockAddr_t)."""
 OPTIONS = (0, 1)
 """OS_socket_option_t below OS_socket_option_MAX."""
+BROKEN = -1
+"""A domain that there is not."""
 _LENGTH = Struct("<Q")
 _FAMILY = Struct("<H")
 _PORT = Struct(">H")
@@ -57,8 +58,18 @@ _BY_DOMAIN = {family.domain: family for family in FAMILIES}
 _BY_NUMBER = {family.number: family for family in FAMILIES}
 
 
-def read_address(memory: CMemory, at: int) -> tuple[SockAddr, bool]:
-    """An OS_SockAddr_t, and whether its length is that of its family."""
+def read_address(memory: CMemory, at: int) -> SockAddr:
+    """An OS_SockAddr_t, whatever its length."""
+    return _read(memory, at)[0]
+
+
+def read_target(memory: CMemory, at: int) -> SockAddr:
+    """An OS_SockAddr_t; of a domain that there is not when its length is not that of its family."""
+    address, is_whole = _read(memory, at)
+    return address if is_whole else SockAddr(BROKEN)
+
+
+def _read(memory: CMemory, at: int) -> tuple[SockAddr, bool]:
     raw = memory.peek(at, ADDRESS_BYTES)
     (length,), data = _LENGTH.unpack_from(raw), raw[_LENGTH.size :]
     family = _BY_NUMBER.get(_FAMILY.unpack_from(data)[0])
@@ -98,22 +109,22 @@ def _declare_addresses(api: Declarations, c: CRuntime) -> None:
 
     def to_string(buffer: int, size: int, at: int) -> None:
         check_size(size)
-        text = os.socket_addr_to_string(read_address(memory, at)[0])
+        text = os.socket_addr_to_string(read_address(memory, at))
         if len(to_bytes(text)) >= size:
             raise OsalError(OS_ERROR, f"{text} needs more than {size} bytes")
         memory.poke(buffer, to_bytes(text) + b"\0")
 
     def from_string(at: int, text: str) -> None:
-        address = read_address(memory, at)[0]
+        address = read_address(memory, at)
         os.socket_addr_from_string(address, text)
         family = _BY_DOMAIN[address.domain]
         memory.poke(at + _LENGTH.size + family.host_at, ipaddress.ip_address(address.host).packed)
 
     def get_port(port: int, at: int) -> None:
-        memory.poke(port, os.socket_addr_get_port(read_address(memory, at)[0]).to_bytes(2, "little"))
+        memory.poke(port, os.socket_addr_get_port(read_address(memory, at)).to_bytes(2, "little"))
 
     def set_port(at: int, port: int) -> None:
-        address = read_address(memory, at)[0]
+        address = read_address(memory, at)
         os.socket_addr_set_port(address, port)
         memory.poke(at + _LENGTH.size + _FAMILY.size, _PORT.pack(port))
 
@@ -128,10 +139,10 @@ def _declare_opening(api: Declarations, c: CRuntime) -> None:
     os, memory = c.handle.os, c.memory
 
     def bind(sock_id: int, at: int) -> None:
-        os.socket_bind(sock_id, read_address(memory, at)[0])
+        os.socket_bind(sock_id, read_address(memory, at))
 
     def bind_address(sock_id: int, at: int) -> None:
-        os.socket_bind_address(sock_id, read_address(memory, at)[0])
+        os.socket_bind_address(sock_id, read_address(memory, at))
 
     api.add("OS_SocketOpen", "=4II", new_id(os.socket_open, OS_ERR_NOT_IMPLEMENTED, OS_ERROR), BAD)
     api.add("OS_SocketBind", "IP", bind, BAD)
@@ -147,18 +158,11 @@ def _declare_connections(api: Declarations, c: CRuntime) -> None:
     accept_in = in_time(os.socket_accept, OS_ERROR_TIMEOUT)
     accept_by = in_time(os.socket_accept_abs, OS_ERROR_TIMEOUT)
 
-    def target(sock_id: int, at: int) -> SockAddr:
-        address, is_whole = read_address(memory, at)
-        if not is_whole:
-            os.socket_get_info(sock_id)
-            raise OsalError(OS_ERR_BAD_ADDRESS, "the length of an address is not that of its domain")
-        return address
-
     def connect(sock_id: int, at: int, timeout: int) -> None:
-        connect_in(sock_id, target(sock_id, at), timeout)
+        connect_in(sock_id, read_target(memory, at), timeout)
 
     def connect_abs(sock_id: int, at: int, timeout: int) -> None:
-        connect_by(sock_id, target(sock_id, at), OsTime(timeout))
+        connect_by(sock_id, read_target(memory, at), OsTime(timeout))
 
     def hand_over(result: tuple[int, SockAddr], at: int) -> int:
         write_address(memory, at, result[1])
@@ -197,10 +201,7 @@ def _declare_datagrams(api: Declarations, c: CRuntime) -> None:
 
     def send(sock_id: int, buffer: int, size: int, remote: int) -> int:
         check_size(size)
-        address, is_whole = read_address(memory, remote)
-        return os.socket_send_to(
-            sock_id, memory.peek(buffer, size), address if is_whole else SockAddr(OS_SocketDomain_INVALID)
-        )
+        return os.socket_send_to(sock_id, memory.peek(buffer, size), read_target(memory, remote))
 
     api.add("OS_SocketRecvFrom", "$IPQpi", receive, BAD)
     api.add("OS_SocketRecvFromAbs", "$IPQpq", receive_abs, BAD)
