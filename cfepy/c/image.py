@@ -13,7 +13,9 @@ from typing import NamedTuple, Protocol
 from cfepy.c.arena import PAGE, Arena
 from cfepy.c.elf import ElfError, Relocation, SharedObject, Symbol
 from cfepy.c.engine import engine
+from cfepy.c.frame_info import FrameInfo, FrameRow
 from cfepy.c.places import CodePlace, Places, places_of
+from cfepy.cached import CachedProperty
 
 _RELATIVE, _ABSOLUTE, _ADDRESS, _CHOSEN = "relative", "absolute", "address", "chosen"
 _MODULE, _OFFSET, _FIXED_OFFSET, _DESCRIPTOR = "module", "offset", "fixed offset", "descriptor"
@@ -189,6 +191,14 @@ class Image:
     @property
     def _places(self) -> Places:
         return places_of(self.source.data, self.source.name)
+
+    @CachedProperty
+    def _frames(self) -> FrameInfo:
+        return FrameInfo(self.source)
+
+    def frame_row(self, address: int) -> FrameRow | None:
+        """How the frame at an address of code is found; None if that is not known."""
+        return self._frames.row(address - self.base)
 
     def place_at(self, address: int) -> CodePlace:
         """Where in its source an address in this image is."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 import sys
 from bisect import bisect_right
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from io import BytesIO
 from pathlib import PurePath
@@ -21,16 +21,21 @@ from cfepy.cached import CachedProperty
 
 
 class CodePlace(NamedTuple):
-    """A place in code; `file` is empty and `line` 0 without debug data."""
+    """A place in code of a shared object; `file` is empty and `line` 0 without debug data."""
 
     function: str
     offset: int
     file: str = ""
     line: int = 0
+    object: str = ""
 
     def __str__(self) -> str:
         """`CASE_Main (case.c:12)`, or `CASE_Main+0x10` without debug data."""
         return f"{self.function} ({self.name}:{self.line})" if self.file else f"{self.function}+0x{self.offset:x}"
+
+    def without_line(self) -> CodePlace:
+        """Itself as a line of a traceback that has no line: `File "case.so", line 0, in CASE_Main+0x10`."""
+        return CodePlace(f"{self.function}+0x{self.offset:x}", 0, self.object)
 
     @property
     def name(self) -> str:
@@ -61,7 +66,7 @@ class Places:
         number = bisect_right(self._functions, (address, "\U0010ffff"))
         start, function = self._functions[number - 1] if number else (0, self._name)
         row = self._row(address)
-        return CodePlace(function, address - start, *(row[1:] if row else ()))
+        return CodePlace(function, address - start, *(row[1:] if row else ("", 0)), self._name)
 
     def variable_at(self, address: int) -> str:
         """The variable that an address belongs to, counted from the object's base; empty if that is not known."""
@@ -205,22 +210,30 @@ class CallFrames(dict[int, Call]):
         return function
 
 
-def raise_at(place: CodePlace | None, error: BaseException) -> NoReturn:
-    """Raise an error from a frame that is seen as a place of C, without what came before it.
+def raise_at(calls: Sequence[CodePlace], error: BaseException) -> NoReturn:
+    """Raise an error from frames that are seen as places of C, without what came before it.
+
+    Args:
+        calls: the places, the outermost first; where there is no debug data, functions of the object are seen all the
+            same.
+        error: the error.
 
     Raises:
         BaseException: the error.
     """
-    function = _seen_as(place, _RAISE, {})
-    if function is not None:
-        function(error)
+    if calls:
+        *outer, last = (each if each.file else each.without_line() for each in calls)
+        first, *others = [*(_function(each, _CALL, {}) for each in outer), _function(last, _RAISE, {})]
+        first(*others, error)
     raise error from None
 
 
 def _seen_as(place: CodePlace | None, code: CodeType, names: dict[str, object]) -> FunctionType | None:
     """A function of this code that is seen as a place; None for a place that is not known."""
-    if place is None or not place.file:
-        return None
+    return None if place is None or not place.file else _function(place, code, names)
+
+
+def _function(place: CodePlace, code: CodeType, names: dict[str, object]) -> FunctionType:
     return FunctionType(_renamed(code, place.function, place.file, place.line), names)
 
 

@@ -19,6 +19,7 @@ from cfepy.c.packets import PacketImages
 from cfepy.c.places import CallFrames, CodePlace, PreemptedFrames, raise_at
 from cfepy.c.races import Race, RaceWatch
 from cfepy.c.stacks import LEAST, Stacks
+from cfepy.c.unwinding import Unwinder
 from cfepy.console import Console
 from cfepy.rtos import ExploringKernel, Kernel
 from cfepy.status import CfeError, OsalError
@@ -82,6 +83,7 @@ class CRuntime:
         self.memory = CMemory()
         self.constants = Constants(self.arena)
         self.at_close: list[Callable[[], object]] = []
+        self._unwinder = Unwinder(self.image_at, self.memory)
         self._stacks = Stacks(self.arena, POISON if guard else b"")
         self._heap = made.Heap(self.arena.map(HEAP), HEAP, guarded=guard, page=PAGE)
         messages = made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK, guarded=guard, grain=4, page=PAGE)
@@ -270,8 +272,9 @@ class CRuntime:
                 self.thread_locals.finish()
             return result
         except CFault as fault:
+            calls = self._unwinder.calls(*fault.registers)
             made = explained(fault, self.place_of)
-            raise_at(self._place(made.at), made)
+            raise_at([place for each in calls or [made.at] if (place := self._place(each)) is not None], made)
         except _Passing as passing:
             if not is_outermost:
                 raise

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import linecache
 import os
+import re
 import traceback
 from pathlib import Path
 
@@ -17,6 +18,7 @@ _ROSPY = os.path.join(os.path.dirname(PACKAGE), "rospy_shim", "")
 _LIBRARIES = os.path.join(_ROSPY, "libraries", "")
 _STANDARD_LIBRARY = os.path.join(os.path.dirname(linecache.__file__), "")
 _INSTALLED = ("site-packages", "dist-packages")
+_PLACE = re.compile(r"\([^\s():]+:\d+\)")
 INNERMOST = 50  # frames that are shown: how deep a runaway recursion gets differs between task contexts
 
 
@@ -33,13 +35,13 @@ def app_traceback(error: BaseException) -> str:
 def reason(error: BaseException) -> str:
     """The last line of a traceback, with the place: `ValueError: no such joint (arm.py:12)`.
 
-    Of a text of several lines, it is the first.
+    Of a text of several lines, it is the first. One that names a place of its own stays as it is: a fault in C does.
     """
     frames = traceback.extract_tb(error.__traceback__, limit=-INNERMOST)
     own = [frame for frame in frames if not _is_ours(frame.filename)] or frames
     what = without_addresses(traceback.format_exception_only(error)[-1]).strip().partition("\n")[0].rstrip(":")
-    place = f"{Path(own[-1].filename).name}:{own[-1].lineno}" if own else ""
-    return f"{what} ({place})" if place and f"({place})" not in what else what
+    place = f"{Path(own[-1].filename).name}:{own[-1].lineno}" if own and own[-1].lineno else ""
+    return f"{what} ({place})" if place and not _PLACE.search(what) else what
 
 
 def described(error: BaseException) -> str:

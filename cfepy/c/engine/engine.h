@@ -27,9 +27,9 @@ enum { FINISHED = -1, FAULT = -2, PREEMPTED = -3 };
 
 #if defined(__x86_64__)
 /* Words from a stopped stack pointer: to where the call returns to, and to the arguments that are on the stack. */
-enum { RETURN_ADDRESS = 6, STACK_ARGUMENTS = 7, REGISTER_ARGUMENTS = 6 };
+enum { RETURN_ADDRESS = 6, STACK_ARGUMENTS = 7, REGISTER_ARGUMENTS = 6, REGISTERS = 17 };
 #else
-enum { RETURN_ADDRESS = 11, STACK_ARGUMENTS = 20, REGISTER_ARGUMENTS = 8 };
+enum { RETURN_ADDRESS = 11, STACK_ARGUMENTS = 20, REGISTER_ARGUMENTS = 8, REGISTERS = 33 };
 #endif
 /* What -fstack-protector puts on stacks, the same in each run; as libc's, its first byte ends texts. */
 #define STACK_GUARD 0x5AFE57AC4B0A2D00ll
@@ -62,10 +62,10 @@ typedef struct Coroutine {
     double computes_since, computed_s;         /* when it was last seen to compute without a call; for how long */
     uint64_t called_from;                      /* where its last call returns to */
     uint64_t fault_address, fault_pc, fault_stack_pointer;
-    uint64_t fault_link;                       /* the register with the return address, where the processor has one */
     struct {
         uint64_t module, block;
     } thread_locals[KEPT_BLOCKS];              /* where blocks of thread-local variables are that it has asked for */
+    uint64_t registers[REGISTERS];             /* where a signal stopped it: by DWARF's numbers, the program counter last */
     struct Table *table;
 } Coroutine;
 _Static_assert(offsetof(Coroutine, guard) == 256, "the assembly has these offsets");

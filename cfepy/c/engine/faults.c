@@ -46,12 +46,10 @@ static pthread_key_t thread_end;
 #if defined(__x86_64__)
 #define PROGRAM_COUNTER(context) ((context)->uc_mcontext.gregs[REG_RIP])
 #define STACK_POINTER(context) ((context)->uc_mcontext.gregs[REG_RSP])
-#define LINK(context) 0
 #define FAULTS SIGSEGV, SIGBUS, SIGFPE, SIGILL
 #elif defined(__aarch64__)
 #define PROGRAM_COUNTER(context) ((context)->uc_mcontext.pc)
 #define STACK_POINTER(context) ((context)->uc_mcontext.sp)
-#define LINK(context) ((context)->uc_mcontext.regs[30])
 #define FAULTS SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP /* the last is that of __builtin_trap() */
 #else
 #error "cfepy runs compiled applications on x86-64 and aarch64"
@@ -103,6 +101,22 @@ static bool keep_registers(const ucontext_t *context)
 static void give_registers(ucontext_t *context) { context->uc_mcontext = mine->registers; }
 #endif
 
+/* The registers by the numbers that DWARF gives them. */
+static void tell_registers(uint64_t *to, const ucontext_t *context)
+{
+#if defined(__x86_64__)
+    static const int numbers[REGISTERS] = {REG_RAX, REG_RDX, REG_RCX, REG_RBX, REG_RSI, REG_RDI, REG_RBP, REG_RSP, REG_R8,
+                                           REG_R9,  REG_R10, REG_R11, REG_R12, REG_R13, REG_R14, REG_R15, REG_RIP};
+    for (int i = 0; i < REGISTERS; i++)
+        to[i] = (uint64_t)context->uc_mcontext.gregs[numbers[i]];
+#else
+    for (int i = 0; i < 31; i++)
+        to[i] = context->uc_mcontext.regs[i];
+    to[31] = context->uc_mcontext.sp;
+    to[32] = context->uc_mcontext.pc;
+#endif
+}
+
 static bool is_application(uint64_t address) { return address >= ARENA_LOW && address < ARENA_HIGH; }
 
 static void land(Coroutine *coroutine, ucontext_t *context, int wanted)
@@ -123,6 +137,7 @@ static void on_watch(ucontext_t *context)
     } else if (coroutine != NULL && coroutine->thread == mine->id && !coroutine->is_native &&
                is_application(PROGRAM_COUNTER(context)) && keep_registers(context)) {
         coroutine->fault_pc = PROGRAM_COUNTER(context);
+        tell_registers(coroutine->registers, context);
         land(coroutine, context, PREEMPTED);
     }
 }
@@ -154,7 +169,7 @@ static void on_signal(int signal, siginfo_t *info, void *interrupted)
         coroutine->fault_address = (uint64_t)info->si_addr;
         coroutine->fault_pc = pc;
         coroutine->fault_stack_pointer = STACK_POINTER(context);
-        coroutine->fault_link = LINK(context);
+        tell_registers(coroutine->registers, context);
         if (coroutine->is_native)
             siglongjmp(coroutine->native_fault, 1);
         land(coroutine, context, FAULT);

@@ -185,7 +185,7 @@ static uint64_t caller_of_fault(const Coroutine *coroutine)
         return 0;
 #if !defined(__x86_64__)
     if (!coroutine->is_native)
-        return coroutine->fault_link;
+        return coroutine->registers[30];
 #endif
     const uint64_t *at = coroutine->is_native ? coroutine->stack_pointer + RETURN_ADDRESS
                                               : (const uint64_t *)coroutine->fault_stack_pointer;
@@ -311,9 +311,32 @@ static void prepare(Coroutine *coroutine, uint64_t function, const uint64_t *val
     coroutine->stack_pointer = top;
 }
 
-/* A fault knows where the application's last call was: one in an argument is the fault of that. */
+/* The registers of code that stopped in a call, as far as a called function keeps them: as in `Coroutine.registers`. */
+static void registers_of_call(const Coroutine *coroutine, uint64_t *to)
+{
+    const uint64_t *at = coroutine->stack_pointer;
+    memset(to, 0, REGISTERS * sizeof *to);
+#if defined(__x86_64__)
+    static const int kept[] = {15, 14, 13, 12, 3, 6, 16}; /* as the switch has them: r15 to r12, rbx, rbp, the return address */
+    for (int i = 0; i <= RETURN_ADDRESS; i++)
+        to[kept[i]] = at[i];
+    to[7] = (uint64_t)(at + STACK_ARGUMENTS);
+#else
+    for (int i = 0; i <= RETURN_ADDRESS; i++)
+        to[19 + i] = at[i];
+    to[31] = (uint64_t)(at + STACK_ARGUMENTS);
+    to[32] = at[RETURN_ADDRESS];
+#endif
+}
+
+/* A fault knows where the application's last call was: one in an argument is the fault of that. And it knows the
+ * registers of the code, by which its callers are found. */
 static void tell_caller(const Coroutine *coroutine)
 {
+    bool is_call = coroutine->wanted != FAULT && coroutine->wanted != PREEMPTED;
+    uint64_t of_call[REGISTERS];
+    if (is_call)
+        registers_of_call(coroutine, of_call);
     PyObject *type, *error, *trace;
     PyErr_Fetch(&type, &error, &trace);
     PyErr_NormalizeException(&type, &error, &trace);
@@ -321,6 +344,12 @@ static void tell_caller(const Coroutine *coroutine)
     if (from == NULL || PyObject_SetAttrString(error, "called_from", from) < 0)
         PyErr_Clear();
     Py_XDECREF(from);
+    PyObject *registers =
+        Py_BuildValue("(y#N)", (const char *)(is_call ? of_call : coroutine->registers),
+                      (Py_ssize_t)sizeof of_call, PyBool_FromLong(is_call));
+    if (registers == NULL || PyObject_SetAttrString(error, "registers", registers) < 0)
+        PyErr_Clear();
+    Py_XDECREF(registers);
     PyErr_Restore(type, error, trace);
 }
 

@@ -25,11 +25,10 @@ from cfepy.mission import (
 )
 from cfepy.monitors import read_demands
 from cfepy.pilot.check.cfe_names import wrong_names
-from cfepy.pilot.check.compiled import check_profiles
 from cfepy.pilot.check.mission_sections import check_board, check_deadlines, check_lock, check_nodes_said, check_packets
 from cfepy.pilot.check.problem import MissionProblem, problem_of
 from cfepy.pilot.check.ros_files import NodeScript, check_definitions_of, check_launch, check_nodes
-from cfepy.pilot.check.startup import app_sources, check_startup
+from cfepy.pilot.check.startup import app_sources, check_profiles, check_startup
 from cfepy.status import UsageError
 from cfepy.versions import RELEASES
 

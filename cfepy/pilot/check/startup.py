@@ -1,4 +1,4 @@
-"""A startup script and the code that it names: entries, names, sources, entry points."""
+"""A startup script and the code that it names: entries, names, sources, entry points, the ABI of compiled code."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from cfepy.es import CFE_APP, CFE_LIB, StartupEntry, startup_script
-from cfepy.mission import CORE_APPS, NODE_SYMBOL, find_code, find_compiled, find_node, sources
+from cfepy.marked_yaml import Mistakes
+from cfepy.mission import CORE_APPS, NODE_SYMBOL, MissionSections, find_code, find_compiled, find_node, sources
 from cfepy.osal import OS_MAX_FILE_NAME
 from cfepy.pilot.check.problem import MissionProblem
 from cfepy.suggestions import did_you_mean
@@ -15,6 +16,7 @@ from cfepy.suggestions import did_you_mean
 NO_SYMBOL = "NULL"
 FILES = "/cf/"
 C_SOURCES = "fsw/src"
+PROFILE = "omit_deprecated"
 SHOWN = 8
 """Names of missing functions that are listed."""
 
@@ -155,6 +157,57 @@ def _exported(folder: Path, entry: StartupEntry) -> set[str]:
     except ElfError:
         return set()
     return {each.name for each in source.symbols if each.is_defined}
+
+
+def check_profiles(script: Path, entries: list[StartupEntry], said: MissionSections) -> Iterator[MissionProblem]:
+    """Shared objects that were built for the other profile than the mission's, and those of which that is not known.
+
+    Of the latter nothing is told when the mission file says itself which profile holds.
+
+    Args:
+        script: the startup script.
+        entries: what it starts.
+        said: what the mission file says.
+    """
+    named = [find_compiled(each.path, script.parent) for each in entries if each.symbol != NODE_SYMBOL]
+    files = [file for file in dict.fromkeys(named) if file is not None]
+    if not files:
+        return
+    from cfepy.c import AbiProfile, ElfError, abi_profile, read_shared_object
+
+    omits = said.compiled.omit_deprecated
+    unknown = []
+    for file in files:
+        try:
+            profile = abi_profile(read_shared_object(file.read_bytes(), file.name))
+        except ElfError:
+            continue  # told with the line that names the file
+        if profile.contradicts(omits):
+            text = f"was built {profile.value}, and the mission is for the other: build it with the option"
+            text += f" OMIT_DEPRECATED={_word(omits)}, or write {_line(not omits)} into the mission file"
+            yield MissionProblem(file, 0, text)
+        elif profile is AbiProfile.UNKNOWN:
+            unknown.append(file.name)
+    if unknown and not _says_profile(said):
+        text = f"whether {', '.join(unknown)} have OMIT_DEPRECATED cannot be told, without debug data of table handles;"
+        text += (
+            f" {_word(omits)} is taken: write {_line(omits)} into the mission file if that is right, or compile with -g"
+        )
+        yield MissionProblem(script, 0, text, is_warning=True)
+
+
+def _word(value: bool) -> str:
+    return str(value).lower()
+
+
+def _line(omits: bool) -> str:
+    return f"`compiled: {{{PROFILE}: {_word(omits)}}}`"
+
+
+def _says_profile(said: MissionSections) -> bool:
+    """Whether the mission file itself says the profile."""
+    section = said.places.get("compiled")
+    return section is not None and PROFILE in Mistakes(keep=True).mapping(section)
 
 
 def _listed(names: set[str]) -> str:
