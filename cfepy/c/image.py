@@ -13,8 +13,8 @@ from typing import NamedTuple, Protocol
 from cfepy.c.arena import PAGE, Arena
 from cfepy.c.elf import ElfError, Relocation, SharedObject, Symbol
 from cfepy.c.engine import engine
-from cfepy.c.frame_info import FrameInfo, FrameRow
 from cfepy.c.places import CodePlace, Places, places_of
+from cfepy.c.unwinding import FrameInfo, FrameRow
 from cfepy.cached import CachedProperty
 
 _RELATIVE, _ABSOLUTE, _ADDRESS, _CHOSEN = "relative", "absolute", "address", "chosen"
