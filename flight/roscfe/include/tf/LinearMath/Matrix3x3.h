@@ -1,0 +1,21 @@
+// Rotations as matrices.
+#ifndef ROSCFE_TF_LINEARMATH_MATRIX3X3_H
+#define ROSCFE_TF_LINEARMATH_MATRIX3X3_H
+
+#include "tf/LinearMath/Quaternion.h"
+#include "tf/LinearMath/Vector3.h"
+#include "roscfe/linear_math/matrix3x3.h"
+
+namespace tf
+{
+
+typedef roscfe::linear_math::Matrix3x3<LinearMath> Matrix3x3;
+typedef roscfe::linear_math::NineNumbers<float>    Matrix3x3FloatData;
+typedef roscfe::linear_math::NineNumbers<double>   Matrix3x3DoubleData;
+typedef Matrix3x3DoubleData                        Matrix3x3Data;
+
+inline Matrix3x3 tfMultTransposeLeft(const Matrix3x3 &a, const Matrix3x3 &b) { return a.transposeTimes(b); }
+
+} // namespace tf
+
+#endif

@@ -1,0 +1,17 @@
+// Four numbers, of which tf2::Quaternion is made.
+#ifndef ROSCFE_TF2_LINEARMATH_QUADWORD_H
+#define ROSCFE_TF2_LINEARMATH_QUADWORD_H
+
+#include "tf2/LinearMath/MinMax.h"
+#include "tf2/LinearMath/Scalar.h"
+#include "roscfe/linear_math/quad_word.h"
+#include "roscfe/linear_math/tags.h"
+
+namespace tf2
+{
+
+typedef roscfe::linear_math::QuadWord<LinearMath> QuadWord;
+
+} // namespace tf2
+
+#endif

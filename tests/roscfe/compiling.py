@@ -1,0 +1,37 @@
+"""Compiling a test's C++ against the headers of flight/roscfe."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+FLIGHT = Path(__file__).parents[2] / "flight/roscfe"
+HEADERS = FLIGHT / "include"
+BOOST = FLIGHT / "boost"
+STRICT = ["-fno-exceptions", "-fno-rtti", "-Wall", "-Wextra", "-Werror"]
+"""How the library itself is compiled."""
+
+
+def compiled(
+    folder: Path,
+    sources: Iterable[Path],
+    *options: str,
+    name: str = "program",
+    headers: Sequence[Path] = (HEADERS, BOOST),
+) -> Path:
+    """A program made of sources, in C++17.
+
+    Args:
+        folder: where it goes.
+        sources: files.
+        options: of g++.
+        name: of the program.
+        headers: folders where headers are.
+    """
+    program = folder / name
+    includes = [f"-I{path}" for path in headers]
+    command = ["g++", "-std=c++17", *includes, *options, "-o", str(program), *map(str, sources)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return program
