@@ -1,0 +1,4 @@
+#ifndef ROSCFE_CLASS_LOADER_HPP
+#define ROSCFE_CLASS_LOADER_HPP
+#include "pluginlib/class_list_macros.h"
+#endif
