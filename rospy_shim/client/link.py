@@ -153,7 +153,8 @@ class Link(TopicSide):
     @property
     def connections(self) -> list[TopicConnection]:
         """The nodes that subscribe."""
-        return [self.connection(each.node, OUTBOUND) for each in self.peers]
+        compiled = self.topic.compiled_subscribers if self.topic is not None else []
+        return [self.connection(node, OUTBOUND) for node in [*(each.node for each in self.peers), *compiled]]
 
     def get_stats(self) -> tuple[str, int, list[tuple[int, int, int, bool]]]:
         """The side as getBusStats gives it: topic, bytes, and for each connection number, bytes, messages, state."""

@@ -204,7 +204,8 @@ class Subscription(TopicSide):
     @property
     def connections(self) -> list[TopicConnection]:
         """The nodes that publish."""
-        return [self.connection(each.node, INBOUND) for each in self.peers]
+        compiled = self.topic.compiled_publishers if self.topic is not None else []
+        return [self.connection(node, INBOUND) for node in [*(each.node for each in self.peers), *compiled]]
 
     @property
     def peers(self) -> list[Link]:
@@ -228,7 +229,7 @@ class Subscription(TopicSide):
 
     def get_stats(self) -> tuple[str, list[tuple[int, int, int, int, bool]]]:
         """The side as getBusStats gives it: topic, and for each connection number, bytes, messages, drops, state."""
-        rows = zip(self.connections, self.peers, strict=True)
+        rows = zip(self.connections, self.peers, strict=False)  # nobody counts what compiled nodes sent
         return self.name, [(each.id, link.message_data_sent, link.seq, -1, True) for each, link in rows]
 
     def deliver(self, payload: bytes, header: Header) -> None:

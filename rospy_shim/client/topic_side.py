@@ -10,6 +10,7 @@ from cfepy.rtos import Mutex
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
+    from rospy_shim.graph.compiled import CompiledNode
     from rospy_shim.graph.graph import TopicEntry
     from rospy_shim.msgs import MessageClass
 
@@ -63,7 +64,7 @@ class TopicSide:
         """The nodes at the other side."""
         return []
 
-    def connection(self, peer: Node, direction: str) -> TopicConnection:
+    def connection(self, peer: Node | CompiledNode, direction: str) -> TopicConnection:
         """The connection to another node; its number stays the same."""
         name, message = peer.names.name, self.data_class
         number = self._ids.get(name) or self._ids.setdefault(name, next(self.node.connection_numbers))

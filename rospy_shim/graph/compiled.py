@@ -94,6 +94,14 @@ class _Names(NamedTuple):
     name: str
 
 
+class _Client(NamedTuple):
+    uri: str
+
+    def get_node_uri(self) -> str:
+        """Where the node would answer; nobody does."""
+        return self.uri
+
+
 class CompiledNode:
     """A compiled node in the graph.
 
@@ -105,15 +113,11 @@ class CompiledNode:
 
     def __init__(self, name: str, pipe: int, bus: SoftwareBus) -> None:
         self.names = _Names(name)
+        self.client = _Client(f"http://cfepy{name}")
         self.pipe = pipe
         self.bus = bus
         self.published: dict[str, str] = {}  # types by topic
         self.subscribed: dict[str, str] = {}
-
-    @property
-    def uri(self) -> str:
-        """A URI for lists of nodes."""
-        return f"http://cfepy{self.names.name}"
 
     @property
     def is_alive(self) -> bool:
@@ -146,8 +150,8 @@ class CompiledNodes:
         """Nodes whose applications have ended leave the graph."""
         for node in [each for each in self._graph.compiled.values() if not each.is_alive]:
             del self._graph.compiled[node.names.name]
-            for name in [*node.published, *node.subscribed]:
-                self._graph.topic(name).leave()
+            for name in {**node.published, **node.subscribed}:
+                self._graph.topic(name).leave_compiled(node)
             services = self._graph.services
             for name in [name for name, entry in services.items() if entry.service.node is node]:
                 del services[name]
@@ -191,13 +195,14 @@ class CompiledNodes:
     def _publish(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
         topic = self._topic(node, name, declared)
         node.published[name] = declared._type
-        topic.add_compiled_publisher(node.names.name)
+        topic.add_compiled_publisher(node)
         return Answer(topic.msg_id, topic.raw)
 
     def _publish_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
         topic = self._graph.topic(name)
         if node.published.pop(name, None) is not None:
             topic.leave()
+            topic.compiled_publishers.remove(node)
         return Answer(topic.msg_id)
 
     def _subscribe(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
@@ -206,13 +211,14 @@ class CompiledNodes:
         else:
             topic = self._topic(node, name, declared)
             node.subscribed[name] = declared._type
-            topic.add_compiled_subscriber(node.names.name)
+            topic.add_compiled_subscriber(node)
         return Answer(topic.msg_id, topic.raw, any(link.is_latch for link in topic.links))
 
     def _subscribe_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
         topic = self._graph.topic(name)
         if node.subscribed.pop(name, None) is not None:
             topic.leave()
+            topic.compiled_subscribers.remove(node)
         return Answer(topic.msg_id)
 
     def _serve(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:

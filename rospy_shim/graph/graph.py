@@ -58,6 +58,8 @@ class TopicEntry:
         self._members = 0
         self.links: list[Link] = []
         self.subscriptions: list[Subscription] = []
+        self.compiled_publishers: list[CompiledNode] = []
+        self.compiled_subscribers: list[CompiledNode] = []
         self.publisher_names: list[str] = []  # all publishers that there ever were, for the tables
         self.subscriber_names: list[str] = []
         self.header: Header | None = None  # of the only publisher; None when a message must be looked up in `notes`
@@ -103,15 +105,24 @@ class TopicEntry:
             if link.leftovers is not None:
                 link.leftovers.reconnect()
 
-    def add_compiled_publisher(self, name: str) -> None:
-        """A compiled node publishes; its packets are anybody's, since the Software Bus does not know senders."""
-        _remember(self.publisher_names, name)
+    def add_compiled_publisher(self, node: CompiledNode) -> None:
+        """A compiled node publishes; a packet of it is one that no other publisher has noted."""
+        self.compiled_publishers.append(node)
+        _remember(self.publisher_names, node.names.name)
         self._shared = True
         self._refresh()
 
-    def add_compiled_subscriber(self, name: str) -> None:
+    def add_compiled_subscriber(self, node: CompiledNode) -> None:
         """A compiled node subscribes."""
-        _remember(self.subscriber_names, name)
+        self.compiled_subscribers.append(node)
+        _remember(self.subscriber_names, node.names.name)
+
+    def leave_compiled(self, node: CompiledNode) -> None:
+        """A compiled node that joined has ended."""
+        for side in (self.compiled_publishers, self.compiled_subscribers):
+            if node in side:
+                side.remove(node)
+                self.leave()
 
     def add_subscription(self, subscription: Subscription) -> None:
         """A subscriber came."""
@@ -139,7 +150,8 @@ class TopicEntry:
         note = self.notes.get(sequence_of(packet))
         if note is not None:
             return note[0]
-        return {"callerid": "", "latching": "0", "md5sum": self.md5sum, "topic": self.name, "type": self.type}
+        one = self.compiled_publishers[0].names.name if len(self.compiled_publishers) == 1 else ""
+        return {"callerid": one, "latching": "0", "md5sum": self.md5sum, "topic": self.name, "type": self.type}
 
 
 class ServiceCall(NamedTuple):

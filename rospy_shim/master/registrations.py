@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rospy_shim.client.names import ANYTYPE
-from rospy_shim.graph.compiled import CompiledNode
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
+    from rospy_shim.graph.compiled import CompiledNode
     from rospy_shim.graph.graph import Graph
 
 Entries = dict[str, dict[str, str]]
@@ -22,7 +22,7 @@ Entries = dict[str, dict[str, str]]
 
 def uri_of(node: Node | CompiledNode) -> str:
     """The URI at which a node answers; nobody does at that of a compiled node."""
-    return node.uri if isinstance(node, CompiledNode) else node.client.get_node_uri() or ""
+    return node.client.get_node_uri() or ""
 
 
 class Registrations:

@@ -85,9 +85,11 @@ bool CallbackQueue::waitForCallback(WallDuration timeout)
 {
     const std::int64_t until = roscfe::now_ns() + timeout.toNSec();
     roscfe::pump(0);
+    roscfe::run_async();
     while (empty() && !roscfe::g_node.shutting_down && roscfe::now_ns() < until)
     {
         roscfe::pump(until);
+        roscfe::run_async();
     }
     return !empty();
 }
@@ -217,6 +219,13 @@ void run_async()
         g_async[i]->callAvailable();
     }
     g_in_async = false;
+}
+
+bool wait_for_news(std::int64_t until_ns)
+{
+    const bool more = pump(until_ns);
+    run_async();
+    return more;
 }
 
 } // namespace roscfe

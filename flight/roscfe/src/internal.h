@@ -20,6 +20,7 @@ extern "C" {
 #include "roscfe/publication.h"
 #include "roscfe/service.h"
 #include "roscfe/subscription.h"
+#include "roscfe/waiting.h"
 
 namespace roscfe
 {
@@ -96,8 +97,6 @@ void send_bytes(std::uint16_t msg_id, const std::uint8_t *lead, std::size_t lead
 
 // -- others ------------------------------------------------------------------------------------------------------------
 
-void start_async(ros::CallbackQueue *queue);
-void stop_async(ros::CallbackQueue *queue);
 void run_async(); // callbacks of asynchronous spinners, while the node waits
 
 std::int64_t now_ns();

@@ -2,7 +2,10 @@
 #ifndef BOOST_FUNCTION_HPP_INCLUDED
 #define BOOST_FUNCTION_HPP_INCLUDED
 
+#include <cstddef>
 #include <functional>
+#include <type_traits>
+#include <utility>
 
 namespace boost
 {
@@ -13,11 +16,38 @@ class function;
 template <class Result, class... Arguments>
 class function<Result(Arguments...)> : public std::function<Result(Arguments...)>
 {
-  public:
-    using std::function<Result(Arguments...)>::function;
-    using std::function<Result(Arguments...)>::operator=;
+    typedef std::function<Result(Arguments...)> Base;
 
-    function() = default;
+    template <class F>
+    using IfOther = typename std::enable_if<!std::is_same<typename std::decay<F>::type, function>::value &&
+                                                std::is_constructible<Base, F>::value,
+                                            int>::type;
+
+  public:
+    typedef Result result_type;
+
+    function()                 = default;
+    function(const function &) = default;
+    function(function &&)      = default;
+    function(std::nullptr_t) {}
+    // Any other callable. One that is a function itself is copied, not wrapped: an empty one stays empty.
+    template <class F, IfOther<F> = 0>
+    function(F &&callable) : Base(std::forward<F>(callable))
+    {
+    }
+
+    function &operator=(const function &) = default;
+    function &operator=(function &&) = default;
+    function &operator=(std::nullptr_t)
+    {
+        Base::operator=(nullptr);
+        return *this;
+    }
+    template <class F, IfOther<F> = 0>
+    function &operator=(F &&callable)
+    {
+        return *this = function(std::forward<F>(callable));
+    }
 
     bool empty() const { return !*this; }
     void clear() { *this = nullptr; }

@@ -10,9 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include <boost/bind.hpp>
+#include <boost/enable_shared_from_this.hpp>
 #include <boost/function.hpp>
 #include <boost/make_shared.hpp>
 #include <boost/shared_ptr.hpp>
+#include <boost/scoped_ptr.hpp>
 #include <boost/weak_ptr.hpp>
 
 namespace ros

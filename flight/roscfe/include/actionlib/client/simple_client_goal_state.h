@@ -1,0 +1,4 @@
+#ifndef ROSCFE_ACTIONLIB_CLIENT_SIMPLE_CLIENT_GOAL_STATE_H
+#define ROSCFE_ACTIONLIB_CLIENT_SIMPLE_CLIENT_GOAL_STATE_H
+#include "actionlib/client/simple_goal_state.h"
+#endif

@@ -1,0 +1,50 @@
+// Callbacks that run while the node waits: what other threads would do in ROS.
+#ifndef ROSCFE_WAITING_H
+#define ROSCFE_WAITING_H
+
+#include <cstdint>
+
+#include "ros/callback_queue.h"
+
+namespace roscfe
+{
+
+// Callbacks of a queue run whenever the node waits, from now on and until they do no more.
+void start_async(ros::CallbackQueue *queue);
+void stop_async(ros::CallbackQueue *queue);
+
+// Wait until a time in nanoseconds of the processor's clock, or until something came; what waits is called meanwhile.
+// False when the time is over.
+bool wait_for_news(std::int64_t until_ns);
+
+// A queue whose callbacks run while the node waits, for as long as this object lives.
+class WhileWaiting
+{
+  public:
+    WhileWaiting() = default;
+    ~WhileWaiting() { stop(); }
+    WhileWaiting(const WhileWaiting &) = delete;
+    WhileWaiting &operator=(const WhileWaiting &) = delete;
+
+    void start(ros::CallbackQueue *queue)
+    {
+        stop();
+        queue_ = queue;
+        start_async(queue_);
+    }
+    void stop()
+    {
+        if (queue_ != nullptr)
+        {
+            stop_async(queue_);
+            queue_ = nullptr;
+        }
+    }
+
+  private:
+    ros::CallbackQueue *queue_ = nullptr;
+};
+
+} // namespace roscfe
+
+#endif
