@@ -1,0 +1,76 @@
+"""Programs in C++ against the interface library: compiled here, for this computer or for another one."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from cfepy.resources import shipped
+
+CPP = os.environ.get("CXX", "c++").split()
+ROSCFE = shipped("flight") / "roscfe"
+INCLUDE = (f"-I{ROSCFE / 'include'}", f"-I{ROSCFE / 'boost'}")
+STRICT_FLAGS = ("-std=c++17", "-Wall", "-Wextra", "-Werror")
+FLIGHT_FLAGS = (*STRICT_FLAGS, "-fno-exceptions", "-fno-rtti")
+
+needs_cpp = pytest.mark.skipif(shutil.which(CPP[0]) is None, reason="there is no C++ compiler")
+"""For modules that compile C++."""
+
+
+class Target(NamedTuple):
+    """A kind of computer: how programs are compiled for it, and what runs them here."""
+
+    compiler: tuple[str, ...]
+    runner: tuple[str, ...] = ()
+
+    @property
+    def lacking(self) -> str | None:
+        """The first command that is not there."""
+        words = (self.compiler[0], *self.runner[:1])
+        return next((word for word in words if shutil.which(word) is None), None)
+
+
+HERE = Target(tuple(CPP))
+POWERPC = Target(("powerpc-linux-gnu-g++", "-static"), ("qemu-ppc",))
+ARM = Target(("arm-linux-gnueabihf-g++", "-static"), ("qemu-arm",))
+
+
+def compile_program(
+    made: Path, sources: Iterable[Path], *flags: str, target: Target = HERE, base: Sequence[str] = FLIGHT_FLAGS
+) -> Path:
+    """Compile C++ files, one after the other, and link them.
+
+    Args:
+        made: the program.
+        sources: the files.
+        flags: more of them, such as include paths and -O1.
+        target: what it is for.
+        base: language and warnings.
+    """
+    objects = []
+    for source in sources:
+        objects.append(source.with_suffix(f".{made.name}.o"))
+        _run([*target.compiler, *base, *INCLUDE, *flags, "-c", str(source), "-o", str(objects[-1])])
+    _run([*target.compiler, *flags, *map(str, objects), "-o", str(made)])
+    return made
+
+
+def complaints(folder: Path, text: str, *flags: str, base: Sequence[str] = FLIGHT_FLAGS) -> str:
+    """What the compiler says of a text; nothing when it is content."""
+    source = folder / "text.cpp"
+    source.write_text(text)
+    command = [*CPP, *base, *INCLUDE, *flags, "-fsyntax-only", str(source)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert bool(done.returncode) == bool(done.stderr), done
+    return done.stderr
+
+
+def _run(command: list[str]) -> None:
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[:4000]

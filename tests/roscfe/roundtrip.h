@@ -1,0 +1,60 @@
+// Reads frames of one type of message from the standard input, decodes each, and writes out what it encodes again.
+//   in:  count (32 bits, little-endian), bytes
+//   out: whether it was a message (8 bits), bytes allocated by reading it (32 bits), count (32 bits), bytes
+#ifndef TESTS_ROSCFE_ROUNDTRIP_H
+#define TESTS_ROSCFE_ROUNDTRIP_H
+
+#include <cstdint>
+#include <cstdio>
+#include <vector>
+
+#include "roscfe/wire.h"
+
+extern std::size_t g_allocated; // bytes, by operator new, since it was last set to 0
+
+struct Codec
+{
+    const char *name;
+    void (*run)();
+};
+
+inline bool take_number(std::uint32_t &number)
+{
+    std::uint8_t bytes[4];
+    if (std::fread(bytes, 1, 4, stdin) != 4)
+        return false;
+    number = bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<std::uint32_t>(bytes[3]) << 24;
+    return true;
+}
+
+inline void give_number(std::uint32_t number)
+{
+    for (int shift = 0; shift < 32; shift += 8)
+        std::putchar(static_cast<int>(number >> shift & 255));
+}
+
+template <class Message>
+void run()
+{
+    Message       reused{}; // as a subscription reads into the slots that it has
+    std::uint32_t count = 0;
+    while (take_number(count))
+    {
+        // Exactly as long as the message, on the heap: a sanitizer sees each byte read behind its end.
+        std::vector<std::uint8_t> frame(count);
+        if (std::fread(frame.data(), 1, count, stdin) != count)
+            return;
+        g_allocated = 0;
+        const bool        good = roscfe::wire::read(reused, frame.data(), count);
+        const std::size_t allocated = g_allocated;
+
+        std::vector<std::uint8_t> again(good ? roscfe::wire::length(reused) : 0);
+        const bool written = good && roscfe::wire::write(reused, again.data(), again.size());
+        std::putchar(good && written ? 1 : 0);
+        give_number(static_cast<std::uint32_t>(allocated));
+        give_number(static_cast<std::uint32_t>(again.size()));
+        std::fwrite(again.data(), 1, again.size(), stdout);
+    }
+}
+
+#endif

@@ -1,0 +1,187 @@
+"""Messages to C++ and back: each type's random messages, decoded and encoded again, must be genpy's bytes.
+
+    python -m tests.roscfe.roundtrip --messages 1000 --profile host strict
+
+Each type is a run of one generated program, which knows them all.
+"""
+
+from __future__ import annotations
+
+import argparse
+import struct
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from cfepy.convert.messages import Capacities, Profile, write_headers
+from tests.roscfe.building import ARM, HERE, POWERPC, Target, compile_program
+from tests.roscfe.random_messages import LIBRARY, Source, all_types, capacities
+
+FOLDER = Path(__file__).parent
+IN_ONE_FILE = 40  # types
+TARGETS = {"here": HERE, "powerpc": POWERPC, "arm": ARM}
+MAIN = """
+#include "roundtrip.h"
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+std::size_t g_allocated = 0;
+
+void *operator new(std::size_t size)
+{
+    g_allocated += size;
+    return std::malloc(size);
+}
+void operator delete(void *memory) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void *memory, std::size_t) noexcept
+{
+    std::free(memory);
+}
+
+namespace roscfe
+{
+void refuse(const char *what, const char *detail)
+{
+    std::fprintf(stderr, "%%s: %%s\\n", what, detail);
+    std::abort();
+}
+}
+
+%s
+
+int main(int count, char **arguments)
+{
+    const Codec *const all[] = {%s};
+    for (const Codec *codecs : all)
+        for (const Codec *codec = codecs; codec->name; ++codec)
+            if (count == 2 && !std::strcmp(codec->name, arguments[1]))
+            {
+                codec->run();
+                return 0;
+            }
+    return 2;
+}
+"""
+
+
+class Answer(NamedTuple):
+    """What the program says of a frame."""
+
+    good: bool
+    allocated: int
+    """Bytes that reading it took from the heap."""
+    octets: bytes
+
+
+class Program:
+    """The program, compiled for some types in one profile.
+
+    Args:
+        folder: where it is made.
+        types: full names of messages.
+        profile: what they are made of.
+        flags: of the compiler.
+        target: what it runs on.
+        longest: capacities for the strict profile.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        types: Sequence[str],
+        profile: Profile,
+        *flags: str,
+        target: Target = HERE,
+        longest: Capacities | None = None,
+    ) -> None:
+        headers = folder / "headers"
+        write_headers(types, headers, profile, LIBRARY, longest or capacities())
+        sources = [folder / "main.cpp"]
+        for at in range(0, len(types), IN_ONE_FILE):
+            sources.append(folder / f"types_{at}.cpp")
+            sources[-1].write_text(_codecs(f"codecs_{at}", types[at : at + IN_ONE_FILE]))
+        names = [source.stem.replace("types", "codecs") for source in sources[1:]]
+        declared = "\n".join(f"extern const Codec {name}[];" for name in names)
+        sources[0].write_text(MAIN % (declared, ", ".join(names)))
+        given = (f"-I{headers}", f"-I{FOLDER}", *flags)
+        self._command = [*target.runner, str(compile_program(folder / "program", sources, *given, target=target))]
+
+    def answers(self, full_name: str, frames: Sequence[bytes]) -> list[Answer]:
+        """What the program makes of frames."""
+        given = b"".join(struct.pack("<I", len(frame)) + frame for frame in frames)
+        done = subprocess.run([*self._command, full_name], input=given, capture_output=True, check=False)
+        assert done.returncode == 0, f"{full_name}: {done.stderr.decode(errors='replace')[:3000]}"
+        answers = list(_answers(done.stdout))
+        assert len(answers) == len(frames), full_name
+        return answers
+
+    def differing(self, full_name: str, frames: Sequence[bytes]) -> list[tuple[bytes, Answer]]:
+        """Frames that do not come back as they were, and what came."""
+        answers = zip(frames, self.answers(full_name, frames), strict=True)
+        return [(frame, answer) for frame, answer in answers if not answer.good or answer.octets != frame]
+
+
+def frames_of(full_name: str, count: int, seed: int = 0) -> list[bytes]:
+    """The bytes of random messages, the first of them empty."""
+    source = Source(hash_of(full_name) + seed, capacities())
+    empty = LIBRARY.message_class(full_name)()._pack()
+    return [empty, *(source.message(full_name)._pack() for _ in range(count - 1))]
+
+
+def hash_of(text: str) -> int:
+    """A number that a text has in each run."""
+    return int.from_bytes(text.encode()[-8:], "big")
+
+
+def _codecs(name: str, types: Sequence[str]) -> str:
+    lines = ['#include "roundtrip.h"', *(f"#include <{each}.h>" for each in types), ""]
+    lines += [f"extern const Codec {name}[];", f"const Codec {name}[] = {{"]
+    lines += [f'    {{"{each}", run<{each.replace("/", "::")}>}},' for each in types]
+    return "\n".join([*lines, "    {nullptr, nullptr}};", ""])
+
+
+def _answers(octets: bytes) -> Iterator[Answer]:
+    at = 0
+    while at < len(octets):
+        good, allocated, count = struct.unpack_from("<BII", octets, at)
+        at += 9
+        yield Answer(bool(good), allocated, octets[at : at + count])
+        at += count
+
+
+def main(arguments: list[str]) -> int:
+    """Send messages of all types through the program, and say how many came back changed."""
+    parser = argparse.ArgumentParser(prog="python -m tests.roscfe.roundtrip", description=main.__doc__)
+    parser.add_argument("--messages", type=int, default=200, metavar="N", help="of each type (default: 200)")
+    parser.add_argument("--profile", nargs="+", choices=["host", "strict"], default=["host", "strict"])
+    parser.add_argument("--target", choices=list(TARGETS), default="here", help="what the program is compiled for")
+    given = parser.parse_args(arguments)
+    wrong = 0
+    for profile in given.profile:
+        with tempfile.TemporaryDirectory() as folder:
+            types = all_types()
+            program = Program(Path(folder), types, Profile(profile), "-O1", target=TARGETS[given.target])
+            sent = octets = 0
+            for name in types:
+                for start in range(0, given.messages, 1000):
+                    frames = frames_of(name, min(1000, given.messages - start), seed=start)
+                    found = program.differing(name, frames)
+                    sent, octets = sent + len(frames), octets + sum(map(len, frames))
+                    wrong += len(found)
+                    for frame, answer in found[:1]:
+                        print(f"{name}: {frame.hex()} came back as {answer}")
+            print(
+                f"{given.target}, {profile}: {len(types):,} types, {sent:,} messages, {octets:,} bytes; {wrong} differ"
+            )
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
