@@ -19,6 +19,10 @@ INCLUDE = (f"-I{ROSCFE / 'include'}", f"-I{ROSCFE / 'boost'}")
 STRICT_FLAGS = ("-std=c++17", "-Wall", "-Wextra", "-Werror")
 FLIGHT_FLAGS = (*STRICT_FLAGS, "-fno-exceptions", "-fno-rtti")
 
+SYSTEM = Path("/usr/include")
+ROSCPP = ("-lrostime", "-lroscpp_serialization")
+"""Libraries of roscpp's own headers, which Debian has (libroscpp-dev)."""
+
 needs_cpp = pytest.mark.skipif(shutil.which(CPP[0]) is None, reason="there is no C++ compiler")
 """For modules that compile C++."""
 
@@ -42,7 +46,13 @@ ARM = Target(("arm-linux-gnueabihf-g++", "-static"), ("qemu-arm",))
 
 
 def compile_program(
-    made: Path, sources: Iterable[Path], *flags: str, target: Target = HERE, base: Sequence[str] = FLIGHT_FLAGS
+    made: Path,
+    sources: Iterable[Path],
+    *flags: str,
+    target: Target = HERE,
+    base: Sequence[str] = FLIGHT_FLAGS,
+    include: Sequence[str] = INCLUDE,
+    libraries: Sequence[str] = (),
 ) -> Path:
     """Compile C++ files, one after the other, and link them.
 
@@ -52,12 +62,14 @@ def compile_program(
         flags: more of them, such as include paths and -O1.
         target: what it is for.
         base: language and warnings.
+        include: where headers are; nothing for roscpp's own.
+        libraries: what is linked.
     """
     objects = []
     for source in sources:
-        objects.append(source.with_suffix(f".{made.name}.o"))
-        _run([*target.compiler, *base, *INCLUDE, *flags, "-c", str(source), "-o", str(objects[-1])])
-    _run([*target.compiler, *flags, *map(str, objects), "-o", str(made)])
+        objects.append(made.with_name(f"{source.stem}.{made.name}.o"))
+        _run([*target.compiler, *base, *include, *flags, "-c", str(source), "-o", str(objects[-1])])
+    _run([*target.compiler, *flags, *map(str, objects), *libraries, "-o", str(made)])
     return made
 
 

@@ -8,7 +8,11 @@
 #include <cstdio>
 #include <vector>
 
+#ifdef ROSCPP // roscpp's own headers
+#include <ros/serialization.h>
+#else
 #include "roscfe/wire.h"
+#endif
 
 extern std::size_t g_allocated; // bytes, by operator new, since it was last set to 0
 
@@ -33,6 +37,41 @@ inline void give_number(std::uint32_t number)
         std::putchar(static_cast<int>(number >> shift & 255));
 }
 
+#ifdef ROSCPP
+template <class Message>
+bool read(Message &message, std::uint8_t *from, std::uint32_t size)
+{
+    try
+    {
+        ros::serialization::IStream stream(from, size);
+        ros::serialization::deserialize(stream, message);
+        return stream.getLength() == 0;
+    }
+    catch (const ros::serialization::StreamOverrunException &)
+    {
+        return false;
+    }
+}
+
+template <class Message>
+std::size_t length(const Message &message)
+{
+    return ros::serialization::serializationLength(message);
+}
+
+template <class Message>
+bool write(const Message &message, std::uint8_t *to, std::size_t size)
+{
+    ros::serialization::OStream stream(to, static_cast<std::uint32_t>(size));
+    ros::serialization::serialize(stream, message);
+    return stream.getLength() == 0;
+}
+#else
+using roscfe::wire::length;
+using roscfe::wire::read;
+using roscfe::wire::write;
+#endif
+
 template <class Message>
 void run()
 {
@@ -42,18 +81,19 @@ void run()
     {
         // Exactly as long as the message, on the heap: a sanitizer sees each byte read behind its end.
         std::vector<std::uint8_t> frame(count);
-        if (std::fread(frame.data(), 1, count, stdin) != count)
+        if (count > 0 && std::fread(frame.data(), 1, count, stdin) != count)
             return;
         g_allocated = 0;
-        const bool        good = roscfe::wire::read(reused, frame.data(), count);
+        const bool        good = ::read(reused, frame.data(), count);
         const std::size_t allocated = g_allocated;
 
-        std::vector<std::uint8_t> again(good ? roscfe::wire::length(reused) : 0);
-        const bool written = good && roscfe::wire::write(reused, again.data(), again.size());
+        std::vector<std::uint8_t> again(good ? ::length(reused) : 0);
+        const bool written = good && ::write(reused, again.data(), again.size());
         std::putchar(good && written ? 1 : 0);
         give_number(static_cast<std::uint32_t>(allocated));
         give_number(static_cast<std::uint32_t>(again.size()));
-        std::fwrite(again.data(), 1, again.size(), stdout);
+        if (!again.empty())
+            std::fwrite(again.data(), 1, again.size(), stdout);
     }
 }
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.convert.messages import Capacities, Profile, write_headers
-from tests.roscfe.building import ARM, HERE, POWERPC, Target, compile_program
+from tests.roscfe.building import ARM, HERE, POWERPC, ROSCPP, Target, compile_program
 from tests.roscfe.random_messages import LIBRARY, Source, all_types, capacities
 
 FOLDER = Path(__file__).parent
@@ -25,6 +25,7 @@ IN_ONE_FILE = 40  # types
 TARGETS = {"here": HERE, "powerpc": POWERPC, "arm": ARM}
 MAIN = """
 #include "roundtrip.h"
+
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -90,6 +91,7 @@ class Program:
         flags: of the compiler.
         target: what it runs on.
         longest: capacities for the strict profile.
+        roscpp: against the headers that Debian has of ROS, not against ours.
     """
 
     def __init__(
@@ -100,6 +102,7 @@ class Program:
         *flags: str,
         target: Target = HERE,
         longest: Capacities | None = None,
+        roscpp: bool = False,
     ) -> None:
         headers = folder / "headers"
         write_headers(types, headers, profile, LIBRARY, longest or capacities())
@@ -110,8 +113,13 @@ class Program:
         names = [source.stem.replace("types", "codecs") for source in sources[1:]]
         declared = "\n".join(f"extern const Codec {name}[];" for name in names)
         sources[0].write_text(MAIN % (declared, ", ".join(names)))
-        given = (f"-I{headers}", f"-I{FOLDER}", *flags)
-        self._command = [*target.runner, str(compile_program(folder / "program", sources, *given, target=target))]
+        made = folder / "program"
+        if roscpp:
+            given = (f"-I{FOLDER}", "-DROSCPP", *flags)
+            compile_program(made, sources, *given, base=("-std=c++17",), include=(), libraries=ROSCPP)
+        else:
+            compile_program(made, sources, f"-I{headers}", f"-I{FOLDER}", *flags, target=target)
+        self._command = [*target.runner, str(made)]
 
     def answers(self, full_name: str, frames: Sequence[bytes]) -> list[Answer]:
         """What the program makes of frames."""

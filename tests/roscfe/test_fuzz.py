@@ -1,0 +1,89 @@
+"""Packets that are no messages: cut, lengthened, with counts that cannot be true, with bytes turned over.
+
+The program has the sanitizers for addresses and for undefined behaviour in it, which end it at the first wrong access.
+"""
+
+from __future__ import annotations
+
+import random
+import struct
+from pathlib import Path
+
+import pytest
+
+from cfepy.convert.messages import Profile
+from rospy_shim.msgs import message_class
+from tests.roscfe.building import needs_cpp
+from tests.roscfe.random_messages import all_types
+from tests.roscfe.roundtrip import Program, frames_of, hash_of
+
+pytestmark = [pytest.mark.slow, needs_cpp]
+SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize=vptr", "-fno-sanitize-recover=all")
+ANGLED = (  # arrays in arrays, texts in them, items of all sizes
+    *("diagnostic_msgs/DiagnosticArray", "sensor_msgs/PointCloud2", "visualization_msgs/MarkerArray"),
+    *("trajectory_msgs/MultiDOFJointTrajectory", "nav_msgs/OccupancyGrid", "actionlib_msgs/GoalStatusArray"),
+)
+COUNTS = (0xFFFFFFFF, 0x80000000, 0x7FFFFFFF, 0x10000, 0xFFFF, 256, 25, 7, 3, 1)
+EMPTY_ITEMS = 65536
+TIMES_THE_BYTES = 16
+"""Bytes that reading may take from the heap, for each byte of the packet. A text of four bytes is a std::string of 32
+on 64 bits, and a vector that is read into again may take twice what it needs."""
+
+
+def mutated(frame: bytes, draw: random.Random) -> bytes:
+    """A frame with a fault in it."""
+    octets = bytearray(frame)
+    fault = draw.randrange(6)
+    at = draw.randrange(len(octets) + 1)
+    if fault == 0:
+        del octets[at:]
+    elif fault == 1:
+        octets += draw.randbytes(draw.randint(1, 9))
+    elif fault == 2 and len(octets) >= 4:
+        at = draw.randrange(len(octets) - 3)
+        count = draw.choice([*COUNTS, len(octets) - at - 4, len(octets) - at - 3])
+        octets[at : at + 4] = struct.pack("<I", count & 0xFFFFFFFF)
+    elif fault == 3:
+        del octets[at : at + draw.randint(1, 8)]
+    elif fault == 4:
+        octets[at:at] = draw.randbytes(draw.randint(1, 8))
+    else:
+        octets = bytearray(draw.randbytes(len(octets)))
+    return bytes(octets)
+
+
+def packets(full_name: str, count: int) -> list[bytes]:
+    """Mutated messages of a type; a few have more than one fault."""
+    draw = random.Random(hash_of(full_name))
+    found = []
+    for frame in frames_of(full_name, count):
+        for _ in range(draw.choice((1, 1, 1, 2, 3))):
+            frame = mutated(frame, draw)
+        found.append(frame)
+    return found
+
+
+def is_message(full_name: str, frame: bytes) -> bool:
+    """Whether genpy reads a packet, and writes the same bytes."""
+    try:
+        return bool(message_class(full_name)._unpack(frame)._pack() == frame)
+    except Exception:  # whatever genpy raises for bytes that are no message
+        return False
+
+
+@pytest.mark.parametrize("profile", [Profile.HOST, Profile.STRICT])
+def test_hostile_packets(tmp_path: Path, profile: Profile) -> None:
+    types = [*all_types()[::9], *ANGLED]
+    program = Program(tmp_path, types, profile, "-O1", "-g", *SANITIZERS)
+    read = 0
+    for name in types:
+        given = packets(name, 60)
+        for packet, answer in zip(given, program.answers(name, given), strict=True):
+            assert not answer.good or answer.octets == packet, (name, packet)
+            assert answer.allocated <= len(packet) * TIMES_THE_BYTES + EMPTY_ITEMS, (name, packet)
+            if profile is Profile.HOST:
+                assert answer.good or not is_message(name, packet), (name, packet)
+            else:
+                assert answer.allocated == 0, (name, packet)
+            read += answer.good
+    assert read > 500, "most faults leave no message, but some do"

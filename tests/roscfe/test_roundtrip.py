@@ -1,0 +1,43 @@
+"""All message types in C++: random messages come back as genpy's bytes, here and on 32 bits, big-endian too."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.convert.messages import Profile
+from tests.roscfe.building import ARM, HERE, POWERPC, needs_cpp
+from tests.roscfe.random_messages import all_types
+from tests.roscfe.roundtrip import Program, frames_of
+
+pytestmark = [pytest.mark.slow, needs_cpp]
+TARGETS = {"here": HERE, "powerpc": POWERPC, "arm": ARM}
+
+
+@pytest.mark.parametrize("profile", [Profile.HOST, Profile.STRICT])
+@pytest.mark.parametrize("target", TARGETS)
+def test_all_types(tmp_path: Path, profile: Profile, target: str) -> None:
+    lacking = TARGETS[target].lacking
+    if lacking is not None:
+        pytest.skip(f"there is no {lacking} (Debian: g++-powerpc-linux-gnu, g++-arm-linux-gnueabihf, qemu-user)")
+    types = all_types()
+    assert len(types) > 1000
+    program = Program(tmp_path, types, profile, "-O1", target=TARGETS[target])
+    for name in types:
+        assert not program.differing(name, frames_of(name, 200)), name
+
+
+def test_reading_in_the_strict_profile_takes_nothing_from_the_heap(tmp_path: Path) -> None:
+    types = ["diagnostic_msgs/DiagnosticArray", "sensor_msgs/PointCloud2", "trajectory_msgs/JointTrajectory"]
+    program = Program(tmp_path, types, Profile.STRICT, "-O1")
+    for name in types:
+        assert {answer.allocated for answer in program.answers(name, frames_of(name, 50))} == {0}
+
+
+def test_a_message_that_is_too_long_for_the_strict_profile_is_refused(tmp_path: Path) -> None:
+    program = Program(tmp_path, ["std_msgs/String"], Profile.STRICT, "-O1")
+    fitting, longer = (bytes([count, 0, 0, 0]) + b"x" * count for count in (24, 25))
+    answers = program.answers("std_msgs/String", [fitting, longer, fitting])
+    assert [answer.good for answer in answers] == [True, False, True]
+    assert answers[2].octets == fitting
