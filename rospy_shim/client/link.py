@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from cfepy.sb import Route
     from rospy_shim.client.node import Node
     from rospy_shim.client.subscription import Subscription
+    from rospy_shim.graph.compiled import CompiledNode
     from rospy_shim.graph.graph import Header
     from rospy_shim.msgs import MessageClass
 
@@ -154,7 +155,8 @@ class Link(TopicSide):
     def connections(self) -> list[TopicConnection]:
         """The nodes that subscribe."""
         compiled = self.topic.compiled_subscribers if self.topic is not None else []
-        return [self.connection(node, OUTBOUND) for node in [*(each.node for each in self.peers), *compiled]]
+        peers: list[Node | CompiledNode] = [*(each.node for each in self.peers), *compiled]
+        return [self.connection(node, OUTBOUND) for node in peers]
 
     def get_stats(self) -> tuple[str, int, list[tuple[int, int, int, bool]]]:
         """The side as getBusStats gives it: topic, bytes, and for each connection number, bytes, messages, state."""

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from cfepy.sb import Pipe
     from rospy_shim.client.link import Link
     from rospy_shim.client.node import Node
+    from rospy_shim.graph.compiled import CompiledNode
     from rospy_shim.graph.graph import Header, TopicEntry
     from rospy_shim.msgs import MessageClass
 
@@ -205,7 +206,8 @@ class Subscription(TopicSide):
     def connections(self) -> list[TopicConnection]:
         """The nodes that publish."""
         compiled = self.topic.compiled_publishers if self.topic is not None else []
-        return [self.connection(node, INBOUND) for node in [*(each.node for each in self.peers), *compiled]]
+        peers: list[Node | CompiledNode] = [*(each.node for each in self.peers), *compiled]
+        return [self.connection(node, INBOUND) for node in peers]
 
     @property
     def peers(self) -> list[Link]:

@@ -152,7 +152,7 @@ void spin(Spinner &spinner)
     spinner.spin();
 }
 
-void SingleThreadedSpinner::spin(CallbackQueue *queue)
+void SingleThreadedSpinner::spin_now(CallbackQueue *queue)
 {
     CallbackQueue &      of = queue != nullptr ? *queue : roscfe::g_node.queue;
     const ros::WallDuration look(0.5); // how often ES is asked whether the application is to end

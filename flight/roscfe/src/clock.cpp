@@ -59,7 +59,7 @@ void TimerState::set_period(std::int64_t period, bool reset)
     period_ns = period;
 }
 
-ros::CallbackInterface::CallResult TimerState::call()
+ros::CallbackInterface::CallResult TimerState::call_now()
 {
     waiting = false;
     if (!alive || !running)

@@ -93,7 +93,7 @@ bool Service::receive(std::uint32_t number, const std::uint8_t *bytes, std::size
     return true;
 }
 
-ros::CallbackInterface::CallResult Service::call()
+ros::CallbackInterface::CallResult Service::call_now()
 {
     if (count_ == 0 || !alive_)
     {

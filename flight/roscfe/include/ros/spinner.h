@@ -20,7 +20,10 @@ class Spinner
 class SingleThreadedSpinner : public Spinner
 {
   public:
-    void spin(CallbackQueue *queue = nullptr) override;
+    void spin(CallbackQueue *queue = nullptr) override { spin_now(queue); }
+
+  private:
+    static void spin_now(CallbackQueue *queue);
 };
 
 class MultiThreadedSpinner : public SingleThreadedSpinner

@@ -27,7 +27,10 @@ class TimerState : public ros::CallbackInterface
     ros::VoidConstWPtr           tracked;
     ros::CallbackQueueInterface *callbacks = nullptr;
 
-    CallResult call() override;
+    // Here, and not in a source: what derives from a class is then complete in a node with run-time type information,
+    // which the library is built without.
+    CallResult call() override { return call_now(); }
+    CallResult call_now();
     void       start();
     void       stop() { running = false; }
     void       set_period(std::int64_t period, bool reset);

@@ -26,7 +26,8 @@ class Service : public ros::CallbackInterface
     virtual std::size_t answer_length() const                                     = 0;
     virtual void        write_answer(std::uint8_t *to, std::size_t size) const = 0;
 
-    CallResult call() override;
+    CallResult call() override { return call_now(); }
+    CallResult call_now();
     bool       receive(std::uint32_t number, const std::uint8_t *bytes, std::size_t size);
 
     const std::string            name_;
