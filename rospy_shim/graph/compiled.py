@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _BODY_AT = 12  # behind the command header and the number of the call
 
 
-class Kind(IntEnum):
+class Concern(IntEnum):
     """What a request is about."""
 
     PUBLISHER = 0
@@ -35,7 +35,7 @@ class Kind(IntEnum):
     SUBSCRIBED = 8  # a subscriber's pipe is on the bus now: it wants the latched messages
 
 
-class Answer(NamedTuple):
+class Enrolled(NamedTuple):
     """What a node is told of a name."""
 
     msg_id: int
@@ -156,7 +156,7 @@ class CompiledNodes:
             for name in [name for name, entry in services.items() if entry.service.node is node]:
                 del services[name]
 
-    def _enter(self, body: bytes) -> Answer:
+    def _enter(self, body: bytes) -> Enrolled:
         """Take what a node says.
 
         Raises:
@@ -169,15 +169,15 @@ class CompiledNodes:
         if node is None or node.pipe != pipe:
             node = self._graph.compiled[who] = CompiledNode(who, pipe, self._bus)
         declared = DeclaredType(kind_of, md5sum, definition)
-        does: dict[int, Callable[[CompiledNode, str, DeclaredType], Answer]] = {
-            Kind.PUBLISHER: self._publish,
-            Kind.SUBSCRIBER: self._subscribe,
-            Kind.SERVER: self._serve,
-            Kind.CLIENT: self._call,
-            Kind.PUBLISHER + Kind.GONE: self._publish_no_more,
-            Kind.SUBSCRIBER + Kind.GONE: self._subscribe_no_more,
-            Kind.SERVER + Kind.GONE: self._serve_no_more,
-            Kind.SUBSCRIBER + Kind.SUBSCRIBED: self._give_latched,
+        does: dict[int, Callable[[CompiledNode, str, DeclaredType], Enrolled]] = {
+            Concern.PUBLISHER: self._publish,
+            Concern.SUBSCRIBER: self._subscribe,
+            Concern.SERVER: self._serve,
+            Concern.CLIENT: self._call,
+            Concern.PUBLISHER + Concern.GONE: self._publish_no_more,
+            Concern.SUBSCRIBER + Concern.GONE: self._subscribe_no_more,
+            Concern.SERVER + Concern.GONE: self._serve_no_more,
+            Concern.SUBSCRIBER + Concern.SUBSCRIBED: self._give_latched,
         }
         if kind not in does:
             raise UsageError(f"{who} asks for something of kind {kind}, which is unknown; build it with this cfepy")
@@ -192,48 +192,48 @@ class CompiledNodes:
             )
         return topic
 
-    def _publish(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+    def _publish(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
         topic = self._topic(node, name, declared)
         node.published[name] = declared._type
         topic.add_compiled_publisher(node)
-        return Answer(topic.msg_id, topic.raw)
+        return Enrolled(topic.msg_id, topic.raw)
 
-    def _publish_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+    def _publish_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
         topic = self._graph.topic(name)
         if node.published.pop(name, None) is not None:
             topic.leave()
             topic.compiled_publishers.remove(node)
-        return Answer(topic.msg_id)
+        return Enrolled(topic.msg_id)
 
-    def _subscribe(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+    def _subscribe(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
         if name in node.subscribed:
             topic = self._graph.topic(name)
         else:
             topic = self._topic(node, name, declared)
             node.subscribed[name] = declared._type
             topic.add_compiled_subscriber(node)
-        return Answer(topic.msg_id, topic.raw, any(link.is_latch for link in topic.links))
+        return Enrolled(topic.msg_id, topic.raw, any(link.is_latch for link in topic.links))
 
-    def _subscribe_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+    def _subscribe_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
         topic = self._graph.topic(name)
         if node.subscribed.pop(name, None) is not None:
             topic.leave()
             topic.compiled_subscribers.remove(node)
-        return Answer(topic.msg_id)
+        return Enrolled(topic.msg_id)
 
-    def _serve(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
-        return Answer(self._graph.register_service(CompiledService(node, name, declared)).answer_id)
+    def _serve(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
+        return Enrolled(self._graph.register_service(CompiledService(node, name, declared)).answer_id)
 
-    def _serve_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+    def _serve_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
         entry = self._graph.services.get(name)
         if entry is not None and entry.service.node is node:
             del self._graph.services[name]
-        return Answer(0)
+        return Enrolled(0)
 
-    def _call(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
-        return Answer(self._graph.ids.of_service(name))
+    def _call(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
+        return Enrolled(self._graph.ids.of_service(name))
 
-    def _give_latched(self, node: CompiledNode, name: str, declared: DeclaredType) -> Answer:
+    def _give_latched(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
         """Python nodes' latched messages, for the one subscriber that has just come."""
         topic = self._graph.topic(name)
         for link in topic.links:
@@ -241,7 +241,7 @@ class CompiledNodes:
                 for packet in self._addressed(link, node.pipe):
                     self._bus.transmit_msg(packet)
                 topic.latched += 1
-        return Answer(topic.msg_id)
+        return Enrolled(topic.msg_id)
 
     def _addressed(self, link: Link, pipe: int) -> Iterator[bytes]:
         payload = link.serialize(link.latch)
