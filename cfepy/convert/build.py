@@ -1,0 +1,387 @@
+"""Building a ROS node in C++: from its sources to a shared object that a mission flies.
+
+Sources are compiled as they are against the interface library and the headers of their messages. What was compiled is
+kept in the user's cache folder, by the content of all that went into it, so a launch that was built once starts at
+once. The library is compiled once for each profile.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import tempfile
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+from cfepy.c import CompilerError, cache_folder, cpp_compiler, headers_folder
+from cfepy.convert.entry import NodeEntry, main_header
+from cfepy.convert.messages import Profile, write_headers
+from cfepy.convert.packages import Program
+from cfepy.convert.sources import SourceSet, collect, message_types
+from cfepy.resources import shipped
+from cfepy.status import UsageError
+from rospy_shim.msgs import Library
+
+LANGUAGE = ("-std=c++17", "-fPIC", "-fvisibility=hidden", "-fno-gnu-unique", "-Wall")
+"""What every source needs: nodes side by side share no variables, and leave none behind when they end."""
+PLAIN = ("-O1", "-g", "-fno-stack-protector", "-U_FORTIFY_SOURCE", "-D_LINUX_OS_", "-D_POSIX_OS_")
+WITHOUT_EXCEPTIONS = ("-fno-exceptions", "-fno-rtti")
+STRICT_WARNINGS = ("-Wextra", "-Werror")
+WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep")
+"""Functions of libc in whose place the library's are called: they would end or hold up the whole computer."""
+LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic")
+SYSTEM_ROS = ("/opt/ros/", "/usr/include/ros/", "/usr/local/include/ros/")
+MOST_AT_ONCE = 2
+"""Compilers that run at the same time."""
+
+
+def library_folder() -> Path:
+    """Where the interface library is: its headers and sources.
+
+    Raises:
+        UsageError: this installation has none.
+    """
+    return shipped("flight") / "roscfe"
+
+
+def library_includes(real_boost: bool = False) -> list[Path]:
+    """Folders of the library's headers.
+
+    Args:
+        real_boost: whether the computer's Boost is taken in place of the small one.
+    """
+    folder = library_folder()
+    return [folder / "include", *([] if real_boost else [folder / "boost"])]
+
+
+def library_sources() -> list[Path]:
+    """The library's sources, sorted."""
+    return sorted((library_folder() / "src").rglob("*.cpp"))
+
+
+def provided_packages() -> set[str]:
+    """Packages whose headers the library has, such as roscpp: their own sources are not compiled."""
+    known = {"roscpp", "rostime", "rosconsole", "roscpp_serialization", "roscpp_traits", "xmlrpcpp", "cpp_common"}
+    return known | {each.name for each in (library_folder() / "include").iterdir() if each.is_dir()}
+
+
+@dataclass(slots=True)
+class BuiltLibrary:
+    """The interface library of one profile, with the headers that it was built against."""
+
+    key: str
+    archive: Path
+    messages: Path
+
+
+@dataclass(slots=True)
+class BuiltNode:
+    """A node that was built.
+
+    Attributes:
+        library: the shared object.
+        entry: its entry point.
+        sources: what it was made of.
+        types: message types whose headers it includes.
+        warnings: what the compiler warned of.
+    """
+
+    library: Path
+    entry: str
+    sources: SourceSet
+    types: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+
+def build_node(program: Program, entry: NodeEntry, library: Library, profile: Profile = Profile.HOST) -> BuiltNode:
+    """Build a node.
+
+    Args:
+        program: its sources.
+        entry: what is generated around it.
+        library: of message types.
+        profile: what it may do.
+
+    Returns:
+        What was built, or lay in the cache.
+
+    Raises:
+        UsageError: there is no compiler, or the result would not be fit to fly.
+        CompilerError: the compiler refused a source; the text is the compiler's.
+    """
+    return NodeBuild(program, entry, library, profile).built()
+
+
+class NodeBuild:
+    """The build of one node; see `build_node`."""
+
+    def __init__(self, program: Program, entry: NodeEntry, library: Library, profile: Profile) -> None:
+        self._program = program
+        self._entry = entry
+        self._profile = profile
+        self._types = library
+        sources = collect(program.sources, [*program.includes, *library_includes()])
+        self._real_boost = any(each.startswith("boost/") for each in sources.missing)
+        if self._real_boost:
+            sources = collect(program.sources, [*program.includes, *library_includes(real_boost=True)])
+        self.sources = sources
+        self.types = message_types(sources.missing, library)
+
+    def built(self) -> BuiltNode:
+        """Compile what is not in the cache, and link it."""
+        with tempfile.TemporaryDirectory(prefix="cfepy-node-") as scratch:
+            return self._built(Path(scratch))
+
+    def _built(self, scratch: Path) -> BuiltNode:
+        program, entry = self._program, self._entry
+        messages = messages_folder(self.types, self._types, self._profile)
+        includes = [*program.includes, messages, *library_includes(self._real_boost)]
+        main = scratch / "roscfe_main.h"
+        main.write_text(main_header(entry.takes_arguments), encoding="utf-8")
+        start = scratch / f"{entry.app.lower()}_entry.cpp"
+        start.write_text(entry.text(), encoding="utf-8")
+        flags = [*LANGUAGE, *PLAIN, *profile_flags(self._profile)]
+        own = [*flags, *(f"-D{each}" for each in program.definitions), "-include", str(main)]
+        known = _digest(messages.name, main_header(entry.takes_arguments), *self.sources.contents.values())
+        units = [Unit(each, own, includes, _digest(known, _label(each, program))) for each in program.sources]
+        header = library_folder() / "include/roscfe/node.h"
+        units.append(Unit(start, flags, library_includes(), _digest(entry.text(), header.read_bytes())))
+        core = core_key(self._profile, self._real_boost, self._types)
+        objects = [each.object for each in units]
+        key = _digest(core, *LINK, *(each.name for each in objects))
+        made = _folder() / f"{entry.app.lower()}-{key}.so"
+        warnings = made.with_suffix(".warnings")
+        if not made.is_file():
+            archive = built_core(self._profile, self._real_boost, self._types)
+            told = compile_units(units)
+            _link([*objects, archive], made)
+            warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
+        told = [warnings.read_text(encoding="utf-8")] if warnings.is_file() else []
+        return BuiltNode(made, entry.symbol, self.sources, self.types, list(filter(None, told)))
+
+
+# -- the library -------------------------------------------------------------------------------------------------------
+
+
+def profile_flags(profile: Profile) -> list[str]:
+    """The flags of a profile."""
+    exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
+    return [f"-DROSCFE_PROFILE_{profile.name}", *exceptions]
+
+
+def messages_folder(types: Sequence[str], library: Library, profile: Profile) -> Path:
+    """A folder with the headers of message types and of all that they need, in the cache.
+
+    Args:
+        types: full names.
+        library: where they are.
+        profile: what messages are made of.
+    """
+    folder = _folder()
+    with tempfile.TemporaryDirectory(dir=folder) as scratch:
+        made = Path(scratch) / "messages"
+        made.mkdir()
+        files = write_headers(types, made, profile, library)
+        key = _digest(*(f"{each.relative_to(made)}\0{each.read_text(encoding='utf-8')}" for each in files))
+        kept = folder / f"messages-{key}"
+        if not kept.is_dir():
+            _put(made, kept)
+    return kept
+
+
+def core_key(profile: Profile, real_boost: bool, library: Library) -> str:
+    """What the interface library of a profile is known by."""
+    return _core(profile, real_boost, library)[0]
+
+
+def built_core(profile: Profile, real_boost: bool, library: Library) -> Path:
+    """The interface library of a profile as an archive, compiled if it is not in the cache.
+
+    Raises:
+        CompilerError: the compiler refused it.
+    """
+    key, units = _core(profile, real_boost, library)
+    archive = _folder() / f"libroscfe-{profile.value}-{key}.a"
+    if not archive.is_file():
+        compile_units(units)
+        with tempfile.TemporaryDirectory(dir=archive.parent) as scratch:
+            made = Path(scratch) / archive.name
+            _call(["ar", "rcs", str(made), *(str(each.object) for each in units)])
+            os.replace(made, archive)
+    return archive
+
+
+def _core(profile: Profile, real_boost: bool, library: Library) -> tuple[str, list[Unit]]:
+    files, includes = library_sources(), library_includes(real_boost)
+    sources = collect(files, includes)
+    messages = messages_folder(message_types(sources.missing, library), library, profile)
+    flags = [*LANGUAGE, *PLAIN, *profile_flags(profile), *WITHOUT_EXCEPTIONS, *STRICT_WARNINGS]
+    known = _digest(messages.name, *sources.contents.values())
+    folder = library_folder()
+    units = [
+        Unit(each, flags, [messages, *includes], _digest(known, str(each.relative_to(folder))), needs_cfe=True)
+        for each in files
+    ]
+    return _digest(*(each.object.name for each in units)), units
+
+
+# -- compiling ---------------------------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class Unit:
+    """A source to be compiled.
+
+    Attributes:
+        source: the file.
+        flags: of the compiler.
+        includes: folders of headers.
+        known: a digest of all that is read.
+        needs_cfe: whether it includes cFE's headers.
+    """
+
+    source: Path
+    flags: Sequence[str]
+    includes: Sequence[Path]
+    known: str
+    needs_cfe: bool = False
+
+    @property
+    def object(self) -> Path:
+        """Where its object file is, in the cache."""
+        plain = [each for each in self.flags if not each.startswith("/")]
+        key = _digest(self.known, *plain, *identity(), headers_folder().name if self.needs_cfe else "")
+        return _folder() / f"{self.source.stem}-{key}.o"
+
+    def command(self, made: Path) -> list[str]:
+        """The compiler's command."""
+        folders = [f"-I{each}" for each in self.includes]
+        cfe = ["-isystem", str(headers_folder())] if self.needs_cfe else []
+        maps = [f"-ffile-prefix-map={self.source.parent}=."]
+        watch = ["-MMD", "-MF", str(made.with_suffix(".d"))]
+        watch[0] = "-MD"  # those that the compiler takes from the system, too
+        return [*cpp_compiler(), *self.flags, *folders, *cfe, *maps, *watch, "-c", str(self.source), "-o", str(made)]
+
+
+def compile_units(units: Iterable[Unit]) -> list[str]:
+    """Compile the sources whose object files are not in the cache, a few at once; what the compiler warned of.
+
+    Raises:
+        CompilerError: it refused one.
+        UsageError: there is no compiler, or a header of a ROS on this computer was used.
+    """
+    missing = [each for each in units if not each.object.is_file()]
+    warnings: list[str] = []
+    for at in range(0, len(missing), MOST_AT_ONCE):
+        group = missing[at : at + MOST_AT_ONCE]
+        with tempfile.TemporaryDirectory(dir=_folder()) as scratch:
+            running = [_Compiler(each, Path(scratch) / str(index)) for index, each in enumerate(group)]
+            warnings += [each.finished() for each in running]
+    return warnings
+
+
+class _Compiler:
+    """A compiler that runs for one source.
+
+    Args:
+        unit: the source.
+        folder: for what it writes.
+    """
+
+    def __init__(self, unit: Unit, folder: Path) -> None:
+        folder.mkdir()
+        self._unit = unit
+        self._made = folder / "made.o"
+        self._log = folder / "log"
+        with self._log.open("wb") as log:
+            self._process = _started(unit.command(self._made), log.fileno())
+
+    def finished(self) -> str:
+        """Wait for it, and keep the object file; what it warned of."""
+        status = self._process.wait()
+        said = self._log.read_text(encoding="utf-8", errors="replace").rstrip()
+        if status:
+            raise CompilerError(said or f"{cpp_compiler()[0]} ended with {status}")
+        used = self._made.with_suffix(".d").read_text(encoding="utf-8", errors="replace").split()
+        wrong = next((each for each in used if each.startswith(SYSTEM_ROS)), None)
+        if wrong is not None:
+            text = f"includes {wrong} of the ROS on this computer, for which there is no cFE [system-ros]"
+            raise UsageError(text, file=self._unit.source)
+        os.replace(self._made, self._unit.object)
+        return said
+
+
+def _started(command: Sequence[str], log: int) -> subprocess.Popen[bytes]:
+    try:
+        return subprocess.Popen(command, stdout=log, stderr=log)
+    except FileNotFoundError:
+        text = "is not there: ROS nodes in C++ need a C++ compiler (on Debian `apt-get install g++`)"
+        raise UsageError(f"{command[0]} {text}, or say with CXX which one to take") from None
+
+
+def _call(command: Sequence[str]) -> str:
+    with tempfile.TemporaryFile() as log:
+        status = _started(command, log.fileno()).wait()
+        log.seek(0)
+        said = log.read().decode("utf-8", "replace").rstrip()
+    if status:
+        raise CompilerError(said or f"{command[0]} ended with {status}")
+    return said
+
+
+def _link(parts: Sequence[Path], made: Path) -> None:
+    with tempfile.TemporaryDirectory(dir=made.parent) as scratch:
+        linked = Path(scratch) / made.name
+        _call([*cpp_compiler(), *LINK, "-o", str(linked), *map(str, parts)])
+        shared = unique_symbols(linked)
+        if shared:
+            text = f"has {', '.join(shared[:4])}, which all nodes would share [unique-symbol]"
+            raise UsageError(text, file=made.name)
+        os.replace(linked, made)
+
+
+def unique_symbols(file: Path) -> list[str]:
+    """Symbols of a shared object of which a process has one only, however many objects have them (STB_GNU_UNIQUE).
+
+    Args:
+        file: the shared object.
+    """
+    lines = (line.split() for line in _call(["nm", "-C", str(file)]).splitlines())
+    return [" ".join(words[2:]) for words in lines if len(words) > 2 and words[1] == "u"]
+
+
+@cache
+def identity() -> tuple[str, ...]:
+    """What the compiler says of itself."""
+    return (*cpp_compiler(), _call([*cpp_compiler(), "-dumpfullversion", "-dumpmachine"]))
+
+
+def _label(source: Path, program: Program) -> str:
+    """The path of a source in its package, which is the same on each computer."""
+    folder = program.package.folder
+    return str(source.relative_to(folder)) if source.is_relative_to(folder) else source.name
+
+
+def _digest(*parts: str | bytes) -> str:
+    whole = hashlib.sha256()
+    for each in parts:
+        data = each.encode() if isinstance(each, str) else each
+        whole.update(len(data).to_bytes(8, "big") + data)
+    return whole.hexdigest()[:16]
+
+
+def _folder() -> Path:
+    folder = cache_folder() / "roscfe"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def _put(made: Path, kept: Path) -> None:
+    try:
+        os.rename(made, kept)
+    except OSError:
+        if not kept.is_dir():  # otherwise another process was quicker
+            raise

@@ -1,0 +1,105 @@
+"""What a node is compiled of: its sources with all headers that they include, found as the compiler finds them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cfepy.convert.names import includes_of, without_comments
+from cfepy.status import UsageError
+from rospy_shim.msgs import Library
+
+HEADER = ".h"
+_MAIN = re.compile(r"\bint\s+main\s*\(\s*(void\s*)?(\))?")
+_SERVICE_PARTS = ("Request", "Response")
+
+
+@dataclass(slots=True)
+class SourceSet:
+    """Sources and headers of a node.
+
+    Attributes:
+        texts: of each file, without comments; the sources first.
+        digests: of each file, as it is.
+        missing: headers that are in none of the folders, as written.
+    """
+
+    texts: dict[Path, str] = field(default_factory=dict)
+    contents: dict[Path, bytes] = field(default_factory=dict)
+    missing: list[str] = field(default_factory=list)
+
+
+def collect(sources: Iterable[Path], includes: Sequence[Path]) -> SourceSet:
+    """Follow the includes of sources; conditions are not looked at.
+
+    Args:
+        sources: files.
+        includes: folders of headers, the first searched first.
+
+    Raises:
+        OSError: a source cannot be read.
+    """
+    found = SourceSet()
+    waiting = list(sources)
+    missing: dict[str, None] = {}
+    where: dict[str, Path | None] = {}
+    for file in waiting:
+        if file in found.texts:
+            continue
+        found.contents[file] = file.read_bytes()
+        text = found.texts[file] = without_comments(found.contents[file].decode("utf-8", "replace"))
+        for name in includes_of(text):
+            beside = file.parent / name
+            if beside.is_file():
+                waiting.append(beside)
+                continue
+            if name not in where:
+                where[name] = next((each / name for each in includes if (each / name).is_file()), None)
+            header = where[name]
+            if header is None:
+                missing[name] = None
+            else:
+                waiting.append(header)
+    found.missing = list(missing)
+    return found
+
+
+def message_types(headers: Iterable[str], library: Library) -> list[str]:
+    """The message and service types whose headers are included, sorted.
+
+    Args:
+        headers: as they are included, such as "std_msgs/String.h".
+        library: of the types that there are.
+    """
+    found = {name for header in headers if (name := _type_of(header, library))}
+    return sorted(found)
+
+
+def _type_of(header: str, library: Library) -> str:
+    name = header.removesuffix(HEADER)
+    if not header.endswith(HEADER) or name.count("/") != 1:
+        return ""
+    if library.has(name) or library.has(name, "srv"):
+        return name
+    service = next((name.removesuffix(part) for part in _SERVICE_PARTS if name.endswith(part)), "")
+    return service if service and library.has(service, "srv") else ""
+
+
+def takes_arguments(sources: Iterable[Path], texts: Callable[[Path], str], where: Path) -> bool:
+    """Whether the main function of a node has parameters.
+
+    Args:
+        sources: of the node.
+        texts: gives the text of each, without comments.
+        where: the package, for errors.
+
+    Raises:
+        UsageError: there is no main function, or more than one.
+    """
+    found = [match for each in sources for match in _MAIN.finditer(texts(each))]
+    if len(found) != 1:
+        what = "no main function" if not found else f"{len(found)} main functions"
+        raise UsageError(f"its sources have {what} [main-form]", file=where)
+    return found[0][2] is None
