@@ -7,3 +7,15 @@ shared object is a compiled application like any other.
 """
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.convert.flight import build_for_flight
+
+__all__ = ["build_for_flight"]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(__name__, {".flight": ("build_for_flight",)})

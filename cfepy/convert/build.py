@@ -146,9 +146,9 @@ class NodeBuild:
         flags = [*LANGUAGE, *PLAIN, *profile_flags(self._profile)]
         own = [*flags, *(f"-D{each}" for each in program.definitions), "-include", str(main)]
         known = _digest(messages.name, main_header(entry.takes_arguments), *self.sources.contents.values())
-        units = [Unit(each, own, includes, _digest(known, _label(each, program))) for each in program.sources]
+        units = [CompileUnit(each, own, includes, _digest(known, _label(each, program))) for each in program.sources]
         header = library_folder() / "include/roscfe/node.h"
-        units.append(Unit(start, flags, library_includes(), _digest(entry.text(), header.read_bytes())))
+        units.append(CompileUnit(start, flags, library_includes(), _digest(entry.text(), header.read_bytes())))
         core = core_key(self._profile, self._real_boost, self._types)
         objects = [each.object for each in units]
         key = _digest(core, *LINK, *(each.name for each in objects))
@@ -214,7 +214,7 @@ def built_core(profile: Profile, real_boost: bool, library: Library) -> Path:
     return archive
 
 
-def _core(profile: Profile, real_boost: bool, library: Library) -> tuple[str, list[Unit]]:
+def _core(profile: Profile, real_boost: bool, library: Library) -> tuple[str, list[CompileUnit]]:
     files, includes = library_sources(), library_includes(real_boost)
     sources = collect(files, includes)
     messages = messages_folder(message_types(sources.missing, library), library, profile)
@@ -222,7 +222,7 @@ def _core(profile: Profile, real_boost: bool, library: Library) -> tuple[str, li
     known = _digest(messages.name, *sources.contents.values())
     folder = library_folder()
     units = [
-        Unit(each, flags, [messages, *includes], _digest(known, str(each.relative_to(folder))), needs_cfe=True)
+        CompileUnit(each, flags, [messages, *includes], _digest(known, str(each.relative_to(folder))), needs_cfe=True)
         for each in files
     ]
     return _digest(*(each.object.name for each in units)), units
@@ -232,7 +232,7 @@ def _core(profile: Profile, real_boost: bool, library: Library) -> tuple[str, li
 
 
 @dataclass(slots=True)
-class Unit:
+class CompileUnit:
     """A source to be compiled.
 
     Attributes:
@@ -266,7 +266,7 @@ class Unit:
         return [*cpp_compiler(), *self.flags, *folders, *cfe, *maps, *watch, "-c", str(self.source), "-o", str(made)]
 
 
-def compile_units(units: Iterable[Unit]) -> list[str]:
+def compile_units(units: Iterable[CompileUnit]) -> list[str]:
     """Compile the sources whose object files are not in the cache, a few at once; what the compiler warned of.
 
     Raises:
@@ -291,7 +291,7 @@ class _Compiler:
         folder: for what it writes.
     """
 
-    def __init__(self, unit: Unit, folder: Path) -> None:
+    def __init__(self, unit: CompileUnit, folder: Path) -> None:
         folder.mkdir()
         self._unit = unit
         self._made = folder / "made.o"

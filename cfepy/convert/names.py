@@ -65,7 +65,7 @@ class UsedName(NamedTuple):
 
 
 @dataclass(slots=True)
-class Names:
+class NodeNames:
     """The names of a node, resolved and with the node's remaps done, in order.
 
     Attributes:
@@ -130,7 +130,7 @@ class SourceNames:
             yield from (UsedName(name, True, True) for name in services)
 
     def _by_variable(self, handle: str, call: str, variable: str, is_service: bool) -> Iterator[UsedName]:
-        """Names that a variable may hold; a call that is given options has its name there."""
+        """NodeNames that a variable may hold; a call that is given options has its name there."""
         word = variable.strip()
         found = [name for each in re.findall(r"\w+", word) for name in self._held.get(each, [])]
         if not found and word and not re.fullmatch(r"\w*(?:ops|opts|options|o)\w*|nh\w*|n|\d+|.*\bnh\w*", word):
@@ -225,7 +225,7 @@ def resolved(name: str, namespace: str, node: str) -> str:
     return re.sub("/+", SEP, name).rstrip(SEP) or SEP
 
 
-def names_of(used: Iterable[UsedName], namespace: str, node: str, remaps: Iterable[tuple[str, str]]) -> Names:
+def names_of(used: Iterable[UsedName], namespace: str, node: str, remaps: Iterable[tuple[str, str]]) -> NodeNames:
     """The names of a node as its graph has them.
 
     Args:
@@ -234,7 +234,7 @@ def names_of(used: Iterable[UsedName], namespace: str, node: str, remaps: Iterab
         node: its full name.
         remaps: as the launch file has them.
     """
-    found = Names(remaps={resolved(a, namespace, node): resolved(b, namespace, node) for a, b in remaps})
+    found = NodeNames(remaps={resolved(a, namespace, node): resolved(b, namespace, node) for a, b in remaps})
     for each in used:
         name = resolved(each.name, namespace, node)
         kind = found.services if each.is_service else found.topics

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -87,18 +87,18 @@ def _type_of(header: str, library: Library) -> str:
     return service if service and library.has(service, "srv") else ""
 
 
-def takes_arguments(sources: Iterable[Path], texts: Callable[[Path], str], where: Path) -> bool:
+def main_form(sources: Iterable[Path], where: Path) -> bool:
     """Whether the main function of a node has parameters.
 
     Args:
         sources: of the node.
-        texts: gives the text of each, without comments.
         where: the package, for errors.
 
     Raises:
         UsageError: there is no main function, or more than one.
     """
-    found = [match for each in sources for match in _MAIN.finditer(texts(each))]
+    texts = (without_comments(each.read_text(encoding="utf-8", errors="replace")) for each in sources)
+    found = [match for text in texts for match in _MAIN.finditer(text)]
     if len(found) != 1:
         what = "no main function" if not found else f"{len(found)} main functions"
         raise UsageError(f"its sources have {what} [main-form]", file=where)

@@ -22,6 +22,7 @@ from cfepy.mission.finding import (
 from cfepy.mission.launch import (
     KEPT_ENVIRONMENT,
     LAUNCH_FILES,
+    NodeBuilder,
     launch_file,
     lines_for,
     mission_environment,
@@ -29,6 +30,7 @@ from cfepy.mission.launch import (
     read_launch,
     scripts_of,
     spec_of,
+    spec_of_node,
     spec_of_script,
 )
 from cfepy.mission.loader import NODE_SYMBOL
@@ -63,6 +65,7 @@ __all__ = [
     "Mission",
     "MissionSections",
     "MissionSpec",
+    "NodeBuilder",
     "OutsideStream",
     "PacketWatch",
     "PieceLength",
@@ -99,5 +102,6 @@ __all__ = [
     "scripts_of",
     "shipped_missions",
     "spec_of",
+    "spec_of_node",
     "spec_of_script",
 ]

@@ -6,7 +6,7 @@ same name stands in for it. What loads it, `cfepy.c`, is imported when there is 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -45,10 +45,14 @@ class CompiledFiles(Finder):
     Args:
         files: of the mission.
         make_loader: makes what loads them, for the first one.
+        built: those that are elsewhere on the host, by their virtual paths.
     """
 
-    def __init__(self, files: FileSystem, make_loader: Callable[[], CompiledLoader]) -> None:
+    def __init__(
+        self, files: FileSystem, make_loader: Callable[[], CompiledLoader], built: Mapping[str, Path] | None = None
+    ) -> None:
         self._files = files
+        self._built = built or {}
         self._make_loader = make_loader
         self._loader: CompiledLoader | None = None
 
@@ -92,6 +96,8 @@ class CompiledFiles(Finder):
             node = self._files.find(file)
         except OsalError:  # a path that no file can have, such as one that is too long
             return None
+        if node is None and file in self._built:
+            return self._built[file].read_bytes()
         if node is None or bytes(node.data[: len(ELF)]) != ELF:
             return None
         return bytes(node.data)

@@ -12,7 +12,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from cfepy.marked_yaml import Mistakes, load
-from cfepy.mission.launch import LAUNCH_FILES, files_near, launch_file_of_package, read_launch, with_launch_files
+from cfepy.mission.launch import (
+    LAUNCH_FILES,
+    NodeBuilder,
+    files_near,
+    launch_file_of_package,
+    read_launch,
+    with_launch_files,
+)
 from cfepy.mission.mission_file import MissionSections, read_mission_file
 from cfepy.mission.spec import MissionSpec
 from cfepy.msg import HIGHEST_VALID_MSG_ID
@@ -96,19 +103,20 @@ def mission_file_of(script: Path) -> Path | None:
     return next((path for path in candidates if os.path.isfile(path)), None)
 
 
-def read_mission(mission: str, args: Mapping[str, str] | None = None) -> MissionSpec:
+def read_mission(mission: str, args: Mapping[str, str] | None = None, build: NodeBuilder | None = None) -> MissionSpec:
     """Find a mission and read its mission file, or the launch file that it is.
 
     Args:
         mission: see `find_script`.
         args: arguments for a launch file.
+        build: builds the nodes in C++ of launch files; None leaves them out.
 
     Raises:
         UsageError: there is no such mission, its mission file is wrong, or it takes no arguments.
     """
     script = find_script(mission)
     if script.suffix in LAUNCH_FILES:
-        return read_launch(script, args)
+        return read_launch(script, args, build)
     if args:
         raise UsageError("only a launch file takes arguments", file=mission, field="--arg")
     path = mission_file_of(script)
@@ -127,7 +135,7 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None) -> Mission
         demands=said.demands,
     )
     if said.launch:
-        spec = with_launch_files(spec, said.launch)
+        spec = with_launch_files(spec, said.launch, build)
     if spec.has_nodes:
         spec = replace(spec, ros=replace(spec.ros, params={**ROSCORE_PARAMS, **spec.ros.params}))
     lock = spec.folder / LOCK_FILE

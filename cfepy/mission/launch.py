@@ -11,23 +11,50 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.parameter_files import merged
 from cfepy.mission.spec import MissionSpec
-from cfepy.nodes import ROSCORE_PARAMS, NodeConfig, RosConfig
+from cfepy.nodes import ROSCORE_PARAMS, CppNode, NodeConfig, RosConfig
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
 
+if TYPE_CHECKING:
+    from rospy_shim.roslaunch.plan import LaunchPlan
+
 PRIORITY, STACK_BYTES, RESTART_NOTHING = 100, 16384, 0
+COMPILED_STACK_BYTES = 65536  # the streams of C++ need more than C does
 ROOM = 64  # more nodes than there are that limits allow for, since a workstation does not limit threads
 LAUNCH_FILES = (".launch", ".test", ".xml")
 KEPT_ENVIRONMENT = ("HOME", "PATH", "ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH")
 
 
+class NodeBuilder(Protocol):
+    """Builds a ROS node in C++ for a mission."""
+
+    def __call__(self, node: CppNode, params: Mapping[str, Any], others: Sequence[str]) -> tuple[Path, str]:
+        """Build it.
+
+        Args:
+            node: the node.
+            params: the tree of parameters.
+            others: full names of the mission's other nodes.
+
+        Returns:
+            The shared object and its entry point.
+
+        Raises:
+            UsageError: it cannot be built; the text says why.
+        """
+
+
 def spec_of(
-    made_from: Path, nodes: Mapping[str, NodeConfig], params: Mapping[str, Any], notes: tuple[str, ...] = ()
+    made_from: Path,
+    nodes: Mapping[str, NodeConfig],
+    params: Mapping[str, Any],
+    notes: tuple[str, ...] = (),
+    built: Mapping[str, tuple[Path, str]] | None = None,
 ) -> MissionSpec:
     """A mission of ROS nodes that is not on disk; the run ends when all of them have.
 
@@ -36,37 +63,62 @@ def spec_of(
         nodes: by cFE name, each with its script.
         params: the tree of parameters.
         notes: what the user should know.
+        built: nodes in C++ by cFE name: shared object and entry point.
     """
+    built = built or {}
     return MissionSpec(
         name=made_from.stem,
         folder=made_from.parent,
         script=made_from,
         mission_file=None,
         board="linux",
-        ros=RosConfig(nodes=nodes, params=params, spread=True, ends_with_nodes=bool(nodes)),
-        limits=MissionLimits(nodes=len(nodes) + ROOM, yields=True),
-        startup=lines_for(nodes) + b"!\n",
+        ros=RosConfig(nodes=nodes, params=params, spread=True, ends_with_nodes=bool(nodes) and not built),
+        limits=MissionLimits(nodes=len(nodes) + len(built) + ROOM, yields=True),
+        startup=lines_for(nodes) + compiled_lines(built) + b"!\n",
         notes=notes,
+        built=files_of_built(built),
     )
 
 
-def read_launch(file: Path, args: Mapping[str, str] | None = None) -> MissionSpec:
+def read_launch(file: Path, args: Mapping[str, str] | None = None, build: NodeBuilder | None = None) -> MissionSpec:
     """The mission that a launch file by itself is, in the user's environment.
 
     Args:
         file: the launch file.
         args: values of its arguments.
+        build: builds nodes in C++; None leaves them out.
 
     Raises:
         UsageError: it is wrong, or has no node that can run here.
     """
     from rospy_shim.roslaunch.plan import plan_of
 
-    plan = plan_of(file, args or {}, dict(os.environ), cwd=Path.cwd())
-    if not plan.nodes:
-        why = "; ".join(plan.notes) or "it has no <node>"
+    plan = plan_of(file, args or {}, dict(os.environ), cwd=Path.cwd(), with_compiled=build is not None)
+    built, left_out = _built(plan, build)
+    notes = (*plan.notes, *left_out)
+    if not plan.nodes and not built:
+        why = "; ".join(notes) or "it has no <node>"
         raise UsageError(f"has no node that can run here: {why}", file=file)
-    return spec_of(file, plan.nodes, plan.params, tuple(plan.notes))
+    return spec_of(file, plan.nodes, plan.params, notes, built)
+
+
+def _built(plan: LaunchPlan, build: NodeBuilder | None) -> tuple[dict[str, tuple[Path, str]], list[str]]:
+    """The nodes in C++ of a launch file, built, and notes about those that cannot be."""
+    built: dict[str, tuple[Path, str]] = {}
+    notes = []
+    names = [f"/{node.name}" for node in plan.nodes.values()]
+    names += [node.full_name for node in plan.compiled.values()]
+    for app, node in plan.compiled.items():
+        if build is None:  # they were not asked for
+            break
+        try:
+            built[app] = build(node, plan.params, [each for each in names if each != node.full_name])
+        except UsageError as error:
+            if node.required:
+                text = f"{node.full_name} is required, but cannot be built: {error}"
+                raise UsageError(text, file=node.near, line=node.line, field="<node>") from None
+            notes.append(f"{node.near}:{node.line}: node {node.full_name} is left out: it cannot be built: {error}")
+    return built, notes
 
 
 def launch_file(words: Sequence[str]) -> tuple[Path, dict[str, str]]:
@@ -119,12 +171,15 @@ def files_near(path: Path, suffixes: tuple[str, ...]) -> list[str]:
         return []
 
 
-def with_launch_files(spec: MissionSpec, launches: Sequence[tuple[Path, Mapping[str, str]]]) -> MissionSpec:
+def with_launch_files(
+    spec: MissionSpec, launches: Sequence[tuple[Path, Mapping[str, str]]], build: NodeBuilder | None = None
+) -> MissionSpec:
     """A mission with the nodes of launch files added to its own.
 
     Args:
         spec: the mission.
         launches: launch files, and the arguments of each.
+        build: builds nodes in C++; None leaves them out.
 
     Raises:
         UsageError: one of them is wrong.
@@ -135,14 +190,18 @@ def with_launch_files(spec: MissionSpec, launches: Sequence[tuple[Path, Mapping[
     nodes, params, notes = dict(spec.ros.nodes), dict(spec.ros.params), list(spec.notes)
     taken = [entry.name for entry in spec.entries]
     added: dict[str, NodeConfig] = {}
+    built: dict[str, tuple[Path, str]] = {}
     for file, args in launches:
-        plan = plan_of(file, args, environ, taken=[*taken, *added])
+        plan = plan_of(file, args, environ, taken=[*taken, *added, *built], with_compiled=build is not None)
         added.update(plan.nodes)
         params = merged(plan.params, params)
-        notes += plan.notes
+        more, left_out = _built(plan, build)
+        built.update(more)
+        notes += [*plan.notes, *left_out]
     head = spec.startup_script.partition(b"!")[0]
     ros = replace(spec.ros, nodes={**nodes, **added}, params=params)
-    return replace(spec, ros=ros, startup=head + lines_for(added) + b"!\n", notes=tuple(notes))
+    startup = head + lines_for(added) + compiled_lines(built) + b"!\n"
+    return replace(spec, ros=ros, startup=startup, notes=tuple(notes), built=files_of_built(built))
 
 
 def mission_environment() -> dict[str, str]:
@@ -159,6 +218,17 @@ def lines_for(nodes: Mapping[str, NodeConfig]) -> bytes:
     """Lines of a startup script; the name is also the file's, which is never opened."""
     numbers = f"{PRIORITY}, {STACK_BYTES}, 0x0, {RESTART_NOTHING}"
     return "".join(f"CFE_APP, {app}, __main__, {app}, {numbers};\n" for app in nodes).encode()
+
+
+def compiled_lines(built: Mapping[str, tuple[Path, str]]) -> bytes:
+    """Lines of a startup script for nodes in C++, by cFE name."""
+    numbers = f"{PRIORITY}, {COMPILED_STACK_BYTES}, 0x0, {RESTART_NOTHING}"
+    return "".join(f"CFE_APP, {app}, {entry}, {app}, {numbers};\n" for app, (_, entry) in built.items()).encode()
+
+
+def files_of_built(built: Mapping[str, tuple[Path, str]]) -> dict[str, Path]:
+    """The shared objects of nodes in C++ by the virtual paths that their lines name."""
+    return {f"/cf/{app}.so": file for app, (file, _) in built.items()}
 
 
 def node_script(words: Sequence[str]) -> tuple[Path, list[str]]:
@@ -179,6 +249,27 @@ def node_script(words: Sequence[str]) -> tuple[Path, list[str]]:
     from rospy_shim.roslaunch.plan import node_file
 
     return node_file(words[0], words[1], Path.cwd() / words[1], os.environ), list(words[2:])
+
+
+def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> MissionSpec:
+    """The mission that one node is, which a command line names.
+
+    Args:
+        words: as of `node_script`.
+        build: builds a node in C++; None knows none.
+
+    Raises:
+        UsageError: there is none, or it cannot be built.
+    """
+    from rospy_shim.roslaunch.plan import node_environment, node_in_cpp
+
+    environ = node_environment(os.environ, os.environ.get("ROS_NAMESPACE", "/"))
+    is_pair = build is not None and len(words) > 1 and not os.path.isfile(words[0])
+    node = node_in_cpp(words[0], words[1], Path.cwd() / words[1], environ, words[2:]) if is_pair else None
+    if node is None or build is None:
+        return spec_of_script(*node_script(words))
+    params = merged(ROSCORE_PARAMS, {})
+    return spec_of(node.folders[0] / "CMakeLists.txt", {}, params, (), {node.app: build(node, params, ())})
 
 
 def spec_of_script(script: Path, words: Sequence[str]) -> MissionSpec:

@@ -157,7 +157,7 @@ class Processor:
     def _finders(self) -> list[Finder]:
         """What is asked for the code of applications, in this order."""
         machine, folder = self.machine, self.machine.spec.folder
-        self._compiled = CompiledFiles(machine.files, self._make_compiled_loader)
+        self._compiled = CompiledFiles(machine.files, self._make_compiled_loader, machine.spec.built)
         python = PythonLoader(machine.console, lambda: self.handle, AppModules(self._app_universe))
         return [
             BuiltInApps({ROS_FILE: self._ros_main}),

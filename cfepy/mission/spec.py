@@ -45,6 +45,7 @@ class MissionSpec:
         limits: what it asks for of a platform.
         startup: the startup script of a mission that was made in memory; `script` then names what it was made from.
         notes: what its user should know before it runs.
+        built: shared objects of nodes in C++ that were built for it, by the virtual paths of its startup script.
         demands: sections of the mission file that say what must hold of a run, as they stand there;
             `cfepy.monitors.demands` reads them.
     """
@@ -60,6 +61,7 @@ class MissionSpec:
     compiled: CompiledConfig = field(default_factory=CompiledConfig)
     startup: bytes | None = None
     notes: tuple[str, ...] = ()
+    built: Mapping[str, Path] = field(default_factory=dict)
     demands: Mapping[str, Marked] = field(default_factory=dict)
 
     @property
@@ -75,4 +77,4 @@ class MissionSpec:
     @property
     def has_nodes(self) -> bool:
         """Whether its startup script starts a ROS node."""
-        return any(entry.symbol == NODE_SYMBOL for entry in self.entries)
+        return bool(self.built) or any(entry.symbol == NODE_SYMBOL for entry in self.entries)

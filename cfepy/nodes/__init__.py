@@ -15,7 +15,7 @@ import threading  # noqa: F401  # first imported by a task, the host's would tak
 from typing import TYPE_CHECKING
 
 from cfepy.faces import face
-from cfepy.nodes.config import ROSCORE_PARAMS, NodeConfig, RosConfig, TopicConfig
+from cfepy.nodes.config import ROSCORE_PARAMS, CppNode, NodeConfig, RosConfig, TopicConfig
 
 if TYPE_CHECKING:
     from cfepy.nodes.app_modules import AppModules, make_app_universe
@@ -31,6 +31,7 @@ __all__ = [
     "PREFIX",
     "ROSCORE_PARAMS",
     "AppModules",
+    "CppNode",
     "Factory",
     "NodeConfig",
     "Overlay",

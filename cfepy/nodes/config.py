@@ -51,6 +51,43 @@ class NodeConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class CppNode:
+    """One ROS node in C++, which is built before its mission boots.
+
+    Attributes:
+        app: its cFE name.
+        package, type: of the node.
+        folders: of its package, the one that counts first.
+        near: a file near which its packages are.
+        name: without a namespace; empty for what the node itself says.
+        namespace: with a slash at the front.
+        args: what follows the program's name on its command line.
+        remaps: (from, to), as the launch file has them.
+        env: its environment; ROS_PACKAGE_PATH counts.
+        required: nothing runs without it.
+        line: of `near`, where it stands; 0 when it stands in no file.
+    """
+
+    app: str
+    package: str
+    type: str
+    folders: tuple[Path, ...]
+    near: Path
+    name: str = ""
+    namespace: str = "/"
+    args: tuple[str, ...] = ()
+    remaps: tuple[tuple[str, str], ...] = ()
+    env: Mapping[str, str] = field(default_factory=dict)
+    required: bool = False
+    line: int = 0
+
+    @property
+    def full_name(self) -> str:
+        """The resolved name, "/arm/driver"."""
+        return f"{self.namespace.rstrip('/')}/{self.name or self.type}"
+
+
+@dataclass(frozen=True, slots=True)
 class TopicConfig:
     """One topic with a MsgId of the mission's choice.
 

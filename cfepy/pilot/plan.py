@@ -7,17 +7,26 @@ exploration on another computer and a failing test; each can say the command tha
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
 from shlex import join
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.mission import MissionSpec, launch_file, node_script, read_launch, read_mission, spec_of_script
+from cfepy.mission import MissionSpec, launch_file, read_launch, read_mission, spec_of_node
+from cfepy.nodes import CppNode
 from cfepy.pilot.course import BOOT_S, DEFAULT_S, NODE_S
 from cfepy.rtos import STALL_S, Schedule
 
 RUN, LAUNCH, NODE = "run", "launch", "node"
+
+
+def built_node(node: CppNode, params: Mapping[str, Any], others: Sequence[str]) -> tuple[Path, str]:
+    """Build a node in C++ for a mission; see `cfepy.mission.NodeBuilder`. What builds is loaded for the first one."""
+    from cfepy.convert import build_for_flight
+
+    return build_for_flight(node, params, others)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,10 +86,10 @@ class RunPlan:
 
     def _spec(self) -> MissionSpec:
         if self.command == LAUNCH:
-            return read_launch(*launch_file(self.words))
+            return read_launch(*launch_file(self.words), build=built_node)
         if self.command == NODE:
-            return spec_of_script(*node_script(self.words))
-        return read_mission(self.words[0], dict(self.launch_args))
+            return spec_of_node(self.words, built_node)
+        return read_mission(self.words[0], dict(self.launch_args), built_node)
 
     def with_played_bag(self, spec: MissionSpec) -> MissionSpec:
         """A mission into which the bag of the plan is played, if it has one.

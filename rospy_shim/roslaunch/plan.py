@@ -9,14 +9,14 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from cfepy.marked_yaml import Mistakes
-from cfepy.nodes import ROSCORE_PARAMS, NodeConfig
+from cfepy.nodes import ROSCORE_PARAMS, CppNode, NodeConfig
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
 from cfepy.units import NS_PER_S
@@ -70,6 +70,18 @@ def find_script(packages: Packages, package: str, node_type: str) -> Path:
     hint = "" if is_built else did_you_mean(node_type, _programs(folders), before="; ")
     text = f"package {package!r} has no file {node_type!r}{'' if node_type.endswith('.py') else f': {why}'}{hint}"
     raise ScriptError(text, is_there=is_built)
+
+
+def compiled_folders(packages: Packages, package: str, node_type: str) -> tuple[Path, ...]:
+    """The folders of a package in which a node is built of C++, by what its CMakeLists.txt says; none for none.
+
+    Args:
+        packages: where to look.
+        package: the node's package.
+        node_type: the program's name.
+    """
+    folders = (each for each in packages.folders(package) if os.path.isfile(each / "CMakeLists.txt"))
+    return tuple(each for each in folders if _is_built(each, package, node_type))
 
 
 def _is_built(folder: Path, package: str, node_type: str) -> bool:
@@ -143,9 +155,13 @@ class PlannedTest:
 
 @dataclass(slots=True)
 class LaunchPlan:
-    """What to run: applications by name, tests, the tree of parameters, the files that were read, and remarks."""
+    """What to run: applications by name, tests, the tree of parameters, the files that were read, and remarks.
+
+    `compiled` has the nodes in C++ whose sources are here, where they are asked for; otherwise they are left out.
+    """
 
     nodes: dict[str, NodeConfig] = field(default_factory=dict)
+    compiled: dict[str, CppNode] = field(default_factory=dict)
     tests: list[PlannedTest] = field(default_factory=list)
     params: dict[str, Any] = field(default_factory=dict)
     files: list[Path] = field(default_factory=list)
@@ -166,6 +182,7 @@ def plan_of(
     cwd: Path | None = None,
     results: Path | None = None,
     mistakes: Mistakes | None = None,
+    with_compiled: bool = False,
 ) -> LaunchPlan:
     """The applications that a launch file stands for.
 
@@ -177,6 +194,7 @@ def plan_of(
         cwd: where the launch is started; what cwd="cwd" means.
         results: folder that tests write their results to.
         mistakes: takes what is wrong; None raises the first mistake.
+        with_compiled: nodes in C++ whose sources are here are planned, too.
 
     Raises:
         UsageError: the file is wrong, or a required node cannot run here.
@@ -184,7 +202,7 @@ def plan_of(
     environ = {**ROS_ENVIRONMENT, **environ}
     packages = Packages(file, environ)
     mistakes = Mistakes() if mistakes is None else mistakes
-    planner = Planner(packages, environ, taken, cwd or file.parent, results)
+    planner = Planner(packages, environ, taken, cwd or file.parent, results, with_compiled)
     return planner.plan(read(file, args, packages, environ, mistakes), mistakes)
 
 
@@ -204,6 +222,44 @@ def node_file(package: str, node_type: str, near: Path, environ: Mapping[str, st
         return find_script(packages_near(near, environ, package), package, node_type)
     except ScriptError as error:
         raise UsageError(str(error), field=f"{package} {node_type}") from None
+
+
+def node_in_cpp(
+    package: str, node_type: str, near: Path, environ: Mapping[str, str], words: Sequence[str]
+) -> CppNode | None:
+    """A node in C++, as rosrun starts it; None when it is a script, or none is built of sources that are here.
+
+    Args:
+        package: its package.
+        node_type: the program's name.
+        near: a file; packages near it count first.
+        environ: of the node.
+        words: its arguments; remaps and __name are among them.
+    """
+    packages = packages_near(near, environ, package)
+    try:
+        find_script(packages, package, node_type)
+    except ScriptError:
+        folders = compiled_folders(packages, package, node_type)
+        if not folders:
+            return None
+        said = dict(word.split(":=", 1) for word in words if ":=" in word)
+        namespace = said.pop("__ns", environ.get("ROS_NAMESPACE", SEP))
+        app = re.sub(r"\W", "_", node_type, flags=re.ASCII).upper()[:LONGEST_NAME]
+        return CppNode(
+            app,
+            package,
+            node_type,
+            folders,
+            folders[0] / "CMakeLists.txt",
+            said.pop("__name", ""),
+            SEP + namespace.strip(SEP),
+            tuple(word for word in words if ":=" not in word),
+            tuple((name, value) for name, value in said.items() if not name.startswith("_")),
+            environ,
+            required=True,
+        )
+    return None
 
 
 def launch_file(package: str, name: str, near: Path, environ: Mapping[str, str]) -> Path:
@@ -268,6 +324,7 @@ class Planner:
         taken: names of applications that are there already.
         cwd: what cwd="cwd" means.
         results: folder that tests write their results to.
+        with_compiled: nodes in C++ whose sources are here are planned, too.
     """
 
     def __init__(
@@ -277,7 +334,9 @@ class Planner:
         taken: Iterable[str],
         cwd: Path,
         results: Path | None = None,
+        with_compiled: bool = False,
     ) -> None:
+        self._with_compiled = with_compiled
         self._results = results or cwd
         self._packages = packages
         self._environ = environ
@@ -295,16 +354,21 @@ class Planner:
         plan = LaunchPlan(params=_tree(launch), files=launch.files, remarks=remarks)
         for node in launch.nodes:
             config = mistakes.attempt(partial(self._config_or_remark, node, remarks))
-            if config is not None:
+            if isinstance(config, CppNode):
+                plan.compiled[config.app] = config
+            elif config is not None:
                 plan.nodes[config.app] = config
         tests = (mistakes.attempt(partial(self._test, test, remarks)) for test in launch.tests)
         plan.tests += [test for test in tests if test is not None]
         return plan
 
-    def _config_or_remark(self, node: LaunchNode, remarks: list[LaunchRemark]) -> NodeConfig | None:
+    def _config_or_remark(self, node: LaunchNode, remarks: list[LaunchRemark]) -> NodeConfig | CppNode | None:
         try:
             return self.config(node)
         except ScriptError as error:
+            folders = compiled_folders(self._packages, node.package, node.type) if self._with_compiled else ()
+            if folders:
+                return self._compiled(node, folders)
             if node.required:
                 raise _failure(node, f"{node.full_name} is required, but {error}") from None
             text = f"node {node.full_name} is left out: {error}"
@@ -343,12 +407,28 @@ class Planner:
             required=node.required,
         )
 
+    def _compiled(self, node: LaunchNode, folders: tuple[Path, ...]) -> CppNode:
+        """The application of a node in C++; remaps among its arguments are remaps."""
+        words = _words(node)
+        remaps = [tuple(word.split(":=", 1)) for word in words if ":=" in word and word[0] != "_"]
+        return CppNode(
+            self._app_name(node),
+            node.package,
+            node.type,
+            folders,
+            node.file,
+            node.name,
+            node.namespace.rstrip(SEP) or SEP,
+            tuple(word for word in words if ":=" not in word),
+            (*node.remaps, *((one, other) for one, other in remaps)),
+            {**self._environ, **node.env},
+            node.required,
+            node.line,
+        )
+
     def _arguments(self, node: LaunchNode, more_args: tuple[str, ...]) -> tuple[str, ...]:
         """The command line in roslaunch's order."""
-        try:
-            words = shlex.split(node.args)
-        except ValueError as error:
-            raise _failure(node, f"args={node.args!r}: {error}") from None
+        words = _words(node)
         remaps = [f"{source}:={target}" for source, target in node.remaps]
         return (*words, *more_args, *remaps, f"__name:={node.name}")
 
@@ -366,6 +446,14 @@ class Planner:
             name = f"{base[: 19 - len(str(number))]}{number}"
         self._taken.add(name)
         return name
+
+
+def _words(node: LaunchNode) -> list[str]:
+    """A node's own arguments."""
+    try:
+        return shlex.split(node.args)
+    except ValueError as error:
+        raise _failure(node, f"args={node.args!r}: {error}") from None
 
 
 def _failure(node: LaunchNode, text: str) -> UsageError:

@@ -28,7 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     if arguments.nodes or arguments.dump_params:
         file, args = launch_file(launch_words(arguments))
-        _show(launch_plan_of(file, args, dict(os.environ), cwd=Path.cwd()), arguments)
+        _show(launch_plan_of(file, args, dict(os.environ), cwd=Path.cwd(), with_compiled=True), arguments)
         return ENDED_WELL
     view = View(arguments.quiet) if arguments.console else NodesView(arguments.quiet)
     return fly_and_tell(arguments, plan_of(arguments, launch_words(arguments), LAUNCH), view)
@@ -39,6 +39,8 @@ def _show(plan: LaunchPlan, arguments: argparse.Namespace) -> None:
     if arguments.nodes:
         for node in (*plan.nodes.values(), *(test.node for test in plan.tests if test.node is not None)):
             print(f"/{node.name}")
+        for compiled in plan.compiled.values():
+            print(compiled.full_name)
     if arguments.dump_params:
         import yaml
 

@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from cfepy.marked_yaml import Mistakes
 from cfepy.mission import sources
 from cfepy.pilot.check.problem import MissionProblem, problem_of
+from cfepy.pilot.plan import built_node
+from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
 
 if TYPE_CHECKING:
@@ -49,15 +51,28 @@ def check_launch(
     from rospy_shim.roslaunch.plan import plan_of
 
     mistakes = Mistakes(keep=True)
-    plan = mistakes.attempt(partial(plan_of, file, args, environ, cwd=Path.cwd(), mistakes=mistakes))
+    plan = mistakes.attempt(
+        partial(plan_of, file, args, environ, cwd=Path.cwd(), mistakes=mistakes, with_compiled=True)
+    )
     found = [problem_of(error, file) for error in mistakes.errors]
     if plan is None:
         return found, []
     found += [MissionProblem(each.file, each.line, each.text, not each.is_error) for each in plan.remarks]
+    found += _built(plan)
     scripts = _scripts_of(plan)
-    if alone and not scripts and all(each.is_warning for each in found):
+    if alone and not scripts and not plan.compiled and all(each.is_warning for each in found):
         found.append(MissionProblem(file, 0, "has no node that can run here"))
     return found, scripts
+
+
+def _built(plan: LaunchPlan) -> Iterator[MissionProblem]:
+    """Build the nodes in C++; one that cannot be built is left out of a run, unless it is required."""
+    for node in plan.compiled.values():
+        try:
+            built_node(node, plan.params, ())
+        except UsageError as error:
+            text = f"node {node.full_name} is left out: it cannot be built: {error}"
+            yield MissionProblem(node.near, node.line, text, not node.required)
 
 
 def _scripts_of(plan: LaunchPlan) -> list[NodeScript]:
