@@ -37,6 +37,7 @@ ROOMS = {
     "journal": ("replay", "diff"),
     "look": ("trace", "report", "plot"),
     "ground": ("cmd", "tlm", "console", "mids", "graph", "export"),
+    "convert": ("convert",),
     "files": ("build", "tbl", "log"),
     "shell": ("completion",),
 }
@@ -49,6 +50,7 @@ TITLES = {
     "journal": "Do a run again",
     "look": "Look at a run",
     "ground": "Ground",
+    "convert": "ROS nodes in C++",
     "files": "Files of cFE",
     "shell": "The shell",
 }

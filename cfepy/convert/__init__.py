@@ -13,9 +13,22 @@ from typing import TYPE_CHECKING
 from cfepy.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.convert.conversion import converted, task_of
     from cfepy.convert.flight import build_for_flight
+    from cfepy.convert.messages import Profile
+    from cfepy.convert.output import write_files
+    from cfepy.convert.project import project_files, report
 
-__all__ = ["build_for_flight"]
+__all__ = ["Profile", "build_for_flight", "converted", "project_files", "report", "task_of", "write_files"]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
-    __getattr__, __dir__ = face(__name__, {".flight": ("build_for_flight",)})
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".conversion": ("converted", "task_of"),
+            ".flight": ("build_for_flight",),
+            ".messages": ("Profile",),
+            ".output": ("write_files",),
+            ".project": ("project_files", "report"),
+        },
+    )

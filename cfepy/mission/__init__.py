@@ -20,6 +20,7 @@ from cfepy.mission.finding import (
     shipped_missions,
 )
 from cfepy.mission.launch import (
+    COMPILED_STACK_BYTES,
     KEPT_ENVIRONMENT,
     LAUNCH_FILES,
     NodeBuilder,
@@ -48,6 +49,7 @@ from cfepy.mission.tracebacks import app_traceback, described, is_library, is_ow
 
 __all__ = [
     "CALL",
+    "COMPILED_STACK_BYTES",
     "CORE_APPS",
     "FILE",
     "FIRST_PIECE_NS",

@@ -1,0 +1,48 @@
+"""`cfepy convert`: applications of cFE out of the ROS nodes in C++ of a launch file or a package."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from cfepy.cli.failures import tell, writing
+from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.convert import Profile, converted, project_files, report, task_of, write_files
+from cfepy.mission import LOCK_FILE, read_lock, read_mission
+from cfepy.nodes import RosConfig
+from cfepy.status import UsageError
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Convert what the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: there is nothing to convert, or a file cannot be written.
+    """
+    check_json(arguments)
+    task = task_of(arguments.words, dict(os.environ))
+    folder = Path(arguments.output or task.made_from.stem).resolve()
+    made = converted(task, _ids(arguments, folder))
+    if not made.nodes:
+        raise UsageError(f"has nothing to convert: {'; '.join(made.refused.values())}", file=task.made_from)
+    files = project_files(made, Profile(arguments.profile), folder)
+    with writing(folder, "--output"):
+        written = write_files(folder, files, arguments.force)
+    tell([*task.notes, *(f"{name} is not converted: {why}" for name, why in made.refused.items())])
+    write_json(arguments, report(made))
+    print(f"{folder}: {len(made.nodes)} nodes, {len(files)} files, {len(written)} of them new", file=sys.stdout)
+    return FOUND_PROBLEMS if made.refused else ENDED_WELL
+
+
+def _ids(arguments: argparse.Namespace, folder: Path) -> RosConfig:
+    """MsgIds that are given: of a mission, or those of the last time."""
+    if arguments.ids is not None:
+        return read_mission(arguments.ids).ros
+    lock = folder / "mission" / LOCK_FILE
+    return read_lock(lock, RosConfig()) if lock.is_file() else RosConfig()
