@@ -24,7 +24,7 @@ from rospy_shim.roslaunch.plan import LONGEST_NAME, packages_near, plan_of
 
 
 @dataclass(slots=True)
-class Task:
+class ConversionTask:
     """What is to be converted.
 
     Attributes:
@@ -84,14 +84,14 @@ class Conversion:
         library: of message types.
     """
 
-    task: Task
+    task: ConversionTask
     nodes: list[ConvertedNode]
     refused: dict[str, str]
     ids: RosConfig
     library: Library
 
 
-def task_of(words: Sequence[str], environ: Mapping[str, str]) -> Task:
+def task_of(words: Sequence[str], environ: Mapping[str, str]) -> ConversionTask:
     """What a command line names: a launch file with its arguments, a package's folder or its name.
 
     Args:
@@ -119,7 +119,7 @@ def _folder_of(package: str, environ: Mapping[str, str]) -> Path | None:
     return next((each for each in folders if (each / MANIFEST).is_file()), None)
 
 
-def _of_package(folder: Path, environ: Mapping[str, str]) -> Task:
+def _of_package(folder: Path, environ: Mapping[str, str]) -> ConversionTask:
     name = name_of(folder)
     package = read_package(folder, name)
     apps = _app_names(package.executables())
@@ -127,7 +127,7 @@ def _of_package(folder: Path, environ: Mapping[str, str]) -> Task:
         CppNode(apps[each], name, each, (folder,), folder / MANIFEST, env=dict(environ))
         for each in package.executables()
     ]
-    return Task(name, folder, nodes, dict(ROSCORE_PARAMS))
+    return ConversionTask(name, folder, nodes, dict(ROSCORE_PARAMS))
 
 
 def _app_names(names: Iterable[str]) -> dict[str, str]:
@@ -143,13 +143,15 @@ def _app_names(names: Iterable[str]) -> dict[str, str]:
     return found
 
 
-def _of_launch(file: Path, args: Mapping[str, str], environ: Mapping[str, str]) -> Task:
+def _of_launch(file: Path, args: Mapping[str, str], environ: Mapping[str, str]) -> ConversionTask:
     plan = plan_of(file, args, environ, cwd=Path.cwd(), with_compiled=True)
     scripts = [f"/{node.name}" for node in plan.nodes.values()]
-    return Task(file.name, file, list(plan.compiled.values()), plan.params, scripts, plan.notes, (file, dict(args)))
+    return ConversionTask(
+        file.name, file, list(plan.compiled.values()), plan.params, scripts, plan.notes, (file, dict(args))
+    )
 
 
-def converted(task: Task, config: RosConfig) -> Conversion:
+def converted(task: ConversionTask, config: RosConfig) -> Conversion:
     """Convert the nodes of a task.
 
     Args:
@@ -175,7 +177,9 @@ def converted(task: Task, config: RosConfig) -> Conversion:
     return Conversion(task, found, refused, ids, library)
 
 
-def _node(node: CppNode, task: Task, packages: Packages, library: Library, others: Sequence[str]) -> ConvertedNode:
+def _node(
+    node: CppNode, task: ConversionTask, packages: Packages, library: Library, others: Sequence[str]
+) -> ConvertedNode:
     package = read_package(node.folders[0], node.package)
     program = program_of(package, node.type, packages, provided_packages())
     sources = collect(program.sources, program.includes)

@@ -1,7 +1,6 @@
 """The command for ROS nodes in C++: convert; here are its options.
 
-A command belongs here when it makes applications of cFE out of ROS nodes, or says what keeps it from doing so. This
-module imports argparse only, for a quick start.
+A command belongs here when it makes applications of cFE out of ROS nodes, or says what keeps it from doing so.
 """
 
 from __future__ import annotations
