@@ -1,0 +1,21 @@
+// Times in texts and ratios, as ROS's C++ code gives them: in seconds.
+#ifndef ROSCFE_TF_MOMENTS_H
+#define ROSCFE_TF_MOMENTS_H
+
+#include <cstdint>
+
+namespace roscfe
+{
+namespace frames
+{
+
+// The same number that ros::Time::toSec gives.
+inline double seconds(std::int64_t ns)
+{
+    return static_cast<double>(ns / 1000000000) + 1e-9 * static_cast<double>(ns % 1000000000);
+}
+
+} // namespace frames
+} // namespace roscfe
+
+#endif

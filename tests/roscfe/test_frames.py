@@ -1,0 +1,177 @@
+"""tf2::BufferCore in C++ answers as Python's tf2 of cfepy, and as the real one where that is installed."""
+
+from __future__ import annotations
+
+import math
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cfepy.convert.messages import Profile, write_headers
+from rospy_shim.msgs import shipped
+from tests.roscfe.compiling import BOOST, FLIGHT, HEADERS, STRICT, compiled
+from tests.roscfe.frame_scripts import scripts
+from tests.rospy_shim.libraries.world import universe
+
+HERE = Path(__file__).parent
+LIBRARY = [FLIGHT / "src/tf" / name for name in ("text.cpp", "samples.cpp", "tree.cpp", "reports.cpp")]
+OURS = [HERE / "frames.cpp", HERE / "stubs.cpp", *LIBRARY]
+REAL = Path("/usr/include/tf2/buffer_core.h")
+LIVES = 40
+CACHE = 10.0
+PRECISION = 1e-12  # Python has another order of operations between two samples
+load: Any = universe().importer.load
+rospy, msg, tf2 = load("rospy"), load("geometry_msgs.msg"), load("tf2_py")
+
+
+def program(folder: Path, *options: str, name: str = "ours") -> Path:
+    messages = folder / "messages"
+    write_headers(["geometry_msgs/TransformStamped"], messages, Profile.HOST, shipped())
+    return compiled(folder, OURS, *options, name=name, headers=(messages, HEADERS, BOOST))
+
+
+def answers(made: Path, lines: list[str]) -> tuple[list[str], list[str]]:
+    """What a program prints, and its log."""
+    text = "\n".join(lines) + "\n"
+    done = subprocess.run([made, str(CACHE)], input=text, capture_output=True, text=True, check=True)
+    return done.stdout.splitlines(), done.stderr.splitlines()
+
+
+# -- Python's ----------------------------------------------------------------------------------------------------------
+
+
+def moment(text: str) -> Any:
+    return rospy.Time(*divmod(int(text), 1_000_000_000))
+
+
+def put(buffer: Any, child: str, parent: str, stamp: str, kind: str, author: str, *numbers: str) -> None:
+    message = msg.TransformStamped(child_frame_id=child)
+    message.header.frame_id, message.header.stamp = parent, moment(stamp)
+    values = [math.nan if number == "nan" else float.fromhex(number) for number in numbers]
+    message.transform = msg.Transform(msg.Vector3(*values[:3]), msg.Quaternion(*values[3:]))
+    (buffer.set_transform_static if kind == "static" else buffer.set_transform)(message, author)
+
+
+def found(message: Any) -> str:
+    t, r = message.transform.translation, message.transform.rotation
+    numbers = " ".join(float.hex(number) for number in (t.x, t.y, t.z, r.x, r.y, r.z, r.w))
+    return f"{message.header.stamp.to_nsec()} {message.header.frame_id} {message.child_frame_id} {numbers}"
+
+
+def common(buffer: Any, target: str, source: str) -> str:
+    if not (buffer._frameExists(target) and buffer._frameExists(source)):
+        return "1 0 "
+    try:
+        return f"0 {buffer.get_latest_common_time(target, source).to_nsec()} "
+    except tf2.TransformException as error:
+        return f"{1 if 'loop' in str(error) else 2} 0 {error}"
+
+
+def parent(buffer: Any, name: str, time: str) -> str:
+    cache = buffer._tree.caches.get(name)
+    sample = None if cache is None else cache.sample(int(time))
+    return f"{int(buffer._frameExists(name))} 0 " if sample is None else f"1 1 {sample[0]}"
+
+
+def asked(buffer: Any, kind: str, *words: str) -> str:
+    times = [moment(word) if re.fullmatch(r"[0-9]+", word) else word for word in words]
+    if kind in ("look", "lookfull"):
+        return found((buffer.lookup_transform_core if kind == "look" else buffer.lookup_transform_full_core)(*times))
+    if kind in ("can", "canfull"):
+        possible, text = (buffer.can_transform_core if kind == "can" else buffer.can_transform_full_core)(*times)
+        return f"{possible} {text}"
+    if kind == "chain":
+        return "".join(f"{name} " for name in buffer._chain(*times))
+    if kind in ("common", "parent"):
+        return (common if kind == "common" else parent)(buffer, *words)
+    if kind == "dot":
+        return str(buffer._allFramesAsDot(rospy.Time(float(words[0]))))
+    return str(buffer.all_frames_as_string() if kind == "string" else buffer.all_frames_as_yaml())
+
+
+def in_python(lines: list[str], said: list[str]) -> Iterator[str]:
+    """What Python's buffer answers to the lines of a life; `said` is its log."""
+    buffer = tf2.BufferCore(rospy.Duration(CACHE))
+    for line in lines:
+        kind, *words = ("" if word == "-" else word for word in line.split())
+        if kind == "clear":
+            buffer.clear()
+            continue
+        if kind == "set":
+            before = len(said)
+            put(buffer, *words)
+            yield "1" if len(said) == before else "0"
+            continue
+        try:
+            text = asked(buffer, kind, *words)
+        except tf2.TransformException as error:
+            text = f"{type(error).__name__}: {error}"
+        yield from text.split("\n")
+
+
+def parts(line: str) -> tuple[str, list[float]]:
+    """Words of a line, and its hexadecimal numbers."""
+    numbers = re.findall(r" (-?0x\S+)", line)
+    return re.sub(r" -?0x\S+", "", line), [float.fromhex(number) for number in numbers]
+
+
+# -- tests -------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_as_in_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    said: list[str] = []
+    monkeypatch.setattr(load("tf2_py._tf2"), "_report", lambda level, text: said.append(f"{level} {text}"))
+    made = program(tmp_path, "-Wall", "-Wextra", "-Werror", "-O1", "-fsanitize=address,undefined")
+    seen: set[str] = set()
+    for seed in range(LIVES):
+        lines = scripts(seed)
+        printed, log = answers(made, lines)
+        said.clear()
+        wanted = list(in_python(lines, said))
+        assert log == said, seed
+        assert len(printed) == len(wanted), seed
+        for line, other in zip(printed, wanted, strict=True):
+            (text, numbers), (other_text, other_numbers) = parts(line), parts(other)
+            assert text.rstrip() == other_text.rstrip(), seed
+            assert numbers == pytest.approx(other_numbers, rel=PRECISION, abs=PRECISION), (seed, line, other)
+            seen.add("numbers" if numbers else text.split(":")[0])
+    kinds = {"LookupException", "ConnectivityException", "ExtrapolationException", "InvalidArgumentException"}
+    assert seen > {*kinds, "numbers"}
+
+
+def comparable(lines: list[str]) -> list[str]:
+    """Without what tf2 says by mistake: that a fixed frame does not exist when it is the source that does not."""
+    return [re.sub(r" ?fixed_frame: \S*does not exist\.", "", line).rstrip() for line in lines]
+
+
+@pytest.mark.slow
+def test_as_in_a_real_ros(tmp_path: Path) -> None:
+    if not REAL.is_file() or shutil.which("g++") is None:
+        pytest.skip("there is no libtf2-dev on this computer; the comparison with Python has to do")
+    libraries = ["-ltf2", "-lrostime", "-lboost_thread", "-lboost_system"]
+    real = tmp_path / "real"
+    command = ["g++", "-std=c++17", "-w", "-O2", str(HERE / "frames.cpp"), *libraries, "-o", str(real)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    ours = program(tmp_path, "-O2")
+    for seed in range(LIVES):
+        lines = [line for line in scripts(seed) if not line.startswith("chain")]  # tf2's does not check names
+        (printed, log), (wanted, wanted_log) = answers(ours, lines), answers(real, lines)
+        assert comparable(printed) == comparable(wanted), seed
+        shown = [line.rstrip() for line in wanted_log if not line.startswith("         at line")]
+        assert [re.sub(r" \(parent \S+\) at ", " at ", line).rstrip() for line in log] == shown, seed
+
+
+@pytest.mark.slow
+def test_without_exceptions_a_failure_ends_the_application(tmp_path: Path) -> None:
+    made = program(tmp_path, *STRICT)
+    done = subprocess.run([made, "10"], input="look a b 0\n", capture_output=True, text=True, check=False)
+    assert done.returncode == 3
+    text = '"a" passed to lookupTransform argument target_frame does not exist. '
+    assert done.stdout == f"refused: exception: {text}\n"
