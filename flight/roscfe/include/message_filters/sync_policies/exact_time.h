@@ -1,0 +1,30 @@
+// message_filters::sync_policies::ExactTime: messages with the same stamp.
+#ifndef ROSCFE_MESSAGE_FILTERS_SYNC_POLICIES_EXACT_TIME_H
+#define ROSCFE_MESSAGE_FILTERS_SYNC_POLICIES_EXACT_TIME_H
+
+#include "message_filters/synchronizer.h"
+
+namespace message_filters
+{
+namespace sync_policies
+{
+
+template <class... M>
+class ExactTime
+{
+  public:
+    typedef std::tuple<M...> Messages;
+
+    explicit ExactTime(std::uint32_t queue_size) : synchronization_(sizeof...(M), queue_size) {}
+
+  protected:
+    roscfe::Synchronization &synchronization() { return synchronization_; }
+
+  private:
+    roscfe::ExactSynchronization synchronization_;
+};
+
+} // namespace sync_policies
+} // namespace message_filters
+
+#endif
