@@ -3,6 +3,7 @@
 #define ROSCONSOLE_ROSCONSOLE_H
 
 #include <cstdio>
+#include <iostream>
 #include <map>
 #include <sstream>
 #include <string>
