@@ -11,14 +11,14 @@ from __future__ import annotations
 import itertools
 import struct
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 
 from cfepy import msg
 from cfepy.evs import packets as evs
 from cfepy.status import OsalError
-from tests.twin import compare, masks
+from tests.twin import apps_files, compare, masks
 from tests.twin.apps_commands import TELEMETRY_HEARD, AppsCommander
 from tests.twin.commands import PLAIN, Step
 from tests.twin.flight import (
@@ -104,7 +104,7 @@ def differences(ours: Observed, theirs: Observed) -> list[str]:
 
 
 def _of_file(path: str, ours: bytes, theirs: bytes) -> str:
-    return "" if len(ours) == len(theirs) else f"{len(ours)} bytes of ours, {len(theirs)} of NASA's"
+    return first_difference(*(apps_files.of_file(each, of_packet) for each in (ours, theirs)))
 
 
 def tables() -> dict[str, bytes]:
@@ -160,8 +160,16 @@ class RealApps(Real):
         return self._booted.files()
 
 
-def simulated(built: Path) -> AbstractContextManager[Simulated]:
-    """The mission in cfepy, prepared."""
+def simulated(
+    built: Path, more: Mapping[str, bytes] | None = None, steps: Sequence[Step] = ()
+) -> AbstractContextManager[Simulated]:
+    """The mission in cfepy, prepared.
+
+    Args:
+        built: the folder of NASA's executable.
+        more: files that replace others, by virtual path.
+        steps: what it flies first, behind the preparation.
+    """
     flown = [f"{app.name.lower()}.so" for app in FLIGHT_APPS]
     files = {
         f"/cf/{each.name}": each.read_bytes()
@@ -170,16 +178,18 @@ def simulated(built: Path) -> AbstractContextManager[Simulated]:
     }
     heard = ", ".join(map(hex, TELEMETRY_HEARD))
     link = LINK_APP.with_suffix(".py").read_text().replace("WATCHED = (", f"WATCHED = ({heard}, ")
-    files |= {**tables(), STARTUP_PATH: STARTUP.encode(), "/cf/link.py": link.encode()}
-    return prepared_simulation(files, preparation(), lambda flown: SimulatedApps(flown, LINE))
+    files |= {**tables(), STARTUP_PATH: STARTUP.encode(), "/cf/link.py": link.encode(), **(more or {})}
+    return prepared_simulation(files, [*preparation(), *steps], lambda flown: SimulatedApps(flown, LINE))
 
 
-def real(built: Path) -> AbstractContextManager[Real]:
-    """The mission in NASA's cFE, prepared."""
+def real(
+    built: Path, more: Mapping[str, bytes] | None = None, steps: Sequence[Step] = ()
+) -> AbstractContextManager[Real]:
+    """The same in NASA's cFE."""
     heard = ",".join(map(hex, TELEMETRY_HEARD))
     link = compiled_app(built.parents[2], LINK_APP, f"-DMORE_WATCHED={heard},")
-    files = {**tables(), STARTUP_PATH: STARTUP.encode(), "/cf/link.so": link}
-    return prepared_real(built, files, preparation(), RealApps, LINE)
+    files = {**tables(), STARTUP_PATH: STARTUP.encode(), "/cf/link.so": link, **(more or {})}
+    return prepared_real(built, files, [*preparation(), *steps], RealApps, LINE)
 
 
 def fly(built: Path, seed: int, count: int, names: list[str]) -> Iterator[compare.Flown]:

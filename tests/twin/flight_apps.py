@@ -98,7 +98,7 @@ MD = FlightApp(
     0x1890,
     0x1891,
     0x1892,
-    (0x890,),
+    (0x890, 0x891, 0x892, 0x893, 0x894),
     _commands("""
         0 NOOP
         1 RESET_CNTRS

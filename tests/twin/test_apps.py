@@ -7,8 +7,10 @@ from itertools import islice
 import pytest
 
 from cfepy import msg
+from cfepy.fs import FileHeader
 from tests.twin import apps_flight, cfdp_pdus
 from tests.twin.apps_commands import AppsCommander
+from tests.twin.apps_files import DS_FILE, FM_FILE, of_file
 from tests.twin.apps_flight import differences, of_packet
 from tests.twin.flight import Observed
 from tests.twin.flight_apps import FLIGHT_APPS
@@ -42,7 +44,7 @@ def test_a_difference_is_seen() -> None:
     assert len(differences(Observed((packet,), {}), Observed((other,), {}))) == 1
     assert len(differences(Observed((packet,), {}), Observed((), {}))) == 1
     assert differences(Observed((), {"/ram/a": b"12"}), Observed((), {"/ram/a": b"1"})) == [
-        "file /ram/a: 2 bytes of ours, 1 of NASA's"
+        "file /ram/a: 2 bytes of ours, 1 of NASA's are compared"
     ]
 
 
@@ -50,6 +52,21 @@ def test_lists_of_files_are_compared_in_any_order() -> None:
     names = [name.ljust(84, b"\0") for name in (b"/ram/a", b"/ram/b")]
     one, other = (bytes(msg.telemetry(0x88D, bytes(4) + b"".join(order))) for order in (names, names[::-1]))
     assert of_packet(one) == of_packet(other)
+
+
+def test_files_are_compared_but_for_their_times() -> None:
+    def file(subtype: int, seconds: int, content: bytes) -> bytes:
+        return FileHeader("x", subtype, time_seconds=seconds).pack() + content
+
+    packets = [bytes(msg.telemetry(0x8A7, bytes([number] * 20))) for number in range(2)]
+    stored = [file(DS_FILE, at, bytes([at] * 8) + bytes(68) + b"".join(packets[:: 1 - 2 * at])) for at in range(2)]
+    entries = [bytes([number] * 68) + bytes([at] * 4) + bytes(4) for at, number in enumerate((1, 2))]
+    listed = [file(FM_FILE, at, bytes(72) + b"".join(entries[:: 1 - 2 * at])) for at in range(2)]
+    for one, other in (stored, listed):
+        assert one != other
+        assert of_file(one, of_packet) == of_file(other, of_packet)
+        assert of_file(one, of_packet) != of_file(other[:-1] + b"\xee", of_packet)
+    assert of_file(b"text", of_packet) == b"text"
 
 
 def test_the_checksum_of_cfdp() -> None:

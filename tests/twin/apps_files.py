@@ -1,0 +1,55 @@
+"""What is compared of the files of NASA's flight applications: all but times, and orders that the host gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from cfepy.fs import HEADER_SIZE
+from cfepy.fs.header import CONTENT_ID
+
+TIMES = slice(24, 32)
+"""In the header of each file."""
+DS_FILE, FM_FILE = 10000, 12345
+"""Subtypes of DS's files, and of FM's lists of folders."""
+DS_CLOSED = slice(64, 72)
+"""When DS closed the file."""
+DS_HEADER = 76
+FM_HEADER = 72
+FM_ENTRY = 76
+FM_CHANGED = slice(68, 72)
+"""When a listed file was changed."""
+
+
+def of_file(data: bytes, of_packet: Callable[[bytes], bytes | None]) -> bytes:
+    """What is compared of a file.
+
+    Args:
+        data: its content.
+        of_packet: what is compared of a packet, which DS stored; None for one that is left out.
+    """
+    if len(data) < HEADER_SIZE or int.from_bytes(data[:4], "big") != CONTENT_ID:
+        return data
+    left = bytearray(data)
+    left[TIMES] = bytes(8)
+    subtype = int.from_bytes(data[4:8], "big")
+    if subtype == DS_FILE:
+        left[DS_CLOSED] = bytes(8)
+        begin = HEADER_SIZE + DS_HEADER
+        told = sorted(each for each in map(of_packet, _packets(data[begin:])) if each is not None)
+        return bytes(left[:begin]) + b"".join(told)
+    if subtype == FM_FILE:
+        begin = HEADER_SIZE + FM_HEADER
+        entries = [bytearray(data[at : at + FM_ENTRY]) for at in range(begin, len(data), FM_ENTRY)]
+        for entry in entries:
+            entry[FM_CHANGED] = bytes(4)
+        return bytes(left[:begin]) + b"".join(sorted(map(bytes, entries)))
+    return bytes(left)
+
+
+def _packets(data: bytes) -> list[bytes]:
+    found = []
+    while len(data) > 6:
+        size = 7 + int.from_bytes(data[4:6], "big")
+        found.append(data[:size])
+        data = data[size:]
+    return found
