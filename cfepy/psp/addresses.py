@@ -121,16 +121,10 @@ class AddressSpace:
 
         Raises:
             OsalError: CFE_PSP_INVALID_MEM_TYPE for a bad or another type, CFE_PSP_INVALID_MEM_ADDR when it begins in
-                no range, CFE_PSP_INVALID_MEM_RANGE when it ends beyond it.
+                no range, CFE_PSP_INVALID_MEM_RANGE when it ends beyond it. Where it begins in several ranges, one of
+                them has to be right, and the last of them says why none is.
         """
-        if memory_type not in (MEM_RAM, MEM_EEPROM, MEM_ANY):
-            raise OsalError(CFE_PSP_INVALID_MEM_TYPE, f"memory type {memory_type}")
-        number = self._range_of(address)
-        found = self._ranges[number]
-        if size < 0 or address + size > found.start_addr + found.size:
-            raise OsalError(CFE_PSP_INVALID_MEM_RANGE, f"{size} bytes at {address:#x} reach beyond range {number}")
-        if memory_type not in (MEM_ANY, found.memory_type):
-            raise OsalError(CFE_PSP_INVALID_MEM_TYPE, f"{address:#x} is of type {found.memory_type}")
+        self._range_of(address, size, memory_type)
 
     def mem_read8(self, address: int) -> int:
         """The byte at an address (CFE_PSP_MemRead8), or CFE_PSP_INVALID_MEM_*."""
@@ -168,12 +162,23 @@ class AddressSpace:
         if not 0 <= range_num < MEM_TABLE_SIZE:
             raise OsalError(CFE_PSP_INVALID_MEM_RANGE, f"memory range {range_num} is not 0 to {MEM_TABLE_SIZE - 1}")
 
-    def _range_of(self, address: int) -> int:
+    def _range_of(self, address: int, size: int, memory_type: int) -> int:
+        """The number of the first range that has it all."""
+        if memory_type not in (MEM_RAM, MEM_EEPROM, MEM_ANY):
+            raise OsalError(CFE_PSP_INVALID_MEM_TYPE, f"memory type {memory_type}")
+        problem = OsalError(CFE_PSP_INVALID_MEM_ADDR, f"there is no memory at {address:#x}")
         for number, entry in enumerate(self._ranges):
-            is_used = entry.memory_type != MEM_INVALID
-            if is_used and entry.start_addr <= address < entry.start_addr + entry.size:
+            end = entry.start_addr + entry.size
+            if entry.memory_type == MEM_INVALID or not entry.start_addr <= address < end:
+                continue
+            if size < 0 or address + size > end:
+                text = f"{size} bytes at {address:#x} reach beyond range {number}"
+                problem = OsalError(CFE_PSP_INVALID_MEM_RANGE, text)
+            elif memory_type not in (MEM_ANY, entry.memory_type):
+                problem = OsalError(CFE_PSP_INVALID_MEM_TYPE, f"{address:#x} is of type {entry.memory_type}")
+            else:
                 return number
-        raise OsalError(CFE_PSP_INVALID_MEM_ADDR, f"there is no memory at {address:#x}")
+        raise problem
 
     def _load(self, address: int, size: int) -> bytes:
         area, where = self._place(address, size, MEM_ANY, False)
@@ -184,8 +189,7 @@ class AddressSpace:
         area[where] = data
 
     def _place(self, address: int, size: int, memory_type: int, is_write: bool) -> tuple[MemoryArea, slice]:
-        self.mem_validate_range(address, size, memory_type)
-        number = self._range_of(address)
+        number = self._range_of(address, size, memory_type)
         entry = self._ranges[number]
         self._check_access(entry.memory_type, is_write)
         if number not in self._areas:

@@ -207,3 +207,13 @@ def _status_or_0(call: Callable[[], object]) -> int:
     except OsalError as error:
         return error.status
     return 0
+
+
+def test_of_ranges_that_overlap_one_has_to_be_right() -> None:
+    # as NASA's Linux has it: a range of RAM that is all memory, and the EEPROM in it
+    space = EepromSpace()
+    space.mem_range_set(0, MEM_RAM, 0, 0x10000, 4, MEM_ATTR_READWRITE)
+    space.mem_range_set(1, MEM_EEPROM, 0x1000, 0x100, 4, MEM_ATTR_READWRITE)
+    for kind in (MEM_RAM, MEM_EEPROM, MEM_ANY):
+        space.mem_validate_range(0x1080, 4, kind)
+    assert _status(lambda: space.mem_validate_range(0x1080, 0x100, MEM_EEPROM)) == CFE_PSP_INVALID_MEM_RANGE

@@ -16,14 +16,15 @@ DS_CLOSED = slice(64, 72)
 DS_HEADER = 76
 FM_HEADER = 72
 FM_ENTRY = 76
-FM_CHANGED = slice(68, 72)
-"""When a listed file was changed."""
+FM_SIZE, FM_CHANGED = slice(64, 68), slice(68, 72)
+"""Of a listed file, its size and when it was changed."""
 
 
-def of_file(data: bytes, of_packet: Callable[[bytes], bytes | None]) -> bytes:
+def of_file(path: str, data: bytes, of_packet: Callable[[bytes], bytes | None]) -> bytes:
     """What is compared of a file.
 
     Args:
+        path: where it is. A list that lists itself tells how far it was when its turn came.
         data: its content.
         of_packet: what is compared of a packet, which DS stored; None for one that is left out.
     """
@@ -42,6 +43,8 @@ def of_file(data: bytes, of_packet: Callable[[bytes], bytes | None]) -> bytes:
         entries = [bytearray(data[at : at + FM_ENTRY]) for at in range(begin, len(data), FM_ENTRY)]
         for entry in entries:
             entry[FM_CHANGED] = bytes(4)
+            if entry.partition(b"\0")[0] == path.rpartition("/")[2].encode():
+                entry[FM_SIZE] = bytes(4)
         return bytes(left[:begin]) + b"".join(sorted(map(bytes, entries)))
     return bytes(left)
 

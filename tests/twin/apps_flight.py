@@ -9,6 +9,7 @@ same shared objects and tables fly in both.
 from __future__ import annotations
 
 import itertools
+import re
 import struct
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -61,6 +62,8 @@ MASKED = {
     0x88E: [range(16 + 64 + entry * 88, 16 + 88 + entry * 88) for entry in range(8)],  # room on the host's disks
 }
 """Bytes of telemetry that the host decides."""
+NAMED_BY_TIME = re.compile(rb"(/[a-z]+)\d{13}(?=\.)")
+"""What DS calls a file that has a time in its name."""
 FM_LISTING = 0x88C
 IN_ANY_ORDER = {FM_LISTING: (92, 76), 0x88D: (20, 84)}
 """Lists of files, first byte and size of an entry: a folder has the host's order, files that are open that of ids."""
@@ -70,6 +73,7 @@ EVENT_MONITOR = b"on HS_EVENT_PIPE,app HS"
 
 def of_packet(packet: bytes) -> bytes | None:
     """What is compared of a packet; None for one that is left out."""
+    packet = NAMED_BY_TIME.sub(rb"\1.............", packet)
     told = masks.of_packet(packet)
     msg_id = int.from_bytes(packet[:2], "big")
     if told is None or masks.is_event(packet):
@@ -100,11 +104,16 @@ def differences(ours: Observed, theirs: Observed) -> list[str]:
             mine.remove(pair)
             real_ones.remove(told)
             found.append(f"telemetry 0x{told[:2].hex()}: {first_difference(pair[4:], told[4:])}, behind the header")
-    return [*found, *only(real_ones, mine), *file_differences(ours, theirs, _of_file)]
+    both = (each._replace(files=_without_times(each.files)) for each in (ours, theirs))
+    return [*found, *only(real_ones, mine), *file_differences(*both, _of_file)]
+
+
+def _without_times(files: dict[str, bytes]) -> dict[str, bytes]:
+    return {NAMED_BY_TIME.sub(rb"\1.............", path.encode()).decode(): data for path, data in files.items()}
 
 
 def _of_file(path: str, ours: bytes, theirs: bytes) -> str:
-    return first_difference(*(apps_files.of_file(each, of_packet) for each in (ours, theirs)))
+    return first_difference(*(apps_files.of_file(path, each, of_packet) for each in (ours, theirs)))
 
 
 def tables() -> dict[str, bytes]:

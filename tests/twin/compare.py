@@ -46,11 +46,11 @@ def parser_of(name: str, usage: str | None, steps: int) -> argparse.ArgumentPars
     return parser
 
 
-def real_folder() -> Path:
-    """Where NASA's executable is; ends the program where it is not said."""
-    built = installed()
+def real_folder(variable: str = VARIABLE) -> Path:
+    """Where NASA's executable is, as an environment variable says; ends the program where it does not."""
+    built = installed(variable)
     if built is None:
-        sys.exit(f"{VARIABLE} does not say where the folder of NASA's core-cpu1 is")
+        sys.exit(f"{variable} does not say where the folder of NASA's core-cpu1 is")
     return built
 
 

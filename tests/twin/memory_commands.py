@@ -23,6 +23,7 @@ WIDTHS = {MEM8: 8, MEM16: 16, MEM32: 32}
 ENABLED, DISABLED = 1, 2
 TABLES_CHECKED = ("LC.LC_WDT", "SC.RTS_TBL001", "CS.DefMemoryTbl", "NO.Table")
 APPS_CHECKED = ("NOBODY",)
+"""OSAL on Linux does not know where the code of one is; see docs/differences.md."""
 PEEK, POKE, LOAD_WID, LOAD_FILE, DUMP_FILE, DUMP_EVENT, FILL, LOOKUP = range(2, 10)
 START_DWELL, STOP_DWELL, JAM_DWELL = 2, 3, 4
 ONE_SHOT, CANCEL_ONE_SHOT = 2, 3
@@ -52,6 +53,7 @@ def files(address: int) -> dict[str, bytes]:
     )
     return {
         "/cf/cs_memorytbl.tbl": build(TableImage("CS.DefMemoryTbl", memory.ljust(16 * 16, b"\0"))),
+        "/cf/cs_eepromtbl.tbl": build(TableImage("CS.DefEepromTbl", memory[:16].ljust(16 * 16, b"\0"))),
         "/cf/cs_tablestbl.tbl": build(TableImage("CS.DefTablesTbl", tables.ljust(24 * 42, b"\0"))),
         "/cf/cs_apptbl.tbl": build(TableImage("CS.DefAppTbl", apps.ljust(24 * 22, b"\0"))),
         **dict(zip(LOADS, loads, strict=True)),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from itertools import islice
 
 import pytest
@@ -64,9 +65,26 @@ def test_files_are_compared_but_for_their_times() -> None:
     listed = [file(FM_FILE, at, bytes(72) + b"".join(entries[:: 1 - 2 * at])) for at in range(2)]
     for one, other in (stored, listed):
         assert one != other
-        assert of_file(one, of_packet) == of_file(other, of_packet)
-        assert of_file(one, of_packet) != of_file(other[:-1] + b"\xee", of_packet)
-    assert of_file(b"text", of_packet) == b"text"
+        assert of_file("/ram/x", one, of_packet) == of_file("/ram/x", other, of_packet)
+        assert of_file("/ram/x", one, of_packet) != of_file("/ram/x", other[:-1] + b"\xee", of_packet)
+    assert of_file("/ram/x", b"text", of_packet) == b"text"
+
+
+def test_a_list_in_itself_is_as_long_as_it_was() -> None:
+    def listed(name: bytes, size: int) -> bytes:
+        return FileHeader("x", FM_FILE).pack() + bytes(72) + struct.pack("<64sIII", name, size, 0, 6)
+
+    for name, is_same in ((b"list.dat", True), (b"other.dat", False)):
+        one, other = (of_file("/ram/list.dat", listed(name, size), of_packet) for size in (136, 668))
+        assert (one == other) == is_same
+
+
+def test_names_with_a_time_are_alike() -> None:
+    one, other = (f"/ram/power1980012140{at}.dat" for at in (357, 432))
+    assert differences(Observed((), {one: b"1"}), Observed((), {other: b"1"})) == []
+    assert differences(Observed((), {one: b"1"}), Observed((), {other: b"2"})) != []
+    told = [bytes(msg.telemetry(0x8BA, name.encode())) for name in (one, other)]
+    assert differences(Observed((told[0],), {}), Observed((told[1],), {})) == []
 
 
 def test_the_checksum_of_cfdp() -> None:
