@@ -44,6 +44,10 @@ class Console:
                 self.record(line)
             self._show(line)
 
+    def show(self, line: str) -> None:
+        """Show a line that is no part of the run, such as one that differs from run to run: it is not kept."""
+        self._show(line)
+
     def _show(self, line: str) -> None:
         if self.sink is not None:
             self.sink(line)

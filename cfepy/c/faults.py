@@ -12,12 +12,14 @@ class CFault(Exception):
     Attributes:
         called_from: the address to which the last call of that code returns; 0 for none.
         at: the address of the code whose fault it is; 0 when that is not known.
+        is_anywhere: the code was stopped from outside, elsewhere in each run: its stack is no part of what is recorded.
         registers: of the code that it came from last, and whether that is in a call; see `cfepy.c.unwinding.Unwinder`.
     """
 
     __module__ = "builtins"  # so that a report, which has 80 characters, begins with `CFault:`
     called_from = 0
     at = 0
+    is_anywhere = False
     registers: tuple[bytes, bool] = (b"", False)
 
 

@@ -19,18 +19,26 @@ from cfepy.rtos import ExploringKernel, Task
 
 Key = Callable[[tuple[Any, ...]], Hashable]
 """What a call orders by, from its arguments."""
+Told = tuple[int, int, bool, list[int]]
+"""An access: its address in the code, number of the task, whether it writes, where its calls return to."""
 
 
 class RaceSide(NamedTuple):
-    """One side of a race: where in the source it is, whether it writes, and the task."""
+    """One side of a race: where in the source it is, whether it writes, the task, and its calls, outermost first."""
 
     place: str
     is_write: bool
     task: str
+    calls: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """`write in add (case.c:12) of ADDER`."""
         return f"{'write' if self.is_write else 'read'} in {self.place} of {self.task}"
+
+    @property
+    def stack(self) -> str:
+        """`ADDER: child (case.c:40) > add (case.c:12)`."""
+        return f"{self.task}: {' > '.join((*self.calls, self.place))}"
 
 
 class Race(NamedTuple):
@@ -48,8 +56,9 @@ class Race(NamedTuple):
         return f"{self.what}: {first}, {second}: nothing orders them"
 
     def told(self) -> tuple[int, str, str, str, str]:
-        """Itself as plain values: virtual ns, text, which came first, application, task."""
-        return self.at_ns, str(self), f"{self.before} came first, then {self.now}", self.who, self.now.task
+        """Itself as plain values: virtual ns, text, which came first and by which calls, application, task."""
+        lines = (f"{self.before} came first, then {self.now}", self.before.stack, self.now.stack)
+        return self.at_ns, str(self), "\n".join(lines), self.who, self.now.task
 
 
 def _first(arguments: tuple[Any, ...]) -> Hashable:
@@ -89,7 +98,14 @@ _TABLES = (
     *("CFE_TBL_GetAddress", "CFE_TBL_GetAddresses", "CFE_TBL_ReleaseAddress", "CFE_TBL_ReleaseAddresses"),
     *("CFE_TBL_Load", "CFE_TBL_Update", "CFE_TBL_Manage", "CFE_TBL_Modified", "CFE_TBL_Share", "CFE_TBL_Validate"),
 )
-_COPYING = ("memcpy", "memmove", "memset", "memcmp", "__memcpy_chk", "__memmove_chk", "__memset_chk")
+_COPYING = (
+    *("memcpy", "memmove", "memset", "memcmp", "memchr", "strlen", "strnlen", "OS_strnlen", "strcmp", "strncmp"),
+    *("strcasecmp", "strncasecmp", "strcpy", "strncpy", "strcat", "strncat", "strchr", "strrchr", "strstr", "strpbrk"),
+    *("strspn", "strcspn", "atoi", "strtol", "strtoll", "strtoul", "strtoull"),
+    *("snprintf", "sprintf", "vsnprintf", "vsprintf"),
+    *("__memcpy_chk", "__memmove_chk", "__memset_chk", "__strcpy_chk", "__strncpy_chk", "__strcat_chk"),
+    *("__strncat_chk", "__snprintf_chk", "__sprintf_chk", "__vsnprintf_chk"),
+)
 """Functions of libc whose accesses count when code that tells of its own is there."""
 _STARTED, _ENDED, _TABLE, _STARTUP = "started", "ended", "tables", "startup"
 
@@ -126,6 +142,7 @@ class RaceWatch:
         declared: the API, of whose functions some order tasks.
         memory: of C.
         place_of: the place of an address of code, in words.
+        call_place: the same for a call; empty for one that is in no application's code.
         describe: what is at an address of data, in words.
         on_race: gets each race once.
     """
@@ -137,12 +154,14 @@ class RaceWatch:
         declared: Declarations,
         memory: CMemory,
         place_of: Callable[[int], str],
+        call_place: Callable[[int], str],
         describe: Callable[[int], str],
         on_race: Callable[[Race], object],
     ) -> None:
         self._kernel = kernel
         self._memory = memory
         self._place_of = place_of
+        self._call_place = call_place
         self._describe = describe
         self._on_race = on_race
         self._races = table.races = engine().Races(self._found)
@@ -253,8 +272,13 @@ class RaceWatch:
         self._take(("atomic", address))
         self._let_go(("atomic", address))
 
-    def _found(self, address: int, before: tuple[int, int, bool], now: tuple[int, int, bool]) -> None:
-        sides = [RaceSide(self._place_of(pc), is_write, self._names[number]) for pc, number, is_write in (before, now)]
+    def _side(self, pc: int, number: int, is_write: bool, returns: list[int]) -> RaceSide:
+        """One side, from what the engine tells of it."""
+        calls = [self._call_place(each - 1) for each in returns[::-1]]
+        return RaceSide(self._place_of(pc), is_write, self._names[number], tuple(each for each in calls if each))
+
+    def _found(self, address: int, before: Told, now: Told) -> None:
+        sides = [self._side(*before), self._side(*now)]
         what = self._describe(address)
         places = (what, *sorted(side.place for side in sides))
         if places in self._seen:

@@ -112,7 +112,16 @@ class CRuntime:
         declare(self.declared, self)
         self._calls = CallTable(self.arena, self.table, self.declared)
         self._races = (
-            RaceWatch(kernel, self.table, self.declared, self.memory, self.place_of, self._describe, on_race)
+            RaceWatch(
+                kernel,
+                self.table,
+                self.declared,
+                self.memory,
+                self.place_of,
+                lambda address: str(self._place(address) or ""),
+                self._describe,
+                on_race,
+            )
             if isinstance(kernel, ExploringKernel)
             else None
         )
@@ -274,6 +283,9 @@ class CRuntime:
         except CFault as fault:
             calls = self._unwinder.calls(*fault.registers)
             made = explained(fault, self.place_of)
+            if fault.is_anywhere:
+                self.console.show(f"stopped in {' > '.join(self.place_of(each) for each in calls)}")
+                calls = []
             raise_at([place for each in calls or [made.at] if (place := self._place(each)) is not None], made)
         except _Passing as passing:
             if not is_outermost:
@@ -313,7 +325,9 @@ class CRuntime:
         """
         limit = self._limit_s() / 2  # before the stall watch ends the run
         if limit and computed_s >= limit:
-            raise CFault(f"runaway loop: no call for {limit:g} s")
+            fault = CFault(f"runaway loop: no call for {limit:g} s")
+            fault.is_anywhere = True
+            raise fault
 
     def _place(self, address: int) -> CodePlace | None:
         image = self.image_at(address)

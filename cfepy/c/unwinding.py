@@ -358,7 +358,7 @@ _BINARY: dict[int, Callable[[int, int], int]] = {
 # -- frames ------------------------------------------------------------------------------------------------------------
 
 
-class Code(Protocol):
+class FramedCode(Protocol):
     """What an image tells of itself."""
 
     def frame_row(self, address: int) -> FrameRow | None:
@@ -385,7 +385,7 @@ class Unwinder:
         memory: of C.
     """
 
-    def __init__(self, image_at: Callable[[int], Code | None], memory: CMemory) -> None:
+    def __init__(self, image_at: Callable[[int], FramedCode | None], memory: CMemory) -> None:
         self._image_at = image_at
         self._memory = memory
         self._machine = _MACHINES[platform.machine()]

@@ -24,7 +24,7 @@ from cfepy.exploration.shrink import Shrinker, Shrunk
 from cfepy.exploration.stuck import waits_of
 from cfepy.exploration.timeline import timeline_of
 from cfepy.exploration.trial import Trial
-from cfepy.exploration.verdict import STALLED, Finding, Findings, Verdict
+from cfepy.exploration.verdict import RACE, STALLED, Failure, Finding, Findings, Verdict
 from cfepy.exploration.workers import LONGEST_S, PROCESS_DIED
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Schedule
@@ -74,14 +74,16 @@ class Report:
     notes: tuple[str, ...] = ()
 
     def schedule_of(self, told: Told) -> Schedule:
-        """The schedule that showed a failure first."""
-        return Schedule() if told.finding.in_reference else told.finding.verdict.schedule
+        """The schedule that showed a failure first; a run under it shows the failure, data races too."""
+        return _showing(
+            told.finding.failure, Schedule() if told.finding.in_reference else told.finding.verdict.schedule
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data."""
         found = []
         for told in self.findings:
-            command = self.trial.command(told.finding.verdict.schedule)
+            command = self.trial.command(_showing(told.finding.failure, told.finding.verdict.schedule))
             entry = told.finding.to_dict() | {"command": command, "timeline": told.timeline}
             found.append(entry | {"shrunk": None if told.shrunk is None else _shrunk_numbers(told.shrunk)})
         return {
@@ -94,6 +96,11 @@ class Report:
             "failures": found,
             "troubles": [{"schedule": each.schedule.text(), "text": each.trouble} for each in self.troubles],
         }
+
+
+def _showing(failure: Failure, schedule: Schedule) -> Schedule:
+    """A schedule with the same choices, under which a failure is looked for: for data races none is under fifo."""
+    return schedule.at({}) if failure.kind == RACE and schedule.kind == "fifo" else schedule
 
 
 def _shrunk_numbers(shrunk: Shrunk[Trial]) -> dict[str, Any]:

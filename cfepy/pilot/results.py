@@ -385,9 +385,12 @@ def problems_in(mission: Mission) -> list[RunProblem]:
 
 
 def _races(mission: Mission) -> list[RunProblem]:
-    """Data races of compiled code, which are looked for under a given schedule."""
-    races = mission.record.data_races
-    return [RunProblem(f"data race at {each.at_ns / NS_PER_S:g} s: {each.text}", each.at_ns) for each in races]
+    """Data races of compiled code, which are looked for under a given schedule, with the calls on either side."""
+    found = []
+    for race in mission.record.data_races:
+        lines = (race.text, *race.detail.splitlines()[1:])
+        found.append(RunProblem(f"data race at {race.at_ns / NS_PER_S:g} s: " + "\n    ".join(lines), race.at_ns))
+    return found
 
 
 def _own_errors(mission: Mission) -> dict[str, int]:

@@ -105,14 +105,37 @@ def test_a_loop_without_an_end_shows_where_it_computes(tmp_path: Path, tasks: st
     }}
     """
     compile_c(tmp_path, "TEST", source, "-w")
-    with Mission(write_mission(tmp_path, "TEST"), console=Console(quiet=True), tasks=tasks) as mission:
+    lines: list[str] = []
+    console = Console(sink=lines.append)
+    with Mission(write_mission(tmp_path, "TEST"), console=console, tasks=tasks) as mission:
         mission.stall_watch.limit_s = 1
         mission.run_for(1)
-        lines = {"TEST_Main": 7, "work": 3, "turn": 2}
-        assert shown(mission) == [(name, "TEST.c", line) for name, line in lines.items()]
+        where = "stopped in TEST_Main (TEST.c:7) > work (TEST.c:3) > turn (TEST.c:2)"
+        assert where in lines
+        assert where not in mission.console.lines  # nor in the trace: it may be elsewhere the next time
+        assert shown(mission) == [("TEST_Main", "TEST.c", 6)]
         error = mission.cfe.es.history["TEST"].last_error
         assert error is not None
         assert reason(error) == "CFault: runaway loop: no call for 0.5 s, in TEST_Main (TEST.c:6)"
+
+
+@pytest.mark.slow
+def test_a_fault_in_a_loop_that_was_interrupted(tmp_path: Path) -> None:
+    source = f"""static volatile long turns;
+    static {KEPT} long turn(long n) {{
+        for (long i = 0; i < n; i++)
+            if (++turns == 400000000)
+                *(volatile int *)16 = 1;
+        return n;
+    }}
+    static {KEPT} long work(long n) {{ long done = 0; while (done < 4 * n) done += turn(n); return done; }}
+    void TEST_Main(void)
+    {{
+        SAY("%ld", work(150000000));
+    }}
+    """
+    lines = {"TEST_Main": 11, "work": 8, "turn": 5}
+    assert frames(tmp_path, source, "-O1") == [(name, "TEST.c", line) for name, line in lines.items()]
 
 
 BROKEN = {

@@ -154,6 +154,10 @@ HIDDEN void races_forget(uint64_t address, uint64_t size);
 HIDDEN void races_begin(Races *);              /* code that tells of its accesses was loaded */
 HIDDEN bool races_asks_first(Coroutine *, uint64_t address, uint64_t size); /* a native returns; it is called again */
 HIDDEN bool races_shared(Coroutine *, uint64_t address, uint64_t size);
+HIDDEN void races_call(Coroutine *, uint64_t returns_to);
+HIDDEN void races_return(Coroutine *);
+HIDDEN uint32_t races_calls(const Coroutine *); /* the call that its task is in; 0 for none */
+HIDDEN void races_set_calls(const Coroutine *, uint32_t);
 HIDDEN void races_note(Coroutine *, uint64_t address, uint64_t size, bool is_write, bool is_atomic);
 
 /* natives_threads.c */

@@ -13,62 +13,131 @@
 
 #define TEXT(number) ((char *)call->arguments[number])
 
-/* Whether Python has to let others in before these accesses; they are noted otherwise, where somebody looks at them. */
-static bool waits_for_others(Coroutine *call, uint64_t written, uint64_t read, uint64_t other, uint64_t size)
+/* ---- accesses, where somebody looks at them: see races.c ---------------------------------------------------------- */
+
+typedef struct {
+    const void *at;
+    size_t size;
+    bool is_write;
+} Range;
+
+/* Whether Python has to let others in before these accesses; they are noted otherwise. */
+static bool waits_for_others(Coroutine *call, const Range *ranges, int count)
 {
-    if (call->table->races == NULL || size == 0)
-        return false;
-    if (races_asks_first(call, written ? written : other, size) || (read && races_asks_first(call, read, size)))
-        return true;
-    if (written)
-        races_note(call, written, size, true, false);
-    if (read)
-        races_note(call, read, size, false, false);
-    if (other)
-        races_note(call, other, size, false, false);
+    for (int i = 0; i < count; i++)
+        if (ranges[i].size > 0 && races_asks_first(call, (uint64_t)ranges[i].at, ranges[i].size))
+            return true;
+    for (int i = 0; i < count; i++)
+        if (ranges[i].size > 0)
+            races_note(call, (uint64_t)ranges[i].at, ranges[i].size, ranges[i].is_write, false);
     return false;
 }
 
-NATIVE(memory_copy)
-{
-    return waits_for_others(call, WORD(0), WORD(1), 0, WORD(2)) ? 0 : (uint64_t)memcpy(POINTER(0), POINTER(1), WORD(2));
-}
-NATIVE(memory_move)
-{
-    return waits_for_others(call, WORD(0), WORD(1), 0, WORD(2)) ? 0 : (uint64_t)memmove(POINTER(0), POINTER(1), WORD(2));
-}
-NATIVE(memory_set)
-{
-    return waits_for_others(call, WORD(0), 0, 0, WORD(2)) ? 0 : (uint64_t)memset(POINTER(0), (int)WORD(1), WORD(2));
-}
-NATIVE(memory_compare)
-{
-    return waits_for_others(call, 0, WORD(0), WORD(1), WORD(2))
-               ? 0
-               : (uint64_t)(int64_t)memcmp(POINTER(0), POINTER(1), WORD(2));
-}
-NATIVE(memory_find) { return (uint64_t)memchr(POINTER(0), (int)WORD(1), WORD(2)); }
+#define READS(where, size) {where, size, false}
+#define WRITES(where, size) {where, size, true}
+#define WITH_ACCESSES(result, ...)                                                                             \
+    {                                                                                                          \
+        if (call->table->races != NULL) {                                                                      \
+            const Range ranges[] = {__VA_ARGS__};                                                              \
+            if (waits_for_others(call, ranges, (int)(sizeof ranges / sizeof *ranges)))                         \
+                return 0;                                                                                      \
+        }                                                                                                      \
+        return (uint64_t)(result);                                                                             \
+    }
 
-NATIVE(text_length) { return strlen(TEXT(0)); }
-NATIVE(text_length_limited) { return strnlen(TEXT(0), WORD(1)); }
-NATIVE(text_compare) { return (uint64_t)(int64_t)strcmp(TEXT(0), TEXT(1)); }
-NATIVE(text_compare_limited) { return (uint64_t)(int64_t)strncmp(TEXT(0), TEXT(1), WORD(2)); }
-NATIVE(text_compare_any_case) { return (uint64_t)(int64_t)strcasecmp(TEXT(0), TEXT(1)); }
-NATIVE(text_compare_any_case_limited) { return (uint64_t)(int64_t)strncasecmp(TEXT(0), TEXT(1), WORD(2)); }
-NATIVE(text_copy) { return (uint64_t)strcpy(TEXT(0), TEXT(1)); }
-NATIVE(text_copy_limited) { return (uint64_t)strncpy(TEXT(0), TEXT(1), WORD(2)); }
-NATIVE(text_append) { return (uint64_t)strcat(TEXT(0), TEXT(1)); }
-NATIVE(text_append_limited) { return (uint64_t)strncat(TEXT(0), TEXT(1), WORD(2)); }
-NATIVE(text_find) { return (uint64_t)strchr(TEXT(0), (int)WORD(1)); }
-NATIVE(text_find_last) { return (uint64_t)strrchr(TEXT(0), (int)WORD(1)); }
-NATIVE(text_find_text) { return (uint64_t)strstr(TEXT(0), TEXT(1)); }
-NATIVE(text_find_any) { return (uint64_t)strpbrk(TEXT(0), TEXT(1)); }
-NATIVE(text_span) { return strspn(TEXT(0), TEXT(1)); }
-NATIVE(text_span_without) { return strcspn(TEXT(0), TEXT(1)); }
+/* How far a function looks: to the end of a text, and where it may look at so many characters only. */
+static size_t whole(const char *text) { return strlen(text) + 1; }
+static size_t at_most(const char *text, size_t most)
+{
+    size_t size = strnlen(text, most);
+    return size < most ? size + 1 : most;
+}
+/* To a place that it has found, or else to the end. */
+static size_t up_to(const char *text, const char *found) { return found == NULL ? whole(text) : (size_t)(found - text) + 1; }
+static size_t compared(const char *one, const char *other, size_t most, bool any_case)
+{
+    size_t size = 0;
+    while (size < most) {
+        unsigned char first = (unsigned char)one[size], second = (unsigned char)other[size];
+        size++;
+        if (first == 0 || (any_case ? tolower(first) != tolower(second) : first != second))
+            break;
+    }
+    return size;
+}
+static size_t of_number(const char *text, int base)
+{
+    char *end;
+    strtol(text, &end, base);
+    return (size_t)(end - text) + 1;
+}
+
+/* ---- memory and texts --------------------------------------------------------------------------------------------- */
+
+NATIVE(memory_copy) WITH_ACCESSES(memcpy(POINTER(0), POINTER(1), WORD(2)), WRITES(POINTER(0), WORD(2)), READS(POINTER(1), WORD(2)))
+NATIVE(memory_move) WITH_ACCESSES(memmove(POINTER(0), POINTER(1), WORD(2)), WRITES(POINTER(0), WORD(2)), READS(POINTER(1), WORD(2)))
+NATIVE(memory_set) WITH_ACCESSES(memset(POINTER(0), (int)WORD(1), WORD(2)), WRITES(POINTER(0), WORD(2)))
+NATIVE(memory_compare)
+WITH_ACCESSES((int64_t)memcmp(POINTER(0), POINTER(1), WORD(2)), READS(POINTER(0), WORD(2)), READS(POINTER(1), WORD(2)))
+NATIVE(memory_find)
+{
+    char *found = memchr(POINTER(0), (int)WORD(1), WORD(2));
+    WITH_ACCESSES(found, READS(POINTER(0), found == NULL ? WORD(2) : (size_t)(found - TEXT(0)) + 1))
+}
+
+NATIVE(text_length) WITH_ACCESSES(strlen(TEXT(0)), READS(TEXT(0), whole(TEXT(0))))
+NATIVE(text_length_limited) WITH_ACCESSES(strnlen(TEXT(0), WORD(1)), READS(TEXT(0), at_most(TEXT(0), WORD(1))))
+
+#define COMPARES(result, most, any_case)                                           \
+    WITH_ACCESSES((int64_t)(result), READS(TEXT(0), compared(TEXT(0), TEXT(1), most, any_case)), \
+                  READS(TEXT(1), compared(TEXT(0), TEXT(1), most, any_case)))
+NATIVE(text_compare) COMPARES(strcmp(TEXT(0), TEXT(1)), SIZE_MAX, false)
+NATIVE(text_compare_limited) COMPARES(strncmp(TEXT(0), TEXT(1), WORD(2)), WORD(2), false)
+NATIVE(text_compare_any_case) COMPARES(strcasecmp(TEXT(0), TEXT(1)), SIZE_MAX, true)
+NATIVE(text_compare_any_case_limited) COMPARES(strncasecmp(TEXT(0), TEXT(1), WORD(2)), WORD(2), true)
+
+NATIVE(text_copy)
+WITH_ACCESSES(strcpy(TEXT(0), TEXT(1)), WRITES(TEXT(0), whole(TEXT(1))), READS(TEXT(1), whole(TEXT(1))))
+NATIVE(text_copy_limited)
+WITH_ACCESSES(strncpy(TEXT(0), TEXT(1), WORD(2)), WRITES(TEXT(0), WORD(2)), READS(TEXT(1), at_most(TEXT(1), WORD(2))))
+NATIVE(text_append)
+WITH_ACCESSES(strcat(TEXT(0), TEXT(1)), READS(TEXT(0), whole(TEXT(0))), READS(TEXT(1), whole(TEXT(1))),
+              WRITES(TEXT(0) + strlen(TEXT(0)), whole(TEXT(1))))
+NATIVE(text_append_limited)
+WITH_ACCESSES(strncat(TEXT(0), TEXT(1), WORD(2)), READS(TEXT(0), whole(TEXT(0))), READS(TEXT(1), at_most(TEXT(1), WORD(2))),
+              WRITES(TEXT(0) + strlen(TEXT(0)), strnlen(TEXT(1), WORD(2)) + 1))
+
+#define FINDS(function)                                        \
+    {                                                          \
+        char *found = function(TEXT(0), (int)WORD(1));         \
+        WITH_ACCESSES(found, READS(TEXT(0), up_to(TEXT(0), found))) \
+    }
+NATIVE(text_find) FINDS(strchr)
+NATIVE(text_find_last) WITH_ACCESSES(strrchr(TEXT(0), (int)WORD(1)), READS(TEXT(0), whole(TEXT(0))))
+NATIVE(text_find_text)
+{
+    char *found = strstr(TEXT(0), TEXT(1));
+    WITH_ACCESSES(found, READS(TEXT(0), found == NULL ? whole(TEXT(0)) : (size_t)(found - TEXT(0)) + strlen(TEXT(1))),
+                  READS(TEXT(1), whole(TEXT(1))))
+}
+NATIVE(text_find_any)
+{
+    char *found = strpbrk(TEXT(0), TEXT(1));
+    WITH_ACCESSES(found, READS(TEXT(0), up_to(TEXT(0), found)), READS(TEXT(1), whole(TEXT(1))))
+}
+NATIVE(text_span)
+WITH_ACCESSES(strspn(TEXT(0), TEXT(1)), READS(TEXT(0), strspn(TEXT(0), TEXT(1)) + 1), READS(TEXT(1), whole(TEXT(1))))
+NATIVE(text_span_without)
+WITH_ACCESSES(strcspn(TEXT(0), TEXT(1)), READS(TEXT(0), strcspn(TEXT(0), TEXT(1)) + 1), READS(TEXT(1), whole(TEXT(1))))
 NATIVE(text_split) { return (uint64_t)strtok_r(TEXT(0), TEXT(1), (char **)POINTER(2)); }
-NATIVE(number_of_text) { return (uint64_t)(int64_t)atoi(TEXT(0)); }
-NATIVE(long_of_text) { return (uint64_t)strtol(TEXT(0), (char **)POINTER(1), (int)WORD(2)); }
-NATIVE(unsigned_of_text) { return (uint64_t)strtoul(TEXT(0), (char **)POINTER(1), (int)WORD(2)); }
+
+NATIVE(number_of_text) WITH_ACCESSES((int64_t)atoi(TEXT(0)), READS(TEXT(0), of_number(TEXT(0), 10)))
+NATIVE(long_of_text)
+WITH_ACCESSES(strtol(TEXT(0), (char **)POINTER(1), (int)WORD(2)), READS(TEXT(0), of_number(TEXT(0), (int)WORD(2))),
+              WRITES(POINTER(1), POINTER(1) == NULL ? 0 : sizeof(char *)))
+NATIVE(unsigned_of_text)
+WITH_ACCESSES(strtoul(TEXT(0), (char **)POINTER(1), (int)WORD(2)), READS(TEXT(0), of_number(TEXT(0), (int)WORD(2))),
+              WRITES(POINTER(1), POINTER(1) == NULL ? 0 : sizeof(char *)))
 NATIVE(absolute) { return (uint64_t)(int64_t)abs((int)WORD(0)); }
 NATIVE(to_upper) { return (uint64_t)(int64_t)toupper((int)WORD(0)); }
 NATIVE(to_lower) { return (uint64_t)(int64_t)tolower((int)WORD(0)); }
@@ -81,11 +150,28 @@ NATIVE(float_of_text)
 
 /* ---- printf ------------------------------------------------------------------------------------------------------- */
 
+/* Formats: what is written counts as an access, what a %s reads does not. */
+static bool waits_to_format(Coroutine *call, size_t room)
+{
+    return call->table->races != NULL && room > 0 && races_asks_first(call, WORD(0), 1);
+}
+static uint64_t formatted(Coroutine *call, int count, size_t room)
+{
+    if (call->table->races != NULL && count >= 0 && room > 0)
+        races_note(call, WORD(0), (size_t)count < room ? (size_t)count + 1 : room, true, false);
+    return (uint64_t)(int64_t)count;
+}
+#define FORMATS(room, function, ...)                                                                 \
+    {                                                                                                \
+        size_t size = room;                                                                          \
+        return waits_to_format(call, size) ? 0 : formatted(call, function(call, TEXT(0), size, __VA_ARGS__), size); \
+    }
+
 /* format_text answers -1 with an exception, which `run` sees after a native. */
-NATIVE(format_limited) { return (uint64_t)(int64_t)format_text(call, TEXT(0), WORD(1), TEXT(2), 3); }
-NATIVE(format_unlimited) { return (uint64_t)(int64_t)format_text(call, TEXT(0), INT32_MAX, TEXT(1), 2); }
-NATIVE(format_list_limited) { return (uint64_t)(int64_t)format_list(call, TEXT(0), WORD(1), TEXT(2), WORD(3)); }
-NATIVE(format_list_unlimited) { return (uint64_t)(int64_t)format_list(call, TEXT(0), INT32_MAX, TEXT(1), WORD(2)); }
+NATIVE(format_limited) FORMATS(WORD(1), format_text, TEXT(2), 3)
+NATIVE(format_unlimited) FORMATS(INT32_MAX, format_text, TEXT(1), 2)
+NATIVE(format_list_limited) FORMATS(WORD(1), format_list, TEXT(2), WORD(3))
+NATIVE(format_list_unlimited) FORMATS(INT32_MAX, format_list, TEXT(1), WORD(2))
 
 /* ---- malloc ------------------------------------------------------------------------------------------------------- */
 
@@ -183,20 +269,17 @@ NATIVE(append_limited_checked)
 {
     return strlen(TEXT(0)) + strnlen(TEXT(1), WORD(2)) >= WORD(3) ? overflowed(call, self) : text_append_limited(call, self);
 }
-NATIVE(format_limited_checked)
-{
-    return WORD(1) > WORD(3) ? overflowed(call, self) : (uint64_t)(int64_t)format_text(call, TEXT(0), WORD(1), TEXT(4), 5);
-}
+static uint64_t format_limited_known(Coroutine *call) FORMATS(WORD(1), format_text, TEXT(4), 5)
+static uint64_t format_list_known(Coroutine *call) FORMATS(WORD(1), format_list, TEXT(4), WORD(5))
+NATIVE(format_limited_checked) { return WORD(1) > WORD(3) ? overflowed(call, self) : format_limited_known(call); }
+NATIVE(format_list_checked) { return WORD(1) > WORD(3) ? overflowed(call, self) : format_list_known(call); }
 NATIVE(format_checked)
 {
     size_t room = WORD(2) < INT32_MAX ? WORD(2) : INT32_MAX;
+    if (waits_to_format(call, room))
+        return 0;
     int count = format_text(call, TEXT(0), room, TEXT(3), 4);
-    return count >= 0 && (size_t)count >= room ? overflowed(call, self) : (uint64_t)(int64_t)count;
-}
-NATIVE(format_list_checked)
-{
-    return WORD(1) > WORD(3) ? overflowed(call, self)
-                             : (uint64_t)(int64_t)format_list(call, TEXT(0), WORD(1), TEXT(4), WORD(5));
+    return count >= 0 && (size_t)count >= room ? overflowed(call, self) : formatted(call, count, room);
 }
 
 static const char has_end; /* marks strtod: it tells where the number ends */

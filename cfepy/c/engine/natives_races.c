@@ -38,6 +38,16 @@ NATIVE(access_sized)
 NATIVE(read_range) { return access_memory(call, WORD(1), false); }
 NATIVE(write_range) { return access_memory(call, WORD(1), true); }
 NATIVE(nothing) { return 0; }
+NATIVE(function_entry)
+{
+    races_call(call, WORD(0));
+    return 0;
+}
+NATIVE(function_exit)
+{
+    races_return(call);
+    return 0;
+}
 NATIVE(begin)
 {
     races_begin(call->table->races);
@@ -90,6 +100,55 @@ ATOMICS(16)
 ATOMICS(32)
 ATOMICS(64)
 
+/* Of 16 bytes: a value is in two registers, which begin with an even one on aarch64. */
+#if defined(__x86_64__)
+enum { FIRST_VALUE = 1 };
+#else
+enum { FIRST_VALUE = 2 };
+#endif
+typedef unsigned __int128 uint128;
+#define WIDE(number) ((uint128)WORD((number) + 1) << 64 | WORD(number))
+#define ATOMIC_128(name, is_write, code)                        \
+    NATIVE(name##_128)                                          \
+    {                                                           \
+        uint128 *at = (uint128 *)POINTER(0), before = 0;        \
+        uint128 value = WIDE(FIRST_VALUE);                      \
+        if (call->table->races != NULL) {                       \
+            if (asks_first(call))                               \
+                return 0;                                       \
+            races_note(call, WORD(0), sizeof *at, is_write, true); \
+        }                                                       \
+        (void)value;                                            \
+        code;                                                   \
+        call->result_high = (uint64_t)(before >> 64);           \
+        return (uint64_t)before;                                \
+    }
+ATOMIC_128(load, false, before = *at)
+ATOMIC_128(store, true, *at = value)
+ATOMIC_128(exchange, true, before = *at; *at = value)
+ATOMIC_128(fetch_add, true, before = *at; *at = before + value)
+ATOMIC_128(fetch_sub, true, before = *at; *at = before - value)
+ATOMIC_128(fetch_and, true, before = *at; *at = before & value)
+ATOMIC_128(fetch_or, true, before = *at; *at = before | value)
+ATOMIC_128(fetch_xor, true, before = *at; *at = before ^ value)
+ATOMIC_128(fetch_nand, true, before = *at; *at = ~(before & value))
+ATOMIC_128(compare_value, true, before = *at; if (before == value) *at = WIDE(FIRST_VALUE + 2))
+NATIVE(compare_128)
+{
+    uint128 *at = (uint128 *)POINTER(0), *expected = (uint128 *)POINTER(1);
+    if (call->table->races != NULL) {
+        if (asks_first(call))
+            return 0;
+        races_note(call, WORD(0), sizeof *at, true, true);
+    }
+    if (*at == *expected) {
+        *at = WIDE(2);
+        return 1;
+    }
+    *expected = *at;
+    return 0;
+}
+
 #define SIZED(size)                                                                            \
     {"__tsan_read" #size, access_sized, (void *)size},                                         \
         {"__tsan_write" #size, access_sized, (void *)(size | WRITES)},                         \
@@ -110,8 +169,8 @@ ATOMICS(64)
 
 HIDDEN const NativeRow natives_of_races[] = {
     {"__tsan_init", begin},
-    {"__tsan_func_entry", nothing},
-    {"__tsan_func_exit", nothing},
+    {"__tsan_func_entry", function_entry},
+    {"__tsan_func_exit", function_exit},
     {"__tsan_atomic_thread_fence", nothing},
     {"__tsan_atomic_signal_fence", nothing},
     SIZED(1),
@@ -127,5 +186,6 @@ HIDDEN const NativeRow natives_of_races[] = {
     OPERATIONS(16),
     OPERATIONS(32),
     OPERATIONS(64),
+    OPERATIONS(128),
     {NULL},
 };

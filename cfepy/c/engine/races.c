@@ -4,6 +4,9 @@
  * clock along, who takes that knows it from then on. Eight bytes of memory remember up to four accesses, with the task and
  * its clock at that time. A new one of another task, one of both a write, whose clock the task does not know, is a race:
  * nothing orders the two, so another schedule could swap them.
+ *
+ * An access remembers the calls that it was in, too, by one number: each call of a function from each place is there once,
+ * with the number of the call that it is in.
  */
 #include "engine.h"
 
@@ -16,6 +19,7 @@ typedef struct {
     int size;
     int group;                                 /* of a task: of those that have their code in one object */
     int alive;                                 /* of a group: its tasks; the thing of this number */
+    uint32_t calls;                            /* of a task: the call that it is in */
 } Clock;
 
 struct Races {
@@ -29,6 +33,7 @@ struct Races {
 typedef struct {
     uint64_t pc;
     uint32_t task, clock;                      /* clock 0: nothing here */
+    uint32_t calls;
     uint8_t mask;                              /* of the bytes */
     bool is_write, is_atomic;
 } Access;
@@ -136,6 +141,84 @@ HIDDEN void races_begin(Races *races)
         races->has_begun = true;
 }
 
+/* ---- calls -------------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    uint64_t returns_to;
+    uint32_t outer;
+} Call;
+
+static Call *calls;                            /* 0: none; as many at most as half of the slots */
+static uint32_t *call_slots, call_count, call_room;
+
+static uint32_t call_slot(uint32_t outer, uint64_t returns_to)
+{
+    uint64_t mixed = (returns_to ^ (uint64_t)outer << 40) * 0x9E3779B97F4A7C15ull;
+    uint32_t slot = (uint32_t)(mixed >> 32) & (call_room - 1);
+    while (call_slots[slot] != 0 &&
+           (calls[call_slots[slot]].outer != outer || calls[call_slots[slot]].returns_to != returns_to))
+        slot = (slot + 1) & (call_room - 1);
+    return slot;
+}
+
+static bool grow_calls(void)
+{
+    uint32_t more = call_room ? 2 * call_room : FIRST_ROOM;
+    Call *made = PyMem_Realloc(calls, (more / 2 + 1) * sizeof *made);
+    if (made == NULL)
+        return false;
+    calls = made;
+    uint32_t *slots = PyMem_Calloc(more, sizeof *slots);
+    if (slots == NULL)
+        return false;
+    PyMem_Free(call_slots);
+    call_slots = slots;
+    call_room = more;
+    for (uint32_t i = 1; i <= call_count; i++)
+        call_slots[call_slot(calls[i].outer, calls[i].returns_to)] = i;
+    return true;
+}
+
+static Clock *caller(const Coroutine *call)
+{
+    Races *races = call->table->races;
+    return races == NULL || call->task == 0 || call->task >= (uint32_t)races->task_count ? NULL
+                                                                                         : &races->tasks[call->task];
+}
+
+HIDDEN void races_call(Coroutine *call, uint64_t returns_to)
+{
+    Clock *task = caller(call);
+    if (task == NULL || (2 * call_count >= call_room && !grow_calls()))
+        return;
+    uint32_t slot = call_slot(task->calls, returns_to);
+    if (call_slots[slot] == 0) {
+        calls[++call_count] = (Call){returns_to, task->calls};
+        call_slots[slot] = call_count;
+    }
+    task->calls = call_slots[slot];
+}
+
+HIDDEN void races_return(Coroutine *call)
+{
+    Clock *task = caller(call);
+    if (task != NULL && task->calls != 0)
+        task->calls = calls[task->calls].outer;
+}
+
+HIDDEN uint32_t races_calls(const Coroutine *call)
+{
+    const Clock *task = caller(call);
+    return task == NULL ? 0 : task->calls;
+}
+
+HIDDEN void races_set_calls(const Coroutine *call, uint32_t before)
+{
+    Clock *task = caller(call);
+    if (task != NULL)
+        task->calls = before;
+}
+
 /* ---- clocks ------------------------------------------------------------------------------------------------------- */
 
 static uint32_t known(const Clock *clock, uint32_t task) { return task < (uint32_t)clock->size ? clock->at[task] : 0; }
@@ -167,12 +250,27 @@ static int learn(Clock *to, const Clock *from)
 
 /* ---- accesses ----------------------------------------------------------------------------------------------------- */
 
+static PyObject *told(const Access *access)
+{
+    PyObject *returns = PyList_New(0);
+    for (uint32_t each = access->calls; returns != NULL && each != 0; each = calls[each].outer) {
+        PyObject *returns_to = PyLong_FromUnsignedLongLong(calls[each].returns_to);
+        if (returns_to == NULL || PyList_Append(returns, returns_to) < 0)
+            Py_CLEAR(returns);
+        Py_XDECREF(returns_to);
+    }
+    return returns == NULL ? NULL : Py_BuildValue("(KINN)", (unsigned long long)access->pc, access->task,
+                                                  PyBool_FromLong(access->is_write), returns);
+}
+
 static void tell(Coroutine *call, uint64_t address, const Access *before, const Access *now)
 {
-    PyObject *answer = PyObject_CallFunction(
-        call->table->races->report, "K(KIN)(KIN)", (unsigned long long)address, (unsigned long long)before->pc,
-        before->task, PyBool_FromLong(before->is_write), (unsigned long long)now->pc, now->task,
-        PyBool_FromLong(now->is_write));
+    PyObject *first = told(before), *second = first == NULL ? NULL : told(now);
+    PyObject *answer = second == NULL ? NULL
+                                      : PyObject_CallFunction(call->table->races->report, "KOO",
+                                                              (unsigned long long)address, first, second);
+    Py_XDECREF(first);
+    Py_XDECREF(second);
     Py_XDECREF(answer);
 }
 
@@ -199,7 +297,7 @@ static void note_granule(Coroutine *call, uint64_t key, const Access *now)
             to = cell;
         if (!is_known && (cell->mask & now->mask) != 0 && (cell->is_write || now->is_write) &&
             !(cell->is_atomic && now->is_atomic))
-            tell(call, key * GRANULE, cell, now);
+            tell(call, key * GRANULE + (uint64_t)__builtin_ctz(cell->mask & now->mask), cell, now);
     }
     if (to == NULL) {
         to = &granule->accesses[granule->next];
@@ -214,7 +312,8 @@ HIDDEN void races_note(Coroutine *call, uint64_t address, uint64_t size, bool is
     Races *races = call->table->races;
     if (!races->has_begun || call->task == 0 || call->task >= (uint32_t)races->task_count || address < GRANULE)
         return;
-    Access now = {call->called_from - 1, call->task, known(&races->tasks[call->task], call->task), 0, is_write, is_atomic};
+    const Clock *task = &races->tasks[call->task];
+    Access now = {call->called_from - 1, call->task, known(task, call->task), task->calls, 0, is_write, is_atomic};
     uint64_t end = address + size;
     for (uint64_t key = address / GRANULE, left = MOST_GRANULES; key * GRANULE < end && left > 0; key++, left--) {
         uint64_t low = key * GRANULE < address ? address % GRANULE : 0;
@@ -365,5 +464,6 @@ HIDDEN PyTypeObject races_type = {
     .tp_traverse = (traverseproc)races_traverse,
     .tp_clear = (inquiry)races_clear,
     .tp_methods = races_methods,
-    .tp_doc = "Races(report): finds accesses that nothing orders; report(address, before, now), each (pc, task, is write)",
+    .tp_doc = "Races(report): finds accesses that nothing orders; report(address, before, now), each (pc, task, is write, "
+              "where its calls return to, the innermost first)",
 };

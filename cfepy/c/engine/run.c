@@ -274,7 +274,11 @@ static int serve(Coroutine *coroutine)
     Function copy = *function; /* the table may grow meanwhile */
     running = NULL;
     Py_INCREF(copy.callable);
+    uint32_t calls = races_calls(coroutine);
+    if (copy.native == NULL) /* Python may call this code back */
+        races_call(coroutine, coroutine->called_from);
     int result = calls_serve(coroutine, &copy);
+    races_set_calls(coroutine, calls);
     Py_DECREF(copy.callable);
     if (result == 0 && coroutine->wants_again) {
         running = coroutine;
@@ -374,11 +378,13 @@ static PyObject *run(PyObject *module, PyObject *const *arguments, Py_ssize_t co
     coroutine->task = (uint32_t)PyLong_AsUnsignedLongMask(arguments[6]);
     PyObject *result = NULL;
     if (!PyErr_Occurred() && faults_thread() == 0) {
+        uint32_t calls = races_calls(coroutine); /* Python may have been called by code of this task, which goes on later */
         prepare(coroutine, function, values);
         do
             faults_resume(coroutine);
         while (coroutine->wanted != FINISHED && serve(coroutine) == 0);
         running = NULL;
+        races_set_calls(coroutine, calls);
         if (PyErr_Occurred() && PyErr_ExceptionMatches(fault_error))
             tell_caller(coroutine);
         if (coroutine->wanted == FINISHED && !PyErr_Occurred())
