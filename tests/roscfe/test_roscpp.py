@@ -18,10 +18,16 @@ needs_roscpp = pytest.mark.skipif(
     reason="there are no headers of ROS (Debian: libroscpp-dev); what they print is recorded",
 )
 FOLDER = Path(__file__).parent
-PROGRAMS = ("times", "printed")
+PROGRAMS = ("times", "printed", "own_types", "boost")
 PRINTED = [
     *(f"std_msgs/{name}" for name in ("Byte", "Char", "Bool", "UInt64", "Duration", "Empty", "Header")),
-    *("std_msgs/Float32MultiArray", "std_msgs/Int8MultiArray", "geometry_msgs/PoseArray", "rosgraph_msgs/Log"),
+    *(
+        "std_msgs/Float32MultiArray",
+        "std_msgs/Int8MultiArray",
+        "std_msgs/String",
+        "geometry_msgs/PoseArray",
+        "rosgraph_msgs/Log",
+    ),
     *("geometry_msgs/PoseWithCovariance", "actionlib_msgs/GoalStatusArray", "tf2_msgs/TFMessage"),
 ]
 

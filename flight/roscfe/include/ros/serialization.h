@@ -193,8 +193,10 @@ SerializedMessage serializeServiceResponse(bool ok, const M &message)
 {
     const uint32_t    count = serializationLength(message);
     const uint32_t    whole = count + (ok ? 5 : 1);
-    SerializedMessage made(boost::shared_array<uint8_t>(new uint8_t[whole]), whole);
-    OStream           stream(made.buf.get(), whole);
+    SerializedMessage made;
+    made.buf.reset(new uint8_t[whole]);
+    made.num_bytes = whole; // roscpp leaves message_start null here
+    OStream stream(made.buf.get(), whole);
     stream.next(ok);
     if (ok)
         stream.next(count);
