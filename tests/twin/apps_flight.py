@@ -73,7 +73,7 @@ EVENT_MONITOR = b"on HS_EVENT_PIPE,app HS"
 
 def of_packet(packet: bytes) -> bytes | None:
     """What is compared of a packet; None for one that is left out."""
-    packet = NAMED_BY_TIME.sub(rb"\1.............", packet)
+    packet = _without_time(packet)
     told = masks.of_packet(packet)
     msg_id = int.from_bytes(packet[:2], "big")
     if told is None or masks.is_event(packet):
@@ -104,12 +104,18 @@ def differences(ours: Observed, theirs: Observed) -> list[str]:
             mine.remove(pair)
             real_ones.remove(told)
             found.append(f"telemetry 0x{told[:2].hex()}: {first_difference(pair[4:], told[4:])}, behind the header")
-    both = (each._replace(files=_without_times(each.files)) for each in (ours, theirs))
-    return [*found, *only(real_ones, mine), *file_differences(*both, _of_file)]
+    files = file_differences(_without_times(ours), _without_times(theirs), _of_file)
+    return [*found, *only(real_ones, mine), *files]
 
 
-def _without_times(files: dict[str, bytes]) -> dict[str, bytes]:
-    return {NAMED_BY_TIME.sub(rb"\1.............", path.encode()).decode(): data for path, data in files.items()}
+def _without_times(observed: Observed) -> Observed:
+    """Names of files without the time in them."""
+    files = {_without_time(path.encode()).decode(): data for path, data in observed.files.items()}
+    return observed._replace(files=files)
+
+
+def _without_time(data: bytes) -> bytes:
+    return NAMED_BY_TIME.sub(rb"\1.............", data)
 
 
 def _of_file(path: str, ours: bytes, theirs: bytes) -> str:
