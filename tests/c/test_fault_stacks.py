@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import re
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from tests.c.building import compile_c, compile_cpp, fly, needs_compiler, needs_
 
 pytestmark = needs_compiler
 
+IS_ARM = platform.machine() == "aarch64"
 FRAME = re.compile(r'File "([^"]*)", line (\d+), in (\S+)')
 KEPT = "__attribute__((noinline, noclone))"
 DEEP = f"""static {KEPT} int five(volatile int *at, int n) {{ return *at + n; }}
@@ -124,14 +126,14 @@ def test_a_fault_in_a_loop_that_was_interrupted(tmp_path: Path) -> None:
     source = f"""static volatile long turns;
     static {KEPT} long turn(long n) {{
         for (long i = 0; i < n; i++)
-            if (++turns == 400000000)
+            if (++turns == 60000000)
                 *(volatile int *)16 = 1;
         return n;
     }}
     static {KEPT} long work(long n) {{ long done = 0; while (done < 4 * n) done += turn(n); return done; }}
     void TEST_Main(void)
     {{
-        SAY("%ld", work(150000000));
+        SAY("%ld", work(25000000));
     }}
     """
     lines = {"TEST_Main": 11, "work": 8, "turn": 5}
@@ -158,7 +160,10 @@ def test_a_stack_that_was_written_over_ends_what_is_shown(tmp_path: Path, how: s
     }}
     """
     names = [name for name, _, _ in frames(tmp_path, source, "-O1", "-fno-stack-protector")]
-    assert names == ["holds", "break_it", "inner"]
+    own = (
+        ["TEST_Main"] if IS_ARM else []
+    )  # there, return addresses are below the variables: its caller's is written over
+    assert names == [*own, "holds", "break_it", "inner"]
 
 
 @pytest.mark.slow
