@@ -1,0 +1,55 @@
+"""The headers of the interface library stand by themselves; those of Boost that it lacks are refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.convert.messages import Profile, write_headers
+from tests.roscfe.building import FLIGHT_FLAGS, ROSCFE, STRICT_FLAGS, complaints, needs_cpp
+from tests.roscfe.random_messages import LIBRARY, all_types, capacities
+
+pytestmark = [pytest.mark.slow, needs_cpp]
+REFUSALS = ("config", "version", "callable_traits", "hana", "hof", "mp11", "preprocessor", "iterator")
+BOOST = sorted((ROSCFE / "boost").rglob("*.hpp"))
+LACKING = ("thread", "lexical_cast", "regex", "filesystem", "date_time", "format", "optional", "tuple/tuple", "any")
+
+
+@pytest.mark.parametrize("header", BOOST, ids=lambda path: path.stem)
+def test_a_header_of_boost_stands_by_itself(tmp_path: Path, header: Path) -> None:
+    said = complaints(tmp_path, f"#include <{header.relative_to(ROSCFE / 'boost')}>\n" * 2)
+    if header.stem in REFUSALS:
+        assert "[library-outside]" in said
+    else:
+        assert not said
+
+
+@pytest.mark.parametrize("name", LACKING)
+def test_a_header_of_boost_that_is_not_ours_is_refused(tmp_path: Path, name: str) -> None:
+    said = complaints(tmp_path, f"#include <boost/{name}.hpp>\n")
+    assert "[library-outside]" in said or "No such file" in said
+
+
+@pytest.mark.parametrize("base", [FLIGHT_FLAGS, STRICT_FLAGS], ids=["flight", "host"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("ros/time", "ros/duration", "ros/exception", "ros/message_forward", "ros/message_operations"),
+        *("ros/message_traits", "ros/builtin_message_traits", "ros/serialization", "ros/serialized_message"),
+        *("ros/service_traits", "roscfe/wire", "roscfe/fixed", "roscfe/message"),
+    ],
+)
+def test_a_header_of_messages_stands_by_itself(tmp_path: Path, name: str, base: tuple[str, ...]) -> None:
+    assert not complaints(tmp_path, f'#include "{name}.h"\n' * 2, base=base)
+
+
+@pytest.mark.parametrize("profile", [Profile.HOST, Profile.STRICT])
+def test_all_messages_in_one_file(tmp_path: Path, profile: Profile) -> None:
+    services = [f"{package}/{name}" for package in LIBRARY.packages() for name in LIBRARY.names(package, "srv") or ()]
+    made = write_headers([*all_types(), *services], tmp_path, profile, LIBRARY, capacities())
+    assert len(made) > 1200
+    names = ("DEBUG", "ERROR", "NAN", "INFINITY", "OK", "FATAL", "TRUE")
+    macros = "".join(f"#undef {name}\n#define {name} (nothing)\n" for name in names)  # as platforms have them
+    text = macros + "".join(f"#include <{path.relative_to(tmp_path)}>\n" for path in made)
+    assert not complaints(tmp_path, text, f"-I{tmp_path}")
