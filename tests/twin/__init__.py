@@ -2,7 +2,8 @@
 
 `real` boots NASA's executable in namespaces of its own; `flight` flies the same computer in both, and says what
 differs; `commands` makes random ground commands from a seed, `masks` says what may differ and why. `lives` and
-`lives_flight` end applications and reset the processor, `tables_flight` has applications with tables, `api` plays
+`lives_flight` end applications and reset the processor, `apps_flight` flies NASA's flight applications, `memory_flight`
+gives three of them memory to work on, `tables_flight` has applications with tables, `api` plays
 scripts of calls. Without NASA's executable the tests use answers of it that were recorded (tests/twin/data).
 `python -m tests.twin --help` compares with the real one.
 """

@@ -13,9 +13,10 @@ from tests.twin.commands import BACKGROUND, PLAIN, Step
 from tests.twin.flight_apps import CS, MD, MM, FlightApp
 
 SYMBOL = "STORE_Block"
-SIZE = 8192
 WORKED_ON = 512
-"""So many bytes at the beginning are written to; the next entries of CS's table are never."""
+"""So many bytes at the beginning are written to."""
+PIECES = ((0, 64), (64, 192), (600, 1000), (4096, 4096))
+"""What CS checks of the block: offsets and sizes. The last two are never written to."""
 LOADS = ("/cf/load1.dat", "/cf/load2.dat", "/cf/load3.dat", "/cf/load4.dat")
 DUMPS = ("/ram/dump1.dat", "/ram/dump2.dat")
 RAM, EEPROM, MEM8, MEM16, MEM32 = 1, 2, 3, 4, 5
@@ -38,10 +39,9 @@ WAKEUPS = 6
 
 def files(address: int) -> dict[str, bytes]:
     """Definitions of CS's tables, and files for MM to load, with the block at an address; by virtual path."""
-    pieces = ((0, 64), (64, 192), (600, 1000), (4096, 4096))
     states = (ENABLED, DISABLED, ENABLED, ENABLED)
     memory = b"".join(
-        struct.pack("<QHHI", address + at, state, 0, size) for (at, size), state in zip(pieces, states, strict=True)
+        struct.pack("<QHHI", address + at, state, 0, size) for (at, size), state in zip(PIECES, states, strict=True)
     )
     tables = b"".join(struct.pack("<H40s", ENABLED, name.encode()) for name in TABLES_CHECKED)
     apps = b"".join(struct.pack("<H20s", ENABLED, name.encode()) for name in APPS_CHECKED)
@@ -144,7 +144,7 @@ class MemoryCommander:
 
     def _cs(self) -> bytes:
         random = self._random
-        at, size = random.choice(((0, 64), (64, 192), (600, 1000), (4096, 4096), (8, 300)))
+        at, size = random.choice((*PIECES, (8, 300)))
         table, app = random.choice(TABLES_CHECKED), random.choice(APPS_CHECKED)
         return random.choice(
             (
