@@ -11,7 +11,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from cfepy.status import UsageError
 from rospy_shim.client.names import SEP
 from rospy_shim.parameters.table import FREE, Row, rows_for
 from rospy_shim.parameters.values import leaves_of
@@ -86,18 +85,12 @@ def parameter_rows(params: Mapping[str, Any], node: str, others: Iterable[str] =
         params: the tree of all parameters.
         node: full name of the node.
         others: full names of the other nodes.
-
-    Raises:
-        UsageError: a name or a value has characters that no row can have.
     """
     theirs = tuple(f"{each}{SEP}" for each in others if not f"{node}{SEP}".startswith(f"{each}{SEP}"))
     rows: list[Row] = []
     for name, text in leaves_of("", dict(params)):
         if not name.startswith(theirs):
             rows += rows_for(name, text)
-    for name, value in rows:
-        if not (name + value).isascii():
-            raise UsageError(f"parameter {name}: {value!r} is no ASCII, and cannot stand in a table [param-size]")
     return rows + [FREE] * FREE_ROWS
 
 

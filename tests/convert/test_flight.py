@@ -1,0 +1,91 @@
+"""Nodes in C++ that `cfepy launch` and `cfepy node` build and fly by themselves."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from cfepy.c import CompilerError
+from cfepy.cli.main import main
+from cfepy.convert import build
+from cfepy.convert.build import unique_symbols
+from cfepy.journal import read_journal, replay
+from cfepy.mission import read_mission
+from cfepy.pilot.plan import built_node
+from tests.convert.ping import ping_package
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    return ping_package(tmp_path)
+
+
+def test_a_launch_file_is_flown(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 0
+    shown = capfd.readouterr().out
+    assert "heard 1 plain-beat-odd!" in shown
+    assert "/pulse" in shown
+
+
+def test_both_kinds_of_nodes_hear_each_other(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", str(package / "launch/both.launch"), "hz:=5", "--for", "1"]) == 0
+    shown = capfd.readouterr().out
+    assert "python heard plain-beat-even!" in shown
+    assert shown.count("[/arm/ear]") <= 6
+
+
+def test_a_mission_with_the_launch_file(package: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["convert", str(package / "launch/ping.launch"), "-o", str(tmp_path / "made")]) == 0
+    spec = read_mission(str(tmp_path / "made/mission"), build=built_node)
+    assert sorted(spec.built) == ["/cf/ARM_EAR.so", "/cf/ARM_LEFT.so"]
+    assert main(["run", str(tmp_path / "made/mission"), "--for", "2"]) == 0
+    assert "heard 1 plain-beat-odd!" in capfd.readouterr().out
+
+
+def test_one_node(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["node", "ping", "hearer", "--for", "1"]) == 0
+    assert main(["check", "ping", "ping.launch"]) == 0
+
+
+def test_a_replay_needs_no_compiler(package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    journal = tmp_path / "run.journal"
+    assert main(["launch", "ping", "ping.launch", "--for", "1", "--record", str(journal)]) == 0
+    monkeypatch.setenv("CXX", "no-such-compiler")
+    assert replay(read_journal(journal)).verdict.same
+
+
+def test_what_the_compiler_refuses_is_left_out_with_its_words(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    source = package / "src/sender.cpp"
+    source.write_text(source.read_text().replace("ros::Rate rate(hz);", "ros::Rate rate(nothing_such);"))
+    assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 0
+    told = capfd.readouterr().err
+    assert "node /arm/left is left out: it cannot be built" in told
+    assert "nothing_such" in told
+
+
+def test_without_a_compiler_it_is_said(
+    package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("CXX", "no-such-compiler")
+    monkeypatch.setenv("CFEPY_CACHE", str(tmp_path / "cache"))
+    build.identity.cache_clear()
+    assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 2
+    assert "no-such-compiler is not there: ROS nodes in C++ need a C++ compiler" in capfd.readouterr().err
+
+
+def test_symbols_that_nodes_would_share_are_found(tmp_path: Path) -> None:
+    source = tmp_path / "unit.cpp"
+    source.write_text(
+        "template <class T> struct A { static int x; }; template <class T> int A<T>::x = 1;"
+        'extern "C" int* f() { return &A<int>::x; }\n'
+    )
+    made = tmp_path / "unit.so"
+    subprocess.run(["c++", "-shared", "-fPIC", str(source), "-o", str(made)], check=True)
+    assert unique_symbols(made) == ["A<int>::x"]
+    with pytest.raises(CompilerError):
+        unique_symbols(source)
