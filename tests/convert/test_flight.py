@@ -33,10 +33,10 @@ def test_a_launch_file_is_flown(package: Path, capfd: pytest.CaptureFixture[str]
 
 
 def test_both_kinds_of_nodes_hear_each_other(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    assert main(["launch", str(package / "launch/both.launch"), "hz:=5", "--for", "1"]) == 0
+    assert main(["launch", str(package / "launch/both.launch"), "--for", "1"]) == 0
     shown = capfd.readouterr().out
     assert "python heard plain-beat-even!" in shown
-    assert shown.count("[/arm/ear]") <= 6
+    assert 8 <= shown.count("[/arm/ear]") <= 11  # ten a second
 
 
 def test_a_mission_with_the_launch_file(package: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

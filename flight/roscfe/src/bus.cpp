@@ -54,9 +54,17 @@ bool same_pipe(CFE_SB_PipeId_t one, CFE_SB_PipeId_t other)
 
 bool is_there(const Known &known)
 {
+    if (CFE_RESOURCEID_TO_ULONG(known.pipe) == 0)
+    {
+        return true; // nobody can say
+    }
+    if (!OS_ObjectIdDefined(known.queue)) // pipes are no queues of OSAL here, as on cfepy
+    {
+        char name[OS_MAX_API_NAME];
+        return CFE_SB_GetPipeName(name, sizeof name, known.pipe) == CFE_SUCCESS;
+    }
     OS_queue_prop_t properties;
-    return CFE_RESOURCEID_TO_ULONG(known.pipe) == 0 // nobody can say
-           || OS_QueueGetInfo(known.queue, &properties) == OS_SUCCESS;
+    return OS_QueueGetInfo(known.queue, &properties) == OS_SUCCESS;
 }
 
 void know(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
@@ -70,9 +78,13 @@ void know(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
     }
     char      name[OS_MAX_API_NAME];
     osal_id_t queue = OS_OBJECT_ID_UNDEFINED;
-    if (CFE_SB_GetPipeName(name, sizeof name, pipe) != CFE_SUCCESS || OS_QueueGetIdByName(&queue, name) != OS_SUCCESS)
+    if (CFE_SB_GetPipeName(name, sizeof name, pipe) != CFE_SUCCESS)
     {
         return; // gone already
+    }
+    if (OS_QueueGetIdByName(&queue, name) != OS_SUCCESS)
+    {
+        queue = OS_OBJECT_ID_UNDEFINED;
     }
     g_known.push_back({msg_id, pipe, queue});
     publication_has_subscriber(msg_id, pipe);
