@@ -69,15 +69,6 @@ def provided_packages() -> set[str]:
 
 
 @dataclass(slots=True)
-class BuiltLibrary:
-    """The interface library of one profile, with the headers that it was built against."""
-
-    key: str
-    archive: Path
-    messages: Path
-
-
-@dataclass(slots=True)
 class BuiltNode:
     """A node that was built.
 
@@ -150,14 +141,13 @@ class NodeBuild:
         header = library_folder() / "include/roscfe/node.h"
         units.append(CompileUnit(start, flags, library_includes(), _digest(entry.text(), header.read_bytes())))
         core = core_key(self._profile, self._real_boost, self._types)
-        objects = [each.object for each in units]
-        key = _digest(core, *LINK, *(each.name for each in objects))
+        key = _digest(core, *LINK, *(each.key for each in units))
         made = _folder() / f"{entry.app.lower()}-{key}.so"
         warnings = made.with_suffix(".warnings")
         if not made.is_file():
             archive = built_core(self._profile, self._real_boost, self._types)
             told = compile_units(units)
-            _link([*objects, archive], made)
+            _link([*(each.object for each in units), archive], made)
             warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
         told = [warnings.read_text(encoding="utf-8")] if warnings.is_file() else []
         return BuiltNode(made, entry.symbol, self.sources, self.types, list(filter(None, told)))
@@ -204,7 +194,7 @@ def built_core(profile: Profile, real_boost: bool, library: Library) -> Path:
         CompilerError: the compiler refused it.
     """
     key, units = _core(profile, real_boost, library)
-    archive = _folder() / f"libroscfe-{profile.value}-{key}.a"
+    archive = _folder() / f"libroscfe-{profile.value}-{_digest(key, identity())}.a"
     if not archive.is_file():
         compile_units(units)
         with tempfile.TemporaryDirectory(dir=archive.parent) as scratch:
@@ -225,7 +215,7 @@ def _core(profile: Profile, real_boost: bool, library: Library) -> tuple[str, li
         CompileUnit(each, flags, [messages, *includes], _digest(known, str(each.relative_to(folder))), needs_cfe=True)
         for each in files
     ]
-    return _digest(*(each.object.name for each in units)), units
+    return _digest(*(each.key for each in units)), units
 
 
 # -- compiling ---------------------------------------------------------------------------------------------------------
@@ -250,11 +240,15 @@ class CompileUnit:
     needs_cfe: bool = False
 
     @property
+    def key(self) -> str:
+        """What it is known by, whichever release of the compiler compiles it."""
+        plain = [each for each in self.flags if not each.startswith("/")]
+        return _digest(self.known, *plain, *cpp_compiler(), headers_folder().name if self.needs_cfe else "")
+
+    @property
     def object(self) -> Path:
         """Where its object file is, in the cache."""
-        plain = [each for each in self.flags if not each.startswith("/")]
-        key = _digest(self.known, *plain, *identity(), headers_folder().name if self.needs_cfe else "")
-        return _folder() / f"{self.source.stem}-{key}.o"
+        return _folder() / f"{self.source.stem}-{_digest(self.key, identity())}.o"
 
     def command(self, made: Path) -> list[str]:
         """The compiler's command."""
@@ -354,9 +348,9 @@ def unique_symbols(file: Path) -> list[str]:
 
 
 @cache
-def identity() -> tuple[str, ...]:
+def identity() -> str:
     """What the compiler says of itself."""
-    return (*cpp_compiler(), _call([*cpp_compiler(), "-dumpfullversion", "-dumpmachine"]))
+    return _call([*cpp_compiler(), "-dumpfullversion", "-dumpmachine"])
 
 
 def _label(source: Path, program: Program) -> str:
