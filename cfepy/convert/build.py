@@ -139,7 +139,8 @@ class NodeBuild:
         known = _digest(messages.name, main_header(entry.takes_arguments), *self.sources.contents.values())
         units = [CompileUnit(each, own, includes, _digest(known, _label(each, program))) for each in program.sources]
         header = library_folder() / "include/roscfe/node.h"
-        units.append(CompileUnit(start, flags, library_includes(), _digest(entry.text(), header.read_bytes())))
+        around = known if entry.nodelet else _digest(header.read_bytes())
+        units.append(CompileUnit(start, flags, includes, _digest(entry.text(), around)))
         core = core_key(self._profile, self._real_boost, self._types)
         key = _digest(core, *LINK, *(each.key for each in units))
         made = _folder() / f"{entry.app.lower()}-{key}.so"

@@ -122,11 +122,9 @@ def _folder_of(package: str, environ: Mapping[str, str]) -> Path | None:
 def _of_package(folder: Path, environ: Mapping[str, str]) -> ConversionTask:
     name = name_of(folder)
     package = read_package(folder, name)
-    apps = _app_names(package.executables())
-    nodes = [
-        CppNode(apps[each], name, each, (folder,), folder / MANIFEST, env=dict(environ))
-        for each in package.executables()
-    ]
+    types = [*package.executables(), *package.nodelets()]
+    apps = _app_names(types)
+    nodes = [CppNode(apps[each], name, each, (folder,), folder / MANIFEST, env=dict(environ)) for each in types]
     return ConversionTask(name, folder, nodes, dict(ROSCORE_PARAMS))
 
 
@@ -134,7 +132,7 @@ def _app_names(names: Iterable[str]) -> dict[str, str]:
     """A name of an application for each program."""
     found: dict[str, str] = {}
     for name in names:
-        base = re.sub(r"\W", "_", name, flags=re.ASCII).upper()[:LONGEST_NAME]
+        base = re.sub(r"\W", "_", name.rpartition("/")[2], flags=re.ASCII).upper()[:LONGEST_NAME]
         app, number = base, 1
         while app in found.values():
             number += 1
@@ -194,7 +192,8 @@ def _node(
         node.args,
         remaps=names.remaps,
         rows=parameter_rows(task.params, node.full_name, others),
-        takes_arguments=main_form(program.sources, package.folder),
+        takes_arguments=bool(program.nodelet) or main_form(program.sources, package.folder),
+        nodelet=program.nodelet,
     )
     return ConvertedNode(node, program, sources, message_types(seen.missing, library), names, entry)
 

@@ -38,6 +38,7 @@ class NodeEntry:
         remaps: resolved names, and what takes their place.
         rows: of its table of parameters.
         takes_arguments: whether main has parameters.
+        nodelet: the class of C++ that the node is, if it is a nodelet.
     """
 
     app: str
@@ -49,6 +50,7 @@ class NodeEntry:
     remaps: Mapping[str, str] = field(default_factory=dict)
     rows: Sequence[Row] = ()
     takes_arguments: bool = True
+    nodelet: str = ""
 
     @property
     def symbol(self) -> str:
@@ -108,9 +110,17 @@ def _escaped(byte: int) -> str:
 def _lines(node: NodeEntry) -> Iterator[str]:
     parameters = "int, char **" if node.takes_arguments else ""
     yield f"// The entry point of the ROS node {quoted(node.name)}, made by cfepy convert."
+    if node.nodelet:
+        yield "#include <nodelet/nodelet.h>"
     yield '#include "roscfe/node.h"'
     yield ""
-    yield f'int roscfe_main({parameters}) __asm__("{MAIN_SYMBOL}");'
+    if node.nodelet:
+        yield "static int roscfe_main(int argc, char **argv)"
+        yield "{"
+        yield f"    return roscfe::run_nodelet({quoted(node.nodelet)}, argc, argv);"
+        yield "}"
+    else:
+        yield f'int roscfe_main({parameters}) __asm__("{MAIN_SYMBOL}");'
     yield ""
     yield "namespace"
     yield "{"

@@ -54,7 +54,8 @@ def build_for_flight(node: CppNode, params: Mapping[str, Any], others: Sequence[
             resolved(one, node.namespace, name): resolved(other, node.namespace, name) for one, other in node.remaps
         },
         rows=parameter_rows(params, name, others),
-        takes_arguments=main_form(program.sources, package.folder),
+        takes_arguments=bool(program.nodelet) or main_form(program.sources, package.folder),
+        nodelet=program.nodelet,
     )
     try:
         built = build_node(program, entry, message_library(packages))

@@ -21,6 +21,7 @@ T = TypeVar("T")
 FILE = "CMakeLists.txt"
 MANIFEST = "package.xml"
 SUFFIXES = (".cpp", ".cc", ".cxx", ".c++", ".C", ".c")
+NODELET = "nodelet::Nodelet"
 EIGEN = "/usr/include/eigen3"
 _KEYWORDS = ("PUBLIC", "PRIVATE", "INTERFACE", "BEFORE", "AFTER", "SYSTEM", "debug", "optimized", "general")
 _KINDS = ("STATIC", "SHARED", "MODULE", "OBJECT", "INTERFACE", "EXCLUDE_FROM_ALL", "WIN32", "MACOSX_BUNDLE")
@@ -98,6 +99,10 @@ class CppPackage:
         """The types of its nodes, sorted."""
         return sorted(each.file_name or each.name for each in self.targets.values() if not each.is_library)
 
+    def nodelets(self) -> dict[str, PluginClass]:
+        """Its nodelets, by the name that pluginlib knows."""
+        return {name: each for name, each in self.plugins.items() if each.base.lstrip(":") == NODELET}
+
     def executable(self, node_type: str) -> CppTarget | None:
         """The target behind a node's type."""
         found = (each for each in self.targets.values() if (each.file_name or each.name) == node_type)
@@ -115,6 +120,7 @@ class Program:
         includes: folders of headers, the first searched first.
         definitions: the compiler's -D, without -D.
         outside: libraries that it is linked with and that have no sources here, as written.
+        nodelet: the class of C++ that it is, such as "demo::Filter"; empty for a program.
     """
 
     package: CppPackage
@@ -123,6 +129,7 @@ class Program:
     includes: list[Path] = field(default_factory=list)
     definitions: list[str] = field(default_factory=list)
     outside: list[str] = field(default_factory=list)
+    nodelet: str = ""
 
 
 def read_package(folder: Path, name: str) -> CppPackage:
@@ -151,18 +158,19 @@ def program_of(package: CppPackage, node_type: str, packages: Packages, ours: It
 
     Args:
         package: of the node.
-        node_type: of the node: an executable, or a library of which a plugin is started.
+        node_type: of the node: an executable, or a nodelet as pluginlib knows it, such as "demo/Filter".
         packages: where other packages are looked for.
         ours: packages whose place our own headers and libraries take.
 
     Raises:
         UsageError: the package has no such target, or a source of it is not there.
     """
-    target = package.executable(node_type) or package.targets.get(node_type)
+    plugin = package.nodelets().get(node_type)
+    target = package.executable(node_type) if plugin is None else package.targets.get(plugin.library)
     if target is None:
-        known = ", ".join(package.executables()) or "no C++ node"
+        known = ", ".join([*package.executables(), *package.nodelets()]) or "no C++ node"
         raise UsageError(f"package {package.name!r} has no C++ node {node_type!r}; it has {known}", file=package.folder)
-    program = Program(package, node_type)
+    program = Program(package, node_type, nodelet="" if plugin is None else plugin.type.lstrip(":"))
     _Collector(program, packages, set(ours)).take(package, target)
     return program
 

@@ -56,7 +56,7 @@ class CppNode:
 
     Attributes:
         app: its cFE name.
-        package, type: of the node.
+        package, type: of the node; of a nodelet, the type is the class that pluginlib knows, such as "demo/Filter".
         folders: of its package, the one that counts first.
         near: a file near which its packages are.
         name: without a namespace; empty for what the node itself says.
@@ -84,7 +84,7 @@ class CppNode:
     @property
     def full_name(self) -> str:
         """The resolved name, "/arm/driver"."""
-        return f"{self.namespace.rstrip('/')}/{self.name or self.type}"
+        return f"{self.namespace.rstrip('/')}/{self.name or self.type.rpartition('/')[2]}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -366,6 +366,9 @@ class Planner:
         try:
             return self.config(node)
         except ScriptError as error:
+            nodelet = self._nodelet(node, remarks) if self._with_compiled else None
+            if nodelet is not None:
+                return nodelet[0]
             folders = compiled_folders(self._packages, node.package, node.type) if self._with_compiled else ()
             if folders:
                 return self._compiled(node, folders)
@@ -406,6 +409,23 @@ class Planner:
             respawn_delay_ns=round(node.respawn_delay * NS_PER_S),
             required=node.required,
         )
+
+    def _nodelet(self, node: LaunchNode, remarks: list[LaunchRemark]) -> tuple[CppNode | None] | None:
+        """The application of a nodelet, none for a manager, which is not needed; None for what is no nodelet."""
+        if (node.package, node.type) != ("nodelet", "nodelet"):
+            return None
+        match _words(node):
+            case ["manager", *_]:
+                text = f"node {node.full_name} is left out: each nodelet is an application, which needs no manager"
+                remarks.append(LaunchRemark(text, node.file, node.line, before_runs=False))
+                return (None,)
+            case ["standalone", name, *rest] | ["load", name, _, *rest]:
+                package = name.partition(SEP)[0]
+                folders = (each for each in self._packages.folders(package) if os.path.isfile(each / "CMakeLists.txt"))
+                found = tuple(folders)
+                plain = replace(node, package=package, type=name, args=shlex.join(rest))
+                return (self._compiled(plain, found),) if found else None
+        return None
 
     def _compiled(self, node: LaunchNode, folders: tuple[Path, ...]) -> CppNode:
         """The application of a node in C++; remaps among its arguments are remaps."""

@@ -6,7 +6,37 @@ from pathlib import Path
 
 PACKAGE = """<package format="2"><name>ping</name><version>1.0.0</version><description>ping</description>
   <maintainer email="a@b.c">a</maintainer><license>Apache-2.0</license><depend>roscpp</depend>
-  <depend>std_msgs</depend></package>
+  <depend>std_msgs</depend><export><nodelet plugin="${prefix}/nodelets.xml"/></export></package>
+"""
+NODELETS = """<library path="lib/libfilters">
+  <class name="ping/Doubler" type="ping::Doubler" base_class_type="nodelet::Nodelet"/></library>
+"""
+DOUBLER = """
+#include <nodelet/nodelet.h>
+#include <ping/Beat.h>
+#include <pluginlib/class_list_macros.h>
+
+namespace ping
+{
+class Doubler : public nodelet::Nodelet
+{
+  void onInit() override
+  {
+    pub_ = getPrivateNodeHandle().advertise<ping::Beat>("out", 4);
+    sub_ = getNodeHandle().subscribe("in", 4, &Doubler::heard, this);
+  }
+  void heard(const ping::Beat::ConstPtr &message)
+  {
+    NODELET_INFO("doubling %d", message->number);
+    ping::Beat twice = *message;
+    twice.number *= 2;
+    pub_.publish(twice);
+  }
+  ros::Publisher pub_;
+  ros::Subscriber sub_;
+};
+}
+PLUGINLIB_EXPORT_CLASS(ping::Doubler, nodelet::Nodelet)
 """
 CMAKE = """
 cmake_minimum_required(VERSION 3.0.2)
@@ -20,6 +50,7 @@ foreach(each sender hearer)
   add_executable(${each} src/${each}.cpp)
   target_link_libraries(${each} words ${catkin_LIBRARIES})
 endforeach()
+add_library(filters src/doubler.cpp)
 target_compile_definitions(sender PRIVATE GREETING="beat")
 """
 WORDS_H = """
@@ -103,12 +134,22 @@ FILES = {
     "CMakeLists.txt": CMAKE,
     "msg/Beat.msg": "int32 number\nstring word\n",
     "include/ping/words.h": WORDS_H,
+    "nodelets.xml": NODELETS,
+    "src/doubler.cpp": DOUBLER,
     "src/words.cpp": WORDS,
     "src/sender.cpp": SENDER,
     "src/hearer.cpp": HEARER,
     "launch/ping.launch": LAUNCH,
     "launch/both.launch": '<launch><include file="$(find ping)/launch/ping.launch"/>'
     '<node pkg="ping" type="script.py" name="script"/></launch>\n',
+    "launch/nodelet.launch": """<launch>
+  <include file="$(find ping)/launch/ping.launch"/>
+  <node pkg="nodelet" type="nodelet" name="manager" args="manager"/>
+  <node pkg="nodelet" type="nodelet" name="twice" args="load ping/Doubler manager">
+    <remap from="in" to="/pulse"/>
+  </node>
+</launch>
+""",
     "scripts/script.py": PYTHON_HEARER,
 }
 

@@ -40,6 +40,14 @@ def test_both_kinds_of_nodes_hear_each_other(package: Path, capfd: pytest.Captur
     assert 8 <= shown.count("[/arm/ear]") <= 11  # ten a second
 
 
+def test_a_nodelet_is_an_application(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", "ping", "nodelet.launch", "--for", "1"]) == 0
+    shown, told = capfd.readouterr()
+    assert "doubling 3" in shown
+    assert "/twice/out" in shown
+    assert "left out" not in told
+
+
 def test_a_mission_with_the_launch_file(package: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["convert", str(package / "launch/ping.launch"), "-o", str(tmp_path / "made")]) == 0
     spec = read_mission(str(tmp_path / "made/mission"), build=built_node)

@@ -92,7 +92,7 @@ def test_a_target_that_is_not_there_is_told(tmp_path: Path) -> None:
     write(tmp_path, FILES)
     package = read_package(tmp_path / "demo", "demo")
     packages = Packages(tmp_path / "demo/src/talker.cpp", {})
-    with pytest.raises(UsageError, match=r"has no C\+\+ node 'walker'; it has hearer, old, talker"):
+    with pytest.raises(UsageError, match=r"has no C\+\+ node 'walker'; it has hearer, old, talker, demo/Filter"):
         program_of(package, "walker", packages)
     with pytest.raises(UsageError, match=r"old is made of gone\.cpp, which is not there"):
         program_of(package, "old", packages)
