@@ -11,12 +11,13 @@ import hashlib
 import os
 import subprocess
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
 from cfepy.c import CompilerError, cache_folder, cpp_compiler, headers_folder
+from cfepy.convert.configurations import CONFIGURATION_TYPES, configuration_headers
 from cfepy.convert.entry import NodeEntry, main_header
 from cfepy.convert.messages import Profile, write_headers
 from cfepy.convert.packages import Program
@@ -119,7 +120,10 @@ class NodeBuild:
         if self._real_boost:
             sources = collect(program.sources, [*program.includes, *library_includes(real_boost=True)])
         self.sources = sources
-        self.types = message_types(sources.missing, library)
+        package = program.package
+        self._configurations = configuration_headers(sources.missing, {package.name: [package.folder]})
+        needed = CONFIGURATION_TYPES if self._configurations else ()
+        self.types = sorted({*message_types(sources.missing, library), *needed})
 
     def built(self) -> BuiltNode:
         """Compile what is not in the cache, and link it."""
@@ -129,14 +133,16 @@ class NodeBuild:
     def _built(self, scratch: Path) -> BuiltNode:
         program, entry = self._program, self._entry
         messages = messages_folder(self.types, self._types, self._profile)
-        includes = [*program.includes, messages, *library_includes(self._real_boost)]
+        configurations = configurations_folder(self._configurations)
+        includes = [*program.includes, messages, configurations, *library_includes(self._real_boost)]
         main = scratch / "roscfe_main.h"
         main.write_text(main_header(entry.takes_arguments), encoding="utf-8")
         start = scratch / f"{entry.app.lower()}_entry.cpp"
         start.write_text(entry.text(), encoding="utf-8")
         flags = [*LANGUAGE, *PLAIN, *profile_flags(self._profile)]
         own = [*flags, *(f"-D{each}" for each in program.definitions), "-include", str(main)]
-        known = _digest(messages.name, main_header(entry.takes_arguments), *self.sources.contents.values())
+        made_for_it = (messages.name, configurations.name, main_header(entry.takes_arguments))
+        known = _digest(*made_for_it, *self.sources.contents.values())
         units = [CompileUnit(each, own, includes, _digest(known, _label(each, program))) for each in program.sources]
         header = library_folder() / "include/roscfe/node.h"
         around = known if entry.nodelet else _digest(header.read_bytes())
@@ -179,6 +185,26 @@ def messages_folder(types: Sequence[str], library: Library, profile: Profile) ->
         key = _digest(*(f"{each.relative_to(made)}\0{each.read_text(encoding='utf-8')}" for each in files))
         kept = folder / f"messages-{key}"
         if not kept.is_dir():
+            _put(made, kept)
+    return kept
+
+
+def configurations_folder(headers: Mapping[str, str]) -> Path:
+    """A folder with the headers of configurations, in the cache.
+
+    Args:
+        headers: texts, by what is included.
+    """
+    folder = _folder()
+    key = _digest(*(f"{name}\0{text}" for name, text in sorted(headers.items())))
+    kept = folder / f"configurations-{key}"
+    if not kept.is_dir():
+        with tempfile.TemporaryDirectory(dir=folder) as scratch:
+            made = Path(scratch) / "configurations"
+            made.mkdir()
+            for name, text in headers.items():
+                (made / name).parent.mkdir(exist_ok=True)
+                (made / name).write_text(text, encoding="utf-8")
             _put(made, kept)
     return kept
 

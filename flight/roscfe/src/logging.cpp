@@ -27,7 +27,7 @@ std::uint32_t g_lost        = 0; // events that were not sent
 std::uint32_t g_rosout_seq  = 0;
 
 const char *const kNames[]  = {"DEBUG", " INFO", " WARN", "ERROR", "FATAL"};
-const std::uint16_t kTypes[] = {CFE_EVS_EventType_DEBUG, CFE_EVS_EventType_INFORMATION, CFE_EVS_EventType_ERROR,
+const std::uint16_t kTypes[] = {CFE_EVS_EventType_DEBUG, CFE_EVS_EventType_INFORMATION, CFE_EVS_EventType_INFORMATION,
                                 CFE_EVS_EventType_ERROR, CFE_EVS_EventType_CRITICAL};
 
 // EVS stops listening to an application that says too much. So there are no more events than it takes, and what is
