@@ -6,11 +6,26 @@ A command belongs here when it makes applications of cFE out of ROS nodes, or sa
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 from cfepy.cli.options import add_json, add_output
 
-_WORDS = "a package, its folder, or a launch file with its arguments as NAME:=VALUE"
+_WORDS = (
+    "a package, its folder, or a launch file with its arguments as NAME:=VALUE; behind the word check also a C++ source"
+)
 _STATUS = "exit status: 0 well, 1 a node cannot be converted, 2 bad usage, or nothing to convert"
+
+
+class _WordsAction(argparse.Action):
+    """The words: a check is asked for by the first."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option_string: Any = None
+    ) -> None:
+        """See `argparse.Action`."""
+        namespace.words = values
+        if values[:1] == ["check"]:
+            namespace.module = "convert.check"
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -19,10 +34,12 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "convert",
         help="make cFE applications of ROS nodes in C++",
         description="Make applications for a cFS 7.0.0 mission tree, and a mission for cfepy, of the ROS nodes in C++ "
-        "of a launch file or a package. Their sources stay as they are.",
+        "of a launch file or a package. Their sources stay as they are. `cfepy convert check WORD` makes nothing, but "
+        "tells all that keeps nodes from being converted and what is to be known of them, by the rules of "
+        "docs/convertor.md.",
         epilog=_STATUS,
     )
-    convert.add_argument("words", metavar="WORD", nargs="+", help=_WORDS)
+    convert.add_argument("words", metavar="WORD", nargs="+", help=_WORDS, action=_WordsAction)
     add_output(convert, "a folder of the name here")
     convert.add_argument(
         "--profile",
@@ -33,5 +50,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     )
     convert.add_argument("--ids", metavar="MISSION", help="take the MsgIds of this mission and its topics.lock")
     convert.add_argument("--force", action="store_true", help="write over files that were changed by hand, too")
+    convert.add_argument(
+        "--sarif",
+        metavar="FILE|-",
+        help="write what check finds as SARIF 2.1.0 to a file, or with - to standard output and nothing else there",
+    )
     add_json(convert, "the report")
     convert.set_defaults(module="convert.convert")

@@ -25,6 +25,8 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: there is nothing to convert, or a file cannot be written.
     """
+    if arguments.sarif is not None:
+        raise UsageError("is what check finds: `cfepy convert check WORD --sarif FILE`", field="--sarif")
     check_json(arguments)
     task = task_of(arguments.words, dict(os.environ))
     folder = Path(arguments.output or task.made_from.stem).resolve()

@@ -1,0 +1,103 @@
+"""The check of one program: what its sources say, then what the compiler says, and the memory of its subscriptions."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+
+from cfepy.convert.build import library_includes
+from cfepy.convert.check.compiler import Compiler, tell
+from cfepy.convert.check.findings import CheckReport, SourcePlace, SubscriptionMemory
+from cfepy.convert.check.headers import write_refusal, write_refusals
+from cfepy.convert.check.program import ProgramSources, subscriptions
+from cfepy.convert.messages import Capacities, Profile, write_headers
+from cfepy.convert.packages import Program
+from cfepy.status import UsageError
+from rospy_shim.msgs import Library, OnDisk, Packages, shipped
+
+LONGEST_PACKET = 32768
+"""Bytes of a packet on NASA's Software Bus (CFE_MISSION_SB_MAX_SB_MSG_SIZE)."""
+KEPT = 4
+"""Messages that a node may hold beside those that wait."""
+
+
+def check_program(
+    program: Program,
+    profile: Profile,
+    environ: Mapping[str, str],
+    capacities: Capacities | None = None,
+    *,
+    compile_refused: bool = True,
+) -> CheckReport:
+    """Check a program.
+
+    Args:
+        program: what it is compiled of.
+        profile: that it is to be built for.
+        environ: says where packages are, for their message definitions.
+        capacities: of messages, in the strict profile.
+        compile_refused: whether the compiler is asked, too, where the sources alone refuse the program.
+
+    Raises:
+        UsageError: tree-sitter or the compiler is not there.
+    """
+    report = CheckReport(program.type, profile)
+    packages = Packages(program.package.folder / "CMakeLists.txt", environ)
+    sources = ProgramSources(program.sources, program.includes, Library([OnDisk(packages)], base=shipped()))
+    sources.look(report)
+    if report.is_refused and not compile_refused:
+        return report
+    with tempfile.TemporaryDirectory(prefix="cfepy-check-") as folder:
+        scratch = Path(folder)
+        _compile(report, program, sources, scratch, capacities)
+    report.findings.sort()
+    return report
+
+
+def _compile(
+    report: CheckReport, program: Program, sources: ProgramSources, scratch: Path, capacities: Capacities | None
+) -> None:
+    messages, refusals = scratch / "messages", scratch / "refusals"
+    messages.mkdir()
+    real_boost = sources.takes_real_boost(report.profile)
+    write_refusals(refusals, real_boost)
+    for kind in sorted(sources.messages):
+        try:
+            write_headers([kind], messages, report.profile, sources.library, capacities)
+        except UsageError as error:
+            rule = "capacity-missing" if "capacity" in error.text else "message-definition"
+            write_refusal(refusals / f"{kind}.h", error.text, rule)
+    folders = [*program.includes, messages, *library_includes(real_boost), refusals]
+    compiler = Compiler(report.profile, folders, program.definitions)
+    accepted = True
+    for source in program.sources:
+        if source not in sources.files:
+            continue
+        compiled = compiler.compile(source, scratch)
+        accepted = accepted and compiled.ok
+        tell(report, source, compiled, partial(_shown, sources, source, refusals))
+    if accepted and program.sources:
+        _measure(report, compiler, sources, scratch)
+
+
+def _measure(report: CheckReport, compiler: Compiler, sources: ProgramSources, scratch: Path) -> None:
+    """The memory of all subscriptions whose type is seen."""
+    found = list(subscriptions(report.names))
+    types = sorted({name.type for name, _ in found} & sources.messages)
+    sizes = compiler.sizes(types, scratch) if types else {}
+    for name, queue in found:
+        size = sizes.get(name.type)
+        if size is None:
+            continue
+        report.memory.append(SubscriptionMemory(name.name or name.text, name.type, queue + KEPT, size, name.place))
+        if size > LONGEST_PACKET:
+            report.add("message-too-long", name.place, f"{name.type} has {size:,} bytes")
+
+
+def _shown(sources: ProgramSources, source: Path, refusals: Path, file: Path) -> SourcePlace | None:
+    """Where a header that refuses was included; of a header of a header that is not the program's, the source."""
+    if not file.is_relative_to(refusals):
+        return None
+    return sources.included_at(str(file.relative_to(refusals))) or SourcePlace(source)

@@ -1,0 +1,240 @@
+"""What a program's sources say together: headers that are not on the list, callbacks that allocate, names, queues."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from cfepy.convert.check.findings import CheckReport, GraphName, SourcePlace
+from cfepy.convert.check.headers import (
+    OURS,
+    ROS_LIBRARIES,
+    SYSTEM,
+    has_boost,
+    has_eigen,
+    headers_of_ours,
+    is_eigen,
+    is_file,
+    is_ours,
+    is_outside,
+    is_small_boost,
+    is_standard,
+)
+from cfepy.convert.check.source import Include, SourceFile, read_source, type_of
+from cfepy.convert.messages import Profile
+from rospy_shim.msgs import Library
+
+LONGEST_SOURCE = 2_000_000
+"""Bytes of a source; one that is longer is no source that somebody has written."""
+LONGEST_QUEUE = 16
+"""Messages that a subscription keeps, unless the mission says how many for the node."""
+_MOST_FILES = 2000
+_NODELET = re.compile(rb"\bPLUGINLIB_(?:EXPORT|DECLARE)_CLASS\b|\bNODELET_EXPORT\b")
+_PARTS = ("Request", "Response")
+
+
+class ProgramSources:
+    """The sources and own headers of a program, each read once.
+
+    Args:
+        sources: files that are compiled.
+        folders: of the include path.
+        library: message definitions.
+    """
+
+    def __init__(self, sources: Sequence[Path], folders: Sequence[Path], library: Library) -> None:
+        self.sources = list(sources)
+        self.folders = list(folders)
+        self.library = library
+        self.files: dict[Path, SourceFile] = {}
+        self.unreadable: dict[Path, str] = {}
+        self.messages: set[str] = set()
+        self.has_plugin = False
+        self._unknown: list[Include] = []
+        self._boost: set[str] = set()
+        self._read_all()
+        for name in headers_of_ours():
+            self._is_message_header(name)
+
+    def look(self, report: CheckReport) -> None:
+        """Add all that the rules find; what the compiler finds is not among it."""
+        report.files += sorted(self.files)
+        report.unparsed += sum(each.unparsed for each in self.files.values())
+        for path, problem in self.unreadable.items():
+            report.add("file-unreadable", SourcePlace(path), problem)
+        for include in self._unknown:
+            self._look_at_include(report, include)
+        self._look_at_mains(report)
+        callbacks = {"lambda"}.union(*(each.callbacks for each in self.files.values()))
+        for file in self.files.values():
+            for met in file.met:
+                if met.rule != "heap-in-callback" or met.function in callbacks:
+                    report.add(met.rule, met.place, met.message)
+        report.names += self.names()
+        for name in report.names:
+            self._look_at_name(report, name)
+
+    def takes_real_boost(self, profile: Profile) -> bool:
+        """Whether the program is built with the Boost of this computer, since the small one has not all of it."""
+        if profile is not Profile.HOST or not is_file(SYSTEM / "boost" / "version.hpp"):
+            return False
+        return not all(map(is_small_boost, self._boost))
+
+    def included_at(self, header: str) -> SourcePlace | None:
+        """Where a header is included."""
+        found = (each for file in self.files.values() for each in file.includes if each.name == header)
+        return next((each.place for each in found), None)
+
+    def names(self) -> list[GraphName]:
+        """The names that the program uses, with types and constants that other files have."""
+        constants = self._agreed({}, "constants")
+        parameters = self._agreed({}, "parameters")
+        found = []
+        for file in self.files.values():
+            for each in sorted(file.names, key=lambda name: name.place):
+                kind = each.type if self._is_message(each.type) else ""
+                if not kind and each.kind == "subscribe":
+                    handler = file.handlers.get(each.place, "")
+                    taken = handler if handler.startswith(" ") else parameters.get(handler, "")
+                    kind = type_of(taken) if self._is_message(type_of(taken)) else ""
+                name = constants.get(each.text.rpartition("::")[2]) if each.name is None else each.name
+                found.append(each._replace(type=kind, name=name))
+        return found
+
+    def _agreed(self, found: dict[str, str], what: str) -> dict[str, str]:
+        """What the files say of names together; a name of which they say different things is left out."""
+        unclear = set()
+        for file in self.files.values():
+            for name, value in getattr(file, what).items():
+                if found.setdefault(name, value) != value:
+                    unclear.add(name)
+        return {name: value for name, value in found.items() if name not in unclear}
+
+    # -- headers -------------------------------------------------------------------------------------------------------
+
+    def _read_all(self) -> None:
+        waiting = list(reversed(self.sources))
+        while waiting and len(self.files) < _MOST_FILES:
+            path = waiting.pop()
+            if path in self.files or path in self.unreadable:
+                continue
+            file = self._read(path)
+            if file is None:
+                continue
+            self.files[path] = file
+            self._boost |= {each.name for each in file.includes if each.name.startswith("boost/")}
+            for include in file.includes:
+                own = self._own(path, include.name)
+                if own is not None:
+                    waiting.append(own)
+                elif not self._is_message_header(include.name):
+                    self._unknown.append(include)
+
+    def _read(self, path: Path) -> SourceFile | None:
+        try:
+            if not path.is_file():
+                raise OSError("is no file")
+            if path.stat().st_size > LONGEST_SOURCE:
+                raise OSError(f"has more than {LONGEST_SOURCE:,} bytes")
+            source = path.read_bytes()
+        except OSError as error:
+            self.unreadable[path] = f"{path.name} {error.strerror or error}"
+            return None
+        self.has_plugin |= _NODELET.search(source) is not None
+        return read_source(path, source)
+
+    def _own(self, includer: Path, name: str) -> Path | None:
+        """The file that an include names, when it is the program's own."""
+        if not name or "\0" in name or len(name) > 300:
+            return None
+        for folder in (includer.parent, *self.folders, OURS):
+            file = folder / name
+            if is_file(file):
+                own = folder != OURS and not file.is_relative_to(SYSTEM)
+                return Path(*_without_dots(file.parts)) if own else None
+        return None
+
+    def _is_message_header(self, name: str) -> bool:
+        """Whether a header is made of a message's definition; it is then noted."""
+        kind = name.removesuffix(".h")
+        if not name.endswith(".h") or kind.count("/") != 1:
+            return False
+        for part in _PARTS:
+            if self.library.has(kind.removesuffix(part), "srv"):
+                kind = kind.removesuffix(part)
+        if self._is_message(kind) or self.library.has(kind, "srv"):
+            self.messages.add(kind)
+            return True
+        return False
+
+    def _is_message(self, kind: str) -> bool:
+        return bool(kind) and self.library.has(kind)
+
+    def _look_at_include(self, report: CheckReport, include: Include) -> None:
+        name, place = include.name, include.place
+        if include.conditional or is_standard(name) or is_ours(name):
+            return
+        if name.startswith("boost/"):
+            if not has_boost(name, report.profile):
+                report.add("boost-header", place, f"{name} is not there in the {report.profile} profile")
+            return
+        if is_eigen(name) and has_eigen():
+            return
+        folder = name.partition("/")[0]
+        if folder in ROS_LIBRARIES and "/" in name and not folder.endswith("_msgs"):
+            report.add("ros-library", place, f"{name} is not in the interface library")
+        elif self._generated(name):
+            report.add("ros-library", place, f"{name} is generated by dynamic_reconfigure")
+        elif is_outside(name):
+            report.add("library-outside", place, f"{name} is of a library that has no cFE build")
+        else:
+            report.add("include-unknown", place, f"{name} is not found")
+
+    def _generated(self, name: str) -> bool:
+        """Whether a header is one that a file of dynamic_reconfigure is made into."""
+        return name.endswith("Config.h") and not is_ours("dynamic_reconfigure/server.h")
+
+    # -- the rest ------------------------------------------------------------------------------------------------------
+
+    def _look_at_mains(self, report: CheckReport) -> None:
+        mains = [main for path in self.sources if path in self.files for main in self.files[path].mains]
+        if not mains and not self.has_plugin and self.sources:
+            report.add("main-form", SourcePlace(self.sources[0]), "there is no main")
+        for extra in mains[1:]:
+            report.add("main-form", extra.place, "another main")
+        for main in mains[:1]:
+            if main.takes not in ("nothing", "arguments"):
+                report.add("main-form", main.place, f"main takes ({main.takes})")
+
+    def _look_at_name(self, report: CheckReport, name: GraphName) -> None:
+        if name.name is None and name.kind not in ("parameter",):
+            defaults = self._agreed({}, "defaults")
+            default = defaults.get(name.text)
+            known = "" if default is None else f"; by default it is {default!r}"
+            report.add("topic-not-constant", name.place, f"{name.text} is computed{known}")
+        if name.kind != "subscribe" or name.queue is None:
+            return
+        if name.queue == 0:
+            report.add("queue-unbounded", name.place, f"a queue without a bound: {LONGEST_QUEUE} messages are kept")
+        elif name.queue > LONGEST_QUEUE:
+            report.add("queue-large", name.place, f"a queue of {name.queue:,}: {LONGEST_QUEUE} messages are kept")
+
+
+def subscriptions(names: Sequence[GraphName]) -> Iterator[tuple[GraphName, int]]:
+    """Subscriptions whose type is seen, and how many messages wait in each."""
+    for each in names:
+        if each.kind == "subscribe" and each.type:
+            asked = LONGEST_QUEUE if not each.queue else each.queue
+            yield each, min(asked, LONGEST_QUEUE)
+
+
+def _without_dots(parts: Sequence[str]) -> list[str]:
+    """Parts of a path without `.` and, as far as they can be taken back, `..`."""
+    kept: list[str] = []
+    for part in parts:
+        if part == ".." and kept and kept[-1] not in ("..", "/"):
+            kept.pop()
+        elif part != ".":
+            kept.append(part)
+    return kept

@@ -1,0 +1,179 @@
+"""How many public ROS nodes in C++ convert: `python -m tests.convert.survey SOURCES [--json FILE] [--missing FILE]`.
+
+survey.tsv lists nodes of public repositories by commit; SOURCES has a folder OWNER/NAME for each repository, with the
+sources at that commit. Each node is checked for the host; one that converts there is checked for pool and strict.
+`--report` writes the counts of a JSON file into docs/convertor.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from cfepy.convert import Profile
+from cfepy.convert.check import ABOUT_HEADERS, Level, RuleFinding, check_program, programs_of
+from cfepy.status import UsageError
+
+LIST = Path(__file__).parent / "survey.tsv"
+DOCUMENT = Path(__file__).parents[2] / "docs" / "convertor.md"
+BEGIN, END = "<!-- survey: made by python -m tests.convert.survey --report -->", "<!-- end of survey -->"
+UNREAD = "cmake"
+"""Stands for a rule where a node's CMakeLists.txt does not say what it is made of."""
+
+
+class Node(NamedTuple):
+    """A node of the list.
+
+    Attributes:
+        repository: OWNER/NAME.
+        commit: of its sources.
+        file: that has its main, or its nodelet.
+        kind: "node" or "nodelet".
+    """
+
+    repository: str
+    commit: str
+    file: str
+    kind: str
+
+
+class Verdict(NamedTuple):
+    """What the check says of a node.
+
+    Attributes:
+        repository, file, kind: of the node.
+        refused: by profile: the rules that refuse it; none where it converts.
+        blockers: what refuses it for the host: "rule thing".
+    """
+
+    repository: str
+    file: str
+    kind: str
+    refused: dict[str, list[str]]
+    blockers: list[str]
+
+
+def listed() -> list[Node]:
+    """All nodes of the list."""
+    with LIST.open(encoding="utf-8") as stream:
+        return [Node(**row) for row in csv.DictReader(stream, delimiter="\t")]
+
+
+def verdict_of(node: Node, sources: Path) -> Verdict:
+    """Check a node."""
+    refused: dict[str, list[str]] = {}
+    blockers: list[str] = []
+    try:
+        program = programs_of([str(sources / node.repository / node.file)], {})[0]
+        for profile in Profile:
+            errors = check_program(program, profile, {}, compile_refused=False).at(Level.ERROR)
+            refused[profile.value] = sorted({each.rule for each in errors})
+            if profile is Profile.HOST and errors:
+                about_headers = [each for each in errors if each.rule in ABOUT_HEADERS]
+                blockers = sorted({blocker_of(each) for each in about_headers or errors})
+                refused |= {other.value: refused[profile.value] for other in Profile}
+                break
+    except UsageError as error:
+        refused = {profile.value: [UNREAD] for profile in Profile}
+        blockers = [f"{UNREAD} {error.text}"]
+    return Verdict(node.repository, node.file, node.kind, refused, blockers)
+
+
+def blocker_of(finding: RuleFinding) -> str:
+    """What stands in the way, in words that are the same for all nodes."""
+    text = finding.message
+    if finding.rule in ("ros-library", "boost-header", "include-unknown", "library-outside"):
+        name = text.split()[0]
+        text = name if finding.rule == "boost-header" else name.partition("/")[0]
+        text = "dynamic_reconfigure" if "generated" in finding.message else text
+    else:
+        text = re.sub(r"; did you mean.*", "", text)[:160]
+    return f"{finding.rule} {text}"
+
+
+def missing(verdicts: Iterable[Verdict]) -> Iterator[str]:
+    """What would free the most nodes, most first: how many it alone stands in the way of, how many it does at all."""
+    alone: Counter[str] = Counter()
+    among: Counter[str] = Counter()
+    example: dict[str, str] = {}
+    for each in verdicts:
+        groups = set(each.blockers)
+        for blocker in groups:
+            among[blocker] += 1
+            example.setdefault(blocker, f"{each.repository}/{each.file}")
+        if len(groups) == 1:
+            alone[next(iter(groups))] += 1
+    yield "alone among blocker (example)"
+    for blocker, count in sorted(among.items(), key=lambda item: (-alone[item[0]], -item[1], item[0])):
+        yield f"{alone[blocker]:5} {count:5} {blocker} ({example[blocker]})"
+
+
+def table(verdicts: list[Verdict]) -> str:
+    """The counts as a part of docs/convertor.md."""
+    total = len(verdicts)
+    lines = [f"{total} nodes of {len({each.repository for each in verdicts})} public repositories, by commit:", ""]
+    lines += ["| profile | convert | refused |", "|---|---|---|"]
+    for profile in Profile:
+        converts = sum(not each.refused[profile.value] for each in verdicts)
+        lines.append(f"| {profile.value} | {converts} ({converts * 100 // total} %) | {total - converts} |")
+    rules = Counter(rule for each in verdicts for rule in each.refused[Profile.HOST.value])
+    lines += ["", "What refuses nodes in the host profile (a node may be refused by several rules):", ""]
+    lines += ["| rule | nodes |", "|---|---|"]
+    lines += [f"| {rule} | {count} |" for rule, count in sorted(rules.items(), key=lambda item: (-item[1], item[0]))]
+    by_repository: dict[str, list[Verdict]] = defaultdict(list)
+    for each in verdicts:
+        by_repository[each.repository].append(each)
+    lines += ["", "| repository | nodes | host | pool | strict |", "|---|---|---|---|---|"]
+    for name, those in sorted(by_repository.items(), key=lambda item: (-len(item[1]), item[0].lower())):
+        counts = (str(sum(not each.refused[profile.value] for each in those)) for profile in Profile)
+        lines.append(f"| {name} | {len(those)} | {' | '.join(counts)} |")
+    return "\n".join(lines)
+
+
+def write_report(verdicts: list[Verdict]) -> None:
+    """Put the counts into docs/convertor.md."""
+    text = DOCUMENT.read_text(encoding="utf-8")
+    DOCUMENT.write_text(between(text, BEGIN, END, table(verdicts)), encoding="utf-8")
+
+
+def between(text: str, begin: str, end: str, part: str) -> str:
+    """A text with another part between two marks."""
+    before, _, rest = text.partition(begin)
+    _, _, after = rest.partition(end)
+    return f"{before}{begin}\n\n{part}\n\n{end}{after}"
+
+
+def main() -> None:
+    """Check all nodes, or those of some repositories."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("sources", type=Path, nargs="?", help="folder OWNER/NAME/...")
+    parser.add_argument("--only", default="", help="a part of OWNER/NAME/file")
+    parser.add_argument("--json", type=Path, help="verdicts, read by --report")
+    parser.add_argument("--missing", type=Path, help="gets what would free the most nodes")
+    parser.add_argument("--report", action="store_true", help="write the counts of --json into docs/convertor.md")
+    arguments = parser.parse_args()
+    if arguments.report:
+        write_report([Verdict(**each) for each in json.loads(arguments.json.read_text(encoding="utf-8"))])
+        return
+    verdicts = []
+    for node in listed():
+        if arguments.only in f"{node.repository}/{node.file}":
+            verdict = verdict_of(node, arguments.sources)
+            verdicts.append(verdict)
+            print(verdict.repository, verdict.file, verdict.refused, flush=True)
+            if arguments.missing is not None:
+                arguments.missing.write_text("\n".join(missing(verdicts)) + "\n", encoding="utf-8")
+    if arguments.json is not None:
+        arguments.json.write_text(json.dumps([each._asdict() for each in verdicts], indent=1) + "\n", encoding="utf-8")
+    for profile in Profile:
+        print(profile.value, sum(not each.refused[profile.value] for each in verdicts), "of", len(verdicts), "convert")
+
+
+if __name__ == "__main__":
+    main()
