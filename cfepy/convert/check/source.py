@@ -8,6 +8,7 @@ Each file is read once, for all profiles; what a place means depends on the othe
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -545,7 +546,7 @@ def _parse(source: bytes) -> Tree:
     Raises:
         UsageError: tree-sitter is not installed.
     """
-    return _parser()._parse(source)
+    return _parser().parse(source)
 
 
 def _nodes(root: Node) -> Iterator[Node]:
