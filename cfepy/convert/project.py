@@ -63,6 +63,11 @@ def startup_line(node: ConvertedNode) -> str:
     return f"CFE_APP, {node.file}, {node.entry.symbol}, {app}, {PRIORITY}, {COMPILED_STACK_BYTES}, 0x0, 0;\n"
 
 
+def origin(node: ConvertedNode) -> str:
+    """Where a node comes from: package and type."""
+    return node.node.type if node.entry.nodelet else f"{node.node.package}/{node.node.type}"
+
+
 # -- what is built -----------------------------------------------------------------------------------------------------
 
 
@@ -127,7 +132,7 @@ def _application(node: ConvertedNode) -> dict[str, bytes]:
     program = node.program
     sources = "".join(f"\n    ../packages/{_place(node, each)}" for each in program.sources)
     includes = _include_folders(node)
-    text = f"""# The ROS node {node.node.full_name}, {node.node.package}/{node.node.type}; {MADE}.
+    text = f"""# The ROS node {node.node.full_name}, {origin(node)}; {MADE}.
 include(${{CMAKE_CURRENT_LIST_DIR}}/../roscfe/roscfe.cmake)
 
 roscfe_node({node.file} {MAIN_HEADERS[node.entry.takes_arguments]} fsw/src/{node.file}_entry.cpp{sources}
@@ -252,7 +257,7 @@ def _row(node: ConvertedNode) -> dict[str, Any]:
     used = [name for name, _ in node.entry.rows if name and not name.startswith("+")]
     return {
         "node": node.node.full_name,
-        "from": f"{node.node.package}/{node.node.type}",
+        "from": origin(node),
         "app": node.node.app,
         "entry": node.entry.symbol,
         "sources": [_place(node, each) for each in node.program.sources],

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.parameter_files import merged
-from cfepy.mission.spec import MissionSpec
+from cfepy.mission.spec import BuiltProgram, MissionSpec
 from cfepy.nodes import ROSCORE_PARAMS, CppNode, NodeConfig, RosConfig
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
@@ -54,7 +54,7 @@ def spec_of(
     nodes: Mapping[str, NodeConfig],
     params: Mapping[str, Any],
     notes: tuple[str, ...] = (),
-    built: Mapping[str, tuple[Path, str]] | None = None,
+    built: Mapping[str, BuiltProgram] | None = None,
 ) -> MissionSpec:
     """A mission of ROS nodes that is not on disk; the run ends when all of them have.
 
@@ -63,7 +63,7 @@ def spec_of(
         nodes: by cFE name, each with its script.
         params: the tree of parameters.
         notes: what the user should know.
-        built: nodes in C++ by cFE name: shared object and entry point.
+        built: nodes in C++ by cFE name.
     """
     built = built or {}
     return MissionSpec(
@@ -76,7 +76,7 @@ def spec_of(
         limits=MissionLimits(nodes=len(nodes) + len(built) + ROOM, yields=True),
         startup=lines_for(nodes) + compiled_lines(built) + b"!\n",
         notes=notes,
-        built=files_of_built(built),
+        built=built,
     )
 
 
@@ -102,9 +102,9 @@ def read_launch(file: Path, args: Mapping[str, str] | None = None, build: NodeBu
     return spec_of(file, plan.nodes, plan.params, notes, built)
 
 
-def _built(plan: LaunchPlan, build: NodeBuilder | None) -> tuple[dict[str, tuple[Path, str]], list[str]]:
+def _built(plan: LaunchPlan, build: NodeBuilder | None) -> tuple[dict[str, BuiltProgram], list[str]]:
     """The nodes in C++ of a launch file, built, and notes about those that cannot be."""
-    built: dict[str, tuple[Path, str]] = {}
+    built: dict[str, BuiltProgram] = {}
     notes = []
     names = [f"/{node.name}" for node in plan.nodes.values()]
     names += [node.full_name for node in plan.compiled.values()]
@@ -112,7 +112,8 @@ def _built(plan: LaunchPlan, build: NodeBuilder | None) -> tuple[dict[str, tuple
         if build is None:  # they were not asked for
             break
         try:
-            built[app] = build(node, plan.params, [each for each in names if each != node.full_name])
+            others = [each for each in names if each != node.full_name]
+            built[app] = BuiltProgram(node.full_name, *build(node, plan.params, others))
         except UsageError as error:
             if node.required:
                 text = f"{node.full_name} is required, but cannot be built: {error}"
@@ -190,7 +191,7 @@ def with_launch_files(
     nodes, params, notes = dict(spec.ros.nodes), dict(spec.ros.params), list(spec.notes)
     taken = [entry.name for entry in spec.entries]
     added: dict[str, NodeConfig] = {}
-    built: dict[str, tuple[Path, str]] = {}
+    built: dict[str, BuiltProgram] = {}
     for file, args in launches:
         plan = plan_of(file, args, environ, taken=[*taken, *added, *built], with_compiled=build is not None)
         added.update(plan.nodes)
@@ -201,7 +202,7 @@ def with_launch_files(
     head = spec.startup_script.partition(b"!")[0]
     ros = replace(spec.ros, nodes={**nodes, **added}, params=params)
     startup = head + lines_for(added) + compiled_lines(built) + b"!\n"
-    return replace(spec, ros=ros, startup=startup, notes=tuple(notes), built=files_of_built(built))
+    return replace(spec, ros=ros, startup=startup, notes=tuple(notes), built=built)
 
 
 def mission_environment() -> dict[str, str]:
@@ -220,15 +221,15 @@ def lines_for(nodes: Mapping[str, NodeConfig]) -> bytes:
     return "".join(f"CFE_APP, {app}, __main__, {app}, {numbers};\n" for app in nodes).encode()
 
 
-def compiled_lines(built: Mapping[str, tuple[Path, str]]) -> bytes:
+def compiled_lines(built: Mapping[str, BuiltProgram]) -> bytes:
     """Lines of a startup script for nodes in C++, by cFE name."""
     numbers = f"{PRIORITY}, {COMPILED_STACK_BYTES}, 0x0, {RESTART_NOTHING}"
-    return "".join(f"CFE_APP, {app}, {entry}, {app}, {numbers};\n" for app, (_, entry) in built.items()).encode()
+    return "".join(f"CFE_APP, {app}, {each.entry}, {app}, {numbers};\n" for app, each in built.items()).encode()
 
 
-def files_of_built(built: Mapping[str, tuple[Path, str]]) -> dict[str, Path]:
-    """The shared objects of nodes in C++ by the virtual paths that their lines name."""
-    return {f"/cf/{app}.so": file for app, (file, _) in built.items()}
+def files_of_built(spec: MissionSpec) -> dict[str, Path]:
+    """The shared objects of a mission's nodes in C++ by the virtual paths that their lines name."""
+    return {f"/cf/{app}.so": each.file for app, each in spec.built.items()}
 
 
 def node_script(words: Sequence[str]) -> tuple[Path, list[str]]:
@@ -269,7 +270,13 @@ def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> Miss
     if node is None or build is None:
         return spec_of_script(*node_script(words))
     params = merged(ROSCORE_PARAMS, {})
-    return spec_of(node.folders[0] / "CMakeLists.txt", {}, params, (), {node.app: build(node, params, ())})
+    return spec_of(
+        node.folders[0] / "CMakeLists.txt",
+        {},
+        params,
+        (),
+        {node.app: BuiltProgram(node.full_name, *build(node, params, ()))},
+    )
 
 
 def spec_of_script(script: Path, words: Sequence[str]) -> MissionSpec:

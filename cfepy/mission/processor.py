@@ -20,7 +20,7 @@ from cfepy.evs import EventServices
 from cfepy.fs import FileServices
 from cfepy.mission.call_points import handle_for_apps
 from cfepy.mission.compiled_code import CompiledFiles
-from cfepy.mission.launch import scripts_of
+from cfepy.mission.launch import files_of_built, scripts_of
 from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
 from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
 from cfepy.mission.record import DataRace, RunRecord
@@ -157,7 +157,7 @@ class Processor:
     def _finders(self) -> list[Finder]:
         """What is asked for the code of applications, in this order."""
         machine, folder = self.machine, self.machine.spec.folder
-        self._compiled = CompiledFiles(machine.files, self._make_compiled_loader, machine.spec.built)
+        self._compiled = CompiledFiles(machine.files, self._make_compiled_loader, files_of_built(machine.spec))
         python = PythonLoader(machine.console, lambda: self.handle, AppModules(self._app_universe))
         return [
             BuiltInApps({ROS_FILE: self._ros_main}),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 from cfepy.cached import CachedProperty
 from cfepy.es import StartupEntry
@@ -29,6 +30,20 @@ class CompiledConfig:
     guard: bool = False
 
 
+class BuiltProgram(NamedTuple):
+    """A node in C++ that was built for a mission.
+
+    Attributes:
+        name: full name of the node.
+        file: the shared object.
+        entry: its entry point.
+    """
+
+    name: str
+    file: Path
+    entry: str
+
+
 @dataclass(frozen=True)
 class MissionSpec:
     """What a mission is made of.
@@ -45,7 +60,7 @@ class MissionSpec:
         limits: what it asks for of a platform.
         startup: the startup script of a mission that was made in memory; `script` then names what it was made from.
         notes: what its user should know before it runs.
-        built: shared objects of nodes in C++ that were built for it, by the virtual paths of its startup script.
+        built: nodes in C++ that were built for it, by cFE name.
         demands: sections of the mission file that say what must hold of a run, as they stand there;
             `cfepy.monitors.demands` reads them.
     """
@@ -61,7 +76,7 @@ class MissionSpec:
     compiled: CompiledConfig = field(default_factory=CompiledConfig)
     startup: bytes | None = None
     notes: tuple[str, ...] = ()
-    built: Mapping[str, Path] = field(default_factory=dict)
+    built: Mapping[str, BuiltProgram] = field(default_factory=dict)
     demands: Mapping[str, Marked] = field(default_factory=dict)
 
     @property

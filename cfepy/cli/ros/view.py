@@ -80,6 +80,7 @@ def _missing(row: Any) -> str:
 def _nodes(results: Results, mission: Mission) -> Table:
     table = Table("Nodes", ("name", "state", "restarts"), right=(2,))
     states = {app.name: app.state for app in results.apps}
+    restarts = {app.name: app.restarts for app in results.apps}
     monitor = None if mission.ros is None else mission.ros.monitor
     for app, node in mission.spec.ros.nodes.items():
         if monitor is not None and app in monitor.statuses and not node.respawn:
@@ -87,4 +88,7 @@ def _nodes(results: Results, mission: Mission) -> Table:
         else:
             state = "not started" if states.get(app) == NOT_STARTED else "running"
         table.add(f"/{node.name}", state, 0 if monitor is None else monitor.restarts.get(app, 0))
+    for app, program in mission.spec.built.items():
+        is_there = states.get(app, NOT_STARTED) != NOT_STARTED
+        table.add(program.name, "running" if is_there else "not started", restarts.get(app, 0))
     return table
