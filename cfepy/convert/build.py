@@ -120,8 +120,7 @@ class NodeBuild:
         if self._real_boost:
             sources = collect(program.sources, [*program.includes, *library_includes(real_boost=True)])
         self.sources = sources
-        package = program.package
-        self._configurations = configuration_headers(sources.missing, {package.name: [package.folder]})
+        self._configurations = configuration_headers(sources.missing, program)
         needed = CONFIGURATION_TYPES if self._configurations else ()
         self.types = sorted({*message_types(sources.missing, library), *needed})
 

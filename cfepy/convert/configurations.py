@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.convert.entry import quoted
+from cfepy.convert.packages import Program
 from cfepy.resources import import_path, python_command
 from cfepy.status import UsageError
 from rospy_shim.library_parts import FOLDER
@@ -43,12 +44,12 @@ json.dump({"group": generator.group.to_dict(), "constants": generator.constants}
 """
 
 
-def configuration_headers(headers: Iterable[str], folders: Mapping[str, Sequence[Path]]) -> dict[str, str]:
-    """The texts of the headers of configurations that are among those included.
+def configuration_headers(headers: Iterable[str], program: Program) -> dict[str, str]:
+    """The texts of the headers of configurations of a node's own package that are among those included.
 
     Args:
         headers: as they are included, such as "my_package/MyConfig.h".
-        folders: of packages, by name.
+        program: the node's.
 
     Returns:
         Texts by header.
@@ -62,9 +63,8 @@ def configuration_headers(headers: Iterable[str], folders: Mapping[str, Sequence
         if not slash or not name.endswith(SUFFIX):
             continue
         short = name.removesuffix(SUFFIX)
-        scripts = [folder / "cfg" / f"{short}.cfg" for folder in folders.get(package, ())]
-        script = next((each for each in scripts if each.is_file()), None)
-        if script is not None:
+        script = program.package.folder / "cfg" / f"{short}.cfg"
+        if package == program.package.name and script.is_file():
             made[header] = header_text(package, short, _description(script, short))
     return made
 

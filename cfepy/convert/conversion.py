@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.convert.build import library_includes, provided_packages
+from cfepy.convert.configurations import CONFIGURATION_TYPES, configuration_headers
 from cfepy.convert.entry import NodeEntry, parameter_rows
 from cfepy.convert.names import NodeNames, SourceNames, names_of, texts_below
 from cfepy.convert.packages import MANIFEST, Program, program_of, read_package
@@ -55,6 +56,7 @@ class ConvertedNode:
         program: what it is compiled of.
         sources: all files of it.
         types: message types whose headers it includes.
+        configurations: texts of the headers of configurations that it includes.
         names: its topics and services.
         entry: its entry point.
     """
@@ -65,6 +67,7 @@ class ConvertedNode:
     types: list[str]
     names: NodeNames
     entry: NodeEntry
+    configurations: dict[str, str] = field(default_factory=dict)
 
     @property
     def file(self) -> str:
@@ -195,7 +198,9 @@ def _node(
         takes_arguments=bool(program.nodelet) or main_form(program.sources, package.folder),
         nodelet=program.nodelet,
     )
-    return ConvertedNode(node, program, sources, message_types(seen.missing, library), names, entry)
+    configurations = configuration_headers(seen.missing, program)
+    types = message_types(seen.missing, library) + list(CONFIGURATION_TYPES if configurations else ())
+    return ConvertedNode(node, program, sources, types, names, entry, configurations)
 
 
 def _with_ids(config: RosConfig, nodes: Iterable[ConvertedNode]) -> RosConfig:

@@ -82,6 +82,8 @@ def _library(made: Conversion, profile: Profile) -> dict[str, bytes]:
     with tempfile.TemporaryDirectory(prefix="cfepy-convert-") as scratch:
         for header in write_headers(sorted(types), Path(scratch), profile, made.library):
             found[f"roscfe/msg/{header.relative_to(scratch)}"] = header.read_bytes()
+    for node in made.nodes:
+        found |= {f"roscfe/msg/{name}": text.encode() for name, text in node.configurations.items()}
     for with_arguments, name in MAIN_HEADERS.items():
         found[f"roscfe/{name}"] = main_header(with_arguments).encode()
     sources = [f"src/{each.relative_to(root / 'src')}" for each in library_sources()]
