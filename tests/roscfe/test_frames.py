@@ -13,13 +13,14 @@ from typing import Any
 import pytest
 
 from cfepy.convert.messages import Profile, write_headers
-from rospy_shim.msgs import shipped
+from rospy_shim.msgs import library_of, shipped
 from tests.roscfe.compiling import BOOST, FLIGHT, HEADERS, STRICT, compiled
 from tests.roscfe.frame_scripts import scripts
 from tests.rospy_shim.libraries.world import universe
 
 HERE = Path(__file__).parent
 LIBRARY = [FLIGHT / "src/tf" / name for name in ("text.cpp", "samples.cpp", "tree.cpp", "reports.cpp")]
+LISTENING = [*LIBRARY, FLIGHT / "src/tf/listening.cpp"]
 OURS = [HERE / "frames.cpp", HERE / "stubs.cpp", *LIBRARY]
 REAL = Path("/usr/include/tf2/buffer_core.h")
 LIVES = 40
@@ -175,3 +176,48 @@ def test_without_exceptions_a_failure_ends_the_application(tmp_path: Path) -> No
     assert done.returncode == 3
     text = '"a" passed to lookupTransform argument target_frame does not exist. '
     assert done.stdout == f"refused: exception: {text}\n"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sanitizers", [[], ["-fsanitize=address,undefined"]])
+def test_nothing_is_allocated_in_flight(sanitizers: list[str], tmp_path: Path) -> None:
+    """In the strict profile, for 50 s of four frames at 100 Hz, with a buffer that is too small for 10 s of them."""
+    messages = tmp_path / "messages"
+    types = ["geometry_msgs/TransformStamped", "geometry_msgs/PoseWithCovarianceStamped", "geometry_msgs/PoseStamped"]
+    types += [f"geometry_msgs/{name}Stamped" for name in ("Point", "Quaternion", "Vector3", "Wrench")]
+    write_headers(types, messages, Profile.STRICT, shipped())
+    sources = [HERE / "frames_memory.cpp", HERE / "stubs.cpp", HERE / "bus_stubs.cpp", *LISTENING]
+    options = [*STRICT, "-O1", "-Wno-mismatched-new-delete", "-DROSCFE_PROFILE_STRICT", *sanitizers]
+    made = compiled(tmp_path, sources, *options, headers=(messages, HEADERS, BOOST))
+    done = subprocess.run([made], capture_output=True, text=True, errors="replace", check=False)
+    assert done.returncode == 0, done.stderr
+    printed = done.stdout.splitlines()
+    assert printed[0].startswith("news: 0, ")
+    assert printed[1] == f"forgotten early: {4 * 5000 - 2048}"  # all but what the buffer holds
+    assert printed[2] == "oldest: 1 0"  # 2048 samples are 5.12 s of four frames
+    assert printed[3] == "cut: 142 of 142 refused"
+    assert "The buffer of transforms is full: 2048 samples" in done.stderr
+    assert "runtime error" not in done.stderr
+
+
+@pytest.mark.slow
+def test_the_type_on_the_bus_is_tf2s(tmp_path: Path) -> None:
+    source = tmp_path / "type.cpp"
+    source.write_text(
+        "#include <cstdio>\n#include <cstring>\n"
+        '#include <tf2_msgs/TFMessage.h>\n#include "roscfe/frames/transforms_message.h"\n'
+        "int main()\n{\n"
+        "    typedef roscfe::wire::Traits<roscfe::frames::Transforms> Ours;\n"
+        "    typedef roscfe::wire::Traits<tf2_msgs::TFMessage> Theirs;\n"
+        '    std::printf("%s", Ours::definition());\n'
+        "    return std::strcmp(Ours::md5(), Theirs::md5()) || std::strcmp(Ours::type(), Theirs::type());\n}\n"
+    )
+    messages = tmp_path / "messages"
+    write_headers(["tf2_msgs/TFMessage"], messages, Profile.HOST, shipped())
+    parts_needed = [source, HERE / "stubs.cpp", HERE / "bus_stubs.cpp", *LISTENING]
+    made = compiled(tmp_path, parts_needed, headers=(messages, HEADERS, BOOST))
+    done = subprocess.run([made], capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert library_of("tf2_msgs/TFMessage", done.stdout).md5sum("tf2_msgs/TFMessage") == shipped().md5sum(
+        "tf2_msgs/TFMessage"
+    )
