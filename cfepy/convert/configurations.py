@@ -59,14 +59,19 @@ def configuration_headers(headers: Iterable[str], program: Program) -> dict[str,
     """
     made = {}
     for header in headers:
-        package, slash, name = header.partition("/")
-        if not slash or not name.endswith(SUFFIX):
-            continue
-        short = name.removesuffix(SUFFIX)
-        script = program.package.folder / "cfg" / f"{short}.cfg"
-        if package == program.package.name and script.is_file():
-            made[header] = header_text(package, short, _description(script, short))
+        script = configuration_script(header, program)
+        if script is not None:
+            made[header] = header_text(program.package.name, script.stem, _description(script, script.stem))
     return made
+
+
+def configuration_script(header: str, program: Program) -> Path | None:
+    """The script that a header of a configuration is made of; None when it is another header, or has no script."""
+    package, slash, name = header.partition("/")
+    if package != program.package.name or not slash or not name.endswith(SUFFIX):
+        return None
+    script = program.package.folder / "cfg" / f"{name.removesuffix(SUFFIX)}.cfg"
+    return script if script.is_file() else None
 
 
 def _description(script: Path, name: str) -> dict[str, Any]:
