@@ -10,6 +10,7 @@ from cfepy.pilot.course import BOOT_S, DEFAULT_S, STALLED, SUDDEN, Course
 from cfepy.pilot.pilot import BootError, Flown, Host, LiveRun, booting, fly, takeoff
 from cfepy.pilot.plan import LAUNCH, NODE, RUN, RunPlan
 from cfepy.pilot.results import (
+    ENDED,
     NOT_STARTED,
     AppResult,
     Results,
@@ -25,6 +26,7 @@ from cfepy.pilot.results import (
 __all__ = [
     "BOOT_S",
     "DEFAULT_S",
+    "ENDED",
     "LAUNCH",
     "NODE",
     "NOT_STARTED",

@@ -14,7 +14,7 @@ from cfepy.cli.options import plan_of
 from cfepy.cli.run.outputs import Outputs
 from cfepy.cli.run.run import View, fly_and_tell
 from cfepy.mission import Mission
-from cfepy.pilot import BOOT_S, NODE, Flown
+from cfepy.pilot import BOOT_S, ENDED, NODE, Flown
 
 FAULT = "cfepy fault "  # how lines about faults begin
 _OWN_LINE = re.compile(r"\[[\w/]+\] (.*)", re.DOTALL)  # as the console has what nodes print
@@ -92,5 +92,7 @@ def _status(flown: Flown, longer: str) -> int:
     tell((*results.script_problems, *results.problems))
     if results.script_problems or results.problems:
         return FOUND_PROBLEMS
+    if any(each.name in mission.spec.built and each.state == ENDED for each in results.apps):
+        return ENDED_WELL
     tell([f"the node still runs after {results.virtual_s - BOOT_S:g} virtual seconds; {longer}"])
     return ENDED_WELL

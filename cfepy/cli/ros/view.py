@@ -14,10 +14,11 @@ from cfepy.cli.run.report import faults, show_speed
 from cfepy.cli.run.run import View
 from cfepy.cli.table import Table, show_tables
 from cfepy.mission import Mission
-from cfepy.pilot import BOOT_S, NOT_STARTED, Flown, Results
+from cfepy.pilot import BOOT_S, ENDED, NOT_STARTED, Flown, Results
 
 LOG_TOPIC = "/rosout"
 _OF_NODES = re.compile(r"\[[\w/]+\] |launch: |cfepy fault ")  # how lines of nodes begin, and what is said about them
+_STATES = {NOT_STARTED: "not started", ENDED: "ended"}
 
 
 class NodesDisplay:
@@ -89,6 +90,6 @@ def _nodes(results: Results, mission: Mission) -> Table:
             state = "not started" if states.get(app) == NOT_STARTED else "running"
         table.add(f"/{node.name}", state, 0 if monitor is None else monitor.restarts.get(app, 0))
     for app, program in mission.spec.built.items():
-        is_there = states.get(app, NOT_STARTED) != NOT_STARTED
-        table.add(program.name, "running" if is_there else "not started", restarts.get(app, 0))
+        state = _STATES.get(states.get(app, NOT_STARTED), "running")
+        table.add(program.name, state, restarts.get(app, 0))
     return table
