@@ -37,7 +37,7 @@ def found(report: CheckReport) -> dict[str, tuple[int, int]]:
         ("#include <gazebo/gazebo.hh>", "library-outside", 1),
         ("#include <QApplication>", "library-outside", 1),
         ("#include <moveit/move_group_interface/move_group_interface.h>", "ros-library", 1),
-        ("#include <rover/DriveConfig.h>", "ros-library", 1),
+        ("#include <rover/DriveConfig.h>", "include-unknown", 1),
         ("#include <boost/asio.hpp>", "boost-header", 1),
         ("void f() { throw 1; }", "throw", 12),
         ("void f() { try { g(); } catch (...) { } }", "catch", 25),
