@@ -9,6 +9,7 @@ import pytest
 
 from cfepy.cli.main import main
 from tests.cli.parsers import options, parsers
+from tests.convert.ping import ping_package
 
 DATA = Path(__file__).parents[1] / "data"
 LAB = ["lab", "--for", "0.7"]
@@ -18,6 +19,7 @@ COMMANDS: dict[str, list[str]] = {
     "explore": ["explore", *LAB, "--seeds", "1", "--jobs", "1", "--no-stuck"],
     "mids": ["mids", *LAB],
     "check": ["check", "lab"],
+    "convert": ["convert", "{ping}/launch/ping.launch", "-o", "{made}"],
     "graph": ["graph", *LAB],
     "tlm": ["tlm", *LAB],
     "log": ["log", "{data}/cfe_evs.log"],
@@ -29,8 +31,9 @@ FLOWN_ALIKE = ("launch", "node", "replay", "topic ", "service ")  # of nodes; th
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_nothing_else_is_on_standard_output(command: str, capsys: pytest.CaptureFixture[str]) -> None:
-    main([word.format(data=DATA) for word in COMMANDS[command]] + ["--json", "-"])
+def test_nothing_else_is_on_standard_output(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    ping = ping_package(tmp_path) if command == "convert" else None
+    main([word.format(data=DATA, ping=ping, made=tmp_path / "made") for word in COMMANDS[command]] + ["--json", "-"])
     out = capsys.readouterr().out
     for text in out.splitlines() if command in LINES else [out]:
         json.loads(text)

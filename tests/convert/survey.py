@@ -1,8 +1,9 @@
 """How many public ROS nodes in C++ convert: `python -m tests.convert.survey SOURCES [--json FILE] [--missing FILE]`.
 
-survey.tsv lists nodes of public repositories by commit; SOURCES has a folder OWNER/NAME for each repository, with the
-sources at that commit. Each node is checked for the host; one that converts there is checked for pool and strict.
-`--report` writes the counts of a JSON file into docs/convertor.md.
+survey.tsv lists nodes of public repositories by commit. SOURCES has a folder OWNER/NAME for each repository, with the
+sources at that commit; those of kind "messages", from which others take definitions, are in _messages/OWNER/NAME. All
+packages of a node's repository are seen, as in a catkin workspace. Each node is checked for the host; one that converts
+there is checked for pool and strict, too. `--report` writes the counts of a JSON file into docs/convertor.md.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import argparse
 import csv
 import json
+import os
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
@@ -34,7 +36,7 @@ class Node(NamedTuple):
         repository: OWNER/NAME.
         commit: of its sources.
         file: that has its main, or its nodelet.
-        kind: "node" or "nodelet".
+        kind: "node", "nodelet", or "messages" for a repository that has definitions for others.
     """
 
     repository: str
@@ -69,10 +71,12 @@ def verdict_of(node: Node, sources: Path) -> Verdict:
     """Check a node."""
     refused: dict[str, list[str]] = {}
     blockers: list[str] = []
+    folder = sources / node.repository
+    environ = {"ROS_PACKAGE_PATH": f"{folder}{os.pathsep}{sources / '_messages'}"}
     try:
-        program = programs_of([str(sources / node.repository / node.file)], {})[0]
+        program = programs_of([str(folder / node.file)], environ)[0]
         for profile in Profile:
-            errors = check_program(program, profile, {}, compile_refused=False).at(Level.ERROR)
+            errors = check_program(program, profile, environ, compile_refused=False).at(Level.ERROR)
             refused[profile.value] = sorted({each.rule for each in errors})
             if profile is Profile.HOST and errors:
                 about_headers = [each for each in errors if each.rule in ABOUT_HEADERS]
@@ -91,7 +95,6 @@ def blocker_of(finding: RuleFinding) -> str:
     if finding.rule in ("ros-library", "boost-header", "include-unknown", "library-outside"):
         name = text.split()[0]
         text = name if finding.rule == "boost-header" else name.partition("/")[0]
-        text = "dynamic_reconfigure" if "generated" in finding.message else text
     else:
         text = re.sub(r"; did you mean.*", "", text)[:160]
     return f"{finding.rule} {text}"
@@ -163,7 +166,7 @@ def main() -> None:
         return
     verdicts = []
     for node in listed():
-        if arguments.only in f"{node.repository}/{node.file}":
+        if node.kind != "messages" and arguments.only in f"{node.repository}/{node.file}":
             verdict = verdict_of(node, arguments.sources)
             verdicts.append(verdict)
             print(verdict.repository, verdict.file, verdict.refused, flush=True)

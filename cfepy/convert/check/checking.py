@@ -12,7 +12,6 @@ from cfepy.convert.check.compiler import Compiler, tell
 from cfepy.convert.check.findings import CheckReport, SourcePlace, SubscriptionMemory
 from cfepy.convert.check.headers import write_refusal, write_refusals
 from cfepy.convert.check.program import ProgramSources, subscriptions
-from cfepy.convert.configurations import configuration_headers, configuration_script
 from cfepy.convert.messages import Capacities, Profile, write_headers
 from cfepy.convert.packages import Program
 from cfepy.status import UsageError
@@ -46,13 +45,8 @@ def check_program(
     """
     report = CheckReport(program.type, profile)
     packages = Packages(program.package.folder / "CMakeLists.txt", environ)
-    library = Library([OnDisk(packages)], base=shipped())
-    sources = ProgramSources(
-        program.sources,
-        program.includes,
-        library,
-        lambda header: configuration_script(header, program) is not None,
-    )
+    sources = ProgramSources(program.sources, program.includes, Library([OnDisk(packages)], base=shipped()))
+    sources.make_configurations(report, program)
     sources.look(report)
     if report.is_refused and not compile_refused:
         return report
@@ -76,9 +70,9 @@ def _compile(
         except UsageError as error:
             rule = "capacity-missing" if "capacity" in error.text else "message-definition"
             write_refusal(refusals / f"{kind}.h", error.text, rule)
-    for header, text in configuration_headers(sorted(sources.configurations), program).items():
-        (messages / header).parent.mkdir(exist_ok=True)
-        (messages / header).write_text(text, encoding="utf-8")
+    for name, text in sources.generated.items():
+        (messages / name).parent.mkdir(parents=True, exist_ok=True)
+        (messages / name).write_text(text, encoding="utf-8")
     folders = [*program.includes, messages, *library_includes(real_boost), refusals]
     compiler = Compiler(report.profile, folders, program.definitions)
     accepted = True

@@ -211,7 +211,10 @@ def _diagnostics(said: str) -> tuple[list[Diagnostic], str]:
     return errors, problem[:300]
 
 
-ABOUT_HEADERS = ("include-unknown", "library-outside", "ros-library", "boost-header")
+ABOUT_HEADERS = (
+    *("include-unknown", "library-outside", "ros-library", "boost-header"),
+    *("message-definition", "capacity-missing", "configuration"),
+)
 """Rules about headers that are not there."""
 _BAD = ("error", "fatal error", "internal compiler error", "sorry, unimplemented")
 

@@ -265,5 +265,10 @@ def write_refusals(folder: Path, real_boost: bool) -> list[str]:
 def write_refusal(file: Path, why: str, rule: str) -> None:
     """Write a header that refuses, with the rule behind the text."""
     file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(refusal(why, rule), encoding="utf-8")
+
+
+def refusal(why: str, rule: str) -> str:
+    """The text of a header that refuses."""
     text = why.replace("\n", " ").replace('"', "'")
-    file.write_text(f'#error "roscfe: {text} [{rule}]"\n', encoding="utf-8")
+    return f'#error "roscfe: {text} [{rule}]"\n'

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from cfepy.convert.check.findings import CheckReport, GraphName, SourcePlace
@@ -20,10 +20,13 @@ from cfepy.convert.check.headers import (
     is_outside,
     is_small_boost,
     is_standard,
+    refusal,
 )
 from cfepy.convert.check.source import Include, SourceFile, read_source, type_of
-from cfepy.convert.configurations import CONFIGURATION_TYPES
+from cfepy.convert.configurations import configuration_headers
 from cfepy.convert.messages import Profile
+from cfepy.convert.packages import Program
+from cfepy.status import UsageError
 from rospy_shim.msgs import Library
 
 LONGEST_SOURCE = 2_000_000
@@ -42,25 +45,18 @@ class ProgramSources:
         sources: files that are compiled.
         folders: of the include path.
         library: message definitions.
-        configurations: says of a header whether it is made of a configuration of the package.
     """
 
-    def __init__(
-        self,
-        sources: Sequence[Path],
-        folders: Sequence[Path],
-        library: Library,
-        configurations: Callable[[str], bool] = lambda header: False,
-    ) -> None:
+    def __init__(self, sources: Sequence[Path], folders: Sequence[Path], library: Library) -> None:
         self.sources = list(sources)
         self.folders = list(folders)
         self.library = library
-        self._is_configuration = configurations
-        self.configurations: set[str] = set()
         self.files: dict[Path, SourceFile] = {}
         self.unreadable: dict[Path, str] = {}
         self.messages: set[str] = set()
         self.has_plugin = False
+        self.generated: dict[str, str] = {}
+        """Texts of headers that are made of the package's configurations, by name."""
         self._unknown: list[Include] = []
         self._boost: set[str] = set()
         self._read_all()
@@ -84,6 +80,20 @@ class ProgramSources:
         report.names += self.names()
         for name in report.names:
             self._look_at_name(report, name)
+
+    def make_configurations(self, report: CheckReport, program: Program) -> None:
+        """Make the headers of the configurations, which takes the packages' scripts in `cfg`.
+
+        Args:
+            report: gets what is wrong with a script.
+            program: says which packages are looked through.
+        """
+        for include in self._unknown:
+            try:
+                self.generated |= configuration_headers([include.name], program)
+            except UsageError as error:
+                report.add("configuration", include.place, str(error))
+                self.generated[include.name] = refusal(error.text, "configuration")
 
     def takes_real_boost(self, profile: Profile) -> bool:
         """Whether the program is built with the Boost of this computer, since the small one has not all of it."""
@@ -138,9 +148,6 @@ class ProgramSources:
                 own = self._own(path, include.name)
                 if own is not None:
                     waiting.append(own)
-                elif self._is_configuration(include.name):
-                    self.configurations.add(include.name)
-                    self.messages.update(CONFIGURATION_TYPES)
                 elif not self._is_message_header(include.name):
                     self._unknown.append(include)
 
@@ -186,7 +193,7 @@ class ProgramSources:
 
     def _look_at_include(self, report: CheckReport, include: Include) -> None:
         name, place = include.name, include.place
-        if include.conditional or is_standard(name) or is_ours(name):
+        if include.conditional or is_standard(name) or is_ours(name) or name in self.generated:
             return
         if name.startswith("boost/"):
             if not has_boost(name, report.profile):

@@ -21,7 +21,7 @@ def programs_of(words: Sequence[str], environ: Mapping[str, str]) -> list[Progra
         environ: says where packages are.
 
     Returns:
-        Them, each once; of a package its plugins, such as nodelets, behind its executables.
+        Them, each once; of a package the libraries of its nodelets behind its executables.
 
     Raises:
         UsageError: there is nothing of that name, or it has no C++ node.
@@ -50,18 +50,23 @@ def _of_file(path: Path, environ: Mapping[str, str]) -> Program:
     if name is None or folder is None:
         return Program(CppPackage("", path.parent), path.stem, [path])
     package = read_package(folder, name)
+    include = folder / "include"
+    includes = [*package.includes, *([include] if include.is_dir() else [])]
+    nodelets = {each.library: name for name, each in package.nodelets().items()}
     for target in package.targets.values():
         if any(os.path.abspath(target.folder / each) == str(path) for each in target.sources):
-            return _program(package, target.file_name or target.name, environ)
-    include = folder / "include"
-    return Program(package, path.stem, [path], [*package.includes, *([include] if include.is_dir() else [])])
+            kind = nodelets.get(target.name) if target.is_library else target.file_name or target.name
+            if kind is not None:
+                return _program(package, kind, environ)
+            return Program(package, path.stem, [path], [*target.includes, *includes], target.definitions)
+    return Program(package, path.stem, [path], includes)
 
 
 def _of_package(folder: Path, environ: Mapping[str, str]) -> list[Program]:
     name = Packages(folder / MANIFEST, environ).package_of(folder / MANIFEST) or folder.name
     package = read_package(folder, name)
-    plugins = {each.library for each in package.plugins.values()}
-    types = [*package.executables(), *sorted(plugins & set(package.targets))]
+    nodelets = {each.library: name for name, each in package.nodelets().items() if each.library in package.targets}
+    types = [*package.executables(), *sorted(nodelets.values())]
     if not types:
         raise UsageError(f"package {name!r} has no C++ node", file=folder)
     return [_program(package, each, environ) for each in types]

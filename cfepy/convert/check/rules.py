@@ -103,6 +103,12 @@ RULES: dict[str, CheckRule] = {
             "mend the .msg, .srv or .action file, or put the package of the other message on ROS_PACKAGE_PATH",
         ),
         CheckRule(
+            *("configuration", _E, _E, _E),
+            "a script in cfg/ that fails",
+            "the header of the configuration cannot be made of it",
+            "mend the script; it is run as by a catkin build",
+        ),
+        CheckRule(
             *("capacity-missing", None, None, _E),
             "an array of messages without a capacity",
             "a message has a fixed size in this profile, and such arrays multiply",
