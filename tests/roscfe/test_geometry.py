@@ -1,0 +1,56 @@
+"""tf2_geometry_msgs and tf2/utils.h in C++ give what the real ones give: recorded, and beside them where they are."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from cfepy.convert.messages import Profile, write_headers
+from rospy_shim.msgs import shipped
+from tests.roscfe.compiling import BOOST, HEADERS, STRICT, compiled
+from tests.roscfe.test_linear_math import answers, inputs
+
+HERE = Path(__file__).parent
+SOURCE = HERE / "geometry.cpp"
+RECORDED = HERE / "geometry.txt"
+REAL = Path("/usr/include/tf2_geometry_msgs"), Path("/usr/include/kdl"), Path("/usr/include/eigen3")
+NAMES = "PoseWithCovariance", "Point", "Quaternion", "Vector3", "Wrench", "Transform", "Pose"
+CASES = 1000
+ON_RECORD = 4
+
+
+def ours(folder: Path, *options: str) -> Path:
+    messages = folder / "messages"
+    write_headers([f"geometry_msgs/{name}Stamped" for name in NAMES], messages, Profile.HOST, shipped())
+    sources = [SOURCE, HERE / "stubs.cpp"]
+    return compiled(folder, sources, *options, "-O2", name="ours", headers=(messages, HEADERS, BOOST))
+
+
+def words(line: str) -> list[str | float]:
+    """The words of a line; numbers to 12 digits, since libraries differ in the last ones of sines."""
+    return [pytest.approx(float.fromhex(word), rel=1e-12, abs=1e-12) if "0x" in word else word for word in line.split()]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("options", [STRICT, ["-Wall", "-Wextra", "-Werror"]])
+def test_as_recorded(options: list[str], tmp_path: Path) -> None:
+    found = answers(ours(tmp_path, *options), inputs(ON_RECORD))
+    wanted = RECORDED.read_text().splitlines()
+    assert len(found) == len(wanted) == 46 * ON_RECORD
+    for line, other in zip(found, wanted, strict=True):
+        assert [float.fromhex(word) if "0x" in word else word for word in line.split()] == words(other)
+
+
+@pytest.mark.slow
+def test_as_in_a_real_ros(tmp_path: Path) -> None:
+    if not all(path.is_dir() for path in REAL):
+        pytest.skip("there is no libtf2-geometry-msgs-dev on this computer; the record has to do")
+    libraries = ["-ltf2", "-lrostime", "-lorocos-kdl", "-lboost_thread", "-lboost_system"]
+    real = tmp_path / "real"
+    command = ["g++", "-std=c++17", "-w", "-O2", "-I/usr/include/eigen3", str(SOURCE), *libraries, "-o", str(real)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    cases = inputs(CASES)
+    assert answers(ours(tmp_path, *STRICT), cases) == answers(real, cases)
