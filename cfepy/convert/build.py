@@ -34,6 +34,8 @@ STRICT_WARNINGS = ("-Wextra", "-Werror")
 WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep")
 """Functions of libc in whose place the library's are called: they would end or hold up the whole computer."""
 LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic")
+BOOST_REFUSED = ("config.hpp", "version.hpp")
+"""Headers of the small Boost that stop a header of the real one which was found by chance."""
 SYSTEM_ROS = ("/opt/ros/", "/usr/include/ros/", "/usr/local/include/ros/")
 MOST_AT_ONCE = 2
 """Compilers that run at the same time."""
@@ -56,6 +58,16 @@ def library_includes(real_boost: bool = False) -> list[Path]:
     """
     folder = library_folder()
     return [folder / "include", *([] if real_boost else [folder / "boost"])]
+
+
+def needs_real_boost(sources: SourceSet) -> bool:
+    """Whether sources include a header of Boost that the small one lacks, or refuses.
+
+    Args:
+        sources: collected with the small one among the folders.
+    """
+    refused = {library_folder() / "boost" / "boost" / name for name in BOOST_REFUSED}
+    return any(each.startswith("boost/") for each in sources.missing) or not refused.isdisjoint(sources.contents)
 
 
 def library_sources() -> list[Path]:
@@ -116,7 +128,7 @@ class NodeBuild:
         self._profile = profile
         self._types = library
         sources = collect(program.sources, [*program.includes, *library_includes()])
-        self._real_boost = any(each.startswith("boost/") for each in sources.missing)
+        self._real_boost = needs_real_boost(sources)
         if self._real_boost:
             sources = collect(program.sources, [*program.includes, *library_includes(real_boost=True)])
         self.sources = sources

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.convert.build import library_includes, needs_real_boost
 from cfepy.convert.messages import Capacities, Profile, write_headers
+from cfepy.convert.sources import collect
 from cfepy.status import UsageError
 from rospy_shim.msgs import Library, shipped
 from rospy_shim.msgs.sources import Definition, Texts
@@ -139,3 +141,12 @@ def test_the_definition_is_that_of_the_connection_header(tmp_path: Path) -> None
     assert r'"# a \"comment\" \\ \303\244\n"' in text
     assert f'"{of.md5sum("demo/All")}"' in text
     assert '"MSG: demo/Inner\\n"' in text
+
+
+@pytest.mark.parametrize(
+    ("header", "real"), [("bind", False), ("shared_ptr", False), ("version", True), ("config", True), ("thread", True)]
+)
+def test_which_headers_of_boost_need_the_real_one(tmp_path: Path, header: str, real: bool) -> None:
+    source = tmp_path / "node.cpp"
+    source.write_text(f"#include <boost/{header}.hpp>\n")
+    assert needs_real_boost(collect([source], library_includes())) is real

@@ -6,12 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.convert.messages import Profile, write_headers
+from cfepy.c import CompilerError
+from cfepy.convert.build import BOOST_REFUSED
+from cfepy.convert.memory import sizes_of
+from cfepy.convert.messages import Capacities, Profile, write_headers
+from cfepy.status import UsageError
 from tests.roscfe.building import FLIGHT_FLAGS, ROSCFE, STRICT_FLAGS, complaints, needs_cpp
 from tests.roscfe.random_messages import LIBRARY, all_types, capacities
 
 pytestmark = [pytest.mark.slow, needs_cpp]
-REFUSALS = ("config", "version", "callable_traits", "hana", "hof", "mp11", "preprocessor", "iterator")
 BOOST = sorted((ROSCFE / "boost").rglob("*.hpp"))
 LACKING = ("thread", "lexical_cast", "regex", "filesystem", "date_time", "format", "optional", "tuple/tuple", "any")
 
@@ -19,7 +22,7 @@ LACKING = ("thread", "lexical_cast", "regex", "filesystem", "date_time", "format
 @pytest.mark.parametrize("header", BOOST, ids=lambda path: path.stem)
 def test_a_header_of_boost_stands_by_itself(tmp_path: Path, header: Path) -> None:
     said = complaints(tmp_path, f"#include <{header.relative_to(ROSCFE / 'boost')}>\n" * 2)
-    if header.stem in REFUSALS:
+    if header.name in BOOST_REFUSED:
         assert "[library-outside]" in said
     else:
         assert not said
@@ -53,3 +56,19 @@ def test_all_messages_in_one_file(tmp_path: Path, profile: Profile) -> None:
     macros = "".join(f"#undef {name}\n#define {name} (nothing)\n" for name in names)  # as platforms have them
     text = macros + "".join(f"#include <{path.relative_to(tmp_path)}>\n" for path in made)
     assert not complaints(tmp_path, text, f"-I{tmp_path}")
+
+
+def test_sizes_are_those_of_the_compiler(tmp_path: Path) -> None:
+    capacity = Capacities(text=64, array=16)
+    write_headers(["sensor_msgs/LaserScan"], tmp_path, Profile.STRICT, LIBRARY, capacity)
+    includes = [tmp_path, ROSCFE / "include", ROSCFE / "boost"]
+    sizes = sizes_of(["sensor_msgs/LaserScan", "std_msgs/Header"], includes)
+    assert sizes["std_msgs/Header"] == 4 + 8 + (4 + 64 + 1 + 3)  # a count, the letters, a zero, three bytes of a gap
+    assert sizes["sensor_msgs/LaserScan"] == sizes["std_msgs/Header"] + 7 * 4 + 2 * (4 + 16 * 4)
+
+
+def test_sizes_of_a_type_without_a_header(tmp_path: Path) -> None:
+    with pytest.raises(CompilerError, match="std_msgs/Header.h"):
+        sizes_of(["std_msgs/Header"], [tmp_path])
+    with pytest.raises(UsageError, match="no-such-compiler cannot be started"):
+        sizes_of(["std_msgs/Header"], [tmp_path], ["no-such-compiler"])

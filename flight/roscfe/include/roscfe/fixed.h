@@ -162,6 +162,8 @@ class FixedString
             std::memset(text_ + size_, letter, count - size_);
         close(count);
     }
+    // As resize, for one who has asked whether it fits, and who overwrites all of it.
+    void resize_fitting(size_type count) { close(count); }
     void push_back(char letter) { append(1, letter); }
     void pop_back() { close(size_ - 1u); }
 
@@ -502,12 +504,8 @@ class FixedVector
             items_[index] = value;
         size_ = static_cast<std::uint32_t>(count);
     }
-    // As resize, but what is new has any value: for one who overwrites all of it.
-    void resize_for_overwrite(size_type count)
-    {
-        room(count);
-        size_ = static_cast<std::uint32_t>(count);
-    }
+    // As resize, for one who has asked whether it fits, and who overwrites all of it.
+    void resize_fitting(size_type count) { size_ = static_cast<std::uint32_t>(count); }
 
     void push_back(const T &value)
     {
@@ -536,7 +534,9 @@ class FixedVector
         clear();
         if constexpr (std::is_base_of<std::forward_iterator_tag, Category>::value)
         {
-            resize_for_overwrite(static_cast<size_type>(std::distance(first, last)));
+            const size_type count = static_cast<size_type>(std::distance(first, last));
+            room(count);
+            resize_fitting(count);
             std::copy(first, last, begin());
         }
         else

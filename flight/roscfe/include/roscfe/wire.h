@@ -367,12 +367,25 @@ class Reader
     template <class T, std::size_t N>
     static void resize(FixedVector<T, N> &items, std::size_t number)
     {
-        items.resize_for_overwrite(number);
+        items.resize_fitting(number);
+    }
+    template <std::size_t N>
+    static void resize(FixedString<N> &text, std::size_t number)
+    {
+        text.resize_fitting(number);
     }
 };
 
 namespace detail
 {
+
+// The memory of values that is what is on the wire.
+template <class Stream, class T>
+void image(Stream &stream, T *values, std::size_t count)
+{
+    typedef typename std::conditional<std::is_const<T>::value, const std::uint8_t, std::uint8_t>::type Byte;
+    stream.raw(reinterpret_cast<Byte *>(values), count * sizeof(T));
+}
 
 // The items of a vector or an array: in one piece where their memory is what is on the wire.
 template <class Stream, class T>
@@ -382,10 +395,7 @@ void items(Stream &stream, T &values)
     if constexpr (is_number<Value>)
         stream.raw(values.data(), values.size());
     else if constexpr (is_image<Value>())
-    {
-        typedef typename std::conditional<std::is_const<T>::value, const std::uint8_t, std::uint8_t>::type Byte;
-        stream.raw(reinterpret_cast<Byte *>(values.data()), values.size() * sizeof(Value));
-    }
+        image(stream, values.data(), values.size());
     else if constexpr (std::is_same<Stream, Length>::value && is_fixed<Value>())
         stream.add(values.size() * least<Value>());
     else
@@ -413,6 +423,10 @@ void item(Stream &stream, T &value)
     }
     else if constexpr (is_number<Value>)
         stream.raw(&value, 1);
+    else if constexpr (std::is_same<Stream, Length>::value && is_fixed<Value>())
+        stream.add(least<Value>());
+    else if constexpr (is_image<Value>())
+        image(stream, &value, 1);
     else if constexpr (is_time<Value>)
     {
         stream.raw(&value.sec, 1);
