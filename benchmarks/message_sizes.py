@@ -6,6 +6,7 @@ that has several types shares the parts that are the same. Memory is sizeof.
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -13,7 +14,6 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from cfepy.convert.memory import sizes_of
 from cfepy.convert.messages import Capacities, Profile, write_headers
 from cfepy.resources import shipped as shipped_files
 from rospy_shim.msgs import shipped
@@ -28,6 +28,7 @@ TYPES = (
 )
 COMPILERS = {"x86-64": ("g++",), "ARM": ("arm-linux-gnueabihf-g++",)}
 FLAGS = ("-std=c++17", "-Os", "-fno-exceptions", "-fno-rtti", "-fno-asynchronous-unwind-tables")
+SIZE = re.compile(r"^\s*\.size\s+size_(\d+),\s*(\d+)", re.MULTILINE)
 ITEMS = 8  # capacity of an array of messages
 CODE = """
 #include <{name}.h>
@@ -52,6 +53,17 @@ def code_size(name: str, includes: Sequence[Path], compiler: Sequence[str], fold
     return sum(int(row[1]) for row in rows)
 
 
+def memory_of(types: Sequence[str], includes: Sequence[Path], compiler: Sequence[str]) -> dict[str, int]:
+    """sizeof of each type, which for another computer only its compiler knows."""
+    lines = [f"#include <{name}.h>" for name in types]
+    lines += [
+        f'extern "C" {{ char size_{number}[sizeof({name.replace("/", "::")})]; }}' for number, name in enumerate(types)
+    ]
+    command = [*compiler, *FLAGS, *(f"-I{folder}" for folder in includes), "-S", "-x", "c++", "-", "-o", "-"]
+    done = subprocess.run(command, input="\n".join(lines) + "\n", capture_output=True, text=True, check=True)
+    return {types[int(number)]: int(size) for number, size in SIZE.findall(done.stdout)}
+
+
 def capacities() -> Capacities:
     """The default capacities, and `ITEMS` for each array of messages."""
     library = shipped()
@@ -70,7 +82,7 @@ def table() -> str:
             folder = Path(scratch)
             write_headers(TYPES, folder, profile, shipped(), capacities())
             includes = [folder, headers / "include", headers / "boost"]
-            memory = sizes_of(TYPES, includes, COMPILERS[target])
+            memory = memory_of(TYPES, includes, COMPILERS[target])
             for name in TYPES:
                 cells[name].append(f"{code_size(name, includes, COMPILERS[target], folder):,} / {memory[name]:,}")
             print(f"{target}, {profile}", file=sys.stderr)

@@ -6,17 +6,19 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.c import CompilerError
 from cfepy.convert.build import BOOST_REFUSED
-from cfepy.convert.memory import sizes_of
-from cfepy.convert.messages import Capacities, Profile, write_headers
-from cfepy.status import UsageError
+from cfepy.convert.messages import Profile, write_headers
 from tests.roscfe.building import FLIGHT_FLAGS, ROSCFE, STRICT_FLAGS, complaints, needs_cpp
 from tests.roscfe.random_messages import LIBRARY, all_types, capacities
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 BOOST = sorted((ROSCFE / "boost").rglob("*.hpp"))
 LACKING = ("thread", "lexical_cast", "regex", "filesystem", "date_time", "format", "optional", "tuple/tuple", "any")
+NO_SERIALIZER = "specialise ros::serialization::Serializer for it"
+OWN = """
+#include "roscfe/message.h"
+struct Own { int a; };
+"""
 
 
 @pytest.mark.parametrize("header", BOOST, ids=lambda path: path.stem)
@@ -58,17 +60,16 @@ def test_all_messages_in_one_file(tmp_path: Path, profile: Profile) -> None:
     assert not complaints(tmp_path, text, f"-I{tmp_path}")
 
 
-def test_sizes_are_those_of_the_compiler(tmp_path: Path) -> None:
-    capacity = Capacities(text=64, array=16)
-    write_headers(["sensor_msgs/LaserScan"], tmp_path, Profile.STRICT, LIBRARY, capacity)
-    includes = [tmp_path, ROSCFE / "include", ROSCFE / "boost"]
-    sizes = sizes_of(["sensor_msgs/LaserScan", "std_msgs/Header"], includes)
-    assert sizes["std_msgs/Header"] == 4 + 8 + (4 + 64 + 1 + 3)  # a count, the letters, a zero, three bytes of a gap
-    assert sizes["sensor_msgs/LaserScan"] == sizes["std_msgs/Header"] + 7 * 4 + 2 * (4 + 16 * 4)
-
-
-def test_sizes_of_a_type_without_a_header(tmp_path: Path) -> None:
-    with pytest.raises(CompilerError, match="std_msgs/Header.h"):
-        sizes_of(["std_msgs/Header"], [tmp_path])
-    with pytest.raises(UsageError, match="no-such-compiler cannot be started"):
-        sizes_of(["std_msgs/Header"], [tmp_path], ["no-such-compiler"])
+@pytest.mark.parametrize(
+    ("use", "said"),
+    [
+        ("roscfe::wire::length(Own())", NO_SERIALIZER),
+        ("ros::serialization::serializationLength(Own())", NO_SERIALIZER),
+        ("roscfe::wire::Traits<Own>::md5()", "no message: specialise ros::message_traits::MD5Sum for it"),
+        ("ros::message_traits::datatype<Own>()", "no message: specialise ros::message_traits::DataType for it"),
+        ("ros::message_traits::hasHeader<Own>()", ""),
+    ],
+)
+def test_a_type_that_is_no_message_is_told_apart(tmp_path: Path, use: str, said: str) -> None:
+    text = complaints(tmp_path, f"{OWN}\nauto made = {use};\n")
+    assert said in text if said else not text
