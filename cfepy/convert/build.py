@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 import subprocess
+import sys
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -234,6 +235,7 @@ def built_core(profile: Profile, real_boost: bool, library: Library) -> Path:
     key, units = _core(profile, real_boost, library)
     archive = _folder() / f"libroscfe-{profile.value}-{_digest(key, identity())}.a"
     if not archive.is_file():
+        print("cfepy: compiling the interface library of ROS nodes in C++, once", file=sys.stderr, flush=True)
         compile_units(units)
         with tempfile.TemporaryDirectory(dir=archive.parent) as scratch:
             made = Path(scratch) / archive.name

@@ -24,6 +24,7 @@ from cfepy.mission.launch import (
     KEPT_ENVIRONMENT,
     LAUNCH_FILES,
     NodeBuilder,
+    built_programs,
     launch_file,
     lines_for,
     mission_environment,
@@ -43,7 +44,7 @@ from cfepy.mission.pieces import FIRST_PIECE_NS, PieceLength
 from cfepy.mission.processor import CORE_APPS, Processor
 from cfepy.mission.python_code import find_code, find_node
 from cfepy.mission.record import Reset, Traffic
-from cfepy.mission.spec import MissionSpec
+from cfepy.mission.spec import BuiltProgram, MissionSpec
 from cfepy.mission.topic_watch import TopicMessage, TopicWatch, matches
 from cfepy.mission.tracebacks import app_traceback, described, is_library, is_own_code, is_shown, is_standard, reason
 
@@ -63,6 +64,7 @@ __all__ = [
     "PUBLISH",
     "STARTUP_SCRIPT",
     "Arrival",
+    "BuiltProgram",
     "HostCall",
     "Mission",
     "MissionSections",
@@ -78,6 +80,7 @@ __all__ = [
     "TopicWatch",
     "Traffic",
     "app_traceback",
+    "built_programs",
     "described",
     "find_code",
     "find_compiled",

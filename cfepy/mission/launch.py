@@ -94,7 +94,7 @@ def read_launch(file: Path, args: Mapping[str, str] | None = None, build: NodeBu
     from rospy_shim.roslaunch.plan import plan_of
 
     plan = plan_of(file, args or {}, dict(os.environ), cwd=Path.cwd(), with_compiled=build is not None)
-    built, left_out = _built(plan, build)
+    built, left_out = built_programs(plan, build)
     notes = (*plan.notes, *left_out)
     if not plan.nodes and not built:
         why = "; ".join(notes) or "it has no <node>"
@@ -102,8 +102,19 @@ def read_launch(file: Path, args: Mapping[str, str] | None = None, build: NodeBu
     return spec_of(file, plan.nodes, plan.params, notes, built)
 
 
-def _built(plan: LaunchPlan, build: NodeBuilder | None) -> tuple[dict[str, BuiltProgram], list[str]]:
-    """The nodes in C++ of a launch file, built, and notes about those that cannot be."""
+def built_programs(plan: LaunchPlan, build: NodeBuilder | None) -> tuple[dict[str, BuiltProgram], list[str]]:
+    """The nodes in C++ of a launch file, built.
+
+    Args:
+        plan: the launch file's.
+        build: builds them; None builds none.
+
+    Returns:
+        Those that were built, by cFE name, and notes about those that cannot be.
+
+    Raises:
+        UsageError: a required one cannot be built.
+    """
     built: dict[str, BuiltProgram] = {}
     notes = []
     names = [f"/{node.name}" for node in plan.nodes.values()]
@@ -196,7 +207,7 @@ def with_launch_files(
         plan = plan_of(file, args, environ, taken=[*taken, *added, *built], with_compiled=build is not None)
         added.update(plan.nodes)
         params = merged(plan.params, params)
-        more, left_out = _built(plan, build)
+        more, left_out = built_programs(plan, build)
         built.update(more)
         notes += [*plan.notes, *left_out]
     head = spec.startup_script.partition(b"!")[0]

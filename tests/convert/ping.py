@@ -129,6 +129,22 @@ rospy.init_node("script")
 rospy.Subscriber("/pulse", Beat, lambda message: rospy.loginfo("python heard %s", message.word))
 rospy.spin()
 """
+PULSE_TEST = """#!/usr/bin/env python3
+import unittest
+
+import rospy
+import rostest
+from ping.msg import Beat
+
+
+class Pulse(unittest.TestCase):
+    def test_pulse(self):
+        rospy.init_node("pulse")
+        self.assertIn("beat", rospy.wait_for_message("/pulse", Beat, timeout=5).word)
+
+
+rostest.rosrun("ping", "pulse", Pulse)
+"""
 FILES = {
     "package.xml": PACKAGE,
     "CMakeLists.txt": CMAKE,
@@ -150,6 +166,12 @@ FILES = {
   </node>
 </launch>
 """,
+    "launch/ping.test": """<launch>
+  <include file="$(find ping)/launch/ping.launch"/>
+  <test pkg="ping" type="test_pulse.py" test-name="pulse" time-limit="20"/>
+</launch>
+""",
+    "scripts/test_pulse.py": PULSE_TEST,
     "scripts/script.py": PYTHON_HEARER,
 }
 

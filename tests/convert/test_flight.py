@@ -48,6 +48,11 @@ def test_a_nodelet_is_an_application(package: Path, capfd: pytest.CaptureFixture
     assert "left out" not in told
 
 
+def test_a_test_of_nodes_in_cpp(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["rostest", "ping", "ping.test"]) == 0
+    assert "RESULT: SUCCESS" in capfd.readouterr().out
+
+
 def test_a_mission_with_the_launch_file(package: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["convert", str(package / "launch/ping.launch"), "-o", str(tmp_path / "made")]) == 0
     spec = read_mission(str(tmp_path / "made/mission"), build=built_node)

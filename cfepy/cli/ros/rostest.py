@@ -6,7 +6,7 @@ import argparse
 import os
 import sys
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -20,9 +20,9 @@ from cfepy.cli.options import plan_of as run_plan_of
 from cfepy.cli.ros.view import NodesDisplay
 from cfepy.cli.run.outputs import SavedRunFiles
 from cfepy.markup import printable
-from cfepy.mission import launch_file, spec_of
+from cfepy.mission import BuiltProgram, built_programs, launch_file, spec_of
 from cfepy.nodes import NodeConfig
-from cfepy.pilot import LAUNCH, Flown, fly
+from cfepy.pilot import LAUNCH, Flown, built_node, fly
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 from rospy_shim.roslaunch.plan import LaunchPlan, PlannedTest, plan_of
@@ -155,21 +155,23 @@ def run(arguments: argparse.Namespace) -> int:
     """
     file, args = launch_file(launch_words(arguments))
     with tempfile.TemporaryDirectory() as folder, Interrupts() as interrupts:
-        plan = plan_of(file, args, dict(os.environ), cwd=Path.cwd(), results=Path(folder))
+        environ, results = dict(os.environ), Path(folder)
+        plan = plan_of(file, args, environ, cwd=Path.cwd(), results=results, with_compiled=True)
         if not plan.tests:
             raise UsageError("has no <test>; `cfepy launch` runs what it has", file=file)
-        tell(plan.notes)
-        results = TestResults()
+        built, left_out = built_programs(plan, built_node)
+        tell([*plan.notes, *left_out])
+        tests = TestResults()
         for test in plan.tests:
             if not interrupts.asked:
-                results.add(_Runner(file, plan, arguments, interrupts).run(test))
-    print(results.text())
+                tests.add(_Runner(file, plan, built, arguments, interrupts).run(test))
+    print(tests.text())
     if arguments.results is not None:
         with writing(arguments.results, "--results"):
-            Path(arguments.results).write_bytes(results.xml(file.stem))
+            Path(arguments.results).write_bytes(tests.xml(file.stem))
     if interrupts.asked:
         return INTERRUPTED
-    return ENDED_WELL if results.passed else FOUND_PROBLEMS
+    return ENDED_WELL if tests.passed else FOUND_PROBLEMS
 
 
 class _Runner:
@@ -178,12 +180,21 @@ class _Runner:
     Args:
         file: the launch file.
         plan: what is in it (`rospy_shim.roslaunch.plan.LaunchPlan`).
+        built: its nodes in C++.
         arguments: of the command line.
         interrupts: says whether the user pressed Ctrl-C.
     """
 
-    def __init__(self, file: Path, plan: LaunchPlan, arguments: argparse.Namespace, interrupts: Interrupts) -> None:
+    def __init__(
+        self,
+        file: Path,
+        plan: LaunchPlan,
+        built: Mapping[str, BuiltProgram],
+        arguments: argparse.Namespace,
+        interrupts: Interrupts,
+    ) -> None:
         self._file = file
+        self._built = built
         self._plan = plan
         self._arguments = arguments
         self._interrupts = interrupts
@@ -207,7 +218,7 @@ class _Runner:
         run = replace(run_plan_of(self._arguments, [str(self._file)], LAUNCH), seconds=seconds)
         run = replace(run, seed=run.seed + number)
         nodes = {**self._plan.nodes, node.app: node}
-        spec = run.with_played_bag(replace(spec_of(self._file, nodes, self._plan.params), board=BOARD))
+        spec = run.with_played_bag(replace(spec_of(self._file, nodes, self._plan.params, (), self._built), board=BOARD))
         written = SavedRunFiles(Path("/"), os.path.realpath(test.results.parent))
         with WatchedHost(self._interrupts, self._display) as host:
             flown = fly(run, spec=spec, attachments=[written], console=host.console, host=host)
