@@ -1,0 +1,19 @@
+"""Nodes in C++ and their twins in Python: unmodified roscpp code, compiled for cFE, publishes what rospy code does."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.convert.twin_flights import PACKAGES, fly
+from tests.roscfe.building import needs_cpp
+
+pytestmark = [needs_cpp, pytest.mark.slow]
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_node_and_its_twin_publish_the_same(package: str) -> None:
+    compiled = fly(package, python=False)
+    assert compiled.messages
+    assert compiled.messages == fly(package, python=True).messages
+    other_tasks = fly(package, python=False, tasks="greenlet")
+    assert (other_tasks.messages, other_tasks.digest) == (compiled.messages, compiled.digest)
