@@ -37,6 +37,7 @@ WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep")
 LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic")
 BOOST_REFUSED = ("config.hpp", "version.hpp")
 """Headers of the small Boost that stop a header of the real one which was found by chance."""
+OWN_CPP_LIBRARY = ("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL")
 SYSTEM_ROS = ("/opt/ros/", "/usr/include/ros/", "/usr/local/include/ros/")
 MOST_AT_ONCE = 2
 """Compilers that run at the same time."""
@@ -160,13 +161,13 @@ class NodeBuild:
         around = known if entry.nodelet else _digest(header.read_bytes())
         units.append(CompileUnit(start, flags, includes, _digest(entry.text(), around)))
         core = core_key(self._profile, self._real_boost, self._types)
-        key = _digest(core, *LINK, *(each.key for each in units))
+        key = _digest(core, *link_flags(self._profile), *(each.key for each in units))
         made = _folder() / f"{entry.app.lower()}-{key}.so"
         warnings = made.with_suffix(".warnings")
         if not made.is_file():
             archive = built_core(self._profile, self._real_boost, self._types)
             told = compile_units(units)
-            _link([*(each.object for each in units), archive], made)
+            _link([*(each.object for each in units), archive], made, link_flags(self._profile))
             warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
         told = [warnings.read_text(encoding="utf-8")] if warnings.is_file() else []
         return BuiltNode(made, entry.symbol, self.sources, self.types, list(filter(None, told)))
@@ -179,6 +180,11 @@ def profile_flags(profile: Profile) -> list[str]:
     """The flags of a profile."""
     exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
     return [f"-DROSCFE_PROFILE_{profile.name}", *exceptions]
+
+
+def link_flags(profile: Profile) -> list[str]:
+    """The linker's flags of a profile: where nodes have an arena, the C++ library's own code takes from it, too."""
+    return [*LINK, *(() if profile is Profile.HOST else OWN_CPP_LIBRARY)]
 
 
 def messages_folder(types: Sequence[str], library: Library, profile: Profile) -> Path:
@@ -366,10 +372,10 @@ def _call(command: Sequence[str]) -> str:
     return said
 
 
-def _link(parts: Sequence[Path], made: Path) -> None:
+def _link(parts: Sequence[Path], made: Path, flags: Iterable[str]) -> None:
     with tempfile.TemporaryDirectory(dir=made.parent) as scratch:
         linked = Path(scratch) / made.name
-        _call([*cpp_compiler(), *LINK, "-o", str(linked), *map(str, parts)])
+        _call([*cpp_compiler(), *flags, "-o", str(linked), *map(str, parts)])
         shared = unique_symbols(linked)
         if shared:
             text = f"has {', '.join(shared[:4])}, which all nodes would share [unique-symbol]"

@@ -17,7 +17,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from cfepy.convert.build import LANGUAGE, WITHOUT_EXCEPTIONS, WRAPPED, library_folder, library_includes, library_sources
+from cfepy.convert.build import (
+    LANGUAGE,
+    WITHOUT_EXCEPTIONS,
+    library_folder,
+    library_includes,
+    library_sources,
+    link_flags,
+)
 from cfepy.convert.conversion import Conversion, ConvertedNode
 from cfepy.convert.entry import main_header
 from cfepy.convert.messages import Profile, write_headers
@@ -94,6 +101,7 @@ def _library(made: Conversion, profile: Profile) -> dict[str, bytes]:
 def _cmake_of_library(sources: Iterable[str], profile: Profile) -> str:
     exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
     flags = [*LANGUAGE, f"-DROSCFE_PROFILE_{profile.name}"]
+    linked = " ".join(link_flags(profile)[1:])  # -shared is CMake's
     listed = "".join(f"\n      ${{ROSCFE_DIR}}/{each}" for each in sources)
     return f"""# The interface library for ROS nodes, and how a node is built with it; {MADE}.
 # A CMakeLists.txt includes this file before anything else.
@@ -124,7 +132,7 @@ function(roscfe_node NAME MAIN_HEADER ENTRY)
     target_compile_options(${{NAME}} PRIVATE ${{ROSCFE_FLAGS}} ${{ROSCFE_NODE_FLAGS}})
     set_source_files_properties(${{ARGN}} PROPERTIES COMPILE_OPTIONS "-include;${{ROSCFE_DIR}}/${{MAIN_HEADER}}")
     target_link_libraries(${{NAME}} roscfe)
-    target_link_options(${{NAME}} PRIVATE -Wl,--wrap={",--wrap=".join(WRAPPED)} -Wl,-Bsymbolic)
+    target_link_options(${{NAME}} PRIVATE {linked})
 endfunction()
 """
 

@@ -24,6 +24,7 @@ from cfepy.convert.check.headers import (
 )
 from cfepy.convert.check.source import Include, SourceFile, read_source, type_of
 from cfepy.convert.configurations import configuration_headers
+from cfepy.convert.entry import LONGEST_QUEUE
 from cfepy.convert.messages import Profile
 from cfepy.convert.packages import Program
 from cfepy.status import UsageError
@@ -31,8 +32,6 @@ from rospy_shim.msgs import Library
 
 LONGEST_SOURCE = 2_000_000
 """Bytes of a source; one that is longer is no source that somebody has written."""
-LONGEST_QUEUE = 16
-"""Messages that a subscription keeps, unless the mission says how many for the node."""
 _MOST_FILES = 2000
 _NODELET = re.compile(rb"\bPLUGINLIB_(?:EXPORT|DECLARE)_CLASS\b|\bNODELET_EXPORT\b")
 _PARTS = ("Request", "Response")

@@ -4,6 +4,7 @@
 #include "internal.h"
 #include "ros/init.h"
 #include "ros/spinner.h"
+#include "roscfe/heap.h"
 
 namespace ros
 {
@@ -137,6 +138,7 @@ void CallbackQueue::callAvailable(WallDuration timeout)
 
 void spinOnce()
 {
+    roscfe::heap::seal();
     ok();
     roscfe::g_node.queue.callAvailable();
 }
@@ -154,6 +156,7 @@ void spin(Spinner &spinner)
 
 void SingleThreadedSpinner::spin_now(CallbackQueue *queue)
 {
+    roscfe::heap::seal();
     CallbackQueue &      of = queue != nullptr ? *queue : roscfe::g_node.queue;
     const ros::WallDuration look(0.5); // how often ES is asked whether the application is to end
     while (ok())

@@ -1,5 +1,5 @@
 // How a client follows a goal by the statuses that the server sends (http://wiki.ros.org/actionlib/DetailedDescription).
-#include "actionlib/client/simple_action_client.h"
+#include "roscfe/goal_progress.h"
 
 namespace roscfe
 {

@@ -10,33 +10,8 @@
 #include "actionlib_msgs/GoalID.h"
 #include "actionlib_msgs/GoalStatusArray.h"
 #include "ros/ros.h"
+#include "roscfe/goal_progress.h"
 #include "roscfe/waiting.h"
-
-namespace roscfe
-{
-
-// Where a goal is between client and server, without its types.
-class GoalProgress
-{
-  public:
-    enum State
-    {
-        kWaitingForAck,
-        kPending,
-        kActive,
-        kWaitingForResult,
-        kWaitingForCancelAck,
-        kRecalling,
-        kPreempting,
-        kDone
-    };
-    static constexpr int kMostSteps = 3;
-
-    // The states that a status of the server leads through, from a state; their number, or -1 when it cannot be.
-    static int steps(State from, unsigned status, State (&to)[kMostSteps]);
-};
-
-} // namespace roscfe
 
 namespace actionlib
 {
