@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping
-from functools import partial
+from collections.abc import Mapping, Sequence
+from functools import cache, partial
 from pathlib import Path
 
 from cfepy.convert.build import library_includes
@@ -60,16 +60,16 @@ def check_program(
 def _compile(
     report: CheckReport, program: Program, sources: ProgramSources, scratch: Path, capacities: Capacities | None
 ) -> None:
-    messages, refusals = scratch / "messages", scratch / "refusals"
+    messages = scratch / "messages"
     messages.mkdir()
     real_boost = sources.takes_real_boost(report.profile)
-    write_refusals(refusals, real_boost)
+    refusals = Path(_refusals(real_boost).name)
     for kind in sorted(sources.messages):
         try:
             write_headers([kind], messages, report.profile, sources.library, capacities)
         except UsageError as error:
             rule = "capacity-missing" if "capacity" in error.text else "message-definition"
-            write_refusal(refusals / f"{kind}.h", error.text, rule)
+            write_refusal(messages / f"{kind}.h", error.text, rule)
     for name, text in sources.generated.items():
         (messages / name).parent.mkdir(parents=True, exist_ok=True)
         (messages / name).write_text(text, encoding="utf-8")
@@ -81,7 +81,7 @@ def _compile(
             continue
         compiled = compiler.compile(source, scratch)
         accepted = accepted and compiled.ok
-        tell(report, source, compiled, partial(_shown, sources, source, refusals))
+        tell(report, source, compiled, partial(_shown, sources, source, (refusals, messages)))
     if accepted and program.sources:
         _measure(report, compiler, sources, scratch)
 
@@ -100,8 +100,17 @@ def _measure(report: CheckReport, compiler: Compiler, sources: ProgramSources, s
             report.add("message-too-long", name.place, f"{name.type} has {size:,} bytes")
 
 
-def _shown(sources: ProgramSources, source: Path, refusals: Path, file: Path) -> SourcePlace | None:
-    """Where a header that refuses was included; of a header of a header that is not the program's, the source."""
-    if not file.is_relative_to(refusals):
+def _shown(sources: ProgramSources, source: Path, made: Sequence[Path], file: Path) -> SourcePlace | None:
+    """Where a header that was made was included; of one that another header includes, the source."""
+    folder = next((each for each in made if file.is_relative_to(each)), None)
+    if folder is None:
         return None
-    return sources.included_at(str(file.relative_to(refusals))) or SourcePlace(source)
+    return sources.included_at(str(file.relative_to(folder))) or SourcePlace(source)
+
+
+@cache
+def _refusals(real_boost: bool) -> tempfile.TemporaryDirectory[str]:
+    """The headers that refuse, written once for all programs; the folder goes with the process."""
+    folder = tempfile.TemporaryDirectory(prefix="cfepy-refusals-")
+    write_refusals(Path(folder.name), real_boost)
+    return folder

@@ -181,10 +181,17 @@ def has_boost(name: str, profile: Profile) -> bool:
 
 
 @cache
-def headers_of_ours() -> tuple[str, ...]:
-    """All headers that those of the interface library include, such as those of messages."""
-    texts = (each.read_text(encoding="utf-8") for each in sorted(OURS.rglob("*.h")))
-    return tuple(dict.fromkeys(name for text in texts for name in includes_of(without_comments(text))))
+def behind_ours(name: str) -> tuple[str, ...]:
+    """All headers that one of the interface library includes, and those that they do, such as those of messages."""
+    found: dict[str, None] = {}
+    waiting = [name]
+    while waiting:
+        file = OURS / waiting.pop()
+        text = without_comments(file.read_text(encoding="utf-8")) if is_file(file) else ""
+        new = [each for each in includes_of(text) if each not in found]
+        found |= dict.fromkeys(new)
+        waiting += new
+    return tuple(found)
 
 
 def is_eigen(name: str) -> bool:

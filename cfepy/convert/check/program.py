@@ -11,9 +11,9 @@ from cfepy.convert.check.headers import (
     OURS,
     ROS_LIBRARIES,
     SYSTEM,
+    behind_ours,
     has_boost,
     has_eigen,
-    headers_of_ours,
     is_eigen,
     is_file,
     is_ours,
@@ -59,8 +59,6 @@ class ProgramSources:
         self._unknown: list[Include] = []
         self._boost: set[str] = set()
         self._read_all()
-        for name in headers_of_ours():
-            self._is_message_header(name)
 
     def look(self, report: CheckReport) -> None:
         """Add all that the rules find; what the compiler finds is not among it."""
@@ -149,6 +147,8 @@ class ProgramSources:
                     waiting.append(own)
                 elif not self._is_message_header(include.name):
                     self._unknown.append(include)
+                    for name in behind_ours(include.name) if is_ours(include.name) else ():
+                        self._is_message_header(name)
 
     def _read(self, path: Path) -> SourceFile | None:
         try:
