@@ -1,10 +1,12 @@
 // What nodes do with texts and arrays of messages, on those of the strict profile. Prints the line of what is wrong.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "roscfe/fixed.h"
@@ -141,6 +143,17 @@ static void arrays()
     CHECK(names[0] == "one" && names[1].empty());
     const FixedVector<FixedString<4>, 2> copy(names);
     CHECK(copy == names);
+    std::vector<std::string> joints{"a", "b"};
+    names = joints; // the commonest of all: names of joints
+    CHECK(names == joints && joints == names && names != copy);
+    joints = copy;
+    const std::vector<std::string> back = names;
+    CHECK(joints[0] == "one" && joints[1].empty() && back[1] == "b");
+    names = {"x", "y"};
+    CHECK(names[0] == "x" && names.back() == "y");
+    const FixedVector<FixedString<9>, 3> wider = names;
+    CHECK(wider == names && std::find(wider.begin(), wider.end(), "y") == wider.begin() + 1);
+    static_assert(!std::is_convertible<FixedVector<float, 2>, std::vector<double>>::value, "as std::vector");
 }
 
 int main(int, char **arguments)

@@ -317,6 +317,14 @@ constexpr bool is_text = IsFixedString<T>::value || std::is_convertible<const T 
 template <class A, class B>
 using IfTexts = std::enable_if_t<(IsFixedString<A>::value && is_text<B>) || (is_text<A> && IsFixedString<B>::value)>;
 
+// Whether items of one type go into a vector of the other: the same type, or texts, which differ in their capacity.
+template <class T, class U>
+constexpr bool alike = std::is_same<T, U>::value ||
+                       ((IsFixedString<T>::value || IsFixedString<U>::value) && is_text<T> && is_text<U>);
+
+template <class T, class U>
+using IfAlike = std::enable_if_t<alike<T, U>>;
+
 inline std::string_view view_of(std::string_view text)
 {
     return text;
@@ -422,13 +430,13 @@ class FixedVector
     explicit FixedVector(size_type count) : size_(0) { resize(count); }
     FixedVector(size_type count, const T &value) : size_(0) { resize(count, value); }
     FixedVector(std::initializer_list<T> items) : size_(0) { assign(items.begin(), items.end()); }
-    template <class Allocator>
-    FixedVector(const std::vector<T, Allocator> &items) : size_(0)
+    template <class U, class Allocator, class = detail::IfAlike<T, U>>
+    FixedVector(const std::vector<U, Allocator> &items) : size_(0)
     {
         assign(items.begin(), items.end());
     }
-    template <std::size_t K>
-    FixedVector(const FixedVector<T, K> &items) : size_(0)
+    template <class U, std::size_t K, class = detail::IfAlike<T, U>>
+    FixedVector(const FixedVector<U, K> &items) : size_(0)
     {
         assign(items.begin(), items.end());
     }
@@ -449,14 +457,14 @@ class FixedVector
         assign(items.begin(), items.end());
         return *this;
     }
-    template <class Allocator>
-    FixedVector &operator=(const std::vector<T, Allocator> &items)
+    template <class U, class Allocator, class = detail::IfAlike<T, U>>
+    FixedVector &operator=(const std::vector<U, Allocator> &items)
     {
         assign(items.begin(), items.end());
         return *this;
     }
-    template <std::size_t K>
-    FixedVector &operator=(const FixedVector<T, K> &items)
+    template <class U, std::size_t K, class = detail::IfAlike<T, U>>
+    FixedVector &operator=(const FixedVector<U, K> &items)
     {
         assign(items.begin(), items.end());
         return *this;
@@ -464,7 +472,11 @@ class FixedVector
 
     static constexpr bool fits(size_type count) { return count <= N; }
 
-    operator std::vector<T>() const { return std::vector<T>(begin(), end()); }
+    template <class U, class Allocator, class = detail::IfAlike<T, U>>
+    operator std::vector<U, Allocator>() const
+    {
+        return std::vector<U, Allocator>(begin(), end());
+    }
 
     T *              data() { return items_; }
     const T *        data() const { return items_; }
@@ -605,38 +617,38 @@ bool same_items(const A &a, const B &b)
 
 } // namespace detail
 
-template <class T, std::size_t N, std::size_t K>
-bool operator==(const FixedVector<T, N> &a, const FixedVector<T, K> &b)
+template <class T, std::size_t N, class U, std::size_t K, class = detail::IfAlike<T, U>>
+bool operator==(const FixedVector<T, N> &a, const FixedVector<U, K> &b)
 {
     return detail::same_items(a, b);
 }
 
-template <class T, std::size_t N, class Allocator>
-bool operator==(const FixedVector<T, N> &a, const std::vector<T, Allocator> &b)
+template <class T, std::size_t N, class U, class A, class = detail::IfAlike<T, U>>
+bool operator==(const FixedVector<T, N> &a, const std::vector<U, A> &b)
 {
     return detail::same_items(a, b);
 }
 
-template <class T, std::size_t N, class Allocator>
-bool operator==(const std::vector<T, Allocator> &a, const FixedVector<T, N> &b)
+template <class T, std::size_t N, class U, class A, class = detail::IfAlike<T, U>>
+bool operator==(const std::vector<U, A> &a, const FixedVector<T, N> &b)
 {
     return detail::same_items(a, b);
 }
 
-template <class T, std::size_t N, std::size_t K>
-bool operator!=(const FixedVector<T, N> &a, const FixedVector<T, K> &b)
+template <class T, std::size_t N, class U, std::size_t K, class = detail::IfAlike<T, U>>
+bool operator!=(const FixedVector<T, N> &a, const FixedVector<U, K> &b)
 {
     return !detail::same_items(a, b);
 }
 
-template <class T, std::size_t N, class Allocator>
-bool operator!=(const FixedVector<T, N> &a, const std::vector<T, Allocator> &b)
+template <class T, std::size_t N, class U, class A, class = detail::IfAlike<T, U>>
+bool operator!=(const FixedVector<T, N> &a, const std::vector<U, A> &b)
 {
     return !detail::same_items(a, b);
 }
 
-template <class T, std::size_t N, class Allocator>
-bool operator!=(const std::vector<T, Allocator> &a, const FixedVector<T, N> &b)
+template <class T, std::size_t N, class U, class A, class = detail::IfAlike<T, U>>
+bool operator!=(const std::vector<U, A> &a, const FixedVector<T, N> &b)
 {
     return !detail::same_items(a, b);
 }
