@@ -38,6 +38,8 @@ _FILTER_LATER = re.compile(r"\.\s*subscribe\s*\(\s*(\w+)\s*,\s*" + _STRING)
 _ACTION = re.compile(r"\bSimpleAction(?:Server|Client)\s*<[^;(){}]*>\s*(?:\w+\s*)?\(\s*(?:\w+\s*,\s*)?" + _STRING)
 _ACTION_MEMBER = re.compile(r"\bSimpleAction(?:Server|Client)\s*<[^;(){}]*>\s*(\w+)\s*;")
 _HANDLE = re.compile(r"\bNodeHandle\s*(?:[&*]\s*)?(\w+)\s*(;|[,)({=][^;\n]*)")
+_HANDLES = re.compile(r"\bNodeHandle\s+(\w[^;{}]*?,[^;{}]*?);")
+_DECLARED = re.compile(r"\s*(\w+)\s*((?:[(=].*)?)", re.DOTALL)
 _HANDLE_MADE = re.compile(r"\bNodeHandle\s*(?:\w+\s*)?[({]\s*(?:(\w+)\s*,\s*)?" + _STRING)
 _VARIABLE = re.compile(r"\b(\w+)\s*(?:\[\s*\])?\s*(?:=|\()\s*" + _STRING)
 _MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+" + _TEXT, re.MULTILINE)
@@ -158,23 +160,43 @@ class SourceNames:
         """Namespaces of the node's handles, by their variables; "" has all, for a handle that is not known."""
         found: dict[str, list[str]] = {}
         unknown: set[str] = set()
-        for text in self._texts:
+        plain: list[str] = []  # declared with nothing behind the name: a constructor may begin them otherwise
+        texts = [_HANDLES.sub(_one_by_one, text) for text in self._texts]
+        for text in texts:
             for name, rest in _HANDLE.findall(text):
                 spaces = self._spaces_made(rest, found)
                 if spaces is None:
                     unknown.add(name)
+                elif rest == ";":
+                    plain.append(name)
+                    spaces = []
                 found[name] = [*found.get(name, []), *(spaces or [])]
-            for name in unknown:  # members, which a constructor begins
-                for parent, space in re.findall(rf"\b{name}\s*[({{]\s*(?:(\w+)\s*,\s*)?{_STRING}", text):
-                    found[name] = [*found[name], *(joined(each, space) for each in found.get(parent) or [""])]
             for parent, space in _HANDLE_MADE.findall(text):
                 found["made"] = [*found.get("made", []), *(joined(each, space) for each in found.get(parent) or [""])]
             if "getPrivateNodeHandle" in text:
                 found["made"] = [*found.get("made", []), PRIVATE]
-        is_plain = any("getNodeHandle" in text for text in self._texts) or not any(found.values())
+        for name in dict.fromkeys([*plain, *unknown]):
+            self._begin_later(name, texts, found, unknown)
+        for name in plain:
+            if not found[name] and name not in unknown or plain.count(name) > 1:
+                found[name] = [*found[name], ""]
+        is_plain = any("getNodeHandle" in text for text in texts) or not any(found.values())
         every = dict.fromkeys([*([""] if is_plain else []), *(each for spaces in found.values() for each in spaces)])
         known = {name: list(dict.fromkeys(spaces)) for name, spaces in found.items() if name not in unknown}
         return {**known, "": list(every)}
+
+    def _begin_later(self, name: str, texts: Iterable[str], found: dict[str, list[str]], unknown: set[str]) -> None:
+        """What a handle gets away from its declaration: of a constructor, or of an assignment."""
+        made = r"(?:(?:ros\s*::\s*)?NodeHandle\s*[({]\s*)?"
+        begun = re.compile(rf"\b{name}\s*[({{=]\s*{made}(?:(?:(\w+)\s*,\s*)?{_STRING}|(\w+)\s*[)}};])")
+        for text in texts:
+            for parent, space, other in begun.findall(text):
+                if not other:
+                    found[name] = [*found[name], *(joined(each, space) for each in found.get(parent) or [""])]
+                elif found.get(other) and other not in unknown:
+                    found[name] = [*found[name], *found[other]]
+                else:
+                    unknown.add(name)
 
     def _spaces_made(self, rest: str, found: Mapping[str, list[str]]) -> list[str] | None:
         """The namespaces of a handle by what follows its name where it is declared; None when that is not seen."""
@@ -201,6 +223,14 @@ class SourceNames:
             for variable, param, value in _RETURNED.findall(text):
                 found.setdefault(variable, []).append(values.get(param.lstrip(PRIVATE), value))
         return {name: list(dict.fromkeys(held)) for name, held in found.items() if name}
+
+
+def _one_by_one(declaration: re.Match[str]) -> str:
+    """Handles that are declared in one go, each by itself; parameters of a function stay as they are."""
+    parts = [_DECLARED.fullmatch(each) for each in re.split(r",(?![^()]*\))", declaration[1])]
+    if None in parts:
+        return declaration[0]
+    return " ".join(f"NodeHandle {each[1]}{each[2]};" for each in parts if each)
 
 
 def joined(space: str, name: str) -> str:

@@ -32,6 +32,16 @@ def found(text: str, *remaps: tuple[str, str], **values: str) -> tuple[dict[str,
         ('message_filters::Subscriber<A> sub(nh, "imu", 1);', {"/arm/imu": True}),
         ('ros::SubscribeOptions o = ros::SubscribeOptions::create<A>("c", 1, cb, v, q);', {"/arm/c": True}),
         ('s = "n.advertise(\\"x\\")";', {}),
+        ('class A { A() : p_("~") { p_.advertise<B>("x", 1); } ros::NodeHandle p_; };', {"/arm/driver/x": True}),
+        (
+            'ros::NodeHandle n, p("~"); p.advertise<A>("x", 1); n.advertise<A>("y", 1);',
+            {"/arm/driver/x": True, "/arm/y": True},
+        ),
+        (
+            'A::A(ros::NodeHandle n) : n_(n) { n_.advertise<B>("x", 1); } ros::NodeHandle n_; ros::NodeHandle q("~");',
+            {"/arm/driver/x": True},
+        ),
+        ('p_ = ros::NodeHandle("~"); p_.advertise<A>("x", 1); ros::NodeHandle p_;', {"/arm/driver/x": True}),
     ],
 )
 def test_topics(text: str, topics: dict[str, bool]) -> None:
