@@ -178,7 +178,7 @@ class SourceNames:
         for name in dict.fromkeys([*plain, *unknown]):
             self._begin_later(name, texts, found, unknown)
         for name in plain:
-            if not found[name] and name not in unknown or plain.count(name) > 1:
+            if (not found[name] and name not in unknown) or plain.count(name) > 1:
                 found[name] = [*found[name], ""]
         is_plain = any("getNodeHandle" in text for text in texts) or not any(found.values())
         every = dict.fromkeys([*([""] if is_plain else []), *(each for spaces in found.values() for each in spaces)])
