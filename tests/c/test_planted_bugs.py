@@ -61,10 +61,12 @@ def write(folder: Path, name: str, *flags: str) -> None:
 
 MARKS = {"explore": pytest.mark.slow}
 """Searches that find nothing take their time."""
+LONG = dict.fromkeys(("deadlock", "unlocked_table", "lost_update"), pytest.mark.slow)
+"""Those that are searched for; test_races and the tests of exploration have quick ones."""
 SIMPLE = [name for name in BUGS if name not in ("uninitialised", "counter_wrap")]
 
 
-@pytest.mark.parametrize("name", SIMPLE)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=LONG.get(name, ())) for name in SIMPLE])
 def test_the_bug_is_found(tmp_path: Path, name: str, capsys: Any) -> None:
     write(tmp_path, name)
     status, told = fly(tmp_path, BUGS[name], capsys)

@@ -217,6 +217,7 @@ def test_atomics_of_16_bytes(tmp_path: Path, schedule: str) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_the_race_is_found_wherever_the_memory_is(tmp_path: Path) -> None:
     for code in (
         "static char *heap; if (who) heap = malloc(4); else heap[1]++;",
@@ -227,6 +228,7 @@ def test_the_race_is_found_wherever_the_memory_is(tmp_path: Path) -> None:
         assert {each["kind"] for each in explore(tmp_path, code)} == {"data race"}
 
 
+@pytest.mark.slow
 def test_others_run_between_accesses(tmp_path: Path) -> None:
     code = """
         if (who)
@@ -263,6 +265,7 @@ def test_the_start_of_a_task_orders(tmp_path: Path) -> None:
     assert explore(tmp_path, 'if (who) SAY("%u", (unsigned)lock);') == []
 
 
+@pytest.mark.slow
 @needs_cpp
 def test_static_objects_and_mutexes_of_cpp_order(tmp_path: Path) -> None:
     compile_cpp(

@@ -22,7 +22,8 @@ def test_total(mission):
 """
 
 
-@pytest.mark.parametrize("tasks", [pytest.param("thread", marks=pytest.mark.slow), "greenlet"])
+@pytest.mark.slow
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
 def test_a_race_is_found_and_shrunk_and_found_again(suite: Suite, missions: Path, tasks: str) -> None:
     result = suite(RACE.format(policy="random", shrink=200), "--cfepy-tasks", tasks, "--cfepy-record", "kept")
     result.assert_outcomes(failed=1)
