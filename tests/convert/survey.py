@@ -106,7 +106,8 @@ def missing(verdicts: Iterable[Verdict]) -> Iterator[str]:
     among: Counter[str] = Counter()
     example: dict[str, str] = {}
     for each in verdicts:
-        groups = set(each.blockers)
+        direct = {blocker for blocker in each.blockers if not blocker.startswith("compile-error ")}
+        groups = direct or set(each.blockers)  # errors without a rule follow from those with one, mostly
         for blocker in groups:
             among[blocker] += 1
             example.setdefault(blocker, f"{each.repository}/{each.file}")

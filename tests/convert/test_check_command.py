@@ -45,10 +45,10 @@ def test_a_node_that_converts(
     monkeypatch.chdir(tmp_path)
     assert checked(tmp_path, NODE, "--profile", profile) == 0
     found, memory, count = capsys.readouterr().out.splitlines()
-    assert found.startswith("ear.cpp:8:25: warning: a queue of 1,000: 16 messages are kept; ")
+    assert found.startswith("ear.cpp:8:25: warning: a queue of 1,000: 64 messages are kept: ")
     assert found.endswith(" [queue-large]")
     size = {"host": 32, "pool": 32, "strict": 72}[profile]
-    assert memory == f"ear: chatter (std_msgs/String): 20 x {size} = {20 * size:,} bytes"
+    assert memory == f"ear: chatter (std_msgs/String): 68 x {size} = {68 * size:,} bytes"
     assert count == f"{profile}: 1 node, 0 refused; 1 warning found"
 
 
@@ -66,6 +66,12 @@ def test_a_node_that_converts(
 )
 def test_what_the_compiler_refuses_is_never_clean(tmp_path: Path, old: str, new: str, rule: str) -> None:
     assert rule in rules_of(tmp_path, NODE.replace(old, new))
+
+
+def test_what_both_passes_see_is_told_once(tmp_path: Path) -> None:
+    checked(tmp_path, NODE.replace("ros::spin();", "throw 1;"), "--profile", "pool", "--json", str(tmp_path / "f.json"))
+    (node,) = json.loads((tmp_path / "f.json").read_text())["nodes"]
+    assert [each["rule"] for each in node["found"]].count("throw") == 1
 
 
 def test_boost_is_the_hosts(tmp_path: Path) -> None:

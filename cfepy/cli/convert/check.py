@@ -1,6 +1,6 @@
 """`cfepy convert check`: whether ROS nodes in C++ can be applications of cFE, a line for each finding.
 
-A line is `file:line:column: what; what to do [rule]`; warnings and notes stand behind the errors.
+A line is `file:line:column: what: why; what to do [rule]`; warnings and notes stand behind the errors.
 """
 
 from __future__ import annotations
@@ -74,7 +74,8 @@ def _print(reports: Sequence[CheckReport], profile: Profile) -> None:
 def _line(finding: RuleFinding, level: Level) -> str:
     place = ":".join(str(part) for part in (_shown(finding.place.file), *finding.place[1:]) if part)
     told = "" if level is Level.ERROR else f"{level.value}: "
-    return f"{place}: {told}{finding.message}; {RULES[finding.rule].remedy} [{finding.rule}]"
+    rule = RULES[finding.rule]
+    return f"{place}: {told}{finding.message}: {rule.why}; {rule.remedy} [{rule.id}]"
 
 
 def _shown(path: Path) -> str:

@@ -137,8 +137,10 @@ def tell(report: CheckReport, source: Path, compiled: Compiled, shown: Callable[
     told = [(*rule_of(each.message, report.profile), each.place) for each in compiled.errors]
     without_header = [each for each in told if each[0] in ABOUT_HEADERS]
     for rule, message, place in without_header or told:  # without a header all that needs it is wrong, too
-        if not message.startswith(_TOO_MANY):
-            report.add(rule, shown(place.file) or place, message)
+        at = shown(place.file) or place
+        seen = any(each.rule == rule and each.place[:2] == at[:2] for each in report.findings if rule in _SEEN_BEFORE)
+        if not message.startswith(_TOO_MANY) and not seen:
+            report.add(rule, at, message)
     if not compiled.ok and (compiled.problem or not compiled.errors):
         report.add("compile-error", SourcePlace(source), compiled.problem or "the compiler does not accept it")
     for used in compiled.used:
@@ -216,6 +218,8 @@ ABOUT_HEADERS = (
     *("message-definition", "capacity-missing", "configuration"),
 )
 """Rules about headers that are not there."""
+_SEEN_BEFORE = ("throw", "catch", "rtti")
+"""Rules under which sources are looked at without the compiler, too, whose columns are others."""
 _BAD = ("error", "fatal error", "internal compiler error", "sorry, unimplemented")
 
 
