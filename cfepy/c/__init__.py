@@ -55,8 +55,13 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".loading": ("CompiledLoader",),
             ".runtime": ("CRuntime",),
             ".toolchain": (
-                *("Built", "CMakeScript", "CompilerError", "Options"),
-                *("build", "cpp_compiler", "headers_folder"),
+                "Built",
+                "CMakeScript",
+                "CompilerError",
+                "Options",
+                "build",
+                "cpp_compiler",
+                "headers_folder",
             ),
         },
     )
