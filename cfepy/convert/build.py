@@ -72,9 +72,26 @@ def needs_real_boost(sources: SourceSet) -> bool:
     return any(each.startswith("boost/") for each in sources.missing) or not refused.isdisjoint(sources.contents)
 
 
-def library_sources() -> list[Path]:
-    """The library's sources, sorted."""
-    return sorted((library_folder() / "src").rglob("*.cpp"))
+def library_sources(used: Iterable[Path], real_boost: bool = False) -> list[Path]:
+    """The library's sources that a node needs, sorted: the core, and the parts whose headers are used.
+
+    Args:
+        used: all headers that the node includes; those of the library count.
+        real_boost: as of `library_includes`.
+    """
+    folder, included = library_folder(), list(used)
+    every = sorted((folder / "src").rglob("*.cpp"))
+    parts = {each.relative_to(folder / "src").parts[0] for each in every if each.parent.name != "src"}
+    needed = [each for each in every if each.parent.name == "src"]
+    while True:
+        reached = [*included, *collect(needed, library_includes(real_boost)).contents]
+        inside = (each.relative_to(folder / "include") for each in reached if each.is_relative_to(folder / "include"))
+        names = tuple({each.parts[0] for each in inside})
+        wanted = {part for part in parts if any(name.startswith(part) for name in names)}
+        found = [each for each in every if each.parent.name == "src" or each.parent.name in wanted]
+        if found == needed:
+            return needed
+        needed = found
 
 
 def provided_packages() -> set[str]:
@@ -160,12 +177,12 @@ class NodeBuild:
         header = library_folder() / "include/roscfe/node.h"
         around = known if entry.nodelet else _digest(header.read_bytes())
         units.append(CompileUnit(start, flags, includes, _digest(entry.text(), around)))
-        core = core_key(self._profile, self._real_boost, self._types)
+        core = core_key(self._profile, self._real_boost, self._types, self.sources.contents)
         key = _digest(core, *link_flags(self._profile), *(each.key for each in units))
         made = _folder() / f"{entry.app.lower()}-{key}.so"
         warnings = made.with_suffix(".warnings")
         if not made.is_file():
-            archive = built_core(self._profile, self._real_boost, self._types)
+            archive = built_core(self._profile, self._real_boost, self._types, self.sources.contents)
             told = compile_units(units)
             _link([*(each.object for each in units), archive], made, link_flags(self._profile))
             warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
@@ -227,18 +244,18 @@ def configurations_folder(headers: Mapping[str, str]) -> Path:
     return kept
 
 
-def core_key(profile: Profile, real_boost: bool, library: Library) -> str:
+def core_key(profile: Profile, real_boost: bool, library: Library, used: Iterable[Path]) -> str:
     """What the interface library of a profile is known by."""
-    return _core(profile, real_boost, library)[0]
+    return _core(profile, real_boost, library, used)[0]
 
 
-def built_core(profile: Profile, real_boost: bool, library: Library) -> Path:
+def built_core(profile: Profile, real_boost: bool, library: Library, used: Iterable[Path]) -> Path:
     """The interface library of a profile as an archive, compiled if it is not in the cache.
 
     Raises:
         CompilerError: the compiler refused it.
     """
-    key, units = _core(profile, real_boost, library)
+    key, units = _core(profile, real_boost, library, used)
     archive = _folder() / f"libroscfe-{profile.value}-{_digest(key, identity())}.a"
     if not archive.is_file():
         print("cfepy: compiling the interface library of ROS nodes in C++, once", file=sys.stderr, flush=True)
@@ -250,8 +267,8 @@ def built_core(profile: Profile, real_boost: bool, library: Library) -> Path:
     return archive
 
 
-def _core(profile: Profile, real_boost: bool, library: Library) -> tuple[str, list[CompileUnit]]:
-    files, includes = library_sources(), library_includes(real_boost)
+def _core(profile: Profile, real_boost: bool, library: Library, used: Iterable[Path]) -> tuple[str, list[CompileUnit]]:
+    files, includes = library_sources(used, real_boost), library_includes(real_boost)
     sources = collect(files, includes)
     messages = messages_folder(message_types(sources.missing, library), library, profile)
     flags = [*LANGUAGE, *PLAIN, *profile_flags(profile), *WITHOUT_EXCEPTIONS, *STRICT_WARNINGS]

@@ -55,6 +55,7 @@ class ConvertedNode:
         node: what the launch file or the package says.
         program: what it is compiled of.
         sources: all files of it.
+        headers: all that it includes, those of the interface library, too.
         types: message types whose headers it includes.
         configurations: texts of the headers of configurations that it includes.
         names: its topics and services.
@@ -64,6 +65,7 @@ class ConvertedNode:
     node: CppNode
     program: Program
     sources: SourceSet
+    headers: list[Path]
     types: list[str]
     names: NodeNames
     entry: NodeEntry
@@ -200,7 +202,7 @@ def _node(
     )
     configurations = configuration_headers(seen.missing, program)
     types = message_types(seen.missing, library) + list(CONFIGURATION_TYPES if configurations else ())
-    return ConvertedNode(node, program, sources, types, names, entry, configurations)
+    return ConvertedNode(node, program, sources, list(seen.contents), types, names, entry, configurations)
 
 
 def _with_ids(config: RosConfig, nodes: Iterable[ConvertedNode]) -> RosConfig:

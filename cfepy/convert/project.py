@@ -84,7 +84,8 @@ def _library(made: Conversion, profile: Profile) -> dict[str, bytes]:
     found = {
         f"roscfe/{each.relative_to(root)}": each.read_bytes() for each in sorted(root.rglob("*")) if each.is_file()
     }
-    needed = collect(library_sources(), library_includes())
+    used = library_sources(header for node in made.nodes for header in node.headers)
+    needed = collect(used, library_includes())
     types = {*message_types(needed.missing, made.library), *(name for node in made.nodes for name in node.types)}
     with tempfile.TemporaryDirectory(prefix="cfepy-convert-") as scratch:
         for header in write_headers(sorted(types), Path(scratch), profile, made.library):
@@ -93,7 +94,7 @@ def _library(made: Conversion, profile: Profile) -> dict[str, bytes]:
         found |= {f"roscfe/msg/{name}": text.encode() for name, text in node.configurations.items()}
     for with_arguments, name in MAIN_HEADERS.items():
         found[f"roscfe/{name}"] = main_header(with_arguments).encode()
-    sources = [f"src/{each.relative_to(root / 'src')}" for each in library_sources()]
+    sources = [f"src/{each.relative_to(root / 'src')}" for each in used]
     found["roscfe/roscfe.cmake"] = _cmake_of_library(sources, profile).encode()
     return found
 

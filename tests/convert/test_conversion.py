@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
+from cfepy.convert.build import library_folder, library_sources
 from cfepy.convert.entry import NodeEntry, entry_symbol, parameter_rows, quoted
 from cfepy.mission import read_mission
 from cfepy.status import UsageError
@@ -111,3 +112,14 @@ def test_texts_are_those_of_c() -> None:
     text = NodeEntry("APP", "n", takes_arguments=False).text()
     assert "int roscfe_main() __asm__" in text
     assert "nullptr, 0," in text
+
+
+def test_parts_of_the_library_that_nobody_uses_stay_out(package: Path, tmp_path: Path) -> None:
+    """Their messages have no capacity by themselves, so that no strict node could be built beside them."""
+    out = tmp_path / "made"
+    assert convert(package, out, "--profile", "strict") == 0
+    cmake = (out / "roscfe/roscfe.cmake").read_text()
+    assert "/src/topics.cpp" in cmake
+    assert "/src/tf/" not in cmake
+    header = library_folder() / "include/tf2_ros/buffer.h"
+    assert any(each.parent.name == "tf" for each in library_sources([header]))
