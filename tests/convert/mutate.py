@@ -261,7 +261,7 @@ class Damaging:
         try:
             report = check_program(program, profile, {})
         except Exception as error:  # whatever it is, it is what is looked for
-            return Outcome(kind, compiles, False, f"{type(error).__name__}: {error}")
+            return Outcome(kind, compiles, False, f"{type(error).__name__}: {error}"[:200])
         wrong = "clean, but it does not compile" if not compiles and not report.is_refused else ""
         return Outcome(kind, compiles, report.is_refused, wrong)
 

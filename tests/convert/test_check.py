@@ -160,6 +160,11 @@ def test_errors_of_the_compiler_have_rules(message: str, rule: str) -> None:
     assert rule_of(message, Profile.POOL)[0] == rule
 
 
+def test_a_name_that_no_file_can_have_is_not_found(tmp_path: Path) -> None:
+    report = look(tmp_path, f"#include <{'x' * 5000}>\n#include <boost/{'x' * 5000}>\n{MAIN}", Profile.HOST)
+    assert {each.rule for each in report.findings} == {"include-unknown", "boost-header"}
+
+
 def test_deep_nesting_is_read() -> None:
     depth = 20_000
     assert (

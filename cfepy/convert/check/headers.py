@@ -167,12 +167,12 @@ def is_standard(name: str) -> bool:
 
 def is_ours(name: str) -> bool:
     """Whether a header is the interface library's."""
-    return (OURS / name).is_file()
+    return is_file(OURS / name)
 
 
 def is_small_boost(name: str) -> bool:
     """Whether a header of Boost is in the small one of the interface library."""
-    return (OUR_BOOST / name).is_file()
+    return is_file(OUR_BOOST / name)
 
 
 def has_boost(name: str, profile: Profile) -> bool:
