@@ -25,7 +25,12 @@ def pages(size: int) -> int:
 
 
 _left: dict[int, int] = {}
-"""Address and bytes of what processors of before left in place."""
+"""Address and bytes of what processors of before left in place.
+
+It is the process's and no processor's: Python may still look at such memory through views that outlive the processor,
+so it stays until another one's region needs the place. If views owned it, where a processor's memory is would depend on
+when garbage is collected, and addresses are to be the same in each run.
+"""
 
 
 class Arena:

@@ -96,8 +96,19 @@ class CallTable:
         return stub
 
 
+_INSTEAD = {
+    "pthread_create": "a task is made by OS_TaskCreate or CFE_ES_CreateChildTask, also in place of std::thread",
+    "pthread_cond_init": "a task waits for another by OS_BinSemTake, or by a pipe",
+    "pthread_condattr_init": "a task waits for another by OS_BinSemTake, or by a pipe",
+    "fork": "a flight computer has no processes; a task is made by OS_TaskCreate",
+    "system": "a flight computer has no shell; see OS_ShellOutputToFile",
+}
+"""What flight software has in place of functions of a workstation."""
+
+
 def _absent(name: str) -> Callable[[], object]:
     def fail() -> None:
-        raise CFault(f"{name}() was called, which neither cfepy nor a library of the mission has")
+        instead = f"; {_INSTEAD[name]}" if name in _INSTEAD else ""
+        raise CFault(f"{name}() was called, which neither cfepy nor a library of the mission has{instead}")
 
     return fail

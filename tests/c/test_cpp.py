@@ -245,3 +245,19 @@ def test_a_computer_without_libstdcpp_says_how_to_link(tmp_path: Path, monkeypat
     [problem] = check_mission(tmp_path / "startup.scr")
     assert what in problem.text
     assert f"OS_ModuleLoad: libgcc_s.so.1 {what}" in console_of(fly(folder, 1))
+
+
+@pytest.mark.slow
+def test_a_thread_of_the_library_is_told_what_flight_software_has(tmp_path: Path) -> None:
+    source = """
+        #include <thread>
+        extern "C" void TEST_Main()
+        {
+            std::thread other([]() {});
+            other.join();
+        }
+    """
+    told = fly_cpp(tmp_path, source, "-pthread")
+    assert "pthread_create() was called, which neither cfepy nor" in told
+    assert "has; a task is made by OS_TaskCreate or CFE_ES_CreateChildTask, also in place of std::thread" in told
+    assert "died of an exception" in told
