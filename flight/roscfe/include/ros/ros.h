@@ -2,6 +2,11 @@
 #ifndef ROSCPP_ROS_H
 #define ROSCPP_ROS_H
 
+// roscpp brings these along, and nodes rely on it: isnan without std::, boost::lexical_cast.
+#include <boost/lexical_cast.hpp>
+
+#include <math.h>
+
 #include "ros/time.h"
 
 #include "ros/rate.h"
