@@ -16,7 +16,7 @@
 namespace tf2_ros
 {
 
-inline const char *const threading_error =
+inline const std::string threading_error =
     "Do not call canTransform or lookupTransform with a timeout unless you are using another thread for populating "
     "data. Without a dedicated thread it will always timeout.  If you have a separate thread servicing tf messages, "
     "call setUsingDedicatedThread(true) on your Buffer instance.";
@@ -79,7 +79,7 @@ class Buffer : public BufferInterface, public tf2::BufferCore
             {
                 *errstr = threading_error;
             }
-            ROS_ERROR("%s", threading_error);
+            ROS_ERROR("%s", threading_error.c_str());
             return false;
         }
         const ros::Time     start = ros::Time::now(), end = start + timeout;
