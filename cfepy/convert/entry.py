@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rospy_shim.client.names import SEP
-from rospy_shim.parameters.table import FREE, Row, rows_for
+from rospy_shim.parameters.table import FREE, NAME_BYTES, VALUE_BYTES, Row, rows_for
 from rospy_shim.parameters.values import leaves_of
 
 LONGEST_SYMBOL = 19
@@ -101,6 +101,17 @@ def quoted(text: str) -> str:
     return '"' + "".join(_escaped(byte) for byte in text.encode()) + '"'
 
 
+def _field(text: str, size: int) -> str:
+    """A text in an array of so many characters: C++ takes no literal for an array that has no room for its end."""
+    if len(text) < size:
+        return quoted(text)
+    return f"{{{', '.join(_character(byte) for byte in text.encode())}}}"
+
+
+def _character(byte: int) -> str:
+    return "'\\''" if byte == ord("'") else f"'{_escaped(byte)}'"
+
+
 def _escaped(byte: int) -> str:
     if byte in b'"\\':
         return f"\\{byte:c}"
@@ -128,7 +139,10 @@ def _lines(node: NodeEntry) -> Iterator[str]:
     topics = [f"{{{quoted(name)}, 0x{id_:04X}, {str(raw).lower()}}}" for name, (id_, raw) in node.topics.items()]
     services = [f"{{{quoted(name)}, 0x{id_:04X}}}" for name, id_ in node.services.items()]
     remaps = [f"{{{quoted(one)}, {quoted(other)}}}" for one, other in node.remaps.items()]
-    rows = [f"{{{quoted(name)}, {quoted(value)}}}" if name or value else "{}" for name, value in node.rows]
+    rows = [
+        f"{{{_field(name, NAME_BYTES)}, {_field(value, VALUE_BYTES)}}}" if name or value else "{}"
+        for name, value in node.rows
+    ]
     yield from _table("const char *const", "kArguments", [quoted(each) for each in node.args])
     yield from _table("const roscfe::TopicId", "kTopics", topics)
     yield from _table("const roscfe::ServiceId", "kServices", services)

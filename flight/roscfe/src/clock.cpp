@@ -39,30 +39,41 @@ void TimerState::start()
     {
         return;
     }
+    ++starts;
     running          = true;
-    next_expected_ns = now_ns() + period_ns;
+    waiting          = false;
+    last_expected_ns = now_ns();
+    next_expected_ns = last_expected_ns + period_ns;
+    last_real_ns = last_expired_ns = last_duration_ns = 0;
+}
+
+void TimerState::stop()
+{
+    running = waiting = false;
+    if (callbacks != nullptr && !g_node.ended)
+    {
+        callbacks->removeByID(reinterpret_cast<std::uintptr_t>(this));
+    }
 }
 
 void TimerState::set_period(std::int64_t period, bool reset)
 {
-    const std::int64_t now = now_ns();
+    const std::int64_t now   = now_ns();
+    const std::int64_t since = now - last_real_ns; // the last call
     if (reset)
     {
         next_expected_ns = now + period;
     }
-    else
+    else if (since < period_ns) // otherwise a call is under way, and the new period counts from its end
     {
-        // In the middle of a cycle the new period counts from the cycle's beginning, but not into the past.
-        const std::int64_t begun = next_expected_ns - period_ns;
-        next_expected_ns         = std::max(begun + period, now);
+        next_expected_ns = since > period ? now : last_real_ns + period;
     }
     period_ns = period;
 }
 
 ros::CallbackInterface::CallResult TimerState::call_now()
 {
-    waiting = false;
-    if (!alive || !running)
+    if (!alive || !running || !waiting)
     {
         return Invalid;
     }
@@ -71,23 +82,28 @@ ros::CallbackInterface::CallResult TimerState::call_now()
     {
         return Invalid;
     }
-    const std::int64_t begun = now_ns();
-    if (oneshot)
-    {
-        running = false;
-    }
+    // It waits on until the call is over: no other call of the same timer begins meanwhile.
+    const std::uint32_t started = starts;
+    const std::int64_t  begun   = now_ns();
+    const std::int64_t  expired = expired_ns;
     fire(begun);
+    if (!running || starts != started) // it was stopped by its callback
+    {
+        return Success;
+    }
     const std::int64_t ended = now_ns();
     last_duration_ns         = ended - begun;
     last_real_ns             = begun;
-    last_expected_ns         = due_ns;
-    if (!oneshot && next_expected_ns == due_ns)
+    last_expired_ns          = expired;
+    waiting                  = oneshot;
+    if (next_expected_ns <= ended) // otherwise the callback has set the period
     {
+        last_expected_ns = next_expected_ns;
         next_expected_ns += period_ns;
-        if (next_expected_ns + period_ns < ended) // too slow by more than a period: begin anew
-        {
-            next_expected_ns = ended;
-        }
+    }
+    if (next_expected_ns + period_ns < ended) // too slow by more than a period: begin anew
+    {
+        next_expected_ns = ended;
     }
     return Success;
 }
@@ -111,8 +127,9 @@ void queue_due_timers(std::int64_t now)
         {
             return;
         }
-        first->waiting = true;
-        first->due_ns  = first->next_expected_ns;
+        first->waiting    = true;
+        first->due_ns     = first->next_expected_ns;
+        first->expired_ns = now;
         first->callbacks->addCallback(first, reinterpret_cast<std::uintptr_t>(first.get()));
     }
 }

@@ -17,11 +17,14 @@ class TimerState : public ros::CallbackInterface
     std::int64_t                 next_expected_ns = 0;
     std::int64_t                 last_expected_ns = 0;
     std::int64_t                 last_real_ns     = 0;
+    std::int64_t                 last_expired_ns  = 0; // when it was seen that the last call was due
+    std::int64_t                 expired_ns       = 0; // the same of the call that waits
     std::int64_t                 last_duration_ns = 0; // of its callback
     std::int64_t                 due_ns           = 0; // the time that the waiting call was expected at
     bool                         oneshot          = false;
     bool                         running          = false;
-    bool                         waiting          = false; // a call is in the queue
+    bool                         waiting          = false; // a call is in the queue or under way, or the only one was
+    std::uint32_t                starts           = 0;
     bool                         alive            = true;
     bool                         has_tracked      = false;
     ros::VoidConstWPtr           tracked;
@@ -32,7 +35,7 @@ class TimerState : public ros::CallbackInterface
     CallResult call() override { return call_now(); }
     CallResult call_now();
     void       start();
-    void       stop() { running = false; }
+    void       stop();
     void       set_period(std::int64_t period, bool reset);
 
   protected:
@@ -147,10 +150,10 @@ class TimerOf
             Event event;
             event.last_expected.fromNSec(static_cast<std::uint64_t>(last_expected_ns));
             event.last_real.fromNSec(static_cast<std::uint64_t>(last_real_ns));
-            event.last_expired = event.last_expected;
+            event.last_expired.fromNSec(static_cast<std::uint64_t>(last_expired_ns));
             event.current_expected.fromNSec(static_cast<std::uint64_t>(due_ns));
             event.current_real.fromNSec(static_cast<std::uint64_t>(now_ns));
-            event.current_expired = event.current_expected;
+            event.current_expired.fromNSec(static_cast<std::uint64_t>(expired_ns));
             event.profile.last_duration.fromNSec(last_duration_ns);
             callback(event);
         }
