@@ -22,6 +22,9 @@ DROP = b"D"  # followed by the pipe
 NOTE = b"N"  # followed by a text, UTF-8
 UNSENT = b"U"  # followed by a topic, a zero byte, and a message without a subscriber; only in runs that are compared
 
+CALLED = b"C"  # followed by a place in C, a zero byte and the numbers of a call there; only in runs that are compared
+ONLY_COMPARED = (UNSENT, CALLED)
+
 BATCH = 4096
 
 pack_time: Callable[[bytes, int], bytes] = struct.Struct("<cq").pack

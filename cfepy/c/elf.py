@@ -18,9 +18,13 @@ LARGEST = 1 << 30
 _MARK_OF_GCOV = b"GCOV_PREFIX\0"
 _SYMBOL = struct.Struct("<IBBHQQ")
 _RELOCATION = struct.Struct("<QQq")
+_WORD = struct.Struct("<Q")
+_BITS = 63
 _WEAK = 2
 _KINDS = {1: "STT_OBJECT", 2: "STT_FUNC", 6: "STT_TLS", 10: "STT_GNU_IFUNC"}
 MACHINES = {"EM_X86_64": "x86_64", "EM_AARCH64": "aarch64"}
+RELATIVE = {"x86_64": 8, "aarch64": 1027}
+"""The kind of relocation that adds the object's base (R_X86_64_RELATIVE, R_AARCH64_RELATIVE)."""
 
 
 def is_elf(file: Path) -> bool:
@@ -216,15 +220,34 @@ def _read_dynamic(made: SharedObject, dynamic: Any) -> None:
     made.function_at_end = tags.get("DT_FINI", 0)
     names = made.initial(tags["DT_STRTAB"], tags["DT_STRSZ"])
     made.symbols = list(symbols_in(made.initial(tags["DT_SYMTAB"], dynamic.num_symbols() * _SYMBOL.size), names))
-    if "DT_RELR" in tags or "DT_REL" in tags:
-        raise ElfError(
-            f"{made.name} has relocations of a form that is not supported: link without -z pack-relative-relocs"
-        )
+    if "DT_REL" in tags:
+        raise ElfError(f"{made.name} has relocations without addends (DT_REL), which no processor here has")
+    made.relocations += _packed(made, made.initial(tags.get("DT_RELR", 0), tags.get("DT_RELRSZ", 0)))
     for table, size in (("DT_RELA", "DT_RELASZ"), ("DT_JMPREL", "DT_PLTRELSZ")):
         raw = made.initial(tags.get(table, 0), tags.get(size, 0))
         made.relocations += [
             Relocation(at, info & 0xFFFFFFFF, info >> 32, addend) for at, info, addend in _RELOCATION.iter_unpack(raw)
         ]
+
+
+def _packed(made: SharedObject, raw: bytes) -> Iterator[Relocation]:
+    """Relative relocations that are packed (DT_RELR); the words that they fill in have their addends.
+
+    An even number is the address of a word; an odd one says with its bits which of the 63 words behind are the next.
+    """
+
+    def at(address: int) -> Relocation:
+        (addend,) = _WORD.unpack(made.initial(address, _WORD.size))
+        return Relocation(address, RELATIVE[made.machine], 0, addend)
+
+    behind = 0
+    for (number,) in _WORD.iter_unpack(raw):
+        if number & 1:
+            yield from (at(behind + bit * _WORD.size) for bit in range(_BITS) if number >> bit + 1 & 1)
+            behind += _BITS * _WORD.size
+        else:
+            yield at(number)
+            behind = number + _WORD.size
 
 
 def symbols_in(raw: bytes, names: bytes) -> Iterator[Symbol]:

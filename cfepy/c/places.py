@@ -10,7 +10,7 @@ import ast
 import sys
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from io import BytesIO
 from pathlib import PurePath
 from types import CodeType, FunctionType
@@ -189,6 +189,10 @@ class PreemptedFrames(dict[int, Watch]):
         return function
 
 
+CallHeard = Callable[[str, tuple[object, ...]], object]
+"""Called with the place of a call and its arguments."""
+
+
 def _call(function: Call, *args: object) -> object:
     return function(*args)
 
@@ -198,16 +202,22 @@ class CallFrames(dict[int, Call]):
 
     Args:
         place_of: the place of an address, if it is known.
+        heard: gets the place and the arguments of each call whose place is known; None for nobody.
     """
 
-    def __init__(self, place_of: Callable[[int], CodePlace | None]) -> None:
+    def __init__(self, place_of: Callable[[int], CodePlace | None], heard: CallHeard | None = None) -> None:
         super().__init__()
         self._place_of = place_of
+        self._heard = heard
 
     def __missing__(self, address: int) -> Call:
-        function: Call = _seen_as(self._place_of(address), _CALL, {}) or _call
-        self[address] = function
-        return function
+        place = self._place_of(address)
+        if self._heard is None or place is None:
+            function: Call | None = _seen_as(place, _CALL, {})
+        else:
+            function = _seen_as(place, _HEARD_CALL, {"heard": partial(self._heard, f"{place.file}:{place.line}")})
+        made = self[address] = function or _call
+        return made
 
 
 def raise_at(calls: Sequence[CodePlace], error: BaseException) -> NoReturn:
@@ -254,4 +264,5 @@ def _code(source: str) -> CodeType:
 
 _WATCH = _code("def frame(computed_s, called_from): return watch(computed_s, called_from)")
 _CALL = _code("def frame(function, *args): return function(*args)")
+_HEARD_CALL = _code("def frame(function, *args): heard(args); return function(*args)")
 _RAISE = _code("def frame(error): raise error from None")

@@ -271,7 +271,7 @@ class CRuntime:
         if owner:
             self._owners.add(owner)
         if self.kernel.frames_wanted and self.table.frames is None:
-            self.table.frames = CallFrames(self._place)
+            self.table.frames = CallFrames(self._place, self.kernel.call_heard)
         given, room = (stack, size) if stack else self._stacks.take(size)
         is_outermost = self.thread_locals.begin()
         number = self._races.begin(self.image_at(function)) if self._races is not None else 0

@@ -9,6 +9,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import repeat
+from pathlib import PurePath
 
 from cfepy import trace as tr
 from cfepy.ground import names_of
@@ -75,6 +76,9 @@ class TraceText:
         if kind == tr.UNSENT:
             topic, _, message = record[1:].partition(b"\0")
             return f"publish {topic.decode()} length {len(message)}, which nobody gets"
+        if kind == tr.CALLED:
+            place, _, numbers = record[1:].decode("utf-8", "replace").partition("\0")
+            return f"calls from {PurePath(place).name}" + (f" with {numbers}" if numbers else "")
         (number,) = _number(record)
         return self._event(kind, number)
 

@@ -23,7 +23,7 @@ from cfepy.pilot import SUDDEN, Course, Flown, Host, Results, fly
 from cfepy.rtos import Policy
 from cfepy.script import ScriptRun
 from cfepy.status import StallError
-from cfepy.trace import UNSENT, TimedRecords, Trace
+from cfepy.trace import ONLY_COMPARED, TimedRecords, Trace
 
 Describe = Callable[[TimedRecords], list[str]]
 """Makes lines of text of records."""
@@ -357,7 +357,7 @@ class Checker(Attachment):
         if self._finished or is_over or self.difference is not None:
             return
         times: Iterable[int] = records.times if isinstance(records, TimedRecords) else repeat(0)
-        rest = [each for each in zip(records, times, strict=False) if each[0] and each[0][:1] != UNSENT]
+        rest = [each for each in zip(records, times, strict=False) if each[0] and each[0][:1] not in ONLY_COMPARED]
         while self._coming and self.difference is None:
             missing = self._coming[-1].records - self._count
             if missing > len(rest):

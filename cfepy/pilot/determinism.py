@@ -15,21 +15,22 @@ from itertools import accumulate, pairwise
 from typing import Any, BinaryIO
 
 from cfepy.mission import hearing
+from cfepy.rtos import Kernel
 from cfepy.sb import SoftwareBus
-from cfepy.trace import UNSENT, Trace
+from cfepy.trace import CALLED, ONLY_COMPARED, UNSENT, Trace
 
 _head = struct.Struct("<II")  # records, and bytes that follow; no records: the bytes are what ends the stream
 _LENGTH = "I"
 
 
 class ComparedTrace(Trace):
-    """A trace that also has messages without a subscriber. Its digest leaves them out, so it is as without them."""
+    """A trace that has more than is compared otherwise. Its digest leaves that out, so it is as without it."""
 
     __slots__ = ()
 
     def flush(self) -> None:
         """See `Trace.flush`."""
-        self._hash.update(b"".join(record for record in self.records if record[:1] != UNSENT))
+        self._hash.update(b"".join(record for record in self.records if record[:1] not in ONLY_COMPARED))
         if self._sink is not None:
             self._sink(self.records)
         self.records.clear()
@@ -44,6 +45,24 @@ def comparing(bus: type[SoftwareBus], trace: Trace) -> type[SoftwareBus]:
     """
 
     return hearing(bus, lambda link, message: trace.append(UNSENT + link.name.encode() + b"\0" + message))
+
+
+def hear_calls(kernel: Kernel, trace: Trace) -> None:
+    """Record the calls of compiled applications, too: where they part, code has seen something else before.
+
+    Calls of code without debug data are left out, such as those of libgcov, which go on with the counts of other runs.
+
+    Args:
+        kernel: of the processor.
+        trace: where they are recorded.
+    """
+
+    def heard(place: str, arguments: tuple[object, ...]) -> None:
+        numbers = " ".join(str(each) for each in arguments if isinstance(each, int))
+        trace.append(CALLED + f"{place}\0{numbers}".encode())
+
+    kernel.frames_wanted = True
+    kernel.call_heard = heard
 
 
 class RunEndedError(Exception):

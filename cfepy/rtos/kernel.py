@@ -46,6 +46,7 @@ class Kernel(Scheduler):
         is_lost: the running task will not give the CPU back; the host is about to go on without it.
         guard: held by who looks at these from another thread and acts on it.
         frames_wanted: somebody looks at the Python frames of tasks, so code that is no Python shows itself in one.
+        call_heard: gets the place and the arguments of each call that code which is no Python makes; None for nobody.
     """
 
     def __init__(
@@ -71,6 +72,7 @@ class Kernel(Scheduler):
         self.guard = threading.Lock()
         self._gave_up = False
         self.frames_wanted = False
+        self.call_heard: Callable[[str, tuple[object, ...]], object] | None = None
 
     def __enter__(self) -> Kernel:
         return self

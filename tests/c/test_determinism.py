@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.cli.main import main
 from tests.c.building import compile_c, compile_cpp, fly_c, needs_compiler, needs_cpp, said, write_mission
 
 pytestmark = needs_compiler
@@ -175,3 +176,71 @@ def test_files_of_the_host_are_not_asked_for(tmp_path: Path) -> None:
     console = fly_c(tmp_path, 'int access(const char *, int); void TEST_Main(void) { SAY("%d", access("/etc", 0)); }')
     assert "access() of /etc" in console
     assert said(console) == []
+
+
+LEAKS = """
+    #if defined(__x86_64__)
+    #define ASK(answer) __asm__ volatile("syscall" : "=a"(answer) : "a"(39) : "rcx", "r11", "memory")
+    #else
+    #define ASK(answer) __asm__ volatile("mov x8, 172; svc 0; mov %0, x0" : "=r"(answer) : : "x0", "x8", "memory")
+    #endif
+    static uint32_t process_id(void)
+    {
+        long answer;
+        ASK(answer);
+        return answer;
+    }
+    static uint32_t message[8];
+    static void __attribute__((noinline)) report(void)
+    {
+        message[5] = process_id();
+        CFE_SB_TransmitMsg(message, true);
+    }
+    static void __attribute__((noinline)) rest(void)
+    {
+        OS_TaskDelay(200 + process_id() % 10000);
+    }
+    void TEST_Main(void)
+    {
+        uint32_t pipe, run = RUN;
+        CFE_SB_CreatePipe(&pipe, 5, "PIPE");
+        CFE_SB_Subscribe(0x891, pipe);
+        CFE_MSG_Init(message, 0x891, sizeof message);
+        while (CFE_ES_RunLoop(&run)) {
+            OS_TaskDelay(100);
+            HERE;
+        }
+    }
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("how", "place", "source", "what"),
+    [
+        ("report()", ":16 in report", "CFE_SB_TransmitMsg(message, true);", "TEST send 0x0891 sequence 1"),
+        ("rest()", ":20 in rest", "OS_TaskDelay(200 + process_id() % 10000);", "TEST calls from "),
+    ],
+)
+def test_what_goes_past_cfepy_is_found_with_its_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], how: str, place: str, source: str, what: str
+) -> None:
+    compile_c(tmp_path, "TEST", LEAKS, f"-DHERE={how}", "-fno-optimize-sibling-calls", "-Wno-unused-function")
+    folder = write_mission(tmp_path, "TEST")
+    assert main(["run", folder, "--for", "1", "--check-determinism", "2"]) == 1
+    shown = capsys.readouterr().out
+    assert shown.count(f"  made at {tmp_path / 'TEST.c'}{place}\n      {source}\n") == 2
+    assert what in shown
+    assert "even two runs alike differ" in shown
+    assert "a compiled application" in shown
+
+
+@pytest.mark.slow
+def test_calls_that_are_compared_are_not_in_the_digest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    compile_c(tmp_path, "TEST", RUBBISH, "--coverage", "-Wno-uninitialized", "-Wno-maybe-uninitialized", "-Wno-format")
+    folder = write_mission(tmp_path, "TEST")
+    assert main(["run", folder, "--for", "1", "--check-determinism", "3"]) == 0
+    compared = capsys.readouterr().out.splitlines()
+    assert compared[-2].startswith("all made the same ")
+    assert main(["run", folder, "--for", "1", "--quiet"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == compared[-1]

@@ -211,3 +211,31 @@ def test_a_library_is_called_by_applications(tmp_path: Path) -> None:
         compile_c(tmp_path, name, source)
     folder = write_mission(tmp_path, "ONE", "TWO", libraries="CFE_LIB, lib, LIB_Init, LIB, 0, 0, 0x0, 0;\n")
     assert said(console_of(fly(folder))) == ["library 1", "ONE 42 1", "TWO 42 2"]
+
+
+PACKED = """
+    #define TEN(n) &numbers[n], &numbers[n + 1], &numbers[n + 2], &numbers[n + 3], &numbers[n + 4], &numbers[n + 5], \\
+        &numbers[n + 6], &numbers[n + 7], &numbers[n + 8], &numbers[n + 9]
+    static int numbers[100];
+    static int *const all[] = {
+        TEN(0), TEN(10), TEN(20), TEN(30), TEN(40), TEN(50), TEN(60), TEN(70), TEN(80), TEN(90), NULL, NULL, NULL,
+    };
+    static struct { char gap[1000]; int *last; const char *name; } far_away = {"", &numbers[99], "far away"};
+    void TEST_Main(void)
+    {
+        int sum = 0;
+        for (int i = 0; i < 100; i++)
+            numbers[i] = i;
+        for (int i = 0; i < 103; i++)
+            sum = sum * 3 + (all[i] != NULL ? *all[i] : 1);
+        SAY("%u %d %s", (unsigned)sum, *far_away.last, far_away.name);
+    }
+"""
+
+
+def test_packed_relocations_are_filled_in(tmp_path: Path) -> None:
+    """DT_RELR; a linker that does not know the flag warns, and makes those that are not packed."""
+    plain = said(fly_c(tmp_path, PACKED))
+    packed = said(fly_c(tmp_path, PACKED, flags=("-Wl,-z,pack-relative-relocs",)))
+    assert packed == plain
+    assert packed[0].endswith(" 99 far away")

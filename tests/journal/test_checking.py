@@ -11,7 +11,7 @@ import pytest
 
 from cfepy.journal.journal import Checkpoint
 from cfepy.journal.replay import Checker
-from cfepy.trace import UNSENT, TimedRecords, Trace
+from cfepy.trace import CALLED, UNSENT, TimedRecords, Trace
 
 RECORDS = [bytes([number + 1]) * 5 for number in range(12)]
 
@@ -62,4 +62,4 @@ def test_one_other_record_is_told_between_its_checkpoints(wrong: int, batches: t
 
 
 def test_messages_that_nobody_gets_do_not_count() -> None:
-    assert checked([RECORDS[0], UNSENT + b"/t\0x", b"", *RECORDS[1:]], ()).agreed == checkpoint(12)
+    assert checked([RECORDS[0], UNSENT + b"/t\0x", CALLED + b"a.c:1\0", b"", *RECORDS[1:]], ()).agreed == checkpoint(12)

@@ -156,6 +156,8 @@ engine_thread_local:                            /* where a variable is, from the
     OTHERS stp
     ldr x0, [x0, #8]
     bl engine_call
+    str xzr, [sp, #-72]                         /* where KEEP had x30: an address of the host's code, which applications
+                                                   would find below their stack */
     mrs x1, tpidr_el0
     sub x0, x0, x1
     VECTORS ldp

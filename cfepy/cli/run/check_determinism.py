@@ -27,7 +27,8 @@ ATTEMPTS = 3  # runs that follow addresses or the host do not part at the same r
 _SETS = """with `ordered_sets: true` in the mission file these two agree: somewhere the order of a set decides;
 sort it in the code (for name in sorted(names)), or switch ordered sets on"""
 _OUTSIDE = """even two runs alike differ: something outside decides, such as the address of an object (id(), the order
-of objects in a frozenset), a file that changes, or a library written in C"""
+of objects in a frozenset), a file that changes, a library written in C, or a compiled application that asks the
+processor for the time, or the host's kernel past libc"""
 _HASHES = """it hangs on PYTHONHASHSEED, but ordered sets do not cure it: hash() of a text, a frozenset, a set that a
 library makes (d.keys() & e)"""
 _TASKS = "it hangs on --tasks; threads and greenlets must not differ, so this is a fault of cfepy: please report it"

@@ -22,7 +22,7 @@ from cfepy.ground import dictionary_of, flat, library_of, plain, text_of, topics
 from cfepy.journal import Replay, read_journal, staged
 from cfepy.mission import Mission, MissionSpec
 from cfepy.pilot import RunPlan, fly
-from cfepy.pilot.determinism import ComparedTrace, RecordWriter, comparing
+from cfepy.pilot.determinism import ComparedTrace, RecordWriter, comparing, hear_calls
 from cfepy.pilot.determinism_look import Look, LookingTrace
 from cfepy.pilot.open_world import OpenWorld
 from cfepy.sb import SoftwareBus
@@ -111,6 +111,10 @@ class RecordPipe(Recorder):
         if kind is None:
             self._writer.end({"digest": self.trace.digest(), "contacts": list(self._world.contacts)})
 
+    def begin(self, mission: Mission) -> None:
+        """Hear the calls of compiled applications as well."""
+        hear_calls(mission.kernel, self.trace)
+
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """A bus that also records messages without a subscriber."""
         return comparing(base, self.trace)
@@ -145,6 +149,7 @@ class Lookout(Recorder):
     def begin(self, mission: Mission) -> None:
         """Learn the names in this mission."""
         self._mission = mission
+        hear_calls(mission.kernel, self.trace)
         self._text.watch(mission)
 
     def _lines(self, records: list[bytes]) -> list[str]:
