@@ -171,6 +171,7 @@ def program_of(package: CppPackage, node_type: str, packages: Packages, ours: It
         known = ", ".join([*package.executables(), *package.nodelets()]) or "no C++ node"
         raise UsageError(f"package {package.name!r} has no C++ node {node_type!r}; it has {known}", file=package.folder)
     program = Program(package, node_type, nodelet="" if plugin is None else plugin.type.lstrip(":"))
+    program.definitions.append(f'ROS_PACKAGE_NAME="{package.name}"')  # as roscpp's part of catkin does
     _Collector(program, packages, set(ours)).take(package, target)
     return program
 
