@@ -41,7 +41,7 @@ def test_a_launch_file_becomes_applications(package: Path, tmp_path: Path) -> No
         assert text in entry
     assert '"/arm/left/hz"' not in (out / "arm_ear/fsw/src/arm_ear_entry.cpp").read_text()
     cmake = (out / "arm_left/CMakeLists.txt").read_text()
-    assert 'target_compile_definitions(arm_left PRIVATE GREETING="beat")' in cmake
+    assert 'target_compile_definitions(arm_left PRIVATE ROS_PACKAGE_NAME="ping" GREETING="beat")' in cmake
     assert "../packages/ping/include" in cmake
     assert (out / "packages/ping/include/ping/words.h").read_bytes() == (package / "include/ping/words.h").read_bytes()
     assert (out / "roscfe/msg/ping/Beat.h").is_file()

@@ -84,7 +84,7 @@ def test_a_package_is_read_as_catkin_does(tmp_path: Path) -> None:
     names = [str(each.relative_to(tmp_path)) for each in program.sources]
     assert names == ["demo/src/talker.cpp", "demo/src/core/a.cpp", "demo/src/core/b.cpp", "helpers/lib/helping.cc"]
     assert [str(each.relative_to(tmp_path)) for each in program.includes] == ["demo/include", "helpers/include"]
-    assert program.definitions == ["RATE=10", "FAST", "ON_UNIX=1"]
+    assert program.definitions == ['ROS_PACKAGE_NAME="demo"', "RATE=10", "FAST", "ON_UNIX=1"]
     assert program.outside == ["PCL"]
 
 
