@@ -8,7 +8,6 @@ import rostest
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool
 
-
 LOW, HIGH = 3.8, 6.2
 
 
@@ -29,17 +28,17 @@ class TestLevel(unittest.TestCase):
     def test_it_stays_within_its_bounds(self):
         """For 20 s."""
         levels = [level() for _ in range(200)]
-        self.assertGreater(min(levels), LOW)
-        self.assertLess(max(levels), HIGH)
+        assert min(levels) > LOW
+        assert max(levels) < HIGH
 
     def test_it_falls_while_the_pump_is_stopped(self):
         """A service that answers and does nothing would not do."""
-        self.assertEqual(enable(False), "stopped")
+        assert enable(False) == "stopped"
         rospy.sleep(10)
-        self.assertLess(level(), LOW)
-        self.assertEqual(enable(True), "enabled")
+        assert level() < LOW
+        assert enable(True) == "enabled"
         rospy.sleep(5)
-        self.assertGreater(level(), LOW)
+        assert level() > LOW
 
 
 rospy.init_node("check_level")
