@@ -83,6 +83,18 @@ def test_what_the_compiler_refuses_is_left_out_with_its_words(package: Path, cap
     assert "nothing_such" in told
 
 
+def test_a_topic_of_a_node_has_one_type(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    source = package / "src/sender.cpp"
+    again = 'ros::Publisher other = nh.advertise<std_msgs::String>("beat", 4); ROS_INFO("is one: %d", bool(other));'
+    text = source.read_text().replace("ros::Rate rate(hz);", again + " ros::Rate rate(hz);")
+    source.write_text("#include <std_msgs/String.h>\n" + text)
+    assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 0
+    shown = capfd.readouterr().out
+    assert "is one: 0" in shown
+    assert "Tried to advertise on topic [/pulse] with md5sum [992ce8a1687cec8c8bd883ec73ca41d1]" in shown
+    assert "heard 1 plain-beat-odd!" in shown
+
+
 def test_without_a_compiler_it_is_said(
     package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -25,7 +25,8 @@ recording, counts are compared. {silent} of these nodes end on ROS before they a
 parameter, an argument or Python 2, and do the same here. `python -m tests.corpus beside ID`, on a computer with rospy
 and rosmaster, flies a scenario on both and shows what is not alike.
 
-This page is made by `python -m tests.corpus report`. To try it yourself:
+This page is made by `python -m tests.corpus report`. Nodes in C++ are in [convertor.md](convertor.md#public-nodes).
+To try it yourself:
 
 ```
 python -m tests.corpus fetch ~/corpus

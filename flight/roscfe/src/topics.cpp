@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "internal.h"
+#include "ros/console.h"
 #include "ros/node_handle.h"
 #include "ros/single_subscriber_publisher.h"
 #include "ros/this_node.h"
@@ -302,10 +303,21 @@ std::uint32_t Subscriber::getNumPublishers() const
 
 Publisher NodeHandle::advertise(AdvertiseOptions &options)
 {
-    const std::string topic       = resolveName(options.topic);
-    auto              publication = roscfe::advertise(topic, options.datatype.c_str(), options.md5sum.c_str(),
+    const std::string topic = resolveName(options.topic);
+    for (const auto &each : roscfe::g_node.publications)
+    {
+        if (each->topic_ == topic && each->md5_ != options.md5sum)
+        {
+            ROS_ERROR("Tried to advertise on topic [%s] with md5sum [%s] and datatype [%s], but the topic is already "
+                      "advertised as md5sum [%s] and datatype [%s]",
+                      topic.c_str(), options.md5sum.c_str(), options.datatype.c_str(), each->md5_.c_str(),
+                      each->type_.c_str());
+            return Publisher();
+        }
+    }
+    auto publication = roscfe::advertise(topic, options.datatype.c_str(), options.md5sum.c_str(),
                                          options.message_definition.c_str(), options.has_header);
-    publication->latch_           = publication->latch_ || options.latch;
+    publication->latch_ = publication->latch_ || options.latch;
     if (options.connect_cb)
     {
         publication->on_connect_.push_back(options.connect_cb);
