@@ -88,7 +88,7 @@ def test_a_topic_of_a_node_has_one_type(package: Path, capfd: pytest.CaptureFixt
     again = 'ros::Publisher other = nh.advertise<std_msgs::String>("beat", 4); ROS_INFO("is one: %d", bool(other));'
     text = source.read_text().replace("ros::Rate rate(hz);", again + " ros::Rate rate(hz);")
     source.write_text("#include <std_msgs/String.h>\n" + text)
-    assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 0
+    assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 1  # an event of the type ERROR
     shown = capfd.readouterr().out
     assert "is one: 0" in shown
     assert "Tried to advertise on topic [/pulse] with md5sum [992ce8a1687cec8c8bd883ec73ca41d1]" in shown
