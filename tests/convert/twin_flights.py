@@ -23,7 +23,10 @@ SECONDS = 12.0
 
 
 class Recorded(NamedTuple):
-    """A message: when it came in nanoseconds, its topic, type and bytes."""
+    """A message: when it came in microseconds, its topic, type and bytes.
+
+    Times that rospy waits for are floats, and so a few nanoseconds longer or shorter.
+    """
 
     time: int
     topic: str
@@ -71,4 +74,4 @@ def recorded(line: str, python: bool) -> Recorded:
     data = bytes.fromhex(text)
     if python and shipped().spec(kind).has_header:
         data = (int.from_bytes(data[:4], "little") - 1).to_bytes(4, "little") + data[4:]
-    return Recorded(int(time), topic, kind, data)
+    return Recorded(round(int(time) / 1000), topic, kind, data)

@@ -1,0 +1,65 @@
+"""Nodes in C++ as applications: what they take from the heap, and what their ends and new starts leave behind."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy.es.packets import RESTART_APP
+from cfepy.mission import Mission
+from tests.convert.node_flights import mission_of
+from tests.convert.twin_flights import recorded
+from tests.roscfe.building import needs_cpp
+
+pytestmark = [needs_cpp, pytest.mark.slow]
+
+
+def texts(mission: Mission) -> list[str]:
+    """What the recorder saw of std_msgs/String."""
+    lines = [line for line in mission.console.lines if line.startswith("[recorder] RECORD ")]
+    return [recorded(line, False).data[4:].decode() for line in lines]
+
+
+def said_by(mission: Mission, name: str) -> list[str]:
+    """What a node said, without its name."""
+    return [text.removeprefix(f"{name} ") for text in texts(mission) if text.startswith(f"{name} ")]
+
+
+def test_a_node_that_works_takes_nothing_from_the_heap() -> None:
+    with mission_of("counted") as mission:
+        mission.run_for(10)
+        (line,) = [line for line in mission.console.lines if "RESULT" in line]
+    assert line == "[helper] RESULT 0 allocations, many before, 100 heard, 100 ticks, 50 served, 100 answered"
+
+
+def test_two_nodes_of_one_program_share_nothing() -> None:
+    with mission_of("lives") as mission:
+        mission.run_for(4)
+        assert said_by(mission, "/one")[:2] == [
+            "count 1 global 5 heard 0 starts 1 made before main",
+            "count 2 global 6 heard 0 starts 1 made before main",
+        ]
+        assert said_by(mission, "/two")[:2] == [
+            "count 1 global 5 heard 0 starts 100 made before main",
+            "count 2 global 6 heard 0 starts 100 made before main",
+        ]
+
+
+def test_a_node_that_is_restarted_begins_anew() -> None:
+    with mission_of("lives") as mission:
+        mission.run_for(3)
+        before = len(said_by(mission, "/one"))
+        mission.cfe.sb.transmit_msg(RESTART_APP.packet(Application="ONE"))
+        mission.run_for(12)  # ES lets it end in its own time first
+        after = said_by(mission, "/one")[before:]
+        assert after[0] == "count 1 global 5 heard 0 starts 1 made before main"
+        assert len(after) >= 4
+        assert said_by(mission, "/two")[-1].startswith(f"count {len(said_by(mission, '/two'))} ")
+
+
+def test_exit_ends_one_application_alone() -> None:
+    with mission_of("lives", ends="/one") as mission:
+        mission.run_for(8)
+        assert any("/one: exit(3)" in line for line in mission.console.lines)
+        assert 5 <= len(said_by(mission, "/one")) <= 8
+        assert len(said_by(mission, "/two")) >= 13
+        assert " heard 1 " in said_by(mission, "/two")[-1]
