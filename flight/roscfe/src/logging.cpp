@@ -1,4 +1,5 @@
 // Log lines: the console, /rosout, and events within what EVS takes.
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
@@ -80,6 +81,22 @@ std::uint8_t *put_text(std::uint8_t *at, const char *text)
     return at + size;
 }
 
+// OS_printf takes so many characters at once, and cuts the rest with the end of the line.
+void show(int level, std::int64_t now, const char *text)
+{
+    static char line[kLongest + 128];
+    const int   length = std::snprintf(line, sizeof line, "[%s] [%s] [%lld.%09lld]: %s", g_node.name.c_str(), kNames[level],
+                                     static_cast<long long>(now / kSecond), static_cast<long long>(now % kSecond), text);
+    constexpr int kPiece = OS_BUFFER_SIZE - 2; // room for the end of the line, and of the text
+    const int     size   = std::min(length, static_cast<int>(sizeof line) - 1);
+    int           at     = 0;
+    for (; size - at > kPiece; at += kPiece)
+    {
+        OS_printf("%.*s", kPiece, line + at);
+    }
+    OS_printf("%s\n", line + at);
+}
+
 // rosgraph_msgs/Log, without a list of topics.
 void publish(int level, std::int64_t now, const char *file, int line, const char *function, const char *text)
 {
@@ -133,8 +150,7 @@ void print(int level, const char *file, int line, const char *function, const ch
         std::memcpy(text + sizeof text - 4, "...", 4);
     }
     const std::int64_t now = now_ns();
-    OS_printf("[%s] [%s] [%lld.%09lld]: %s\n", g_node.name.c_str(), kNames[level], static_cast<long long>(now / kSecond),
-              static_cast<long long>(now % kSecond), text);
+    show(level, now, text);
     publish(level, now, file, line, function, text);
     if (level >= kEventsFrom)
     {
