@@ -144,7 +144,7 @@ def test_every_command_hands_every_option_to_the_pilot(
     assert list(words) == list(COMMANDS)
     said, expected = OPTIONS[option]
     if option == "launch_args":  # which only a launch file takes, and reading it comes before the flight
-        monkeypatch.setattr("cfepy.pilot.plan.read_mission", lambda word, args: read_mission_of(tmp_path))
+        monkeypatch.setattr("cfepy.pilot.plan.read_mission", lambda word, args, build: read_mission_of(tmp_path))
     monkeypatch.chdir(tmp_path)
     assert getattr(plan_that_takes_off([*words[command], *said], monkeypatch), option) == expected
 
