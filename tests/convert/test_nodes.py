@@ -63,3 +63,9 @@ def test_exit_ends_one_application_alone() -> None:
         assert 5 <= len(said_by(mission, "/one")) <= 8
         assert len(said_by(mission, "/two")) >= 13
         assert " heard 1 " in said_by(mission, "/two")[-1]
+
+
+def test_a_loop_at_1_khz_loses_nothing() -> None:
+    with mission_of("loop") as mission:
+        mission.run_for(8)
+        assert texts(mission) == ["5000 commands, the last -10000"]

@@ -1,0 +1,26 @@
+// A controller: a command for each joint state.
+// Queues of 2: the Software Bus waits for whole milliseconds, so one cycle in 5,000 begins before the last is answered.
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/Float64MultiArray.h>
+
+static ros::Publisher g_commands;
+
+static void state(const sensor_msgs::JointState::ConstPtr &message)
+{
+    std_msgs::Float64MultiArray command;
+    for (double position : message->position)
+    {
+        command.data.push_back(-2 * position);
+    }
+    g_commands.publish(command);
+}
+
+int main(int argc, char **argv)
+{
+    ros::init(argc, argv, "control");
+    ros::NodeHandle nh;
+    g_commands         = nh.advertise<std_msgs::Float64MultiArray>("motor_command", 1);
+    ros::Subscriber in = nh.subscribe("joint_states", 2, state, ros::TransportHints().tcpNoDelay());
+    ros::spin();
+}
