@@ -30,7 +30,8 @@ from rospy_shim.msgs import Library
 LANGUAGE = ("-std=c++17", "-fPIC", "-fvisibility=hidden", "-fno-gnu-unique", "-Wall")
 """What every source needs: nodes side by side share no variables, and leave none behind when they end."""
 PLAIN = ("-O1", "-g", "-fno-stack-protector", "-U_FORTIFY_SOURCE", "-D_LINUX_OS_", "-D_POSIX_OS_")
-WITHOUT_EXCEPTIONS = ("-fno-exceptions", "-fno-rtti")
+WITHOUT_TYPES = ("-fno-rtti",)
+WITHOUT_EXCEPTIONS = ("-fno-exceptions", *WITHOUT_TYPES)
 STRICT_WARNINGS = ("-Wextra", "-Werror")
 WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep")
 """Functions of libc in whose place the library's are called: they would end or hold up the whole computer."""
@@ -199,6 +200,11 @@ def profile_flags(profile: Profile) -> list[str]:
     return [f"-DROSCFE_PROFILE_{profile.name}", *exceptions]
 
 
+def core_flags(profile: Profile) -> Sequence[str]:
+    """The flags of a profile for the library's own sources: what they throw, nodes of the host profile catch."""
+    return WITHOUT_TYPES if profile is Profile.HOST else WITHOUT_EXCEPTIONS
+
+
 def link_flags(profile: Profile) -> list[str]:
     """The linker's flags of a profile: where nodes have an arena, the C++ library's own code takes from it, too."""
     return [*LINK, *(() if profile is Profile.HOST else OWN_CPP_LIBRARY)]
@@ -271,7 +277,7 @@ def _core(profile: Profile, real_boost: bool, library: Library, used: Iterable[P
     files, includes = library_sources(used, real_boost), library_includes(real_boost)
     sources = collect(files, includes)
     messages = messages_folder(message_types(sources.missing, library), library, profile)
-    flags = [*LANGUAGE, *PLAIN, *profile_flags(profile), *WITHOUT_EXCEPTIONS, *STRICT_WARNINGS]
+    flags = [*LANGUAGE, *PLAIN, *profile_flags(profile), *core_flags(profile), *STRICT_WARNINGS]
     known = _digest(messages.name, *sources.contents.values())
     folder = library_folder()
     units = [

@@ -20,6 +20,7 @@ from typing import Any
 from cfepy.convert.build import (
     LANGUAGE,
     WITHOUT_EXCEPTIONS,
+    core_flags,
     library_folder,
     library_includes,
     library_sources,
@@ -124,7 +125,7 @@ if(NOT TARGET roscfe)
     target_include_directories(roscfe PUBLIC ${{ROSCFE_DIR}}/include ${{ROSCFE_DIR}}/boost ${{ROSCFE_DIR}}/msg)
     target_include_directories(roscfe SYSTEM PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_INCLUDE_DIRECTORIES>)
     target_compile_definitions(roscfe PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_COMPILE_DEFINITIONS>)
-    target_compile_options(roscfe PRIVATE ${{ROSCFE_FLAGS}} {" ".join(WITHOUT_EXCEPTIONS)})
+    target_compile_options(roscfe PRIVATE ${{ROSCFE_FLAGS}} {" ".join(core_flags(profile))})
 endif()
 
 # roscfe_node(NAME MAIN_HEADER ENTRY SOURCE...): a node that is an application of cFE.

@@ -79,7 +79,11 @@ class XmlRpcValue
     }
     void setSize(int size)
     {
-        is(TypeArray).array_.resize(static_cast<std::size_t>(size));
+        ValueArray &array = is(TypeArray).array_;
+        if (static_cast<int>(array.size()) < size) // it never becomes smaller
+        {
+            array.resize(static_cast<std::size_t>(size));
+        }
     }
     bool hasMember(const std::string &name) const { return type_ == TypeStruct && members_.count(name) > 0; }
 
@@ -109,7 +113,8 @@ class XmlRpcValue
         const auto         found   = members.find(name);
         if (found == members.end())
         {
-            XmlRpcException::fail("there is no member of that name");
+            static const XmlRpcValue none;
+            return none;
         }
         return found->second;
     }
@@ -127,9 +132,40 @@ class XmlRpcValue
     }
     bool operator!=(const XmlRpcValue &other) const { return !(*this == other); }
 
-    // As JSON, which is also what stands in the tables of parameters.
-    std::ostream &write(std::ostream &stream) const { return stream << toJson(); }
-    std::string   toJson() const;
+    // As roscpp writes it: {1,two} for an array, [name:value] for a struct.
+    std::ostream &write(std::ostream &stream) const
+    {
+        switch (type_)
+        {
+            case TypeBoolean:
+                return stream << boolean_;
+            case TypeInt:
+                return stream << int_;
+            case TypeDouble:
+                return stream << double_;
+            case TypeString:
+                return stream << text_;
+            case TypeArray:
+                stream << '{';
+                for (const XmlRpcValue &each : array_)
+                {
+                    each.write(&each == &array_.front() ? stream : stream << ',');
+                }
+                return stream << '}';
+            case TypeStruct:
+                stream << '[';
+                for (auto each = members_.begin(); each != members_.end(); ++each)
+                {
+                    each->second.write((each == members_.begin() ? stream : stream << ',') << each->first << ':');
+                }
+                return stream << ']';
+            default:
+                return stream;
+        }
+    }
+
+    // As JSON, which stands in the tables of parameters.
+    std::string toJson() const;
 
   private:
     XmlRpcValue &is(Type type)
@@ -140,7 +176,7 @@ class XmlRpcValue
         }
         else if (type_ != type)
         {
-            XmlRpcException::fail("type error");
+            mismatch(type);
         }
         return *this;
     }
@@ -148,9 +184,16 @@ class XmlRpcValue
     {
         if (type_ != type)
         {
-            XmlRpcException::fail("type error");
+            mismatch(type);
         }
         return *this;
+    }
+
+    [[noreturn]] static void mismatch(Type wanted)
+    {
+        XmlRpcException::fail(wanted == TypeArray    ? "type error: expected an array"
+                              : wanted == TypeStruct ? "type error: expected a struct"
+                                                     : "type error");
     }
 
     friend class Access;

@@ -14,6 +14,11 @@ std::int64_t now_ns()
     return OS_TimeGetTotalNanoseconds(now);
 }
 
+namespace
+{
+constexpr std::int64_t kNever = INT64_MAX; // when a timer that fires once is expected again
+} // namespace
+
 // -- timers ------------------------------------------------------------------------------------------------------------
 
 void add_timer(const boost::shared_ptr<TimerState> &timer)
@@ -39,63 +44,74 @@ void TimerState::start()
     {
         return;
     }
-    ++starts;
-    running          = true;
-    waiting          = false;
+    running = true;
+    waiting = false;
+    ++starts; // a call of an earlier start that goes on changes nothing
     last_expected_ns = now_ns();
     next_expected_ns = last_expected_ns + period_ns;
-    last_real_ns = last_expired_ns = last_duration_ns = 0;
+    last_real_ns = last_duration_ns = last_expired_ns = 0;
 }
 
 void TimerState::stop()
 {
-    running = waiting = false;
-    if (callbacks != nullptr && !g_node.ended)
+    running = false;
+    if (waiting && !g_node.ended)
     {
         callbacks->removeByID(reinterpret_cast<std::uintptr_t>(this));
     }
 }
 
+bool TimerState::pending() const
+{
+    return waiting || next_expected_ns <= now_ns();
+}
+
 void TimerState::set_period(std::int64_t period, bool reset)
 {
-    const std::int64_t now   = now_ns();
-    const std::int64_t since = now - last_real_ns; // the last call
+    const std::int64_t now  = now_ns();
+    const std::int64_t gone = now - last_real_ns;
     if (reset)
     {
         next_expected_ns = now + period;
     }
-    else if (since < period_ns) // otherwise a call is under way, and the new period counts from its end
+    else if (gone < period_ns)
     {
-        next_expected_ns = since > period ? now : last_real_ns + period;
+        // In the middle of a cycle the new period counts from the last call, but not into the past.
+        next_expected_ns = gone > period ? now : last_real_ns + period;
     }
     period_ns = period;
 }
 
 ros::CallbackInterface::CallResult TimerState::call_now()
 {
-    if (!alive || !running || !waiting)
+    if (!alive || !running)
     {
+        waiting = false;
         return Invalid;
     }
     const ros::VoidConstPtr held = tracked.lock();
     if (has_tracked && !held)
     {
+        waiting = false;
         return Invalid;
     }
-    // It waits on until the call is over: no other call of the same timer begins meanwhile.
-    const std::uint32_t started = starts;
-    const std::int64_t  begun   = now_ns();
-    const std::int64_t  expired = expired_ns;
+    const std::int64_t  begun = now_ns();
+    const std::uint32_t start = starts;
     fire(begun);
-    if (!running || starts != started) // it was stopped by its callback
+    if (starts != start)
     {
-        return Success;
+        return Success; // it was stopped and started
     }
     const std::int64_t ended = now_ns();
+    waiting                  = false;
     last_duration_ns         = ended - begun;
     last_real_ns             = begun;
-    last_expired_ns          = expired;
-    waiting                  = oneshot;
+    last_expired_ns          = expired_ns;
+    if (oneshot)
+    {
+        next_expected_ns = kNever;
+        return Success;
+    }
     if (next_expected_ns <= ended) // otherwise the callback has set the period
     {
         last_expected_ns = next_expected_ns;
@@ -127,8 +143,8 @@ void queue_due_timers(std::int64_t now)
         {
             return;
         }
-        first->waiting    = true;
-        first->due_ns     = first->next_expected_ns;
+        first->waiting = true;
+        first->due_ns  = first->next_expected_ns;
         first->expired_ns = now;
         first->callbacks->addCallback(first, reinterpret_cast<std::uintptr_t>(first.get()));
     }
@@ -140,7 +156,7 @@ std::int64_t next_timer_ns()
     for (const boost::weak_ptr<TimerState> &each : g_node.timers)
     {
         const boost::shared_ptr<TimerState> timer = each.lock();
-        if (timer && timer->alive && timer->running && !timer->waiting &&
+        if (timer && timer->alive && timer->running && !timer->waiting && timer->next_expected_ns != kNever &&
             (next == kForever || timer->next_expected_ns < next))
         {
             next = timer->next_expected_ns;

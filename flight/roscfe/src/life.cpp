@@ -166,7 +166,7 @@ bool isInitialized()
 
 bool isStarted()
 {
-    return g_node.started;
+    return g_node.started && !g_node.shutting_down;
 }
 
 bool isShuttingDown()

@@ -78,7 +78,7 @@ std::string clean(const std::string &name)
             cleaned += c;
         }
     }
-    if (cleaned.size() > 1 && cleaned.back() == '/')
+    if (!cleaned.empty() && cleaned.back() == '/') // of "/" nothing is left, as in roscpp
     {
         cleaned.pop_back();
     }
@@ -92,7 +92,8 @@ std::string append(const std::string &left, const std::string &right)
 
 std::string remap(const std::string &name)
 {
-    return resolve(name, true);
+    const auto found = getRemappings().find(resolve(name, false));
+    return found != getRemappings().end() ? found->second : name;
 }
 
 std::string resolve(const std::string &name, bool remap)
@@ -143,9 +144,10 @@ std::string parentNamespace(const std::string &name)
     {
         return name;
     }
-    const std::string cleaned = clean(name);
-    const std::size_t slash   = cleaned.rfind('/');
-    return slash == std::string::npos ? "" : slash == 0 ? "/" : cleaned.substr(0, slash);
+    // roscpp takes a last slash away together with the character before it.
+    const std::string kept  = name.back() == '/' ? name.substr(0, name.size() - 2) : name;
+    const std::size_t slash = kept.rfind('/');
+    return slash == std::string::npos ? "" : slash == 0 ? "/" : kept.substr(0, slash);
 }
 
 const M_string &getRemappings()
@@ -171,7 +173,8 @@ NodeHandle::NodeHandle(const std::string &ns, const M_string &remappings)
         given = names::resolve(given);
     }
     unresolved_namespace_ = given;
-    namespace_            = given.empty() ? this_node::getNamespace() : names::resolve(given);
+    namespace_            = this_node::getNamespace();
+    namespace_            = resolveName(given, true);
     for (const auto &each : remappings)
     {
         remappings_[resolveName(each.first, false)] = resolveName(each.second, false);
@@ -183,11 +186,9 @@ NodeHandle::NodeHandle(const NodeHandle &other) = default;
 NodeHandle::NodeHandle(const NodeHandle &parent, const std::string &ns) : NodeHandle(parent, ns, M_string()) {}
 
 NodeHandle::NodeHandle(const NodeHandle &parent, const std::string &ns, const M_string &remappings)
-    : namespace_(parent.resolveName(ns)),
-      unresolved_namespace_(names::append(parent.unresolved_namespace_, ns)),
-      queue_(parent.queue_),
-      remappings_(parent.remappings_)
+    : namespace_(parent.namespace_), unresolved_namespace_(ns), queue_(parent.queue_), remappings_(parent.remappings_)
 {
+    namespace_ = resolved(ns, true);
     for (const auto &each : remappings)
     {
         remappings_[resolveName(each.first, false)] = resolveName(each.second, false);
@@ -200,21 +201,34 @@ NodeHandle &NodeHandle::operator=(const NodeHandle &other) = default;
 
 std::string NodeHandle::resolveName(const std::string &name, bool remap) const
 {
-    if (!name.empty() && name[0] == '~')
+    std::string error;
+    if (!names::validate(name, error))
+    {
+        names::invalid(error);
+    }
+    return resolved(name, remap);
+}
+
+std::string NodeHandle::resolved(const std::string &name, bool remap) const
+{
+    if (name.empty())
+    {
+        return namespace_;
+    }
+    if (name[0] == '~')
     {
         ROSCFE_THROW(InvalidNameException("Using ~ names with NodeHandle methods is not allowed.  If you want to use "
                                           "private names with the NodeHandle interface, construct a NodeHandle using a "
                                           "private name as its namespace.  e.g. ros::NodeHandle nh(\"~\");  "
-                                          "nh.getParam(\"my_private_name\");  (name = [" +
+                                          "nh.getParam(\"my_private_name\"); (name = [" +
                                           name + "])"));
     }
-    std::string full = name.empty() ? namespace_ : name;
-    if (full[0] != '/')
+    std::string full = names::clean(name[0] == '/' || namespace_.empty() ? name : names::append(namespace_, name));
+    if (remap)
     {
-        full = names::append(namespace_, full);
+        full = remapped(resolveName(full, false));
     }
-    full = names::clean(full);
-    return remap ? remapped(names::resolve(full, false)) : names::resolve(full, false);
+    return names::resolve(full, false);
 }
 
 std::string NodeHandle::remapped(const std::string &resolved) const

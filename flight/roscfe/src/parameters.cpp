@@ -82,6 +82,10 @@ class Rows
 
 bool is_below(const std::string &name, const std::string &ns)
 {
+    if (ns.empty())
+    {
+        return true; // "/", of which resolving leaves nothing
+    }
     return name.size() > ns.size() && name.compare(0, ns.size(), ns) == 0 && (ns == "/" || name[ns.size()] == '/');
 }
 
@@ -116,6 +120,20 @@ void erase(Rows &rows, const std::string &name)
             {
                 std::memset(static_cast<void *>(&rows[i]), 0, sizeof(ParamRow) * static_cast<std::size_t>(end - i));
             }
+        }
+        i = end;
+    }
+}
+
+// What has a parameter below it is a namespace from then on, and no value.
+void erase_values_above(Rows &rows, const std::string &name)
+{
+    for (int i = 0; i < rows.count();)
+    {
+        const int end = rows.end_of(i);
+        if (rows[i].name[0] != '\0' && is_below(name, rows.name_of(i, end)))
+        {
+            std::memset(static_cast<void *>(&rows[i]), 0, sizeof(ParamRow) * static_cast<std::size_t>(end - i));
         }
         i = end;
     }
@@ -222,7 +240,7 @@ bool get_param(const std::string &name, XmlRpcValue &value)
     }
     Rows        rows;
     bool        found  = false;
-    const std::string prefix = name == "/" ? "/" : name + "/";
+    const std::string prefix = name == "/" ? name : name + "/";
     for (int i = 0; i < rows.count();)
     {
         const int end = rows.end_of(i);
@@ -257,6 +275,7 @@ void set_param(const std::string &name, const XmlRpcValue &value)
     {
         Rows rows;
         erase(rows, name);
+        erase_values_above(rows, name);
         good = put_all(rows, name, value);
     }
     if (g_node.has_table)
@@ -447,10 +466,14 @@ bool search(const std::string &key, std::string &result)
 // From the namespace upwards, the first that has the key's first part.
 bool search(const std::string &ns, const std::string &key, std::string &result)
 {
-    if (!key.empty() && (key[0] == '/' || key[0] == '~'))
+    if (key.empty() || key[0] == '~')
     {
-        result = names::resolve(key);
-        return roscfe::has_param(result);
+        return false;
+    }
+    if (key[0] == '/')
+    {
+        result = key;
+        return roscfe::has_param(names::resolve(key));
     }
     const std::string first = key.substr(0, key.find('/'));
     std::string       at    = names::resolve(ns);

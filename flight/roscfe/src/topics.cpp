@@ -155,6 +155,22 @@ std::uint32_t queue_size(std::uint32_t asked)
     return asked == 0 ? most : std::min(asked, most);
 }
 
+namespace
+{
+// The bus tells publishers of a node's first subscription to a topic only; its own latched topics it sees itself.
+void give_latched(const boost::shared_ptr<Subscription> &subscription)
+{
+    for (const boost::shared_ptr<Publication> &each : g_node.publications)
+    {
+        if (each->msg_id_ == subscription->msg_id_ && each->latch_ && !each->latched_.empty() &&
+            subscription->receive(each->latched_.data(), each->latched_.size()))
+        {
+            subscription->callbacks_->addCallback(subscription, reinterpret_cast<std::uintptr_t>(subscription.get()));
+        }
+    }
+}
+} // namespace
+
 void subscribe(const boost::shared_ptr<Subscription> &subscription, const char *type, const char *md5,
                const char *definition)
 {
@@ -172,6 +188,10 @@ void subscribe(const boost::shared_ptr<Subscription> &subscription, const char *
     {
         CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: no subscription of %s", g_node.name.c_str(),
                           subscription->topic_.c_str());
+    }
+    if (known)
+    {
+        give_latched(subscription);
     }
     if (place.latched)
     {
@@ -212,7 +232,7 @@ Publisher::Publisher(const boost::shared_ptr<roscfe::Publication> &publication)
 {
 }
 
-Publisher::Handle::Handle(const boost::shared_ptr<roscfe::Publication> &of) : publication(of)
+Publisher::Handle::Handle(const boost::shared_ptr<roscfe::Publication> &of) : publication(of), topic(of->topic_)
 {
     ++publication->users_;
 }
@@ -246,7 +266,7 @@ void Publisher::shutdown()
 
 std::string Publisher::getTopic() const
 {
-    return *this ? handle_->publication->topic_ : std::string();
+    return handle_ ? handle_->topic : std::string();
 }
 
 std::uint32_t Publisher::getNumSubscribers() const
@@ -271,6 +291,8 @@ Subscriber::Subscriber(const boost::shared_ptr<roscfe::Subscription> &subscripti
 {
 }
 
+Subscriber::Handle::Handle(const boost::shared_ptr<roscfe::Subscription> &of) : subscription(of), topic(of->topic_) {}
+
 void Subscriber::Handle::release()
 {
     if (subscription)
@@ -291,7 +313,7 @@ void Subscriber::shutdown()
 
 std::string Subscriber::getTopic() const
 {
-    return *this ? handle_->subscription->topic_ : std::string();
+    return handle_ ? handle_->topic : std::string();
 }
 
 std::uint32_t Subscriber::getNumPublishers() const

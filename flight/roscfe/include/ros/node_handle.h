@@ -363,6 +363,7 @@ class NodeHandle
         return T(options);
     }
 
+    std::string resolved(const std::string &name, bool remap) const; // without a look at what is valid
     std::string remapped(const std::string &resolved) const;
 
     std::string             namespace_;

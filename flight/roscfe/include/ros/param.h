@@ -42,7 +42,7 @@ bool param_to(XmlRpc::XmlRpcValue &value, std::vector<T> &to)
     {
         return false;
     }
-    std::vector<T> made(static_cast<std::size_t>(value.size()));
+    to.resize(static_cast<std::size_t>(value.size())); // and stays so when an element is of another type, as in roscpp
     for (int i = 0; i < value.size(); ++i)
     {
         T item{};
@@ -50,9 +50,8 @@ bool param_to(XmlRpc::XmlRpcValue &value, std::vector<T> &to)
         {
             return false;
         }
-        made[static_cast<std::size_t>(i)] = item;
+        to[static_cast<std::size_t>(i)] = item;
     }
-    to.swap(made);
     return true;
 }
 
@@ -63,17 +62,15 @@ bool param_to(XmlRpc::XmlRpcValue &value, std::map<std::string, T> &to)
     {
         return false;
     }
-    std::map<std::string, T> made;
-    for (auto &member : value)
+    for (auto &member : value) // others stay in the map, as in roscpp
     {
         T item{};
         if (!element_to(member.second, item))
         {
             return false;
         }
-        made[member.first] = item;
+        to[member.first] = item;
     }
-    to.swap(made);
     return true;
 }
 

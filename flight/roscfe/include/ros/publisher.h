@@ -62,6 +62,7 @@ class Publisher
         ~Handle() { release(); }
         void                                   release();
         boost::shared_ptr<roscfe::Publication> publication;
+        const std::string                      topic; // which stays when the publisher is shut down
     };
     boost::shared_ptr<Handle> handle_;
 };

@@ -29,10 +29,11 @@ class Subscriber
   private:
     struct Handle
     {
-        explicit Handle(const boost::shared_ptr<roscfe::Subscription> &of) : subscription(of) {}
+        explicit Handle(const boost::shared_ptr<roscfe::Subscription> &of);
         ~Handle() { release(); }
         void                                    release();
         boost::shared_ptr<roscfe::Subscription> subscription;
+        const std::string                       topic; // which stays when the subscriber is shut down
     };
     boost::shared_ptr<Handle> handle_;
 };

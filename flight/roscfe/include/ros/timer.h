@@ -21,10 +21,10 @@ class TimerState : public ros::CallbackInterface
     std::int64_t                 expired_ns       = 0; // the same of the call that waits
     std::int64_t                 last_duration_ns = 0; // of its callback
     std::int64_t                 due_ns           = 0; // the time that the waiting call was expected at
+    std::uint32_t                starts           = 0;
     bool                         oneshot          = false;
     bool                         running          = false;
-    bool                         waiting          = false; // a call is in the queue or under way, or the only one was
-    std::uint32_t                starts           = 0;
+    bool                         waiting          = false; // a call is in the queue, or goes on
     bool                         alive            = true;
     bool                         has_tracked      = false;
     ros::VoidConstWPtr           tracked;
@@ -36,6 +36,7 @@ class TimerState : public ros::CallbackInterface
     CallResult call_now();
     void       start();
     void       stop();
+    bool       pending() const;
     void       set_period(std::int64_t period, bool reset);
 
   protected:
@@ -123,7 +124,7 @@ class TimerOf
             state_->stop();
         }
     }
-    bool hasPending() const { return state_ && state_->running && state_->alive; }
+    bool hasPending() const { return state_ && state_->running && state_->alive && state_->pending(); }
     void setPeriod(const D &period, bool reset = true)
     {
         if (state_)

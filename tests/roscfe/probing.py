@@ -1,0 +1,144 @@
+"""Small nodes of roscpp, the folder probes: what each prints on cfepy, and with Debian's roscpp beside it.
+
+`python -m tests.roscfe.probing [NAME...] [--record]` flies probes and runs them with the roscpp of this computer
+(libroscpp-dev, python3-roscore), and shows how what they print differs. `--record` keeps what roscpp's printed in
+probes/NAME.txt, which the tests compare with.
+"""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import os
+import socket
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from unittest.mock import patch
+
+from cfepy.console import Console
+from cfepy.convert import build_for_flight
+from cfepy.mission import Mission
+from cfepy.mission.launch import read_launch
+from tests.roscfe.building import compile_program
+
+PROBES = Path(__file__).parent / "probes"
+NAMES = sorted(each.stem for each in PROBES.glob("*.cpp"))
+MARK = "P| "
+"""Begins each line that counts."""
+NO_COLOR = "\x1b[0m"
+"""What rosconsole puts behind a line."""
+REMAPS = {"from": "to", "chatter": "/talk"}
+SECONDS = 30.0
+LIBRARIES = ("-lroscpp", "-lrosconsole", "-lrostime", "-lroscpp_serialization", "-lxmlrpcpp", "-lboost_thread")
+MANIFEST = """<package format="2"><name>probes</name><version>1.0.0</version><description>probes</description>
+<maintainer email="a@b.c">a</maintainer><license>Apache-2.0</license><depend>roscpp</depend></package>
+"""
+
+
+def fly(name: str, folder: Path) -> list[str]:
+    """What a probe prints on cfepy.
+
+    Args:
+        name: of the probe.
+        folder: an empty one.
+    """
+    package = folder / "probes"
+    package.mkdir()
+    (package / "package.xml").write_text(MANIFEST)
+    (package / f"{name}.cpp").write_bytes((PROBES / f"{name}.cpp").read_bytes())
+    (package / "CMakeLists.txt").write_text(f"project(probes)\nadd_executable({name} {name}.cpp)\n")
+    remaps = "".join(f'<remap from="{one}" to="{other}"/>' for one, other in REMAPS.items())
+    launch = package / "probe.launch"
+    node = f'<node pkg="probes" type="{name}" name="probe" output="screen">{remaps}</node>'
+    launch.write_text(f'<launch><group ns="probes">{node}</group></launch>\n')
+    with patch.dict(os.environ, {"ROS_PACKAGE_PATH": str(folder)}):
+        spec = read_launch(launch, {}, build_for_flight)
+    assert not spec.notes, spec.notes
+    with Mission(spec, console=Console(quiet=True)) as mission:
+        mission.run_for(SECONDS)
+        return list(marked(mission.console.lines))
+
+
+def marked(lines: Iterable[str]) -> Iterator[str]:
+    """The lines that count, from the mark on."""
+    for line in lines:
+        before, mark, rest = line.partition(MARK)
+        if mark and not before.startswith("EVS"):  # warnings are events, too
+            yield rest.removesuffix(NO_COLOR).rstrip()
+
+
+# -- beside Debian's roscpp --------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def master(folder: Path) -> Iterator[dict[str, str]]:
+    """A master of ROS on a port of its own while the block runs; the environment of its nodes.
+
+    Args:
+        folder: for the logs of ROS.
+    """
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    environ = {
+        **os.environ,
+        "ROS_MASTER_URI": f"http://127.0.0.1:{port}",
+        "ROS_IP": "127.0.0.1",
+        "ROS_LOG_DIR": str(folder),
+        "ROS_NAMESPACE": "/probes",
+        "ROSCONSOLE_FORMAT": "${severity} ${message}",
+    }
+    command = ["rosmaster", "--core", "-p", str(port)]
+    running = subprocess.Popen(command, env=environ, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        while running.poll() is None:
+            with socket.socket() as probe:
+                if probe.connect_ex(("127.0.0.1", port)) == 0:
+                    break
+            time.sleep(0.05)
+        yield environ
+    finally:
+        running.terminate()
+        running.wait()
+
+
+def run_with_roscpp(name: str, folder: Path, environ: dict[str, str]) -> list[str]:
+    """What a probe prints with Debian's roscpp.
+
+    Args:
+        name: of the probe.
+        folder: for the program.
+        environ: of `master`.
+    """
+    made = folder / name
+    compile_program(made, [PROBES / f"{name}.cpp"], base=("-std=c++17",), include=(), libraries=LIBRARIES)
+    remaps = [f"{one}:={other}" for one, other in REMAPS.items()]
+    command = ["stdbuf", "-oL", str(made), "__name:=probe", *remaps]
+    done = subprocess.run(command, env=environ, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
+    return list(marked(done.stdout.decode("utf-8", "replace").splitlines()))
+
+
+def main() -> None:
+    """Compare probes, or record them."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*", default=NAMES, metavar="NAME")
+    parser.add_argument("--record", action="store_true", help="keep what roscpp's printed")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as scratch, master(Path(scratch)) as environ:
+        for name in arguments.names:
+            folder = Path(scratch) / f"of_{name}"
+            folder.mkdir()
+            theirs = run_with_roscpp(name, folder, environ)
+            if arguments.record:
+                (PROBES / f"{name}.txt").write_text("\n".join(theirs) + "\n", encoding="utf-8")
+            ours = fly(name, folder)
+            print(f"{name}: {len(theirs)} lines, {'equal' if ours == theirs else 'different'}")
+            for line in difflib.unified_diff(theirs, ours, "roscpp", "cfepy", lineterm="", n=1):
+                print(line)
+
+
+if __name__ == "__main__":
+    main()

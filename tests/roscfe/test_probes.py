@@ -1,0 +1,17 @@
+"""Small nodes of roscpp print on cfepy what was recorded of them with Debian's roscpp (`tests.roscfe.probing`)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.roscfe.building import needs_cpp
+from tests.roscfe.probing import NAMES, PROBES, fly
+
+pytestmark = [pytest.mark.slow, needs_cpp]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_probe_prints_what_is_recorded(name: str, tmp_path: Path) -> None:
+    assert fly(name, tmp_path) == (PROBES / f"{name}.txt").read_text(encoding="utf-8").splitlines()
