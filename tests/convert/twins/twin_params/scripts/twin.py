@@ -42,7 +42,8 @@ class Twin:
     def run(self):
         say, get, own = self.say, self.get, rospy.get_name()
         say("name", f"{own} {rospy.get_namespace().rstrip('/')}")
-        say("namespaces", f"/robot {own} /robot/sub / {own}/deep")
+        # NodeHandle("/") is that of the namespace: roscpp takes the slash away.
+        say("namespaces", f"/robot {own} /robot/sub /robot {own}/deep")
         names = " ".join(rospy.resolve_name(each) for each in ("said", "~x", "~y"))
         say("topic", f"{self.out.resolved_name} {names}")
         for name, kind in (

@@ -101,19 +101,19 @@ int main(int argc, char **argv)
     get<std::string>(own, "nothing");
     get<int>(own, "word");
     get<std::string>(own, "count");
-    get<double>(root, "top");
+    get<double>(root, "/top");
     get<int>(nh, "speed");
     get<int>(nh, "/robot/speed");
-    get<std::vector<int>>(root, "numbers");
-    get<std::vector<double>>(root, "reals");
-    get<std::vector<bool>>(root, "flags");
-    get<std::vector<std::string>>(root, "words");
-    get<std::string>(root, "long_text");
-    get<std::string>(root, "a_namespace_with_a_name/that_is_long_enough_to_need/more_than_one_row_of_the_table");
+    get<std::vector<int>>(root, "/numbers");
+    get<std::vector<double>>(root, "/reals");
+    get<std::vector<bool>>(root, "/flags");
+    get<std::vector<std::string>>(root, "/words");
+    get<std::string>(root, "/long_text");
+    get<std::string>(root, "/a_namespace_with_a_name/that_is_long_enough_to_need/more_than_one_row_of_the_table");
     XmlRpc::XmlRpcValue value;
-    root.getParam("gains", value);
+    root.getParam("/gains", value);
     say("gains", tree(value));
-    root.getParam("mixed", value);
+    root.getParam("/mixed", value);
     say("mixed", tree(value));
     double p = 0, missing = 0;
     own.param("ratio", p, 9.0);
@@ -124,7 +124,7 @@ int main(int argc, char **argv)
     say("search", (own.searchParam("speed", found) ? found : "none") + " " + (own.searchParam("top", found) ? found : "none") +
                       " " + (own.searchParam("word", found) ? found : "none") + " " +
                       (own.searchParam("nowhere", found) ? found : "none"));
-    say("has", text(own.hasParam("flag")) + text(own.hasParam("none")) + text(root.hasParam("gains")) +
+    say("has", text(own.hasParam("flag")) + text(own.hasParam("none")) + text(root.hasParam("/gains")) +
                    text(ros::param::has("/gains/deep/er/yet")));
     own.setParam("made", 3);
     own.setParam("made_text", "some text");
