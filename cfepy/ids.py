@@ -212,8 +212,9 @@ class IdTable(Generic[Record]):
             CfeError: the id is not in the table.
         """
         record = self.get(resource_id)
-        del self.records[resource_id]
+        # The slot first: an interrupt between the two steps then leaves nothing that items() would miss.
         self._slots[self.index(resource_id)] = UNDEFINED
+        del self.records[resource_id]
         return record
 
     def index(self, resource_id: int) -> int:

@@ -117,7 +117,7 @@ class StallWatch:
         self._over = threading.Event()
         self._thread: threading.Thread | None = None
         self._host_ident = 0
-        self._is_paused = self._has_lost = False
+        self._is_paused = self._has_lost = self._was_wanted = False
         self._stand: _Stand | None = None
         self._wanted_s = self._ending_s = 0.0
 
@@ -186,7 +186,10 @@ class StallWatch:
         if self._is_paused or self._has_lost:
             self._stand = None
             return
-        self._wanted_s = self._wanted_s + (used_s if is_busy else wall_s) if self.wanted() else 0.0
+        # What was spent before the wish does not count: of the look that sees it first, nothing does.
+        given_s = (used_s if is_busy else wall_s) if self._was_wanted else 0.0
+        self._was_wanted = self.wanted()
+        self._wanted_s = self._wanted_s + given_s if self._was_wanted else 0.0
         self._stand = self._standing(wall_s, is_busy) if kernel.is_running else None
         if kernel.broken is not None:
             self._hurry(wall_s)

@@ -183,6 +183,37 @@ def test_a_wish_ends_what_makes_no_calls_and_what_makes_some(make_kernel: Callab
             watch.end()
 
 
+def test_a_wish_is_given_its_time_from_when_it_is_seen(
+    make_kernel: Callable[[], Kernel], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was computed before the wish does not count: then one that spins is told as one that spins."""
+    for name, value in (("LOOK_S", 0.05), ("SOON_S", 0.01), ("GRACE_S", 0.12), ("SPUN_S", 0.06)):
+        monkeypatch.setattr(watchdog, name, value)
+    spins = threading.Event()
+    clock, seen = [0.0], [False]
+
+    def spent() -> Spent:
+        clock[0] += 0.005 if seen[0] else 0.1  # the look that sees the wish comes long after the one before it
+        seen[0] = spins.is_set()
+        return Spent(clock[0], clock[0], 0.0)
+
+    def moves_on_and_spins(kernel: Kernel) -> None:
+        while not clock[0]:
+            threading.Event().wait(0.001)
+        kernel.delay(1)  # so that this clock stands only from here on
+        spins.set()
+        spin()
+
+    with make_kernel() as kernel:
+        watch = watched(kernel)
+        watch.limit_s, watch.spent, watch.wanted = 0, spent, spins.is_set
+        kernel.spawn("busy", lambda: moves_on_and_spins(kernel))
+        watch.begin()
+        with pytest.raises(StallError):
+            kernel.run()
+        watch.end()
+
+
 def test_a_wish_waits_while_other_programs_have_the_cpu(
     make_kernel: Callable[[], Kernel], monkeypatch: pytest.MonkeyPatch
 ) -> None:
