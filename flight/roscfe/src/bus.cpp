@@ -235,6 +235,20 @@ void address(std::uint8_t *packet, std::uint32_t pipe)
     packet[kSpare + 3] = kAddressed;
 }
 
+// What waits in the pipe, and timers that are due, in this order; true when there were packets.
+bool take_over()
+{
+    CFE_SB_Buffer_t *buffer = nullptr;
+    bool             came   = false;
+    while (CFE_SB_ReceiveBuffer(&buffer, g_node.pipe, CFE_SB_POLL) == CFE_SUCCESS)
+    {
+        dispatch(buffer);
+        came = true;
+    }
+    queue_due_timers(now_ns());
+    return came;
+}
+
 std::uint32_t g_addressee = 0; // of what is sent at the moment; 0 is everybody
 
 } // namespace
@@ -328,50 +342,51 @@ std::uint32_t pipes_on(std::uint16_t msg_id)
     return count;
 }
 
-bool pump(std::int64_t until_ns)
+bool pump(std::int64_t until_ns, bool exactly)
 {
-    CFE_SB_Buffer_t *buffer = nullptr;
-    bool             came   = false;
-    while (CFE_SB_ReceiveBuffer(&buffer, g_node.pipe, CFE_SB_POLL) == CFE_SUCCESS)
-    {
-        dispatch(buffer);
-        came = true;
-    }
-    std::int64_t now = now_ns();
-    queue_due_timers(now);
+    const bool came = take_over();
     if (came)
     {
         return true;
     }
+    const std::int64_t now = now_ns();
     if (until_ns != kForever && now >= until_ns)
     {
         return false;
     }
-    std::int64_t       end   = until_ns;
-    const std::int64_t timer = next_timer_ns();
-    if (timer != kForever && (end == kForever || timer < end))
+    std::int64_t    end   = until_ns;
+    const NextTimer timer = next_timer();
+    if (timer.ns != kForever && (end == kForever || timer.ns < end))
     {
-        end = timer;
+        end     = timer.ns;
+        exactly = timer.fast;
     }
-    // Never too early: what is due is due at the next millisecond.
     std::int32_t wait_ms = CFE_SB_PEND_FOREVER;
     if (end != kForever)
     {
-        const std::int64_t rest = std::max<std::int64_t>((end - now + kMillisecond - 1) / kMillisecond, 1);
-        wait_ms                 = static_cast<std::int32_t>(std::min<std::int64_t>(rest, kLongestWaitMs));
+        const std::int64_t rest = std::max<std::int64_t>(end - now, 1);
+        if (exactly && rest < kMillisecond && wait_exactly(end))
+        {
+            take_over();
+            return true;
+        }
+        // Never too early: what is due is due at the next millisecond, or exactly, after whole ones.
+        const std::int64_t whole = (exactly && rest >= kMillisecond ? rest : rest + kMillisecond - 1) / kMillisecond;
+        wait_ms                  = static_cast<std::int32_t>(std::min<std::int64_t>(whole, kLongestWaitMs));
     }
+    CFE_SB_Buffer_t *buffer = nullptr;
     if (CFE_SB_ReceiveBuffer(&buffer, g_node.pipe, wait_ms) == CFE_SUCCESS)
     {
         dispatch(buffer);
     }
-    now = now_ns();
-    queue_due_timers(now);
+    queue_due_timers(now_ns());
     return true;
 }
 
 void wait_until(std::int64_t until_ns)
 {
-    while (now_ns() < until_ns && pump(until_ns))
+    const bool exactly = until_ns - now_ns() <= kFastCycle;
+    while (now_ns() < until_ns && pump(until_ns, exactly))
     {
         run_async();
     }

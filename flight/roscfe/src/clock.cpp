@@ -1,5 +1,6 @@
 // Time and timers: the clock below OS_GetLocalTime, and waiting, which takes the node's messages over meanwhile.
 #include <algorithm>
+#include <cstdio>
 
 #include "internal.h"
 #include "ros/time.h"
@@ -150,19 +151,66 @@ void queue_due_timers(std::int64_t now)
     }
 }
 
-std::int64_t next_timer_ns()
+NextTimer next_timer()
 {
-    std::int64_t next = kForever;
+    NextTimer next;
     for (const boost::weak_ptr<TimerState> &each : g_node.timers)
     {
         const boost::shared_ptr<TimerState> timer = each.lock();
         if (timer && timer->alive && timer->running && !timer->waiting && timer->next_expected_ns != kNever &&
-            (next == kForever || timer->next_expected_ns < next))
+            (next.ns == kForever || timer->next_expected_ns < next.ns))
         {
-            next = timer->next_expected_ns;
+            next.ns   = timer->next_expected_ns;
+            next.fast = timer->period_ns <= kFastCycle;
         }
     }
     return next;
+}
+
+// -- waits of less than a millisecond ----------------------------------------------------------------------------------
+
+namespace
+{
+// Timeouts of the Software Bus are whole milliseconds from now on. A loop at 1 kHz that ended each cycle with one would
+// be late by its own work each time, and catch up by a cycle without a wait: two messages at once, for a subscriber that
+// keeps one. OSAL waits for a condition variable until a time of the clock, in ticks of 100 ns; nobody signals it.
+osal_id_t g_alarm     = OS_OBJECT_ID_UNDEFINED;
+bool      g_no_alarms = false;
+
+bool has_alarm()
+{
+    if (OS_ObjectIdDefined(g_alarm) || g_no_alarms)
+    {
+        return !g_no_alarms;
+    }
+    char name[OS_MAX_API_NAME];
+    std::snprintf(name, sizeof name, "%.14s_WAIT", g_node.description->app);
+    // ES does not delete it with its application: one that was killed and started again finds it.
+    g_no_alarms = OS_CondVarCreate(&g_alarm, name, 0) != OS_SUCCESS &&
+                  OS_CondVarGetIdByName(&g_alarm, name) != OS_SUCCESS;
+    return !g_no_alarms;
+}
+} // namespace
+
+bool wait_exactly(std::int64_t until_ns)
+{
+    if (!has_alarm() || OS_CondVarLock(g_alarm) != OS_SUCCESS)
+    {
+        return false;
+    }
+    const OS_time_t until = OS_TimeFromTotalNanoseconds(until_ns + OS_TIME_TICK_RESOLUTION_NS - 1);
+    OS_CondVarTimedWait(g_alarm, &until);
+    OS_CondVarUnlock(g_alarm);
+    return true;
+}
+
+void end_exact_waits()
+{
+    if (OS_ObjectIdDefined(g_alarm))
+    {
+        OS_CondVarDelete(g_alarm);
+        g_alarm = OS_OBJECT_ID_UNDEFINED;
+    }
 }
 
 } // namespace roscfe

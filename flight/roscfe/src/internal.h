@@ -45,6 +45,7 @@ constexpr std::uint16_t kRosoutMsgId     = 0x0900;
 constexpr std::int64_t  kMillisecond     = 1000000;
 constexpr std::int64_t  kSecond          = 1000000000;
 constexpr std::int64_t  kForever         = -1;
+constexpr std::int64_t  kFastCycle       = 10 * kMillisecond; // waits up to this are exact, later ones end at a millisecond
 
 struct Node
 {
@@ -77,7 +78,8 @@ void open_bus();
 
 // Take over what waits in the pipe; when nothing does, wait for it until a time. Timers that are due are queued, too.
 // The clock is the processor's, in nanoseconds; kForever waits without an end. False when the time is over.
-bool pump(std::int64_t until_ns);
+// The wait ends at a millisecond of its own, or exactly; then what comes in its last millisecond is taken over at its end.
+bool pump(std::int64_t until_ns, bool exactly = false);
 
 // Wait until a time, and take the node's messages over meanwhile.
 void wait_until(std::int64_t until_ns);
@@ -100,8 +102,19 @@ void send_bytes(std::uint16_t msg_id, const std::uint8_t *lead, std::size_t lead
 void run_async(); // callbacks of asynchronous spinners, while the node waits
 
 std::int64_t now_ns();
-std::int64_t next_timer_ns(); // kForever when no timer runs
 void         queue_due_timers(std::int64_t now);
+
+// The timer that is due first: kForever when none runs. A fast one is due exactly.
+struct NextTimer
+{
+    std::int64_t ns   = kForever;
+    bool         fast = false;
+};
+NextTimer next_timer();
+
+// Wait until a time without taking anything over; false when OSAL has no condition variable for that (any more).
+bool wait_exactly(std::int64_t until_ns);
+void end_exact_waits(); // before the task ends
 
 void publication_has_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe);
 void publication_lost_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe);

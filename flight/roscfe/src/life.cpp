@@ -27,6 +27,7 @@ constexpr int kMostArguments               = 64;
 [[noreturn]] void end(std::uint32_t status)
 {
     g_node.ended = true;
+    end_exact_waits();
     for (;;)
     {
         CFE_ES_ExitApp(status); // ends the task

@@ -1,5 +1,5 @@
 // An arm of seven joints: 5,000 joint states at 1 kHz, and how many commands came.
-// Queues of 2: with queues of 1, one of the 5,000 messages found its queue full.
+// Queues of 1: two messages at once would be one.
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Float64MultiArray.h>
@@ -20,7 +20,7 @@ int main(int argc, char **argv)
     ros::NodeHandle nh;
     ros::Publisher  out    = nh.advertise<std_msgs::String>("out", 1);
     ros::Publisher  states = nh.advertise<sensor_msgs::JointState>("joint_states", 1);
-    ros::Subscriber in     = nh.subscribe("motor_command", 2, command, ros::TransportHints().tcpNoDelay());
+    ros::Subscriber in     = nh.subscribe("motor_command", 1, command, ros::TransportHints().tcpNoDelay());
     ros::Duration(1.0).sleep();
     sensor_msgs::JointState state;
     state.position.resize(7);

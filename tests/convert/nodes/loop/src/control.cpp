@@ -1,5 +1,5 @@
 // A controller: a command for each joint state.
-// Queues of 2: with queues of 1, one of the 5,000 messages found its queue full.
+// Queues of 1: two messages at once would be one.
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Float64MultiArray.h>
@@ -21,6 +21,6 @@ int main(int argc, char **argv)
     ros::init(argc, argv, "control");
     ros::NodeHandle nh;
     g_commands         = nh.advertise<std_msgs::Float64MultiArray>("motor_command", 1);
-    ros::Subscriber in = nh.subscribe("joint_states", 2, state, ros::TransportHints().tcpNoDelay());
+    ros::Subscriber in = nh.subscribe("joint_states", 1, state, ros::TransportHints().tcpNoDelay());
     ros::spin();
 }
