@@ -10,6 +10,7 @@ from collections.abc import Callable
 from enum import Enum
 from struct import calcsize
 
+from rospy_shim.msgs.bounds import MOST_EMPTY, unguarded_size
 from rospy_shim.msgs.namespace import CodeLines, Namespace
 from rospy_shim.msgs.spec import PRIMITIVES, Field, Spec
 
@@ -20,7 +21,7 @@ _HEADS = (
     "def deserialize(self, str):",
     "def deserialize_numpy(self, str, numpy):",
 )
-_AGAIN = ("_read_again(cls(), data[at:])", "_read_again(self, str)", "_read_again(self, str, numpy)")
+_AGAIN = ("_read_again(cls(), data[start:])", "_read_again(self, str)", "_read_again(self, str, numpy)")
 
 
 class Form(Enum):
@@ -49,9 +50,11 @@ def unpack_source(
     decoder.fields(spec, "self")
     decoder.flush()
     again = _AGAIN[form.value]
-    first = ["    self = _new(cls)"]
+    first = ["    self = _new(cls)", "    start = at"]
     if form is not Form.UNPACK:
         first = ["    if type(str) is not bytes:", f"        return {again}", "    data = str", "    at = 0"]
+    if decoder.has_empty_items:
+        first.append(f"    empty = {MOST_EMPTY}")
     tail = ["        return self", "    except Exception:", "        pass", f"    return {again}"]
     return [_HEADS[form.value], *first, "    try:", *out.lines, *tail]
 
@@ -72,6 +75,7 @@ class _Decoder:
         self.targets: list[str] = []
         self.later: list[str] = []
         self.ahead = 0
+        self.has_empty_items = False
         # Local variables that hold objects which were there before.
         self.kept = set() if form is Form.UNPACK else {"self"}
 
@@ -210,6 +214,8 @@ class _Decoder:
             self.out.add(f'{target} = _read_times({kind}, "{code}", data, at, {count})')
             self.out.add(f"at += 8 * {count}")
             return
+        if field.length is None:
+            self.bound(count, unguarded_size(self.lookup(field.base), self.lookup))
         values, item = self.out.local("list"), self.out.local()
         self.out.add(f"{target} = {values} = []")
         self.out.add(f"for _ in range({count}):")
@@ -219,3 +225,15 @@ class _Decoder:
         self.fields(self.lookup(field.base), item)
         self.arrive()
         self.out.depth -= 1
+
+    def bound(self, count: str, size: int | None) -> None:
+        """Hand a count that cannot be true to the slow code, which refuses it (`bounds`)."""
+        if size is None:
+            return
+        if size:
+            self.out.add(f"if {size} * {count} > len(data) - at:")
+        else:
+            self.has_empty_items = True
+            self.out.add(f"empty -= {count}")
+            self.out.add("if empty < 0:")
+        self.out.add(f"    return {_AGAIN[self.form.value]}")

@@ -12,6 +12,7 @@ from typing import Any
 
 from rospy_shim.genpy.errors import DeserializationError
 from rospy_shim.genpy.rostime import Duration, Time
+from rospy_shim.msgs.bounds import MOST_EMPTY, too_many_empty, too_short, unguarded_size
 from rospy_shim.msgs.reference import OCTETS, FlatField, Lookup, codes, flat, leaves_of, reach, runs
 from rospy_shim.msgs.spec import PRIMITIVES, Spec
 
@@ -34,7 +35,7 @@ def read(spec: Spec, lookup: Lookup, class_of: ClassOf, message: Any, data: Any,
         the message.
 
     Raises:
-        DeserializationError: the data end too early.
+        DeserializationError: the data end too early, or have a count that they cannot fill (`bounds`).
         TypeError, AttributeError, ValueError: they are no bytes, or what else genpy lets through.
     """
     reader = _Reader(lookup, class_of, data, numpy)
@@ -59,6 +60,7 @@ class _Reader:
     def __init__(self, lookup: Lookup, class_of: ClassOf, data: Any, numpy: Any) -> None:
         self._lookup, self._class_of, self._data, self._numpy = lookup, class_of, data, numpy
         self._end = 0
+        self._empty = MOST_EMPTY
 
     def make(self, base: str) -> Any:
         """A new object of a type."""
@@ -110,7 +112,11 @@ class _Reader:
 
     def _items(self, leaf: FlatField, holder: Any, name: str) -> None:
         """An array of strings, times or messages."""
-        length = self._count() if leaf.length is None else leaf.length
+        if leaf.length is None:
+            length = self._count()
+            self._bound(leaf.base, length)
+        else:
+            length = leaf.length
         values: list[Any] = []
         setattr(holder, name, values)
         text = FlatField((), "string")
@@ -122,3 +128,13 @@ class _Reader:
             item = self.make(leaf.base)
             self.level(leaves, item)
             values.append(item)
+
+    def _bound(self, base: str, count: int) -> None:
+        """Refuse a count of items that do not fail where the data end."""
+        size = unguarded_size(self._lookup(base), self._lookup) if "/" in base else None
+        if size == 0:
+            self._empty -= count
+            if self._empty < 0:
+                raise too_many_empty()
+        elif size and size * count > len(self._data) - self._end:
+            raise too_short(size * count)

@@ -1,8 +1,10 @@
 """Messages to C++ and back: each type's random messages, decoded and encoded again, must be genpy's bytes.
 
-    python -m tests.roscfe.roundtrip --messages 1000 --profile host strict
+    python -m tests.roscfe.roundtrip --messages 10000 --types 250 --profile host strict --genpy
 
-Each type is a run of one generated program, which knows them all.
+Each type is a run of one generated program, which knows them all. With `--genpy` real genpy reads and writes the same
+messages beside it (Debian's python3-genpy); without, the bytes are those of cfepy's own codec, which is compared with
+genpy elsewhere.
 """
 
 from __future__ import annotations
@@ -22,6 +24,8 @@ from tests.roscfe.random_messages import LIBRARY, Source, all_types, capacities
 
 FOLDER = Path(__file__).parent
 IN_ONE_FILE = 40  # types
+BATCH = 2500  # messages that one process is sent
+ROS_PYTHON = "/usr/bin/python3"
 TARGETS = {"here": HERE, "powerpc": POWERPC, "arm": ARM}
 MAIN = """
 #include "roundtrip.h"
@@ -81,7 +85,44 @@ class Answer(NamedTuple):
     octets: bytes
 
 
-class Program:
+class Reader:
+    """What decodes frames and encodes them again, in a process of its own for each type."""
+
+    def command(self, full_name: str) -> Sequence[str]:
+        """What is run for a type."""
+        raise NotImplementedError
+
+    def answers(self, full_name: str, frames: Sequence[bytes]) -> list[Answer]:
+        """What it makes of frames."""
+        given = b"".join(struct.pack("<I", len(frame)) + frame for frame in frames)
+        done = subprocess.run(self.command(full_name), input=given, capture_output=True, check=False)
+        assert done.returncode == 0, f"{full_name}: {done.stderr.decode(errors='replace')[:3000]}"
+        answers = list(_answers(done.stdout))
+        assert len(answers) == len(frames), full_name
+        return answers
+
+    def differing(self, full_name: str, frames: Sequence[bytes]) -> list[tuple[bytes, Answer]]:
+        """Frames that do not come back as they were, and what came."""
+        answers = zip(frames, self.answers(full_name, frames), strict=True)
+        return [(frame, answer) for frame, answer in answers if not answer.good or answer.octets != frame]
+
+
+class Genpy(Reader):
+    """Real genpy.
+
+    Args:
+        folder: for the definitions.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._text = folder / "definition.txt"
+
+    def command(self, full_name: str) -> Sequence[str]:
+        self._text.write_text(LIBRARY.full_text(full_name))
+        return [ROS_PYTHON, str(FOLDER / "genpy_frames.py"), full_name, str(self._text)]
+
+
+class Program(Reader):
     """The program, compiled for some types in one profile.
 
     Args:
@@ -121,19 +162,8 @@ class Program:
             compile_program(made, sources, f"-I{headers}", f"-I{FOLDER}", *flags, target=target)
         self._command = [*target.runner, str(made)]
 
-    def answers(self, full_name: str, frames: Sequence[bytes]) -> list[Answer]:
-        """What the program makes of frames."""
-        given = b"".join(struct.pack("<I", len(frame)) + frame for frame in frames)
-        done = subprocess.run([*self._command, full_name], input=given, capture_output=True, check=False)
-        assert done.returncode == 0, f"{full_name}: {done.stderr.decode(errors='replace')[:3000]}"
-        answers = list(_answers(done.stdout))
-        assert len(answers) == len(frames), full_name
-        return answers
-
-    def differing(self, full_name: str, frames: Sequence[bytes]) -> list[tuple[bytes, Answer]]:
-        """Frames that do not come back as they were, and what came."""
-        answers = zip(frames, self.answers(full_name, frames), strict=True)
-        return [(frame, answer) for frame, answer in answers if not answer.good or answer.octets != frame]
+    def command(self, full_name: str) -> Sequence[str]:
+        return [*self._command, full_name]
 
 
 def frames_of(full_name: str, count: int, seed: int = 0) -> list[bytes]:
@@ -165,30 +195,38 @@ def _answers(octets: bytes) -> Iterator[Answer]:
 
 
 def main(arguments: list[str]) -> int:
-    """Send messages of all types through the program, and say how many came back changed."""
+    """Send messages of all types through the programs, and say how many came back changed."""
     parser = argparse.ArgumentParser(prog="python -m tests.roscfe.roundtrip", description=main.__doc__)
     parser.add_argument("--messages", type=int, default=200, metavar="N", help="of each type (default: 200)")
+    parser.add_argument("--types", type=int, metavar="N", help="so many types, from the whole list (default: all)")
     parser.add_argument("--profile", nargs="+", choices=["host", "strict"], default=["host", "strict"])
-    parser.add_argument("--target", choices=list(TARGETS), default="here", help="what the program is compiled for")
+    parser.add_argument("--target", choices=list(TARGETS), default="here", help="what the programs are compiled for")
+    parser.add_argument("--genpy", action="store_true", help="let real genpy read and write the same messages")
     given = parser.parse_args(arguments)
-    wrong = 0
-    for profile in given.profile:
-        with tempfile.TemporaryDirectory() as folder:
-            types = all_types()
-            program = Program(Path(folder), types, Profile(profile), "-O1", target=TARGETS[given.target])
-            sent = octets = 0
-            for name in types:
-                for start in range(0, given.messages, 1000):
-                    frames = frames_of(name, min(1000, given.messages - start), seed=start)
-                    found = program.differing(name, frames)
-                    sent, octets = sent + len(frames), octets + sum(map(len, frames))
-                    wrong += len(found)
+    every = all_types()
+    types = [every[at * len(every) // given.types] for at in range(given.types)] if given.types else every
+    with tempfile.TemporaryDirectory() as scratch:
+        readers: dict[str, Reader] = {}
+        for profile in given.profile:
+            (folder := Path(scratch) / profile).mkdir()
+            target = TARGETS[given.target]
+            readers[f"{given.target}, {profile}"] = Program(folder, types, Profile(profile), "-O1", target=target)
+        if given.genpy:
+            readers["genpy"] = Genpy(Path(scratch))
+        wrong = dict.fromkeys(readers, 0)
+        sent = octets = 0
+        for number, name in enumerate(types, 1):
+            for start in range(0, given.messages, BATCH):
+                frames = frames_of(name, min(BATCH, given.messages - start), seed=start)
+                sent, octets = sent + len(frames), octets + sum(map(len, frames))
+                for reader, what in readers.items():
+                    found = what.differing(name, frames)
+                    wrong[reader] += len(found)
                     for frame, answer in found[:1]:
-                        print(f"{name}: {frame.hex()} came back as {answer}")
-            print(
-                f"{given.target}, {profile}: {len(types):,} types, {sent:,} messages, {octets:,} bytes; {wrong} differ"
-            )
-    return 1 if wrong else 0
+                        print(f"{reader}: {name}: {frame.hex()} came back as {answer}", flush=True)
+            if number % 50 == 0 or number == len(types):
+                print(f"{number:,} types, {sent:,} messages, {octets:,} bytes; differing: {wrong}", flush=True)
+    return 1 if any(wrong.values()) else 0
 
 
 if __name__ == "__main__":
