@@ -5,6 +5,9 @@
 #include <cstdint>
 
 #include "ros/callback_queue.h"
+#include "ros/duration.h"
+#include "ros/init.h"
+#include "ros/time.h"
 
 namespace roscfe
 {
@@ -16,6 +19,31 @@ void stop_async(ros::CallbackQueue *queue);
 // Wait until a time in nanoseconds of the processor's clock, or until something came; what waits is called meanwhile.
 // False when the time is over.
 bool wait_for_news(std::int64_t until_ns);
+
+// Wait until something is so, which is looked at with all news and ten times a second; 0 waits for ever. False when the
+// time is over before, or the node is to end.
+template <class F>
+bool wait_until(const ros::Duration &timeout, F there)
+{
+    const std::int64_t until = static_cast<std::int64_t>(ros::Time::now().toNSec()) + timeout.toNSec();
+    while (!there())
+    {
+        if (!ros::ok())
+        {
+            return false;
+        }
+        const std::int64_t look = static_cast<std::int64_t>(ros::Time::now().toNSec()) + 100000000;
+        if (timeout.isZero() || look < until)
+        {
+            wait_for_news(look);
+        }
+        else if (!wait_for_news(until))
+        {
+            return there();
+        }
+    }
+    return true;
+}
 
 // A queue whose callbacks run while the node waits, for as long as this object lives.
 class WhileWaiting
