@@ -33,7 +33,10 @@ NO_COLOR = "\x1b[0m"
 """What rosconsole puts behind a line."""
 REMAPS = {"from": "to", "chatter": "/talk"}
 SECONDS = 30.0
-LIBRARIES = ("-lroscpp", "-lrosconsole", "-lrostime", "-lroscpp_serialization", "-lxmlrpcpp", "-lactionlib", "-lboost_thread")
+LIBRARIES = (
+    *("-lroscpp", "-lrosconsole", "-lrostime", "-lroscpp_serialization", "-lxmlrpcpp"),
+    *("-lactionlib", "-lboost_thread"),
+)
 MANIFEST = """<package format="2"><name>probes</name><version>1.0.0</version><description>probes</description>
 <maintainer email="a@b.c">a</maintainer><license>Apache-2.0</license><depend>roscpp</depend></package>
 """
