@@ -71,6 +71,8 @@ class CallTable:
         self._declared = declared
         self._stubs: dict[str, int] = {}
         self._next = self._end = 0
+        table.end = self._room()
+        engine().make_end(table.end)
 
     def address(self, name: str) -> int:
         """Where a function is called; one that nobody has is a fault of whoever calls it."""
@@ -86,14 +88,17 @@ class CallTable:
     def _make(self, name: str) -> int:
         declared = self._declared.functions.get(name) or Declared(_absent(name), "", 0)
         number = self._table.add(name, declared.function, declared.signature, declared.null_status, declared.on_null)
+        stub = self._room()
+        engine().make_stub(stub, number, name == DESCRIPTOR)
+        return stub
+
+    def _room(self) -> int:
         if self._next == self._end:
             self._next = self._arena.map(_STUB_PAGES)
             self._end = self._next + _STUB_PAGES
             engine().protect(self._next, _STUB_PAGES, 7)
-        stub = self._next
-        engine().make_stub(stub, number, name == DESCRIPTOR)
         self._next += STUB
-        return stub
+        return self._next - STUB
 
 
 _INSTEAD = {

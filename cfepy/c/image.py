@@ -7,6 +7,7 @@ gone when it is unmapped.
 
 from __future__ import annotations
 
+import re
 import struct
 from typing import NamedTuple, Protocol
 
@@ -31,8 +32,26 @@ _KINDS = {
 _X86_DESCRIPTOR = 36
 _THREAD_LOCAL = "STT_TLS"
 _CHOSEN_FUNCTION = "STT_GNU_IFUNC"
+_THREAD_POINTER = re.compile(rb"[\x40-\x5f]\xd0\x3b\xd5")
+_ZERO = 0xD2800000
+_EXECUTE = 1
 _WORD = struct.Struct("<Q")
 _64_BITS = (1 << 64) - 1
+
+
+def without_thread_pointer(code: bytes) -> bytes:
+    """Code of aarch64 that gets 0 where it asks for the thread pointer (mrs xN, tpidr_el0 becomes mov xN, 0).
+
+    The register has an address of the host's thread, another in each run. Compilers keep it for the thread-local
+    variables of a whole function, so each function that is called leaves it on its stack. With 0, what a descriptor
+    answers is the address of the variable itself. The register cannot be another one meanwhile: handlers of signals,
+    such as Python's, use it.
+    """
+    made = bytearray(code)
+    for found in _THREAD_POINTER.finditer(code):
+        if found.start() % 4 == 0:
+            struct.pack_into("<I", made, found.start(), _ZERO | code[found.start()] & 0x1F)
+    return bytes(made)
 
 
 class Linker(Protocol):
@@ -93,7 +112,10 @@ class Image:
     def _fill(self) -> None:
         source, base = self.source, self.base
         for segment in source.segments:
-            self._engine.poke(base + segment.address, source.data[segment.offset : segment.offset + segment.file_size])
+            data = source.data[segment.offset : segment.offset + segment.file_size]
+            if source.machine == "aarch64" and segment.rights & _EXECUTE:
+                data = without_thread_pointer(data)
+            self._engine.poke(base + segment.address, data)
         exported = [each for each in source.symbols if each.is_defined and each.name]
         self.symbols = {each.name: base + each.address for each in exported if each.kind != _THREAD_LOCAL}
         self.thread_locals = {each.name: each.address for each in exported if each.kind == _THREAD_LOCAL}

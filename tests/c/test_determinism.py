@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.c.engine import engine
 from cfepy.cli.main import main
 from tests.c.building import compile_c, compile_cpp, fly_c, needs_compiler, needs_cpp, said, write_mission
 
@@ -135,6 +136,37 @@ REGISTERS = """
 
 def test_a_call_leaves_nothing_of_the_host_in_registers(tmp_path: Path) -> None:
     assert said(fly_c(tmp_path, REGISTERS)) == ["0 0 0"]
+
+
+OWN_STACK = """
+    int32_t OS_TaskCreate(uint32_t *, const char *, void (*)(void), void *, size_t, uint8_t, uint32_t);
+    static uint64_t stack[8192];
+    static void child(void)
+    {
+        char text[100];
+        snprintf(text, sizeof text, "%p", __builtin_return_address(0));
+        OS_TaskDelay(10);
+        SAY("%s", text);
+    }
+    void TEST_Main(void)
+    {
+        uint32_t id;
+        int addresses = 0;
+        OS_TaskCreate(&id, "CHILD", child, stack, sizeof stack, 60, 0);
+        OS_TaskDelay(200);
+        for (int i = 0; i < 8192; i++)
+            addresses += stack[i] >= ARENA_HIGH && stack[i] < 1ull << 48;
+        SAY("%d", addresses);
+    }
+"""
+
+
+def test_a_stack_keeps_no_address_of_the_host(tmp_path: Path) -> None:
+    returns_to, addresses = said(
+        fly_c(tmp_path, OWN_STACK, flags=(f"-DARENA_HIGH={engine().ARENA_HIGH}", "-fno-stack-protector"))
+    )
+    assert engine().ARENA_LOW < int(returns_to, 16) < engine().ARENA_HIGH
+    assert addresses == "0"
 
 
 def test_the_guard_of_stacks_is_the_same_in_each_run(tmp_path: Path) -> None:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import platform
+import struct
 from pathlib import Path
 
 import pytest
 
+from cfepy.c.image import without_thread_pointer
 from tests.c.building import (
     compile_c,
     compile_cpp,
@@ -51,6 +53,44 @@ EACH_ITS_OWN = """
 def test_each_task_has_its_own(tmp_path: Path, model: str, tasks: str) -> None:
     console = fly_c(tmp_path, EACH_ITS_OWN, flags=(f"-ftls-model={model}",), tasks=tasks)
     assert sorted(said(console)) == ["child 43 3", "child 43 3", "main 43 3"]
+
+
+LEFT_BEHIND = """
+    static __thread unsigned count = 1;
+    static void __attribute__((noinline)) seen(const void *at) { __asm__ volatile("" : : "r"(at) : "memory"); }
+    static void __attribute__((noinline)) deeper(void) { uint64_t much[20] = {0}; seen(much); OS_TaskDelay(1); }
+    static unsigned __attribute__((noinline)) left(void)
+    {
+        unsigned char bytes[1000];
+        unsigned sum = 0;
+        seen(bytes);
+        for (size_t i = 0; i < sizeof bytes; i++)
+            sum = sum * 31 + bytes[i];
+        return sum;
+    }
+    void TEST_Main(void)
+    {
+        for (int i = 0; i < 3; i++) {
+            count += 2;
+            deeper();
+            SAY("%u %u", count, left());
+        }
+    }
+"""
+
+
+def test_nothing_of_the_hosts_thread_is_left_on_stacks(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", LEFT_BEHIND, "-O2", "-Wno-uninitialized", "-Wno-maybe-uninitialized")
+    folder = write_mission(tmp_path, "TEST")
+    assert said(console_of(fly(folder))) == said(console_of(fly(folder, tasks="greenlet")))
+
+
+def test_code_of_aarch64_gets_no_thread_pointer() -> None:
+    ask, other = (0xD53BD040, 0xD53BD054, 0xD53BD05F), (0xD51BD041, 0xD53BD060, 0xD53BE041, 0xD65F03C0)
+    instead = (0xD2800000, 0xD2800014, 0xD280001F)
+    assert without_thread_pointer(struct.pack("<7I", *ask, *other)) == struct.pack("<7I", *instead, *other)
+    across = struct.pack("<HIH", 0, ask[0], 0)
+    assert without_thread_pointer(across) == across
 
 
 def test_a_library_has_some_that_applications_use(tmp_path: Path) -> None:

@@ -98,6 +98,7 @@ typedef struct Table {
     struct Images *images;                     /* of the Software Bus */
     struct Races *races;                       /* looks at accesses to memory; or NULL */
     uint32_t highest_msg_id, largest_message;
+    unsigned long long end;                    /* where the functions return to that Python calls */
     uint64_t ctype[3];                         /* of __ctype_b_loc, __ctype_toupper_loc, __ctype_tolower_loc */
 } Table;
 

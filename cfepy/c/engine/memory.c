@@ -105,3 +105,26 @@ HIDDEN PyObject *memory_make_stub(PyObject *module, PyObject *arguments)
     __builtin___clear_cache((char *)at, (char *)at + sizeof code);
     return PyLong_FromSize_t(sizeof code);
 }
+
+/* Where a function returns to that Python called: in the arena, since an address of the host would be on its stack. */
+HIDDEN PyObject *memory_make_end(PyObject *module, PyObject *address)
+{
+    uint64_t at = PyLong_AsUnsignedLongLongMask(address), target = (uint64_t)engine_call;
+    if (PyErr_Occurred() || !is_in_arena(at, 32))
+        return NULL;
+#if defined(__x86_64__)
+    unsigned char code[] = {0x48, 0x89, 0xC7,                   /* mov rdi, rax */
+                            0x49, 0xC7, 0xC3, 255, 255, 255, 255, /* mov r11, FINISHED */
+                            0x49, 0xBA, 0, 0, 0, 0, 0, 0, 0, 0, /* mov r10, engine_call */
+                            0x41, 0xFF, 0xD2};                  /* call r10 */
+    memcpy(code + 12, &target, 8);
+#else
+    uint32_t code[] = {0x92800010u,                             /* mov x16, FINISHED */
+                       0x58000071u,                             /* ldr x17, 12 bytes on */
+                       0xD61F0220u,                             /* br x17 */
+                       0, (uint32_t)target, (uint32_t)(target >> 32)};
+#endif
+    memcpy((void *)at, code, sizeof code);
+    __builtin___clear_cache((char *)at, (char *)at + sizeof code);
+    Py_RETURN_NONE;
+}

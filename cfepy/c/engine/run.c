@@ -2,6 +2,7 @@
 #include "engine.h"
 
 #include <string.h>
+#include <structmember.h>
 #include <time.h>
 
 /* ---- Table -------------------------------------------------------------------------------------------------------- */
@@ -149,6 +150,10 @@ static int table_set_races(Table *table, PyObject *races, void *unused)
     return 0;
 }
 
+static PyMemberDef table_members[] = {
+    {"end", T_ULONGLONG, offsetof(Table, end), 0, "where the functions return to that Python calls: what make_end made"},
+    {NULL, 0, 0, 0, NULL},
+};
 static PyGetSetDef table_attributes[] = {
     {"races", (getter)table_get_races, (setter)table_set_races, "what looks at accesses to memory, or None", NULL},
     {"frames", (getter)table_get_frames, (setter)table_set_frames,
@@ -169,6 +174,7 @@ HIDDEN PyTypeObject table_type = {
     .tp_traverse = (traverseproc)table_traverse,
     .tp_clear = (inquiry)table_clear,
     .tp_methods = table_methods,
+    .tp_members = table_members,
     .tp_getset = table_attributes,
     .tp_doc = "Table(heap, images, charge, cost, preempted, highest_msg_id, largest_message, ctype): the functions that C code can call",
 };
@@ -293,7 +299,7 @@ static void prepare(Coroutine *coroutine, uint64_t function, const uint64_t *val
 {
     uint64_t *top = (uint64_t *)((uint64_t)(coroutine->stack + coroutine->size) & ~15ull);
 #if defined(__x86_64__)
-    top -= 9; /* six registers, the address to begin at, the sixth argument; aligned to 16 at that */
+    top -= 9; /* six registers, the address to begin at, the sixth argument, where to return to; aligned to 16 at that */
     top[0] = values[2]; /* r15 */
     top[1] = values[1]; /* r14 */
     top[2] = values[0]; /* r13 */
@@ -302,6 +308,7 @@ static void prepare(Coroutine *coroutine, uint64_t function, const uint64_t *val
     top[5] = values[4]; /* rbp */
     top[6] = (uint64_t)engine_begin;
     top[7] = values[5];
+    top[8] = coroutine->table->end;
     coroutine->float_modes = 0x1F80ull | 0x37Full << 32;
     coroutine->guard = STACK_GUARD;
 #else
@@ -309,6 +316,7 @@ static void prepare(Coroutine *coroutine, uint64_t function, const uint64_t *val
     top[0] = function; /* x19 */
     for (int i = 0; i < ENTRY_ARGUMENTS; i++)
         top[1 + i] = values[i]; /* x20 and on */
+    top[1 + ENTRY_ARGUMENTS] = coroutine->table->end;
     top[RETURN_ADDRESS] = (uint64_t)engine_begin;
     coroutine->float_modes = 0;
 #endif
@@ -453,6 +461,7 @@ static PyObject *address_of(PyObject *module, PyObject *object)
 HIDDEN PyObject *memory_map(PyObject *, PyObject *), *memory_unmap(PyObject *, PyObject *);
 HIDDEN PyObject *memory_protect(PyObject *, PyObject *), *memory_clear(PyObject *, PyObject *);
 HIDDEN PyObject *memory_ctype(PyObject *, PyObject *), *memory_make_stub(PyObject *, PyObject *);
+HIDDEN PyObject *memory_make_end(PyObject *, PyObject *);
 
 static PyObject *has_native(PyObject *module, PyObject *name)
 {
@@ -500,6 +509,7 @@ static PyMethodDef methods[] = {
     {"clear", memory_clear, METH_VARARGS, "clear(address, size): zeros again"},
     {"ctype", memory_ctype, METH_NOARGS, "ctype() -> the tables of <ctype.h>, as bytes from index -128 on"},
     {"make_stub", memory_make_stub, METH_VARARGS, "make_stub(address, number, thread_local=False) -> size: code there that calls a function"},
+    {"make_end", memory_make_end, METH_O, "make_end(address): code there that ends the function that returns to it"},
     {"has_native", has_native, METH_O, "has_native(name) -> whether the engine has such a function"},
     {"natives", natives, METH_NOARGS, "natives() -> names of the functions that the engine answers"},
     {NULL, NULL, 0, NULL},

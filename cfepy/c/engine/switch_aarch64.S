@@ -147,10 +147,11 @@ engine_call:                                    /* a stub came here with the num
     .globl engine_thread_local
     .hidden engine_thread_local
     .type engine_thread_local, %function
-engine_thread_local:                            /* where a variable is, from the thread's pointer on: the code that asks
-                                                   keeps all registers but x0, x30 and the flags. x0: its descriptor.
-                                                   A stub came here with the number of a function in x16; x16 and x17
-                                                   of the application are on the stack. */
+engine_thread_local:                            /* where a variable is, from the thread's pointer on, which is 0 for an
+                                                   application (image.py): the code that asks keeps all registers but
+                                                   x0, x30 and the flags. x0: its descriptor. A stub came here with the
+                                                   number of a function in x16; x16 and x17 of the application are on
+                                                   the stack. */
     sub sp, sp, #656
     VECTORS stp
     OTHERS stp
@@ -158,8 +159,6 @@ engine_thread_local:                            /* where a variable is, from the
     bl engine_call
     str xzr, [sp, #-72]                         /* where KEEP had x30: an address of the host's code, which applications
                                                    would find below their stack */
-    mrs x1, tpidr_el0
-    sub x0, x0, x1
     VECTORS ldp
     OTHERS ldp
     add sp, sp, #656
@@ -181,7 +180,9 @@ engine_land:                                    /* a signal handler put the host
     .globl engine_begin
     .hidden engine_begin
     .type engine_begin, %function
-engine_begin:                                   /* first entry: x19 the function, x20 to x25 its arguments */
+engine_begin:                                   /* first entry: x19 the function, x20 to x25 its arguments, x26 where
+                                                   it returns to */
+    str xzr, [sp, #-72]                         /* where this address was: of the host, below the stack of the function */
     mov x0, x20
     mov x1, x21
     mov x2, x22
@@ -189,11 +190,8 @@ engine_begin:                                   /* first entry: x19 the function
     mov x4, x24
     mov x5, x25
     mov x29, #0
-    mov x30, #0
-    blr x19
-    mov x16, #-1
-    bl engine_call
-    brk #0
+    mov x30, x26
+    br x19
     .size engine_begin, . - engine_begin
 
     .globl engine_copy

@@ -104,7 +104,8 @@ engine_land:                            /* a signal handler put the host's stack
     .globl engine_begin
     .hidden engine_begin
     .type engine_begin, @function
-engine_begin:                           /* first entry: r12 the function, r13, r14, r15 and rbx its arguments, rbp the fifth */
+engine_begin:                           /* first entry: r12 the function, r13, r14, r15 and rbx its arguments, rbp the fifth;
+                                           on the stack the sixth, and where the function returns to */
     mov %r13, %rdi
     mov %r14, %rsi
     mov %r15, %rdx
@@ -113,11 +114,8 @@ engine_begin:                           /* first entry: r12 the function, r13, r
     mov 0(%rsp), %r9
     xor %eax, %eax
     xor %ebp, %ebp
-    call *%r12
-    mov %rax, %rdi
-    mov $-1, %r11
-    call engine_call
-    ud2
+    push 8(%rsp)
+    jmp *%r12
     .size engine_begin, . - engine_begin
 
     .globl engine_copy
