@@ -14,7 +14,8 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from cfepy.convert.messages import Capacities, Profile, write_headers
+from cfepy.convert.capacities import Capacities
+from cfepy.convert.messages import Profile, write_headers
 from cfepy.resources import shipped as shipped_files
 from rospy_shim.msgs import shipped
 from rospy_shim.msgs.spec import BUILTINS

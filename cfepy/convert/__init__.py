@@ -13,18 +13,29 @@ from typing import TYPE_CHECKING
 from cfepy.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.convert.capacities import wrong_capacities
     from cfepy.convert.conversion import converted, task_of
     from cfepy.convert.flight import build_for_flight
     from cfepy.convert.messages import Profile
     from cfepy.convert.output import write_files
     from cfepy.convert.project import project_files, report
 
-__all__ = ["Profile", "build_for_flight", "converted", "project_files", "report", "task_of", "write_files"]
+__all__ = [
+    "Profile",
+    "build_for_flight",
+    "converted",
+    "project_files",
+    "report",
+    "task_of",
+    "write_files",
+    "wrong_capacities",
+]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".capacities": ("wrong_capacities",),
             ".conversion": ("converted", "task_of"),
             ".flight": ("build_for_flight",),
             ".messages": ("Profile",),

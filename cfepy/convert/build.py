@@ -18,11 +18,13 @@ from functools import cache
 from pathlib import Path
 
 from cfepy.c import CompilerError, cache_folder, cpp_compiler, headers_folder
+from cfepy.convert.capacities import Capacities
 from cfepy.convert.configurations import CONFIGURATION_TYPES, configuration_headers
 from cfepy.convert.entry import NodeEntry, main_header
 from cfepy.convert.messages import Profile, write_headers
 from cfepy.convert.packages import Program
 from cfepy.convert.sources import SourceSet, collect, message_types
+from cfepy.mission import ARENA_BYTES
 from cfepy.resources import shipped
 from cfepy.status import UsageError
 from rospy_shim.msgs import Library
@@ -40,6 +42,8 @@ BOOST_REFUSED = ("config.hpp", "version.hpp")
 """Headers of the small Boost that stop a header of the real one which was found by chance."""
 OWN_CPP_LIBRARY = ("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL")
 SYSTEM_ROS = ("/opt/ros/", "/usr/include/ros/", "/usr/local/include/ros/")
+HEAP_SOURCE = "heap.cpp"
+"""The source of the interface library in which the arena is."""
 MOST_AT_ONCE = 2
 """Compilers that run at the same time."""
 
@@ -101,6 +105,26 @@ def provided_packages() -> set[str]:
     return known | {each.name for each in (library_folder() / "include").iterdir() if each.is_dir()}
 
 
+@dataclass(frozen=True, slots=True)
+class BuildOptions:
+    """What a node is built for.
+
+    Attributes:
+        profile: what it may do.
+        capacities: of its messages, in the strict profile.
+        arena_bytes: size of its heap, in the profiles pool and strict.
+    """
+
+    profile: Profile = Profile.HOST
+    capacities: Capacities = field(default_factory=Capacities)
+    arena_bytes: int = ARENA_BYTES
+
+    def flags_of(self, source: Path) -> list[str]:
+        """Flags of one source of the interface library alone."""
+        is_heap = source.name == HEAP_SOURCE and self.profile is not Profile.HOST
+        return [f"-DROSCFE_ARENA_BYTES={self.arena_bytes}"] if is_heap else []
+
+
 @dataclass(slots=True)
 class BuiltNode:
     """A node that was built.
@@ -120,14 +144,14 @@ class BuiltNode:
     warnings: list[str] = field(default_factory=list)
 
 
-def build_node(program: Program, entry: NodeEntry, library: Library, profile: Profile = Profile.HOST) -> BuiltNode:
+def build_node(program: Program, entry: NodeEntry, library: Library, options: BuildOptions | None = None) -> BuiltNode:
     """Build a node.
 
     Args:
         program: its sources.
         entry: what is generated around it.
         library: of message types.
-        profile: what it may do.
+        options: what it is built for; None for the profile host.
 
     Returns:
         What was built, or lay in the cache.
@@ -136,16 +160,16 @@ def build_node(program: Program, entry: NodeEntry, library: Library, profile: Pr
         UsageError: there is no compiler, or the result would not be fit to fly.
         CompilerError: the compiler refused a source; the text is the compiler's.
     """
-    return NodeBuild(program, entry, library, profile).built()
+    return NodeBuild(program, entry, library, options or BuildOptions()).built()
 
 
 class NodeBuild:
     """The build of one node; see `build_node`."""
 
-    def __init__(self, program: Program, entry: NodeEntry, library: Library, profile: Profile) -> None:
+    def __init__(self, program: Program, entry: NodeEntry, library: Library, options: BuildOptions) -> None:
         self._program = program
         self._entry = entry
-        self._profile = profile
+        self._options = options
         self._types = library
         sources = collect(program.sources, [*program.includes, *library_includes()])
         self._real_boost = needs_real_boost(sources)
@@ -163,14 +187,14 @@ class NodeBuild:
 
     def _built(self, scratch: Path) -> BuiltNode:
         program, entry = self._program, self._entry
-        messages = messages_folder(self.types, self._types, self._profile)
+        messages = messages_folder(self.types, self._types, self._options)
         configurations = configurations_folder(self._configurations)
         includes = [*program.includes, messages, configurations, *library_includes(self._real_boost)]
         main = scratch / "roscfe_main.h"
         main.write_text(main_header(entry.takes_arguments), encoding="utf-8")
         start = scratch / f"{entry.app.lower()}_entry.cpp"
         start.write_text(entry.text(), encoding="utf-8")
-        flags = [*LANGUAGE, *PLAIN, *profile_flags(self._profile)]
+        flags = [*LANGUAGE, *PLAIN, *profile_flags(self._options.profile)]
         own = [*flags, *(f"-D{each}" for each in program.definitions), "-include", str(main)]
         made_for_it = (messages.name, configurations.name, main_header(entry.takes_arguments))
         known = _digest(*made_for_it, *self.sources.contents.values())
@@ -178,14 +202,14 @@ class NodeBuild:
         header = library_folder() / "include/roscfe/node.h"
         around = known if entry.nodelet else _digest(header.read_bytes())
         units.append(CompileUnit(start, flags, includes, _digest(entry.text(), around)))
-        core = core_key(self._profile, self._real_boost, self._types, self.sources.contents)
-        key = _digest(core, *link_flags(self._profile), *(each.key for each in units))
+        core = core_key(self._options, self._real_boost, self._types, self.sources.contents)
+        key = _digest(core, *link_flags(self._options.profile), *(each.key for each in units))
         made = _folder() / f"{entry.app.lower()}-{key}.so"
         warnings = made.with_suffix(".warnings")
         if not made.is_file():
-            archive = built_core(self._profile, self._real_boost, self._types, self.sources.contents)
+            archive = built_core(self._options, self._real_boost, self._types, self.sources.contents)
             told = compile_units(units)
-            _link([*(each.object for each in units), archive], made, link_flags(self._profile))
+            _link([*(each.object for each in units), archive], made, link_flags(self._options.profile))
             warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
         told = [warnings.read_text(encoding="utf-8")] if warnings.is_file() else []
         return BuiltNode(made, entry.symbol, self.sources, self.types, list(filter(None, told)))
@@ -210,19 +234,19 @@ def link_flags(profile: Profile) -> list[str]:
     return [*LINK, *(() if profile is Profile.HOST else OWN_CPP_LIBRARY)]
 
 
-def messages_folder(types: Sequence[str], library: Library, profile: Profile) -> Path:
+def messages_folder(types: Sequence[str], library: Library, options: BuildOptions) -> Path:
     """A folder with the headers of message types and of all that they need, in the cache.
 
     Args:
         types: full names.
         library: where they are.
-        profile: what messages are made of.
+        options: what messages are made of.
     """
     folder = _folder()
     with tempfile.TemporaryDirectory(dir=folder) as scratch:
         made = Path(scratch) / "messages"
         made.mkdir()
-        files = write_headers(types, made, profile, library)
+        files = write_headers(types, made, options.profile, library, options.capacities)
         key = _digest(*(f"{each.relative_to(made)}\0{each.read_text(encoding='utf-8')}" for each in files))
         kept = folder / f"messages-{key}"
         if not kept.is_dir():
@@ -250,19 +274,19 @@ def configurations_folder(headers: Mapping[str, str]) -> Path:
     return kept
 
 
-def core_key(profile: Profile, real_boost: bool, library: Library, used: Iterable[Path]) -> str:
+def core_key(options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]) -> str:
     """What the interface library of a profile is known by."""
-    return _core(profile, real_boost, library, used)[0]
+    return _core(options, real_boost, library, used)[0]
 
 
-def built_core(profile: Profile, real_boost: bool, library: Library, used: Iterable[Path]) -> Path:
+def built_core(options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]) -> Path:
     """The interface library of a profile as an archive, compiled if it is not in the cache.
 
     Raises:
         CompilerError: the compiler refused it.
     """
-    key, units = _core(profile, real_boost, library, used)
-    archive = _folder() / f"libroscfe-{profile.value}-{_digest(key, identity())}.a"
+    key, units = _core(options, real_boost, library, used)
+    archive = _folder() / f"libroscfe-{options.profile.value}-{_digest(key, identity())}.a"
     if not archive.is_file():
         print("cfepy: compiling the interface library of ROS nodes in C++, once", file=sys.stderr, flush=True)
         compile_units(units)
@@ -273,15 +297,24 @@ def built_core(profile: Profile, real_boost: bool, library: Library, used: Itera
     return archive
 
 
-def _core(profile: Profile, real_boost: bool, library: Library, used: Iterable[Path]) -> tuple[str, list[CompileUnit]]:
+def _core(
+    options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]
+) -> tuple[str, list[CompileUnit]]:
+    profile = options.profile
     files, includes = library_sources(used, real_boost), library_includes(real_boost)
     sources = collect(files, includes)
-    messages = messages_folder(message_types(sources.missing, library), library, profile)
+    messages = messages_folder(message_types(sources.missing, library), library, options)
     flags = [*LANGUAGE, *PLAIN, *profile_flags(profile), *core_flags(profile), *STRICT_WARNINGS]
     known = _digest(messages.name, *sources.contents.values())
     folder = library_folder()
     units = [
-        CompileUnit(each, flags, [messages, *includes], _digest(known, str(each.relative_to(folder))), needs_cfe=True)
+        CompileUnit(
+            each,
+            [*flags, *options.flags_of(each)],
+            [messages, *includes],
+            _digest(known, str(each.relative_to(folder))),
+            needs_cfe=True,
+        )
         for each in files
     ]
     return _digest(*(each.key for each in units)), units

@@ -10,11 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.c import CompilerError
-from cfepy.convert.build import build_node, provided_packages
+from cfepy.convert.build import BuildOptions, build_node, provided_packages
+from cfepy.convert.capacities import capacities_of
 from cfepy.convert.entry import NodeEntry, parameter_rows
+from cfepy.convert.messages import Profile
 from cfepy.convert.names import resolved
 from cfepy.convert.packages import program_of, read_package
 from cfepy.convert.sources import main_form
+from cfepy.mission import CppNodesConfig
 from cfepy.nodes import CppNode
 from cfepy.status import UsageError
 from rospy_shim.msgs import Library, OnDisk, Packages, shipped
@@ -23,20 +26,25 @@ LINES_SHOWN = 12
 """Lines of what the compiler says that are told of a node that cannot be built."""
 
 
-def build_for_flight(node: CppNode, params: Mapping[str, Any], others: Sequence[str]) -> tuple[Path, str]:
+def build_for_flight(
+    node: CppNode, params: Mapping[str, Any], others: Sequence[str], config: CppNodesConfig | None = None
+) -> tuple[Path, str]:
     """Build a node; see `cfepy.mission.NodeBuilder`.
 
     Args:
         node: the node.
         params: the tree of parameters.
         others: full names of the mission's other nodes.
+        config: the mission file's section `cpp_nodes:`; None without one.
 
     Returns:
         The shared object and its entry point.
 
     Raises:
         UsageError: it cannot be built.
+        CppNodesError: the section is wrong.
     """
+    config = config or CppNodesConfig()
     packages = Packages(node.near, node.env)
     package = read_package(node.folders[0], node.package)
     program = program_of(package, node.type, packages, provided_packages())
@@ -57,8 +65,10 @@ def build_for_flight(node: CppNode, params: Mapping[str, Any], others: Sequence[
         takes_arguments=bool(program.nodelet) or main_form(program.sources, package.folder),
         nodelet=program.nodelet,
     )
+    library = message_library(packages)
+    options = BuildOptions(Profile(config.profile), capacities_of(config, library), config.arena_bytes)
     try:
-        built = build_node(program, entry, message_library(packages))
+        built = build_node(program, entry, library, options)
     except CompilerError as error:
         raise UsageError(shortened(str(error)), file=package.folder) from None
     return built.library, built.entry

@@ -10,16 +10,16 @@ In the strict profile nothing allocates: a text and an array have a capacity the
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator
 from enum import StrEnum
 from pathlib import Path
 
+from cfepy.convert.capacities import Capacities
 from cfepy.status import UsageError
 from rospy_shim.msgs import Library
-from rospy_shim.msgs.spec import BUILTINS, PRIMITIVES, Constant, Field, Spec
+from rospy_shim.msgs.spec import PRIMITIVES, Constant, Field, Spec
 
-__all__ = ["Capacities", "Profile", "write_headers"]
+__all__ = ["Profile", "write_headers"]
 
 _LEAST = {"B": 1, "b": 1, "h": 2, "H": 2, "i": 4, "I": 4, "q": 8, "Q": 8, "f": 4, "d": 8}
 _NUMBERS = {
@@ -51,47 +51,6 @@ class Profile(StrEnum):
     """As in host; they allocate on the node's own arena."""
     STRICT = "strict"
     """Strings and vectors of a fixed capacity."""
-
-
-@dataclass(frozen=True, slots=True)
-class Capacities:
-    """How long texts and arrays can be in the strict profile.
-
-    Attributes:
-        fields: items by "package/Type.field"; characters of a text. Those of the texts in an array: "...field[]".
-        text: characters of a text that is not among them.
-        array: items of an array of numbers or texts that is not among them. An array of messages has no default.
-    """
-
-    fields: Mapping[str, int] = field(default_factory=dict)
-    text: int = 64
-    array: int = 16
-
-    def of_text(self, place: str) -> int:
-        """Characters of a text."""
-        return self._checked(place, self.fields.get(place, self.text))
-
-    def of_array(self, place: str, item: str) -> int:
-        """Items of an array.
-
-        Args:
-            place: the field, as in `fields`.
-            item: their type.
-
-        Raises:
-            UsageError: an array of messages without a capacity, or one that is no number of items.
-        """
-        if place not in self.fields and item not in BUILTINS:
-            raise UsageError(
-                f"{place} is an array of {item}, and has no capacity; the strict profile needs one, for each item "
-                f"takes its memory whether it is used or not: `capacities: {{{place}: 8}}`"
-            )
-        return self._checked(place, self.fields.get(place, self.array))
-
-    def _checked(self, place: str, number: int) -> int:
-        if isinstance(number, bool) or not isinstance(number, int) or not 0 < number < 1 << 24:
-            raise UsageError(f"{place}: a capacity is a number from 1 to {(1 << 24) - 1:,}, not {number!r}")
-        return number
 
 
 def write_headers(

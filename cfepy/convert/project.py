@@ -18,19 +18,22 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.convert.build import (
+    HEAP_SOURCE,
     LANGUAGE,
     WITHOUT_EXCEPTIONS,
+    BuildOptions,
     core_flags,
     library_folder,
     library_includes,
     library_sources,
     link_flags,
 )
+from cfepy.convert.capacities import capacities_of
 from cfepy.convert.conversion import Conversion, ConvertedNode
 from cfepy.convert.entry import main_header
 from cfepy.convert.messages import Profile, write_headers
 from cfepy.convert.sources import collect, message_types
-from cfepy.mission import COMPILED_STACK_BYTES, LOCK_FILE, STARTUP_SCRIPT
+from cfepy.mission import COMPILED_STACK_BYTES, LOCK_FILE, STARTUP_SCRIPT, CppNodesConfig
 from cfepy.tbl import TableImage
 from cfepy.tbl import build as table_file
 from rospy_shim.parameters.table import pack
@@ -42,16 +45,21 @@ C_ONLY = ("-std=c99", "-pedantic", "-Wstrict-prototypes", "-Wmissing-prototypes"
 """Options that a cFS mission gives all languages, and that C++ sources cannot have."""
 
 
-def project_files(made: Conversion, profile: Profile, folder: Path) -> dict[str, bytes]:
+def project_files(made: Conversion, config: CppNodesConfig, folder: Path) -> dict[str, bytes]:
     """All files of the folder, by path.
 
     Args:
         made: what was converted.
-        profile: what the nodes may do.
+        config: what the nodes are built for.
         folder: where it will be, for paths that lead out of it.
+
+    Raises:
+        CppNodesError: a capacity of a type or field that is not there, or has none.
+        UsageError: a field without a capacity.
     """
     files: dict[str, bytes] = {}
-    files |= _library(made, profile)
+    options = BuildOptions(Profile(config.profile), capacities_of(config, made.library), config.arena_bytes)
+    files |= _library(made, options)
     for node in made.nodes:
         files |= _application(node)
     texts = {
@@ -60,7 +68,7 @@ def project_files(made: Conversion, profile: Profile, folder: Path) -> dict[str,
         "README.md": _readme(made, folder),
         "report.md": report_text(made),
         "report.json": json.dumps(report(made), indent=1) + "\n",
-        **{f"mission/{name}": text for name, text in _mission(made, folder).items()},
+        **{f"mission/{name}": text for name, text in _mission(made, config, folder).items()},
     }
     return files | {name: text.encode() for name, text in texts.items()}
 
@@ -79,7 +87,7 @@ def origin(node: ConvertedNode) -> str:
 # -- what is built -----------------------------------------------------------------------------------------------------
 
 
-def _library(made: Conversion, profile: Profile) -> dict[str, bytes]:
+def _library(made: Conversion, options: BuildOptions) -> dict[str, bytes]:
     """The interface library with the headers of all messages."""
     root = library_folder()
     found = {
@@ -89,18 +97,24 @@ def _library(made: Conversion, profile: Profile) -> dict[str, bytes]:
     needed = collect(used, library_includes())
     types = {*message_types(needed.missing, made.library), *(name for node in made.nodes for name in node.types)}
     with tempfile.TemporaryDirectory(prefix="cfepy-convert-") as scratch:
-        for header in write_headers(sorted(types), Path(scratch), profile, made.library):
+        said = (sorted(types), Path(scratch), options.profile, made.library)
+        for header in write_headers(*said, options.capacities):
             found[f"roscfe/msg/{header.relative_to(scratch)}"] = header.read_bytes()
     for node in made.nodes:
         found |= {f"roscfe/msg/{name}": text.encode() for name, text in node.configurations.items()}
     for with_arguments, name in MAIN_HEADERS.items():
         found[f"roscfe/{name}"] = main_header(with_arguments).encode()
     sources = [f"src/{each.relative_to(root / 'src')}" for each in used]
-    found["roscfe/roscfe.cmake"] = _cmake_of_library(sources, profile).encode()
+    found["roscfe/roscfe.cmake"] = _cmake_of_library(sources, options).encode()
     return found
 
 
-def _cmake_of_library(sources: Iterable[str], profile: Profile) -> str:
+def _cmake_of_library(sources: Iterable[str], options: BuildOptions) -> str:
+    profile = options.profile
+    arena = options.flags_of(Path(HEAP_SOURCE))
+    definitions = (
+        f"\n    target_compile_definitions(roscfe PRIVATE {' '.join(each[2:] for each in arena)})" if arena else ""
+    )
     exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
     flags = [*LANGUAGE, f"-DROSCFE_PROFILE_{profile.name}"]
     linked = " ".join(link_flags(profile)[1:])  # -shared is CMake's
@@ -125,7 +139,7 @@ if(NOT TARGET roscfe)
     target_include_directories(roscfe PUBLIC ${{ROSCFE_DIR}}/include ${{ROSCFE_DIR}}/boost ${{ROSCFE_DIR}}/msg)
     target_include_directories(roscfe SYSTEM PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_INCLUDE_DIRECTORIES>)
     target_compile_definitions(roscfe PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_COMPILE_DEFINITIONS>)
-    target_compile_options(roscfe PRIVATE ${{ROSCFE_FLAGS}} {" ".join(core_flags(profile))})
+    target_compile_options(roscfe PRIVATE ${{ROSCFE_FLAGS}} {" ".join(core_flags(profile))}){definitions}
 endif()
 
 # roscfe_node(NAME MAIN_HEADER ENTRY SOURCE...): a node that is an application of cFE.
@@ -196,8 +210,8 @@ list(APPEND MISSION_GLOBAL_APPLIST {names})
 {places}"""
 
 
-def _mission(made: Conversion, folder: Path) -> dict[str, str]:
-    """A mission of cfepy: the launch file with the MsgIds that are compiled in."""
+def _mission(made: Conversion, config: CppNodesConfig, folder: Path) -> dict[str, str]:
+    """A mission of cfepy: the launch file with the MsgIds, the profile and the capacities that are compiled in."""
     launch = made.task.launch
     if launch is None:
         return {}
@@ -206,6 +220,7 @@ def _mission(made: Conversion, folder: Path) -> dict[str, str]:
     if args:
         said["args"] = dict(args)
     text = f"# {made.task.title} as a mission of cfepy; {MADE}.\nlaunch:\n  - {json.dumps(said)}\n"
+    text += "".join(_cpp_nodes(config))
     pins = dict(made.ids.topics)
     if pins:
         text += "topics:\n"
@@ -214,6 +229,22 @@ def _mission(made: Conversion, folder: Path) -> dict[str, str]:
             for name, each in sorted(pins.items())
         )
     return {STARTUP_SCRIPT: "!\n", "mission.yaml": text, LOCK_FILE: _lock(made)}
+
+
+def _cpp_nodes(config: CppNodesConfig) -> Iterator[str]:
+    """The section `cpp_nodes:`, without what goes without saying."""
+    usual = CppNodesConfig()
+    if config.profile == usual.profile:
+        return
+    yield f"cpp_nodes:\n  profile: {config.profile}\n  arena_bytes: {config.arena_bytes}\n"
+    by_type: dict[str, dict[str, int]] = {}
+    for place, number in sorted(config.capacities.items()):
+        kind, _, name = place.partition(".")
+        by_type.setdefault(kind, {})[name] = number
+    sizes = {name: getattr(config, name) for name in ("text", "array") if getattr(config, name) != getattr(usual, name)}
+    if by_type or sizes:
+        yield "  capacities:\n"
+        yield from (f"    {name}: {json.dumps(said)}\n" for name, said in {**sizes, **by_type}.items())
 
 
 def _lock(made: Conversion) -> str:

@@ -9,6 +9,15 @@ from __future__ import annotations
 
 from cfepy.mission.acts import CALL, FILE, PACKET, PARAM, PUBLISH, HostCall
 from cfepy.mission.compiled_code import find_compiled
+from cfepy.mission.cpp_nodes import (
+    ARENA_BYTES,
+    ARRAY,
+    MOST_ITEMS,
+    PROFILES,
+    TEXT,
+    CppNodesConfig,
+    CppNodesError,
+)
 from cfepy.mission.finding import (
     LOCK_FILE,
     STARTUP_SCRIPT,
@@ -17,6 +26,7 @@ from cfepy.mission.finding import (
     mission_file_of,
     read_lock,
     read_mission,
+    read_sections,
     shipped_missions,
 )
 from cfepy.mission.launch import (
@@ -49,6 +59,8 @@ from cfepy.mission.topic_watch import TopicMessage, TopicWatch, matches
 from cfepy.mission.tracebacks import app_traceback, described, is_library, is_own_code, is_shown, is_standard, reason
 
 __all__ = [
+    "ARENA_BYTES",
+    "ARRAY",
     "CALL",
     "COMPILED_STACK_BYTES",
     "CORE_APPS",
@@ -58,13 +70,18 @@ __all__ = [
     "KEPT_ENVIRONMENT",
     "LAUNCH_FILES",
     "LOCK_FILE",
+    "MOST_ITEMS",
     "NODE_SYMBOL",
     "PACKET",
     "PARAM",
+    "PROFILES",
     "PUBLISH",
     "STARTUP_SCRIPT",
+    "TEXT",
     "Arrival",
     "BuiltProgram",
+    "CppNodesConfig",
+    "CppNodesError",
     "HostCall",
     "Mission",
     "MissionSections",
@@ -102,6 +119,7 @@ __all__ = [
     "read_lock",
     "read_mission",
     "read_mission_file",
+    "read_sections",
     "reason",
     "receivers",
     "scripts_of",

@@ -132,6 +132,7 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None, build: Nod
         limits=said.limits,
         cfe_version=said.cfe_version,
         compiled=said.compiled,
+        cpp_nodes=said.cpp_nodes,
         demands=said.demands,
     )
     if said.launch:
@@ -140,6 +141,22 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None, build: Nod
         spec = replace(spec, ros=replace(spec.ros, params={**ROSCORE_PARAMS, **spec.ros.params}))
     lock = spec.folder / LOCK_FILE
     return replace(spec, ros=read_lock(lock, spec.ros)) if os.path.isfile(lock) else spec
+
+
+def read_sections(mission: str) -> MissionSections:
+    """The sections of a mission file; those of a mission without one are as usual.
+
+    Args:
+        mission: the file itself, or its mission; see `find_script`.
+
+    Raises:
+        UsageError: there is neither, or the file is wrong.
+    """
+    named = Path(mission)
+    path = (
+        named if named.suffix in (".yaml", ".yml") and os.path.isfile(named) else mission_file_of(find_script(mission))
+    )
+    return MissionSections() if path is None else read_mission_file(path, Mistakes())
 
 
 def read_lock(path: Path, ros: RosConfig) -> RosConfig:

@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from cfepy.mission.cpp_nodes import CppNodesConfig, CppNodesError
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.parameter_files import merged
 from cfepy.mission.spec import BuiltProgram, MissionSpec
@@ -33,19 +34,23 @@ KEPT_ENVIRONMENT = ("HOME", "PATH", "ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH")
 class NodeBuilder(Protocol):
     """Builds a ROS node in C++ for a mission."""
 
-    def __call__(self, node: CppNode, params: Mapping[str, Any], others: Sequence[str]) -> tuple[Path, str]:
+    def __call__(
+        self, node: CppNode, params: Mapping[str, Any], others: Sequence[str], config: CppNodesConfig
+    ) -> tuple[Path, str]:
         """Build it.
 
         Args:
             node: the node.
             params: the tree of parameters.
             others: full names of the mission's other nodes.
+            config: the mission file's section `cpp_nodes:`.
 
         Returns:
             The shared object and its entry point.
 
         Raises:
             UsageError: it cannot be built; the text says why.
+            CppNodesError: the section is wrong.
         """
 
 
@@ -102,19 +107,23 @@ def read_launch(file: Path, args: Mapping[str, str] | None = None, build: NodeBu
     return spec_of(file, plan.nodes, plan.params, notes, built)
 
 
-def built_programs(plan: LaunchPlan, build: NodeBuilder | None) -> tuple[dict[str, BuiltProgram], list[str]]:
+def built_programs(
+    plan: LaunchPlan, build: NodeBuilder | None, config: CppNodesConfig | None = None
+) -> tuple[dict[str, BuiltProgram], list[str]]:
     """The nodes in C++ of a launch file, built.
 
     Args:
         plan: the launch file's.
         build: builds them; None builds none.
+        config: how, as a mission file says; None without one.
 
     Returns:
         Those that were built, by cFE name, and notes about those that cannot be.
 
     Raises:
-        UsageError: a required one cannot be built.
+        UsageError: a required one cannot be built, or the mission file is wrong.
     """
+    config = config or CppNodesConfig()
     built: dict[str, BuiltProgram] = {}
     notes = []
     names = [f"/{node.name}" for node in plan.nodes.values()]
@@ -124,7 +133,9 @@ def built_programs(plan: LaunchPlan, build: NodeBuilder | None) -> tuple[dict[st
             break
         try:
             others = [each for each in names if each != node.full_name]
-            built[app] = BuiltProgram(node.full_name, *build(node, plan.params, others))
+            built[app] = BuiltProgram(node.full_name, *build(node, plan.params, others, config))
+        except CppNodesError:
+            raise
         except UsageError as error:
             if node.required:
                 text = f"{node.full_name} is required, but cannot be built: {error}"
@@ -207,7 +218,7 @@ def with_launch_files(
         plan = plan_of(file, args, environ, taken=[*taken, *added, *built], with_compiled=build is not None)
         added.update(plan.nodes)
         params = merged(plan.params, params)
-        more, left_out = built_programs(plan, build)
+        more, left_out = built_programs(plan, build, spec.cpp_nodes)
         built.update(more)
         notes += [*plan.notes, *left_out]
     head = spec.startup_script.partition(b"!")[0]
@@ -286,7 +297,7 @@ def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> Miss
         {},
         params,
         (),
-        {node.app: BuiltProgram(node.full_name, *build(node, params, ()))},
+        {node.app: BuiltProgram(node.full_name, *build(node, params, (), CppNodesConfig()))},
     )
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.marked_yaml import Marked, Mistakes, load
+from cfepy.mission.cpp_nodes import CppNodesConfig, read_cpp_nodes
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import merged, read_files, read_tree
 from cfepy.mission.spec import CompiledConfig
@@ -34,9 +35,9 @@ class MissionSections:
     """What a mission file says, as far as it could be read.
 
     Attributes:
-        name, board, cfe_version, compiled, limits, nodes, topics, params, params_from, ordered_sets, connection_delay,
-        launch: the sections of these names, as their readers give them; `name` and `board` are None when nothing is
-            said.
+        name, board, cfe_version, compiled, cpp_nodes, limits, nodes, topics, params, params_from, ordered_sets,
+        connection_delay, launch: the sections of these names, as their readers give them; `name` and `board` are None
+            when nothing is said.
         demands: the sections of `DEMANDS`, as they stand there.
         places: all sections that are there and known, as they stand there.
     """
@@ -45,6 +46,7 @@ class MissionSections:
     board: str | None = None
     cfe_version: str = DEFAULT_RELEASE
     compiled: CompiledConfig = field(default_factory=CompiledConfig)
+    cpp_nodes: CppNodesConfig = field(default_factory=CppNodesConfig)
     limits: MissionLimits = field(default_factory=MissionLimits)
     nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
     topics: Mapping[str, TopicConfig] = field(default_factory=dict)
@@ -244,6 +246,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "board": _single(Marked.text),
     "cfe_version": _single(_release),
     "compiled": read_compiled,
+    "cpp_nodes": read_cpp_nodes,
     "limits": read_limits,
     "nodes": read_nodes,
     "topics": read_topics,

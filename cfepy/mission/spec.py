@@ -11,6 +11,7 @@ from cfepy.cached import CachedProperty
 from cfepy.es import StartupEntry
 from cfepy.es import entries as read_entries
 from cfepy.marked_yaml import Marked
+from cfepy.mission.cpp_nodes import CppNodesConfig
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.nodes import RosConfig
@@ -60,6 +61,7 @@ class MissionSpec:
         limits: what it asks for of a platform.
         startup: the startup script of a mission that was made in memory; `script` then names what it was made from.
         notes: what its user should know before it runs.
+        cpp_nodes: how its nodes in C++ are built.
         built: nodes in C++ that were built for it, by cFE name.
         demands: sections of the mission file that say what must hold of a run, as they stand there;
             `cfepy.monitors.demands` reads them.
@@ -74,6 +76,7 @@ class MissionSpec:
     limits: MissionLimits = field(default_factory=MissionLimits)
     cfe_version: str = DEFAULT_RELEASE
     compiled: CompiledConfig = field(default_factory=CompiledConfig)
+    cpp_nodes: CppNodesConfig = field(default_factory=CppNodesConfig)
     startup: bytes | None = None
     notes: tuple[str, ...] = ()
     built: Mapping[str, BuiltProgram] = field(default_factory=dict)

@@ -14,7 +14,7 @@ from shlex import join
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.mission import MissionSpec, launch_file, read_launch, read_mission, spec_of_node
+from cfepy.mission import CppNodesConfig, MissionSpec, launch_file, read_launch, read_mission, spec_of_node
 from cfepy.nodes import CppNode
 from cfepy.pilot.course import BOOT_S, DEFAULT_S, NODE_S
 from cfepy.rtos import STALL_S, Schedule
@@ -22,11 +22,13 @@ from cfepy.rtos import STALL_S, Schedule
 RUN, LAUNCH, NODE = "run", "launch", "node"
 
 
-def built_node(node: CppNode, params: Mapping[str, Any], others: Sequence[str]) -> tuple[Path, str]:
+def built_node(
+    node: CppNode, params: Mapping[str, Any], others: Sequence[str], config: CppNodesConfig
+) -> tuple[Path, str]:
     """Build a node in C++ for a mission; see `cfepy.mission.NodeBuilder`. What builds is loaded for the first one."""
     from cfepy.convert import build_for_flight
 
-    return build_for_flight(node, params, others)
+    return build_for_flight(node, params, others, config)
 
 
 @dataclass(frozen=True, slots=True)

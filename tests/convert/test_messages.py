@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.convert.build import library_includes, needs_real_boost
-from cfepy.convert.messages import Capacities, Profile, write_headers
+from cfepy.convert.capacities import Capacities
+from cfepy.convert.messages import Profile, write_headers
 from cfepy.convert.sources import collect
 from cfepy.status import UsageError
 from rospy_shim.msgs import Library, shipped

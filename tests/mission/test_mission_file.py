@@ -30,6 +30,7 @@ params_from: nothing.yaml
 ordered_sets: maybe
 cfe_version: 6.7
 compiled: {omit_deprecated: 1, strip: true}
+cpp_nodes: {profile: hard, arena_bytes: 3}
 connection_delay: 20 parsecs
 launch: [nothing.launch, {args: {}}]
 invariants: 3
@@ -46,6 +47,7 @@ def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
     said = read(tmp_path, WRONG, mistakes)
     fields = "name board bord limits.sb_max_pipes limits.nodes nodes.A.namespace nodes.A.args nodes.A.keys[0] topics.b "
     fields += "topics./c params.x params_from ordered_sets cfe_version compiled.omit_deprecated compiled.strip "
+    fields += "cpp_nodes.profile cpp_nodes.arena_bytes "
     fields += "connection_delay launch[0] launch[1]"
     assert [error.field for error in mistakes.errors] == fields.split()
     assert (said.name, said.board, said.ordered_sets, said.launch) == (None, None, False, ())

@@ -6,7 +6,7 @@ import random
 import struct
 from typing import Any
 
-from cfepy.convert.messages import Capacities
+from cfepy.convert.capacities import Capacities
 from rospy_shim.genpy import Duration, Time
 from rospy_shim.msgs import shipped
 from rospy_shim.msgs.spec import BUILTINS, PRIMITIVES, Field

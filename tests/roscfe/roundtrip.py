@@ -18,7 +18,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.convert.messages import Capacities, Profile, write_headers
+from cfepy.convert.capacities import Capacities
+from cfepy.convert.messages import Profile, write_headers
 from tests.roscfe.building import ARM, HERE, POWERPC, ROSCPP, Target, compile_program
 from tests.roscfe.random_messages import LIBRARY, Source, all_types, capacities
 

@@ -6,9 +6,13 @@ A command belongs here when it makes applications of cFE out of ROS nodes, or sa
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from cfepy.cli.options import add_json, add_output
+
+if TYPE_CHECKING:
+    from cfepy.mission import CppNodesConfig
 
 _WORDS = (
     "a package, its folder, or a launch file with its arguments as NAME:=VALUE; behind the word check also a C++ source"
@@ -28,6 +32,22 @@ class _WordsAction(argparse.Action):
             namespace.module = "convert.check"
 
 
+def cpp_nodes_of(arguments: argparse.Namespace) -> CppNodesConfig:
+    """What nodes are built for, as the command line and the mission file that it names say.
+
+    Args:
+        arguments: of the command line.
+
+    Raises:
+        UsageError: there is no such mission, or its file is wrong.
+    """
+    from cfepy.mission import CppNodesConfig, read_sections
+
+    mission = arguments.cpp_nodes or arguments.ids
+    said = CppNodesConfig() if mission is None else read_sections(mission).cpp_nodes
+    return said if arguments.profile is None else replace(said, profile=arguments.profile)
+
+
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add these commands to the parser of `cfepy`."""
     convert = commands.add_parser(
@@ -44,11 +64,17 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     convert.add_argument(
         "--profile",
         choices=("host", "pool", "strict"),
-        default="host",
         help="what nodes may do: host: exceptions and the heap; pool: an arena of their own as a heap, no exceptions; "
-        "strict: nothing of both (default: host)",
+        "strict: nothing of both (default: that of --cpp-nodes, or host)",
     )
-    convert.add_argument("--ids", metavar="MISSION", help="take the MsgIds of this mission and its topics.lock")
+    convert.add_argument(
+        "--cpp-nodes",
+        metavar="MISSION",
+        help="take profile, arena and capacities of messages from the section cpp_nodes of this mission's file",
+    )
+    convert.add_argument(
+        "--ids", metavar="MISSION", help="take the MsgIds of this mission and its topics.lock, and its cpp_nodes"
+    )
     convert.add_argument("--force", action="store_true", help="write over files that were changed by hand, too")
     convert.add_argument(
         "--sarif",

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from cfepy import __version__
+from cfepy.cli.convert import cpp_nodes_of
 from cfepy.cli.failures import check_writable
 from cfepy.cli.json_output import STDOUT, check_json, write_json, write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
@@ -41,9 +42,10 @@ def run(arguments: argparse.Namespace) -> int:
     check_json(arguments)
     if arguments.sarif not in (None, STDOUT):
         check_writable(arguments.sarif, "--sarif")
-    profile = Profile(arguments.profile)
+    config = cpp_nodes_of(arguments)
+    profile = Profile(config.profile)
     environ = dict(os.environ)
-    reports = [check_program(each, profile, environ) for each in programs_of(words, environ)]
+    reports = [check_program(each, profile, environ, config) for each in programs_of(words, environ)]
     _print(reports, profile)
     write_json(arguments, _as_json(reports, profile))
     if arguments.sarif is not None:

@@ -7,10 +7,11 @@ import os
 import sys
 from pathlib import Path
 
+from cfepy.cli.convert import cpp_nodes_of
 from cfepy.cli.failures import tell, writing
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
-from cfepy.convert import Profile, converted, project_files, report, task_of, write_files
+from cfepy.convert import converted, project_files, report, task_of, write_files
 from cfepy.mission import LOCK_FILE, read_lock, read_mission
 from cfepy.nodes import RosConfig
 from cfepy.status import UsageError
@@ -28,12 +29,13 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.sarif is not None:
         raise UsageError("is what check finds: `cfepy convert check WORD --sarif FILE`", field="--sarif")
     check_json(arguments)
+    config = cpp_nodes_of(arguments)
     task = task_of(arguments.words, dict(os.environ))
     folder = Path(arguments.output or task.made_from.stem).resolve()
     made = converted(task, _ids(arguments, folder))
     if not made.nodes:
         raise UsageError(f"has nothing to convert: {'; '.join(made.refused.values())}", file=task.made_from)
-    files = project_files(made, Profile(arguments.profile), folder)
+    files = project_files(made, config, folder)
     with writing(folder, "--output"):
         written = write_files(folder, files, arguments.force)
     tell([*task.notes, *(f"{name} is not converted: {why}" for name, why in made.refused.items())])

@@ -8,12 +8,14 @@ from functools import cache, partial
 from pathlib import Path
 
 from cfepy.convert.build import library_includes
+from cfepy.convert.capacities import Capacities, capacities_of
 from cfepy.convert.check.compiler import Compiler, tell
 from cfepy.convert.check.findings import CheckReport, SourcePlace, SubscriptionMemory
 from cfepy.convert.check.headers import write_refusal, write_refusals
 from cfepy.convert.check.program import ProgramSources, subscriptions
-from cfepy.convert.messages import Capacities, Profile, write_headers
+from cfepy.convert.messages import Profile, write_headers
 from cfepy.convert.packages import Program
+from cfepy.mission import CppNodesConfig
 from cfepy.status import UsageError
 from rospy_shim.msgs import Library, OnDisk, Packages, shipped
 
@@ -27,7 +29,7 @@ def check_program(
     program: Program,
     profile: Profile,
     environ: Mapping[str, str],
-    capacities: Capacities | None = None,
+    config: CppNodesConfig | None = None,
     *,
     compile_refused: bool = True,
 ) -> CheckReport:
@@ -37,12 +39,14 @@ def check_program(
         program: what it is compiled of.
         profile: that it is to be built for.
         environ: says where packages are, for their message definitions.
-        capacities: of messages, in the strict profile.
+        config: the section `cpp_nodes:` of a mission file, whose profile does not count; None without one.
         compile_refused: whether the compiler is asked, too, where the sources alone refuse the program.
 
     Raises:
         UsageError: tree-sitter or the compiler is not there.
+        CppNodesError: the section is wrong.
     """
+    config = config or CppNodesConfig()
     report = CheckReport(program.type, profile)
     packages = Packages(program.package.folder / "CMakeLists.txt", environ)
     sources = ProgramSources(program.sources, program.includes, Library([OnDisk(packages)], base=shipped()))
@@ -52,13 +56,14 @@ def check_program(
         return report
     with tempfile.TemporaryDirectory(prefix="cfepy-check-") as folder:
         scratch = Path(folder)
-        _compile(report, program, sources, scratch, capacities)
+        _compile(report, program, sources, scratch, capacities_of(config, sources.library))
+    _hold_to_arena(report, config)
     report.findings.sort()
     return report
 
 
 def _compile(
-    report: CheckReport, program: Program, sources: ProgramSources, scratch: Path, capacities: Capacities | None
+    report: CheckReport, program: Program, sources: ProgramSources, scratch: Path, capacities: Capacities
 ) -> None:
     messages = scratch / "messages"
     messages.mkdir()
@@ -98,6 +103,15 @@ def _measure(report: CheckReport, compiler: Compiler, sources: ProgramSources, s
         report.memory.append(SubscriptionMemory(name.name or name.text, name.type, queue + KEPT, size, name.place))
         if size > LONGEST_PACKET:
             report.add("message-too-long", name.place, f"{name.type} has {size:,} bytes")
+
+
+def _hold_to_arena(report: CheckReport, config: CppNodesConfig) -> None:
+    """The messages that subscriptions keep lie in the arena of a node that has one."""
+    total = sum(each.total for each in report.memory)
+    if total > config.arena_bytes and report.profile is not Profile.HOST:
+        mark = config.places.get("arena_bytes")
+        place = report.memory[0].place if mark is None else SourcePlace(mark.file, mark.line)
+        report.add("arena-too-small", place, f"{total:,} bytes of messages in an arena of {config.arena_bytes:,}")
 
 
 def _shown(sources: ProgramSources, source: Path, made: Sequence[Path], file: Path) -> SourcePlace | None:

@@ -112,7 +112,13 @@ RULES: dict[str, CheckRule] = {
             *("capacity-missing", None, None, _E),
             "an array of messages without a capacity",
             "a message has a fixed size in this profile, and such arrays multiply",
-            "say how many items the field has at most",
+            "say how many items the field has at most, under `cpp_nodes:` of a mission file",
+        ),
+        CheckRule(
+            *("arena-too-small", None, _E, _E),
+            "the messages of all subscriptions do not fit into the node's arena",
+            "they are set aside there when the node starts",
+            "give a larger `arena_bytes` under `cpp_nodes:` of a mission file, smaller capacities, or shorter queues",
         ),
         CheckRule(
             *("main-form", _E, _E, _E),

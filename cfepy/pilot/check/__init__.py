@@ -25,7 +25,14 @@ from cfepy.mission import (
 )
 from cfepy.monitors import read_demands
 from cfepy.pilot.check.cfe_names import wrong_names
-from cfepy.pilot.check.mission_sections import check_board, check_deadlines, check_lock, check_nodes_said, check_packets
+from cfepy.pilot.check.mission_sections import (
+    check_board,
+    check_cpp_nodes,
+    check_deadlines,
+    check_lock,
+    check_nodes_said,
+    check_packets,
+)
 from cfepy.pilot.check.problem import MissionProblem, problem_of
 from cfepy.pilot.check.ros_files import NodeScript, check_definitions_of, check_launch, check_nodes
 from cfepy.pilot.check.startup import app_sources, check_profiles, check_startup
@@ -92,13 +99,14 @@ def _check_folder(script: Path, board: str | None) -> list[MissionProblem]:
         found += wrong_names(source, entry_point)
     nodes = _nodes_of(script.parent, started, said)
     for file, args in said.launch:
-        problems, scripts = check_launch(file, args, mission_environment(), alone=False)
+        problems, scripts = check_launch(file, args, mission_environment(), alone=False, config=said.cpp_nodes)
         found += [*problems, *check_nodes(scripts)]
         nodes += scripts
     found += check_nodes_said(said, started)
     found += check_deadlines(said, started)
     if not mistakes.errors:  # what the mission has is known when its file is right
         found += check_packets(said, demands, script)
+    found += check_cpp_nodes(said)
     found += check_lock(script.parent, said)
     found += check_board(script, started, said, board, script.parent)
     return [*found, *check_nodes(nodes), *check_definitions_of(nodes, script)]

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.marked_yaml import Mistakes
-from cfepy.mission import sources
+from cfepy.mission import CppNodesConfig, CppNodesError, sources
 from cfepy.pilot.check.problem import MissionProblem, problem_of
 from cfepy.pilot.plan import built_node
 from cfepy.status import UsageError
@@ -35,7 +35,11 @@ class NodeScript(NamedTuple):
 
 
 def check_launch(
-    file: Path, args: Mapping[str, str], environ: Mapping[str, str], alone: bool
+    file: Path,
+    args: Mapping[str, str],
+    environ: Mapping[str, str],
+    alone: bool,
+    config: CppNodesConfig | None = None,
 ) -> tuple[list[MissionProblem], list[NodeScript]]:
     """What is wrong with a launch file and all that it includes.
 
@@ -44,6 +48,7 @@ def check_launch(
         args: values of its arguments.
         environ: what it sees of the environment.
         alone: it is the mission, so it needs a node or a test.
+        config: how the mission's nodes in C++ are built; None without a mission file.
 
     Returns:
         The problems, and the scripts of the nodes that can run.
@@ -58,18 +63,20 @@ def check_launch(
     if plan is None:
         return found, []
     found += [MissionProblem(each.file, each.line, each.text, not each.is_error) for each in plan.remarks]
-    found += _built(plan)
+    found += _built(plan, config or CppNodesConfig())
     scripts = _scripts_of(plan)
     if alone and not scripts and not plan.compiled and all(each.is_warning for each in found):
         found.append(MissionProblem(file, 0, "has no node that can run here"))
     return found, scripts
 
 
-def _built(plan: LaunchPlan) -> Iterator[MissionProblem]:
+def _built(plan: LaunchPlan, config: CppNodesConfig) -> Iterator[MissionProblem]:
     """Build the nodes in C++; one that cannot be built is left out of a run, unless it is required."""
     for node in plan.compiled.values():
         try:
-            built_node(node, plan.params, ())
+            built_node(node, plan.params, (), config)
+        except CppNodesError:
+            return  # which is told of the mission file
         except UsageError as error:
             text = f"node {node.full_name} is left out: it cannot be built: {error}"
             yield MissionProblem(node.near, node.line, text, not node.required)

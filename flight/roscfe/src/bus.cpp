@@ -164,7 +164,8 @@ void give_to_subscriptions(std::uint16_t msg_id, const std::uint8_t *packet, std
         {
             continue;
         }
-        bool more = false;
+        const std::uint32_t bad  = each->bad_;
+        bool                more = false;
         if (each->raw_)
         {
             // std_msgs/UInt8MultiArray: no dimensions, no offset, and the whole packet as data.
@@ -180,6 +181,12 @@ void give_to_subscriptions(std::uint16_t msg_id, const std::uint8_t *packet, std
         else if (size >= kTelemetryHeader)
         {
             more = each->receive(packet + kTelemetryHeader, size - kTelemetryHeader);
+        }
+        if (each->bad_ != bad && bad == 0)
+        {
+            CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR,
+                              "%s: refused %lu bytes on %s: no message of its type, or one beyond its capacities; told once",
+                              g_node.name.c_str(), static_cast<unsigned long>(size), each->topic_.c_str());
         }
         if (more)
         {

@@ -1,0 +1,94 @@
+"""The section `cpp_nodes:` of a mission file: how ROS nodes in C++ are built, and how much their messages can hold.
+
+Types and fields are held against their definitions when a node is built or checked (`cfepy.convert.capacities`): where
+the definitions are is known by then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from cfepy.marked_yaml import Marked, Mistakes
+from cfepy.status import UsageError
+
+PROFILES = ("host", "pool", "strict")
+ARENA_BYTES = 262_144
+"""The heap of a node in the profiles pool and strict, where nothing else is said."""
+SMALLEST_ARENA, LARGEST_ARENA = 4096, 1 << 30
+TEXT, ARRAY = 64, 16
+"""Characters of a text and items of an array of which nothing else is said, in the profile strict."""
+MOST_ITEMS = (1 << 24) - 1
+_DEFAULTS = ("text", "array")
+
+
+class CppNodesError(UsageError):
+    """A mistake in the section, with which no node can be built: a run ends with it."""
+
+
+@dataclass(frozen=True, slots=True)
+class CppNodesConfig:
+    """What the section says.
+
+    Attributes:
+        profile: that nodes are built for: "host", "pool" or "strict".
+        arena_bytes: size of a node's heap in the profiles pool and strict.
+        capacities: items by "package/Type.field", characters of a text; those of the texts in an array: "...field[]".
+        text: characters of a text that is not among them.
+        array: items of an array of numbers or texts that is not among them.
+        places: where each capacity was said, and "arena_bytes", for errors.
+    """
+
+    profile: str = "host"
+    arena_bytes: int = ARENA_BYTES
+    capacities: Mapping[str, int] = field(default_factory=dict)
+    text: int = TEXT
+    array: int = ARRAY
+    places: Mapping[str, Marked] = field(default_factory=dict)
+
+
+def read_cpp_nodes(section: Marked, mistakes: Mistakes) -> CppNodesConfig:
+    """The section `cpp_nodes:`.
+
+    Args:
+        section: its value.
+        mistakes: takes unknown keys, a profile that is none, and numbers that are no size.
+    """
+    said: dict[str, Any] = {}
+    places: dict[str, Marked] = {}
+    for name, entry in mistakes.fields(section, ("profile", "arena_bytes", "capacities")):
+        if name == "profile":
+            said[name] = mistakes.attempt(partial(_profile, entry))
+        elif name == "arena_bytes":
+            said[name] = mistakes.attempt(partial(entry.integer, SMALLEST_ARENA, LARGEST_ARENA))
+            places[name] = entry
+        else:
+            said |= _read_capacities(entry, places, mistakes)
+    return CppNodesConfig(**{name: value for name, value in said.items() if value is not None}, places=places)
+
+
+def _profile(entry: Marked) -> str:
+    if entry.value not in PROFILES:
+        raise entry.fail(f"is {entry.plain()!r}; the profiles are {', '.join(PROFILES)}")
+    return str(entry.value)
+
+
+def _read_capacities(section: Marked, places: dict[str, Marked], mistakes: Mistakes) -> dict[str, Any]:
+    """Capacities by type and field, and the two for all that is not named."""
+    said: dict[str, Any] = {}
+    capacities: dict[str, int] = {}
+    for name, entry in mistakes.mapping(section).items():
+        if name in _DEFAULTS:
+            said[name] = mistakes.attempt(partial(entry.integer, 1, MOST_ITEMS))
+        elif name.count("/") != 1 or name.startswith("/") or name.endswith("/"):
+            text = "is no message type; write it with its package, such as `sensor_msgs/JointState: {position: 7}`"
+            mistakes.add(entry.fail(f"{text}, or `text: {TEXT}` or `array: {ARRAY}` for all fields that are not named"))
+        else:
+            for key, number in mistakes.mapping(entry).items():
+                found = mistakes.attempt(partial(number.integer, 1, MOST_ITEMS))
+                if found is not None:
+                    capacities[f"{name}.{key}"] = found
+                    places[f"{name}.{key}"] = number
+    return {**said, "capacities": capacities}

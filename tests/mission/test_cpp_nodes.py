@@ -1,0 +1,66 @@
+"""The section `cpp_nodes:` of a mission file, as far as it can be read without definitions of messages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.convert.build import library_folder
+from cfepy.mission import ARENA_BYTES, CppNodesConfig, read_sections
+from cfepy.status import UsageError
+
+SECTION = """cpp_nodes:
+  profile: strict
+  arena_bytes: 65536
+  capacities:
+    text: 20
+    array: 30
+    sensor_msgs/JointState: {name: 7, "name[]": 12}
+    tf2_msgs/TFMessage:
+      transforms: 4
+"""
+
+
+def read(folder: Path, text: str) -> CppNodesConfig:
+    (folder / "mission.yaml").write_text(text)
+    return read_sections(str(folder / "mission.yaml")).cpp_nodes
+
+
+def test_what_is_said(tmp_path: Path) -> None:
+    said = read(tmp_path, SECTION)
+    assert (said.profile, said.arena_bytes, said.text, said.array) == ("strict", 65536, 20, 30)
+    assert said.capacities == {
+        "sensor_msgs/JointState.name": 7,
+        "sensor_msgs/JointState.name[]": 12,
+        "tf2_msgs/TFMessage.transforms": 4,
+    }
+    assert said.places["tf2_msgs/TFMessage.transforms"].line == 9
+    assert read(tmp_path, "cpp_nodes:\n") == read(tmp_path, "name: x\n") == CppNodesConfig()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "error"),
+    [
+        ("strict", "tight", "2: cpp_nodes.profile: is 'tight'; the profiles are host, pool, strict"),
+        ("65536", "0", "3: cpp_nodes.arena_bytes: is 0, it must be a whole number of at least 4096"),
+        ("65536", "8 GiB", "3: cpp_nodes.arena_bytes: is '8 GiB', it must be a whole number"),
+        ("text: 20", "text: true", "5: cpp_nodes.capacities.text: is True, it must be a whole number of at least 1"),
+        ("name: 7", "name: -7", "7: cpp_nodes.capacities.sensor_msgs/JointState.name: is -7, it must be a whole"),
+        (
+            "name: 7",
+            "name: 16777216",
+            "7: cpp_nodes.capacities.sensor_msgs/JointState.name: is 16777216, it must be at",
+        ),
+        ("sensor_msgs/J", "J", "7: cpp_nodes.capacities.JointState: is no message type; write it with its package"),
+        ("  capacities", "  capacity", "5: cpp_nodes.capacity: is not known here; known are profile, arena_bytes, cap"),
+    ],
+)
+def test_errors_say_where(tmp_path: Path, old: str, new: str, error: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        read(tmp_path, SECTION.replace(old, new))
+    assert str(caught.value).startswith(f"{tmp_path}/mission.yaml:{error}")
+
+
+def test_the_library_has_the_same_arena_where_nothing_is_said() -> None:
+    assert f"#define ROSCFE_ARENA_BYTES {ARENA_BYTES}\n" in (library_folder() / "src/heap.cpp").read_text()
