@@ -112,9 +112,8 @@ def _library(made: Conversion, options: BuildOptions) -> dict[str, bytes]:
 def _cmake_of_library(sources: Iterable[str], options: BuildOptions) -> str:
     profile = options.profile
     arena = options.flags_of(Path(HEAP_SOURCE))
-    definitions = (
-        f"\n    target_compile_definitions(roscfe PRIVATE {' '.join(each[2:] for each in arena)})" if arena else ""
-    )
+    words = " ".join(each[2:] for each in arena)
+    definitions = f"\n    target_compile_definitions(${{ROSCFE_LIBRARY}} PRIVATE {words})" if arena else ""
     exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
     flags = [*LANGUAGE, f"-DROSCFE_PROFILE_{profile.name}"]
     linked = " ".join(link_flags(profile)[1:])  # -shared is CMake's
@@ -124,6 +123,10 @@ def _cmake_of_library(sources: Iterable[str], options: BuildOptions) -> str:
 
 enable_language(CXX)
 set(ROSCFE_DIR ${{CMAKE_CURRENT_LIST_DIR}})
+# A mission may have several such folders, with other messages and another profile: each has a library of its own.
+get_filename_component(ROSCFE_FOLDER ${{ROSCFE_DIR}} DIRECTORY)
+get_filename_component(ROSCFE_FOLDER ${{ROSCFE_FOLDER}} NAME)
+set(ROSCFE_LIBRARY roscfe_${{ROSCFE_FOLDER}})
 set(ROSCFE_FLAGS {" ".join(flags)})
 set(ROSCFE_NODE_FLAGS {" ".join(exceptions)})
 
@@ -132,14 +135,16 @@ get_property(ROSCFE_OPTIONS DIRECTORY PROPERTY COMPILE_OPTIONS)
 list(REMOVE_ITEM ROSCFE_OPTIONS {" ".join(C_ONLY)})
 set_property(DIRECTORY PROPERTY COMPILE_OPTIONS "${{ROSCFE_OPTIONS}}")
 
-# One library for all nodes. It is linked into each of them, for nodes share no variables.
-if(NOT TARGET roscfe)
-    add_library(roscfe STATIC{listed}
+# One library for all nodes of the folder. It is linked into each of them, for nodes share no variables.
+if(NOT TARGET ${{ROSCFE_LIBRARY}})
+    add_library(${{ROSCFE_LIBRARY}} STATIC{listed}
     )
-    target_include_directories(roscfe PUBLIC ${{ROSCFE_DIR}}/include ${{ROSCFE_DIR}}/boost ${{ROSCFE_DIR}}/msg)
-    target_include_directories(roscfe SYSTEM PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_INCLUDE_DIRECTORIES>)
-    target_compile_definitions(roscfe PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_COMPILE_DEFINITIONS>)
-    target_compile_options(roscfe PRIVATE ${{ROSCFE_FLAGS}} {" ".join(core_flags(profile))}){definitions}
+    target_include_directories(${{ROSCFE_LIBRARY}}
+        PUBLIC ${{ROSCFE_DIR}}/include ${{ROSCFE_DIR}}/boost ${{ROSCFE_DIR}}/msg)
+    target_include_directories(${{ROSCFE_LIBRARY}}
+        SYSTEM PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_INCLUDE_DIRECTORIES>)
+    target_compile_definitions(${{ROSCFE_LIBRARY}} PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_COMPILE_DEFINITIONS>)
+    target_compile_options(${{ROSCFE_LIBRARY}} PRIVATE ${{ROSCFE_FLAGS}} {" ".join(core_flags(profile))}){definitions}
 endif()
 
 # roscfe_node(NAME MAIN_HEADER ENTRY SOURCE...): a node that is an application of cFE.
@@ -147,7 +152,7 @@ function(roscfe_node NAME MAIN_HEADER ENTRY)
     add_cfe_app(${{NAME}} ${{ENTRY}} ${{ARGN}})
     target_compile_options(${{NAME}} PRIVATE ${{ROSCFE_FLAGS}} ${{ROSCFE_NODE_FLAGS}})
     set_source_files_properties(${{ARGN}} PROPERTIES COMPILE_OPTIONS "-include;${{ROSCFE_DIR}}/${{MAIN_HEADER}}")
-    target_link_libraries(${{NAME}} roscfe)
+    target_link_libraries(${{NAME}} ${{ROSCFE_LIBRARY}})
     target_link_options(${{NAME}} PRIVATE {linked})
 endfunction()
 """

@@ -1,92 +1,111 @@
-"""Converts a package of ROS nodes, builds it in a cFS mission tree, and boots it on NASA's cFE.
+"""A cFS mission tree with converted ROS nodes in it: conversions, the build, and boots on NASA's cFE.
 
-    python -m tests.convert.mission_tree TREE [--profile pool]
-
-TREE is a checkout of cFS 7.0.0 with its submodules, and sample_defs; it is copied. Needs Linux, cmake, a compiler and
-the rights of root, for `tests.twin.real` boots it in namespaces of its own.
+Such a tree is a checkout of cFS 7.0.0 with its submodules, and sample_defs; it is copied. Needs Linux, cmake, a
+compiler and the rights of root, for `tests.twin.real` boots in namespaces of its own. `tests.convert.real_flights`
+flies.
 """
 
 from __future__ import annotations
 
-import argparse
-import os
+import re
 import shutil
 import subprocess
-import sys
-import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from cfepy.cli.main import main
-from tests.convert.ping import ping_package
 from tests.twin.real import RealCfe
 
-STARTUP = "sample_defs/cpu1_cfe_es_startup.scr"
-HEARD = ("heard 3 plain-beat-odd!", "doubling 3")
-LIMIT_S = 30.0
+STARTUP = "/cf/cfe_es_startup.scr"
+TARGETS = "sample_defs/targets.cmake"
+APPS = re.compile(r"SET\(cpu1_APPLIST [^)]*\)")
 
 
-def build(tree: Path, scratch: Path, profile: str) -> Path:
-    """Convert, and build in a copy of the tree: the folder of the executable.
+class MissionTree:
+    """A copy of a mission tree.
 
     Args:
-        tree: the mission tree.
+        tree: the tree.
         scratch: an empty folder.
-        profile: of the nodes.
-
-    Raises:
-        subprocess.CalledProcessError: the build failed.
+        apps: NASA's applications that are built with it.
     """
-    package = ping_package(scratch)
-    mission = scratch / "mission"
-    shutil.copytree(tree, mission, symlinks=True, ignore=shutil.ignore_patterns("build", ".git"))
-    made = mission / "apps/ros_nodes"
-    if main(["convert", str(package / "launch/nodelet.launch"), "-o", str(made), "--profile", profile]):
-        raise SystemExit("the package could not be converted")
-    targets = mission / "sample_defs/targets.cmake"
-    include = "include(${MISSION_SOURCE_DIR}/apps/ros_nodes/targets.cmake)\n"
-    targets.write_text(targets.read_text(encoding="utf-8") + include, encoding="utf-8")
-    startup = (mission / STARTUP).read_text(encoding="utf-8")
-    head, mark, rest = startup.partition("!\n")
-    lines = (made / "startup_lines.scr").read_text(encoding="utf-8")
-    (mission / STARTUP).write_text(head + lines + mark + rest, encoding="utf-8")
-    installed = f"DESTDIR={mission / 'build'}"
-    for words in (["SIMULATION=native", "prep"], [], [installed, "install"]):
-        done = subprocess.run(["make", *words], cwd=mission, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise SystemExit(done.stdout[-4000:] + done.stderr[-4000:])
-    return mission / "build/exe/cpu1"
 
+    def __init__(self, tree: Path, scratch: Path, apps: Iterable[str] = ()) -> None:
+        self._folder = scratch / "mission"
+        self._lines: dict[str, str] = {}
+        shutil.copytree(tree, self._folder, symlinks=True, ignore=shutil.ignore_patterns("build", ".git"))
+        targets = self._folder / TARGETS
+        text = targets.read_text(encoding="utf-8")
+        targets.write_text(APPS.sub(f"SET(cpu1_APPLIST ci_lab {' '.join(apps)})", text), encoding="utf-8")
 
-def boot(built: Path, folder: Path) -> None:
-    """Boot it, and wait until the nodes hear each other.
+    def convert(self, words: Sequence[str], name: str = "ros_nodes", profile: str = "host") -> list[str]:
+        """Convert nodes into the tree; the names of their applications.
 
-    Args:
-        built: the folder of the executable.
-        folder: for its private copy.
-    """
-    with RealCfe(built, folder, {}) as cfe:
-        cfe.wait(lambda: all(text in console(folder) for text in HEARD), "hear each other", LIMIT_S)
+        Args:
+            words: what is converted, and options.
+            name: of the folder in apps/.
+            profile: of the nodes.
+        """
+        made = self._folder / "apps" / name
+        if main(["convert", *words, "-o", str(made), "--profile", profile]):
+            raise SystemExit(f"{words[0]} could not be converted")
+        with (self._folder / TARGETS).open("a", encoding="utf-8") as targets:
+            targets.write(f"include(${{MISSION_SOURCE_DIR}}/apps/{name}/targets.cmake)\n")
+        lines = (made / "startup_lines.scr").read_text(encoding="utf-8").splitlines()
+        apps = {line.split(",")[3].strip(): line for line in lines}
+        self._lines |= apps
+        return list(apps)
 
+    def build(self) -> Path:
+        """Build; the folder of the executable.
 
-def console(folder: Path) -> str:
-    """What it has printed."""
-    return (folder / "console.log").read_text(encoding="utf-8", errors="replace")
+        Raises:
+            SystemExit: it failed, or the compiler warned of something in the nodes or the library.
+        """
+        for words in (["SIMULATION=native", "prep"], [], [f"DESTDIR={self._folder / 'build'}", "install"]):
+            done = subprocess.run(
+                ["nice", "make", *words],
+                cwd=self._folder,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                check=False,
+            )
+            if done.returncode:
+                raise SystemExit(done.stdout[-6000:])
+            warnings = [line for line in done.stdout.splitlines() if " warning: " in line]
+            if warnings:
+                raise SystemExit("\n".join(warnings[:20]))
+        return self._folder / "build/exe/cpu1"
 
+    def startup(self, apps: Iterable[str], lines: Iterable[str] = ()) -> bytes:
+        """A startup script with converted nodes.
 
-def run(arguments: list[str]) -> None:
-    """Do it all, and say what came of it."""
-    parser = argparse.ArgumentParser(prog="python -m tests.convert.mission_tree")
-    parser.add_argument("tree", type=Path)
-    parser.add_argument("--profile", default="host")
-    said = parser.parse_args(arguments)
-    with tempfile.TemporaryDirectory(prefix="cfepy-tree-") as scratch:
-        os.environ["ROS_PACKAGE_PATH"] = scratch
-        built = build(said.tree, Path(scratch), said.profile)
-        folder = Path(scratch) / "run"
+        Args:
+            apps: names of their applications.
+            lines: what comes before.
+        """
+        return "\n".join([*lines, *(self._lines[app] for app in apps), "!", ""]).encode()
+
+    @contextmanager
+    def booted(
+        self, folder: Path, apps: Iterable[str], lines: Iterable[str] = (), files: Mapping[str, bytes] | None = None
+    ) -> Iterator[RealCfe]:
+        """NASA's cFE with some of the nodes, from its boot to its end.
+
+        Args:
+            folder: a new one, for its private copy.
+            apps: names of the nodes' applications.
+            lines: of the startup script, before those.
+            files: contents by virtual path.
+        """
         folder.mkdir()
-        boot(built, folder)
-        print("\n".join(line for line in console(folder).splitlines() if any(text in line for text in HEARD)))
+        script = {STARTUP: self.startup(apps, lines)}
+        with RealCfe(self._folder / "build/exe/cpu1", folder, {**script, **(files or {})}) as cfe:
+            yield cfe
 
 
-if __name__ == "__main__":
-    run(sys.argv[1:])
+def said(cfe: RealCfe) -> str:
+    """What it has printed."""
+    return cfe.console().decode("utf-8", "replace")

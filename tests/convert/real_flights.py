@@ -1,0 +1,79 @@
+"""Flights of converted nodes on NASA's cFE.
+
+    python -m tests.convert.real_flights TREE NAME [NAME...]
+
+TREE is a mission tree of cFS 7.0.0 (`tests.convert.mission_tree`), for `arm` with NASA's HK in apps/hk. The flights:
+
+ping    a package with a launch file, a library and a nodelet: its nodes hear each other (--profile host, pool)
+arm     examples/arm: two nodes close a loop at 1 kHz beside HK, which collects from them and is commanded by a third
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from tests.convert.mission_tree import MissionTree, said
+from tests.convert.ping import ping_package
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+HEARD = ("heard 3 plain-beat-odd!", "doubling 3")
+LIMIT_S = 60.0
+HK = "CFE_APP, hk, HK_AppMain, HK, 50, 16384, 0x0, 0;"
+NODE_LINE = re.compile(r"^\[/\w+\] \[[A-Z ]+\].*$", re.MULTILINE)
+
+
+def ping(tree: Path, scratch: Path, profile: str) -> list[str]:
+    """Nodes of a package hear each other; what they said.
+
+    Args:
+        tree: the mission tree.
+        scratch: an empty folder.
+        profile: of the nodes.
+    """
+    package = ping_package(scratch)
+    os.environ["ROS_PACKAGE_PATH"] = str(scratch)
+    mission = MissionTree(tree, scratch)
+    apps = mission.convert([str(package / "launch/nodelet.launch")], profile=profile)
+    mission.build()
+    with mission.booted(scratch / "run", apps) as cfe:
+        cfe.wait(lambda: all(text in said(cfe) for text in HEARD), "nodes that hear each other", LIMIT_S)
+        return [line for line in said(cfe).splitlines() if any(text in line for text in HEARD)]
+
+
+def arm(tree: Path, scratch: Path, profile: str) -> list[str]:
+    """5,000 messages each way at 1 kHz, beside HK; what the nodes said."""
+    package = EXAMPLES / "arm"
+    mission = MissionTree(tree, scratch, ["hk"])
+    words = [str(package / "launch/arm.launch"), "cycles:=5000", "--ids", str(package / "mission")]
+    apps = mission.convert(words, profile=profile)
+    mission.build()
+    table = {"/cf/hk_cpy_tbl.tbl": (package / "mission/hk_cpy_tbl.tbl").read_bytes()}
+    with mission.booted(scratch / "run", apps, [HK], table) as cfe:
+        cfe.wait(lambda: "commands came" in said(cfe) and "states came" in said(cfe), "end of the loops", LIMIT_S)
+        cfe.wait(lambda: "arm at sample 5000" in said(cfe), "packet of HK about the end", LIMIT_S)
+        return NODE_LINE.findall(said(cfe))
+
+
+FLIGHTS: Mapping[str, Callable[[Path, Path, str], list[str]]] = {"ping": ping, "arm": arm}
+
+
+def run(arguments: list[str]) -> None:
+    """Fly, and say what came of it."""
+    parser = argparse.ArgumentParser(prog="python -m tests.convert.real_flights")
+    parser.add_argument("tree", type=Path)
+    parser.add_argument("names", nargs="+", choices=[*FLIGHTS])
+    parser.add_argument("--profile", default="host")
+    given = parser.parse_args(arguments)
+    for name in given.names:
+        with tempfile.TemporaryDirectory(prefix="cfepy-tree-") as scratch:
+            print(f"-- {name}", *FLIGHTS[name](given.tree, Path(scratch), given.profile), sep="\n", flush=True)
+
+
+if __name__ == "__main__":
+    run(sys.argv[1:])
