@@ -304,17 +304,18 @@ class Processor:
 
         machine = self.machine
         watch = machine.stall_watch
-        runtime = CRuntime(
-            self.cfe,
-            self.handle,
-            machine.kernel,
-            self._costs.polling_ns,
-            machine.console,
-            lambda: watch.limit_s,
-            omit_deprecated=machine.spec.compiled.omit_deprecated,
-            guard=machine.spec.compiled.guard,
-            on_race=lambda race: machine.record.data_races.append(DataRace(*race.told())),
-        )
+        with watch.paused():  # the engine may have to be compiled first
+            runtime = CRuntime(
+                self.cfe,
+                self.handle,
+                machine.kernel,
+                self._costs.polling_ns,
+                machine.console,
+                lambda: watch.limit_s,
+                omit_deprecated=machine.spec.compiled.omit_deprecated,
+                guard=machine.spec.compiled.guard,
+                on_race=lambda race: machine.record.data_races.append(DataRace(*race.told())),
+            )
         self.cfe.es.core_memory = runtime.core_memory
         return CompiledLoader(runtime, machine.console, self._start_ros)
 

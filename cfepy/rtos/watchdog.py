@@ -67,18 +67,35 @@ class Spent(NamedTuple):
     ready_s: float
 
 
-def spent() -> Spent:
-    """What this process has had.
+class Expenses:
+    """Tells, whenever it is called, what this process has had so far.
 
     Only Linux tells for how long threads were ready. Without it a computing task looks like a waiting one where many
-    programs compute.
+    programs compute. What a thread was counted for stays when it ends, or cannot be asked.
     """
-    own, delay_ns = str(threading.get_native_id()), 0
-    with contextlib.suppress(OSError):
-        for thread in os.listdir(THREADS):
-            with contextlib.suppress(OSError, IndexError, ValueError), open(f"{THREADS}/{thread}/schedstat") as told:
-                delay_ns += int(told.read().split()[1]) if thread != own else 0
-    return Spent(time.monotonic(), time.process_time(), delay_ns / NS_PER_S)
+
+    def __init__(self) -> None:
+        self._ready_ns = 0
+        self._of_threads: dict[str, int] = {}
+
+    def __call__(self) -> Spent:
+        """What it is now. Its caller is left out: it looks on."""
+        with contextlib.suppress(OSError):
+            threads = {*os.listdir(THREADS)} - {str(threading.get_native_id())}
+            for gone in self._of_threads.keys() - threads:
+                del self._of_threads[gone]
+            for thread in threads:
+                with (
+                    contextlib.suppress(OSError, IndexError, ValueError),
+                    open(f"{THREADS}/{thread}/schedstat") as told,
+                ):
+                    self._count(thread, int(told.read().split()[1]))
+        return Spent(time.monotonic(), time.process_time(), self._ready_ns / NS_PER_S)
+
+    def _count(self, thread: str, ready_ns: int) -> None:
+        before = self._of_threads.get(thread, 0)
+        self._ready_ns += ready_ns - (before if ready_ns >= before else 0)  # with less, another one has its number now
+        self._of_threads[thread] = ready_ns
 
 
 class StallWatch:
@@ -110,7 +127,7 @@ class StallWatch:
         self.wanted: Callable[[], bool] = lambda: False
         self.on_lost: Callable[[BaseException], object] = self._tell_lost
         self.last_resort: LastResort | None = None
-        self.spent: Callable[[], Spent] = spent
+        self.spent: Callable[[], Spent] = Expenses()
         self._kernel = kernel
         self._is_own = is_own
         self._tell = tell
@@ -124,9 +141,10 @@ class StallWatch:
     def begin(self) -> None:
         """The calling thread is about to run the kernel. Cheap after the first time: a run may come in many pieces.
 
-        A forked process has none of its parent's threads: it begins anew.
+        A forked process has none of its parent's threads: it begins anew. What was seen in the piece before is over.
         """
         self._host_ident = threading.get_ident()
+        self._stand = None
         if not self.is_on:
             self._arm()
             self._over = threading.Event()
@@ -148,7 +166,7 @@ class StallWatch:
 
     @contextlib.contextmanager
     def paused(self) -> Iterator[None]:
-        """A debugger holds a task, for as long as its user wants."""
+        """A debugger holds a task, for as long as its user wants; or cfepy itself waits for a compiler."""
         self._is_paused = True
         try:
             yield

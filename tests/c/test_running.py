@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
+from cfepy.c import runtime
+from cfepy.c.engine import engine
+from cfepy.console import Console
+from cfepy.mission import Mission
 from tests.c.building import compile_c, console_of, digest_of, fly, fly_c, needs_compiler, said, write_mission
 
 pytestmark = needs_compiler
@@ -239,3 +244,21 @@ def test_packed_relocations_are_filled_in(tmp_path: Path) -> None:
     packed = said(fly_c(tmp_path, PACKED, flags=("-Wl,-z,pack-relative-relocs",)))
     assert packed == plain
     assert packed[0].endswith(" 99 far away")
+
+
+def test_a_run_that_waits_for_the_engines_compiler_is_not_watched(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compile_c(tmp_path, "TEST", "void TEST_Main(void) {}")
+    mission = Mission(write_mission(tmp_path, "TEST"), console=Console(quiet=True))
+    paused: list[bool] = []
+
+    def built() -> ModuleType:  # that takes many seconds on a busy computer, the first time
+        paused.append(mission.stall_watch._is_paused)
+        return engine()
+
+    monkeypatch.setattr(runtime, "engine", built)
+    with mission:
+        mission.run_for(1)
+        assert not mission.stall_watch._is_paused
+    assert paused[0]

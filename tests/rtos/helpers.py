@@ -39,7 +39,7 @@ class Clocks:
         self._used, self._ready, self._wall_s = used, ready, 0.0
 
     def __call__(self) -> Spent:
-        """As `cfepy.rtos.watchdog.spent`: each time the wall clock has gone further than a look may count."""
+        """As `cfepy.rtos.watchdog.Expenses`: each time the wall clock has gone further than a look may count."""
         self._wall_s += 2 * LOOK_S
         return Spent(self._wall_s, self._used * self._wall_s, self._ready * self._wall_s)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import os
+import shutil
 import threading
 import time
 import weakref
@@ -16,8 +17,9 @@ import pytest
 
 from cfepy.rtos import Kernel, watchdog
 from cfepy.rtos.context import drain
-from cfepy.rtos.watchdog import Spent, StallWatch
+from cfepy.rtos.watchdog import Expenses, Spent, StallWatch
 from cfepy.status import StallError
+from cfepy.units import NS_PER_S
 from tests.rtos.helpers import Clocks
 
 LIMIT_S = 0.1  # how much of the computer's time a spinning task gets here
@@ -351,9 +353,46 @@ def test_time_in_which_others_have_the_cpu_counts(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(watchdog, "THREADS", str(tmp_path))
     monkeypatch.setattr(time, "process_time", lambda: 1.0)
     monkeypatch.setattr(time, "monotonic", lambda: 9.0)
-    assert watchdog.spent() == Spent(wall_s=9.0, used_s=1.0, ready_s=2.5)
+    assert Expenses()() == Spent(wall_s=9.0, used_s=1.0, ready_s=2.5)
     monkeypatch.setattr(watchdog, "THREADS", str(tmp_path / "none"))
-    assert watchdog.spent() == Spent(wall_s=9.0, used_s=1.0, ready_s=0.0)
+    assert Expenses()() == Spent(wall_s=9.0, used_s=1.0, ready_s=0.0)
+
+
+def test_what_a_thread_was_counted_for_stays_when_it_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(watchdog, "THREADS", str(tmp_path))
+
+    def tell(thread: str, ready_s: int) -> None:
+        (tmp_path / thread).mkdir(exist_ok=True)
+        (tmp_path / thread / "schedstat").write_text(f"0 {ready_s * NS_PER_S} 7\n")
+
+    spent = Expenses()
+    tell("1", 2)
+    tell("2", 5)
+    assert spent().ready_s == 7
+    (tmp_path / "2" / "schedstat").write_text("")  # cannot be read just now
+    tell("1", 3)
+    assert spent().ready_s == 8
+    tell("2", 6)
+    assert spent().ready_s == 9
+    shutil.rmtree(tmp_path / "2")
+    assert spent().ready_s == 9
+    tell("2", 1)  # another thread with its number
+    assert spent().ready_s == 10
+    tell("1", 1)  # the same between two looks
+    assert spent().ready_s == 11
+    monkeypatch.setattr(watchdog, "THREADS", str(tmp_path / "none"))
+    assert spent().ready_s == 11
+
+
+def test_a_piece_of_a_run_begins_with_nothing_seen(kernel: Kernel) -> None:
+    watch = watched(kernel)
+    watch.limit_s = 1000  # so that its thread looks seldom
+    kernel.spawn("task", lambda: watch._look(0.0, False, 0.0))
+    kernel.run(1)
+    assert watch._stand is not None
+    watch.begin()
+    assert watch._stand is None
+    watch.end()
 
 
 def test_code_that_belongs_to_no_line_is_told_with_that_of_its_function() -> None:

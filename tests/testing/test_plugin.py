@@ -63,7 +63,7 @@ turns = 0
 def test_a_task_that_does_not_give_up_the_cpu_fails_its_test_alone(
     suite: Suite, tasks: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(watchdog, "spent", lambda: Spent(turns / 1e5, turns / 1e5, 0.0))
+    monkeypatch.setattr(watchdog.Expenses, "__call__", lambda self: Spent(turns / 1e5, turns / 1e5, 0.0))
     result = suite(
         """
         from pathlib import Path
