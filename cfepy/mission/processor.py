@@ -25,9 +25,16 @@ from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
 from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
 from cfepy.mission.record import DataRace, RunRecord
 from cfepy.mission.spec import MissionSpec
-from cfepy.mission.table_files import TableFiles
 from cfepy.nodes import AppModules, make_app_universe
-from cfepy.osal import FileSystem, Network, Osal
+from cfepy.osal import (
+    OS_FILE_FLAG_CREATE,
+    OS_FILE_FLAG_TRUNCATE,
+    OS_READ_ONLY,
+    OS_WRITE_ONLY,
+    FileSystem,
+    Network,
+    Osal,
+)
 from cfepy.ports import Ports
 from cfepy.psp import BoardProfile, MemoryBudget, Psp, Retained, object_sizes
 from cfepy.rtos import Kernel, StallWatch
@@ -201,7 +208,7 @@ class Processor:
         sb = machine.bus(kernel, ports, config, self._costs, object_sizes(machine.board))
         evs = EventServices(kernel, ports, config, console, self.osal)
         time = TimeServices(kernel, ports, config)
-        tbl = TableServices(kernel, ports, config, TableFiles(self.osal))
+        tbl = TableServices(kernel, ports, config, _TableFiles(self.osal))
         ports.es, ports.syslog, ports.sb, ports.evs, ports.time, ports.tbl = es, es.syslog, sb, evs, time, tbl
         time.clock.on_jump = sb.forget_time
         record = machine.record
@@ -344,3 +351,36 @@ class Processor:
 def _ignore(event: int, object_id: int, data: object) -> int:
     """An event handler for OSAL that does nothing."""
     return 0
+
+
+class _TableFiles:
+    """The file system as Table Services use it (`cfepy.tbl.table_file.TableStorage`), with a descriptor for each file.
+
+    They leave the file of every load from the ground open, so a processor that loads fifty tables opens no file any
+    more.
+
+    Args:
+        osal: of the processor.
+    """
+
+    def __init__(self, osal: Osal) -> None:
+        self._osal = osal
+
+    def read_file(self, path: str) -> bytes:
+        """The whole content of a file."""
+        self._osal.close(self._osal.open_create(path, access_mode=OS_READ_ONLY))
+        return self._osal.files.read_file(path)
+
+    def leave_open(self, path: str) -> None:
+        """Open a file and lose its descriptor."""
+        self._osal.open_create(path, access_mode=OS_READ_ONLY)
+
+    def write_file(self, path: str, data: bytes) -> None:
+        """Make or replace a file."""
+        flags = OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE
+        self._osal.close(self._osal.open_create(path, flags, OS_WRITE_ONLY))
+        self._osal.files.write_file(path, data)
+
+    def exists(self, path: str) -> bool:
+        """Whether there is such a file."""
+        return self._osal.files.exists(path)

@@ -9,7 +9,7 @@ import pytest
 
 from cfepy.c import Built, CompilerError, Options, build
 from cfepy.c.elf import elf_file
-from cfepy.c.toolchain.cmake import read_cmake_lists
+from cfepy.c.toolchain.sources import read_cmake_lists
 from cfepy.fs import read_table_file
 from cfepy.status import UsageError
 from tests.c.building import console_of, fly, needs_compiler, needs_cpp, said, write_mission

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.c import Options, build
-from cfepy.c.toolchain.cmake import read_cmake_lists
+from cfepy.c.toolchain.sources import read_cmake_lists
 from cfepy.cli.main import main
 from tests.c.building import needs_compiler
 

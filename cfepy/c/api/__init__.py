@@ -18,8 +18,6 @@ from cfepy.c.api import (
     fs,
     gcov,
     memory_pools,
-    msg,
-    osal_clock,
     osal_disks,
     osal_files,
     osal_locks,
@@ -31,7 +29,7 @@ from cfepy.c.api import (
     osal_sockets,
     osal_system,
     osal_tasks,
-    osal_timers,
+    osal_time,
     psp,
     psp_iodriver,
     psp_memory,
@@ -49,12 +47,12 @@ if TYPE_CHECKING:
     from cfepy.c.runtime import CRuntime
 
 _OSAL = (
-    *(osal_tasks, osal_semaphores, osal_locks, osal_queues, osal_timers, osal_clock, osal_files, osal_disks),
+    *(osal_tasks, osal_semaphores, osal_locks, osal_queues, osal_time, osal_files, osal_disks),
     *(osal_sockets, osal_select, osal_modules, osal_objects, osal_system),
 )
 _PSP = (psp, psp_memory, psp_iodriver)
 _TOOLS = (streams, cpp, pthread, gcov)
-_CORE = (text, es, memory_pools, cds, evs, sb, msg, tbl, time, fs, config, resource_ids)
+_CORE = (text, es, memory_pools, cds, evs, sb, tbl, time, fs, config, resource_ids)
 _MODULES = (*_CORE, *_TOOLS, *_OSAL, *_PSP)
 
 

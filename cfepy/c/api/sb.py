@@ -1,4 +1,7 @@
-"""CFE_SB_*: the Software Bus for C. What only looks at a message is the engine's (`engine/natives_msg.c`)."""
+"""CFE_SB_*: the Software Bus for C, and CFE_MSG_*Action: what it does to a message where that starts and arrives.
+
+What only looks at a message is the engine's (`engine/natives_msg.c`).
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from cfepy.c.api.pointers import name_into, need
 from cfepy.sb import events as ev
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
+    CFE_MSG_BAD_ARGUMENT,
     CFE_SB_BAD_ARGUMENT,
     CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
     CfeError,
@@ -20,6 +24,7 @@ if TYPE_CHECKING:
     from cfepy.c.runtime import CRuntime
 
 BAD = CFE_SB_BAD_ARGUMENT
+SIZE_FIELD = slice(4, 6)
 TIMED_HEADER = 12
 """Bytes of a telemetry header up to the end of its time."""
 
@@ -31,6 +36,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
     _declare_messages(api, c)
     _declare_user_data(api, c)
     _declare_ids(api)
+    _declare_actions(api, c)
 
 
 def _declare_pipes(api: Declarations, c: CRuntime) -> None:
@@ -151,3 +157,20 @@ def _declare_ids(api: Declarations) -> None:
     api.add("CFE_SB_GlobalTlmTopicIdToMsgId", "H", msg.global_tlm_topic_id_to_msg_id)
     api.add("CFE_SB_LocalCmdTopicIdToMsgId", "H", msg.local_cmd_topic_id_to_msg_id)
     api.add("CFE_SB_LocalTlmTopicIdToMsgId", "H", msg.local_tlm_topic_id_to_msg_id)
+
+
+def _declare_actions(api: Declarations, c: CRuntime) -> None:
+    memory, stamp = c.memory, c.handle.time.stamp
+
+    def originate(message: int, _: int, is_acceptable: int) -> None:
+        size = int.from_bytes(memory.peek(message, msg.PRIMARY_HEADER_SIZE)[SIZE_FIELD], "big") + 7
+        packet = bytearray(memory.peek(message, size))
+        msg.origination_action(packet, stamp())
+        memory.poke(message, packet)
+        memory.poke(is_acceptable, b"\1")
+
+    def verify(message: int, _: int, is_acceptable: int) -> None:
+        memory.poke(is_acceptable, b"\1")
+
+    api.add("CFE_MSG_OriginationAction", "PQP", originate, CFE_MSG_BAD_ARGUMENT)
+    api.add("CFE_MSG_VerificationAction", "PQP", verify, CFE_MSG_BAD_ARGUMENT)

@@ -2,7 +2,13 @@
 
 A cFS application keeps its code in `fsw/src`, its headers in `fsw/inc` and beside them, tables in `fsw/tables`, and
 what a mission may choose in `config`: a file `config/default_NAME.h` there is included as `NAME.h`, unless the mission
-has one. What the folder's CMakeLists.txt says goes before these habits.
+has one. What the folder's CMakeLists.txt says goes before these habits: its name, sources, tables, include folders and
+what it depends on.
+
+Of the commands that such files are made of, cFS's `add_cfe_app`, `add_cfe_tables` and `add_cfe_app_dependency` have
+their meaning here, beside include folders and definitions; `cmake_script` knows the language itself. A condition holds
+when its variable was set to something true in the file itself: no EDS, no unit tests, no options, as in a plain build
+of the mission.
 """
 
 from __future__ import annotations
@@ -12,8 +18,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.c.toolchain.cmake import read_cmake_lists
-from cfepy.c.toolchain.cmake_script import FILE
+from cfepy.c.toolchain.cmake_script import FILE, CMakeScript
 from cfepy.c.toolchain.compiler import SOURCE_SUFFIXES
 from cfepy.status import UsageError
 
@@ -23,6 +28,9 @@ TABLES = ("fsw/tables", "tables")
 DEFINITIONS = (".", "inc", "mission_inc", "platform_inc", "fsw/mission_inc", "fsw/platform_inc")
 DEFAULT = "default_"
 NEIGHBOURS = (".", "apps", "libs")
+SCOPES = ("PUBLIC", "PRIVATE", "INTERFACE", "BEFORE", "AFTER", "SYSTEM")
+_MISSION_DIR = re.compile(r"\$\{(\w+)_MISSION_DIR\}")
+"""The folder of another application, in files that are older than `add_cfe_app_dependency`."""
 _FILE_LIST = re.compile(r"set\(\w+_FILE_LIST([^)]*)\)")
 _EDS = re.compile(r"_eds_\w+$")
 """Sources that replace others where messages are described by electronic data sheets."""
@@ -150,3 +158,87 @@ def _neighbour(folder: Path, name: str) -> Path | None:
     above = folder.resolve().parent
     places = [above / name, *(above.parent / each / name for each in NEIGHBOURS)]
     return next((each for each in places if each.is_dir() and each != folder.resolve()), None)
+
+
+# -- what the CMakeLists.txt says --------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class CMakeLists:
+    """What was read; all paths are seen from the folder of the file.
+
+    Attributes:
+        name: of the application, "" when there is none.
+        sources: of its code.
+        tables: sources of tables.
+        includes: folders of headers.
+        definitions: the compiler's -D.
+        dependencies: names of applications and libraries whose headers it uses.
+    """
+
+    name: str = ""
+    sources: list[str] = field(default_factory=list)
+    tables: list[str] = field(default_factory=list)
+    includes: list[str] = field(default_factory=list)
+    definitions: list[str] = field(default_factory=list)
+    dependencies: list[str] = field(default_factory=list)
+
+
+def read_cmake_lists(folder: Path) -> CMakeLists:
+    """Read the file of a folder.
+
+    Args:
+        folder: of the application.
+
+    Returns:
+        What it says; nothing when there is no such file.
+    """
+    file = folder / FILE
+    if not file.is_file():
+        return CMakeLists()
+    reader = _Reader(folder)
+    reader.run(file.read_text(encoding="utf-8", errors="replace"))
+    return reader.found
+
+
+class _Reader(CMakeScript):
+    """Reads the file of an application.
+
+    Args:
+        folder: that it is in.
+
+    Attributes:
+        found: what it says.
+    """
+
+    follows_loops = False  # they are over the applications of a mission, which are not known here
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder, {"CMAKE_CURRENT_SOURCE_DIR": ["."], "CMAKE_CURRENT_LIST_DIR": ["."]})
+        self.found = CMakeLists()
+
+    def command(self, name: str, words: list[str]) -> None:
+        """See `CMakeScript.command`."""
+        found = self.found
+        match name, words:
+            case "add_cfe_app", [app, *sources] if not found.name:
+                found.name, found.sources = app, sources
+            case "add_cfe_tables", [_, *tables]:
+                found.tables += tables
+            case "add_cfe_app_dependency", [_, *names]:
+                found.dependencies += names
+            case "target_include_directories", [_, *folders]:
+                found.includes += [each for each in folders if each not in SCOPES and "$" not in each]
+            case "include_directories", folders:
+                found.includes += [each for each in folders if each not in SCOPES and "$" not in each]
+            case "add_definitions" | "add_compile_definitions", definitions:
+                found.definitions += [each.removeprefix("-D") for each in definitions]
+            case _:
+                super().command(name, words)
+
+    def expanded(self, words: Sequence[str]) -> list[str]:
+        """See `CMakeScript.expanded`; a folder of another application makes it one that this one depends on."""
+        for word in words:
+            for name in _MISSION_DIR.findall(word):
+                self.found.dependencies += [name] if name not in self.found.dependencies else []
+        return super().expanded(words)

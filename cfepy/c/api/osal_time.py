@@ -1,4 +1,8 @@
-"""OS_TimeBase*, OS_Timer*: time bases and timers for C; callbacks run in the task of the time base."""
+"""OS_GetLocalTime and its kin, OS_TimeBase*, OS_Timer*: the clock, time bases and timers for C.
+
+Code may wait by reading a clock again and again: each reading costs virtual time. What else there is for an OS_time_t
+are inline functions of its header. Callbacks run in the task of the time base.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +10,7 @@ from struct import Struct
 from typing import TYPE_CHECKING
 
 from cfepy.c.api.osal_values import BAD, properties
+from cfepy.osal import OsTime
 
 if TYPE_CHECKING:
     from cfepy.c.calls import Declarations
@@ -18,8 +23,25 @@ _32_BITS = 0xFFFFFFFF
 
 def declare(api: Declarations, c: CRuntime) -> None:
     """Add the functions; see `cfepy.c.api`."""
+    _declare_clock(api, c)
     _declare_time_bases(api, c)
     _declare_timers(api, c)
+
+
+def _declare_clock(api: Declarations, c: CRuntime) -> None:
+    os, memory = c.handle.os, c.memory
+
+    def set_local_time(time: int) -> None:
+        os.set_local_time(OsTime(memory.i64(time)))
+
+    def to_relative(time: int) -> int:
+        return os.time_to_relative_milliseconds(OsTime(time))
+
+    api.add("OS_GetMonotonicTime", "$8", os.get_monotonic_time, BAD)
+    api.add("OS_GetLocalTime", "$8", os.get_local_time, BAD)
+    api.add("OS_SetLocalTime", "P", set_local_time, BAD)
+    api.add("OS_TimeFromRelativeMilliseconds", "$i", os.time_from_relative_milliseconds)
+    api.add("OS_TimeToRelativeMilliseconds", "$q", to_relative)
 
 
 def _declare_time_bases(api: Declarations, c: CRuntime) -> None:
