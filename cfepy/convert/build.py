@@ -35,8 +35,8 @@ PLAIN = ("-O1", "-g", "-fno-stack-protector", "-U_FORTIFY_SOURCE", "-D_LINUX_OS_
 WITHOUT_TYPES = ("-fno-rtti",)
 WITHOUT_EXCEPTIONS = ("-fno-exceptions", *WITHOUT_TYPES)
 STRICT_WARNINGS = ("-Wextra", "-Werror")
-WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep")
-"""Functions of libc in whose place the library's are called: they would end or hold up the whole computer."""
+WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep", "signal", "sigaction")
+"""Functions of libc in whose place the library's are called: they would be about the whole computer."""
 LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic")
 BOOST_REFUSED = ("config.hpp", "version.hpp")
 """Headers of the small Boost that stop a header of the real one which was found by chance."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cfepy.es.packets import RESTART_APP
+from cfepy.es.packets import RESTART_APP, STOP_APP
 from cfepy.mission import Mission
 from tests.convert.node_flights import mission_of
 from tests.convert.twin_flights import recorded
@@ -63,6 +63,15 @@ def test_exit_ends_one_application_alone() -> None:
         assert 5 <= len(said_by(mission, "/one")) <= 8
         assert len(said_by(mission, "/two")) >= 13
         assert " heard 1 " in said_by(mission, "/two")[-1]
+
+
+def test_a_handler_of_signals_is_called_when_the_application_is_to_end() -> None:
+    with mission_of("lives", ends="handler") as mission:
+        mission.run_for(3)
+        mission.cfe.sb.transmit_msg(STOP_APP.packet(Application="HANDLER"))
+        mission.run_for(3)
+        said = [line.rpartition(": ")[2] for line in mission.console.lines if line.startswith("[/handler] ")]
+    assert said == ["first 1", "then 1", "asked 0 1", "refused 1", "signal 2", "spun"]
 
 
 def test_a_loop_at_1_khz_loses_nothing() -> None:

@@ -165,7 +165,8 @@ RULES: dict[str, CheckRule] = {
         CheckRule(
             *("signal", _W, _E, _E),
             "a signal handler",
-            "signals belong to the processor, not to one of its applications",
+            "signals belong to the processor: handlers of SIGINT and SIGTERM run when the application is asked to end, "
+            "others never",
             "wait with ros::ok(), which ends when the application is asked to",
         ),
         CheckRule(

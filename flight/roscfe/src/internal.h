@@ -100,6 +100,7 @@ void send_bytes(std::uint16_t msg_id, const std::uint8_t *lead, std::size_t lead
 // -- others ------------------------------------------------------------------------------------------------------------
 
 void run_async(); // callbacks of asynchronous spinners, while the node waits
+bool call_handler_of_end(); // the node's own handler of SIGINT or SIGTERM, once; false when it has none
 
 std::int64_t now_ns();
 void         queue_due_timers(std::int64_t now);

@@ -209,6 +209,7 @@ bool ok()
         if (!CFE_ES_RunLoop(&status))
         {
             shutdown();
+            roscfe::call_handler_of_end();
         }
     }
     return !g_node.shutting_down;
