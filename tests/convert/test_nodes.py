@@ -74,6 +74,16 @@ def test_a_handler_of_signals_is_called_when_the_application_is_to_end() -> None
     assert said == ["first 1", "then 1", "asked 0 1", "refused 1", "signal 2", "spun"]
 
 
+def test_a_node_starts_at_once_however_many_subscriptions_there_are() -> None:
+    begins = set()
+    for more in range(20):  # a report of the Software Bus has room for so many; a full one may be the last one
+        with mission_of("lives", more=" ".join(f"/more_{number}" for number in range(more))) as mission:
+            mission.run_for(2)
+            first = next(line for line in mission.console.lines if line.startswith("[recorder] RECORD "))
+            begins.add(recorded(first, False).time // 10_000)  # each subscription takes some microseconds
+    assert len(begins) == 1
+
+
 def test_a_loop_at_1_khz_loses_nothing() -> None:
     with mission_of("loop") as mission:
         mission.run_for(8)

@@ -18,7 +18,6 @@ constexpr std::size_t   kSpare           = 12;   // of a telemetry header: whom 
 constexpr std::uint8_t  kAddressed       = 0x01; // in its last byte
 constexpr std::size_t   kKnownAtOnce     = 512;  // subscriptions of the whole processor, before memory is needed for more
 constexpr std::int64_t  kReportTimeout   = kSecond;
-constexpr std::int64_t  kNextReport      = kSecond / 20;
 constexpr std::int32_t  kLongestWaitMs   = 100000;
 
 // A subscription of any application, as the Software Bus reports it: with its pipe when it is new. The list of those that
@@ -31,6 +30,7 @@ struct Known
 };
 std::vector<Known> g_known;
 bool               g_reports_end = false; // the last packet of the list of those that there were came
+std::uint16_t      g_list_begins = 0;     // the first MsgId of that list
 
 // A long message that comes in several packets.
 struct Assembly
@@ -119,7 +119,10 @@ void read_report(const CFE_SB_Buffer_t *buffer, std::uint16_t msg_id)
             g_known.push_back({id, report.Entry[i].Pipe, OS_OBJECT_ID_UNDEFINED});
         }
     }
-    g_reports_end = report.Entries < CFE_MISSION_SB_SUB_ENTRIES_PER_PKT;
+    // A packet with room is the last one. A full one may be: the list that begins anew says so.
+    const auto first = static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(report.Entry[0].MsgId));
+    g_reports_end    = g_reports_end || report.Entries < CFE_MISSION_SB_SUB_ENTRIES_PER_PKT || first == g_list_begins;
+    g_list_begins    = g_list_begins != 0 ? g_list_begins : first;
 }
 
 // Join a segment to its message; true when that is whole, and the first bytes are those of its first packet's header.
@@ -256,6 +259,17 @@ bool take_over()
     return came;
 }
 
+void ask_for_reports(CFE_MSG_FcnCode_t code)
+{
+    CFE_SB_Buffer_t *buffer = CFE_SB_AllocateMessageBuffer(kCommandHeader);
+    if (buffer != nullptr)
+    {
+        CFE_MSG_Init(&buffer->Msg, CFE_SB_ValueToMsgId(CFE_SB_SUB_RPT_CTRL_MID), kCommandHeader);
+        CFE_MSG_SetFcnCode(&buffer->Msg, code);
+        send_packet(buffer);
+    }
+}
+
 std::uint32_t g_addressee = 0; // of what is sent at the moment; 0 is everybody
 
 } // namespace
@@ -275,26 +289,16 @@ void open_bus()
     {
         return;
     }
-    for (CFE_MSG_FcnCode_t code : {CFE_SB_SEND_PREV_SUBS_CC, CFE_SB_ENABLE_SUB_REPORTING_CC})
-    {
-        CFE_SB_Buffer_t *buffer = CFE_SB_AllocateMessageBuffer(kCommandHeader);
-        if (buffer == nullptr)
-        {
-            return;
-        }
-        CFE_MSG_Init(&buffer->Msg, CFE_SB_ValueToMsgId(CFE_SB_SUB_RPT_CTRL_MID), kCommandHeader);
-        CFE_MSG_SetFcnCode(&buffer->Msg, code);
-        send_packet(buffer);
-    }
-    // A packet that is full may be the last one; then no other comes soon.
-    bool         some  = false;
-    std::int64_t until = now_ns() + kReportTimeout;
+    ask_for_reports(CFE_SB_SEND_PREV_SUBS_CC);
+    ask_for_reports(CFE_SB_ENABLE_SUB_REPORTING_CC);
+    bool               again = false;
+    const std::int64_t until = now_ns() + kReportTimeout;
     while (!g_reports_end && pump(until))
     {
-        if (!some && !g_known.empty())
+        if (g_list_begins != 0 && !g_reports_end && !again)
         {
-            some  = true;
-            until = now_ns() + kNextReport;
+            again = true;
+            ask_for_reports(CFE_SB_SEND_PREV_SUBS_CC);
         }
     }
     g_node.knows_subscribers = !g_known.empty();
