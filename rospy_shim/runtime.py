@@ -274,6 +274,10 @@ class RosRuntime:
         self._started[config.app] = config
         self._cfe.es.create_app(config.app, StartParams(f"/cf/{config.app}.so", "__main__", STACK_BYTES, PRIORITY))
 
+    def node_of(self, owner: object) -> Node | None:
+        """The node whose program an application runs, by the owner of its tasks."""
+        return next((node for node in self._running if node.owner is owner), None)
+
     def shift_clock(self, by_ns: int) -> None:
         """The mission's clock was set, by so many ns: all nodes read another time of day from now on."""
         self._epoch_ns += by_ns

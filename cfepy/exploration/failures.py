@@ -15,7 +15,18 @@ from cfepy.evs import CRITICAL, ERROR
 from cfepy.exploration import verdict
 from cfepy.exploration.verdict import RAISED, Failure
 from cfepy.ground import EVENT_IDS, DecodedEvent
-from cfepy.mission import CORE_APPS, Mission, PacketWatch, Seen, app_traceback, is_own_code, reason
+from cfepy.mission import (
+    CORE_APPS,
+    EndlessWait,
+    EndlessWaits,
+    Mission,
+    PacketWatch,
+    Seen,
+    app_traceback,
+    endless_waits,
+    is_own_code,
+    reason,
+)
 from cfepy.monitors.record import DeadlineRecord, InvariantRecords
 from cfepy.pilot import end_of, ended_badly
 from cfepy.rtos import DeadlockError, InjectedCrash, Task, Wait
@@ -48,7 +59,7 @@ class FailureWatch(Attachment):
         self._levels = EVENT_LEVELS[events]
         self._found: list[Failure] = []
         self._crashed: set[str] = set()  # applications that a fault lets crash: that is no failure, what follows may be
-        self._circles: list[Failure] = []
+        self._endless = EndlessWaits([], [])
         self._tracebacks = TracebackReader()
         self._events = PacketWatch(self._take_event, EVENT_IDS.__contains__)
         self._mission: Mission | None = None
@@ -65,10 +76,10 @@ class FailureWatch(Attachment):
         mission.console.record = self._reading(mission.console.record)
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: tasks that wait for each other now will do so for ever."""
+        """See `Attachment.conclude`: what waits for ever now has done so before the nodes are asked to end."""
         assert self._mission is not None
         self.end_ns = self._mission.kernel.now
-        self._circles = list(_deadlocks(self._mission))
+        self._endless = endless_waits(self._mission)
 
     def saw(self, group: str) -> bool:
         """Whether there has been a failure of this group so far, of those that show while the mission runs."""
@@ -88,7 +99,8 @@ class FailureWatch(Attachment):
         found += _races(mission)
         found += _overruns(mission)
         found.sort(key=lambda failure: failure.at_ns or 0)
-        found += [*self._circles, *_bad_ends(mission, found, self._crashed)]
+        found += [*map(_circle, self._endless.circles), *_bad_ends(mission, found, self._crashed)]
+        found += _alone(self._endless.alone, found)
         first: dict[str, Failure] = {}
         for failure in found:
             first.setdefault(failure.group, failure)
@@ -174,15 +186,25 @@ def _missed(outcome: Outcome | None) -> Iterator[Failure]:
             yield Failure(verdict.EXPECTATION, who, text, round(each.at_s * NS_PER_S))
 
 
-def _deadlocks(mission: Mission) -> Iterator[Failure]:
-    """Tasks that wait for each other, or for one that has ended."""
-    return map(_deadlock, mission.kernel.deadlocked())
-
-
-def _deadlock(circle: Sequence[Wait], at_ns: int | None = None, detail: str = "", task: str = "") -> Failure:
+def _deadlock(circle: Sequence[Wait], at_ns: int, detail: str, task: str) -> Failure:
+    """A circle that would have closed, if a mutex had not refused."""
     owners = dict.fromkeys(wait.task.owner.name for wait in circle if wait.task.owner is not None)
-    text = "; ".join(map(str, circle))
-    return Failure(verdict.DEADLOCK, " and ".join(owners), text, at_ns, detail, task or circle[-1].task.name)
+    return Failure(verdict.DEADLOCK, " and ".join(owners), "; ".join(map(str, circle)), at_ns, detail, task)
+
+
+def _circle(circle: Sequence[EndlessWait]) -> Failure:
+    """Tasks that wait for each other, or one that waits for another that has ended."""
+    apps = " and ".join(dict.fromkeys(wait.app for wait in circle))
+    text = "; ".join(f"{wait.task} waits for {wait.what}, held by {wait.holder}" for wait in circle)
+    detail = "\n".join(wait.text for wait in circle)
+    return Failure(verdict.DEADLOCK, apps, text, None, detail, circle[-1].task)
+
+
+def _alone(waits: Sequence[EndlessWait], found: Sequence[Failure]) -> Iterator[Failure]:
+    """Tasks that nobody is left to wake, unless something else took away who would have done it."""
+    if not any(failure.kind in verdict.LEAVES_OTHERS_WAITING for failure in found):
+        for wait in waits:
+            yield Failure(verdict.STUCK, wait.app, wait.text, task=wait.task)
 
 
 def _overruns(mission: Mission) -> Iterator[Failure]:

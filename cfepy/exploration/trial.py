@@ -22,7 +22,6 @@ from cfepy.status import StallError, UsageError
 from cfepy.units import NS_PER_S
 
 PROBE_S = 1.0  # wall time that a task gets at least, which is known to spin
-_LEAVES_OTHERS_WAITING = (verdict.DIED, verdict.RAISED, verdict.ENDED, verdict.RESET, verdict.DEADLOCK, verdict.STALLED)
 
 
 class Tried(NamedTuple):
@@ -94,8 +93,10 @@ class Trial:
             return Tried(self._stalled(schedule, recorded, watch, flown.stall), (), flown.notes)
         found = results.results()
         failed = (*watch.failures(flown.outcome), *self._differences(found))
-        if waits and not any(failure.kind in _LEAVES_OTHERS_WAITING for failure in failed):
-            failed += tuple(self._stuck(waits[0].waits, schedule, recorded, watch.end_ns))
+        if waits and not any(failure.kind in verdict.LEAVES_OTHERS_WAITING for failure in failed):
+            lost = {failure.task for failure in failed if failure.kind == verdict.STUCK}
+            found_stuck = self._stuck(waits[0].waits, schedule, recorded, watch.end_ns)
+            failed += tuple(failure for failure in found_stuck if failure.task not in lost)
         told = self._verdict(schedule, recorded, failed)
         trouble = "\n".join(watch.trouble)
         told = replace(told, results=digest_of(found), trace=flown.trace, end_ns=watch.end_ns, trouble=trouble)

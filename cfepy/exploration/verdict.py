@@ -30,6 +30,8 @@ INVARIANT = "invariant"
 EVENT = "event"
 PROBLEM = "problem"
 RESULTS = "results differ"
+LEAVES_OTHERS_WAITING = frozenset([DIED, RAISED, ENDED, RESET, DEADLOCK, STALLED])
+"""What takes a task away, for which others may wait then."""
 _PLACE_OR_NUMBER = re.compile(r"(\.\w+:\d+)|(?:0x[0-9A-Fa-f]+|\d+(?:\.\d+)?(?:e[-+]?\d+)?)")
 
 

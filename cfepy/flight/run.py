@@ -221,14 +221,14 @@ class Run:
 
     @property
     def problems(self) -> list[str]:
-        """A line for all that is wrong until now: what a run's report tells, exceptions in nodes, deadlocks.
+        """A line for all that is wrong until now: what a run's report tells, exceptions in nodes, endless waits.
 
         An exception that ends only a thread, or that rospy catches behind a callback, is not in a run's report.
         """
         if self._flown is not None:
-            return [*self._flown.results.problems, *self._raised()]
-        circles = [", ".join(map(str, circle)) for circle in self.mission.kernel.deadlocked()]
-        return [*Results.of(self.mission, mark(self.mission, 0), "").problems, *self._raised(), *circles]
+            return [*self._flown.results.problems, *self._raised(), *self._flown.results.endless_waits]
+        results = Results.of(self.mission, mark(self.mission, 0), "")
+        return [*results.problems, *self._raised(), *results.endless_waits]
 
     def _raised(self) -> list[str]:
         """The exceptions whose tracebacks nodes have printed."""

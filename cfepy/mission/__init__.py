@@ -18,6 +18,7 @@ from cfepy.mission.cpp_nodes import (
     CppNodesConfig,
     CppNodesError,
 )
+from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, endless_waits
 from cfepy.mission.finding import (
     LOCK_FILE,
     STARTUP_SCRIPT,
@@ -82,6 +83,8 @@ __all__ = [
     "BuiltProgram",
     "CppNodesConfig",
     "CppNodesError",
+    "EndlessWait",
+    "EndlessWaits",
     "HostCall",
     "Mission",
     "MissionSections",
@@ -99,6 +102,7 @@ __all__ = [
     "app_traceback",
     "built_programs",
     "described",
+    "endless_waits",
     "find_code",
     "find_compiled",
     "find_node",

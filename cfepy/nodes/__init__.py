@@ -20,6 +20,7 @@ from cfepy.nodes.config import ROSCORE_PARAMS, CppNode, NodeConfig, RosConfig, T
 if TYPE_CHECKING:
     from cfepy.nodes.app_modules import AppModules, make_app_universe
     from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
+    from cfepy.nodes.reach import held_by, is_private, reaches
     from cfepy.nodes.refused import RefusedError
     from cfepy.nodes.universe import Factory, StartThread, Universe
 
@@ -41,7 +42,10 @@ __all__ = [
     "TopicConfig",
     "Universe",
     "below_root",
+    "held_by",
+    "is_private",
     "make_app_universe",
+    "reaches",
 ]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
@@ -50,6 +54,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         {
             ".app_modules": ("AppModules", "make_app_universe"),
             ".files": ("ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Overlay", "below_root"),
+            ".reach": ("held_by", "is_private", "reaches"),
             ".refused": ("RefusedError",),
             ".universe": (
                 "Factory",

@@ -18,7 +18,7 @@ from cfepy.osal.clock import (
     OsTime,
     time_from_total_nanoseconds,
 )
-from cfepy.osal.core import Ledger, ObjectSizes
+from cfepy.osal.core import Ledger, ObjectSizes, OsObject
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.limits import (
     OS_CHECK,
@@ -160,6 +160,7 @@ __all__ = [
     "OS_socket_option_IP_DSCP",
     "OS_socket_option_UNDEFINED",
     "ObjectSizes",
+    "OsObject",
     "OsTime",
     "Osal",
     "Place",

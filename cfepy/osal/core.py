@@ -106,13 +106,14 @@ class OsObject:
         name: at most 19 characters, unique among objects of the same kind.
     """
 
-    __slots__ = ("claim", "creator", "deleted", "id", "name", "owner")
+    __slots__ = ("claim", "creator", "deleted", "id", "name", "owner", "users")
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.id = 0
         self.creator = 0  # id of the task that made it, 0 for the system
         self.owner: Any = None  # the application that the creating task worked for
+        self.users: tuple[Any, ...] = ()  # the applications that asked for its id by its name
         self.claim = 0
         self.deleted = False
 
@@ -240,6 +241,14 @@ class Core:
             raise
         if self._event_handler is not None:
             self._announce(table, record)
+        return object_id
+
+    def _id_by_name(self, table: OsObjectTable[Record], name: str) -> int:
+        """The id of a name, for an application that may use the object from now on."""
+        object_id = table.named(name)
+        record, owner = table.records[object_id], self.kernel.current.owner
+        if owner not in record.users:
+            record.users = (*record.users, owner)
         return object_id
 
     def _unregister(self, table: OsObjectTable[Record], record: Record) -> None:

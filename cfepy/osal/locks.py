@@ -134,6 +134,7 @@ class OsCondVar(OsObject):
         super().__init__(name)
         self.mutex = Mutex(kernel, f"of condition {name}")
         self.waits = WaitList(f"condition {name}")
+        self.waits.subject = self
 
 
 class CondVarApi(ClockApi):
@@ -232,7 +233,7 @@ class CondVarApi(ClockApi):
 
     def cond_var_get_id_by_name(self, name: str) -> int:
         """Id of a named condition variable, or OS_ERR_NAME_NOT_FOUND (OS_CondVarGetIdByName)."""
-        return self._cond_vars.named(name)
+        return self._id_by_name(self._cond_vars, name)
 
     def cond_var_get_info(self, var_id: int) -> CondVarInfo:
         """Facts about a condition variable, or OS_ERR_INVALID_ID (OS_CondVarGetInfo)."""
@@ -276,11 +277,15 @@ class OsRwLock(OsObject):
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
-        self.readers = 0
+        self.readers: list[Task] = []
         self.writer: Task | None = None
         self.waiting_readers = WaitList(f"readers of lock {name}")
         self.waiting_writers = WaitList(f"writers of lock {name}")
-        self.waiting_readers.owner = self.waiting_writers.owner = lambda: self.writer
+        self.waiting_readers.holders = lambda: self._writers() or self.waiting_writers[:1]
+        self.waiting_writers.holders = lambda: self._writers() or self.readers
+
+    def _writers(self) -> list[Task]:
+        return [] if self.writer is None else [self.writer]
 
 
 class RwLockApi(Core):
@@ -313,7 +318,7 @@ class RwLockApi(Core):
         """
         record = self._rw_lock(rw_id)
         if record.writer is None and not record.waiting_writers:
-            record.readers += 1
+            record.readers.append(self.kernel.current)
         else:
             self.kernel.wait_on(record.waiting_readers)
 
@@ -326,7 +331,8 @@ class RwLockApi(Core):
         record = self._rw_lock(rw_id)
         if not record.readers:
             raise OsalError(OS_ERROR, f"nobody holds lock {record.name} for reading")
-        record.readers -= 1
+        task = self.kernel.current
+        record.readers.remove(task if task in record.readers else record.readers[0])
         if not record.readers:
             self._hand_on(record)
 
@@ -388,5 +394,5 @@ class RwLockApi(Core):
             record.writer = record.waiting_writers[0]
             self.kernel.wake_first(record.waiting_writers)
         elif record.waiting_readers:
-            record.readers = len(record.waiting_readers)
+            record.readers = list(record.waiting_readers)
             self.kernel.wake_all(record.waiting_readers)

@@ -28,6 +28,7 @@ class OsSemaphore(OsObject):
     def __init__(self, name: str, semaphore: Semaphore) -> None:
         super().__init__(name)
         self.semaphore = semaphore
+        semaphore.waits.subject = self
 
 
 class SemaphoreApi(Core):
@@ -104,7 +105,7 @@ class SemaphoreApi(Core):
 
     def bin_sem_get_id_by_name(self, name: str) -> int:
         """Id of a named binary semaphore, or OS_ERR_NAME_NOT_FOUND (OS_BinSemGetIdByName)."""
-        return self._bin_sems.named(name)
+        return self._id_by_name(self._bin_sems, name)
 
     def bin_sem_get_info(self, sem_id: int) -> SemaphoreInfo:
         """Facts about a binary semaphore, or OS_ERR_INVALID_ID (OS_BinSemGetInfo)."""
@@ -167,7 +168,7 @@ class SemaphoreApi(Core):
 
     def count_sem_get_id_by_name(self, name: str) -> int:
         """Id of a named counting semaphore, or OS_ERR_NAME_NOT_FOUND (OS_CountSemGetIdByName)."""
-        return self._count_sems.named(name)
+        return self._id_by_name(self._count_sems, name)
 
     def count_sem_get_info(self, sem_id: int) -> SemaphoreInfo:
         """Facts about a counting semaphore, or OS_ERR_INVALID_ID (OS_CountSemGetInfo)."""

@@ -397,6 +397,10 @@ class TimerApi(TimeBaseApi):
         accuracy = 0 if timer.timebase.sync is not None else self._accuracy_us
         return TimerInfo(timer.name, timer.creator, timer.start_us, timer.interval_us, accuracy)
 
+    def has_timer(self, owner: object) -> bool:
+        """Whether an application has made a timer, whose callback is executed by a task of OSAL's own."""
+        return any(timer.owner is owner for timer in self._timers)
+
     def _add(self, name: str, timebase: OsTimeBase, callback: Callable[[int], object], dedicated: bool) -> int:
         timer = OsTimer(name, timebase, callback, dedicated)
         timer_id = self._register(self._timers, timer, "timer", self._setup.sizes.timer)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from cfepy.es import APP_ERROR, CFE_APP, CFE_LIB, STATE_NAMES, BadLine, StartupEntry, parse
 from cfepy.evs import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.ground import kind_of, names_in
-from cfepy.mission import CORE_APPS, Mission, Reset, Traffic, described
+from cfepy.mission import CORE_APPS, Mission, Reset, Traffic, described, endless_waits
 from cfepy.monitors.record import DeadlineRecord, InvariantRecord, InvariantRecords
 from cfepy.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.units import NS_PER_S
@@ -147,6 +147,7 @@ class Mark:
     memory: MemoryResult
     sb: dict[str, int]
     deadlocks: list[str]
+    endless_waits: list[str]
 
 
 def mark(mission: Mission, wall_ns: int) -> Mark:
@@ -167,6 +168,7 @@ def mark(mission: Mission, wall_ns: int) -> Mark:
         MemoryResult(memory.used, memory.peak, memory.limit, memory.by_owner()),
         mission.processor.sb_task.housekeeping(),
         ["; ".join(map(str, circle)) for circle in mission.kernel.deadlocked()],
+        [wait.text for wait in endless_waits(mission).alone],
     )
 
 
@@ -177,7 +179,8 @@ class Results:
     `booted_s` is of the first boot, `resets` are in order; pipes, memory and `sb` are of the processor since the last
     one. `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` says, a line each,
     why the run did not end well, `faults` has a row for each fault that was to happen, `deadlines` one for each of the
-    mission file, `script_problems` what of the startup script could not be started.
+    mission file, `script_problems` what of the startup script could not be started, `endless_waits` a
+    line for each task that nobody can wake any more.
     """
 
     mission: str
@@ -201,6 +204,7 @@ class Results:
     deadlines: list[DeadlineResult]
     faults: list[dict[str, Any]]
     script_problems: list[str]
+    endless_waits: list[str]
     invariants: list[InvariantResult]
     problems: list[str]
 
@@ -238,6 +242,7 @@ class Results:
             deadlines=[check.result() for check in record.part(DeadlineRecord).checks],
             faults=record.rows("faults"),
             script_problems=_script_problems(mission, apps),
+            endless_waits=at.endless_waits,
             invariants=[_invariant(each) for each in record.part(InvariantRecords).values()],
             problems=[
                 *(problem.text for problem in problems_in(mission)),

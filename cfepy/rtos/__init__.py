@@ -26,10 +26,10 @@ from cfepy.rtos.policy import (
 )
 from cfepy.rtos.queue import EMPTY, Queue
 from cfepy.rtos.realtime import Pacer, Stopwatch
-from cfepy.rtos.report import Wait
 from cfepy.rtos.schedule import DEPTH, STEPS, Schedule
 from cfepy.rtos.semaphore import Semaphore
 from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit, WaitList
+from cfepy.rtos.wait_graph import Wait, circles, endless
 from cfepy.rtos.watchdog import STALL_S, LastResort, StallWatch
 
 __all__ = [
@@ -67,5 +67,7 @@ __all__ = [
     "Wait",
     "WaitList",
     "allowed_cpus",
+    "circles",
+    "endless",
     "make_kernel",
 ]

@@ -68,6 +68,9 @@ class Context(Protocol):
     def thread_of(self, task: Task, host_ident: int) -> int:
         """The identifier of the OS thread that a task runs on; `host_ident` is the host's."""
 
+    def frame_of(self, task: Task) -> FrameType | None:
+        """The innermost Python frame of a task that does not run now; None before it has begun."""
+
     def spoil(self, task: Task) -> None:
         """A task is about to be struck; what it runs on must not be used for another one."""
 
@@ -240,6 +243,9 @@ class ThreadContext:
     def thread_of(self, task: Task, host_ident: int) -> int:
         return host_ident if task.carrier is None else int(task.carrier.ident)
 
+    def frame_of(self, task: Task) -> FrameType | None:
+        return frame_of_thread(task.carrier.ident) if task.started else None
+
     def spoil(self, task: Task) -> None:
         task.carrier.spoilt = True
 
@@ -374,6 +380,10 @@ class GreenletContext:
 
     def thread_of(self, task: Task, host_ident: int) -> int:
         return host_ident
+
+    def frame_of(self, task: Task) -> FrameType | None:
+        frame: FrameType | None = task.carrier.gr_frame
+        return frame if task.started else None
 
     def spoil(self, task: Task) -> None:
         pass

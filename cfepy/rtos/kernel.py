@@ -18,9 +18,9 @@ from cfepy import trace as tr
 from cfepy.garbage import no_collection
 from cfepy.rtos.context import make_context, take_back
 from cfepy.rtos.errors import DeadlockError
-from cfepy.rtos.report import Wait, deadlocks, waiting_report
 from cfepy.rtos.scheduler import Scheduler
 from cfepy.rtos.task import Task, TaskExit
+from cfepy.rtos.wait_graph import Wait, circles, endless, waiting_report
 
 ENDLESS = 1 << 62
 MOST_OBJECTS = 20_000  # more objects are frozen: looking for garbage in them takes milliseconds
@@ -386,10 +386,10 @@ class Kernel(Scheduler):
     def deadlocked(self) -> list[tuple[Wait, ...]]:
         """The circles of tasks that wait for each other for ever, and the tasks that wait for one that has ended.
 
-        Known are the holders of OSAL's mutexes and of what writes under OSAL's readers-writer locks, of the recursive
-        locks of nodes, and, while schedules are explored, of their plain locks.
+        Known are the holders of OSAL's mutexes and readers-writer locks, of the recursive locks of nodes, and, while
+        schedules are explored, of their plain locks.
         """
-        return deadlocks(self.tasks)
+        return circles(endless(self.tasks))
 
     def progress(self) -> tuple[int, int, int]:
         """Numbers of which one changes with every kernel call that lets time or another task go on."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from cfepy.rtos.errors import DeadlockError
 from cfepy.rtos.kernel import Kernel
-from cfepy.rtos.report import Wait
 from cfepy.rtos.task import Task, WaitList
+from cfepy.rtos.wait_graph import Wait
 
 
 class Mutex:
@@ -24,7 +24,7 @@ class Mutex:
         self.owner: Task | None = None
         self.count = 0
         self.waits = WaitList(f"mutex {name}")
-        self.waits.owner = lambda: self.owner
+        self.waits.holders = lambda: () if self.owner is None else (self.owner,)
 
     def take(self) -> None:
         """Wait until the mutex is free or ours.

@@ -121,6 +121,8 @@ class Scheduler:
         task.waits = waits
         if timeout_ns >= 0:
             self.arm(task, timeout_ns or 1)
+        else:
+            task.since = self.now
         return self.block()
 
     def wake_first(self, waits: WaitList, value: Any = None) -> bool:

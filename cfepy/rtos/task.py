@@ -5,7 +5,7 @@ Plain data, changed by the kernel and by the objects that tasks wait for.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from cfepy import trace
@@ -37,14 +37,19 @@ class WaitList(list["Task"]):
 
     Args:
         what: the thing, for the deadlock report: "queue HK_PIPE".
+
+    Attributes:
+        holders: the tasks that all have to let go of it before a wait can end; none where any task may end it.
+        subject: the object by which a wait is ended, such as a lock of Python's; None where that is not known.
     """
 
-    __slots__ = ("owner", "what")
+    __slots__ = ("holders", "subject", "what")
 
     def __init__(self, what: str) -> None:
         super().__init__()
         self.what = what
-        self.owner: Callable[[], Task | None] | None = None
+        self.holders: Callable[[], Sequence[Task]] = tuple
+        self.subject: object = None
 
     __hash__ = object.__hash__  # type: ignore[assignment]  # a place to wait has an identity
 
@@ -54,6 +59,7 @@ class Task:
 
     __slots__ = (
         "__weakref__",
+        "awaits",
         "base_priority",
         "carrier",
         "cpu_ns",
@@ -75,6 +81,7 @@ class Task:
         "priority",
         "refusals",
         "resume",
+        "since",
         "started",
         "timer",
         "waits",
@@ -96,6 +103,8 @@ class Task:
         self.wake: Any = None  # the value that ended the last wait
         self.timer = 0  # number of the pending timer, 0 when there is none
         self.waits: WaitList | None = None
+        self.awaits: WaitList | None = None  # what it waits for again and again, with a limit to each wait
+        self.since = 0  # virtual ns at which its last wait without a limit in time began
         self.mutex: Mutex | None = None  # the mutex it waits for
         self.held: list[Mutex] = []
         self.started = self.done = self.dying = False

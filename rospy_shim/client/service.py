@@ -318,11 +318,13 @@ class Service:
         if request is None:
             return
         self._busy += 1
+        self._entry.serving[number] = (self._node.kernel.current,)
         try:
             self._attend_waiting()
             good, body = self._result(number, request)
         finally:
             self._busy -= 1
+            del self._entry.serving[number]
         self._answer(number, good, body)
 
     def _result(self, number: int, data: bytes) -> tuple[bool, bytes]:

@@ -210,14 +210,20 @@ class ServiceProxy:
         Returns:
             whether it went well; the answer; whether half a response stays in the buffer of the service's connection.
         """
-        pipes, answer_id = self._node.answer_pipes, entry.answer_id
+        node = self._node
+        pipes, answer_id = node.answer_pipes, entry.answer_id
         pipe = pipes.open(answer_id)
-        number = entry.begin(ServiceCall(pipe, {**self._header, "callerid": self._node.names.name}))
+        number = entry.begin(ServiceCall(pipe, {**self._header, "callerid": node.names.name}))
+        task = node.kernel.current
+        before, task.awaits = task.awaits, (waits := WaitList(f"an answer of service {self.resolved_name}"))
+        waits.holders = lambda: entry.serving.get(number, ())
+        task.since = node.kernel.now
         try:
             self._send(entry, number, body)
             good, answer = self._await(entry, number, pipe)
             return good, answer, number in entry.half_answered
         finally:
+            task.awaits = before
             entry.calls.pop(number, None)
             entry.half_answered.discard(number)
             pipes.close(answer_id, pipe)

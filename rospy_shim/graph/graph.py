@@ -16,6 +16,7 @@ from rospy_shim.parameters.tree import ParameterTree
 
 if TYPE_CHECKING:
     from cfepy.nodes import RosConfig
+    from cfepy.rtos import Task
     from rospy_shim.client.link import Link
     from rospy_shim.client.node import Node
     from rospy_shim.client.service import Service
@@ -173,6 +174,7 @@ class ServiceEntry:
         self.service = service
         self.calls: dict[int, ServiceCall] = {}  # by number
         self.half_answered: set[int] = set()  # calls whose response could not be serialized
+        self.serving: dict[int, tuple[Task, ...]] = {}  # the task that works on a call, by its number
         self._ids = ids
         self._count = 0
 

@@ -15,9 +15,9 @@ class World:
         self.tasks: dict[str, Task] = {}
 
     def add(self, name: str, holder: str, timeout_ns: int = -1) -> None:
-        """A task that waits for something that another one holds; nobody holds what "" holds."""
+        """A task that waits for something that others hold, by name; nobody holds what "" holds."""
         waits = WaitList(f"lock of {holder}")
-        waits.owner = lambda: self.tasks.get(holder)
+        waits.holders = lambda: [self.tasks[name] for name in holder.split() if name in self.tasks]
         self.tasks[name] = self.kernel.spawn(name, lambda: self.kernel.wait_on(waits, timeout_ns))
 
     def found(self) -> list[list[str]]:
@@ -65,3 +65,10 @@ def test_two_circles(world: World) -> None:
     for name, holder in (("a", "b"), ("b", "a"), ("c", "d"), ("d", "c")):
         world.add(name, holder)
     assert [len(circle) for circle in world.found()] == [2, 2]
+
+
+def test_all_of_several_holders_have_to_let_go(world: World) -> None:
+    world.add("a", "b c")
+    world.add("b", "", 1_000_000)
+    world.add("c", "a")
+    assert world.found() == [["a waits for lock of b c, held by c", "c waits for lock of a, held by a"]]

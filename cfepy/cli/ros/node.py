@@ -89,7 +89,7 @@ def _status(flown: Flown, longer: str) -> int:
     statuses = {} if mission.ros is None else mission.ros.monitor.statuses
     if app in statuses:
         return int(statuses[app]) & 0xFF
-    tell((*results.script_problems, *results.problems))
+    tell((*results.script_problems, *results.problems, *results.endless_waits))
     if results.script_problems or results.problems:
         return FOUND_PROBLEMS
     if any(each.name in mission.spec.built and each.state == ENDED for each in results.apps):

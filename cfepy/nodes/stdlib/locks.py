@@ -147,7 +147,8 @@ def _make_lock(universe: Universe) -> type:
                 return False
             if self._waits is None:
                 self._waits = WaitList(f"lock {self._serial} of {name}")
-                self._waits.owner = lambda: self.holder or None
+                self._waits.subject = self
+                self._waits.holders = lambda: (self.holder,) if self.holder else ()
             return _wait_for(universe, self._waits, wait, self.release)
 
         def release(self) -> None:
@@ -234,7 +235,8 @@ def _make_rlock(universe: Universe) -> type:
         def _take_over(self, wait: int, count: int) -> bool:
             if self._waits is None:
                 self._waits = WaitList(f"lock {self._serial} of {name}")
-                self._waits.owner = lambda: self._owner
+                self._waits.subject = self
+                self._waits.holders = lambda: () if self._owner is None else (self._owner,)
             if not _wait_for(universe, self._waits, wait, self._hand_on):
                 return False
             self._owner, self._count = kernel.current, count

@@ -52,6 +52,10 @@ class SignalTable:
         """`signal.getsignal`."""
         return self._handlers.get(int(signal.Signals(number)), signal.SIG_DFL)
 
+    def handlers(self) -> list[Any]:
+        """All that were set."""
+        return list(self._handlers.values())
+
     def deliver(self, number: int) -> None:
         """Handle a signal in the calling task."""
         handler = self.get(number)

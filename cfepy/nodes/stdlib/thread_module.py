@@ -172,6 +172,7 @@ def thread_module(universe: Universe) -> ModuleType:
         """The lock whose release tells that the calling thread is gone."""
         ident = kernel.current.ident
         sentinel = sentinels[ident] = lock()
+        sentinel.holder = kernel.current
         universe.at_thread_end(ident, lambda: _release(sentinels.pop(ident, None)))
         return sentinel
 

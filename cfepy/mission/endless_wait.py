@@ -1,0 +1,156 @@
+"""The waits of a mission that will never end, whoever goes first from here on.
+
+Who could end a wait is known for locks (who holds them), for calls of services (who works on them), for the semaphores
+and condition variables of OSAL (the applications that made them or asked for their ids), and for what a node makes of
+Python's locks: conditions, events, queues, the ends of threads. There it is whoever can still get hold of the lock
+(`cfepy.nodes.reach`), a callback for messages included. A wait for a pipe, a queue of OSAL's, a socket or a time is
+ended from outside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import PurePath
+from types import FrameType, FunctionType
+from typing import TYPE_CHECKING, NamedTuple
+
+from cfepy.mission.tracebacks import is_own_code
+from cfepy.osal import OsObject
+from cfepy.rtos import Kernel, Task, Wait, circles, endless
+from cfepy.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from cfepy.mission.mission import Mission
+    from rospy_shim.client.node import Node
+
+
+class EndlessWait(NamedTuple):
+    """A task that waits for ever.
+
+    Attributes:
+        app: whose task it is.
+        task: its name.
+        what: for what, such as `lock 3 of ARM` or `the end of Queue.get()`.
+        place: the line of its own source, such as `arm.py:12`; empty where that is not known.
+        since_ns: virtual time at which it began to wait.
+        holder: the task that has what it waits for, and whether that has ended; empty where nobody has it.
+    """
+
+    app: str
+    task: str
+    what: str
+    place: str
+    since_ns: int
+    holder: str = ""
+
+    @property
+    def text(self) -> str:
+        """One line for a person."""
+        where = f" at {self.place}" if self.place else ""
+        why = f"held by {self.holder}" if self.holder else "nobody is left who could end that"
+        return f"{self.task} waits for ever for {self.what}{where}, since {self.since_ns / NS_PER_S:.6f} s; {why}"
+
+
+class EndlessWaits(NamedTuple):
+    """The waits of a mission that will never end.
+
+    Attributes:
+        circles: tasks that wait for each other, or one that waits for another that has ended.
+        alone: tasks for which nobody is left, where that matters: main tasks, and those for which others wait. A
+            worker that idles is none. Those that only wait for one of the others are not told.
+    """
+
+    circles: list[tuple[EndlessWait, ...]]
+    alone: list[EndlessWait]
+
+
+def endless_waits(mission: Mission) -> EndlessWaits:
+    """Look for them, while no task runs."""
+    kernel = mission.kernel
+    found = endless(kernel.tasks, _Wakers(mission).could_end)
+    rings = [tuple(_told(kernel, wait) for wait in circle) for circle in circles(found)]
+    awaited = {wait.holder for wait in found}
+    alone = [wait for wait in found if wait.holder is None and (wait.task in awaited or _is_main(wait.task))]
+    return EndlessWaits(rings, [_told(kernel, wait) for wait in alone])
+
+
+def _is_main(task: Task) -> bool:
+    return task.number != 0 and task.number == getattr(task.owner, "main_task_id", 0)
+
+
+def _told(kernel: Kernel, wait: Wait) -> EndlessWait:
+    task = wait.task
+    place, call = _place(kernel.context.frame_of(task))
+    gone = ", which has ended" if wait.holder is not None and wait.holder.done else ""
+    holder = "" if wait.holder is None else wait.holder.name + gone
+    owner = "" if task.owner is None else task.owner.name
+    what = f"the end of {call}()" if call and wait.holder is None else wait.what
+    return EndlessWait(owner, task.name, what, place, task.since, holder)
+
+
+def _place(frame: FrameType | None) -> tuple[str, str]:
+    """The innermost line of a task's own source, and the function of a library that it called there."""
+    call = ""
+    while frame is not None:
+        file = frame.f_code.co_filename
+        if is_own_code(file):
+            return f"{PurePath(file).name}:{frame.f_lineno}", call
+        if not frame.f_globals.get("__name__", "cfepy").startswith("cfepy"):
+            call = frame.f_code.co_qualname
+        frame = frame.f_back
+    return "", ""
+
+
+class _Wakers:
+    """Who could end the wait of a task."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._mission = mission
+        self._kernel = mission.kernel
+
+    def could_end(self, task: Task, lost: Collection[Task]) -> bool:
+        """See `cfepy.rtos.wait_graph.Wakers`."""
+        subject = None if task.waits is None or task.awaits is not None else task.waits.subject
+        if subject is None or task.owner is None:
+            return True
+        if isinstance(subject, OsObject):
+            return self._is_used(subject, lost)
+        node = None if self._mission.ros is None else self._mission.ros.node_of(task.owner)
+        return node is None or self._is_known(node, task, subject, lost)
+
+    def _is_used(self, record: OsObject, lost: Collection[Task]) -> bool:
+        """Whether an application that knows the id of an object has a task that may go on, or a timer."""
+        users = {record.owner, *record.users}
+        has_timer = self._mission.cfe.os.has_timer
+        return (
+            None in users
+            or any(has_timer(user) for user in users)
+            or any(task.owner in users and task not in lost for task in self._kernel.tasks)
+        )
+
+    def _is_known(self, node: Node, task: Task, lock: object, lost: Collection[Task]) -> bool:
+        """Whether anything that a node may still execute leads to a lock, or its main program rests there for good."""
+        from cfepy.nodes import held_by, reaches
+
+        roots: list[object] = [node, *node.universe.exit_hooks, *node.universe.signals.handlers()]
+        for each in self._kernel.tasks:
+            if each.owner is node.owner and each not in lost:
+                roots += [each.entry, *held_by(self._kernel.context.frame_of(each))]
+        closed = [node.universe.importer.modules]
+        return reaches(roots, lock, closed) or (task is node.universe.main_task and self._is_at_rest(node, task, lock))
+
+    def _is_at_rest(self, node: Node, task: Task, lock: object) -> bool:
+        """Whether a main program waits for what it has told nobody of: until Ctrl-C."""
+        from cfepy.nodes import is_private
+
+        own = self._kernel.context.frame_of(task)
+        while own is not None and not is_own_code(own.f_code.co_filename):
+            own = own.f_back
+        return own is None or is_private(lock, own.f_code, _functions(node), [node.universe.importer.modules])
+
+
+def _functions(node: Node) -> list[object]:
+    """The functions and classes of a node's own modules."""
+    modules = node.universe.importer.modules.values()
+    own = [module for module in modules if is_own_code(getattr(module, "__file__", None) or "<")]
+    return [each for module in own for each in vars(module).values() if isinstance(each, (FunctionType, type))]

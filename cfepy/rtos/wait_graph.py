@@ -1,0 +1,122 @@
+"""The wait-for graph: which tasks wait for which, and which waits can never end; a report of all that wait.
+
+A task that waits has either holders, all of whom must let go first (the owner of a mutex, the readers of a lock), or
+it is woken by any one of those who know what it waits for. A wait ends never when one of its holders has ended or
+waits for ever itself, or when nobody is left who could wake it. A task whose wait has a limit in time goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Sequence
+from typing import NamedTuple
+
+from cfepy.rtos.task import Task, WaitList
+
+Wakers = Callable[[Task, Collection[Task]], bool]
+"""Whether any of the tasks that may go on, or the world outside, could end the wait of a task without holders.
+
+It gets the one that waits, and those of which it is not known that they can go on.
+"""
+
+
+class Wait(NamedTuple):
+    """A task that waits, without a limit in time, for something that another one holds.
+
+    Attributes:
+        task: the one that waits.
+        what: for what, such as "mutex BUS".
+        holder: the task that has it, or None where nobody has it and nobody is left to give it.
+    """
+
+    task: Task
+    what: str
+    holder: Task | None = None
+
+    def __str__(self) -> str:
+        if self.holder is None:
+            return f"{self.task.name} waits for {self.what}, and nobody is left who could end that"
+        gone = ", which has ended" if self.holder.done else ""
+        return f"{self.task.name} waits for {self.what}, held by {self.holder.name}{gone}"
+
+
+def _by_holders_only(task: Task, lost: Collection[Task]) -> bool:
+    return True
+
+
+def endless(tasks: Sequence[Task], could_end: Wakers = _by_holders_only) -> list[Wait]:
+    """The waits that can never end, in the order of the tasks.
+
+    Args:
+        tasks: all that have not ended.
+        could_end: asked for each task that waits for something without holders.
+    """
+    holders = {task: waits.holders() for task in tasks if (waits := awaited(task)) is not None}
+    lost = dict.fromkeys(holders)
+    free: Task | None = None
+    while True:  # what is taken for lost shrinks until each is lost for the sake of others that are
+        for free in lost:
+            if not _blocking(holders[free], lost) and (holders[free] or could_end(free, lost)):
+                break
+        else:
+            return [_wait(task, _blocking(holders[task], lost)) for task in lost]
+        del lost[free]
+
+
+def _blocking(holders: Sequence[Task], lost: Collection[Task]) -> list[Task]:
+    """Those of the holders that will never let go."""
+    return [holder for holder in holders if holder.done or holder in lost]
+
+
+def awaited(task: Task) -> WaitList | None:
+    """What a task waits for without a limit in time, if it does."""
+    return task.awaits if task.awaits is not None else (None if task.timer else task.waits)
+
+
+def _wait(task: Task, holders: list[Task]) -> Wait:
+    waits = awaited(task)
+    assert waits is not None
+    return Wait(task, waits.what, holders[0] if holders else None)
+
+
+def circles(waits: Sequence[Wait]) -> list[tuple[Wait, ...]]:
+    """The circles of tasks that wait for each other, and the tasks that wait for one that has ended.
+
+    Each comes once, the oldest task of a circle in front.
+
+    Args:
+        waits: that never end.
+    """
+    by_task = {wait.task: wait for wait in waits if wait.holder is not None}
+    found: list[tuple[Wait, ...]] = []
+    seen: set[Task] = set()
+    for task in by_task:
+        path: dict[Task, Wait] = {}
+        here: Task | None = task
+        while here in by_task and here not in seen:
+            seen.add(here)
+            path[here] = by_task[here]
+            here = by_task[here].holder
+        if here in path:
+            circle = list(path)
+            found.append(tuple(by_task[each] for each in circle[circle.index(here) :]))
+        elif path and here is not None and here.done:
+            found.append((list(path.values())[-1],))
+    return found
+
+
+def waiting_report(tasks: Iterable[Task], timers: Iterable[tuple[int, int, Task]]) -> str:
+    """One line a task: name, priority, what it waits for, until when, and the task that could end the wait."""
+    deadlines = {task: when for when, sequence, task in timers if task.timer == sequence}
+    return "\n".join(_line(task, deadlines.get(task)) for task in tasks)
+
+
+def _line(task: Task, deadline: int | None) -> str:
+    text = f"{task.name} (task {task.ident}, priority {task.priority})"
+    if task.waits is None:
+        return f"{text} sleeps until {deadline / 1e9:.9f} s" if deadline is not None else f"{text} is ready"
+    text += f" waits for {task.waits.what}"
+    if holders := task.waits.holders():
+        text += f", held by {' and '.join(holder.name for holder in holders)}"
+    if deadline is not None:
+        text += f", until {deadline / 1e9:.9f} s"
+    return text

@@ -1,0 +1,199 @@
+"""What code can still get hold of."""
+
+from __future__ import annotations
+
+import _thread
+import functools
+import operator
+import sys
+import threading
+import weakref
+from collections.abc import Callable, Iterator
+from contextlib import nullcontext
+from types import FrameType
+from typing import Any
+
+import pytest
+
+from cfepy.nodes import held_by, is_private, reaches
+
+
+class Thing:
+    """What is looked for."""
+
+
+THING = Thing()
+KEPT = {"thing": THING}
+
+
+class Keeper:
+    """Holds it, and its methods name it."""
+
+    def __init__(self, thing: Thing) -> None:
+        self.held = [thing]
+
+    def look(self) -> Thing:
+        """By an attribute."""
+        return self.held[0]
+
+
+class Namer:
+    """Its method names the variable."""
+
+    def look(self) -> Thing:
+        """By a global variable."""
+        return THING
+
+
+def by_name() -> Thing:
+    return THING
+
+
+def by_inner_function() -> Callable[[], Thing]:
+    def inner() -> Thing:
+        return THING
+
+    return inner
+
+
+def by_anything() -> Any:
+    return globals()["TH" + "ING"]
+
+
+def by_default(thing: Thing = THING) -> Thing:
+    return thing
+
+
+def by_generator(thing: Thing) -> Iterator[Thing]:
+    yield Thing()
+    yield thing
+
+
+def not_at_all() -> type[Thing]:
+    return Thing
+
+
+def closure(thing: Thing) -> Callable[[], Thing]:
+    return lambda: thing
+
+
+def begun(generator: Iterator[Thing]) -> Iterator[Thing]:
+    next(generator)
+    return generator
+
+
+LEADING = [
+    by_name,
+    by_inner_function,
+    by_anything,
+    by_default,
+    begun(by_generator(THING)),
+    closure(THING),
+    Keeper(THING),
+    Keeper(THING).look,
+    Namer(),
+    Namer().look,
+    functools.partial(operator.is_, THING),
+    [({1: {THING}},)],
+    weakref.ref(THING),
+    KEPT.get,
+    sys.modules[__name__],
+    threading.Thread(target=by_name),
+]
+
+
+@pytest.mark.parametrize("root", LEADING, ids=str)
+def test_a_way_leads_there(root: object) -> None:
+    assert reaches([root], THING)
+    assert not reaches([root], object())
+
+
+@pytest.mark.parametrize("root", [not_at_all, Thing, threading, threading.Thread(), "THING", weakref.ref(Thing()), len])
+def test_no_way_leads_there(root: object) -> None:
+    assert not reaches([root], THING)
+
+
+def test_what_is_closed_leads_nowhere() -> None:
+    assert not reaches([KEPT], THING, [KEPT])
+
+
+def test_what_pretends_to_be_of_another_type_is_looked_into() -> None:
+    class Pretender:
+        __class__ = property(lambda self: int)
+
+        def __init__(self) -> None:
+            self.thing = THING
+
+    assert reaches([Pretender()], THING)
+
+
+def after(thing: Thing, here: Callable[[], object]) -> None:
+    del thing
+    here()
+
+
+def before(thing: Thing, here: Callable[[], object]) -> Thing:
+    here()
+    return thing
+
+
+def used_in_loop(thing: Thing, here: Callable[[], object]) -> None:
+    for number in range(2):
+        hash(thing)
+        if number:
+            here()
+
+
+def used_before_loop(thing: Thing, here: Callable[[], object]) -> None:
+    hash(thing)
+    for number in range(2):
+        if number:
+            here()
+
+
+def over_list(thing: Thing, here: Callable[[], object]) -> None:
+    things = [Thing(), thing]
+    del thing
+    for _ in things:
+        here()
+
+
+def in_block(thing: Thing, here: Callable[[], object]) -> None:
+    with nullcontext(thing):
+        here()
+
+
+def in_statement(thing: Thing, here: Callable[[], object]) -> object:
+    return (thing, here())
+
+
+def holds(function: Callable[[Thing, Callable[[], object]], object]) -> bool:
+    """Whether a task that stands where the function calls `here` still has the thing in its hands."""
+    frames: list[FrameType] = []
+    arrived, go = threading.Event(), threading.Event()
+
+    def here() -> None:  # which does not name what is looked for
+        frames.append(sys._getframe(1))
+        arrived.set()
+        go.wait(10)
+
+    _thread.start_new_thread(function, (THING, here))  # below it there are no other frames
+    assert arrived.wait(10)
+    found = reaches(held_by(frames[0]), THING)
+    go.set()
+    return found
+
+
+@pytest.mark.parametrize("function", [before, used_in_loop, over_list, in_block, in_statement])
+def test_what_is_used_later_or_lies_on_the_stack_is_held(function: Callable[..., object]) -> None:
+    assert holds(function)
+
+
+@pytest.mark.parametrize("function", [after, used_before_loop])
+def test_behind_its_last_use_a_name_is_not_held(function: Callable[..., object]) -> None:
+    assert not holds(function)
+
+
+def test_what_only_one_function_names_is_private() -> None:
+    assert is_private(THING, by_name.__code__, [by_name, not_at_all], [])
+    assert not is_private(THING, by_name.__code__, [by_name, by_anything], [])
