@@ -4,7 +4,8 @@ Memory ranges hold bytes here when an area was attached to them, as the PSP does
 NASA's Linux PSP refuses direct RAM access, so reading and writing RAM works better here than there.
 
 EEPROM is written by functions of its own, protected and switched off by bank. On a board with data flash both work, and
-it starts protected, as such a part does after a reset; on others they are what they are on NASA's Linux.
+it starts protected, as such a part does after a reset; on others they are what they are on NASA's Linux: a word may be
+written anywhere, at odd addresses and into RAM, too.
 
 Ports are registers of devices, as far as the board's profile declares some. A register reads what was written to it
 last, by flight software or by a test that plays the device (`port_areas`).
@@ -41,16 +42,18 @@ MEM_ATTR_READWRITE = 3
 MEM_TABLE_SIZE = 10
 _WORD_SIZES = (1, 2, 4)
 NUM_EEPROM_BANKS = 1
+_ADDRESSES = 1 << 64
+"""cpuaddr counts round."""
 
 
 class MemRange(NamedTuple):
-    """One entry of the table (CFE_PSP_MemTable_t)."""
+    """One entry of the table (CFE_PSP_MemTable_t); one that was never set has zeros."""
 
-    memory_type: int = MEM_INVALID
+    memory_type: int = 0
     start_addr: int = 0
     size: int = 0
-    word_size: int = 1
-    attributes: int = MEM_ATTR_READWRITE
+    word_size: int = 0
+    attributes: int = 0
 
 
 class MemoryArea(Protocol):
@@ -121,8 +124,8 @@ class AddressSpace:
 
         Raises:
             OsalError: CFE_PSP_INVALID_MEM_TYPE for a bad or another type, CFE_PSP_INVALID_MEM_ADDR when it begins in
-                no range, CFE_PSP_INVALID_MEM_RANGE when it ends beyond it. Where it begins in several ranges, one of
-                them has to be right, and the last of them says why none is.
+                no range, CFE_PSP_INVALID_MEM_RANGE when it ends beyond it, or beyond the last address. Where it begins
+                in several ranges, one of them has to be right, and the last of them says why none is.
         """
         self._range_of(address, size, memory_type)
 
@@ -166,12 +169,14 @@ class AddressSpace:
         """The number of the first range that has it all."""
         if memory_type not in (MEM_RAM, MEM_EEPROM, MEM_ANY):
             raise OsalError(CFE_PSP_INVALID_MEM_TYPE, f"memory type {memory_type}")
+        if (address + size) % _ADDRESSES < address:
+            raise OsalError(CFE_PSP_INVALID_MEM_RANGE, f"{size} bytes at {address:#x} reach beyond the last address")
         problem = OsalError(CFE_PSP_INVALID_MEM_ADDR, f"there is no memory at {address:#x}")
         for number, entry in enumerate(self._ranges):
-            end = entry.start_addr + entry.size
-            if entry.memory_type == MEM_INVALID or not entry.start_addr <= address < end:
+            end = (entry.start_addr + entry.size) % _ADDRESSES
+            if not entry.start_addr <= address < end:
                 continue
-            if size < 0 or address + size > end:
+            if address + size > end:
                 text = f"{size} bytes at {address:#x} reach beyond range {number}"
                 problem = OsalError(CFE_PSP_INVALID_MEM_RANGE, text)
             elif memory_type not in (MEM_ANY, entry.memory_type):
@@ -206,8 +211,11 @@ class AddressSpace:
 
     def _write(self, address: int, value: int, size: int, memory_type: int) -> None:
         _check_alignment(address, size)
-        data = (value & (1 << 8 * size) - 1).to_bytes(size, "little")
-        self._store(address, data, memory_type)
+        self._store(address, _little(value, size), memory_type)
+
+
+def _little(value: int, size: int) -> bytes:
+    return (value & (1 << 8 * size) - 1).to_bytes(size, "little")
 
 
 def _check_alignment(address: int, size: int) -> None:
@@ -249,17 +257,21 @@ class EepromSpace(AddressSpace):
         """Change a byte of EEPROM (CFE_PSP_EepromWrite8).
 
         Raises:
-            OsalError: CFE_PSP_INVALID_MEM_*; CFE_PSP_ERROR_TIMEOUT while it is protected or switched off.
+            OsalError: CFE_PSP_INVALID_MEM_*; CFE_PSP_ERROR_TIMEOUT while it is protected or switched off. On a board
+                that cannot protect it any memory is written, as on NASA's Linux.
         """
-        self._write(address, value, 1, MEM_EEPROM)
+        self._write_eeprom(address, value, 1)
 
     def eeprom_write16(self, address: int, value: int) -> None:
-        """Change a 16-bit word of EEPROM (CFE_PSP_EepromWrite16); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
-        self._write(address, value, 2, MEM_EEPROM)
+        """Change a 16-bit word of EEPROM (CFE_PSP_EepromWrite16); also CFE_PSP_ERROR_ADDRESS_MISALIGNED.
+
+        On a board that cannot protect its EEPROM an odd address is as good, as on NASA's Linux.
+        """
+        self._write_eeprom(address, value, 2)
 
     def eeprom_write32(self, address: int, value: int) -> None:
-        """Change a 32-bit word of EEPROM (CFE_PSP_EepromWrite32); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
-        self._write(address, value, 4, MEM_EEPROM)
+        """Change a 32-bit word of EEPROM (CFE_PSP_EepromWrite32), as `eeprom_write16` does."""
+        self._write_eeprom(address, value, 4)
 
     def eeprom_write_enable(self, bank: int) -> None:
         """Let it be written (CFE_PSP_EepromWriteEnable).
@@ -289,6 +301,12 @@ class EepromSpace(AddressSpace):
         if self.has_eeprom_control:
             self._check_control(bank)
             self.is_powered = False
+
+    def _write_eeprom(self, address: int, value: int, size: int) -> None:
+        if self.has_eeprom_control:
+            self._write(address, value, size, MEM_EEPROM)
+        else:
+            self._store(address, _little(value, size))
 
     def _check_control(self, bank: int) -> None:
         if not self.has_eeprom_control:
@@ -358,7 +376,7 @@ class PortSpace:
         return int.from_bytes(self._register(address, size), "little")
 
     def _write_port(self, address: int, value: int, size: int) -> None:
-        self._register(address, size)[:] = (value & (1 << 8 * size) - 1).to_bytes(size, "little")
+        self._register(address, size)[:] = _little(value, size)
 
     def _register(self, address: int, size: int) -> memoryview:
         if not self._port_ranges:
@@ -372,7 +390,7 @@ class PortSpace:
 
 
 def _swapped(value: int, size: int) -> int:
-    return int.from_bytes((value & (1 << 8 * size) - 1).to_bytes(size, "little"), "big")
+    return int.from_bytes(_little(value, size), "big")
 
 
 def swap_16(value: int) -> int:

@@ -103,7 +103,32 @@ def test_eeprom_is_written_by_its_own_functions(memory: EepromSpace) -> None:
     memory.eeprom_write8(EEPROM + 6, 7)
     assert memory.mem_read32(EEPROM + 4) == 0x00070506
     assert _status(lambda: memory.mem_write8(EEPROM, 1)) == CFE_PSP_INVALID_MEM_TYPE
+
+
+def test_eeprom_that_nothing_protects_is_written_anywhere(memory: EepromSpace) -> None:
+    memory.eeprom_write32(EEPROM + 1, 0x01020304)
+    memory.eeprom_write16(EEPROM + 3, 0x0506)
+    memory.eeprom_write16(RAM + 7, 0x0809)
+    assert memory.mem_read32(EEPROM) == 0x06030400
+    assert memory.mem_read8(RAM + 8) == 8
+    assert _status(lambda: memory.eeprom_write32(EEPROM + 30, 1)) == CFE_PSP_INVALID_MEM_RANGE
+    assert _status(lambda: memory.eeprom_write8(EEPROM + 32, 1)) == CFE_PSP_INVALID_MEM_ADDR
+    memory.protect_eeprom()
+    memory.eeprom_write_enable(0)
+    assert _status(lambda: memory.eeprom_write16(EEPROM + 1, 1)) == CFE_PSP_ERROR_ADDRESS_MISALIGNED
+    assert _status(lambda: memory.eeprom_write32(EEPROM + 2, 1)) == CFE_PSP_ERROR_ADDRESS_MISALIGNED
     assert _status(lambda: memory.eeprom_write8(RAM, 1)) == CFE_PSP_INVALID_MEM_TYPE
+
+
+def test_addresses_count_round() -> None:
+    space = EepromSpace()
+    highest = (1 << 64) - 16
+    space.mem_range_set(0, MEM_RAM, highest, 32, 4, MEM_ATTR_READWRITE)
+    assert _status(lambda: space.mem_validate_range(highest, 8, MEM_RAM)) == CFE_PSP_INVALID_MEM_ADDR
+    space.mem_range_set(0, MEM_RAM, highest, 15, 4, MEM_ATTR_READWRITE)
+    space.mem_validate_range(highest, 15, MEM_RAM)
+    assert _status(lambda: space.mem_validate_range(highest - 1, 17, MEM_RAM)) == CFE_PSP_INVALID_MEM_RANGE
+    assert _status(lambda: space.mem_validate_range(highest, (1 << 64) - 1, MEM_RAM)) == CFE_PSP_INVALID_MEM_RANGE
 
 
 @pytest.mark.parametrize(
@@ -130,7 +155,7 @@ def test_bad_definitions(memory: EepromSpace) -> None:
     assert _status(lambda: define(attributes=0)) == CFE_PSP_INVALID_MEM_ATTR
     assert _status(lambda: memory.mem_range_get(10)) == CFE_PSP_INVALID_MEM_RANGE
     assert memory.mem_range_get(0) == MemRange(MEM_RAM, RAM, 64, 4, 3)
-    assert memory.mem_range_get(1).memory_type == MEM_INVALID
+    assert memory.mem_range_get(1) == MemRange(0, 0, 0, 0, 0)
     assert memory.mem_ranges() == 10
 
 
