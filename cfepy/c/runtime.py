@@ -186,6 +186,12 @@ class CRuntime:
             self._owners.discard(owner)
         self.packets.clean_up()
 
+    @property
+    def allocations(self) -> int:
+        """Blocks that all code has taken from malloc so far, operator new and what libstdc++ takes among them."""
+        takes: int = self._heap.takes
+        return takes
+
     def unload_image(self, image: Image) -> None:
         """Take code out of memory, after what it wants to be called at its end."""
         for each in (image, *self._own.pop(image, ())[::-1]):

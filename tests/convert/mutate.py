@@ -2,9 +2,9 @@
 
 Each file is a node, of this module or of a folder, that has been damaged: tokens taken away, doubled and exchanged, the
 end cut off, bytes of junk, braces without partners, deep nesting. The check must come to an end, and must not call
-clean what the compiler, asked here in its own way, does not accept. Nodes of this module are compiled against a stub of
-roscpp of a few lines, so that ten thousand of them take an hour, not days; those of a folder against the interface
-library.
+clean what the compiler, asked here in its own way, does not accept. It is asked of those that the check calls clean,
+which are few. Nodes of this module are compiled against a stub of roscpp of a few lines, so that ten thousand of them
+take less than an hour, not days; those of a folder, one in fifty, against the interface library.
 """
 
 from __future__ import annotations
@@ -17,13 +17,17 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.convert import Profile
 from cfepy.convert.build import LANGUAGE, library_includes, profile_flags
 from cfepy.convert.check import check_program
+from cfepy.convert.messages import write_headers
 from cfepy.convert.packages import CppPackage, Program
+from cfepy.status import UsageError
+from rospy_shim.msgs import shipped
 
 STUB = {
     "ros/ros.h": """#ifndef STUB_ROS_H
@@ -119,6 +123,9 @@ end:
 )
 _TOKEN = re.compile(rb'"(?:[^"\\\n]|\\.)*"|\w+|\s+|.', re.DOTALL)
 _LONGEST = 60_000  # bytes of a node that is taken from a folder
+_OF_FOLDER = 0.02  # of all files: those take seconds each
+_HEADER = re.compile(rb"#include\s*[<\"](\w+/\w+)\.h[>\"]")
+OWN = Path(__file__).parent
 
 
 class Outcome(NamedTuple):
@@ -126,13 +133,13 @@ class Outcome(NamedTuple):
 
     Attributes:
         kind: of the damage.
-        compiles: whether the compiler accepts it.
-        refused: whether the check does not.
+        of_folder: whether it is compiled against the interface library.
+        refused: whether the check refuses it.
         problem: what is wrong with the check; empty when nothing is.
     """
 
     kind: str
-    compiles: bool
+    of_folder: bool
     refused: bool
     problem: str
 
@@ -228,10 +235,10 @@ class Damaging:
     Args:
         seed: of what is drawn.
         folder: for the files.
-        sources: folder of more nodes; None for those of this module alone.
+        sources: folder of more nodes.
     """
 
-    def __init__(self, seed: int, folder: Path, sources: Path | None = None) -> None:
+    def __init__(self, seed: int, folder: Path, sources: Path = OWN) -> None:
         self._chance = random.Random(seed)
         self._folder = folder
         self._stub = folder / "stub"
@@ -239,36 +246,46 @@ class Damaging:
             (self._stub / name).parent.mkdir(parents=True, exist_ok=True)
             (self._stub / name).write_text(text, encoding="utf-8")
         self._nodes = [each.encode() for each in NODES]
-        found = sorted(sources.rglob("*.cpp")) if sources is not None else []
+        found = sorted(sources.rglob("*.cpp"))
         self._others = [each.read_bytes() for each in found if 0 < each.stat().st_size < _LONGEST]
+        self._messages: dict[Profile, Path] = {}
 
     def outcomes(self, count: int) -> Iterator[Outcome]:
         """Damage so many files, and check each."""
         for _ in range(count):
             chance = self._chance
-            of_folder = bool(self._others) and chance.random() < 0.02  # those take seconds each
+            of_folder = bool(self._others) and chance.random() < _OF_FOLDER
             source = chance.choice(self._others if of_folder else self._nodes)
             kind = chance.choice(sorted(DAMAGES))
-            yield self.check(kind, DAMAGES[kind](chance, source), [] if of_folder else [self._stub])
+            yield self.check(kind, DAMAGES[kind](chance, source), of_folder)
 
-    def check(self, kind: str, source: bytes, includes: list[Path]) -> Outcome:
-        """Hold the check against the compiler, for one file with the folders of its headers."""
+    def check(self, kind: str, source: bytes, of_folder: bool) -> Outcome:
+        """Hold the check against the compiler, for one file; `of_folder` compiles it against the interface library."""
         file = self._folder / "node.cpp"
         file.write_bytes(source)
+        includes = [] if of_folder else [self._stub]
         program = Program(CppPackage("", self._folder), "node", [file], includes)
         profile = self._chance.choice(list(Profile))
-        compiles = self._compiles(file, includes, profile)
         try:
             report = check_program(program, profile, {})
         except Exception as error:  # whatever it is, it is what is looked for
-            return Outcome(kind, compiles, False, f"{type(error).__name__}: {error}"[:200])
-        wrong = "clean, but it does not compile" if not compiles and not report.is_refused else ""
-        return Outcome(kind, compiles, report.is_refused, wrong)
+            return Outcome(kind, of_folder, False, f"{type(error).__name__}: {error}"[:200])
+        clean = not report.is_refused
+        wrong = clean and not self._compiles(file, includes or [self._headers(profile)], profile)
+        return Outcome(kind, of_folder, not clean, "clean, but it does not compile" if wrong else "")
+
+    def _headers(self, profile: Profile) -> Path:
+        """The headers of all messages that the nodes of the folder include, as far as cfepy has their definitions."""
+        if profile not in self._messages:
+            made = self._messages[profile] = self._folder / f"messages_{profile.name}"
+            made.mkdir()
+            for name in sorted({name.decode() for each in self._others for name in _HEADER.findall(each)}):
+                with suppress(UsageError):
+                    write_headers([name], made, profile, shipped())
+        return self._messages[profile]
 
     def _compiles(self, file: Path, includes: list[Path], profile: Profile) -> bool:
-        """The compiler's word, asked in the plainest way, but for a file of a folder, which needs messages."""
-        if not includes:
-            return True
+        """The compiler's word, asked in the plainest way."""
         folders = [f"-I{each}" for each in (*includes, *library_includes())]
         command = ["g++", LANGUAGE[0], *profile_flags(profile), "-w", "-fsyntax-only", *folders, str(file)]
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
@@ -280,13 +297,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--files", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--sources", type=Path, help="a folder with more nodes")
+    parser.add_argument("--sources", type=Path, default=OWN, help="a folder with more nodes (default: this one)")
     arguments = parser.parse_args()
     counts: Counter[str] = Counter()
     with tempfile.TemporaryDirectory(prefix="cfepy-mutate-") as folder:
         damaging = Damaging(arguments.seed, Path(folder), arguments.sources)
         for number, each in enumerate(damaging.outcomes(arguments.files), 1):
-            counts.update(["compile" if each.compiles else "do not compile", "refused" if each.refused else "clean"])
+            counts.update(["refused" if each.refused else "clean", "against the library"][: 1 + each.of_folder])
             if each.problem:
                 counts["wrong"] += 1
                 print(f"{number} ({each.kind}): {each.problem}", flush=True)

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.convert.mutate import DAMAGES, NODES, STUB, Damaging
+from cfepy.convert.check.compiler import Compiled, Compiler
+from tests.convert.mutate import DAMAGES, NODES, OWN, STUB, Damaging
 
 
 @pytest.mark.parametrize("kind", sorted(DAMAGES))
@@ -19,9 +20,17 @@ def test_each_kind_damages(kind: str) -> None:
 @pytest.mark.slow
 def test_what_is_whole_compiles(tmp_path: Path) -> None:
     damaging = Damaging(1, tmp_path)
-    outcome = damaging.check("nothing", NODES[2].encode(), [tmp_path / "stub"])
-    assert (outcome.compiles, outcome.refused, outcome.problem) == (True, False, "")
     assert (tmp_path / "stub" / next(iter(STUB))).is_file()
+    assert damaging.check("nothing", NODES[2].encode(), False) == ("nothing", False, False, "")
+    counted = (OWN / "nodes/counted/src/counted.cpp").read_bytes()
+    assert damaging.check("nothing", counted, True)[2:] == (False, "")
+
+
+@pytest.mark.slow
+def test_what_is_called_clean_and_does_not_compile_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Compiler, "compile", lambda self, source, scratch: Compiled(True, []))
+    outcome = Damaging(1, tmp_path).check("nothing", NODES[2].encode() + b"int more = none;", False)
+    assert outcome.problem == "clean, but it does not compile"
 
 
 @pytest.mark.slow

@@ -57,7 +57,8 @@ static void pointers()
                 boost::dynamic_pointer_cast<Derived>(base)->self() == derived);
     boost::shared_ptr<Base const> fixed = base;
     boost::const_pointer_cast<Base>(fixed)->value = 7;
-    std::printf("%d %ld\n", weak.lock()->value, derived.use_count());
+    const long uses = derived.use_count();
+    std::printf("%d %ld\n", weak.lock()->value, uses);
     derived.reset();
     base.reset();
     std::printf("%d\n", weak.expired());

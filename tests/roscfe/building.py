@@ -43,6 +43,17 @@ class Target(NamedTuple):
 HERE = Target(tuple(CPP))
 POWERPC = Target(("powerpc-linux-gnu-g++", "-static"), ("qemu-ppc",))
 ARM = Target(("arm-linux-gnueabihf-g++", "-static"), ("qemu-arm",))
+MIPS = Target(("mips-linux-gnu-g++", "-static"), ("qemu-mips",))
+TARGETS = {"here": HERE, "powerpc": POWERPC, "arm": ARM, "mips": MIPS}
+"""Those that are emulated have 32 bits; powerpc and mips are big-endian."""
+
+
+def target_named(name: str) -> Target:
+    """A kind of computer for a test, which is skipped where its compiler or its emulator is not there."""
+    lacking = TARGETS[name].lacking
+    if lacking is not None:
+        pytest.skip(f"there is no {lacking} (Debian: qemu-user, g++-arm-linux-gnueabihf, ...)")
+    return TARGETS[name]
 
 
 def compile_program(
@@ -65,11 +76,30 @@ def compile_program(
         include: where headers are; nothing for roscpp's own.
         libraries: what is linked.
     """
+    objects = compile_objects(made, sources, *flags, target=target, base=base, include=include)
+    return link_program(made, objects, *flags, *libraries, target=target)
+
+
+def compile_objects(
+    made: Path,
+    sources: Iterable[Path],
+    *flags: str,
+    target: Target = HERE,
+    base: Sequence[str] = FLIGHT_FLAGS,
+    include: Sequence[str] = INCLUDE,
+) -> list[Path]:
+    """Compile C++ files, one after the other, to object files that are called after them and `made`; see
+    `compile_program`."""
     objects = []
     for source in sources:
         objects.append(made.with_name(f"{source.stem}.{made.name}.o"))
         _run([*target.compiler, *base, *include, *flags, "-c", str(source), "-o", str(objects[-1])])
-    _run([*target.compiler, *flags, *map(str, objects), *libraries, "-o", str(made)])
+    return objects
+
+
+def link_program(made: Path, objects: Iterable[Path], *flags: str, target: Target = HERE) -> Path:
+    """Link object files; flags are the linker's, and libraries."""
+    _run([*target.compiler, *map(str, objects), *flags, "-o", str(made)])
     return made
 
 

@@ -20,14 +20,13 @@ from typing import NamedTuple
 
 from cfepy.convert.capacities import Capacities
 from cfepy.convert.messages import Profile, write_headers
-from tests.roscfe.building import ARM, HERE, POWERPC, ROSCPP, Target, compile_program
+from tests.roscfe.building import HERE, ROSCPP, TARGETS, Target, compile_program
 from tests.roscfe.random_messages import LIBRARY, Source, all_types, capacities
 
 FOLDER = Path(__file__).parent
 IN_ONE_FILE = 40  # types
 BATCH = 2500  # messages that one process is sent
 ROS_PYTHON = "/usr/bin/python3"
-TARGETS = {"here": HERE, "powerpc": POWERPC, "arm": ARM}
 MAIN = """
 #include "roundtrip.h"
 

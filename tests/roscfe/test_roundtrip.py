@@ -7,24 +7,21 @@ from pathlib import Path
 import pytest
 
 from cfepy.convert.messages import Profile
-from tests.roscfe.building import ARM, HERE, POWERPC, needs_cpp
+from tests.roscfe.building import TARGETS, needs_cpp, target_named
 from tests.roscfe.random_messages import all_types
 from tests.roscfe.roundtrip import Program, frames_of
 
 pytestmark = [pytest.mark.slow, needs_cpp]
-TARGETS = {"here": HERE, "powerpc": POWERPC, "arm": ARM}
 MESSAGES = {"here": 200, "powerpc": 30, "arm": 30}  # of each type; an emulated processor takes its time
 
 
 @pytest.mark.parametrize("profile", [Profile.HOST, Profile.STRICT])
 @pytest.mark.parametrize("target", TARGETS)
 def test_all_types(tmp_path: Path, profile: Profile, target: str) -> None:
-    lacking = TARGETS[target].lacking
-    if lacking is not None:
-        pytest.skip(f"there is no {lacking} (Debian: g++-powerpc-linux-gnu, g++-arm-linux-gnueabihf, qemu-user)")
+    kind = target_named(target)
     types = all_types()
     assert len(types) > 1000
-    program = Program(tmp_path, types, profile, "-O1", target=TARGETS[target])
+    program = Program(tmp_path, types, profile, "-O1", target=kind)
     for name in types:
         assert not program.differing(name, frames_of(name, MESSAGES[target])), name
 

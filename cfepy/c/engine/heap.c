@@ -30,6 +30,7 @@ struct Heap {
     int free_count[CLASSES], free_room[CLASSES];
     uint32_t owner;                             /* who gets what is taken now */
     size_t used;
+    uint64_t takes;                             /* blocks that were taken so far, given back or not */
 };
 
 /* Sizes of four steps between powers of two: at most a fifth of a block is lost. */
@@ -116,6 +117,7 @@ HIDDEN uint64_t heap_take(Heap *heap, size_t size)
     block->owner = heap->owner;
     block->is_used = true;
     heap->used += size;
+    heap->takes++;
     races_forget(block->address, size);
     size_t rest;
     unsigned char *bytes = margin(heap, block, &rest);
@@ -245,6 +247,7 @@ static int set_owner(Heap *heap, PyObject *owner, void *unused)
     return 0;
 }
 static PyObject *get_used(Heap *heap, void *unused) { return PyLong_FromSize_t(heap->used); }
+static PyObject *get_takes(Heap *heap, void *unused) { return PyLong_FromUnsignedLongLong(heap->takes); }
 
 static PyMethodDef heap_methods[] = {
     {"take", (PyCFunction)take, METH_O, "take(size) -> address of a block of zeros, 0 when there is no memory left"},
@@ -256,6 +259,7 @@ static PyMethodDef heap_methods[] = {
 static PyGetSetDef heap_attributes[] = {
     {"owner", (getter)get_owner, (setter)set_owner, "whose the blocks are that are taken from now on", NULL},
     {"used", (getter)get_used, NULL, "bytes in use", NULL},
+    {"takes", (getter)get_takes, NULL, "blocks that were taken so far, given back or not", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 HIDDEN PyTypeObject heap_type = {

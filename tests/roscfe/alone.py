@@ -1,0 +1,63 @@
+"""Nodes that fly alone: programs for any computer, with the interface library and a stand-in for cFE in them.
+
+`cfe_stand_in.cpp` has a Software Bus with one pipe and a clock that goes on while the node waits. What needs more than
+one application, or cFE's own timing, is flown on cfepy and on NASA's cFE instead.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+from cfepy.c import headers_folder
+from cfepy.convert.build import WITHOUT_TYPES, WRAPPED, library_sources, profile_flags
+from cfepy.convert.entry import FREE_ROWS, NodeEntry, main_header
+from cfepy.convert.messages import Profile, write_headers
+from rospy_shim.parameters.table import FREE
+from tests.roscfe.building import FLIGHT_FLAGS, HERE, STRICT_FLAGS, Target, compile_objects, link_program
+from tests.roscfe.probing import REMAPS, marked
+from tests.roscfe.random_messages import LIBRARY
+
+FOLDER = Path(__file__).parent
+TYPES = ("std_msgs/Int32", "std_msgs/String", "rosgraph_msgs/Log", "geometry_msgs/TransformStamped")
+TOPICS = ("a", "b", "latched", "silent")
+FIRST_ID = 0x0A00
+
+
+class Alone:
+    """The interface library with its stand-in, compiled once for a kind of computer.
+
+    Args:
+        folder: where it is made.
+        target: what it is for.
+        flags: of the compiler, more than those of a build.
+    """
+
+    def __init__(self, folder: Path, target: Target = HERE, *flags: str) -> None:
+        self._folder, self._target = folder, target
+        messages = folder / "messages"
+        write_headers(TYPES, messages, Profile.HOST, LIBRARY)
+        self._flags = [f"-I{messages}", "-isystem", str(headers_folder()), *profile_flags(Profile.HOST), "-O1", *flags]
+        library = self._objects(library_sources(()), [*STRICT_FLAGS, *WITHOUT_TYPES])
+        self._library = [*library, *self._objects([FOLDER / "cfe_stand_in.cpp"], FLIGHT_FLAGS)]
+
+    def fly(self, source: Path) -> list[str]:
+        """What a node prints; it has the name, the namespace and the remappings of `tests.roscfe.probing`."""
+        main = self._folder / "main.h"
+        main.write_text(main_header(True))
+        ids = {f"/probes/{name}": (FIRST_ID + at, False) for at, name in enumerate(TOPICS)}
+        remaps = {f"/probes/{one}": other if other[0] == "/" else f"/probes/{other}" for one, other in REMAPS.items()}
+        rows = [FREE] * FREE_ROWS
+        entry = self._folder / "entry.cpp"
+        entry.write_text(NodeEntry("NODE", "probe", "/probes", topics=ids, remaps=remaps, rows=rows).text())
+        node = self._objects([source], ["-std=c++17", "-Wall", "-include", str(main)], "node")
+        parts = [*node, *self._objects([entry], STRICT_FLAGS), *self._library]
+        wrapped = f"-Wl,--wrap={',--wrap='.join(WRAPPED)}"
+        made = link_program(self._folder / source.stem, parts, wrapped, *self._flags, target=self._target)
+        done = subprocess.run([*self._target.runner, str(made)], capture_output=True, check=False, timeout=300)
+        assert done.returncode == 0, (done.returncode, done.stderr.decode(errors="replace")[-3000:])
+        return list(marked(done.stdout.decode(errors="replace").splitlines()))
+
+    def _objects(self, sources: Sequence[Path], base: Sequence[str], part: str = "library") -> list[Path]:
+        return compile_objects(self._folder / part, sources, *self._flags, target=self._target, base=base)

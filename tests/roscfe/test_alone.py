@@ -1,0 +1,24 @@
+"""The whole library on computers of other kinds, big-endian and of 32 bits: nodes print what roscpp's printed.
+
+The probes of `tests.roscfe.probing` with a stand-in for cFE, here and emulated.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.roscfe.alone import Alone
+from tests.roscfe.building import needs_cpp, target_named
+from tests.roscfe.probing import NAMES, PROBES
+
+pytestmark = [pytest.mark.slow, needs_cpp]
+
+
+@pytest.mark.parametrize("target", ["here", "powerpc", "arm"])
+def test_probes_print_what_is_recorded(tmp_path: Path, target: str) -> None:
+    alone = Alone(tmp_path, target_named(target))
+    for name in NAMES:
+        wanted = (PROBES / f"{name}.txt").read_text(encoding="utf-8").splitlines()
+        assert alone.fly(PROBES / f"{name}.cpp") == wanted, name
