@@ -39,6 +39,7 @@ class NodeEntry:
         rows: of its table of parameters.
         takes_arguments: whether main has parameters.
         nodelet: the class of C++ that the node is, if it is a nodelet.
+        params_are_given: cfepy's parameter server has the parameters before the node starts.
     """
 
     app: str
@@ -51,6 +52,7 @@ class NodeEntry:
     rows: Sequence[Row] = ()
     takes_arguments: bool = True
     nodelet: str = ""
+    params_are_given: bool = False
 
     @property
     def symbol(self) -> str:
@@ -164,7 +166,7 @@ def _lines(node: NodeEntry) -> Iterator[str]:
         ("kParams", rows),
     ):
         yield f"    {name if table else 'nullptr'}, {len(table)},"
-    yield f"    {LONGEST_QUEUE}, {PIPE_DEPTH}}};"
+    yield f"    {LONGEST_QUEUE}, {PIPE_DEPTH}, {str(node.params_are_given).lower()}}};"
     yield ""
     yield f'__attribute__((visibility("default"))) void {node.symbol}(void)'
     yield "{"

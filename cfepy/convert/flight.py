@@ -64,6 +64,7 @@ def build_for_flight(
         rows=parameter_rows(params, name, others),
         takes_arguments=bool(program.nodelet) or main_form(program.sources, package.folder),
         nodelet=program.nodelet,
+        params_are_given=True,
     )
     library = message_library(packages)
     options = BuildOptions(Profile(config.profile), capacities_of(config, library), config.arena_bytes)

@@ -1,7 +1,8 @@
 """Compiled nodes: roscpp nodes that are cFE applications, and what the graph knows of them.
 
 Such a node tells the application ROS what it publishes, hears and offers, with a request as of a service, and gets the
-MsgId of each name. Everything else it learns from the Software Bus, as on a flight computer without that application.
+MsgId of each name; it asks for parameters in the same way (`rospy_shim.graph.compiled_params`). Everything else it
+learns from the Software Bus, as on a flight computer without that application.
 """
 
 from __future__ import annotations
@@ -12,16 +13,15 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.status import UsageError
-from rospy_shim.client.service import answer_packets, call_of_request, room_of
+from rospy_shim.client.service import REQUEST_LEAD, Pieces, answer_packets, call_of_request, room_of
 from rospy_shim.client.transport import HEADER_BYTES, addressed, segments, whole_header
+from rospy_shim.graph.compiled_params import CompiledParams
 from rospy_shim.parameters.table import MASTER_TLM_MID
 
 if TYPE_CHECKING:
     from cfepy.sb import SoftwareBus
     from rospy_shim.client.link import Link
     from rospy_shim.graph.graph import Graph, TopicEntry
-
-_BODY_AT = 12  # behind the command header and the number of the call
 
 
 class Concern(IntEnum):
@@ -136,12 +136,17 @@ class CompiledNodes:
     def __init__(self, graph: Graph, bus: SoftwareBus) -> None:
         self._graph = graph
         self._bus = bus
+        self._params = CompiledParams(graph.params, bus)
+        self._pieces = Pieces(REQUEST_LEAD)
 
     def answer(self, packet: bytes) -> Iterator[bytes]:
-        """The packets that answer a request."""
+        """The packets that answer a request; none until the last packet of a long one."""
         number = call_of_request(packet)
+        request = self._pieces.add(number, packet)
+        if request is None:
+            return iter(())
         try:
-            good, body = True, self._enter(packet[_BODY_AT:]).packed()
+            good, body = True, self._answer(request)
         except (UsageError, struct.error, UnicodeDecodeError) as error:
             good, body = False, str(error).encode()
         return answer_packets(MASTER_TLM_MID, number, good, body, self._bus.config.sb_max_msg_size)
@@ -156,19 +161,23 @@ class CompiledNodes:
             for name in [name for name, entry in services.items() if entry.service.node is node]:
                 del services[name]
 
-    def _enter(self, body: bytes) -> Enrolled:
-        """Take what a node says.
+    def _answer(self, body: bytes) -> bytes:
+        """Take what a node says or asks.
 
         Raises:
-            UsageError: the name has no MsgId, or another type.
+            UsageError: the name has no MsgId, or another type; a parameter's value cannot be.
         """
-        self.forget_ended()
         pipe, kind = struct.unpack_from("<IB", body)
-        who, name, kind_of, md5sum, definition = _texts(body, 5)
+        who, name, *rest = _texts(body, 5)
+        if self._params.takes(kind):
+            return self._params.answer(kind, who, name, rest[0])
+        return self._enter(pipe, kind, who, name, DeclaredType(*rest)).packed()
+
+    def _enter(self, pipe: int, kind: int, who: str, name: str, declared: DeclaredType) -> Enrolled:
+        self.forget_ended()
         node = self._graph.compiled.get(who)
         if node is None or node.pipe != pipe:
             node = self._graph.compiled[who] = CompiledNode(who, pipe, self._bus)
-        declared = DeclaredType(kind_of, md5sum, definition)
         does: dict[int, Callable[[CompiledNode, str, DeclaredType], Enrolled]] = {
             Concern.PUBLISHER: self._publish,
             Concern.SUBSCRIBER: self._subscribe,

@@ -26,6 +26,7 @@ class ParameterTree:
         self._root: dict[str, Any] = {}
         self._rows: ParameterRows | None = None
         self._save: Callable[[], object] = _nothing
+        self._listeners: list[Callable[[str], object]] = []
         self._started: set[str] = set()
         self._survived = False
         for name, value in (initial or {}).items():
@@ -52,6 +53,7 @@ class ParameterTree:
         if self._rows is None:
             self._survived = True  # nothing was set in these tables since the processor started
         self._root, self._rows, self._save = root, rows, save
+        self._tell(SEP)
 
     def let_go(self) -> None:
         """The tables are gone; the parameters stay as long as the processor runs."""
@@ -76,7 +78,46 @@ class ParameterTree:
             key = join(node, name)
             if not again or self.find(key) is _MISSING:
                 self._set(key, value)
+                self._tell(key)
         self._save()
+
+    def offer(self, node: str, values: Mapping[str, Any]) -> None:
+        """The parameters in the table of a compiled node that starts: set once, where there are none.
+
+        Args:
+            node: its full name.
+            values: a tree of them.
+
+        Raises:
+            ParametersFull: there is no room.
+        """
+        if self._survived or node in self._started:
+            return
+        self._started.add(node)
+        self._offer("", values)
+        self._save()
+
+    def _offer(self, above: str, values: Mapping[str, Any]) -> None:
+        for name, value in values.items():
+            key = f"{above}{SEP}{name}"
+            there = self.find(key)
+            if there is _MISSING:
+                self._set(key, value)
+                self._tell(key)
+            elif type(there) is dict and type(value) is dict:
+                self._offer(key, value)
+
+    def on_change(self, listener: Callable[[str], object]) -> None:
+        """Tell of what changes from now on.
+
+        Args:
+            listener: takes the full name of the parameter or namespace that was set or deleted.
+        """
+        self._listeners.append(listener)
+
+    def _tell(self, key: str) -> None:
+        for listener in self._listeners:
+            listener(key)
 
     # -- what is in it -----------------------------------------------------------------------------------------------
 
@@ -100,6 +141,7 @@ class ParameterTree:
         """
         self._set(key, value)
         self._save()
+        self._tell(key)
 
     def _set(self, key: str, value: Any) -> None:
         parts = _parts(key)
@@ -134,6 +176,7 @@ class ParameterTree:
             self._rows.remove(f"{above}{name_of([last])}", place[last], above if above and len(place) == 1 else None)
         del place[last]
         self._save()
+        self._tell(key)
 
     def search(self, namespace: str, key: str) -> str | None:
         """The name that has the first part of `key` in the namespace or one above it, or None."""

@@ -189,6 +189,20 @@ def value_of(text: str) -> Any:
     return _restored(found)
 
 
+def json_of(value: Any) -> str:
+    """A value as JSON, its texts in quotes, as nodes in C++ get it."""
+    return json.dumps(_portable(value))
+
+
+def of_json(text: str) -> Any:
+    """The value that JSON stands for.
+
+    Raises:
+        ValueError: it is no JSON, or nothing that ROS can carry.
+    """
+    return _restored(json.loads(text))
+
+
 def _is_plain(text: str) -> bool:
     """Whether a text can stand without quotes."""
     if not text or not (text.isascii() and text.isprintable()) or text != text.strip() or text.startswith(_BRACKETS):

@@ -51,13 +51,14 @@ def test_two_nodes_of_one_program_share_nothing() -> None:
 
 
 def test_a_node_that_is_restarted_begins_anew() -> None:
+    """Only what it has set on the parameter server is there still."""
     with mission_of("lives") as mission:
         mission.run_for(3)
         before = len(said_by(mission, "/one"))
         mission.cfe.sb.transmit_msg(RESTART_APP.packet(Application="ONE"))
         mission.run_for(12)  # ES lets it end in its own time first
         after = said_by(mission, "/one")[before:]
-        assert after[0] == "count 1 global 5 heard 0 starts 1 made before main"
+        assert after[0] == "count 1 global 5 heard 0 starts 2 made before main"
         assert len(after) >= 4
         assert said_by(mission, "/two")[-1].startswith(f"count {len(said_by(mission, '/two'))} ")
 

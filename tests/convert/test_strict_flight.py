@@ -78,7 +78,9 @@ def test_a_message_that_does_not_fit_is_refused(mission: Path, capfd: pytest.Cap
     assert main(["run", fill(mission), "--for", "3"]) == 1  # an event of the type ERROR
     shown = capfd.readouterr().out
     assert shown.count("/ear: refused 61 bytes on /pulse: no message of its type, or one beyond its capacities") == 1
-    heard = [line.partition("heard 0 ")[2].strip("\x1b[0m") for line in shown.splitlines() if "]: heard 0 " in line]
+    heard = [
+        line.partition("heard 0 ")[2].removesuffix("\x1b[0m") for line in shown.splitlines() if "]: heard 0 " in line
+    ]
     assert heard == ["as long as it can", "as long as it can be", "short"]
 
 

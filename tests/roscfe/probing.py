@@ -1,8 +1,8 @@
 """Small nodes of roscpp, the folder probes: what each prints on cfepy, and with Debian's roscpp beside it.
 
 `python -m tests.roscfe.probing [NAME...] [--record]` flies probes and runs them with the roscpp of this computer
-(libroscpp-dev, python3-roscore), and shows how what they print differs. `--record` keeps what roscpp's printed in
-probes/NAME.txt, which the tests compare with.
+(libroscpp-dev, python3-roscore; python3-rospy for probes with a partner), and shows how what they print differs.
+`--record` keeps what roscpp's printed in probes/NAME.txt, which the tests compare with.
 """
 
 from __future__ import annotations
@@ -29,10 +29,14 @@ PROBES = Path(__file__).parent / "probes"
 NAMES = sorted(each.stem for each in PROBES.glob("*.cpp"))
 MARK = "P| "
 """Begins each line that counts."""
+PARTNER = "py "
+"""Begins what is behind the mark in a line of a probe's partner: a node in Python of the same name, NAME.py."""
 NO_COLOR = "\x1b[0m"
 """What rosconsole puts behind a line."""
 REMAPS = {"from": "to", "chatter": "/talk"}
 SECONDS = 30.0
+ROS_PYTHON = "/usr/bin/python3"
+"""The interpreter that has Debian's rospy (python3-rospy)."""
 LIBRARIES = (
     *("-lroscpp", "-lrosconsole", "-lrostime", "-lroscpp_serialization", "-lxmlrpcpp"),
     *("-lactionlib", "-lboost_thread"),
@@ -57,13 +61,21 @@ def fly(name: str, folder: Path) -> list[str]:
     remaps = "".join(f'<remap from="{one}" to="{other}"/>' for one, other in REMAPS.items())
     launch = package / "probe.launch"
     node = f'<node pkg="probes" type="{name}" name="probe" output="screen">{remaps}</node>'
+    if (PROBES / f"{name}.py").is_file():
+        (package / f"{name}.py").write_bytes((PROBES / f"{name}.py").read_bytes())
+        node += f'<node pkg="probes" type="{name}.py" name="partner" output="screen"/>'
     launch.write_text(f'<launch><group ns="probes">{node}</group></launch>\n')
     with patch.dict(os.environ, {"ROS_PACKAGE_PATH": str(folder)}):
         spec = read_launch(launch, {}, build_for_flight)
     assert not spec.notes, spec.notes
     with Mission(spec, console=Console(quiet=True)) as mission:
         mission.run_for(SECONDS)
-        return list(marked(mission.console.lines))
+        return probe_first(marked(mission.console.lines))
+
+
+def probe_first(lines: Iterable[str]) -> list[str]:
+    """The lines of a probe, then those of its partner, which may come at any time between them."""
+    return sorted(lines, key=lambda line: line.startswith(PARTNER))
 
 
 def marked(lines: Iterable[str]) -> Iterator[str]:
@@ -119,9 +131,13 @@ def run_with_roscpp(name: str, folder: Path, environ: dict[str, str]) -> list[st
     made = folder / name
     compile_program(made, [PROBES / f"{name}.cpp"], base=("-std=c++17",), include=(), libraries=LIBRARIES)
     remaps = [f"{one}:={other}" for one, other in REMAPS.items()]
-    command = ["stdbuf", "-oL", str(made), "__name:=probe", *remaps]
-    done = subprocess.run(command, env=environ, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
-    return list(marked(done.stdout.decode("utf-8", "replace").splitlines()))
+    commands = [["stdbuf", "-oL", str(made), "__name:=probe", *remaps]]
+    if (PROBES / f"{name}.py").is_file():
+        commands.append([ROS_PYTHON, "-u", str(PROBES / f"{name}.py"), "__name:=partner"])
+    to = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+    running = [subprocess.Popen(each, env=environ, **to) for each in commands]
+    said = [each.communicate(timeout=60)[0].decode("utf-8", "replace") for each in running]
+    return probe_first(marked("".join(said).splitlines()))
 
 
 def main() -> None:

@@ -15,6 +15,7 @@ extern "C" {
 
 #include "ros/callback_queue.h"
 #include "ros/forwards.h"
+#include "ros/param.h"
 #include "ros/timer.h"
 #include "roscfe/node.h"
 #include "roscfe/publication.h"
@@ -122,6 +123,7 @@ void publication_lost_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe);
 bool take_request(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size);
 bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size);
 
+void open();            // the bus and the parameters, once
 void open_parameters();
 void close_logging();
 
@@ -144,6 +146,36 @@ struct Registration
 };
 Registration enroll(Kind kind, const std::string &name, const char *type, const char *md5, const char *definition);
 void         ask_for_latched(const std::string &topic);
+
+// Parameters of cfepy's ROS application, where all nodes of a mission have theirs (parameter_server.cpp). Values and names
+// are as in ros/param.h.
+enum class ParameterCall : std::uint8_t
+{
+    get       = 16,
+    set       = 17,
+    has       = 18,
+    erase     = 19,
+    search    = 20,
+    names     = 21,
+    give      = 22, // those of the node's table, where there are none
+    watch     = 23  // as get; changes are told
+};
+namespace server
+{
+bool get(const std::string &name, XmlRpc::XmlRpcValue &value);
+bool get_cached(const std::string &name, XmlRpc::XmlRpcValue &value);
+void forget_cached(const std::string &name); // it has changed, or what is in it
+void set(const std::string &name, const XmlRpc::XmlRpcValue &value);
+void give(const XmlRpc::XmlRpcValue &tree);
+bool has(const std::string &name);
+bool erase(const std::string &name);
+bool search(const std::string &ns, const std::string &key, std::string &result);
+void names(std::vector<std::string> &found);
+} // namespace server
+
+// A call of cfepy's ROS application; false when it refuses, which an event says. What else is asked are texts.
+bool call_master(std::uint8_t what, const std::string &name, const char *one, const char *two, const char *three,
+                 std::vector<std::uint8_t> &answer);
 void         withdraw_name(Kind kind, const std::string &name);
 
 } // namespace roscfe

@@ -1,6 +1,7 @@
 // Parameters as JSON: the texts that stand in the rows of a table of parameters.
 #include "json.h"
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -77,40 +78,50 @@ class Reader
         }
     }
 
+    std::size_t digits(const char *at) const { return std::strspn(at, "0123456789"); }
+
+    // A number as JSON has it: 007, +1 and .5 are texts.
     bool read_number(XmlRpcValue &value)
     {
-        const char *      begin = at_;
-        static const char kOf[] = "+-0123456789.eE";
-        const std::size_t size  = std::strspn(begin, kOf);
-        if (size == 0)
-        {
-            if (word("NaN") || word("Infinity") || word("-Infinity"))
-            {
-                Access::make(value, XmlRpcValue::TypeDouble);
-                Access::number(value) = std::strtod(begin, nullptr);
-                return true;
-            }
-            return false;
-        }
-        char *end = nullptr;
-        if (std::memchr(begin, '.', size) == nullptr && std::memchr(begin, 'e', size) == nullptr &&
-            std::memchr(begin, 'E', size) == nullptr)
-        {
-            const long long whole = std::strtoll(begin, &end, 10);
-            if (whole < INT32_MIN || whole > INT32_MAX)
-            {
-                return false; // XML-RPC has 32 bits
-            }
-            Access::make(value, XmlRpcValue::TypeInt);
-            Access::integer(value) = static_cast<int>(whole);
-        }
-        else
+        const char *begin = at_;
+        if (word("NaN") || word("Infinity") || word("-Infinity"))
         {
             Access::make(value, XmlRpcValue::TypeDouble);
-            Access::number(value) = std::strtod(begin, &end);
+            Access::number(value) = std::strtod(begin, nullptr);
+            return true;
+        }
+        const char *      end   = begin + (*begin == '-' ? 1 : 0);
+        const std::size_t whole = digits(end);
+        if (whole == 0 || (whole > 1 && *end == '0'))
+        {
+            return false;
+        }
+        end += whole;
+        const char *behind = end;
+        if (*end == '.' && digits(end + 1) > 0)
+        {
+            end += 1 + digits(end + 1);
+        }
+        if (*end == 'e' || *end == 'E')
+        {
+            const char *exponent = end + (end[1] == '-' || end[1] == '+' ? 2 : 1);
+            end                  = digits(exponent) > 0 ? exponent + digits(exponent) : end;
         }
         at_ = end;
-        return end == begin + size;
+        if (end != behind)
+        {
+            Access::make(value, XmlRpcValue::TypeDouble);
+            Access::number(value) = std::strtod(begin, nullptr);
+            return true;
+        }
+        const long long number = std::strtoll(begin, nullptr, 10);
+        if (number < INT32_MIN || number > INT32_MAX)
+        {
+            return false; // XML-RPC has 32 bits
+        }
+        Access::make(value, XmlRpcValue::TypeInt);
+        Access::integer(value) = static_cast<int>(number);
+        return true;
     }
 
     bool read_text(std::string &text)
@@ -299,6 +310,11 @@ void write_text(const std::string &text, std::string &to)
 
 void write_number(double number, std::string &to)
 {
+    if (std::isnan(number) || std::isinf(number))
+    {
+        to += std::isnan(number) ? "NaN" : number < 0 ? "-Infinity" : "Infinity";
+        return;
+    }
     char text[40];
     for (int digits = 15; digits <= 17; ++digits) // the fewest that read back as the same number
     {
@@ -309,7 +325,7 @@ void write_number(double number, std::string &to)
         }
     }
     to += text;
-    if (std::strpbrk(text, ".en") == nullptr)
+    if (std::strpbrk(text, ".e") == nullptr)
     {
         to += ".0"; // a double stays one
     }

@@ -69,6 +69,17 @@ void run(const NodeDescription &node, int (*main_function)())
     run_node(node);
 }
 
+void open()
+{
+    static bool is_open = false;
+    if (!is_open)
+    {
+        is_open = true;
+        open_bus();
+        open_parameters();
+    }
+}
+
 void refuse(const char *what, const char *detail)
 {
     const char *who = g_node.description != nullptr ? g_node.description->app : "roscfe";
@@ -186,8 +197,7 @@ void start()
         roscfe::refuse("You must call ros::init() before creating the first NodeHandle", g_node.description->app);
     }
     g_node.started = true;
-    roscfe::open_bus();
-    roscfe::open_parameters();
+    roscfe::open();
     CFE_EVS_SendEvent(roscfe::kStartedEid, CFE_EVS_EventType_INFORMATION, "%s started", g_node.name.c_str());
 }
 

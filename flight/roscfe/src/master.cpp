@@ -1,4 +1,5 @@
-// MsgIds of names: from cfepy's ROS application where it runs, else from the tables that the convertor has made.
+// The master: cfepy's ROS application where it runs. MsgIds of names come from it, else from the tables that the
+// convertor has made.
 #include <cstring>
 
 #include "internal.h"
@@ -21,9 +22,27 @@ void put_text(std::vector<std::uint8_t> &to, const char *text)
     to.insert(to.end(), text, text + size);
 }
 
-// Ask the ROS application, as a service is called: the node's pipe, what, node, name, type, md5 sum, definition.
+// Ask the ROS application about a name.
 bool ask(Kind kind, Kind about, const std::string &name, const char *type, const char *md5, const char *definition,
-         Registration &answer)
+         Registration &place)
+{
+    std::vector<std::uint8_t> answer;
+    const auto                what = static_cast<std::uint8_t>(static_cast<int>(kind) | static_cast<int>(about));
+    if (!call_master(what, name, type, md5, definition, answer) || answer.size() < 3)
+    {
+        return false;
+    }
+    place.msg_id  = static_cast<std::uint16_t>(answer[0] | answer[1] << 8);
+    place.raw     = (answer[2] & 1) != 0;
+    place.latched = (answer[2] & 2) != 0;
+    return true;
+}
+
+} // namespace
+
+// As a service is called: the node's pipe, what, node, name, and three texts.
+bool call_master(std::uint8_t what, const std::string &name, const char *one, const char *two, const char *three,
+                 std::vector<std::uint8_t> &answer)
 {
     static Client             master("", nullptr, nullptr);
     std::vector<std::uint8_t> request;
@@ -32,38 +51,28 @@ bool ask(Kind kind, Kind about, const std::string &name, const char *type, const
     {
         request.push_back(static_cast<std::uint8_t>(pipe >> (8 * byte)));
     }
-    request.push_back(static_cast<std::uint8_t>(static_cast<int>(kind) | static_cast<int>(about)));
+    request.push_back(what);
     put_text(request, g_node.name.c_str());
     put_text(request, name.c_str());
-    put_text(request, type);
-    put_text(request, md5);
-    put_text(request, definition);
+    for (const char *text : {one, two, three})
+    {
+        put_text(request, text);
+    }
     std::uint8_t *at = master.begin(request.size());
     if (at == nullptr)
     {
         return false;
     }
     std::memcpy(at, request.data(), request.size());
-    if (!master.call())
+    const bool good = master.call();
+    answer.swap(master.answer_);
+    if (!good && !answer.empty())
     {
-        const std::string text(master.answer_.begin(), master.answer_.end());
-        if (!text.empty())
-        {
-            CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s", text.c_str());
-        }
-        return false;
+        const std::string text(answer.begin(), answer.end());
+        CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s", text.c_str());
     }
-    if (master.answer_.size() < 3)
-    {
-        return false;
-    }
-    answer.msg_id  = static_cast<std::uint16_t>(master.answer_[0] | master.answer_[1] << 8);
-    answer.raw     = (master.answer_[2] & 1) != 0;
-    answer.latched = (master.answer_[2] & 2) != 0;
-    return true;
+    return good;
 }
-
-} // namespace
 
 Registration enroll(Kind kind, const std::string &name, const char *type, const char *md5, const char *definition)
 {

@@ -1,4 +1,5 @@
-// Parameters: rows of the application's table, which the ground loads and dumps like any other (CFE_TBL).
+// Parameters: rows of the application's table, which the ground loads and dumps like any other (CFE_TBL). Where cfepy's ROS
+// application is, it has all parameters (parameter_server.cpp); the table is what they begin with, and what a load sets.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -209,35 +210,10 @@ bool put_all(Rows &rows, const std::string &name, const XmlRpcValue &value)
     return good;
 }
 
-} // namespace
+// -- the table ---------------------------------------------------------------------------------------------------------
 
-void open_parameters()
+bool get_row(const std::string &name, XmlRpcValue &value)
 {
-    const NodeDescription &node = *g_node.description;
-    if (node.param_rows == 0)
-    {
-        return;
-    }
-    const std::size_t size   = static_cast<std::size_t>(node.param_rows) * sizeof(ParamRow);
-    CFE_Status_t      status = CFE_TBL_Register(&g_node.table, "Params", size, CFE_TBL_OPT_DEFAULT, nullptr);
-    if (status == CFE_SUCCESS)
-    {
-        status = CFE_TBL_Load(g_node.table, CFE_TBL_SRC_ADDRESS, node.params);
-    }
-    g_node.has_table = status == CFE_SUCCESS;
-    if (!g_node.has_table)
-    {
-        CFE_EVS_SendEvent(kParameterEid, CFE_EVS_EventType_ERROR, "%s: no table of parameters: 0x%08lX",
-                          g_node.name.c_str(), static_cast<unsigned long>(status));
-    }
-}
-
-bool get_param(const std::string &name, XmlRpcValue &value)
-{
-    if (g_node.has_table)
-    {
-        CFE_TBL_Manage(g_node.table); // what the ground has loaded counts from now on
-    }
     Rows        rows;
     bool        found  = false;
     const std::string prefix = name == "/" ? name : name + "/";
@@ -269,7 +245,7 @@ bool get_param(const std::string &name, XmlRpcValue &value)
     return found;
 }
 
-void set_param(const std::string &name, const XmlRpcValue &value)
+void set_rows(const std::string &name, const XmlRpcValue &value)
 {
     bool good = false;
     {
@@ -289,15 +265,10 @@ void set_param(const std::string &name, const XmlRpcValue &value)
     }
 }
 
-bool has_param(const std::string &name)
+bool erase_rows(const std::string &name)
 {
     XmlRpcValue value;
-    return get_param(name, value);
-}
-
-bool delete_param(const std::string &name)
-{
-    if (!has_param(name))
+    if (!get_row(name, value))
     {
         return false;
     }
@@ -309,10 +280,10 @@ bool delete_param(const std::string &name)
     return true;
 }
 
-void param_names(std::vector<std::string> &names)
+std::vector<std::string> row_names()
 {
-    names.clear();
-    Rows rows;
+    std::vector<std::string> names;
+    Rows                     rows;
     for (int i = 0; i < rows.count();)
     {
         const int end = rows.end_of(i);
@@ -321,6 +292,128 @@ void param_names(std::vector<std::string> &names)
             names.push_back(rows.name_of(i, end));
         }
         i = end;
+    }
+    return names;
+}
+
+// What the ground has loaded counts from now on; whether the ROS application is to be asked.
+bool take_over_load()
+{
+    if (!g_node.initialized)
+    {
+        return false;
+    }
+    open();
+    const bool loaded = g_node.has_table && CFE_TBL_Manage(g_node.table) == CFE_TBL_INFO_UPDATED;
+    if (loaded && g_node.has_master)
+    {
+        for (const std::string &name : row_names())
+        {
+            XmlRpcValue value;
+            if (get_row(name, value))
+            {
+                server::set(name, value);
+            }
+        }
+    }
+    return g_node.has_master;
+}
+
+} // namespace
+
+void open_parameters()
+{
+    const NodeDescription &node = *g_node.description;
+    if (node.param_rows == 0)
+    {
+        return;
+    }
+    const std::size_t size   = static_cast<std::size_t>(node.param_rows) * sizeof(ParamRow);
+    CFE_Status_t      status = CFE_TBL_Register(&g_node.table, "Params", size, CFE_TBL_OPT_DEFAULT, nullptr);
+    if (status == CFE_SUCCESS)
+    {
+        status = CFE_TBL_Load(g_node.table, CFE_TBL_SRC_ADDRESS, node.params);
+    }
+    g_node.has_table = status == CFE_SUCCESS;
+    if (!g_node.has_table)
+    {
+        CFE_EVS_SendEvent(kParameterEid, CFE_EVS_EventType_ERROR, "%s: no table of parameters: 0x%08lX",
+                          g_node.name.c_str(), static_cast<unsigned long>(status));
+    }
+    XmlRpcValue tree;
+    if (g_node.has_master && !node.params_are_given && get_row("/", tree))
+    {
+        server::give(tree);
+    }
+}
+
+bool get_param(const std::string &name, XmlRpcValue &value)
+{
+    return take_over_load() ? server::get(name, value) : get_row(name, value);
+}
+
+bool get_param_cached(const std::string &name, XmlRpcValue &value)
+{
+    return take_over_load() ? server::get_cached(name, value) : get_row(name, value);
+}
+
+void set_param(const std::string &name, const XmlRpcValue &value)
+{
+    if (take_over_load())
+    {
+        server::set(name, value);
+    }
+    else
+    {
+        set_rows(name, value);
+    }
+}
+
+bool has_param(const std::string &name)
+{
+    XmlRpcValue value;
+    return take_over_load() ? server::has(name) : get_row(name, value);
+}
+
+bool delete_param(const std::string &name)
+{
+    return take_over_load() ? server::erase(name) : erase_rows(name);
+}
+
+void param_names(std::vector<std::string> &names)
+{
+    if (take_over_load())
+    {
+        server::names(names);
+    }
+    else
+    {
+        names = row_names();
+    }
+}
+
+// From a namespace upwards, the first that has the key's first part.
+bool search_param(const std::string &ns, const std::string &key, std::string &result)
+{
+    if (take_over_load())
+    {
+        return server::search(ns, key, result);
+    }
+    const std::string first = key.substr(0, key.find('/'));
+    std::string       at    = ns;
+    for (;;)
+    {
+        XmlRpcValue value;
+        if (get_row(ros::names::append(at, first), value))
+        {
+            result = ros::names::append(at, key);
+            return true;
+        }
+        if (at == "/" || at.empty())
+        {
+            return false;
+        }
+        at = ros::names::parentNamespace(at);
     }
 }
 
@@ -463,7 +556,6 @@ bool search(const std::string &key, std::string &result)
     return search(this_node::getName(), key, result);
 }
 
-// From the namespace upwards, the first that has the key's first part.
 bool search(const std::string &ns, const std::string &key, std::string &result)
 {
     if (key.empty() || key[0] == '~')
@@ -475,21 +567,7 @@ bool search(const std::string &ns, const std::string &key, std::string &result)
         result = key;
         return roscfe::has_param(names::resolve(key));
     }
-    const std::string first = key.substr(0, key.find('/'));
-    std::string       at    = names::resolve(ns);
-    for (;;)
-    {
-        if (roscfe::has_param(names::append(at, first)))
-        {
-            result = names::append(at, key);
-            return true;
-        }
-        if (at == "/" || at.empty())
-        {
-            return false;
-        }
-        at = names::parentNamespace(at);
-    }
+    return roscfe::search_param(names::resolve(ns), key, result);
 }
 
 bool getParamNames(std::vector<std::string> &keys)

@@ -258,6 +258,11 @@ bool Client::call()
 bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size)
 {
     const std::size_t lead = kTelemetryHeader + kAnswerLead;
+    if (msg_id == kMasterMsgId && size >= lead && number_at(packet + kTelemetryHeader) == 0)
+    {
+        server::forget_cached(std::string(reinterpret_cast<const char *>(packet) + lead, size - lead)); // a notice
+        return true;
+    }
     for (Call *call = g_call; call != nullptr; call = call->outer)
     {
         if (call->msg_id != msg_id)

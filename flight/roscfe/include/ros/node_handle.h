@@ -297,7 +297,7 @@ class NodeHandle
     template <class T>
     bool getParamCached(const std::string &key, T &value) const
     {
-        return param::get(resolveName(key), value);
+        return param::getCached(resolveName(key), value);
     }
     template <class T>
     bool param(const std::string &key, T &value, const T &otherwise) const

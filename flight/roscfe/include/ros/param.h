@@ -1,4 +1,4 @@
-// ros::param: parameters, which are rows of the application's table (node.h).
+// ros::param: parameters, which are those of cfepy's parameter server, or rows of the application's table (node.h).
 #ifndef ROSCPP_PARAM_H
 #define ROSCPP_PARAM_H
 
@@ -16,10 +16,12 @@ namespace roscfe
 // By their full names. What C++ asks for and what the parameter is must agree as in roscpp: an int is no string, but a
 // double takes an int.
 bool get_param(const std::string &name, XmlRpc::XmlRpcValue &value);
+bool get_param_cached(const std::string &name, XmlRpc::XmlRpcValue &value); // asks again only after a change
 void set_param(const std::string &name, const XmlRpc::XmlRpcValue &value);
 bool has_param(const std::string &name);
 bool delete_param(const std::string &name);
 void param_names(std::vector<std::string> &names);
+bool search_param(const std::string &ns, const std::string &key, std::string &result);
 
 bool param_to(XmlRpc::XmlRpcValue &value, std::string &to);
 bool param_to(XmlRpc::XmlRpcValue &value, double &to);
@@ -120,7 +122,8 @@ bool get(const std::string &key, T &value)
 template <class T>
 bool getCached(const std::string &key, T &value)
 {
-    return get(key, value);
+    XmlRpc::XmlRpcValue found;
+    return roscfe::get_param_cached(names::resolve(key), found) && roscfe::param_to(found, value);
 }
 template <class T>
 bool param(const std::string &key, T &value, const T &otherwise)

@@ -58,6 +58,7 @@ struct NodeDescription
     int               param_rows;
     std::uint16_t     longest_queue; // messages that a subscription keeps at most, whatever the node asks for
     std::uint16_t     pipe_depth;    // packets that wait in the node's pipe while it computes
+    bool              params_are_given; // cfepy's parameter server has them before the node starts, as of a launch file
 };
 
 // Run a node: the application's entry point calls this, which does not return.
