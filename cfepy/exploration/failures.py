@@ -38,6 +38,7 @@ EVENT_LEVELS = {"error": (ERROR, CRITICAL), "critical": (CRITICAL,), "none": ()}
 """Which events count as failures, by what `--events` of `cfepy explore` says."""
 _LINE = re.compile(r"\[(?P<node>[^\]\s]+)\] ?(?P<text>.*)")
 _FRAME = re.compile(r'\s+File "(?P<file>.+)", line (?P<line>\d+)')
+_PLACE_AT_END = re.compile(r"\([^\s()]+:\d+\)$")
 _BEGIN = "Traceback (most recent call last):"
 _CHAINED = ("During handling of the above exception", "The above exception was the direct cause")
 
@@ -146,7 +147,9 @@ class FailureWatch(Attachment):
             where = detail.partition(f"\n{type(error).__module__}")[0]
             self._found.append(_deadlock(error.circle, now_ns, where, task.name))
         else:
-            self._found.append(Failure(verdict.DIED, task.owner.name, reason(error), now_ns, detail, task.name))
+            text = reason(error)
+            cause = _cause(type(error).__name__, text)
+            self._found.append(Failure(verdict.DIED, task.owner.name, text, now_ns, detail, task.name, cause))
 
     def _take_event(self, seen: Seen) -> None:
         event = DecodedEvent.of(seen)
@@ -154,7 +157,8 @@ class FailureWatch(Attachment):
             assert self._mission is not None
             text = f"{event.type_name} event {event.event_id}: {event.text}"
             task = self._mission.kernel.current.name
-            self._found.append(Failure(verdict.EVENT, event.app, text, seen.at_ns, task=task))
+            cause = f"event {event.event_id}"
+            self._found.append(Failure(verdict.EVENT, event.app, text, seen.at_ns, task=task, cause=cause))
 
 
 def _resets(mission: Mission) -> Iterator[Failure]:
@@ -183,7 +187,7 @@ def _missed(outcome: Outcome | None) -> Iterator[Failure]:
         if not each.ok and each.detail != OVER:
             who = f"{outcome.file.rpartition('/')[2]}:{each.line}"  # type: ignore[union-attr]  # there are verdicts
             text = f"{each.step}: {each.detail}" if each.detail else each.step
-            yield Failure(verdict.EXPECTATION, who, text, round(each.at_s * NS_PER_S))
+            yield Failure(verdict.EXPECTATION, who, text, round(each.at_s * NS_PER_S), cause=each.step)
 
 
 def _deadlock(circle: Sequence[Wait], at_ns: int, detail: str, task: str) -> Failure:
@@ -224,6 +228,12 @@ def _bad_ends(mission: Mission, found: list[Failure], crashed: set[str]) -> Iter
         end = None if mission.ros is None else mission.ros.ended.get(name)
         if name not in dead and (end is None or end.name not in dead):
             yield Failure(verdict.ENDED, name, end_of(mission, name))
+
+
+def _cause(kind: str, text: str) -> str:
+    """What tells exceptions apart: the type, and the line where one came out, `KeyError (arm.py:12)`."""
+    place = _PLACE_AT_END.search(text)
+    return f"{kind} {place[0]}" if place is not None else ""
 
 
 class _Reading:
@@ -269,7 +279,8 @@ class TracebackReader:
         elif not text.startswith(" "):
             del self._reading[node]
             what = f"{text} ({reading.place})" if reading.place else text
-            self.found.append(Failure(RAISED, node, what, now_ns, "\n".join(reading.lines), task))
+            cause = _cause(text.partition(":")[0], what)
+            self.found.append(Failure(RAISED, node, what, now_ns, "\n".join(reading.lines), task, cause))
 
     def _forget_last(self, node: str) -> None:
         """Drop the exception read last: its handler raised the one that follows, which is the error."""

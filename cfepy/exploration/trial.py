@@ -148,4 +148,6 @@ class Trial:
     def _differences(self, found: tuple[Result, ...]) -> tuple[Failure, ...]:
         if self.reference is None:
             return ()
-        return tuple(Failure(verdict.RESULTS, name, text) for name, text in differences(self.reference, found))
+        return tuple(
+            Failure(verdict.RESULTS, name, text, cause=name) for name, text in differences(self.reference, found)
+        )

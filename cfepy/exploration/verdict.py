@@ -32,7 +32,9 @@ PROBLEM = "problem"
 RESULTS = "results differ"
 LEAVES_OTHERS_WAITING = frozenset([DIED, RAISED, ENDED, RESET, DEADLOCK, STALLED])
 """What takes a task away, for which others may wait then."""
-_PLACE_OR_NUMBER = re.compile(r"(\.\w+:\d+)|(?:0x[0-9A-Fa-f]+|\d+(?:\.\d+)?(?:e[-+]?\d+)?)")
+_PLACE_OR_VALUE = re.compile(
+    r"(?P<kept>\.\w+:\d+)|0x[0-9A-Fa-f]+|\d+(?:\.\d+)?(?:e[-+]?\d+)?|(?<!\w)'[^']*'|\"[^\"]*\"", re.ASCII
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +48,7 @@ class Failure:
         at_ns: virtual time at which it was; None when it is the state at the end.
         detail: more lines, such as a traceback; may be empty.
         task: the task in which it showed; empty when that is not known.
+        cause: what tells causes of this kind apart, such as the id of an event; empty where it is the text.
     """
 
     kind: str
@@ -54,14 +57,17 @@ class Failure:
     at_ns: int | None = None
     detail: str = ""
     task: str = ""
+    cause: str = ""
 
     @property
     def group(self) -> str:
-        """What failures of one cause have in common: all but numbers, which differ from schedule to schedule.
+        """What failures of one cause have in common.
 
-        Numbers of source lines stay (`checks.py:12`), since they tell causes apart.
+        Of a text that is all but numbers and quoted texts, which differ from schedule to schedule. Numbers of source
+        lines stay (`checks.py:12`), since they tell causes apart.
         """
-        return f"{self.kind}|{self.who}|{_PLACE_OR_NUMBER.sub(lambda found: found[1] or '#', self.text)}"
+        cause = self.cause or _PLACE_OR_VALUE.sub(lambda found: found["kept"] or "#", self.text)
+        return f"{self.kind}|{self.who}|{cause}"
 
     @property
     def title(self) -> str:
@@ -140,7 +146,7 @@ class Verdict:
         found = cls(**{**plain, **own, "widths": tuple(map(int, plain["widths"]))})
         texts = [found.results, found.trace, found.trouble]
         for each in failures:
-            texts += [each.kind, each.who, each.text, each.detail, each.task]
+            texts += [each.kind, each.who, each.text, each.detail, each.task, each.cause]
         numbers = [found.decisions, found.preemptions, found.end_ns, *(each.at_ns or 0 for each in failures)]
         if not all(isinstance(each, str) for each in texts) or not all(isinstance(each, int) for each in numbers):
             raise TypeError("a text or a number is of another kind")

@@ -35,6 +35,13 @@ def test_the_place_is_the_innermost_line_that_is_no_library() -> None:
     assert failure.detail.splitlines()[0] == "Traceback (most recent call last):"
 
 
+def test_an_exception_is_told_by_type_and_line() -> None:
+    (failure,) = read(ONE)
+    assert [each.group == failure.group for each in read(ONE.replace(": no", ": not left"))] == [True]
+    assert [each.group == failure.group for each in read(ONE.replace("ValueError", "KeyError"))] == [False]
+    assert [each.group == failure.group for each in read(ONE.replace("line 12", "line 13"))] == [False]
+
+
 def test_rospy_is_a_library_too() -> None:
     text = ONE.replace("ValueError: no", f'  File "{rospy_shim.__file__}", line 7, in call\n    raise\nValueError: no')
     assert [failure.text for failure in read(text)] == ["ValueError: no (arm.py:12)"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, fields
 
-from cfepy.exploration.verdict import DIED, INVARIANT, RESULTS, Failure, Findings, Verdict
+from cfepy.exploration.verdict import DIED, EVENT, INVARIANT, RESULTS, Failure, Findings, Verdict
 from cfepy.rtos import Schedule
 
 
@@ -18,6 +18,19 @@ def test_numbers_make_no_other_failure() -> None:
         died("ValueError: 17 of 20.5 at 0x1F (arm.py:12)").group
         == died("ValueError: 3 of 1e-9 at 0x2 (arm.py:12)").group
     )
+
+
+def test_values_in_quotes_make_no_other_failure() -> None:
+    assert died("KeyError: 'left' (arm.py:12)").group == died("KeyError: 'right' (arm.py:12)").group
+    assert died("it isn't so").group != died("it isn't there").group
+
+
+def test_what_tells_causes_apart_counts_in_place_of_the_text() -> None:
+    assert (
+        Failure(EVENT, "ARM", "joint left", cause="event 5").group
+        == Failure(EVENT, "ARM", "x", 7, cause="event 5").group
+    )
+    assert Failure(EVENT, "ARM", "x", cause="event 5").group != Failure(EVENT, "ARM", "x", cause="event 6").group
 
 
 def test_lines_of_source_do() -> None:
