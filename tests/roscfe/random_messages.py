@@ -8,7 +8,7 @@ from typing import Any
 
 from cfepy.convert.capacities import Capacities
 from rospy_shim.genpy import Duration, Time
-from rospy_shim.msgs import shipped
+from rospy_shim.msgs import Library, shipped
 from rospy_shim.msgs.spec import BUILTINS, PRIMITIVES, Field
 
 LIBRARY = shipped()
@@ -46,16 +46,18 @@ class Source:
     Args:
         seed: of the random numbers.
         longest: capacities that no text and no array exceeds.
+        library: where the types are.
     """
 
-    def __init__(self, seed: int, longest: Capacities) -> None:
+    def __init__(self, seed: int | str, longest: Capacities, library: Library = LIBRARY) -> None:
         self._random = random.Random(seed)
         self._longest = longest
+        self._library = library
 
     def message(self, full_name: str) -> Any:
         """A message with random values in all of its fields."""
-        made = LIBRARY.message_class(full_name)()
-        for each in LIBRARY.spec(full_name).fields:
+        made = self._library.message_class(full_name)()
+        for each in self._library.spec(full_name).fields:
             setattr(made, each.attribute, self._value(full_name, each))
         return made
 

@@ -1,0 +1,125 @@
+"""Public nodes that convert beside Debian's roscpp: `python -m tests.convert.stimulus SOURCES [--json FILE]`.
+
+SOURCES is the folder of `tests.convert.survey`. Each node that converts for the host is built as it is with Debian's
+roscpp, and by cfepy. A driver sends both the same random messages and requests for five seconds, twice with roscpp, and
+all that the node publishes, answers and prints is compared. `--report` writes results.tsv and docs/convertor.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import tempfile
+import time
+import traceback
+from pathlib import Path
+from typing import Any
+
+from cfepy.convert.check import programs_of
+from cfepy.convert.flight import message_library
+from cfepy.status import UsageError
+from rospy_shim.msgs import Packages
+from tests.convert.stimulus import report
+from tests.convert.stimulus.comparing import Likeness, compared
+from tests.convert.stimulus.debian import NotBuilt, RoscppNode
+from tests.convert.stimulus.flight import Fault, NodeFlight
+from tests.convert.stimulus.script import Scene, script
+from tests.convert.survey import Node, listed
+
+HERE = Path(__file__).parent
+SCENES = HERE / "scenes.json"
+
+
+def scene_of(name: str) -> Scene:
+    """What a node needs around it."""
+    found = json.loads(SCENES.read_text(encoding="utf-8")).get(name, {})
+    return Scene(**found)
+
+
+def tried(node: Node, sources: Path, folder: Path, seed: int) -> dict[str, Any]:
+    """Run a node on both sides; plain values."""
+    name = f"{node.repository}/{node.file}"
+    scene = scene_of(name)
+    environ = {"ROS_PACKAGE_PATH": f"{sources / node.repository}{os.pathsep}{sources / '_messages'}"}
+    file = sources / node.repository / node.file
+    program = programs_of([str(file)], environ)[0]
+    library = message_library(Packages(file, environ))
+    made = {"node": name}
+    flight = NodeFlight(program, library, environ, folder)
+    try:
+        seen = flight.look(scene)
+    except (UsageError, AssertionError) as error:
+        return {**made, "verdict": "does not fly", "why": str(error)[:500]}
+    except Fault as error:
+        return {**made, "verdict": "fault", "why": str(error)[:500]}
+    told = script(f"{seed} {name}", seen, library, scene)
+    debian = RoscppNode(program, library, folder)
+    try:
+        debian.build()
+        kinds = {*seen.publishes.values(), *seen.subscribes.values(), *seen.serves.values(), *seen.calls.values()}
+        debian.generate_of(sorted(kinds - {"*"}))
+        first = debian.run(told, scene)
+    except NotBuilt as error:
+        return {**made, "verdict": "not built", "why": str(error)[:500]}
+    try:
+        ours = flight.run(told, scene, first)
+    except Fault as error:
+        return {**made, "verdict": "fault", "why": f"{error} (with roscpp: {first.failed})"[:500]}
+    for each in (first, ours):
+        if each.note:
+            return {**made, "verdict": "not driven", "why": each.note[:500]}
+    parts = compared(first, first, ours)
+    if any(each.likeness is Likeness.DIFFERENT for each in parts):
+        parts = compared(first, debian.run(told, scene), ours)  # what is chance
+    worst = "different" if any(each.likeness is Likeness.DIFFERENT for each in parts) else "equal"
+    return {**made, "verdict": worst, "seen": seen._asdict(), "parts": [each._asdict() for each in parts]}
+
+
+def main() -> None:
+    """Try nodes."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("sources", type=Path, nargs="?", help="folder OWNER/NAME/...")
+    parser.add_argument("--only", default="", help="a part of OWNER/NAME/file")
+    parser.add_argument("--converts", type=Path, help="the verdicts of tests.convert.survey --json")
+    parser.add_argument("--json", type=Path, help="results; those that are there already are kept")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--keep", type=Path, help="a folder for what is made")
+    parser.add_argument(
+        "--report", action="store_true", help="write what is in --json into results.tsv and the document"
+    )
+    arguments = parser.parse_args()
+    if arguments.report:
+        for row in report.write(report.read(arguments.json)):
+            print(row.verdict, row.node, row.why)
+        return
+    verdicts = json.loads(arguments.converts.read_text(encoding="utf-8"))
+    convert = {f"{each['repository']}/{each['file']}" for each in verdicts if not each["refused"]["host"]}
+    done = json.loads(arguments.json.read_text()) if arguments.json and arguments.json.is_file() else {}
+    for node in listed():
+        name = f"{node.repository}/{node.file}"
+        if name not in convert or arguments.only not in name or name in done:
+            continue
+        begun = time.monotonic()
+        folder = Path(tempfile.mkdtemp()) if arguments.keep is None else arguments.keep / name.replace("/", "_")
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            result = tried(node, arguments.sources.resolve(), folder.resolve(), arguments.seed)
+        except Exception:
+            result = {"node": name, "verdict": "failed", "why": traceback.format_exc()[-1500:]}
+        if arguments.keep is None:
+            shutil.rmtree(folder)
+        done[name] = result
+        print(f"{result['verdict']:12} {name} {time.monotonic() - begun:.0f} s {result.get('why', '')}", flush=True)
+        for part in result.get("parts", ()):
+            if part["likeness"] != Likeness.EQUAL:
+                print(
+                    f"             {part['name']} ({part['seen']}): {part['likeness']}: {part['example']}", flush=True
+                )
+        if arguments.json:
+            arguments.json.write_text(json.dumps(done, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
