@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
-from cfepy.msg import Layout, command
+from contextlib import suppress
+from struct import Struct
+from typing import Any
+
+from cfepy.msg import CMD_HEADER_SIZE, PRIMARY_HEADER_SIZE, Layout, init, is_valid_msg_id, set_fcn_code
+from cfepy.status import CfeError
 from cfepy.tbl import TableImage, TableType
 
 MAX_ENTRIES = 32
 MAX_PAYLOAD = 64
+DEFAULT_MSG_ID = 0x800
+"""What CFE_MSG_Init leaves in a header whose MsgId cannot be: the flag of a secondary header."""
+LEAST_SIZE = PRIMARY_HEADER_SIZE + 1
+_BEHIND_PAYLOAD = Struct("<HxxII")
+"""PayloadLength, PacketRate and Counter of SCH_LAB_StateEntry_t."""
 
 ENTRY = Layout(
     "SCH_LAB_ScheduleTableEntry_t",
@@ -55,19 +65,29 @@ class ScheduleEntry:
 
 
 def read(table: bytes | memoryview) -> tuple[int, list[ScheduleEntry]]:
-    """The tick rate of a schedule table and its entries that are in use, in table order.
-
-    Raises:
-        CfeError: CFE_MSG_BAD_ARGUMENT when an entry's message id or function code cannot be.
-    """
+    """The tick rate of a schedule table and its entries that are in use, in table order."""
     values = TABLE.unpack(table)
-    entries = []
-    for row in values["Config"]:
-        if row["PacketRate"]:
-            payload = bytes(row["MessageBuffer"][: row["PayloadLength"]])
-            packet = command(row["MessageID"], row["FcnCode"], payload)
-            entries.append(ScheduleEntry(bytes(packet), row["PacketRate"]))
-    return values["TickRate"], entries
+    rows = [row for row in values["Config"] if row["PacketRate"]]
+    return values["TickRate"], [ScheduleEntry(_message(row), row["PacketRate"]) for row in rows]
+
+
+def _message(row: dict[str, Any]) -> bytes:
+    """What CFE_MSG_Init and CFE_MSG_SetFcnCode make of an entry; SCH_LAB does not look at what they say of it.
+
+    A payload that is longer than its field has the rest of the entry behind it.
+    """
+    msg_id, length = row["MessageID"], row["PayloadLength"]
+    if not is_valid_msg_id(msg_id):
+        return bytes(init(DEFAULT_MSG_ID, LEAST_SIZE))
+    try:
+        packet = init(msg_id, CMD_HEADER_SIZE + length)
+    except CfeError:  # the length does not fit into a header
+        return bytes(init(msg_id, LEAST_SIZE))
+    memory = bytes(row["MessageBuffer"]) + _BEHIND_PAYLOAD.pack(length, row["PacketRate"], 0)
+    packet[CMD_HEADER_SIZE:] = memory[:length].ljust(length, b"\0")
+    with suppress(CfeError):
+        set_fcn_code(packet, row["FcnCode"])
+    return bytes(packet)
 
 
 def image(tick_rate: int, rows: list[tuple[int, int, int, bytes]]) -> TableImage:

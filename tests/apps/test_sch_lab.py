@@ -9,7 +9,7 @@ import pytest
 from apps.sch_lab import TABLES, SCH_LAB_AppMain, schedule
 from apps.sch_lab.tables import sch_lab_table
 from cfepy.es import APP_ERROR, APP_EXIT
-from cfepy.msg import Layout, get_fcn_code, get_msg_id, validate_checksum
+from cfepy.msg import Layout, get_fcn_code, get_msg_id
 from cfepy.status import CFE_SB_BAD_ARGUMENT, OS_ERR_INCORRECT_OBJ_STATE, OS_ERR_NAME_NOT_FOUND, OsalError, UsageError
 from cfepy.tbl import build
 from tests.apps.conftest import APPS, AppBench, cmd
@@ -85,7 +85,31 @@ def test_each_entry_has_its_own_period(sch: SchBench) -> None:
     assert [get_msg_id(packet) for packet in sch.sent] == [0x1882, 0x1808, 0x1882, 0x1882, 0x1808]
     packet = sch.sent[0]
     assert (get_fcn_code(packet), packet[8:], len(packet)) == (3, b"abc", 11)
-    assert validate_checksum(packet)
+
+
+def test_what_cannot_be_is_sent_as_nasas_sends_it(sch: SchBench) -> None:
+    """The headers are those that NASA's SCH_LAB sent on Linux, without sequence count, time and checksum."""
+    text = b"".join(bytes([number]) for number in range(64))
+    rows = [
+        (0, 1, 1, 2, "0800 C000 0000 00"),
+        (0x2000, 1, 1, 2, "0800 C000 0000 00"),
+        (0x11880, 1, 1, 2, "0800 C000 0000 00"),
+        (0x0890, 1, 5, 2, "0890 C000 0003 0000 0001"),
+        (0x1090, 1, 5, 2, "1090 C000 0003 0000 0001"),
+        (0x0090, 1, 5, 2, "0090 C000 0003 0000 0001"),
+        (0x1891, 1, 128, 2, "1891 C000 0003 0000 0001"),
+        (0x1FFF, 1, 127, 2, "1FFF C000 0003 7F00 0001"),
+        (0x1892, 1, 1, 77, f"1892 C000 004E 0100 {text.hex()} 4D000000 01000000 00000000 00"),
+        (0x1893, 1, 1, 0xFFFF, "1893 C000 0000 00"),
+    ]
+    config = [
+        {"MessageID": mid, "PacketRate": rate, "FcnCode": code, "PayloadLength": length, "MessageBuffer": text}
+        for mid, rate, code, length, _ in rows
+    ]
+    sch.files["/cf/sch_lab_table.tbl"] = build(schedule.SCHEDULE_TABLE.image({"TickRate": 100, "Config": config}))
+    sch.run(SCH_LAB_AppMain, ONE_HZ)
+    assert [packet.hex() for packet in sch.sent] == [bytes.fromhex(header).hex() for *_, header in rows]
+    assert sch.exit_status == APP_EXIT
 
 
 @pytest.mark.parametrize(
