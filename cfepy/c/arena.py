@@ -2,7 +2,7 @@
 
 A processor has a region of its own, of 8 GiB of address space, the lowest that no other living processor of this
 process has. In it memory is given out by whole pages, lowest first, with a gap of a page that nobody may touch behind
-each piece.
+each piece. What only the guard needs comes from its end, so that all else has the same addresses with and without it.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ _left: dict[int, int] = {}
 """Address and bytes of what processors of before left in place.
 
 It is the process's and no processor's: Python may still look at such memory through views that outlive the processor,
-so it stays until another one's region needs the place. If views owned it, where a processor's memory is would depend on
-when garbage is collected, and addresses are to be the same in each run.
+so it stays until another one has the region. If views owned it, where a processor's memory is would depend on when
+garbage is collected, and addresses are to be the same in each run.
 """
 
 
@@ -44,6 +44,7 @@ class Arena:
         self._engine = engine()
         self.base = self._take_region()
         self._top = self.base + _FIRST + PAGE
+        self._end = self.base + REGION
         self._free: list[tuple[int, int]] = []  # (address, bytes), in this order
         self._sizes: dict[int, int] = {}
         self._shared: set[int] = set()
@@ -56,34 +57,35 @@ class Arena:
                 self._engine.map(base, _FIRST)
             except OSError:
                 continue
+            for left in [each for each in _left if base <= each < base + REGION]:
+                self._engine.unmap(left, _left.pop(left))
             return base
         raise MemoryError(f"{(high - low) // REGION} processors with compiled applications live in this process")
 
-    def map(self, size: int, shares: bool = False) -> int:
+    def map(self, size: int, shares: bool = False, is_last: bool = False) -> int:
         """New memory of zeros, readable and writable; its address.
 
         Args:
             size: bytes; rounded up to pages.
             shares: objects of Python have it as well, and may do so longer than the processor lives: it stays where it
                 is until another processor has this region.
+            is_last: from the end of the region.
         """
         room = pages(size)
-        address = self._reuse(room)
+        address = None if is_last else self._reuse(room)
         if address is None:
-            address = self._top
-            if address + room > self.base + REGION:
+            address = self._end - room - PAGE if is_last else self._top
+            if self._top + room + PAGE > self._end:
                 raise MemoryError(f"no {size} bytes are left for compiled applications")
-            self._top += room + PAGE
-        self._take(address, room)
+            if is_last:
+                self._end = address
+            else:
+                self._top += room + PAGE
+        self._engine.map(address, room)
         self._sizes[address] = room
         if shares:
             self._shared.add(address)
         return address
-
-    def _take(self, address: int, room: int) -> None:
-        for left in [each for each, size in _left.items() if each < address + room and address < each + size]:
-            self._engine.unmap(left, _left.pop(left))
-        self._engine.map(address, room)
 
     def _reuse(self, room: int) -> int | None:
         for number, (address, size) in enumerate(self._free):

@@ -33,7 +33,7 @@ _WORDS = {
 _NEAR_STACK = 1 << 16
 
 
-def explained(fault: CFault, place_of: Callable[[int], str]) -> CFault:
+def explained(fault: CFault, place_of: Callable[[int], str], about: Callable[[int], str]) -> CFault:
     """A fault of the engine's, in words, with the address of the code whose fault it is.
 
     Args:
@@ -41,6 +41,7 @@ def explained(fault: CFault, place_of: Callable[[int], str]) -> CFault:
             of an application's, address that was used, bytes from the stack's lowest to its pointer. Or a text: the
             last call of the code is at fault then.
         place_of: where an address of code is: `CASE_Main (case.c:12)`.
+        about: what is at an address of data; empty when that is not known.
     """
     if len(fault.args) != 5:
         return _of_call(fault, place_of)
@@ -52,7 +53,10 @@ def explained(fault: CFault, place_of: Callable[[int], str]) -> CFault:
     where = place_of(at)
     if caller:
         where = f"a call by {where} of what is no function" if pc == address else f"a function that {where} called"
-    used = f", address 0x{address:x}" if number in (signal.SIGSEGV, signal.SIGBUS) else ""
+    used = ""
+    if number in (signal.SIGSEGV, signal.SIGBUS):
+        block = about(address)
+        used = f", address 0x{address:x}" + (f", {block}" if block else "")
     made = CFault(f"{words} in {where}{used}")
     made.at = at
     return made

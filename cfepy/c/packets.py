@@ -65,12 +65,15 @@ class PacketImages:
 
     def release(self, address: int) -> None:
         """Give a buffer back that was not sent (CFE_SB_ReleaseMessageBuffer)."""
-        self._bus.release_message_buffer(self._buffer(address))
+        buffer = self._buffer(address)
+        self._check(address, "CFE_SB_ReleaseMessageBuffer")
+        self._bus.release_message_buffer(buffer)
         self._forget(address)
 
     def transmit(self, address: int, is_origination: bool) -> None:
         """Send a buffer (CFE_SB_TransmitBuffer): it becomes the packet's image, or is gone if nobody wants that."""
         buffer = self._buffer(address)
+        self._check(address, "CFE_SB_TransmitBuffer")
         buffer[:] = self._memory.peek(address, len(buffer))
         if not self._listens:
             self._listens = True
@@ -104,6 +107,12 @@ class PacketImages:
                 raise CFault(f"the message buffer 0x{address:x} is used after it was {self._gone[address]}")
             raise CfeError(CFE_SB_BUFFER_INVALID, f"0x{address:x} is no buffer that an application holds")
         return buffer
+
+    def _check(self, address: int, function: str) -> None:
+        found = self._heap.damage(address)
+        if found is not None:
+            size = self._heap.size_of(address)
+            raise CFault(f"{function}() of 0x{address:x}, a message buffer of {size} bytes that was written {found}")
 
     def _forget(self, address: int, why: str = "released") -> None:
         del self._buffers[address]

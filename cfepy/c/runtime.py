@@ -11,6 +11,7 @@ from cfepy.c.calls import CallTable, Declarations
 from cfepy.c.elf import SharedObject
 from cfepy.c.engine import engine
 from cfepy.c.faults import CFault, explained
+from cfepy.c.guard import POISON, Guard, GuardedTables
 from cfepy.c.image import Image, LoadedModule
 from cfepy.c.linking import LIBRARIES, Exports, LinkedWith, host_library, wanted_names
 from cfepy.c.lives import Ends, ThreadLocals
@@ -24,8 +25,6 @@ from cfepy.console import Console
 from cfepy.rtos import ExploringKernel, Kernel
 from cfepy.status import CfeError, OsalError
 
-POISON = b"\xa5"
-"""What is in memory that was never written, where that is to be found out."""
 HEAP = 1 << 30
 """Bytes of address space for malloc, and as many for messages."""
 CALLBACK_STACK = 65536
@@ -46,11 +45,14 @@ class CRuntime:
         omit_deprecated: whether the code was built with OMIT_DEPRECATED, which makes handles of tables ids.
         guard: blocks of memory end where nobody may write, freed ones are gone, and fresh ones and stacks are not zero.
         on_race: gets the data races that are found while schedules are explored.
+        on_overwrite: gets the application and a text for what was written past a block, where no call is at fault.
 
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
+        guard, tables: what looks after blocks, and after images of tables; None without the guard.
         applications, libraries: what is loaded, by the name of the application or the path of the library.
         modules: what OS_ModuleLoad loaded.
+        at_app_end: called when an application has ended.
         at_close: called at the end of the processor, while its memory is still there.
         on_unload: functions that get each image before it is unloaded.
     """
@@ -66,6 +68,7 @@ class CRuntime:
         omit_deprecated: bool = False,
         guard: bool = False,
         on_race: Callable[[Race], object] = lambda race: None,
+        on_overwrite: Callable[[str, str], object] = lambda app, text: None,
     ) -> None:
         from cfepy.c.api import declare
         from cfepy.c.api.streams import Streams
@@ -82,12 +85,16 @@ class CRuntime:
         self.arena = Arena()
         self.memory = CMemory()
         self.constants = Constants(self.arena)
+        self.at_app_end: list[Callable[[], object]] = []
         self.at_close: list[Callable[[], object]] = []
         self._unwinder = Unwinder(self.image_at, self.memory)
         self._stacks = Stacks(self.arena, POISON if guard else b"")
         self._heap = made.Heap(self.arena.map(HEAP), HEAP, guarded=guard, page=PAGE)
         messages = made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK, guarded=guard, grain=4, page=PAGE)
         self.packets = PacketImages(messages, handle.sb, cfe.sb, guard)
+        self._owners: dict[int, str] = {}
+        self.guard = Guard(self.arena, self._heap, messages, self._name_of, on_overwrite) if guard else None
+        self.tables = GuardedTables(self.guard) if self.guard is not None else None
         config = cfe.es.config
         self.table = made.Table(
             heap=self._heap,
@@ -126,7 +133,6 @@ class CRuntime:
             else None
         )
         self._exports = Exports(self.shared, self._calls, self.declared, self.arena.map)
-        self._owners: set[int] = set()
 
     def _ctype_tables(self) -> tuple[int, ...]:
         """Copies of the tables of <ctype.h>: cells that point to their element 0."""
@@ -183,8 +189,16 @@ class CRuntime:
         apps = self.cfe.es.apps
         for owner in [each for each in self._owners if apps.find(each) is None]:
             self._heap.give_all(owner)
-            self._owners.discard(owner)
         self.packets.clean_up()
+        for function in self.at_app_end:
+            function()
+        if self.guard is not None:
+            self.guard.tell()
+        self._owners = {owner: name for owner, name in self._owners.items() if apps.find(owner) is not None}
+
+    def _name_of(self, owner: int) -> str:
+        """The application with an AppId that has called C code."""
+        return self._owners.get(owner, "")
 
     @property
     def allocations(self) -> int:
@@ -275,7 +289,7 @@ class CRuntime:
         task = self.kernel.current
         owner = getattr(task.owner, "app_id", 0)
         if owner:
-            self._owners.add(owner)
+            self._owners[owner] = task.owner.name
         if self.kernel.frames_wanted and self.table.frames is None:
             self.table.frames = CallFrames(self._place, self.kernel.call_heard)
         given, room = (stack, size) if stack else self._stacks.take(size)
@@ -288,7 +302,7 @@ class CRuntime:
             return result
         except CFault as fault:
             calls = self._unwinder.calls(*fault.registers)
-            made = explained(fault, self.place_of)
+            made = explained(fault, self.place_of, self._about)
             if fault.is_anywhere:
                 self.console.show(f"stopped in {' > '.join(self.place_of(each) for each in calls)}")
                 calls = []
@@ -339,6 +353,10 @@ class CRuntime:
         image = self.image_at(address)
         return None if image is None else image.place_at(address)
 
+    def _about(self, address: int) -> str:
+        """The block that an address is in, or next to, in words; empty without the guard."""
+        return "" if self.guard is None else self.guard.about(address)
+
     def _describe(self, address: int) -> str:
         """A variable of an object, or just the address."""
         image = self.image_at(address)
@@ -358,6 +376,8 @@ class CRuntime:
         for image in self._images[::-1]:
             if image.source.has_coverage:
                 self._finish(image)
+        if self.guard is not None:
+            self.guard.check_all()
         self.cfe.tbl.leave_memory(lambda data: True)  # what tells of the run may look at tables later
         self.applications.clear()
         self.libraries.clear()

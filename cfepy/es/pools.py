@@ -109,6 +109,11 @@ class GenericPool:
         self._mask = alignment - 1
 
     @property
+    def alignment(self) -> int:
+        """Of blocks, in bytes."""
+        return self._mask + 1
+
+    @property
     def free_bytes(self) -> int:
         """Bytes that were never part of a block."""
         return self.end - self.tail

@@ -85,7 +85,7 @@ class FailureWatch(Attachment):
     def saw(self, group: str) -> bool:
         """Whether there has been a failure of this group so far, of those that show while the mission runs."""
         assert self._mission is not None
-        so_far = (*self._found, *self._tracebacks.found, *_violations(self._mission), *_races(self._mission))
+        so_far = (*self._found, *self._tracebacks.found, *_violations(self._mission), *_of_compiled_code(self._mission))
         return any(failure.group == group for failure in so_far)
 
     def failures(self, outcome: Outcome | None) -> tuple[Failure, ...]:
@@ -97,7 +97,7 @@ class FailureWatch(Attachment):
         assert self._mission is not None
         mission = self._mission
         found = [*self._found, *self._tracebacks.found, *_resets(mission), *_violations(mission), *_missed(outcome)]
-        found += _races(mission)
+        found += _of_compiled_code(mission)
         found += _overruns(mission)
         found.sort(key=lambda failure: failure.at_ns or 0)
         found += [*map(_circle, self._endless.circles), *_bad_ends(mission, found, self._crashed)]
@@ -175,10 +175,12 @@ def _violations(mission: Mission) -> Iterator[Failure]:
             yield Failure(verdict.INVARIANT, each.name, each.first.text, each.first.at_ns, detail)
 
 
-def _races(mission: Mission) -> Iterator[Failure]:
-    """Accesses of compiled code that nothing orders."""
+def _of_compiled_code(mission: Mission) -> Iterator[Failure]:
+    """Accesses of compiled code that nothing orders, and memory that was written past."""
     for race in mission.record.data_races:
         yield Failure(verdict.RACE, race.app, race.text, race.at_ns, race.detail, race.task)
+    for each in mission.record.overwrites:
+        yield Failure(verdict.OVERWRITE, each.app, each.text, each.at_ns)
 
 
 def _missed(outcome: Outcome | None) -> Iterator[Failure]:

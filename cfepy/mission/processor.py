@@ -23,7 +23,7 @@ from cfepy.mission.compiled_code import CompiledFiles
 from cfepy.mission.launch import files_of_built, scripts_of
 from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
 from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
-from cfepy.mission.record import DataRace, RunRecord
+from cfepy.mission.record import DataRace, Overwrite, RunRecord
 from cfepy.mission.spec import MissionSpec
 from cfepy.nodes import AppModules, make_app_universe
 from cfepy.osal import (
@@ -322,8 +322,13 @@ class Processor:
                 omit_deprecated=machine.spec.compiled.omit_deprecated,
                 guard=machine.spec.compiled.guard,
                 on_race=lambda race: machine.record.data_races.append(DataRace(*race.told())),
+                on_overwrite=lambda app, text: machine.record.overwrites.append(
+                    Overwrite(machine.kernel.now, app, text)
+                ),
             )
         self.cfe.es.core_memory = runtime.core_memory
+        if runtime.tables is not None:
+            self.cfe.tbl.place_buffers(runtime.tables)
         return CompiledLoader(runtime, machine.console, self._start_ros)
 
     def _script_of(self, file: str) -> Path | None:

@@ -62,6 +62,18 @@ class DataRace(NamedTuple):
     task: str
 
 
+class Overwrite(NamedTuple):
+    """A block of compiled code that was written past, found when it was over: when that was, of whom, what is told."""
+
+    at_ns: int
+    app: str
+    text: str
+
+    def __str__(self) -> str:
+        """The text, with the application if it is one's."""
+        return f"{self.app}: {self.text}" if self.app else self.text
+
+
 @dataclass(slots=True)
 class RunRecord:
     """Everything that outlives a reset for the sake of the report.
@@ -69,7 +81,8 @@ class RunRecord:
     Attachments keep what they have to tell in a part of their own. `history` is by application name, `event_counts` by
     event type, `errors_by_app` counts ERROR and CRITICAL events: the services of each processor write into these three
     themselves. `topics` has rows of ROS topics by MsgId. `tables` gives further rows for the report, by their title
-    there; an attachment that has some puts a function here. `data_races` are those of compiled code.
+    there; an attachment that has some puts a function here. `data_races` are those of compiled code, `overwrites` what
+    the guard found in its memory.
     """
 
     resets: list[Reset] = field(default_factory=list)
@@ -79,6 +92,7 @@ class RunRecord:
     topics: dict[int, TopicRow] = field(default_factory=dict)
     tables: dict[str, Callable[[], list[dict[str, Any]]]] = field(default_factory=dict)
     data_races: list[DataRace] = field(default_factory=list)
+    overwrites: list[Overwrite] = field(default_factory=list)
     _parts: dict[type, object] = field(default_factory=dict)
     _traffic: dict[int, Traffic] = field(default_factory=dict)
 

@@ -386,6 +386,7 @@ def problems_in(mission: Mission) -> list[RunProblem]:
             first_s = result.first_at_s
             found.append(RunProblem(result.problem, None if first_s is None else round(first_s * NS_PER_S)))
     found += _races(mission)
+    found += [RunProblem(f"overwritten memory: {each}", each.at_ns) for each in mission.record.overwrites]
     return found
 
 

@@ -8,6 +8,7 @@ buffer with the first load, so that the buffer is no more protected by a lock, a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Protocol
 
 from cfepy.fs import calculate_crc
 from cfepy.ids import SERIAL_MAX, TBL_LOADBUFFID_BASE, UNDEFINED, get_serial, make
@@ -20,6 +21,16 @@ SHARED = 0
 """The category of ids of shared buffers; a table's own have its slot in the registry and 1."""
 
 Bytes = bytes | bytearray | memoryview
+
+
+class BufferPlaces(Protocol):
+    """Gives images other memory than that of the pool, which still books them."""
+
+    def take(self, size: int, name: str) -> memoryview:
+        """Zeros for an image of `size` bytes; `name` is the table's full name, empty for a buffer that tables share."""
+
+    def give(self, data: memoryview) -> None:
+        """The buffer is given back; somebody may still look at its memory."""
 
 
 class Buffer:
@@ -155,6 +166,7 @@ class BufferMemory:
     Attributes:
         pool_id: the pool's handle.
         ids: the ids of buffers.
+        places: where images are from now on; None for the pool's own memory.
     """
 
     def __init__(self, ports: Ports, size: int, shared: int, shared_size: int, tables: int) -> None:
@@ -167,6 +179,7 @@ class BufferMemory:
         self._last_id = make(TBL_LOADBUFFID_BASE, 0)
         self.ids = BufferIds(shared, tables)
         self.pool_id = 0
+        self.places: BufferPlaces | None = None
 
     def early_init(self) -> None:
         """Make the pool and take the shared buffers out of it.
@@ -190,14 +203,15 @@ class BufferMemory:
         """A shared buffer by its number."""
         return self._shared[number]
 
-    def allocate(self, size: int) -> Buffer:
-        """A zeroed buffer of `size` bytes.
+    def allocate(self, size: int, name: str = "") -> Buffer:
+        """A zeroed buffer of `size` bytes, for the table of a full name, or to be shared.
 
         Raises:
             CfeError: CFE_ES_ERR_MEM_BLOCK_SIZE when the pool has no room for it.
         """
         block = self._ports.es.get_pool_buf(self.pool_id, size)
-        return Buffer(block.memory, self.address_for(size), block)
+        data = block.memory if self.places is None else self.places.take(size, name)
+        return Buffer(data, self.address_for(size), block)
 
     def external(self) -> Buffer:
         """A buffer for memory of an app, which stays the app's (CFE_TBL_OPT_USR_DEF_ADDR); it costs nothing here."""
@@ -207,6 +221,8 @@ class BufferMemory:
         """Give a table's own buffer back."""
         buffer.load_id = UNDEFINED
         if buffer.block is not None:
+            if self.places is not None:
+                self.places.give(buffer.data)
             self._ports.es.put_pool_buf(self.pool_id, buffer.block)
 
     def acquire_shared(self) -> Buffer | None:

@@ -378,7 +378,7 @@ class TableRegistry:
             table.buffers.append(self._memory.external())
             return
         for _ in range(1 + table.double_buffered):
-            table.buffers.append(self._memory.allocate(table.size))
+            table.buffers.append(self._memory.allocate(table.size, table.name))
 
     def _forget(self, table: TableRecord) -> None:
         if not table.user_defined:

@@ -30,7 +30,7 @@ from cfepy.status import (
 )
 from cfepy.tbl import events as ev
 from cfepy.tbl.access import ULONG, TableAccess
-from cfepy.tbl.buffers import BufferMemory, Bytes
+from cfepy.tbl.buffers import BufferMemory, BufferPlaces, Bytes
 from cfepy.tbl.critical import CriticalTables
 from cfepy.tbl.dumps import Dumps
 from cfepy.tbl.loads import SRC_ADDRESS, SRC_FILE, Loads
@@ -395,6 +395,10 @@ class TableServices(TableAccess):
             self._log("NotifyByMessage", _NOT_NOTIFIED.format(app=app_id, handle=int(handle), status=status))
             raise CfeError(CFE_TBL_ERR_NO_ACCESS, f"{access.table.name!r} belongs to another app")
         access.table.notify = (msg_id, fcn_code, parameter & 0xFFFFFFFF)
+
+    def place_buffers(self, places: BufferPlaces) -> None:
+        """Give images that are made from now on other memory than that of the table buffer pool."""
+        self._memory.places = places
 
     def leave_memory(self, is_leaving: Callable[[memoryview], bool]) -> None:
         """Let tables whose bytes are about to be taken out of memory keep copies of them.

@@ -13,7 +13,10 @@ pytestmark = needs_compiler
 
 MISTAKES = {
     "overrun of a block": ('char *p = malloc(100); memset(p, 0, 113); SAY("%d", p[0]);', "SIGSEGV"),
-    "overrun by a byte": ("char *p = malloc(99); p[99] = 1; free(p);", "a block that was written past its end"),
+    "overrun by a byte": (
+        "char *p = malloc(99); p[99] = 1; free(p);",
+        "a block of 99 bytes that was written past its end",
+    ),
     "use after free": ("volatile char *p = malloc(64); free((char *)p); p[0] = 1;", "SIGSEGV"),
     "double free": ("char *p = malloc(64); free(p); free(p);", "which malloc did not give, or which was freed"),
     "overrun of a message": ("char *p = CFE_SB_AllocateMessageBuffer(64); p[64] = 1;", "SIGSEGV"),

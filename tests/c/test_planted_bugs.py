@@ -34,6 +34,12 @@ BUGS = {
     "lost_update": Bug(EXPLORE, ("counted to",)),
     "overrun": Bug(GUARD, ("SIGSEGV", "overrun.c:12")),
     "use_after_free": Bug(GUARD, ("SIGSEGV", "use_after_free.c:22")),
+    "table_rows": Bug(GUARD, ("SIGSEGV", "table_rows.c:20", "offset 44 of table BUG.Rows of 40 bytes")),
+    "table_validation": Bug(
+        GUARD, ("SIGSEGV", "table_validation.c:14", "offset 36 of an image of table List of 36 bytes")
+    ),
+    "pool_name": Bug(GUARD, ("a pool block of 23 bytes that was written past its end", "pool_name.c:21")),
+    "pool_queue": Bug(GUARD, ("SIGSEGV", "pool_queue.c:28", "a pool block of 16 bytes that was given back")),
     "uninitialised": Bug(GUARD, ()),
     "leaked_buffer": Bug(["run", "--for", "10"], ("no buffer after",)),
     "deadlock": Bug(EXPLORE, ("deadlock", "FIRST", "SECOND")),
@@ -59,10 +65,13 @@ def write(folder: Path, name: str, *flags: str) -> None:
     (folder / "startup.scr").write_text(MISSION)
 
 
-MARKS = {"explore": pytest.mark.slow}
-"""Searches that find nothing take their time."""
-LONG = dict.fromkeys(("deadlock", "unlocked_table", "lost_update"), pytest.mark.slow)
+FAMILY = ("table_rows", "table_validation", "pool_name", "pool_queue")
+"""Those of the guard that test_guard_blocks has quick ones of."""
+SEARCHED = ("deadlock", "unlocked_table", "lost_update")
 """Those that are searched for; test_races and the tests of exploration have quick ones."""
+LONG = dict.fromkeys((*SEARCHED, *FAMILY), pytest.mark.slow)
+SLOW = dict.fromkeys((*(name for name, bug in BUGS.items() if bug.command == EXPLORE), *FAMILY), pytest.mark.slow)
+"""Searches that find nothing take their time."""
 SIMPLE = [name for name in BUGS if name not in ("uninitialised", "counter_wrap")]
 
 
@@ -75,7 +84,7 @@ def test_the_bug_is_found(tmp_path: Path, name: str, capsys: Any) -> None:
         assert each in told
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=MARKS.get(BUGS[name].command[0], ())) for name in SIMPLE])
+@pytest.mark.parametrize("name", [pytest.param(name, marks=SLOW.get(name, ())) for name in SIMPLE])
 def test_the_mended_form_is_clean(tmp_path: Path, name: str, capsys: Any) -> None:
     write(tmp_path, name, "-DMENDED")
     status, told = fly(tmp_path, BUGS[name], capsys)
@@ -83,7 +92,9 @@ def test_the_mended_form_is_clean(tmp_path: Path, name: str, capsys: Any) -> Non
     assert "Send Err" not in told
 
 
-@pytest.mark.parametrize("name", [name for name in SIMPLE if BUGS[name].command == GUARD])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=LONG.get(name, ())) for name in SIMPLE if BUGS[name].command == GUARD]
+)
 def test_without_the_guard_it_goes_unnoticed(tmp_path: Path, name: str, capsys: Any) -> None:
     write(tmp_path, name)
     assert fly(tmp_path, Bug(RUN, ()), capsys)[0] == 0

@@ -1,12 +1,18 @@
-"""CFE_ES_Pool*, CFE_ES_*PoolBuf*: memory pools for C. The bytes of a pool are the caller's, as in C."""
+"""CFE_ES_Pool*, CFE_ES_*PoolBuf*: memory pools for C.
+
+The bytes of a pool are the caller's, as in C. Under the guard the pool keeps its books in them, and its blocks are
+elsewhere.
+"""
 
 from __future__ import annotations
 
 import struct
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cfepy.c.api.pointers import need
+from cfepy.c.faults import CFault
+from cfepy.c.guard import POISON, Guard
 from cfepy.config import ES_MEM_BLOCK_SIZES
 from cfepy.es import MAX_BUCKETS, ForeignMemory, MemPool, PoolBlock, min_size
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CfeError
@@ -28,13 +34,107 @@ POOL_FIELDS = ("PoolSize", "NumBlocksRequested", "CheckErrCtr", "NumFreeBytes")
 BLOCK_STATS = struct.Struct("<QII")
 
 
+class Lent(NamedTuple):
+    """A block that a pool has lent: where it is in the pool, and where the application has its bytes."""
+
+    pool: MemPool
+    offset: int
+    address: int
+
+
+class GuardedPools:
+    """Blocks of pools in pages of their own.
+
+    A pool lends its offsets as ever. Each time it does, an application gets another address for it, which is not used
+    again: an address that was given back still tells the pool which block it means.
+
+    Args:
+        c: the C side of the processor.
+        guard: of the processor.
+    """
+
+    def __init__(self, c: CRuntime, guard: Guard) -> None:
+        self._c = c
+        self._guard = guard
+        self._lent: dict[tuple[MemPool, int], Lent] = {}
+        self._all: dict[int, Lent] = {}
+        c.at_app_end.append(self._sweep)
+
+    def lend(self, block: PoolBlock, size: int) -> int:
+        """The address of a block of `size` bytes that a pool has just lent."""
+        owner = self._c.kernel.current.owner
+        pool, app = block.pool, "" if owner is None else owner.name
+        address = self._guard.take(size, "a pool block", app, pool.blocks.alignment)
+        self._c.memory.poke(address, POISON * size)
+        self._lent[pool, block.offset] = self._all[address] = Lent(pool, block.offset, address)
+        return address
+
+    def in_pool(self, address: int) -> int:
+        """The address in its pool of what an application has an address of."""
+        near = self._guard.near(address)
+        lent = None if near is None else self._all.get(near[0])
+        if lent is None:
+            return address
+        start: int = self._c.memory.address_of(lent.pool.memory)
+        return start + lent.offset + address - lent.address
+
+    def refuse_old(self, address: int, function: str) -> None:
+        """Refuse the address of a block that was given back, and whose place in the pool somebody else has now.
+
+        Raises:
+            CFault: it is one; the pool would take it for the other one's.
+        """
+        lent = self._all.get(address)
+        now = None if lent is None else self._lent.get((lent.pool, lent.offset))
+        if now is not None and now is not lent:
+            raise CFault(f"{function}() of 0x{address:x}, a pool block that was given back; another has its place now")
+
+    def leave(self, block: PoolBlock) -> Lent | None:
+        """A block is about to be given back; what `gone` or `stay` takes."""
+        return self._lent.pop((block.pool, block.offset), None)
+
+    def stay(self, lent: Lent | None) -> None:
+        """The pool has not taken it."""
+        if lent is not None:
+            self._lent[lent.pool, lent.offset] = lent
+
+    def gone(self, lent: Lent | None) -> None:
+        """The pool has taken it.
+
+        Raises:
+            CFault: it was written past.
+        """
+        if lent is not None:
+            try:
+                self._guard.check(lent.address, "CFE_ES_PutPoolBuf()")
+            finally:
+                self._guard.give(lent.address)
+
+    def forget(self, pool: MemPool | None) -> None:
+        """A pool was deleted. Its blocks are still memory of the application's, which may use them.
+
+        Raises:
+            CFault: one was written past.
+        """
+        mine = [self._lent.pop(key) for key in list(self._lent) if key[0] is pool]
+        for lent in mine:
+            self._guard.check(lent.address, "CFE_ES_PoolDelete()")
+
+    def _sweep(self) -> None:
+        """An application has ended: the blocks of its pools are gone with its memory."""
+        pools = list(self._c.cfe.es.pools)
+        for key in [each for each in self._lent if each[0] not in pools]:
+            self._guard.give(self._lent.pop(key).address)
+
+
 def declare(api: Declarations, c: CRuntime) -> None:
     """Add the functions; see `cfepy.c.api`."""
-    _declare_pools(api, c)
-    _declare_blocks(api, c)
+    guarded = None if c.guard is None else GuardedPools(c, c.guard)
+    _declare_pools(api, c, guarded)
+    _declare_blocks(api, c, guarded)
 
 
-def _declare_pools(api: Declarations, c: CRuntime) -> None:
+def _declare_pools(api: Declarations, c: CRuntime, guarded: GuardedPools | None) -> None:
     es, memory = c.handle.es, c.memory
 
     def create(
@@ -70,7 +170,14 @@ def _declare_pools(api: Declarations, c: CRuntime) -> None:
         api.add(name, "PPQ", partial(create, sizes=DEFAULT_SIZES, use_mutex=use_mutex), BAD)
     api.add("CFE_ES_PoolCreateEx", "PPQHpb", create_ex, BAD)
     api.add("CFE_ES_PoolCreateEx_WithAlignment", "PPQHpbQ", create_ex, BAD)
-    api.add("CFE_ES_PoolDelete", "I", es.pool_delete)
+
+    def delete(handle: int) -> None:
+        pool = c.cfe.es.pools.find(handle)
+        es.pool_delete(handle)
+        if guarded is not None:
+            guarded.forget(pool)
+
+    api.add("CFE_ES_PoolDelete", "I", delete)
 
     def get_stats(at: int, handle: int) -> None:
         stats: dict[str, Any] = es.get_mem_pool_stats(handle)
@@ -81,20 +188,40 @@ def _declare_pools(api: Declarations, c: CRuntime) -> None:
     api.add("CFE_ES_GetMemPoolStats", "PI", get_stats, BAD)
 
 
-def _declare_blocks(api: Declarations, c: CRuntime) -> None:
+def _declare_blocks(api: Declarations, c: CRuntime, guarded: GuardedPools | None) -> None:
     es, pools, memory = c.handle.es, c.cfe.es.pools, c.memory
     no_pool = MemPool("", ALIGNMENT)
 
     def get_buf(handle: int, size: int) -> tuple[int, int]:
         block = es.get_pool_buf(handle, size)
-        return size, memory.address_of(block.memory)
+        return size, memory.address_of(block.memory) if guarded is None else guarded.lend(block, size)
 
     def block_at(handle: int, at: int) -> PoolBlock:
         """The block that C means by its address; some block where there is no such pool, which is found out later."""
         need(BAD, at)
         pool = pools.find(handle) or no_pool
-        return pool.block_at(at - memory.address_of(pool.memory))
+        place = at if guarded is None else guarded.in_pool(at)
+        return pool.block_at(place - memory.address_of(pool.memory))
+
+    def get_info(handle: int, at: int) -> int:
+        if guarded is not None:
+            guarded.refuse_old(at, "CFE_ES_GetPoolBufInfo")
+        return es.get_pool_buf_info(handle, block_at(handle, at))
+
+    def put(handle: int, at: int) -> int:
+        block = block_at(handle, at)
+        if guarded is None:
+            return es.put_pool_buf(handle, block)
+        guarded.refuse_old(at, "CFE_ES_PutPoolBuf")
+        lent = guarded.leave(block)
+        try:
+            size = es.put_pool_buf(handle, block)
+        except BaseException:
+            guarded.stay(lent)
+            raise
+        guarded.gone(lent)
+        return size
 
     api.add("CFE_ES_GetPoolBuf", "=8IQ", get_buf, BAD)
-    api.add("CFE_ES_GetPoolBufInfo", "Ip", lambda handle, at: es.get_pool_buf_info(handle, block_at(handle, at)))
-    api.add("CFE_ES_PutPoolBuf", "Ip", lambda handle, at: es.put_pool_buf(handle, block_at(handle, at)))
+    api.add("CFE_ES_GetPoolBufInfo", "Ip", get_info)
+    api.add("CFE_ES_PutPoolBuf", "Ip", put)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from cfepy.c.arena import REGION
 from cfepy.c.faults import CFault
+from cfepy.c.guard import alignment_of
 from cfepy.c.memory import CMemory
 from cfepy.psp import Psp
 from cfepy.status import CFE_PSP_ERROR, CFE_PSP_INVALID_MEM_ADDR, CFE_PSP_INVALID_POINTER, OsalError
@@ -22,9 +23,12 @@ if TYPE_CHECKING:
 
 CODE_RANGE = 3
 """The number of the range that is the memory of compiled code: the next one after the board's own."""
+_WORDS = 8
+"""Bytes to which an area is aligned at least."""
 MEM_RAM, MEM_ATTR_READWRITE, WORD = 1, 3, 4
 AREAS = {"reset_area": 0, "eeprom": 1, "user_reserved": 2}
 """The retained areas, and the numbers of their ranges."""
+AREA_NAMES = {"reset_area": "the reset area", "eeprom": "the EEPROM", "user_reserved": "the user reserved area"}
 
 
 class CodeMemory:
@@ -67,7 +71,9 @@ class SharedAreas:
         c.at_close.append(self._leave)
 
     def _take(self, c: CRuntime, name: str, size: int) -> memoryview:
-        pointer = c.arena.map(size)
+        pointer = c.arena.map(size)  # under the guard, too: what comes later has the address that it has without
+        if c.guard is not None:
+            pointer = c.guard.take(size, AREA_NAMES[name], alignment=max(alignment_of(size), _WORDS))
         self._places[name] = pointer, size
         view: memoryview = c.memory.view(pointer, size)
         return view

@@ -2,7 +2,8 @@
 
 A handle of C is an int16, the lower half of a handle id, in a build as NASA's that leaves deprecated elements in, and
 the id itself in one that was made with OMIT_DEPRECATED (`CRuntime.omit_deprecated`). Addresses of tables are those of
-their buffers: nothing is copied.
+their buffers: nothing is copied. Only under the guard a validation function gets a copy where a table fills a part of a
+load buffer.
 """
 
 from __future__ import annotations
@@ -76,12 +77,17 @@ def _declare_registration(api: Declarations, c: CRuntime, handles: Handles) -> N
     tbl, memory = c.handle.tbl, c.memory
     put = memory.put_u32 if handles.output == "4" else memory.put_u16
 
-    def validator_at(function: int) -> Validator | None:
-        return (lambda image: c.status(function, memory.address_of(image))) if function else None
+    def validator_at(name: str, function: int) -> Validator | None:
+        if not function:
+            return None
+        if c.tables is None:
+            return lambda image: c.status(function, memory.address_of(image))
+        judge = c.tables.judge
+        return lambda image: judge(image, name, lambda address: c.status(function, address))
 
     def register(out: int, name: str, size: int, options: int, validate: int) -> int:
         try:
-            made = tbl.register(name, size, options, validator_at(validate))
+            made = tbl.register(name, size, options, validator_at(name, validate))
         except CfeError:
             put(out, handles.bad)
             raise
@@ -130,14 +136,30 @@ def _declare_content(api: Declarations, c: CRuntime, handles: Handles) -> None:
     def on_handle(name: str, call: Callable[[int], object]) -> None:
         api.add(name, handles.letter, lambda handle: call(handles.to_id(handle)))
 
+    def unregister(handle_id: int) -> None:
+        _check(c, [handle_id], "CFE_TBL_Unregister")
+        tbl.unregister(handle_id)
+
     api.add("CFE_TBL_Load", f"{handles.letter}iP", load, BAD)
-    on_handle("CFE_TBL_Unregister", tbl.unregister)
+    on_handle("CFE_TBL_Unregister", unregister)
     on_handle("CFE_TBL_Update", tbl.update)
     on_handle("CFE_TBL_Validate", tbl.validate)
     on_handle("CFE_TBL_Manage", tbl.manage)
     on_handle("CFE_TBL_DumpToBuffer", tbl.dump_to_buffer)
     on_handle("CFE_TBL_Modified", tbl.modified)
     on_handle("CFE_TBL_GetStatus", tbl.get_status)
+
+
+def _check(c: CRuntime, handle_ids: list[int], function: str) -> None:
+    """Under the guard, look at tables whose addresses are given back.
+
+    Raises:
+        CFault: one was written past.
+    """
+    if c.tables is not None:
+        accesses = (c.cfe.tbl.registry.accesses.find(each) for each in handle_ids)
+        tables = [access.table for access in accesses if access is not None]
+        c.tables.check((buffer.data for table in tables for buffer in table.buffers), f"{function}()")
 
 
 def _declare_addresses(api: Declarations, c: CRuntime, handles: Handles) -> None:
@@ -161,11 +183,17 @@ def _declare_addresses(api: Declarations, c: CRuntime, handles: Handles) -> None
             memory.put_u64(out, 0 if image is None else memory.address_of(image))
         return status
 
+    def release_address(handle: int) -> int:
+        _check(c, [handles.to_id(handle)], "CFE_TBL_ReleaseAddress")
+        return tbl.release_address(handles.to_id(handle))
+
     def release_addresses(count: int, array: int) -> int:
-        return tbl.release_addresses([handles.to_id(handle) for handle in each(array, count)])
+        handle_ids = [handles.to_id(handle) for handle in each(array, count)]
+        _check(c, handle_ids, "CFE_TBL_ReleaseAddresses")
+        return tbl.release_addresses(handle_ids)
 
     api.add("CFE_TBL_GetAddress", f"P{handles.letter}", get_address, BAD)
-    api.add("CFE_TBL_ReleaseAddress", handles.letter, lambda handle: tbl.release_address(handles.to_id(handle)))
+    api.add("CFE_TBL_ReleaseAddress", handles.letter, release_address)
     api.add("CFE_TBL_GetAddresses", "PHP", get_addresses, BAD)
     api.add("CFE_TBL_ReleaseAddresses", "HP", release_addresses, BAD)
 

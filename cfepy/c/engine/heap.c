@@ -9,10 +9,10 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { GRAIN = 16, CLASSES = 64, POISON = 0xA5 };
+enum { GRAIN = 16, CLASSES = 64, POISON = 0xA5, PAST_END = -1, BEFORE_START = -2 };
 
 typedef struct {
-    uint64_t address;
+    uint64_t address, end;                      /* of a guarded one: where its last page ends */
     size_t size, room;
     uint32_t owner;
     int class;
@@ -31,6 +31,7 @@ struct Heap {
     uint32_t owner;                             /* who gets what is taken now */
     size_t used;
     uint64_t takes;                             /* blocks that were taken so far, given back or not */
+    PyObject *noted;                            /* what was found of blocks that nobody gave back by a call */
 };
 
 /* Sizes of four steps between powers of two: at most a fifth of a block is lost. */
@@ -62,18 +63,31 @@ static Block *find(const Heap *heap, uint64_t address)
     return NULL;
 }
 
-static Block *new_block(Heap *heap, size_t size)
+static uint64_t up(uint64_t address, uint64_t to) { return (address + to - 1) & -to; }
+
+/* Where a guarded block goes, so that it ends as close to the end of a page as its alignment lets it. */
+static uint64_t place(const Heap *heap, size_t size, size_t grain, uint64_t *end)
+{
+    *end = up(heap->top + (size ? size : 1), heap->page);
+    uint64_t address = (*end - size) & -(uint64_t)grain;
+    if (address < heap->top) { /* of more than a page */
+        address = up(heap->top, grain);
+        *end = up(address + size, heap->page);
+    }
+    return address;
+}
+
+static Block *new_block(Heap *heap, size_t size, size_t grain)
 {
     size_t room = 0;
     int class = class_of(size + heap->slack, &room);
-    uint64_t address = heap->top, next = address + room;
+    uint64_t address = heap->top, next = address + room, end = next;
     if (heap->is_guarded) {
-        size_t pages = (size + heap->page - 1) / heap->page * heap->page + (size == 0) * heap->page;
-        address = heap->top + pages - (size + heap->grain - 1) / heap->grain * heap->grain;
-        next = heap->top + pages + heap->page;
+        address = place(heap, size, grain, &end);
+        next = end + heap->page;
         room = size;
         if (next <= heap->end)
-            mprotect((void *)(heap->top + pages), heap->page, PROT_NONE);
+            mprotect((void *)end, heap->page, PROT_NONE);
     }
     if (class < 0 || next > heap->end || next < heap->top)
         return NULL;
@@ -87,19 +101,67 @@ static Block *new_block(Heap *heap, size_t size)
     }
     heap->top = next;
     Block *block = &heap->blocks[heap->count++];
-    *block = (Block){.address = address, .room = room, .class = class};
+    *block = (Block){.address = address, .end = end, .room = room, .class = class};
     return block;
 }
 
-/* The bytes between the end of a guarded block and that of its page; NULL for none. */
-static unsigned char *margin(const Heap *heap, const Block *block, size_t *size)
+/* The bytes of a guarded block's pages that are not its own: those before it. */
+static unsigned char *before(const Heap *heap, const Block *block, size_t *size)
 {
-    *size = heap->is_guarded ? (block->size + heap->grain - 1) / heap->grain * heap->grain - block->size : 0;
+    uint64_t first = block->address & -(uint64_t)heap->page;
+    *size = heap->is_guarded ? block->address - first : 0;
+    return (unsigned char *)first;
+}
+
+/* Those behind it. */
+static unsigned char *behind(const Heap *heap, const Block *block, size_t *size)
+{
+    *size = heap->is_guarded ? block->end - block->address - block->size : 0;
     return (unsigned char *)block->address + block->size;
 }
 
-/* A block of zeros, aligned to 16 bytes; 0 when there is no memory left. */
-HIDDEN uint64_t heap_take(Heap *heap, size_t size)
+static void poison(const Heap *heap, const Block *block)
+{
+    size_t size;
+    unsigned char *bytes = before(heap, block, &size);
+    memset(bytes, POISON, size);
+    bytes = behind(heap, block, &size);
+    memset(bytes, POISON, size);
+}
+
+static bool is_poisoned(const unsigned char *bytes, size_t size)
+{
+    return size == 0 || (bytes[0] == POISON && memcmp(bytes, bytes + 1, size - 1) == 0);
+}
+
+/* 0, or PAST_END or BEFORE_START for what was written there. */
+static int damage_of(const Heap *heap, const Block *block)
+{
+    size_t size;
+    const unsigned char *bytes = behind(heap, block, &size);
+    if (!is_poisoned(bytes, size))
+        return PAST_END;
+    bytes = before(heap, block, &size);
+    return is_poisoned(bytes, size) ? 0 : BEFORE_START;
+}
+
+HIDDEN const char *heap_damage(int found) { return found == PAST_END ? "past its end" : "before its start"; }
+
+/* Keep what was written around a block until somebody tells it; it is told once. */
+static void note(Heap *heap, const Block *block)
+{
+    int found = block->is_used ? damage_of(heap, block) : 0;
+    if (found == 0)
+        return;
+    poison(heap, block);
+    PyObject *told = Py_BuildValue("(KKIs)", (unsigned long long)block->address, (unsigned long long)block->size,
+                                   (unsigned)block->owner, heap_damage(found));
+    if (told == NULL || PyList_Append(heap->noted, told) < 0)
+        PyErr_Clear();
+    Py_XDECREF(told);
+}
+
+static uint64_t take_aligned(Heap *heap, size_t size, size_t grain)
 {
     size_t room;
     if (size > heap->end - heap->base)
@@ -110,7 +172,7 @@ HIDDEN uint64_t heap_take(Heap *heap, size_t size)
         block = &heap->blocks[heap->free_of[class][--heap->free_count[class]]];
         memset((void *)block->address, 0, block->room);
     } else
-        block = new_block(heap, size);
+        block = new_block(heap, size, grain);
     if (block == NULL)
         return 0;
     block->size = size;
@@ -119,11 +181,12 @@ HIDDEN uint64_t heap_take(Heap *heap, size_t size)
     heap->used += size;
     heap->takes++;
     races_forget(block->address, size);
-    size_t rest;
-    unsigned char *bytes = margin(heap, block, &rest);
-    memset(bytes, POISON, rest);
+    poison(heap, block);
     return block->address;
 }
+
+/* A block of zeros, aligned to 16 bytes; 0 when there is no memory left. */
+HIDDEN uint64_t heap_take(Heap *heap, size_t size) { return take_aligned(heap, size, heap->grain); }
 
 /* As heap_take, for malloc, which promises nothing of what is in the block: a guarded heap shows that. */
 HIDDEN uint64_t heap_take_any(Heap *heap, size_t size)
@@ -136,7 +199,8 @@ HIDDEN uint64_t heap_take_any(Heap *heap, size_t size)
 
 HIDDEN void heap_own(Heap *heap, uint32_t owner) { heap->owner = owner; }
 
-static bool give(Heap *heap, Block *block)
+/* `is_kept`: it stays readable and writable, for whoever still looks at it. */
+static bool give(Heap *heap, Block *block, bool is_kept)
 {
     int class = block->class;
     if (heap->free_count[class] == heap->free_room[class]) {
@@ -149,21 +213,12 @@ static bool give(Heap *heap, Block *block)
     }
     block->is_used = false;
     heap->used -= block->size;
-    if (heap->is_guarded) /* never given out again: who still uses it is found out */
-        mprotect((void *)(block->address & -(uint64_t)heap->page),
-                 (block->size + heap->page - 1) / heap->page * heap->page, PROT_NONE);
-    else
+    if (!heap->is_guarded)
         heap->free_of[class][heap->free_count[class]++] = (int)(block - heap->blocks);
-    return true;
-}
-
-static bool is_whole(const Heap *heap, const Block *block)
-{
-    size_t size;
-    const unsigned char *bytes = margin(heap, block, &size);
-    for (size_t i = 0; i < size; i++)
-        if (bytes[i] != POISON)
-            return false;
+    else if (!is_kept) { /* never given out again: who still uses it is found out */
+        uint64_t first = block->address & -(uint64_t)heap->page;
+        mprotect((void *)first, block->end - first, PROT_NONE);
+    }
     return true;
 }
 
@@ -172,9 +227,18 @@ HIDDEN int heap_give(Heap *heap, uint64_t address)
     Block *block = find(heap, address);
     if (block == NULL || !block->is_used)
         return 0;
-    bool was_whole = is_whole(heap, block);
-    give(heap, block);
-    return was_whole ? 1 : -1;
+    int found = damage_of(heap, block);
+    give(heap, block, false);
+    return found ? found : 1;
+}
+
+HIDDEN void heap_drop(Heap *heap, uint64_t address)
+{
+    Block *block = find(heap, address);
+    if (block != NULL && block->is_used) {
+        note(heap, block);
+        give(heap, block, false);
+    }
 }
 
 HIDDEN size_t heap_size_of(Heap *heap, uint64_t address)
@@ -200,27 +264,90 @@ static PyObject *heap_new(PyTypeObject *type, PyObject *arguments, PyObject *opt
         heap->is_guarded = is_guarded;
         heap->grain = grain ? grain : GRAIN;
         heap->page = page;
+        heap->noted = PyList_New(0);
+        if (heap->noted == NULL)
+            Py_CLEAR(heap);
     }
     return (PyObject *)heap;
 }
 
 static void heap_dealloc(Heap *heap)
 {
+    Py_XDECREF(heap->noted);
     PyMem_Free(heap->blocks);
     for (int i = 0; i < CLASSES; i++)
         PyMem_Free(heap->free_of[i]);
     Py_TYPE(heap)->tp_free(heap);
 }
 
-static PyObject *take(Heap *heap, PyObject *size)
+static PyObject *take(Heap *heap, PyObject *arguments)
 {
-    size_t bytes = PyLong_AsSize_t(size);
-    return bytes == (size_t)-1 && PyErr_Occurred() ? NULL : PyLong_FromUnsignedLongLong(heap_take(heap, bytes));
+    unsigned long long size, grain = heap->grain;
+    if (!PyArg_ParseTuple(arguments, "K|K", &size, &grain))
+        return NULL;
+    return PyLong_FromUnsignedLongLong(take_aligned(heap, size, grain));
 }
 
-static PyObject *give_back(Heap *heap, PyObject *address)
+static PyObject *give_back(Heap *heap, PyObject *arguments)
 {
-    return PyLong_FromLong(heap_give(heap, PyLong_AsUnsignedLongLongMask(address)));
+    unsigned long long address;
+    int is_kept = 0;
+    if (!PyArg_ParseTuple(arguments, "K|p", &address, &is_kept))
+        return NULL;
+    Block *block = find(heap, address);
+    if (block == NULL || !block->is_used)
+        Py_RETURN_FALSE;
+    note(heap, block);
+    give(heap, block, is_kept);
+    Py_RETURN_TRUE;
+}
+
+static PyObject *damage(Heap *heap, PyObject *address)
+{
+    Block *block = find(heap, PyLong_AsUnsignedLongLongMask(address));
+    int found = block != NULL && block->is_used ? damage_of(heap, block) : 0;
+    if (found == 0)
+        Py_RETURN_NONE;
+    poison(heap, block);
+    return PyUnicode_FromString(heap_damage(found));
+}
+
+static PyObject *check(Heap *heap, PyObject *unused)
+{
+    for (int i = 0; i < heap->count; i++)
+        note(heap, &heap->blocks[i]);
+    Py_RETURN_NONE;
+}
+
+static PyObject *take_noted(Heap *heap, PyObject *unused)
+{
+    PyObject *fresh = PyList_New(0);
+    if (fresh == NULL)
+        return NULL;
+    PyObject *noted = heap->noted;
+    heap->noted = fresh;
+    return noted;
+}
+
+static PyObject *near(Heap *heap, PyObject *number)
+{
+    uint64_t address = PyLong_AsUnsignedLongLongMask(number);
+    if (!heap->is_guarded || address < heap->base || address >= heap->top)
+        Py_RETURN_NONE;
+    int low = 0, high = heap->count - 1; /* the first block whose guard page ends behind the address */
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (heap->blocks[middle].end + heap->page > address)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    Block *block = &heap->blocks[low];
+    bool has_next = low + 1 < heap->count && address >= block->end;
+    if (has_next && block[1].address - address < address - (block->address + block->size))
+        block++; /* it is in the guard between two, and closer to the second */
+    return Py_BuildValue("(KKN)", (unsigned long long)block->address, (unsigned long long)block->size,
+                         PyBool_FromLong(block->is_used));
 }
 
 static PyObject *size_of(Heap *heap, PyObject *address)
@@ -235,8 +362,10 @@ static PyObject *give_all(Heap *heap, PyObject *owner)
 {
     uint32_t whose = (uint32_t)PyLong_AsUnsignedLongMask(owner);
     for (int i = 0; i < heap->count; i++)
-        if (heap->blocks[i].is_used && heap->blocks[i].owner == whose)
-            give(heap, &heap->blocks[i]);
+        if (heap->blocks[i].is_used && heap->blocks[i].owner == whose) {
+            note(heap, &heap->blocks[i]);
+            give(heap, &heap->blocks[i], false);
+        }
     Py_RETURN_NONE;
 }
 
@@ -250,8 +379,18 @@ static PyObject *get_used(Heap *heap, void *unused) { return PyLong_FromSize_t(h
 static PyObject *get_takes(Heap *heap, void *unused) { return PyLong_FromUnsignedLongLong(heap->takes); }
 
 static PyMethodDef heap_methods[] = {
-    {"take", (PyCFunction)take, METH_O, "take(size) -> address of a block of zeros, 0 when there is no memory left"},
-    {"give", (PyCFunction)give_back, METH_O, "give(address) -> 1; 0 for no block in use, -1 for one that was written past its end"},
+    {"take", (PyCFunction)take, METH_VARARGS,
+     "take(size, grain=the heap's) -> address of a block of zeros, 0 when there is no memory left; the alignment is of a "
+     "guarded heap's blocks"},
+    {"give", (PyCFunction)give_back, METH_VARARGS,
+     "give(address, is_kept=False) -> whether it was a block in use; one that is kept stays readable and writable"},
+    {"damage", (PyCFunction)damage, METH_O,
+     "damage(address) -> 'past its end' or 'before its start' for a block in use that was written past, once; or None"},
+    {"check", (PyCFunction)check, METH_NOARGS, "check(): note all blocks in use that were written past"},
+    {"noted", (PyCFunction)take_noted, METH_NOARGS,
+     "noted() -> (address, size, owner, damage) of blocks that were found by `check`, or when they were given back"},
+    {"near", (PyCFunction)near, METH_O,
+     "near(address) -> (address, size, whether it is in use) of the guarded block whose pages or guard it is in, or None"},
     {"size_of", (PyCFunction)size_of, METH_O, "size_of(address) -> bytes of a block in use, or None"},
     {"give_all", (PyCFunction)give_all, METH_O, "give_all(owner): give back all blocks of an owner"},
     {NULL, NULL, 0, NULL},

@@ -42,7 +42,7 @@ static void drop(Images *images, Image *image)
             images->images[i] = images->images[--images->count];
             break;
         }
-    heap_give(images->heap, image->address);
+    heap_drop(images->heap, image->address);
     PyObject *packet = image->packet;
     PyMem_Free(image);
     Py_DECREF(packet);

@@ -25,7 +25,14 @@ NATIVE(new_object_or_null) { return take(call); }
 
 NATIVE(delete_object)
 {
-    if (WORD(0) != 0 && !heap_give(call->table->heap, WORD(0)))
+    if (WORD(0) == 0)
+        return 0;
+    size_t size = heap_size_of(call->table->heap, WORD(0));
+    int given = heap_give(call->table->heap, WORD(0));
+    if (given < 0)
+        PyErr_Format(fault_error, "delete of %p, a block of %zu bytes that was written %s", (void *)WORD(0), size,
+                     heap_damage(given));
+    else if (given == 0)
         PyErr_Format(fault_error, "delete of %p, which new did not give, or which was deleted", (void *)WORD(0));
     return 0;
 }

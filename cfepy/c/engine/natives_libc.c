@@ -186,9 +186,11 @@ static uint64_t take(Coroutine *call, uint64_t size)
 /* Give a block back; what is wrong with it is a fault of the caller's. */
 static bool give(Coroutine *call, uint64_t address, const char *function)
 {
+    size_t size = heap_size_of(call->table->heap, address);
     int given = heap_give(call->table->heap, address);
     if (given < 0)
-        PyErr_Format(fault_error, "%s() of %p, a block that was written past its end", function, (void *)address);
+        PyErr_Format(fault_error, "%s() of %p, a block of %zu bytes that was written %s", function, (void *)address, size,
+                     heap_damage(given));
     else if (given == 0)
         PyErr_Format(fault_error, "%s() of %p, which malloc did not give, or which was freed", function, (void *)address);
     return given > 0;
