@@ -40,6 +40,8 @@ WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep", "signal", "sigaction
 LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic")
 BOOST_REFUSED = ("config.hpp", "version.hpp")
 """Headers of the small Boost that stop a header of the real one which was found by chance."""
+BOOST_IN_PART = ("boost/thread.hpp", "boost/thread/thread.hpp", "boost/foreach.hpp", "boost/circular_buffer.hpp")
+"""Headers of which the small Boost has the part that fits one task: a node for the host gets those of the computer."""
 OWN_CPP_LIBRARY = ("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL")
 SYSTEM_ROS = ("/opt/ros/", "/usr/include/ros/", "/usr/local/include/ros/")
 HEAP_SOURCE = "heap.cpp"
@@ -67,13 +69,16 @@ def library_includes(real_boost: bool = False) -> list[Path]:
     return [folder / "include", *([] if real_boost else [folder / "boost"])]
 
 
-def needs_real_boost(sources: SourceSet) -> bool:
-    """Whether sources include a header of Boost that the small one lacks, or refuses.
+def needs_real_boost(sources: SourceSet, profile: Profile) -> bool:
+    """Whether sources include a header of Boost that the small one lacks, refuses, or has not the whole of.
 
     Args:
         sources: collected with the small one among the folders.
+        profile: that is built for.
     """
-    refused = {library_folder() / "boost" / "boost" / name for name in BOOST_REFUSED}
+    folder = library_folder() / "boost"
+    refused = {folder / "boost" / name for name in BOOST_REFUSED}
+    refused |= {folder / name for name in BOOST_IN_PART if profile is Profile.HOST}
     return any(each.startswith("boost/") for each in sources.missing) or not refused.isdisjoint(sources.contents)
 
 
@@ -172,7 +177,7 @@ class NodeBuild:
         self._options = options
         self._types = library
         sources = collect(program.sources, [*program.includes, *library_includes()])
-        self._real_boost = needs_real_boost(sources)
+        self._real_boost = needs_real_boost(sources, profile)
         if self._real_boost:
             sources = collect(program.sources, [*program.includes, *library_includes(real_boost=True)])
         self.sources = sources

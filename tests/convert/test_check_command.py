@@ -75,7 +75,7 @@ def test_what_both_passes_see_is_told_once(tmp_path: Path) -> None:
 
 
 def test_boost_is_the_hosts(tmp_path: Path) -> None:
-    with_boost = NODE.replace("#include <ros/ros.h>", "#include <ros/ros.h>\n#include <boost/thread/thread.hpp>")
+    with_boost = NODE.replace("#include <ros/ros.h>", "#include <ros/ros.h>\n#include <boost/asio.hpp>")
     assert rules_of(tmp_path, with_boost, "pool") == {"boost-header"}
 
 

@@ -145,9 +145,14 @@ def test_the_definition_is_that_of_the_connection_header(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize(
-    ("header", "real"), [("bind", False), ("shared_ptr", False), ("version", True), ("config", True), ("thread", True)]
+    ("header", "host", "pool"),
+    [
+        *(("bind", False, False), ("thread/mutex", False, False), ("version", True, True), ("config", True, True)),
+        *(("asio", True, True), ("thread", True, False)),
+    ],
 )
-def test_which_headers_of_boost_need_the_real_one(tmp_path: Path, header: str, real: bool) -> None:
+def test_which_headers_of_boost_need_the_real_one(tmp_path: Path, header: str, host: bool, pool: bool) -> None:
     source = tmp_path / "node.cpp"
     source.write_text(f"#include <boost/{header}.hpp>\n")
-    assert needs_real_boost(collect([source], library_includes())) is real
+    found = collect([source], library_includes())
+    assert [needs_real_boost(found, profile) for profile in (Profile.HOST, Profile.POOL)] == [host, pool]

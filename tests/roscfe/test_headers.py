@@ -13,7 +13,7 @@ from tests.roscfe.random_messages import LIBRARY, all_types, capacities
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 BOOST = sorted((ROSCFE / "boost").rglob("*.hpp"))
-LACKING = ("thread", "variant", "regex", "filesystem", "date_time", "format", "optional", "tuple/tuple", "any")
+LACKING = ("asio", "variant", "regex", "filesystem", "date_time", "format", "optional", "tuple/tuple", "any")
 NO_SERIALIZER = "specialise ros::serialization::Serializer for it"
 OWN = """
 #include "roscfe/message.h"
@@ -47,6 +47,14 @@ def test_a_header_of_boost_that_is_not_ours_is_refused(tmp_path: Path, name: str
 )
 def test_a_header_of_messages_stands_by_itself(tmp_path: Path, name: str, base: tuple[str, ...]) -> None:
     assert not complaints(tmp_path, f'#include "{name}.h"\n' * 2, base=base)
+
+
+def test_linear_math_has_the_guards_that_nodes_ask_for(tmp_path: Path) -> None:
+    asked = ("TF_SCALAR_H", "TF_MATRIX3x3_H", "TF2_SCALAR_H", "TF2_MATRIX3x3_H")
+    lines = "".join(f"#ifndef {guard}\n#error {guard}\n#endif\n" for guard in asked)
+    assert not complaints(
+        tmp_path, f"#include <tf/LinearMath/Transform.h>\n#include <tf2/LinearMath/Transform.h>\n{lines}"
+    )
 
 
 @pytest.mark.parametrize("profile", [Profile.HOST, Profile.STRICT])

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from cfepy.convert.build import BOOST_IN_PART
 from cfepy.convert.check.findings import CheckReport, GraphName, SourcePlace
 from cfepy.convert.check.headers import (
     OURS,
@@ -96,7 +97,7 @@ class ProgramSources:
         """Whether the program is built with the Boost of this computer, since the small one has not all of it."""
         if profile is not Profile.HOST or not is_file(SYSTEM / "boost" / "version.hpp"):
             return False
-        return not all(map(is_small_boost, self._boost))
+        return any(name in BOOST_IN_PART or not is_small_boost(name) for name in self._boost)
 
     def included_at(self, header: str) -> SourcePlace | None:
         """Where a header is included."""

@@ -18,7 +18,7 @@ class Connection
         if (end_)
         {
             end_();
-            end_ = nullptr;
+            end_ = boost::function<void()>();
         }
     }
 

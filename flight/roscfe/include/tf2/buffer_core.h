@@ -4,12 +4,16 @@
 
 #include <geometry_msgs/TransformStamped.h>
 
+#include <boost/function.hpp>
+#include <boost/shared_ptr.hpp>
+
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "ros/duration.h"
 #include "ros/time.h"
+#include "roscfe/frames/change_signal.h"
 #include "roscfe/frames/messages.h"
 #include "tf2/exceptions.h"
 #include "tf2/transform_storage.h"
@@ -164,6 +168,19 @@ class BufferCore
                              [&output](std::string_view name) { output.emplace_back(name); }));
     }
 
+#ifdef BOOST_SIGNALS2_HPP
+    // Call a function whenever transforms have come.
+    boost::signals2::connection _addTransformsChangedListener(boost::function<void()> callback)
+    {
+        if (!changes_)
+        {
+            changes_.reset(new roscfe::frames::ChangeSignal(frames_));
+        }
+        return static_cast<roscfe::frames::ChangeSignal *>(changes_.get())->signal.connect(callback);
+    }
+    void _removeTransformsChangedListener(boost::signals2::connection listener) { listener.disconnect(); }
+#endif
+
     // What is behind it, for what stands on a buffer.
     roscfe::frames::Buffer &frames() { return frames_; }
 
@@ -218,8 +235,9 @@ class BufferCore
         }
     }
 
-    roscfe::frames::Buffer frames_;
-    bool                   using_dedicated_thread_ = false;
+    roscfe::frames::Buffer  frames_;
+    bool                    using_dedicated_thread_ = false;
+    boost::shared_ptr<void> changes_; // a ChangeSignal, where there are signals
 };
 
 } // namespace tf2

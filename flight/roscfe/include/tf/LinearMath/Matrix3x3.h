@@ -1,6 +1,6 @@
 // Rotations as matrices.
-#ifndef ROSCFE_TF_LINEARMATH_MATRIX3X3_H
-#define ROSCFE_TF_LINEARMATH_MATRIX3X3_H
+#ifndef TF_MATRIX3x3_H
+#define TF_MATRIX3x3_H
 
 #include "tf/LinearMath/Quaternion.h"
 #include "tf/LinearMath/Vector3.h"

@@ -1,6 +1,6 @@
 // The smaller and the larger of two values, as tf's LinearMath calls them.
-#ifndef ROSCFE_TF_LINEARMATH_MINMAX_H
-#define ROSCFE_TF_LINEARMATH_MINMAX_H
+#ifndef TF_MINMAX_H
+#define TF_MINMAX_H
 
 #include "roscfe/linear_math/min_max.h"
 

@@ -1,6 +1,6 @@
 // Four numbers, of which tf::Quaternion is made.
-#ifndef ROSCFE_TF_LINEARMATH_QUADWORD_H
-#define ROSCFE_TF_LINEARMATH_QUADWORD_H
+#ifndef TF_QUADWORD_H
+#define TF_QUADWORD_H
 
 #include "tf/LinearMath/MinMax.h"
 #include "tf/LinearMath/Scalar.h"

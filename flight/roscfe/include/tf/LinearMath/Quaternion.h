@@ -1,6 +1,6 @@
 // Rotations as quaternions, and functions of them in namespace tf.
-#ifndef ROSCFE_TF_LINEARMATH_QUATERNION_H
-#define ROSCFE_TF_LINEARMATH_QUATERNION_H
+#ifndef TF_QUATERNION_H_
+#define TF_QUATERNION_H_
 
 #include "tf/LinearMath/QuadWord.h"
 #include "tf/LinearMath/Vector3.h"

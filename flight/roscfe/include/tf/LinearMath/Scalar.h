@@ -1,6 +1,7 @@
 // The numbers of tf's LinearMath: a double under a name of its own, and functions of it under their own names.
-#ifndef ROSCFE_TF_LINEARMATH_SCALAR_H
-#define ROSCFE_TF_LINEARMATH_SCALAR_H
+// The guards of these headers have the names that they have in ROS: some nodes ask for them.
+#ifndef TF_SCALAR_H
+#define TF_SCALAR_H
 
 #include <cmath>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // Rigid transforms: a rotation, then a translation.
-#ifndef ROSCFE_TF_LINEARMATH_TRANSFORM_H
-#define ROSCFE_TF_LINEARMATH_TRANSFORM_H
+#ifndef tfTransform_H
+#define tfTransform_H
 
 #include "tf/LinearMath/Matrix3x3.h"
 #include "roscfe/linear_math/transform.h"

@@ -1,6 +1,6 @@
 // Points and vectors, and functions of them under tf's names.
-#ifndef ROSCFE_TF_LINEARMATH_VECTOR3_H
-#define ROSCFE_TF_LINEARMATH_VECTOR3_H
+#ifndef TF_VECTOR3_H
+#define TF_VECTOR3_H
 
 #include "tf/LinearMath/MinMax.h"
 #include "tf/LinearMath/Scalar.h"

@@ -1,6 +1,6 @@
 // Rotations as matrices.
-#ifndef ROSCFE_TF2_LINEARMATH_MATRIX3X3_H
-#define ROSCFE_TF2_LINEARMATH_MATRIX3X3_H
+#ifndef TF2_MATRIX3x3_H
+#define TF2_MATRIX3x3_H
 
 #include "tf2/LinearMath/Quaternion.h"
 #include "tf2/LinearMath/Vector3.h"

@@ -1,6 +1,6 @@
 // The smaller and the larger of two values, as tf2's LinearMath calls them.
-#ifndef ROSCFE_TF2_LINEARMATH_MINMAX_H
-#define ROSCFE_TF2_LINEARMATH_MINMAX_H
+#ifndef GEN_MINMAX_H
+#define GEN_MINMAX_H
 
 #include "roscfe/linear_math/min_max.h"
 

@@ -1,6 +1,6 @@
 // Four numbers, of which tf2::Quaternion is made.
-#ifndef ROSCFE_TF2_LINEARMATH_QUADWORD_H
-#define ROSCFE_TF2_LINEARMATH_QUADWORD_H
+#ifndef TF2SIMD_QUADWORD_H
+#define TF2SIMD_QUADWORD_H
 
 #include "tf2/LinearMath/MinMax.h"
 #include "tf2/LinearMath/Scalar.h"

@@ -1,6 +1,6 @@
 // Rotations as quaternions, and functions of them in namespace tf2.
-#ifndef ROSCFE_TF2_LINEARMATH_QUATERNION_H
-#define ROSCFE_TF2_LINEARMATH_QUATERNION_H
+#ifndef TF2_QUATERNION_H_
+#define TF2_QUATERNION_H_
 
 #include "tf2/LinearMath/QuadWord.h"
 #include "tf2/LinearMath/Vector3.h"

@@ -1,6 +1,7 @@
 // The numbers of tf2's LinearMath: a double under a name of its own, and functions of it under their own names.
-#ifndef ROSCFE_TF2_LINEARMATH_SCALAR_H
-#define ROSCFE_TF2_LINEARMATH_SCALAR_H
+// The guards of these headers have the names that they have in ROS: some nodes ask for them.
+#ifndef TF2_SCALAR_H
+#define TF2_SCALAR_H
 
 #include <cmath>
 #include <cstdint>

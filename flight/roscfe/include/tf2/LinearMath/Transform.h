@@ -1,6 +1,6 @@
 // Rigid transforms: a rotation, then a translation.
-#ifndef ROSCFE_TF2_LINEARMATH_TRANSFORM_H
-#define ROSCFE_TF2_LINEARMATH_TRANSFORM_H
+#ifndef tf2_Transform_H
+#define tf2_Transform_H
 
 #include "tf2/LinearMath/Matrix3x3.h"
 #include "roscfe/linear_math/transform.h"

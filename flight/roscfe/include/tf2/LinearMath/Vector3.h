@@ -1,6 +1,6 @@
 // Points and vectors, and functions of them under tf2's names.
-#ifndef ROSCFE_TF2_LINEARMATH_VECTOR3_H
-#define ROSCFE_TF2_LINEARMATH_VECTOR3_H
+#ifndef TF2_VECTOR3_H
+#define TF2_VECTOR3_H
 
 #include "tf2/LinearMath/MinMax.h"
 #include "tf2/LinearMath/Scalar.h"

@@ -1,0 +1,67 @@
+"""The small Boost beside Boost itself, and the interface library with Boost itself."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from cfepy.convert.messages import Profile, write_headers
+from tests.roscfe.building import CPP, INCLUDE, ROSCFE, STRICT_FLAGS, SYSTEM, compile_program, needs_cpp
+from tests.roscfe.random_messages import LIBRARY
+
+pytestmark = [pytest.mark.slow, needs_cpp]
+needs_boost = pytest.mark.skipif(
+    not (SYSTEM / "boost" / "thread.hpp").is_file(),
+    reason="there is no Boost (Debian: libboost-thread-dev); what its programs print is recorded",
+)
+FOLDER = Path(__file__).parent
+STUBS = FOLDER / "stubs.cpp"
+TWICE = """
+#include <boost/thread/mutex.hpp>
+int main()
+{
+    boost::mutex                    mutex;
+    boost::lock_guard<boost::mutex> one(mutex);
+    boost::mutex::scoped_lock       other(mutex);
+}
+"""
+
+
+@pytest.mark.parametrize("profile", Profile)
+def test_locks_and_rows_print_what_is_recorded(tmp_path: Path, profile: Profile) -> None:
+    sources, flags = [FOLDER / "locks.cpp", STUBS], (f"-DROSCFE_PROFILE_{profile.name}",)
+    made = compile_program(tmp_path / "locks", sources, *flags, base=STRICT_FLAGS)
+    assert subprocess.check_output([made], text=True) == (FOLDER / "locks.txt").read_text()
+
+
+@needs_boost
+def test_what_is_recorded_is_what_boost_prints(tmp_path: Path) -> None:
+    sources, libraries = [FOLDER / "locks.cpp"], ("-lboost_thread", "-lboost_system", "-lpthread")
+    made = compile_program(tmp_path / "locks", sources, base=("-std=c++17",), include=(), libraries=libraries)
+    assert subprocess.check_output([made], text=True) == (FOLDER / "locks.txt").read_text()
+
+
+@pytest.mark.parametrize("profile", Profile)
+def test_a_mutex_that_would_wait_for_itself_ends_the_node(tmp_path: Path, profile: Profile) -> None:
+    source = tmp_path / "twice.cpp"
+    source.write_text(TWICE)
+    made = compile_program(tmp_path / "twice", [source, STUBS], f"-DROSCFE_PROFILE_{profile.name}", base=STRICT_FLAGS)
+    done = subprocess.run([made], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout[:21]) == (3, "refused: boost::mutex")
+
+
+@needs_boost
+def test_the_interface_library_compiles_with_boost_itself(tmp_path: Path) -> None:
+    include = ROSCFE / "include"
+    headers = sorted(str(each.relative_to(include)) for each in include.rglob("*.h"))
+    packages = ("std_msgs", "geometry_msgs", "sensor_msgs", "visualization_msgs", "actionlib_msgs", "rosgraph_msgs")
+    packages += ("tf2_msgs", "tf", "diagnostic_msgs", "dynamic_reconfigure", "roscpp", "std_srvs")
+    kinds = [(name, kind) for name in packages for kind in ("msg", "srv")]
+    known = [f"{name}/{each}" for name, kind in kinds for each in LIBRARY.names(name, kind) or ()]
+    write_headers(known, tmp_path, Profile.HOST, LIBRARY)
+    source = tmp_path / "all.cpp"
+    source.write_text("#include <boost/signals2.hpp>\n" + "".join(f"#include <{each}>\n" for each in headers))
+    command = [*CPP, "-std=c++17", INCLUDE[0], f"-I{tmp_path}", "-fsyntax-only", str(source)]
+    assert subprocess.run(command, capture_output=True, text=True, check=False).returncode == 0
