@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 import subprocess
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -110,7 +111,9 @@ def _lines(package: str, name: str, description: Mapping[str, Any]) -> Iterator[
     yield "  public:"
     for each, _ in parameters:
         yield f"    {_C_TYPES[each['type']]} {each['name']};"
-    yield from ("", f"    {config}() {{ visit(roscfe::configuration::SetDefaults(), *this); }}", "")
+    yield from ("", *_group_members(description["group"], "groups"))
+    yield from ("", f"    {config}()", "    {", "        visit(roscfe::configuration::SetDefaults(), *this);")
+    yield from ("        fill_groups();", "    }", "")
     yield from _visitors(config, parameters)
     yield from ("    static int group_count() { return " + f"{len(groups)}; }}",)
     yield "    static const roscfe::ConfigGroup *groups_of()"
@@ -131,13 +134,24 @@ def _lines(package: str, name: str, description: Mapping[str, Any]) -> Iterator[
         f"        {config} copy = *this;",
         "        visit(roscfe::configuration::ToServer{node}, copy);",
         "    }",
-        "    void __clamp__() { visit(roscfe::configuration::Clamp(), *this); }",
+        "    void __clamp__()",
+        "    {",
+        "        visit(roscfe::configuration::Clamp(), *this);",
+        "        fill_groups();",
+        "    }",
         f"    std::uint32_t __level__(const {config} &other) const",
         "    {",
         f"        {config} one = *this, another = other;",
         "        return roscfe::configuration::levels_between(one, another);",
         "    }",
         f"    static {config} __getDefault__() {{ return {config}(); }}",
+        "",
+        "  private:",
+        "    // Groups have their parameters once more.",
+        "    void fill_groups()",
+        "    {",
+        *(f"        {place} = {name};" for place, name in _grouped(description["group"], "groups")),
+        "    }",
         "};",
         "",
     )
@@ -163,9 +177,35 @@ def _visitors(config: str, parameters: Sequence[tuple[Mapping[str, Any], int]]) 
 
 def _groups(group: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
     """A group and those inside, in the order of their numbers."""
-    inner = group["groups"]
-    found = [group, *(each for one in (inner.values() if isinstance(inner, dict) else inner) for each in _groups(one))]
+    found = [group, *(each for one in _inner(group) for each in _groups(one))]
     yield from sorted(found, key=lambda each: int(each["id"]))
+
+
+def _group_members(group: Mapping[str, Any], member: str) -> list[str]:
+    """A group as a member of a class, with its parameters and the groups inside, as dynamic_reconfigure has it."""
+    state = "true" if group.get("state", True) else "false"
+    lines = [f"struct {_identifier(group['name']).upper()}", "{", f"    bool        state = {state};"]
+    lines += [f"    std::string name  = {quoted(group['name'])};"]
+    lines += [f"    {_C_TYPES[each['type']]} {each['name']};" for each in group["parameters"]]
+    for each in _inner(group):
+        lines += _group_members(each, _identifier(each["name"]).lower())
+    return [f"    {line}" for line in [*lines, f"}} {member};"]]
+
+
+def _grouped(group: Mapping[str, Any], place: str) -> Iterator[tuple[str, str]]:
+    """The members of a group that are parameters, and the parameters."""
+    yield from ((f"{place}.{each['name']}", each["name"]) for each in group["parameters"])
+    for each in _inner(group):
+        yield from _grouped(each, f"{place}.{_identifier(each['name']).lower()}")
+
+
+def _inner(group: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    inner = group["groups"]
+    return list(inner.values() if isinstance(inner, dict) else inner)
+
+
+def _identifier(name: str) -> str:
+    return re.sub(r"\W", "_", name)
 
 
 def _parameter(each: Mapping[str, Any], group: int) -> str:

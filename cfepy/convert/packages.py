@@ -390,7 +390,8 @@ class _CatkinReader(CMakeScript):
                 section = each
             else:
                 said.setdefault(section, []).append(each)
-        _add(self._package.includes, self._folders(said.get("INCLUDE_DIRS", [])))
+        headers = [EIGEN] if {"EIGEN3", "EIGEN", "Eigen3", "Eigen"}.intersection(said.get("DEPENDS", [])) else []
+        _add(self._package.includes, self._folders([*said.get("INCLUDE_DIRS", []), *headers]))
         _add(self._package.exported, said.get("LIBRARIES", []))
         _add(self._package.depends, said.get("CATKIN_DEPENDS", []))
 

@@ -42,6 +42,7 @@ def test_a_script_becomes_a_class(program: Program) -> None:
     )
     assert "std::numeric_limits<double>::infinity()" in text
     assert '{"inner", "tab", 0, 1, true},' in text
+    assert "        groups.inner.on = on;" in text
     assert "constexpr int Tune_Large = (2);" in text
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.convert import packages
 from cfepy.convert.packages import program_of, read_package
 from cfepy.status import UsageError
 from rospy_shim.msgs import Packages
@@ -88,11 +89,23 @@ def test_a_package_is_read_as_catkin_does(tmp_path: Path) -> None:
     assert program.outside == ["PCL"]
 
 
+def test_headers_of_eigen_that_a_package_offers_are_those_of_its_users(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    eigen = tmp_path / "eigen3"
+    eigen.mkdir()
+    monkeypatch.setattr(packages, "EIGEN", str(eigen))
+    write(tmp_path, {**FILES, "helpers/CMakeLists.txt": "project(helpers)\ncatkin_package(DEPENDS EIGEN3)\n"})
+    package = read_package(tmp_path / "demo", "demo")
+    program = program_of(package, "talker", Packages(tmp_path / "demo/src/talker.cpp", {}), ours=["roscpp"])
+    assert eigen in program.includes
+
+
 def test_a_target_that_is_not_there_is_told(tmp_path: Path) -> None:
     write(tmp_path, FILES)
     package = read_package(tmp_path / "demo", "demo")
-    packages = Packages(tmp_path / "demo/src/talker.cpp", {})
+    known = Packages(tmp_path / "demo/src/talker.cpp", {})
     with pytest.raises(UsageError, match=r"has no C\+\+ node 'walker'; it has hearer, old, talker, demo/Filter"):
-        program_of(package, "walker", packages)
+        program_of(package, "walker", known)
     with pytest.raises(UsageError, match=r"old is made of gone\.cpp, which is not there"):
-        program_of(package, "old", packages)
+        program_of(package, "old", known)

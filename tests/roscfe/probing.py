@@ -41,6 +41,8 @@ LIBRARIES = (
     *("-lroscpp", "-lrosconsole", "-lrostime", "-lroscpp_serialization", "-lxmlrpcpp"),
     *("-lactionlib", "-lboost_thread"),
 )
+MORE_LIBRARIES = {"clouds": ("-linteractive_markers", "-llaser_geometry", "-ltf", "-ltf2")}
+"""Of probes that need more of ROS than others."""
 MANIFEST = """<package format="2"><name>probes</name><version>1.0.0</version><description>probes</description>
 <maintainer email="a@b.c">a</maintainer><license>Apache-2.0</license><depend>roscpp</depend></package>
 """
@@ -129,7 +131,8 @@ def run_with_roscpp(name: str, folder: Path, environ: dict[str, str]) -> list[st
         environ: of `master`.
     """
     made = folder / name
-    compile_program(made, [PROBES / f"{name}.cpp"], base=("-std=c++17",), include=(), libraries=LIBRARIES)
+    libraries = (*MORE_LIBRARIES.get(name, ()), *LIBRARIES)
+    compile_program(made, [PROBES / f"{name}.cpp"], base=("-std=c++17",), include=(), libraries=libraries)
     remaps = [f"{one}:={other}" for one, other in REMAPS.items()]
     commands = [["stdbuf", "-oL", str(made), "__name:=probe", *remaps]]
     if (PROBES / f"{name}.py").is_file():

@@ -6,6 +6,9 @@
 #include <map>
 #include <string>
 
+#include <boost/thread/mutex.hpp> // which nodes take from here, as from the original
+#include <boost/thread/recursive_mutex.hpp>
+
 #include "ros/ros.h"
 #include "visualization_msgs/InteractiveMarker.h"
 #include "visualization_msgs/InteractiveMarkerFeedback.h"

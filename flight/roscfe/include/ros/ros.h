@@ -2,10 +2,13 @@
 #ifndef ROSCPP_ROS_H
 #define ROSCPP_ROS_H
 
-// roscpp brings these along, and nodes rely on it: isnan without std::, boost::lexical_cast.
+// roscpp brings these along, and nodes rely on it: isnan without std::, boost::lexical_cast, usleep.
 #include <boost/lexical_cast.hpp>
 
 #include <math.h>
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
 
 #include "ros/time.h"
 
