@@ -91,6 +91,13 @@ def test_a_node_starts_at_once_however_many_subscriptions_there_are() -> None:
     assert len(begins) == 1
 
 
+def test_a_publisher_is_told_of_subscribers_that_were_there_before() -> None:
+    with mission_of("lives", ends="greeters") as mission:
+        mission.run_for(4)
+        assert [said_by(mission, name) for name in ("/early", "/late")] == [["greets 1"], ["greets 1"]]
+        assert sum("greeted 0 before it spins" in line for line in mission.console.lines) == 2
+
+
 def test_a_loop_at_1_khz_loses_nothing() -> None:
     with mission_of("loop") as mission:
         mission.run_for(8)

@@ -353,6 +353,19 @@ std::uint32_t pipes_on(std::uint16_t msg_id)
     return count;
 }
 
+std::vector<CFE_SB_PipeId_t> those_on(std::uint16_t msg_id)
+{
+    std::vector<CFE_SB_PipeId_t> found;
+    for (const Known &known : g_known)
+    {
+        if (known.msg_id == msg_id && is_there(known))
+        {
+            found.push_back(known.pipe);
+        }
+    }
+    return found;
+}
+
 bool pump(std::int64_t until_ns, bool exactly)
 {
     const bool came = take_over();

@@ -89,6 +89,9 @@ bool          listen(std::uint16_t msg_id);
 void          listen_no_more(std::uint16_t msg_id);
 std::uint32_t pipes_on(std::uint16_t msg_id);
 
+// The pipes that have subscribed to a MsgId; 0 stands for those of which only that they are there is known.
+std::vector<CFE_SB_PipeId_t> those_on(std::uint16_t msg_id);
+
 // A packet under way: memory of the Software Bus behind a header of its own. Null when there is none, which an event says.
 CFE_SB_Buffer_t *begin_packet(std::uint16_t msg_id, std::size_t size);
 void             send_packet(CFE_SB_Buffer_t *buffer);

@@ -114,6 +114,60 @@ void call_all(const std::vector<ros::SubscriberStatusCallback> &calls, const ros
 }
 } // namespace
 
+namespace
+{
+// A subscriber that was there before a publisher that wants to hear of it: roscpp connects both a little later.
+class EarlierSubscriber : public ros::CallbackInterface
+{
+  public:
+    EarlierSubscriber(const boost::shared_ptr<Publication> &publication, const ros::AdvertiseOptions &options,
+                      CFE_SB_PipeId_t pipe)
+        : publication_(publication), call_(options.connect_cb), tracked_(options.tracked_object),
+          is_tracked_(options.tracked_object != nullptr), pipe_(pipe)
+    {
+    }
+
+    CallResult call() override
+    {
+        const boost::shared_ptr<Publication> publication = publication_.lock();
+        const ros::VoidConstPtr              held        = tracked_.lock();
+        char                                 name[OS_MAX_API_NAME];
+        if (!publication || publication->users_ == 0 || (is_tracked_ && !held))
+        {
+            return Invalid;
+        }
+        if (CFE_RESOURCEID_TO_ULONG(pipe_) == 0)
+        {
+            name[0] = '\0';
+        }
+        else if (CFE_SB_GetPipeName(name, sizeof name, pipe_) != CFE_SUCCESS)
+        {
+            return Invalid; // gone already
+        }
+        const auto number = static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(pipe_));
+        call_(ros::SingleSubscriberPublisher(*publication, number, name));
+        return Success;
+    }
+
+  private:
+    boost::weak_ptr<Publication>  publication_;
+    ros::SubscriberStatusCallback call_;
+    ros::VoidConstWPtr            tracked_;
+    bool                          is_tracked_;
+    CFE_SB_PipeId_t               pipe_;
+};
+
+void tell_of_those_on(const boost::shared_ptr<Publication> &publication, const ros::AdvertiseOptions &options)
+{
+    ros::CallbackQueueInterface &queue = options.callback_queue != nullptr ? *options.callback_queue : g_node.queue;
+    for (const CFE_SB_PipeId_t pipe : those_on(publication->msg_id_))
+    {
+        queue.expect(1);
+        queue.addCallback(boost::make_shared<EarlierSubscriber>(publication, options, pipe), 0);
+    }
+}
+} // namespace
+
 void publication_lost_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
 {
     for (const boost::shared_ptr<Publication> &each : g_node.publications)
@@ -343,6 +397,7 @@ Publisher NodeHandle::advertise(AdvertiseOptions &options)
     if (options.connect_cb)
     {
         publication->on_connect_.push_back(options.connect_cb);
+        roscfe::tell_of_those_on(publication, options);
     }
     if (options.disconnect_cb)
     {
