@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, TextIO
 
-from cfepy.exploration.campaign import Campaign, Tally
+from cfepy.exploration.campaign import Campaign, Crew, Tally
 from cfepy.exploration.crews import make_crew
 from cfepy.exploration.progress import make_progress
 from cfepy.exploration.results_file import ResultsFile
@@ -33,6 +33,7 @@ from cfepy.units import NS_PER_S
 
 BASE = "at"  # fifo as a policy, which is asked, so that decisions can be counted and options count
 DEFAULT_SEEDS = 100
+_NO_WAY = (PROCESS_DIED, STALLED)  # a run that was broken off has no trace to compare
 DEFAULT_PROBES = 800
 POLICIES = ("all", "random", "pct", "dfs")
 EVENTS = ("error", "critical", "none")
@@ -46,11 +47,16 @@ class Told:
         finding: the failure, and the schedules that showed it.
         shrunk: its schedule with the fewest preemptions; None when it was not looked for, or has none.
         timeline: what happens under that schedule, a line each.
+        repeats: whether a second run under the schedule that showed it fails in the same way. If not, it is not the
+            schedule that decides.
+        is_steady: whether that run had the same trace.
     """
 
     finding: Finding
     shrunk: Shrunk[Trial] | None = None
     timeline: list[str] = field(default_factory=list)
+    repeats: bool = True
+    is_steady: bool = True
 
 
 @dataclass(slots=True)
@@ -64,6 +70,7 @@ class Report:
         troubles: verdicts that ended in an error of cfepy.
         findings: each failure once.
         notes: what its user should know.
+        is_steady: whether two runs under the default schedule went the same way. If not, no others were made.
     """
 
     trial: Trial
@@ -72,6 +79,14 @@ class Report:
     troubles: list[Verdict]
     findings: list[Told] = field(default_factory=list)
     notes: tuple[str, ...] = ()
+    is_steady: bool = True
+
+    @property
+    def unsteady(self) -> Schedule | None:
+        """A schedule under which two runs differed; None when all that were made twice went the same way."""
+        if not self.is_steady:
+            return Schedule()
+        return next((told.finding.verdict.schedule for told in self.findings if not told.is_steady), None)
 
     def schedule_of(self, told: Told) -> Schedule:
         """The schedule that showed a failure first; a run under it shows the failure, data races too."""
@@ -84,11 +99,12 @@ class Report:
         found = []
         for told in self.findings:
             command = self.trial.command(_showing(told.finding.failure, told.finding.verdict.schedule))
-            entry = told.finding.to_dict() | {"command": command, "timeline": told.timeline}
+            entry = told.finding.to_dict() | {"command": command, "timeline": told.timeline, "repeats": told.repeats}
             found.append(entry | {"shrunk": None if told.shrunk is None else _shrunk_numbers(told.shrunk)})
         return {
             "plan": self.trial.plan.to_dict(),
             "reference": self.reference.to_dict(),
+            "deterministic": self.unsteady is None,
             "schedules": self.tally.done,
             "failed": self.tally.failed,
             "troubled": self.tally.troubled,
@@ -177,6 +193,8 @@ class Expedition:
         findings = Findings(reference)
         search = make_search(self.policy, self.depth, reference.decisions, options, self.first_seed)
         tally = self._fly(trial, search, findings, reference)
+        if tally is None:
+            return Report(trial, reference, Tally(), [], notes=notes, is_steady=False)
         report = Report(trial, reference, tally, findings.troubles, notes=notes)
         for finding in findings.all():
             report.findings.append(self._told(trial, finding, tally))
@@ -200,19 +218,44 @@ class Expedition:
 
     def _fly(
         self, trial: Trial, search: SeededSearch | SystematicSearch, findings: Findings, reference: Verdict
-    ) -> Tally:
-        """Run all schedules, or until the first failure."""
+    ) -> Tally | None:
+        """Run all schedules, or until the first failure; none, when another process goes another way under fifo."""
         if self.until_failure and reference.failed:
             return Tally()
         files = files_read(trial.plan) if self.results is not None or self.cluster is not None else []
         file = None if self.results is None else ResultsFile(self.results, self._identity(trial, files))
         crew = make_crew(self.seeds, self.jobs, self.cluster, lambda: ship(trial.plan, files), self.longest_s)
+        if not self._is_steady(trial, crew, reference):
+            crew.close()
+            return None
         progress = make_progress(self.progress, self.seeds, 0 if file is None else len(file))
 
         def take(number: int, verdict: Verdict) -> bool:
             return findings.take(number, verdict) and self.until_failure
 
         return Campaign(trial, search, self.seeds, crew, file, progress).run(take)
+
+    def _is_steady(self, trial: Trial, crew: Crew, reference: Verdict) -> bool:
+        """Whether the run under the default schedule goes the same way again, in a process of the crew's."""
+        if reference.trouble or any(failure.kind in _NO_WAY for failure in reference.failures):
+            return True
+        once = [(0, reference.schedule)]
+        again = [verdict for _, verdict in crew.run(trial, lambda limit: [once.pop()] if once else [])]
+        return all(self._is_same(reference, each) for each in again)
+
+    def _fly_again(self, trial: Trial, told: Told) -> None:
+        """Whether another run, in this process, goes the way of the one that showed a failure."""
+        finding = told.finding
+        if not finding.in_reference and finding.failure.kind not in _NO_WAY:
+            again = trial.fly(finding.verdict.schedule).verdict
+            told.repeats = again.failure(finding.failure.group) is not None
+            told.is_steady = told.repeats and self._is_same(finding.verdict, again)
+
+    def _is_same(self, one: Verdict, other: Verdict) -> bool:
+        """On another computer a mission lies in another folder, which is in the trace."""
+        if self.cluster is not None:
+            return one.groups == other.groups
+        return one.trace == other.trace or PROCESS_DIED in {failure.kind for failure in other.failures}
 
     def _identity(self, trial: Trial, files: list[str]) -> dict[str, Any]:
         """What a results file goes on with only when it is the same, by the option's name."""
@@ -221,11 +264,12 @@ class Expedition:
         return identity_of(trial.plan, files, search)
 
     def _told(self, trial: Trial, finding: Finding, tally: Tally) -> Told:
-        """A failure, shrunk and with its timeline."""
+        """A failure, flown once more, shrunk, and with its timeline."""
         told = Told(finding)
         try:
             if not tally.interrupted:
-                told.shrunk = self._shrunk(trial, finding)
+                self._fly_again(trial, told)
+                told.shrunk = self._shrunk(trial, finding) if told.repeats else None
             if told.shrunk is not None:
                 told.timeline = _timeline(told.shrunk, finding)
         except KeyboardInterrupt:  # what was found must not be lost with it

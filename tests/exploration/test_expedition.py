@@ -3,16 +3,31 @@
 from __future__ import annotations
 
 import argparse
+import io
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from cfepy.cli import explore as room
-from cfepy.exploration import Expedition
+from cfepy.cli.explore.explore import show
+from cfepy.exploration import Expedition, Report, Trial
 from cfepy.exploration.expedition import DEFAULT_PROBES, DEFAULT_SEEDS
+from cfepy.exploration.trial import Tried
 from cfepy.pilot import RunPlan
+from cfepy.rtos import Schedule
 from cfepy.status import UsageError
+from tests.exploration import missions
 
+BY_ADDRESS = """
+    import rospy
+
+    rospy.init_node("pair")
+    rospy.sleep(0.1 + id(rospy) % 1009 / 1e6)
+    rospy.spin()
+"""
+TEXT_BY_ADDRESS = missions.LOST_UPDATE.replace("total.publish(balance)", "assert balance == 6, id(rospy)")
 ODOMETER = str(Path(__file__).parents[1] / "quality" / "missions" / "lost_update")
 PLAN = RunPlan((ODOMETER,), seconds=1.3, tasks="greenlet")
 
@@ -56,3 +71,50 @@ def test_a_failure_is_shrunk_and_told_with_its_timeline() -> None:
 def test_a_time_that_cannot_be_is_told_by_the_option() -> None:
     with pytest.raises(UsageError, match="--hold"):
         Expedition(PLAN, hold_s=-1).run()
+
+
+def explored(folder: Path, source: str) -> Report:
+    plan = RunPlan((str(missions.write(folder, {"PAIR": source})),), seconds=1.0, tasks="greenlet")
+    return Expedition(plan, seeds=30, jobs=1, until_failure=True).run()
+
+
+@pytest.mark.slow
+def test_a_mission_that_goes_another_way_in_another_process_is_not_explored(tmp_path: Path) -> None:
+    report = explored(tmp_path, BY_ADDRESS)
+    assert (report.is_steady, report.unsteady, report.tally.done) == (False, Schedule(), 0)
+    assert report.to_dict()["deterministic"] is False
+
+
+@pytest.mark.slow
+def test_a_failure_of_which_only_the_text_differs_is_shrunk_and_the_leak_is_told(tmp_path: Path) -> None:
+    report = explored(tmp_path, TEXT_BY_ADDRESS)
+    (told,) = report.findings
+    assert (told.repeats, told.is_steady) == (True, False)
+    assert told.shrunk is not None
+    assert report.unsteady == told.finding.verdict.schedule
+
+
+@pytest.mark.slow
+def test_a_mission_that_is_deterministic_is_told_as_such() -> None:
+    assert Expedition(PLAN, seeds=8, jobs=1, until_failure=True).run().unsteady is None
+
+
+def test_a_failure_that_does_not_come_again_is_none_of_the_schedule(monkeypatch: pytest.MonkeyPatch) -> None:
+    fly = Trial.fly
+    flown: list[Schedule] = []
+
+    def once(self: Trial, schedule: Schedule, *args: Any, **options: Any) -> Tried:
+        tried = fly(self, schedule, *args, **options)
+        flown.append(schedule)
+        is_again = schedule.kind != "at" and options.get("policy") is None
+        return tried._replace(verdict=replace(tried.verdict, failures=())) if is_again else tried
+
+    monkeypatch.setattr(Trial, "fly", once)  # of this process; the crew flies in another one
+    report = Expedition(PLAN, seeds=8, jobs=1, until_failure=True).run()
+    (told,) = report.findings
+    assert (told.repeats, told.shrunk, told.timeline) == (False, None, [])
+    assert report.unsteady == told.finding.verdict.schedule
+    assert flown[-1] == told.finding.verdict.schedule
+    stream = io.StringIO()
+    show(report, stream)
+    assert stream.getvalue().startswith("seen once and not again: failure 1: ")

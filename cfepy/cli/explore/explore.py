@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TextIO
 
 from cfepy.cli.failures import tell
@@ -16,14 +17,18 @@ from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of
 from cfepy.exploration import Expedition, Finding, Report, Shrunk, Told, Trial
 from cfepy.pilot import NODE, RunPlan
+from cfepy.rtos import Schedule
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
+
+RUNS_THAT_ARE_COMPARED = 2
 
 
 def show(report: Report, stream: TextIO) -> None:
     """Print it."""
     for number, told in enumerate(report.findings, 1):
-        print(f"failure {number}: {told.finding.failure.title}", file=stream)
+        seen = "failure" if told.repeats else "seen once and not again: failure"
+        print(f"{seen} {number}: {told.finding.failure.title}", file=stream)
         for line in _about(report, told):
             print(f"  {line}".rstrip(), file=stream)
         print(file=stream)
@@ -36,6 +41,8 @@ def show(report: Report, stream: TextIO) -> None:
 def summary(report: Report) -> str:
     """The last line: how many schedules, how many failed, of how many kinds."""
     tally = report.tally
+    if not report.is_steady:
+        return "no schedules: two runs under fifo differ"
     parts = [f"{tally.done} schedules", f"{tally.failed} failed"]
     if tally.troubled:
         parts.append(f"{tally.troubled} with an error in cfepy itself")
@@ -103,9 +110,22 @@ def run(arguments: argparse.Namespace) -> int:
     report = _expedition(arguments).run(tell)
     show(report, sys.stdout)
     write_json(arguments, report.to_dict())
+    if report.unsteady is not None and not report.tally.interrupted:
+        _show_leak(report.trial.plan, report.unsteady)
+        return FOUND_PROBLEMS
     if report.tally.interrupted:
         return INTERRUPTED
     return FOUND_PROBLEMS if report.findings or report.troubles else ENDED_WELL
+
+
+def _show_leak(plan: RunPlan, schedule: Schedule) -> None:
+    """Two runs under one schedule differed: say where, as far as it can be found."""
+    from cfepy.cli.run.check_determinism import compare
+
+    print(f"\nnot deterministic: two runs under {schedule} differ, so not the schedule alone decides", flush=True)
+    if compare(replace(plan, schedule=schedule), RUNS_THAT_ARE_COMPARED) == ENDED_WELL:
+        print("in processes of their own such runs do not differ: addresses of objects decide, or what a run leaves")
+        print("behind in its process")
 
 
 def _expedition(arguments: argparse.Namespace) -> Expedition:

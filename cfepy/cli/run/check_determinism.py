@@ -62,7 +62,16 @@ def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
     for name in _NOT_TOGETHER:
         if getattr(arguments, name) is not None:
             raise UsageError("does not go with --check-determinism", field=f"--{name.replace('_', '-')}")
-    variants = _variants(arguments.check_determinism, plan.tasks)
+    return compare(plan, arguments.check_determinism)
+
+
+def compare(plan: RunPlan, count: int) -> int:
+    """Run a plan so many times and show the first difference; the exit status is that of `check`.
+
+    Raises:
+        UsageError: the mission cannot run.
+    """
+    variants = _variants(count, plan.tasks)
     print(f"{len(variants)} runs: {'; '.join(map(str, variants))}", flush=True)
     runs = Runs(plan)
     for _ in range(ATTEMPTS):
