@@ -252,10 +252,10 @@ class Expedition:
             told.is_steady = told.repeats and self._is_same(finding.verdict, again)
 
     def _is_same(self, one: Verdict, other: Verdict) -> bool:
-        """On another computer a mission lies in another folder, which is in the trace."""
+        """On another computer a mission lies in another folder, which is in the trace. One broken off has none."""
         if self.cluster is not None:
             return one.groups == other.groups
-        return one.trace == other.trace or PROCESS_DIED in {failure.kind for failure in other.failures}
+        return one.trace == other.trace or bool(other.trouble) or not other.trace
 
     def _identity(self, trial: Trial, files: list[str]) -> dict[str, Any]:
         """What a results file goes on with only when it is the same, by the option's name."""
