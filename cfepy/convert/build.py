@@ -177,7 +177,7 @@ class NodeBuild:
         self._options = options
         self._types = library
         sources = collect(program.sources, [*program.includes, *library_includes()])
-        self._real_boost = needs_real_boost(sources, profile)
+        self._real_boost = needs_real_boost(sources, self._options.profile)
         if self._real_boost:
             sources = collect(program.sources, [*program.includes, *library_includes(real_boost=True)])
         self.sources = sources
