@@ -13,6 +13,7 @@ from cfepy.osal.limits import (
     OS_OBJECT_CREATOR_ANY,
 )
 from cfepy.status import OS_ERR_INVALID_ID, OsalError, name_of, status_to_decimal, to_signed
+from cfepy.texts import to_bytes
 from cfepy.versions import OSAL_VERSION, VersionFunctions
 
 
@@ -30,6 +31,7 @@ class IdMapApi(VersionFunctions, Core):
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
         self._printf_enabled = True
+        self._line = ""
 
     def get_resource_name(self, object_id: int) -> str:
         """The name of any OSAL object, of an open file or folder its path (OS_GetResourceName).
@@ -97,9 +99,20 @@ class IdMapApi(VersionFunctions, Core):
         return name[: OS_ERROR_NAME_LENGTH - 1] if name.startswith("OS_") else f"OS_UNKNOWN({status})"
 
     def printf(self, text: str) -> None:
-        """Write a text to the console, at most 171 characters of it (OS_printf)."""
+        """Write a text to the console, at most 171 characters of it, as lines of their own (OS_printf)."""
         if self._printf_enabled:
             self.console.write(text[: OS_BUFFER_SIZE - 1])
+
+    def printf_piece(self, text: str) -> None:
+        """Write what may be a piece of a line, at most 171 bytes of it (OS_printf, as C has it).
+
+        A line is shown when it is whole, however long.
+        """
+        if self._printf_enabled:
+            piece = to_bytes(text)[: OS_BUFFER_SIZE - 1].decode("utf-8", "surrogateescape")
+            *lines, self._line = (self._line + piece).split("\n")
+            for line in lines:
+                self.console.write(line)
 
     def printf_disable(self) -> None:
         """Let `printf` do nothing (OS_printf_disable)."""

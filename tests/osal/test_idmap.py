@@ -79,6 +79,19 @@ def test_printf(bench: Bench) -> None:
     assert bench.console.lines == ["one", "x" * 171]
 
 
+def test_pieces_are_cut_and_lines_are_not(bench: Bench) -> None:
+    for each in ("a" * 500, "é" * 100):
+        bench.os.printf_piece(each)
+    bench.os.printf_disable()
+    bench.os.printf_piece("\n")
+    bench.os.printf_enable()
+    assert bench.console.lines == []
+    bench.os.printf_piece("\ntwo\nthr")
+    bench.os.printf_piece("ee\n")
+    cut = b"\xc3".decode("utf-8", "surrogateescape")
+    assert bench.console.lines == ["a" * 171 + "é" * 85 + cut, "two", "three"]
+
+
 def test_version(bench: Bench) -> None:
     assert bench.os.get_version_string() == "v7.0.0+dev0"
     assert bench.os.get_version_code_name() == "Draco"

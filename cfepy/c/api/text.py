@@ -12,10 +12,6 @@ if TYPE_CHECKING:
     from cfepy.c.runtime import CRuntime
 
 
-MOST = 171
-"""Bytes that one OS_printf prints at most (OS_BUFFER_SIZE, less a NUL)."""
-
-
 class Printer:
     """The standard output of C code: lines are shown when they are whole.
 
@@ -46,12 +42,8 @@ class Printer:
 
 def declare(api: Declarations, c: CRuntime) -> None:
     """Add the functions; see `cfepy.c.api`."""
-    printer, os_printer = Printer(c.console.write), Printer(c.handle.os.printf)
-
-    def os_printf(text: str) -> None:
-        os_printer.write(to_bytes(text)[:MOST].decode("utf-8", "surrogateescape"))
-
-    api.add("OS_printf", "f", os_printf)
+    printer = Printer(c.console.write)
+    api.add("OS_printf", "f", c.handle.os.printf_piece)
     api.add("OS_printf_disable", "", c.handle.os.printf_disable)
     api.add("OS_printf_enable", "", c.handle.os.printf_enable)
     api.add("printf", "f", printer.write)
