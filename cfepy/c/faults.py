@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 from collections.abc import Callable
 
@@ -31,6 +32,7 @@ _WORDS = {
     signal.SIGTRAP: "SIGTRAP (a trap that the compiler put there)",
 }
 _NEAR_STACK = 1 << 16
+_BAD_ADDRESS = re.compile("bad address (0x[0-9a-f]+)")
 
 
 def explained(fault: CFault, place_of: Callable[[int], str], about: Callable[[int], str]) -> CFault:
@@ -44,7 +46,7 @@ def explained(fault: CFault, place_of: Callable[[int], str], about: Callable[[in
         about: what is at an address of data; empty when that is not known.
     """
     if len(fault.args) != 5:
-        return _of_call(fault, place_of)
+        return _of_call(fault, place_of, about)
     number, pc, caller, address, left = fault.args
     words = _WORDS.get(number, f"signal {number}")
     if -_NEAR_STACK < left < 512 and number in (signal.SIGSEGV, signal.SIGBUS):
@@ -62,10 +64,12 @@ def explained(fault: CFault, place_of: Callable[[int], str], about: Callable[[in
     return made
 
 
-def _of_call(fault: CFault, place_of: Callable[[int], str]) -> CFault:
+def _of_call(fault: CFault, place_of: Callable[[int], str], about: Callable[[int], str]) -> CFault:
     """A fault in what a call was given; one that has its place already stays as it is."""
     if fault.at or not fault.called_from:
         return fault
-    made = CFault(f"{fault}, in {place_of(fault.called_from - 1)}")
+    bad = _BAD_ADDRESS.match(str(fault))
+    block = about(int(bad[1], 16)) if bad is not None else ""
+    made = CFault(", ".join(filter(None, (str(fault), block, f"in {place_of(fault.called_from - 1)}"))))
     made.at = fault.called_from - 1
     return made

@@ -331,7 +331,7 @@ def test_what_the_store_of_critical_data_gives_ends_where_its_block_does(tmp_pat
     """
     folder = compile_app(tmp_path, SOURCE.format(body=body, before=""))
     switch(tmp_path, True)
-    assert "bad address 0x" in found(fly(folder, 1))
+    assert "bad address 0x, offset 0 of a block of 64 bytes, in TEST_Main (TEST.c:11)" in found(fly(folder, 1))
 
 
 def image_of(tbl: TableServices) -> memoryview:
