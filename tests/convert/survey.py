@@ -4,12 +4,16 @@ survey.tsv lists nodes of public repositories by commit. SOURCES has a folder OW
 sources at that commit; those of kind "messages", from which others take definitions, are in _messages/OWNER/NAME. All
 packages of a node's repository are seen, as in a catkin workspace. Each node is checked for the host; one that converts
 there is checked for pool and strict, too. `--report` writes the counts of a JSON file into docs/convertor.md.
+
+The JSON file is written node by node, and a survey goes on with it: a verdict counts again as long as the check, the
+interface library and the definitions of messages are the same, bit by bit.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import hashlib
 import json
 import os
 import re
@@ -25,6 +29,8 @@ from cfepy.status import UsageError
 LIST = Path(__file__).parent / "survey.tsv"
 DOCUMENT = Path(__file__).parents[2] / "docs" / "convertor.md"
 BEGIN, END = "<!-- survey: made by python -m tests.convert.survey --report -->", "<!-- end of survey -->"
+CODE = ("cfepy/convert", "flight/roscfe", "rospy_shim/msgs")
+"""Folders of what checks, and of what nodes are compiled with."""
 UNREAD = "cmake"
 """Stands for a rule where a node's CMakeLists.txt does not say what it is made of."""
 
@@ -52,6 +58,7 @@ class Verdict(NamedTuple):
         repository, file, kind: of the node.
         refused: by profile: the rules that refuse it; none where it converts.
         blockers: what refuses it for the host: "rule thing".
+        code: digest of what checked it; see `code_digest`.
     """
 
     repository: str
@@ -59,6 +66,17 @@ class Verdict(NamedTuple):
     kind: str
     refused: dict[str, list[str]]
     blockers: list[str]
+    code: str = ""
+
+
+def code_digest() -> str:
+    """A digest of all that verdicts depend on beside the nodes: the check, the interface library, the definitions."""
+    root = Path(__file__).parents[2]
+    digest = hashlib.sha256()
+    for folder in CODE:
+        for file in sorted(each for each in (root / folder).rglob("*") if each.suffix not in (".pyc", "")):
+            digest.update(f"{file.relative_to(root)}\n".encode() + file.read_bytes())
+    return digest.hexdigest()
 
 
 def listed() -> list[Node]:
@@ -153,6 +171,19 @@ def between(text: str, begin: str, end: str, part: str) -> str:
     return f"{before}{begin}\n\n{part}\n\n{end}{after}"
 
 
+def read_verdicts(file: Path | None) -> list[Verdict]:
+    """The verdicts of a file; none when there is no such file."""
+    if file is None or not file.is_file():
+        return []
+    return [Verdict(**each) for each in json.loads(file.read_text(encoding="utf-8"))]
+
+
+def write_verdicts(file: Path | None, verdicts: Iterable[Verdict]) -> None:
+    """Write the verdicts, if to a file."""
+    if file is not None:
+        file.write_text(json.dumps([each._asdict() for each in verdicts], indent=1) + "\n", encoding="utf-8")
+
+
 def main() -> None:
     """Check all nodes, or those of some repositories."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -163,18 +194,22 @@ def main() -> None:
     parser.add_argument("--report", action="store_true", help="write the counts of --json into docs/convertor.md")
     arguments = parser.parse_args()
     if arguments.report:
-        write_report([Verdict(**each) for each in json.loads(arguments.json.read_text(encoding="utf-8"))])
+        write_report(read_verdicts(arguments.json))
         return
-    verdicts = []
+    code = code_digest()
+    known = {(each.repository, each.file): each for each in read_verdicts(arguments.json) if each.code == code}
+    verdicts: list[Verdict] = []
     for node in listed():
         if node.kind != "messages" and arguments.only in f"{node.repository}/{node.file}":
-            verdict = verdict_of(node, arguments.sources)
+            verdict = known.get((node.repository, node.file))
+            if verdict is None:
+                verdict = verdict_of(node, arguments.sources)._replace(code=code)
+                known[node.repository, node.file] = verdict
+                print(verdict.repository, verdict.file, verdict.refused, flush=True)
+                write_verdicts(arguments.json, known.values())
             verdicts.append(verdict)
-            print(verdict.repository, verdict.file, verdict.refused, flush=True)
-            if arguments.missing is not None:
-                arguments.missing.write_text("\n".join(missing(verdicts)) + "\n", encoding="utf-8")
-    if arguments.json is not None:
-        arguments.json.write_text(json.dumps([each._asdict() for each in verdicts], indent=1) + "\n", encoding="utf-8")
+    if arguments.missing is not None:
+        arguments.missing.write_text("\n".join(missing(verdicts)) + "\n", encoding="utf-8")
     for profile in Profile:
         print(profile.value, sum(not each.refused[profile.value] for each in verdicts), "of", len(verdicts), "convert")
 

@@ -29,7 +29,7 @@ MEMORY = 4 << 30
 """Bytes that the compiler may take for a source."""
 _LAST_RESORT = 1800  # seconds by the clock, for a compiler that waits for something
 _SAID = re.compile(r"^#error \"?(?:roscfe: )?(.*?) ?\[([a-z-]+)\]\"?$")
-_TOO_MANY = "compilation terminated due to -fmax-errors"
+_MOST = 50  # errors that are told of a source; GCC's own -fmax-errors throws all away with this format
 _HEADER = re.compile(r"^(.+): (?:No such file or directory|Is a directory|Permission denied|File name too long)$")
 _NAMESPACES = (
     "ros|tf|tf2|tf2_ros|actionlib|nodelet|message_filters|dynamic_reconfigure|diagnostic_updater|pluginlib|boost|angles"
@@ -85,7 +85,7 @@ class Compiler:
     """
 
     def __init__(self, profile: Profile, folders: Sequence[Path], definitions: Iterable[str] = ()) -> None:
-        self.command = [*cpp_compiler(), "-std=c++17", "-fsyntax-only", "-w", "-x", "c++", "-fmax-errors=50"]
+        self.command = [*cpp_compiler(), "-std=c++17", "-fsyntax-only", "-w", "-x", "c++"]
         self.command += ["-fdiagnostics-format=json", *profile_flags(profile)]
         self.command += [f"-D{each}" for each in definitions]
         self.command += [word for place in folders for word in ("-I", str(place))]
@@ -136,10 +136,10 @@ def tell(report: CheckReport, source: Path, compiled: Compiled, shown: Callable[
     """
     told = [(*rule_of(each.message, report.profile), each.place) for each in compiled.errors]
     without_header = [each for each in told if each[0] in ABOUT_HEADERS]
-    for rule, message, place in without_header or told:  # without a header all that needs it is wrong, too
+    for rule, message, place in (without_header or told)[:_MOST]:  # without a header all that needs it is wrong, too
         at = shown(place.file) or place
         seen = any(each.rule == rule and each.place[:2] == at[:2] for each in report.findings if rule in _SEEN_BEFORE)
-        if not message.startswith(_TOO_MANY) and not seen:
+        if not seen:
             report.add(rule, at, message)
     if not compiled.ok and (compiled.problem or not compiled.errors):
         report.add("compile-error", SourcePlace(source), compiled.problem or "the compiler does not accept it")
