@@ -27,10 +27,11 @@ from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import RACE, STALLED, Failure, Finding, Findings, Verdict
 from cfepy.exploration.workers import LONGEST_S, PROCESS_DIED
 from cfepy.pilot import RunPlan
-from cfepy.rtos import Schedule
+from cfepy.rtos import Schedule, Stopwatch
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
+FROM_OPERATIONAL = 0.0
 BASE = "at"  # fifo as a policy, which is asked, so that decisions can be counted and options count
 DEFAULT_SEEDS = 100
 _NO_WAY = (PROCESS_DIED, STALLED)  # a run that was broken off has no trace to compare
@@ -136,13 +137,14 @@ class Expedition:
     Attributes:
         plan: what is flown; its own schedule does not matter.
         seeds: how many schedules.
+        budget_s: wall time after which no further schedule is begun; None for no limit.
         policy: where they come from: "random", "pct", "dfs" (every one with few preemptions), or "all".
         depth: of the bugs that pct looks for; most preemptions of dfs.
         first_seed: seed of the first schedule.
         any_priority: less urgent tasks may run before more urgent ones.
         hold_s: how long the running task may be held up, in virtual s.
         connect_s: how long a connection between two ROS nodes may take, in virtual s.
-        from_s: virtual time until which all is fifo's.
+        from_s: virtual time until which all is fifo's; 0 for that at which the mission becomes OPERATIONAL.
         until_failure: whether the first failure ends it.
         events: which events are failures: "error", "critical" or "none".
         stuck: whether a task that waits for ever, and does not by default, is a failure.
@@ -156,6 +158,7 @@ class Expedition:
 
     plan: RunPlan
     seeds: int = DEFAULT_SEEDS
+    budget_s: float | None = None
     policy: str = "all"
     depth: int | None = None
     first_seed: int = 0
@@ -182,17 +185,20 @@ class Expedition:
         Raises:
             UsageError: it cannot be explored like this.
         """
-        options = self._options()
+        watch, options = Stopwatch(), self._options()
         bare = Trial(self.plan, self.events, keep_widths=self.policy == "dfs")
-        reference, results, notes = bare.fly(options)
+        first = bare.fly(options)
+        reference, results, notes = first.verdict, first.results, first.notes
         tell(notes)
+        if self.from_s == FROM_OPERATIONAL:
+            options = self._from_operational(options, first.booted_ns)
         has_stalled = any(failure.kind == STALLED for failure in reference.failures)  # and come to no results
         trial = bare if has_stalled else bare.against(results)
         if self.stuck and reference.end_ns and not has_stalled:
             trial = replace(trial, waits=waits_of(self.plan, reference.end_ns, options.policy()))
         findings = Findings(reference)
-        search = make_search(self.policy, self.depth, reference.decisions, options, self.first_seed)
-        tally = self._fly(trial, search, findings, reference)
+        search = make_search(self.policy, self.depth, reference.decisions, options, self.first_seed, first.tick_ns)
+        tally = self._fly(trial, search, findings, reference, watch)
         if tally is None:
             return Report(trial, reference, Tally(), [], notes=notes, is_steady=False)
         report = Report(trial, reference, tally, findings.troubles, notes=notes)
@@ -209,15 +215,28 @@ class Expedition:
         words = [BASE]
         words += ["any"] if self.any_priority else []
         for option, time_s in (("hold", self.hold_s), ("connect", self.connect_s), ("from", self.from_s)):
-            words += [] if time_s is None else [f"{option}={round(time_s * NS_PER_S)}ns"]
+            if time_s is None or (option, time_s) == ("from", FROM_OPERATIONAL):
+                continue
+            words += [f"{option}={round(time_s * NS_PER_S)}ns"]
             try:
                 Schedule.parse(":".join(words))
             except UsageError as error:
                 raise UsageError(error.text, field=f"--{option}") from None
         return Schedule.parse(":".join(words))
 
+    @staticmethod
+    def _from_operational(options: Schedule, booted_ns: int | None) -> Schedule:
+        if booted_ns is None:
+            raise UsageError("the mission does not become OPERATIONAL; give a time, such as 600ms", field="--from")
+        return replace(options, from_ns=booted_ns)
+
     def _fly(
-        self, trial: Trial, search: SeededSearch | SystematicSearch, findings: Findings, reference: Verdict
+        self,
+        trial: Trial,
+        search: SeededSearch | SystematicSearch,
+        findings: Findings,
+        reference: Verdict,
+        watch: Stopwatch,
     ) -> Tally | None:
         """Run all schedules, or until the first failure; none, when another process goes another way under fifo."""
         if self.until_failure and reference.failed:
@@ -231,7 +250,8 @@ class Expedition:
         progress = make_progress(self.progress, self.seeds, 0 if file is None else len(file))
 
         def take(number: int, verdict: Verdict) -> bool:
-            return findings.take(number, verdict) and self.until_failure
+            is_over = self.budget_s is not None and watch.elapsed_ns() > self.budget_s * NS_PER_S
+            return (findings.take(number, verdict) and self.until_failure) or is_over
 
         return Campaign(trial, search, self.seeds, crew, file, progress).run(take)
 

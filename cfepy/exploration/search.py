@@ -21,8 +21,9 @@ PCT_DEPTH, DFS_DEPTH = 3, 2
 PORTFOLIO_DEPTHS = (2, 3, 1)
 """Of PCT in the policy `all`: most races need two ordered events, some three, and starvation one."""
 PORTFOLIO_HOLD_NS = 1_000_000
-"""In the policy `all`, for one schedule in five: a race with a timer, or with a more urgent task that waits for one, is
-seen only when code takes time. More would break what a mission rightly expects of its own sleeps."""
+"""In the policy `all`, for one schedule in five, unless the board's tick is longer: a race with a timer, or with a more
+urgent task that waits for one, is seen only when code takes time. More would break what a mission rightly expects of
+its own sleeps; less than a tick would reach no timer."""
 
 
 class SeededSearch:
@@ -83,7 +84,7 @@ class SystematicSearch:
 
 
 def make_search(
-    policy: str, depth: int | None, steps: int, options: Schedule, first_seed: int = 0
+    policy: str, depth: int | None, steps: int, options: Schedule, first_seed: int = 0, tick_ns: int = 0
 ) -> SeededSearch | SystematicSearch:
     """The search that a command asks for.
 
@@ -94,6 +95,7 @@ def make_search(
         steps: decisions of a run, at least, as the reference run had them.
         options: a schedule whose options all have.
         first_seed: of the first schedule.
+        tick_ns: of the board's clock; 0 for none.
     """
     steps = max(steps, 1)
     if policy == "dfs":
@@ -105,7 +107,7 @@ def make_search(
         return SeededSearch((random,), first_seed)
     if policy == "pct":
         return SeededSearch(tuple(pct), first_seed)
-    held = replace(random, hold_ns=options.hold_ns or PORTFOLIO_HOLD_NS)
+    held = replace(random, hold_ns=options.hold_ns or max(PORTFOLIO_HOLD_NS, tick_ns))
     return SeededSearch((random, pct[0], held, *pct[1:]), first_seed)
 
 

@@ -25,11 +25,21 @@ PROBE_S = 1.0  # wall time that a task gets at least, which is known to spin
 
 
 class Tried(NamedTuple):
-    """A trial that was flown: the verdict, the results themselves, and what the user of the plan should know."""
+    """A trial that was flown.
+
+    Attributes:
+        verdict: what became of it.
+        results: the results themselves.
+        notes: what the user of the plan should know.
+        booted_ns: virtual time at which the mission became OPERATIONAL; None when it did not.
+        tick_ns: of the board's clock; 0 for none.
+    """
 
     verdict: Verdict
     results: tuple[Result, ...] = ()
     notes: tuple[str, ...] = ()
+    booted_ns: int | None = None
+    tick_ns: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +110,7 @@ class Trial:
         told = self._verdict(schedule, recorded, failed)
         trouble = "\n".join(watch.trouble)
         told = replace(told, results=digest_of(found), trace=flown.trace, end_ns=watch.end_ns, trouble=trouble)
-        return Tried(told, found, flown.notes)
+        return Tried(told, found, flown.notes, flown.mission.booted, flown.mission.kernel.tick_ns)
 
     def _stalled(self, schedule: Schedule, policy: NotingPolicy, watch: FailureWatch, stall: StallError) -> Verdict:
         """What went wrong until then, and the task that did not give up the CPU; results and digest there are none."""

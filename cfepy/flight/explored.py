@@ -88,7 +88,8 @@ class Explored:
         self.failures = [FoundFailure(report, told) for told in report.findings]
         self.schedules, self.failed = report.tally.done, report.tally.failed
         self.troubles = [each.trouble for each in report.troubles]
-        self.notes = report.notes
+        leak = () if report.unsteady is None else (f"not deterministic: two runs under {report.unsteady} differ",)
+        self.notes = (*report.notes, *leak)
         self.mission = mission
         self._report = report
 
@@ -114,6 +115,7 @@ def explore(
     mission: MissionWords,
     *,
     seeds: int = DEFAULT_SEEDS,
+    budget: float | None = None,
     policy: str = "all",
     until_failure: bool = False,
     any_priority: bool = False,
@@ -134,12 +136,13 @@ def explore(
     Args:
         mission: as of `run`.
         seeds: how many schedules.
+        budget: wall time in s after which no further schedule is begun; None for no limit.
         policy: where they come from: "random", "pct", "dfs", or "all".
         until_failure: whether the first failure ends it.
         any_priority: less urgent tasks may run before more urgent ones.
         hold: how long the running task may be held up, in virtual s.
         connect: how long a connection between two ROS nodes may take, in virtual s.
-        start: virtual time in s until which all is as by default.
+        start: virtual time in s until which all is as by default; 0 for that at which the mission is OPERATIONAL.
         events: which events of the mission's applications are failures: "error", "critical" or "none".
         jobs: processes; None is one on each CPU.
         results: file that keeps the verdicts, and that it goes on from.
@@ -157,6 +160,7 @@ def explore(
     expedition = Expedition(
         plan,
         seeds=seeds,
+        budget_s=budget,
         policy=policy,
         until_failure=until_failure,
         any_priority=any_priority,

@@ -13,7 +13,7 @@ import pytest
 from cfepy.cli import explore as room
 from cfepy.cli.explore.explore import show
 from cfepy.exploration import Expedition, Report, Trial
-from cfepy.exploration.expedition import DEFAULT_PROBES, DEFAULT_SEEDS
+from cfepy.exploration.expedition import DEFAULT_PROBES, DEFAULT_SEEDS, FROM_OPERATIONAL
 from cfepy.exploration.trial import Tried
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Schedule
@@ -40,9 +40,8 @@ def options() -> argparse.Namespace:
 
 def test_the_command_has_its_defaults() -> None:
     parsed, usual = options(), Expedition(PLAN)
-    assert (parsed.seeds, parsed.shrink) == (DEFAULT_SEEDS, DEFAULT_PROBES)
+    assert parsed.shrink == DEFAULT_PROBES
     for name in (
-        "seeds",
         "policy",
         "depth",
         "first_seed",
@@ -53,7 +52,8 @@ def test_the_command_has_its_defaults() -> None:
         "cluster",
     ):
         assert getattr(parsed, name) == getattr(usual, name), name
-    assert (parsed.seeds, parsed.shrink, parsed.longest) == (usual.seeds, usual.shrink, usual.longest_s)
+    assert (parsed.budget, parsed.shrink, parsed.longest) == (usual.budget_s, usual.shrink, usual.longest_s)
+    assert usual.seeds == DEFAULT_SEEDS
     assert (parsed.hold, getattr(parsed, "from"), parsed.no_stuck) == (usual.hold_s, usual.from_s, not usual.stuck)
     assert parsed.connect is usual.connect_s
 
@@ -118,3 +118,21 @@ def test_a_failure_that_does_not_come_again_is_none_of_the_schedule(monkeypatch:
     stream = io.StringIO()
     show(report, stream)
     assert stream.getvalue().startswith("seen once and not again: failure 1: ")
+
+
+def test_it_may_begin_when_the_mission_is_operational() -> None:
+    report = Expedition(PLAN, seeds=3, jobs=1, from_s=FROM_OPERATIONAL, shrink=0).run()
+    assert report.tally.done == 3
+    assert report.findings == []  # it is over by then
+    assert Trial(PLAN).fly(Schedule("at")).booted_ns == 600_000_000
+
+
+def test_a_mission_that_never_is_operational_has_no_such_time() -> None:
+    plan = replace(PLAN, seconds=0.3)
+    with pytest.raises(UsageError, match="--from: the mission does not become OPERATIONAL"):
+        Expedition(plan, from_s=FROM_OPERATIONAL).run()
+
+
+def test_a_budget_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cfepy.rtos.Stopwatch.elapsed_ns", lambda self: 2_000_000_000)
+    assert Expedition(PLAN, seeds=1000, budget_s=1.0, jobs=1, shrink=0).run().tally.done == 1

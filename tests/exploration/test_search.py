@@ -86,3 +86,11 @@ def test_a_systematic_search_has_two_preemptions_by_default() -> None:
     assert found[0] == found[1]
     assert len(found[1]) == 1 + 3 + 3
     assert len(found[2]) == 1 + 3
+
+
+@pytest.mark.parametrize(("tick_ns", "hold"), [(0, "1ms"), (500_000, "1ms"), (10_000_000, "10ms")])
+def test_tasks_are_held_up_for_a_tick_at_least(tick_ns: int, hold: str) -> None:
+    search = make_search("all", None, 50, Schedule.parse("at"), tick_ns=tick_ns)
+    search.next()
+    search.tell(0, Verdict(Schedule(), decisions=50))
+    assert any(str(search.next()).endswith(f"hold={hold}") for _ in range(4))

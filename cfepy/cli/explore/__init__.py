@@ -50,9 +50,14 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
     explore.add_argument(
         "--seeds",
         type=_count_of,
-        default=DEFAULT_SEEDS,
         metavar="N",
         help=f"how many schedules to run (default: {DEFAULT_SEEDS})",
+    )
+    explore.add_argument(
+        "--budget",
+        type=seconds_of,
+        metavar="SECONDS",
+        help="begin no further schedule after this wall time; without --seeds there may then be any number of them",
     )
     explore.add_argument(
         "--policy",
@@ -87,9 +92,12 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
     )
     explore.add_argument(
         "--from",
+        nargs="?",
         type=seconds_of,
+        const=0.0,
         metavar="SECONDS",
-        help="begin at this virtual time, such as 600ms; what comes before is fifo's",
+        help="begin at this virtual time, such as 600ms, or, without one, when the mission is OPERATIONAL; what comes "
+        "before is fifo's",
     )
     explore.add_argument("--until-failure", action="store_true", help="stop with the first failure")
 

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TextIO
 
+from cfepy.cli.explore import DEFAULT_SEEDS, MOST_SEEDS
 from cfepy.cli.failures import tell
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
@@ -130,9 +131,11 @@ def _show_leak(plan: RunPlan, schedule: Schedule) -> None:
 
 def _expedition(arguments: argparse.Namespace) -> Expedition:
     """What the command line asks for."""
-    names = ("seeds", "policy", "depth", "first_seed", "any_priority", "until_failure", "events", "jobs", "cluster")
+    names = ("policy", "depth", "first_seed", "any_priority", "until_failure", "events", "jobs", "cluster")
     return Expedition(
         _plan(arguments),
+        seeds=arguments.seeds or (DEFAULT_SEEDS if arguments.budget is None else MOST_SEEDS),
+        budget_s=arguments.budget,
         **{name: getattr(arguments, name) for name in (*names, "results", "shrink")},
         hold_s=arguments.hold,
         connect_s=arguments.connect,
