@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from itertools import islice
 
+import pytest
+
 from cfepy.exploration.search import SeededSearch, SystematicSearch, make_search
 from cfepy.exploration.verdict import Verdict
 from cfepy.rtos.schedule import Schedule
