@@ -2,19 +2,40 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import pytest
 
 from cfepy.convert.build import BOOST_REFUSED
 from cfepy.convert.messages import Profile, write_headers
-from tests.roscfe.building import FLIGHT_FLAGS, ROSCFE, STRICT_FLAGS, complaints, needs_cpp
+from tests.roscfe.building import FLIGHT_FLAGS, ROSCFE, STRICT_FLAGS, compile_program, complaints, needs_cpp
 from tests.roscfe.random_messages import LIBRARY, all_types, capacities
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 BOOST = sorted((ROSCFE / "boost").rglob("*.hpp"))
 LACKING = ("asio", "variant", "regex", "filesystem", "date_time", "format", "optional", "tuple/tuple", "any")
 NO_SERIALIZER = "specialise ros::serialization::Serializer for it"
+DEPTHS = """
+#include <depth_image_proc/depth_traits.h>
+#include <cstdio>
+#include <vector>
+typedef depth_image_proc::DepthTraits<std::uint16_t> Millimeters;
+typedef depth_image_proc::DepthTraits<float> Meters;
+int main()
+{
+    std::vector<unsigned char> buffer(8);
+    Millimeters::initializeBuffer(buffer);
+    float first;
+    std::memcpy(&first, buffer.data(), 4);
+    std::printf("%d %d %g %d %g\\n", Millimeters::valid(0), Millimeters::valid(1), Millimeters::toMeters(1500),
+                Millimeters::fromMeters(0.2506f), first);
+    Meters::initializeBuffer(buffer);
+    std::memcpy(&first, &buffer[4], 4);
+    std::printf("%d %d %g %g\\n", Meters::valid(first), Meters::valid(0.5f), Meters::toMeters(2),
+                Meters::fromMeters(3));
+}
+"""
 OWN = """
 #include "roscfe/message.h"
 struct Own { int a; };
@@ -47,6 +68,13 @@ def test_a_header_of_boost_that_is_not_ours_is_refused(tmp_path: Path, name: str
 )
 def test_a_header_of_messages_stands_by_itself(tmp_path: Path, name: str, base: tuple[str, ...]) -> None:
     assert not complaints(tmp_path, f'#include "{name}.h"\n' * 2, base=base)
+
+
+def test_depths_are_millimeters_or_meters(tmp_path: Path) -> None:
+    source = tmp_path / "depths.cpp"
+    source.write_text(DEPTHS)
+    made = compile_program(tmp_path / "depths", [source])
+    assert subprocess.check_output([made], text=True) == "0 1 1.5 251 0\n0 1 2 3\n"
 
 
 def test_linear_math_has_the_guards_that_nodes_ask_for(tmp_path: Path) -> None:
