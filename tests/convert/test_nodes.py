@@ -98,6 +98,12 @@ def test_a_publisher_is_told_of_subscribers_that_were_there_before() -> None:
         assert sum("greeted 0 before it spins" in line for line in mission.console.lines) == 2
 
 
+def test_a_request_may_be_empty() -> None:
+    with mission_of("lives", ends="greeters") as mission:
+        mission.run_for(4)
+        assert any(line.endswith(": reset 1") for line in mission.console.lines)
+
+
 def test_a_loop_at_1_khz_loses_nothing() -> None:
     with mission_of("loop") as mission:
         mission.run_for(8)

@@ -228,7 +228,7 @@ std::uint8_t *Client::begin(std::size_t size)
         return nullptr;
     }
     size_ = size;
-    long_request_.resize(size);
+    long_request_.resize(std::max<std::size_t>(size, 1)); // an empty request has an address, too
     return long_request_.data();
 }
 
