@@ -183,6 +183,7 @@ class RoscppNode:
             scene: what the node needs.
         """
         (self._folder / "script.json").write_text(json.dumps(script))
+        told = self._folder / "driver.out"
         with master(self._folder) as given:
             environ = {**given, **environment(self._folder / "python"), "ROSCONSOLE_FORMAT": FORMAT}
             environ.pop("ROS_NAMESPACE")
@@ -190,9 +191,9 @@ class RoscppNode:
             for name, value in scene.params.items():
                 server.setParam("/stimulus", name.replace("~", "/node/"), value)
             command = [PYTHON, "-P", str(HERE / "driver.py"), str(self._folder / "script.json")]
-            with (self._folder / "driver.out").open("wb") as out, (self._folder / "node.out").open("wb") as printed:
+            with told.open("wb") as out, (self._folder / "node.out").open("wb") as printed:
                 driver = subprocess.Popen(command, env=environ, stdout=out, stderr=subprocess.STDOUT)
-                _until(lambda: "/driver" in str(server.getSystemState("/stimulus")), LONGEST_S)
+                _until(lambda: "ready" in told.read_text() or driver.poll() is not None, LONGEST_S)
                 begun_ns = time.time_ns()
                 words = ["stdbuf", "-oL", "-eL", str(self.made), "__name:=node", *scene.args.split()]
                 node = subprocess.Popen(
@@ -206,9 +207,9 @@ class RoscppNode:
                 if not _until(lambda: node.poll() is not None, SHUTDOWN_S):
                     node.kill()
                     node.wait()
-        told = (self._folder / "driver.out").read_text(errors="replace").splitlines()
+        rows = told.read_text(errors="replace").splitlines()
         lines = (self._folder / "node.out").read_text(errors="surrogateescape").splitlines()
-        return outcome_of(told, lines, self._library, None if status is None else bool(status), begun_ns)
+        return outcome_of(rows, lines, self._library, None if status is None else bool(status), begun_ns)
 
 
 def environment(more: Path | None = None) -> dict[str, str]:

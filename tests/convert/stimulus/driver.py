@@ -3,6 +3,7 @@
 
 It runs on ROS and on cfepy. Usage: driver.py SCRIPT.json. The lines, by their first word:
 
+    ready     nothing: all that the node may ask for is there
     base      the second of the first step
     message   topic, type, bytes, seconds since the first step
     answer    service, bytes or error
@@ -88,6 +89,7 @@ class Driver:
         rospy.Service(name, kind, answer)
 
     def run(self):
+        say("ready")
         self.wait_for_node()
         rospy.sleep(SETTLE_S)
         self.base_ns = self.script.get("base", self.now_ns() // 10**9 + 1) * 10**9

@@ -6,6 +6,7 @@ import json
 import os
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,9 @@ import cfepy.convert.flight
 from cfepy.console import Console
 from cfepy.convert import build_for_flight
 from cfepy.convert.packages import Program
+from cfepy.es.packets import START_APP
 from cfepy.mission import Mission
-from cfepy.mission.launch import read_launch
+from cfepy.mission.launch import COMPILED_STACK_BYTES, PRIORITY, read_launch
 from cfepy.mission.processor import Machine
 from rospy_shim.graph.compiled import CompiledNodes
 from rospy_shim.msgs import Library
@@ -35,8 +37,8 @@ ANY = "std_srvs/Empty"
 MANIFEST = """<package format="2"><name>stimulus</name><version>1.0.0</version><description>stimulus</description>
 <maintainer email="a@b.c">a</maintainer><license>Apache-2.0</license></package>
 """
-BOOT_NS = 550_000_000
-"""From the start of the processor to that of the node."""
+BOOT_S = 1.0
+"""From the start of the processor to that of the node: the driver is there before."""
 
 
 class Fault(Exception):
@@ -93,7 +95,7 @@ class NodeFlight:
             scene: what the node needs.
             like: the run of roscpp whose times are those of this one, too.
         """
-        begun = property(lambda machine: like.begun_ns - BOOT_NS)
+        begun = property(lambda machine: like.begun_ns - round(BOOT_S * 1e9))
         with (
             patch.object(Machine, "epoch_ns", begun),
             self._mission({**script, "base": like.base}, scene, {}) as mission,
@@ -128,7 +130,10 @@ class NodeFlight:
         with patch.dict(os.environ, self._environ), whatever:  # CMakeLists.txt does not name all that the survey lists
             spec = read_launch(launch, {}, build_for_flight)
         assert not spec.notes, spec.notes
-        return _Watched(Mission(spec, console=Console(quiet=True)), patch.object(CompiledNodes, "_call", call))
+        lines = spec.startup.splitlines(keepends=True)
+        spec = replace(spec, startup=b"".join(line for line in lines if NODE.encode() not in line))
+        mission = Mission(spec, console=Console(quiet=True))
+        return _Watched(mission, patch.object(CompiledNodes, "_call", call), spec.built[NODE].entry)
 
     def _empty(self, kind: str) -> str:
         buffer = BytesIO()
@@ -137,13 +142,26 @@ class NodeFlight:
 
 
 class _Watched:
-    def __init__(self, mission: Mission, watch: Any) -> None:
+    """A mission that is watched; the node is started by a command."""
+
+    def __init__(self, mission: Mission, watch: Any, entry: str) -> None:
         self._mission = mission
         self._watch = watch
+        self._entry = entry
 
     def __enter__(self) -> Mission:
         self._watch.__enter__()
-        return self._mission.__enter__()
+        mission = self._mission.__enter__()
+        mission.run_for(BOOT_S)
+        start = START_APP.packet(
+            Application=NODE,
+            AppEntryPoint=self._entry,
+            AppFileName=f"/cf/{NODE}.so",
+            StackSize=COMPILED_STACK_BYTES,
+            Priority=PRIORITY,
+        )
+        mission.cfe.sb.transmit_msg(start)
+        return mission
 
     def __exit__(self, *error: Any) -> None:
         self._mission.__exit__(*error)
