@@ -5,6 +5,7 @@
 TREE is a mission tree of cFS 7.0.0 (`tests.convert.mission_tree`), for `arm` with NASA's HK in apps/hk. The flights:
 
 ping    a package with a launch file, a library and a nodelet: its nodes hear each other (--profile host, pool)
+strict  nodes in the profile strict say there what they say on cfepy; one that allocates after its start ends
 arm     examples/arm: two nodes close a loop at 1 kHz beside HK, which collects from them and is commanded by a third
 """
 
@@ -15,17 +16,21 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
+import cfepy
 from tests.convert.mission_tree import MissionTree, said
+from tests.convert.node_flights import NODES
 from tests.convert.ping import ping_package
+from tests.convert.twin_flights import TWINS
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HEARD = ("heard 3 plain-beat-odd!", "doubling 3")
 LIMIT_S = 60.0
 HK = "CFE_APP, hk, HK_AppMain, HK, 50, 16384, 0x0, 0;"
-NODE_LINE = re.compile(r"^\[/\w+\] \[[A-Z ]+\].*$", re.MULTILINE)
+NODE_LINE = re.compile(r"^\[(/\w+)\] \[[A-Z ]+\] \[[\d.]+\]: (.*)$")
+GREEDY = "GREEDY: memory was allocated after initialisation: the profile is strict"
 
 
 def ping(tree: Path, scratch: Path, profile: str) -> list[str]:
@@ -57,10 +62,33 @@ def arm(tree: Path, scratch: Path, profile: str) -> list[str]:
     with mission.booted(scratch / "run", apps, [HK], table) as cfe:
         cfe.wait(lambda: "commands came" in said(cfe) and "states came" in said(cfe), "end of the loops", LIMIT_S)
         cfe.wait(lambda: "arm at sample 5000" in said(cfe), "packet of HK about the end", LIMIT_S)
-        return NODE_LINE.findall(said(cfe))
+        return [line for line in said(cfe).splitlines() if NODE_LINE.match(line)]
 
 
-FLIGHTS: Mapping[str, Callable[[Path, Path, str], list[str]]] = {"ping": ping, "arm": arm}
+def strict(tree: Path, scratch: Path, profile: str) -> list[str]:
+    """Nodes that take no memory once they work; what they said, which is what they say on cfepy."""
+    os.environ["ROS_PACKAGE_PATH"] = f"{NODES}:{TWINS}"
+    package = NODES / "strict"
+    mission = MissionTree(tree, scratch)
+    apps = mission.convert([str(package / "launch/all.launch"), "--ids", str(package / "mission")], profile="strict")
+    mission.build()
+    with mission.booted(scratch / "run", apps) as cfe:
+        cfe.wait(lambda: "answer 2" in said(cfe) and GREEDY in said(cfe), "answers", LIMIT_S)
+        there = spoken(said(cfe).splitlines())
+        ended = [line for line in said(cfe).splitlines() if GREEDY in line]
+    run = cfepy.run(str(package / "mission"), seconds=4)
+    if there != spoken(run.console):
+        raise SystemExit("\n".join(["other than on cfepy:", *there]))
+    return [*there, *ended]
+
+
+def spoken(lines: Iterable[str]) -> list[str]:
+    """What nodes logged, with their names and without the times, by node."""
+    found = (NODE_LINE.match(line) for line in lines)
+    return sorted((f"{each[1]} {each[2]}" for each in found if each), key=lambda line: line.split()[0])
+
+
+FLIGHTS: Mapping[str, Callable[[Path, Path, str], list[str]]] = {"ping": ping, "strict": strict, "arm": arm}
 
 
 def run(arguments: list[str]) -> None:

@@ -125,7 +125,7 @@ def test_the_folder_for_cfe_has_both(mission: Path, capfd: pytest.CaptureFixture
     launch = str(mission / "all.launch")
     assert main(["convert", launch, "--cpp-nodes", fill(mission, "sender", word=12), "-o", str(made)]) == 0
     assert "roscfe::FixedString<12>" in (made / "roscfe/msg/ping/Beat.h").read_text()
-    assert "\n    target_compile_definitions(roscfe PRIVATE ROSCFE_ARENA_BYTES=65536)\n" in (
+    assert "\n    target_compile_definitions(${ROSCFE_LIBRARY} PRIVATE ROSCFE_ARENA_BYTES=65536)\n" in (
         (made / "roscfe/roscfe.cmake").read_text()
     )
     capfd.readouterr()

@@ -107,6 +107,9 @@ static void arrays()
     CHECK(a.size() == 3 && a.front() == 0.5 && a.at(2) == 2);
     a.erase(a.begin() + 1);
     CHECK(a.size() == 2 && a[1] == 2);
+    a.insert(a.end(), {3.0, 4.0});
+    CHECK(a.size() == 4 && a[2] == 3 && a[3] == 4);
+    a.erase(a.begin() + 2, a.end());
     a.resize(4, 9);
     CHECK(a[3] == 9);
     a.pop_back();

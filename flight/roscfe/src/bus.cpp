@@ -125,36 +125,71 @@ void read_report(const CFE_SB_Buffer_t *buffer, std::uint16_t msg_id)
     g_list_begins    = g_list_begins != 0 ? g_list_begins : first;
 }
 
+constexpr std::size_t     kRawLead = 12; // of std_msgs/UInt8MultiArray: no dimensions, no offset, the length of the data
+std::vector<std::uint8_t> g_raw;         // the message of a raw packet
+
+// Whether more bytes are taken; memory that was set aside in the profile strict does not grow.
+bool has_room(const std::vector<std::uint8_t> &in, std::size_t size)
+{
+#if defined(ROSCFE_PROFILE_STRICT)
+    return size <= in.capacity();
+#else
+    (void)in;
+    return size <= in.max_size();
+#endif
+}
+
+// Whether messages of a topic may come in several packets. Where they have a size at most, `set_aside` knows.
+bool comes_in_pieces(std::uint16_t msg_id)
+{
+    bool known = true;
+    for (const boost::shared_ptr<Subscription> &each : g_node.subscriptions)
+    {
+        known = known && (each->msg_id_ != msg_id || each->most_bytes_ > 0);
+    }
+    const auto found = std::find_if(g_assemblies.begin(), g_assemblies.end(),
+                                    [&](const Assembly &each) { return each.msg_id == msg_id; });
+    return !known || found != g_assemblies.end();
+}
+
+Assembly &assembly_of(std::uint16_t msg_id)
+{
+    for (Assembly &each : g_assemblies)
+    {
+        if (each.msg_id == msg_id)
+        {
+            return each;
+        }
+    }
+    g_assemblies.emplace_back();
+    g_assemblies.back().msg_id = msg_id;
+    return g_assemblies.back();
+}
+
 // Join a segment to its message; true when that is whole, and the first bytes are those of its first packet's header.
 bool assemble(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size, CFE_MSG_SegmentationFlag_t flag,
               Assembly *&whole)
 {
     const auto sequence = static_cast<std::uint16_t>((packet[2] & 0x3F) << 8 | packet[3]);
-    auto       found    = std::find_if(g_assemblies.begin(), g_assemblies.end(),
-                              [&](const Assembly &each) { return each.msg_id == msg_id; });
-    if (found == g_assemblies.end())
+    Assembly & found    = assembly_of(msg_id);
+    if (flag == CFE_MSG_SegFlag_First && has_room(found.bytes, size))
     {
-        g_assemblies.emplace_back();
-        found         = g_assemblies.end() - 1;
-        found->msg_id = msg_id;
+        found.bytes.assign(packet, packet + size);
+        found.under_way = true;
     }
-    if (flag == CFE_MSG_SegFlag_First)
+    else if (flag != CFE_MSG_SegFlag_First && found.under_way && sequence == found.next_sequence &&
+             has_room(found.bytes, found.bytes.size() + size - kTelemetryHeader))
     {
-        found->bytes.assign(packet, packet + size);
-        found->under_way = true;
-    }
-    else if (found->under_way && sequence == found->next_sequence)
-    {
-        found->bytes.insert(found->bytes.end(), packet + kTelemetryHeader, packet + size);
+        found.bytes.insert(found.bytes.end(), packet + kTelemetryHeader, packet + size);
     }
     else
     {
-        found->under_way = false;
+        found.under_way = false;
         return false;
     }
-    found->next_sequence = (sequence + 1) & 0x3FFF;
-    whole                = &*found;
-    found->under_way     = flag != CFE_MSG_SegFlag_Last;
+    found.next_sequence = (sequence + 1) & 0x3FFF;
+    whole               = &found;
+    found.under_way     = flag != CFE_MSG_SegFlag_Last;
     return flag == CFE_MSG_SegFlag_Last;
 }
 
@@ -169,17 +204,19 @@ void give_to_subscriptions(std::uint16_t msg_id, const std::uint8_t *packet, std
         }
         const std::uint32_t bad  = each->bad_;
         bool                more = false;
-        if (each->raw_)
+        if (each->raw_ && !has_room(g_raw, kRawLead + size))
         {
-            // std_msgs/UInt8MultiArray: no dimensions, no offset, and the whole packet as data.
-            static std::vector<std::uint8_t> message;
-            message.assign(12, 0);
+            ++each->bad_; // longer than any message of the type
+        }
+        else if (each->raw_)
+        {
+            g_raw.assign(kRawLead, 0);
             for (int byte = 0; byte < 4; ++byte)
             {
-                message[8 + static_cast<std::size_t>(byte)] = static_cast<std::uint8_t>(size >> (8 * byte));
+                g_raw[kRawLead - 4 + static_cast<std::size_t>(byte)] = static_cast<std::uint8_t>(size >> (8 * byte));
             }
-            message.insert(message.end(), packet, packet + size);
-            more = each->receive(message.data(), message.size());
+            g_raw.insert(g_raw.end(), packet, packet + size);
+            more = each->receive(g_raw.data(), g_raw.size());
         }
         else if (size >= kTelemetryHeader)
         {
@@ -231,7 +268,7 @@ void dispatch(const CFE_SB_Buffer_t *buffer)
     {
         give_to_subscriptions(msg_id, packet, size);
     }
-    else if (size >= kTelemetryHeader && assemble(msg_id, packet, size, flag, whole))
+    else if (size >= kTelemetryHeader && comes_in_pieces(msg_id) && assemble(msg_id, packet, size, flag, whole))
     {
         give_to_subscriptions(msg_id, whole->bytes.data(), whole->bytes.size());
     }
@@ -303,6 +340,18 @@ void open_bus()
     }
     g_node.knows_subscribers = !g_known.empty();
     g_node.has_master        = pipes_on(kMasterMsgId | kCommandBit) > 0;
+}
+
+void set_aside(const Subscription &subscription)
+{
+    if (subscription.raw_)
+    {
+        g_raw.reserve(subscription.most_bytes_);
+    }
+    else if (subscription.most_bytes_ > CFE_MISSION_SB_MAX_SB_MSG_SIZE - kTelemetryHeader)
+    {
+        assembly_of(subscription.msg_id_).bytes.reserve(kTelemetryHeader + subscription.most_bytes_);
+    }
 }
 
 bool listen(std::uint16_t msg_id)

@@ -85,6 +85,9 @@ bool pump(std::int64_t until_ns, bool exactly = false);
 // Wait until a time, and take the node's messages over meanwhile.
 void wait_until(std::int64_t until_ns);
 
+// Set memory aside for messages that come in several packets, or raw.
+void set_aside(const Subscription &subscription);
+
 bool          listen(std::uint16_t msg_id);
 void          listen_no_more(std::uint16_t msg_id);
 std::uint32_t pipes_on(std::uint16_t msg_id);

@@ -23,6 +23,7 @@ struct Call
     std::uint16_t              msg_id;
     std::uint32_t              number;
     std::vector<std::uint8_t> *answer;
+    std::size_t                most; // bytes of the answer; 0 is as many as it likes
     bool                       is_over;
     bool                       good;
     Call *                     outer;
@@ -30,7 +31,10 @@ struct Call
 Call *        g_call  = nullptr;
 std::uint32_t g_calls = 0;
 
-std::vector<std::uint8_t> g_pieces; // of a long request that comes
+std::vector<std::uint8_t>  g_pieces;   // of a long request that comes
+std::vector<std::uint8_t>  g_answer;   // that is under way
+std::vector<std::uint16_t> g_listened; // answers that the node has asked for
+std::size_t                g_clients = 0;
 
 std::uint32_t number_at(const std::uint8_t *at)
 {
@@ -57,8 +61,7 @@ std::uint32_t new_number()
 // Answers of a service that was called once are always taken; those to others are passed over.
 bool listen_to_answers(std::uint16_t answer_id)
 {
-    static std::vector<std::uint16_t> listened;
-    if (std::find(listened.begin(), listened.end(), answer_id) != listened.end())
+    if (std::find(g_listened.begin(), g_listened.end(), answer_id) != g_listened.end())
     {
         return true;
     }
@@ -66,8 +69,16 @@ bool listen_to_answers(std::uint16_t answer_id)
     {
         return false;
     }
-    listened.push_back(answer_id);
+    g_listened.push_back(answer_id);
     return true;
+}
+
+// Take bytes over. Where a message has a size at most, one byte more is enough for it to be refused.
+void append(std::vector<std::uint8_t> &to, const std::uint8_t *bytes, std::size_t size, std::size_t lead,
+            std::size_t most)
+{
+    const std::size_t room = most > 0 ? lead + most + 1 - std::min(lead + most + 1, to.size()) : size;
+    to.insert(to.end(), bytes, bytes + std::min(size, room));
 }
 
 std::uint8_t segment_flags(const std::uint8_t *packet)
@@ -79,6 +90,17 @@ std::uint8_t segment_flags(const std::uint8_t *packet)
 
 // -- the side that serves ----------------------------------------------------------------------------------------------
 
+void Service::set_aside(std::size_t most_of_request, std::size_t most_of_response)
+{
+    most_ = most_of_request;
+    for (Request &each : waiting_)
+    {
+        each.bytes.reserve(most_ > 0 ? most_ + 1 : 0);
+    }
+    g_answer.reserve(most_of_response);
+    g_pieces.reserve(most_ > 0 ? kRequestLead + most_ + 1 : 0);
+}
+
 bool Service::receive(std::uint32_t number, const std::uint8_t *bytes, std::size_t size)
 {
     if (count_ == waiting_.size())
@@ -88,7 +110,8 @@ bool Service::receive(std::uint32_t number, const std::uint8_t *bytes, std::size
     }
     Request &place = waiting_[(head_ + count_) % waiting_.size()];
     place.number   = number;
-    place.bytes.assign(bytes, bytes + size);
+    place.bytes.clear();
+    append(place.bytes, bytes, size, 0, most_);
     ++count_;
     return true;
 }
@@ -109,13 +132,12 @@ ros::CallbackInterface::CallResult Service::call_now()
     std::uint8_t lead[kAnswerLead];
     put_number(lead, number);
     lead[4] = good ? 1 : 0;
-    static std::vector<std::uint8_t> answer;
-    answer.resize(good ? answer_length() : 0);
+    g_answer.resize(good ? answer_length() : 0);
     if (good)
     {
-        write_answer(answer.data(), answer.size());
+        write_answer(g_answer.data(), g_answer.size());
     }
-    send_bytes(answer_id_, lead, sizeof lead, answer.data(), answer.size());
+    send_bytes(answer_id_, lead, sizeof lead, g_answer.data(), g_answer.size());
     return Success;
 }
 
@@ -151,7 +173,7 @@ bool take_request(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t 
             {
                 return true;
             }
-            g_pieces.insert(g_pieces.end(), bytes, bytes + length);
+            append(g_pieces, bytes, length, kRequestLead, each->most_);
             if (flags != 2)
             {
                 return true;
@@ -195,9 +217,13 @@ void withdraw(const boost::shared_ptr<Service> &service)
 
 // -- the side that calls -----------------------------------------------------------------------------------------------
 
-Client::Client(const std::string &name, const char *type, const char *md5)
-    : name_(name), answer_id_(enroll(Kind::client, name, type, md5, "").msg_id)
+Client::Client(const std::string &name, const char *type, const char *md5, std::size_t most_of_request,
+               std::size_t most_of_response)
+    : name_(name), most_(most_of_response), answer_id_(enroll(Kind::client, name, type, md5, "").msg_id)
 {
+    long_request_.reserve(most_of_request);
+    answer_.reserve(most_ > 0 ? most_ + 1 : 0);
+    g_listened.reserve(++g_clients);
 }
 
 bool Client::exists() const
@@ -234,7 +260,7 @@ std::uint8_t *Client::begin(std::size_t size)
 
 bool Client::call()
 {
-    Call this_call = {answer_id_, new_number(), &answer_, false, false, g_call};
+    Call this_call = {answer_id_, new_number(), &answer_, most_, false, false, g_call};
     if (!listen_to_answers(answer_id_))
     {
         return false;
@@ -274,8 +300,11 @@ bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t s
             continue; // an answer to somebody else
         }
         const std::uint8_t flags = segment_flags(packet);
-        call->answer->insert(call->answer->end(), packet + lead, packet + size);
-        call->good    = packet[lead - 1] != 0;
+        call->good = packet[lead - 1] != 0;
+        if (call->good) // nobody asks for the text of an error
+        {
+            append(*call->answer, packet + lead, size - lead, 0, call->most);
+        }
         call->is_over = flags == 3 || flags == 2;
         return true;
     }
@@ -310,7 +339,7 @@ ServiceServer NodeHandle::advertiseService(AdvertiseServiceOptions &options)
 ServiceClient NodeHandle::serviceClient(ServiceClientOptions &options)
 {
     return ServiceClient(resolveName(options.service), options.persistent, options.type.c_str(),
-                         options.md5sum.c_str());
+                         options.md5sum.c_str(), options.request_bytes, options.response_bytes);
 }
 
 ServiceServer::ServiceServer(const boost::shared_ptr<roscfe::Service> &service)
@@ -341,8 +370,10 @@ std::string ServiceServer::getService() const
     return *this ? handle_->service->name_ : std::string();
 }
 
-ServiceClient::ServiceClient(const std::string &name, bool persistent, const char *type, const char *md5)
-    : client_(boost::make_shared<roscfe::Client>(name, type, md5)), persistent_(persistent)
+ServiceClient::ServiceClient(const std::string &name, bool persistent, const char *type, const char *md5,
+                             std::size_t most_of_request, std::size_t most_of_response)
+    : client_(boost::make_shared<roscfe::Client>(name, type, md5, most_of_request, most_of_response)),
+      persistent_(persistent)
 {
 }
 

@@ -36,6 +36,18 @@ boost::shared_ptr<Publication> advertise(const std::string &topic, const char *t
     return made;
 }
 
+void Publication::set_aside(std::size_t most_bytes)
+{
+    if (latch_)
+    {
+        latched_.reserve(most_bytes);
+    }
+    if (latch_ || raw_ || most_bytes > kRoom)
+    {
+        g_long_message.reserve(most_bytes);
+    }
+}
+
 bool Publication::is_wanted() const
 {
     return latch_ || !g_node.knows_subscribers || pipes_on(msg_id_) > 0;
@@ -237,6 +249,7 @@ void subscribe(const boost::shared_ptr<Subscription> &subscription, const char *
         known = known || each->msg_id_ == place.msg_id;
     }
     subscription->callbacks_->expect(subscription->queue_);
+    set_aside(*subscription);
     g_node.subscriptions.push_back(subscription);
     if (!known && !listen(place.msg_id))
     {
@@ -394,6 +407,7 @@ Publisher NodeHandle::advertise(AdvertiseOptions &options)
     auto publication = roscfe::advertise(topic, options.datatype.c_str(), options.md5sum.c_str(),
                                          options.message_definition.c_str(), options.has_header);
     publication->latch_ = publication->latch_ || options.latch;
+    publication->set_aside(options.most_bytes);
     if (options.connect_cb)
     {
         publication->on_connect_.push_back(options.connect_cb);

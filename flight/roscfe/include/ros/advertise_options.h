@@ -27,6 +27,7 @@ struct AdvertiseOptions
         datatype           = roscfe::wire::Traits<M>::type();
         message_definition = roscfe::wire::Traits<M>::definition();
         has_header         = roscfe::wire::Traits<M>::has_header;
+        most_bytes         = roscfe::wire::most_bytes<M>();
     }
 
     template <class M>
@@ -53,6 +54,7 @@ struct AdvertiseOptions
     VoidConstPtr             tracked_object;
     bool                     latch      = false;
     bool                     has_header = false;
+    std::size_t              most_bytes = 0; // of a message; 0 when nobody knows
 };
 
 } // namespace ros

@@ -207,13 +207,15 @@ class NodeHandle
     template <class Req, class Res>
     ServiceClient serviceClient(const std::string &service, bool persistent = false, const M_string & = M_string())
     {
-        return ServiceClient(resolveName(service), persistent, "*", "*");
+        return ServiceClient(resolveName(service), persistent, "*", "*", roscfe::wire::most_bytes<Req>(),
+                             roscfe::wire::most_bytes<Res>());
     }
     template <class S>
     ServiceClient serviceClient(const std::string &service, bool persistent = false, const M_string & = M_string())
     {
         return ServiceClient(resolveName(service), persistent, roscfe::wire::Traits<S>::type(),
-                             roscfe::wire::Traits<S>::md5());
+                             roscfe::wire::Traits<S>::md5(), roscfe::wire::most_bytes<typename S::Request>(),
+                             roscfe::wire::most_bytes<typename S::Response>());
     }
     ServiceClient serviceClient(ServiceClientOptions &options);
 

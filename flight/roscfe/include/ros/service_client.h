@@ -21,6 +21,8 @@ struct ServiceClientOptions
         type       = roscfe::wire::Traits<S>::type();
         persistent = _persistent;
         header     = _header;
+        request_bytes  = roscfe::wire::most_bytes<typename S::Request>();
+        response_bytes = roscfe::wire::most_bytes<typename S::Response>();
     }
 
     std::string service;
@@ -28,13 +30,16 @@ struct ServiceClientOptions
     std::string type;
     bool        persistent = false;
     M_string    header;
+    std::size_t request_bytes  = 0; // at most; 0 when nobody knows
+    std::size_t response_bytes = 0;
 };
 
 class ServiceClient
 {
   public:
     ServiceClient() = default;
-    ServiceClient(const std::string &name, bool persistent, const char *type, const char *md5);
+    ServiceClient(const std::string &name, bool persistent, const char *type, const char *md5,
+                  std::size_t most_of_request = 0, std::size_t most_of_response = 0);
 
     template <class S>
     bool call(S &service)

@@ -571,6 +571,10 @@ class FixedVector
         std::copy(first, last, gap);
         return gap;
     }
+    iterator insert(const_iterator place, std::initializer_list<T> items)
+    {
+        return insert(place, items.begin(), items.end());
+    }
     iterator erase(const_iterator place) { return erase(place, place + 1); }
     iterator erase(const_iterator first, const_iterator last)
     {

@@ -20,6 +20,9 @@ class Publication
     {
     }
 
+    // Set memory aside for what is not written onto the bus itself: messages of so many bytes at most.
+    void set_aside(std::size_t most_bytes);
+
     // Whether a message would reach anybody, now or later.
     bool is_wanted() const;
 

@@ -26,6 +26,9 @@ class Service : public ros::CallbackInterface
     virtual std::size_t answer_length() const                                     = 0;
     virtual void        write_answer(std::uint8_t *to, std::size_t size) const = 0;
 
+    // Set memory aside: requests and responses have so many bytes at most; 0 is as many as they like.
+    void set_aside(std::size_t most_of_request, std::size_t most_of_response);
+
     CallResult call() override { return call_now(); }
     CallResult call_now();
     bool       receive(std::uint32_t number, const std::uint8_t *bytes, std::size_t size);
@@ -37,6 +40,7 @@ class Service : public ros::CallbackInterface
     bool                         has_tracked_ = false;
     ros::VoidConstWPtr           tracked_;
     std::uint32_t                dropped_ = 0; // requests for which there was no room
+    std::size_t                  most_    = 0; // bytes of a request; 0 is as many as it likes
 
   private:
     static constexpr std::size_t kWaiting = 16; // requests
@@ -60,6 +64,7 @@ class TypedService final : public Service
     TypedService(const std::string &name, ros::CallbackQueueInterface *callbacks, const Callback &callback)
         : Service(name, callbacks), callback_(callback)
     {
+        set_aside(wire::most_bytes<Req>(), wire::most_bytes<Res>());
     }
 
     bool serve(const std::uint8_t *request, std::size_t size) override
@@ -84,7 +89,8 @@ void withdraw(const boost::shared_ptr<Service> &service);
 class Client
 {
   public:
-    Client(const std::string &name, const char *type, const char *md5);
+    Client(const std::string &name, const char *type, const char *md5, std::size_t most_of_request = 0,
+           std::size_t most_of_response = 0);
 
     // Send a request, whose bytes `write` makes, and wait for the answer; null when there is no service, or it failed.
     std::uint8_t *begin(std::size_t size);
@@ -94,6 +100,7 @@ class Client
     bool wait_for_existence(std::int64_t timeout_ns); // below 0 is for ever
 
     const std::string         name_;
+    const std::size_t         most_;   // bytes of an answer; 0 is as many as it likes
     std::vector<std::uint8_t> answer_; // of the last call
 
   private:

@@ -17,8 +17,9 @@ namespace roscfe
 class Subscription : public ros::CallbackInterface
 {
   public:
-    Subscription(const std::string &topic, std::uint32_t queue, ros::CallbackQueueInterface *callbacks)
-        : topic_(topic), queue_(queue), callbacks_(callbacks)
+    Subscription(const std::string &topic, std::uint32_t queue, ros::CallbackQueueInterface *callbacks,
+                 std::size_t most_bytes)
+        : topic_(topic), queue_(queue), callbacks_(callbacks), most_bytes_(most_bytes)
     {
     }
 
@@ -28,6 +29,7 @@ class Subscription : public ros::CallbackInterface
     const std::string            topic_;
     const std::uint32_t          queue_;
     ros::CallbackQueueInterface *callbacks_;
+    const std::size_t            most_bytes_; // of a message; 0 when nobody knows
     std::uint16_t                msg_id_  = 0;
     bool                         alive_   = true;
     bool                         raw_     = false;
@@ -52,7 +54,7 @@ class TypedSubscription final : public Subscription
 
     TypedSubscription(const std::string &topic, std::uint32_t queue, ros::CallbackQueueInterface *callbacks,
                       const Callback &callback, const ros::VoidConstPtr &tracked)
-        : Subscription(topic, queue, callbacks),
+        : Subscription(topic, queue, callbacks, wire::most_bytes<M>()),
           callback_(callback),
           slots_(boost::make_shared<Slots<M>>(queue + kKept)),
           ring_(queue),

@@ -474,6 +474,18 @@ bool write(const Message &message, std::uint8_t *to, std::size_t size)
     return stream.good() && stream.getLength() == 0;
 }
 
+// How many bytes a message takes at most; 0 is as many as it likes. In the profile strict texts and arrays have room for a
+// fixed number, which takes no less memory than bytes, so that what nodes send and get is set aside when they start.
+template <class Message>
+constexpr std::size_t most_bytes()
+{
+#if defined(ROSCFE_PROFILE_STRICT)
+    return HasFields<Message>::value ? sizeof(Message) : 0;
+#else
+    return 0;
+#endif
+}
+
 // Read a message that takes all of the bytes. False: there are too few or too many of them, or a count cannot be true,
 // or a text or an array is longer than the strict profile has room for. The message is of no use then.
 template <class Message>
