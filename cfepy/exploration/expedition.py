@@ -14,6 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, TextIO
 
+from cfepy.exploration.breadth import Breadth, PointCounter
 from cfepy.exploration.campaign import Campaign, Crew, Tally
 from cfepy.exploration.crews import make_crew
 from cfepy.exploration.progress import make_progress
@@ -27,7 +28,7 @@ from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import RACE, STALLED, Failure, Finding, Findings, Verdict
 from cfepy.exploration.workers import LONGEST_S, PROCESS_DIED
 from cfepy.pilot import RunPlan
-from cfepy.rtos import Schedule, Stopwatch
+from cfepy.rtos import Policy, Schedule, Stopwatch
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -72,6 +73,7 @@ class Report:
         findings: each failure once.
         notes: what its user should know.
         is_steady: whether two runs under the default schedule went the same way. If not, no others were made.
+        breadth: how far it looked.
     """
 
     trial: Trial
@@ -81,6 +83,7 @@ class Report:
     findings: list[Told] = field(default_factory=list)
     notes: tuple[str, ...] = ()
     is_steady: bool = True
+    breadth: Breadth = field(default_factory=Breadth)
 
     @property
     def unsteady(self) -> Schedule | None:
@@ -111,6 +114,7 @@ class Report:
             "troubled": self.tally.troubled,
             "interrupted": self.tally.interrupted,
             "failures": found,
+            "breadth": self.breadth.to_dict(),
             "troubles": [{"schedule": each.schedule.text(), "text": each.trouble} for each in self.troubles],
         }
 
@@ -187,7 +191,9 @@ class Expedition:
         """
         watch, options = Stopwatch(), self._options()
         bare = Trial(self.plan, self.events, keep_widths=self.policy == "dfs")
-        first = bare.fly(options)
+        counter = PointCounter(options.policy() or Policy())
+        first = bare.fly(options, policy=counter)
+        breadth = Breadth(dict(counter.kinds), first.tasks)
         reference, results, notes = first.verdict, first.results, first.notes
         tell(notes)
         if self.from_s == FROM_OPERATIONAL:
@@ -198,10 +204,10 @@ class Expedition:
             trial = replace(trial, waits=waits_of(self.plan, reference.end_ns, options.policy()))
         findings = Findings(reference)
         search = make_search(self.policy, self.depth, reference.decisions, options, self.first_seed, first.tick_ns)
-        tally = self._fly(trial, search, findings, reference, watch)
+        tally = self._fly(trial, search, findings, reference, watch, breadth)
         if tally is None:
             return Report(trial, reference, Tally(), [], notes=notes, is_steady=False)
-        report = Report(trial, reference, tally, findings.troubles, notes=notes)
+        report = Report(trial, reference, tally, findings.troubles, notes=notes, breadth=breadth)
         for finding in findings.all():
             report.findings.append(self._told(trial, finding, tally))
         return report
@@ -237,6 +243,7 @@ class Expedition:
         findings: Findings,
         reference: Verdict,
         watch: Stopwatch,
+        breadth: Breadth,
     ) -> Tally | None:
         """Run all schedules, or until the first failure; none, when another process goes another way under fifo."""
         if self.until_failure and reference.failed:
@@ -250,6 +257,7 @@ class Expedition:
         progress = make_progress(self.progress, self.seeds, 0 if file is None else len(file))
 
         def take(number: int, verdict: Verdict) -> bool:
+            breadth.take(verdict)
             is_over = self.budget_s is not None and watch.elapsed_ns() > self.budget_s * NS_PER_S
             return (findings.take(number, verdict) and self.until_failure) or is_over
 

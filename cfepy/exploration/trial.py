@@ -33,6 +33,7 @@ class Tried(NamedTuple):
         notes: what the user of the plan should know.
         booted_ns: virtual time at which the mission became OPERATIONAL; None when it did not.
         tick_ns: of the board's clock; 0 for none.
+        tasks: how many there have been.
     """
 
     verdict: Verdict
@@ -40,6 +41,7 @@ class Tried(NamedTuple):
     notes: tuple[str, ...] = ()
     booted_ns: int | None = None
     tick_ns: int = 0
+    tasks: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +112,8 @@ class Trial:
         told = self._verdict(schedule, recorded, failed)
         trouble = "\n".join(watch.trouble)
         told = replace(told, results=digest_of(found), trace=flown.trace, end_ns=watch.end_ns, trouble=trouble)
-        return Tried(told, found, flown.notes, flown.mission.booted, flown.mission.kernel.tick_ns)
+        kernel = flown.mission.kernel
+        return Tried(told, found, flown.notes, flown.mission.booted, kernel.tick_ns, kernel.tasks_made)
 
     def _stalled(self, schedule: Schedule, policy: NotingPolicy, watch: FailureWatch, stall: StallError) -> Verdict:
         """What went wrong until then, and the task that did not give up the CPU; results and digest there are none."""

@@ -101,6 +101,11 @@ class Kernel(Scheduler):
         self.make_ready(task, None)
         return task
 
+    @property
+    def tasks_made(self) -> int:
+        """How many tasks there have been."""
+        return self._idents
+
     def kill(self, task: Task) -> None:
         """End a task: `TaskExit` comes out of the call it waits in, and its `finally` blocks run, before this returns.
 

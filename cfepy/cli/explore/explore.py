@@ -37,6 +37,9 @@ def show(report: Report, stream: TextIO) -> None:
         print(f"an error in cfepy itself, under {trouble.schedule}; please report it:", file=stream)
         print(trouble.trouble, file=stream)
     print(summary(report), file=stream)
+    if not report.findings and report.is_steady:
+        for line in report.breadth.lines():
+            print(f"  {line}", file=stream)
 
 
 def summary(report: Report) -> str:
