@@ -23,6 +23,13 @@ def test_handles_of_tables_are_ids_without_deprecated_elements(tmp_path: Path) -
     assert own(lines) == own(expected("tables"))  # NASA's log has a handle that was never set then
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [each for each in NAMES if each != "pools"])
+def test_it_says_the_same_under_the_guard(tmp_path: Path, name: str) -> None:
+    """That of pools looks at what a pool writes before its blocks, which are elsewhere then."""
+    assert fly(name, tmp_path, more="compiled: {guard: true}\n") == expected(name)
+
+
 def own(lines: list[str]) -> list[str]:
     """What the application itself says."""
     return [line for line in lines if line.startswith(MARK)]
