@@ -18,7 +18,7 @@ from cfepy.c.memory import CMemory
 
 POISON = b"\xa5"
 """What is in memory that was never written, where that is to be found out."""
-ROOM = 1 << 30
+ROOM = 2 << 30
 """Bytes of address space for blocks, which are not used twice."""
 ALIGNMENT = 16
 """The strictest of a type in C."""
@@ -65,7 +65,6 @@ class Guard:
         name_of: Callable[[int], str],
         on_overwrite: Callable[[str, str], object],
     ) -> None:
-        self._memory = CMemory()
         self._own = engine().Heap(arena.map(ROOM, shares=True, is_last=True), ROOM, guarded=True, page=PAGE)
         self._known: dict[int, BlockLabel] = {}
         self._on_overwrite = on_overwrite

@@ -217,6 +217,7 @@ static bool give(Heap *heap, Block *block, bool is_kept)
         heap->free_of[class][heap->free_count[class]++] = (int)(block - heap->blocks);
     else if (!is_kept) { /* never given out again: who still uses it is found out */
         uint64_t first = block->address & -(uint64_t)heap->page;
+        madvise((void *)first, block->end - first, MADV_DONTNEED);
         mprotect((void *)first, block->end - first, PROT_NONE);
     }
     return true;
