@@ -28,8 +28,9 @@ _left: dict[int, int] = {}
 """Address and bytes of what processors of before left in place.
 
 It is the process's and no processor's: Python may still look at such memory through views that outlive the processor,
-so it stays until another one has the region. If views owned it, where a processor's memory is would depend on when
-garbage is collected, and addresses are to be the same in each run.
+so it stays until another one's region needs the place; in a region's second half, until another one has the region.
+If views owned it, where a processor's memory is would depend on when garbage is collected, and addresses are to be the
+same in each run.
 """
 
 
@@ -57,8 +58,7 @@ class Arena:
                 self._engine.map(base, _FIRST)
             except OSError:
                 continue
-            for left in [each for each in _left if base <= each < base + REGION]:
-                self._engine.unmap(left, _left.pop(left))
+            self._drop_left(base + REGION // 2, base + REGION)
             return base
         raise MemoryError(f"{(high - low) // REGION} processors with compiled applications live in this process")
 
@@ -81,11 +81,17 @@ class Arena:
                 self._end = address
             else:
                 self._top += room + PAGE
+        self._drop_left(address, address + room)
         self._engine.map(address, room)
         self._sizes[address] = room
         if shares:
             self._shared.add(address)
         return address
+
+    def _drop_left(self, start: int, end: int) -> None:
+        """Unmap what others left in place in a stretch."""
+        for left in [each for each, size in _left.items() if each < end and start < each + size]:
+            self._engine.unmap(left, _left.pop(left))
 
     def _reuse(self, room: int) -> int | None:
         for number, (address, size) in enumerate(self._free):
