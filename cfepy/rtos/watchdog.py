@@ -213,8 +213,10 @@ class StallWatch:
             self._hurry(wall_s)
         elif self._stand is not None and self._wanted_s >= GRACE_S:
             stand = self._stand
-            is_stall = stand.still_s + stand.idle_s >= SPUN_S or stand.is_turning
-            self._break_off(self._error(stand, "the run was ended") if is_stall else KeyboardInterrupt())
+            if stand.still_s + stand.idle_s >= SPUN_S or stand.is_turning:
+                self._break_off(self._error(stand, "the run was ended"), stand)
+            else:
+                self._break_off(KeyboardInterrupt())
         elif self._stand is not None and self.limit_s:
             self._hold_against_limit(self._stand)
 
@@ -252,10 +254,20 @@ class StallWatch:
     def _hold_against_limit(self, stand: _Stand) -> None:
         if stand.still_s >= self.limit_s or (stand.standing_s >= self.limit_s and stand.is_turning):
             hint = f"the run was ended: --stall {6 * self.limit_s:g} gives a long computation more time, 0 any"
-            self._break_off(self._error(stand, hint))
+            self._break_off(self._error(stand, hint), stand)
         elif stand.is_idle and stand.idle_s >= self.limit_s and not stand.is_told:
-            stand.is_told = True
-            self._tell(f"cfepy: {self._error(stand, 'the run waits for it')}")
+            error = self._error(stand, "the run waits for it")
+            if self._still_stands(stand):
+                stand.is_told = True
+                self._tell(f"cfepy: {error}")
+
+    def _still_stands(self, stand: _Stand) -> bool:
+        """Whether nothing has gone on since it was looked at: to tell where it stands takes longer than many a run."""
+        kernel = self._kernel
+        now_ns, sequence, front = kernel.progress()
+        if self._stand is not stand or not kernel.is_running or now_ns != stand.now_ns:
+            return False
+        return stand.is_turning or (sequence - front == stand.calls and kernel.current is stand.seen())
 
     def _error(self, stand: _Stand, end: str) -> StallError:
         """What is told of it."""
@@ -293,12 +305,17 @@ class StallWatch:
 
     # -- ending ------------------------------------------------------------------------------------------------------
 
-    def _break_off(self, why: BaseException) -> None:
-        """The run cannot go on; have the running task give the CPU back."""
+    def _break_off(self, why: BaseException, stand: _Stand | None = None) -> None:
+        """The run cannot go on; have the running task give the CPU back.
+
+        Args:
+            why: what the run raises.
+            stand: what it is ended for; None where the run is ended whatever it does.
+        """
         kernel = self._kernel
         with kernel.guard:
-            if not kernel.is_running:
-                return  # it has come to its end just now
+            if not kernel.is_running or (stand is not None and not self._still_stands(stand)):
+                return  # it has come to its end just now, or goes on
             kernel.break_off(why)
         self._press()
 

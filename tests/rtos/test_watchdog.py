@@ -302,6 +302,50 @@ def test_many_pieces_have_one_thread(make_kernel: type[Kernel], pieces: int) -> 
     assert threading.active_count() == before
 
 
+@pytest.mark.parametrize("waits", [False, True])
+def test_a_run_that_goes_on_while_it_is_looked_at_is_neither_ended_nor_told(
+    make_kernel: Callable[[], Kernel], monkeypatch: pytest.MonkeyPatch, waits: bool
+) -> None:
+    """To look takes longer than many a piece of a run, so another piece may have begun."""
+    share = 0.0 if waits else 1.0
+    looked_at, goes_on, judged = threading.Event(), threading.Event(), threading.Event()
+    told: list[str] = []
+
+    def until(event: threading.Event) -> None:
+        while not event.wait(0.001):
+            pass
+
+    def late() -> None:
+        until(looked_at)
+        kernel.delay(1)
+        goes_on.set()
+        until(judged)
+
+    with make_kernel() as kernel:
+        watch = watched(kernel, tell=told.append)
+        hold = watch._hold_against_limit
+        watch.spent = Clocks(monkeypatch, share, 0.0)
+
+        def looks(stand: object) -> list[tuple[object, ...]]:
+            looked_at.set()
+            until(goes_on)
+            return []
+
+        def held(stand: object) -> None:
+            hold(stand)  # type: ignore[arg-type]
+            if goes_on.is_set():
+                judged.set()
+
+        monkeypatch.setattr(watch, "_looks", looks)
+        monkeypatch.setattr(watch, "_hold_against_limit", held)
+        kernel.spawn("late", late)
+        watch.begin()
+        kernel.run(10)
+        assert kernel.broken is None
+        watch.end()
+    assert told == []
+
+
 def test_a_limit_of_none_ends_nothing(kernel: Kernel) -> None:
     watch = watched(kernel)
     watch.limit_s = 0
