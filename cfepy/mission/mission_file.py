@@ -232,6 +232,7 @@ _NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
     "env": _texts,
     "ordered_sets": _truth,
     "keys": _keys,
+    "compute": lambda entry: {name: value.time() for name, value in entry.mapping().items()},
 }
 """What reads each field of a node; the results are those of `NodeConfig`."""
 

@@ -28,8 +28,9 @@ class NodeConfig:
     `keys` are typed at its terminal: texts, and numbers of seconds to wait; None leaves it without a terminal;
     `script` is its program, `cwd` its working directory; None takes those of the mission's folder; `near` is a file
     near which its packages are, None for the script. `respawn`: it is started again `respawn_delay_ns` after its end;
-    `required`: its end is the end of the run. `on_disk`: what it writes is written on the computer, not into the run's
-    own files: a tool of the user's.
+    `required`: its end is the end of the run. `compute`: how long its callbacks take for a message of a topic, and its
+    handler for a request of a service, by name, in ns of virtual CPU time. `on_disk`: what it writes is written on the
+    computer, not into the run's own files: a tool of the user's.
     """
 
     app: str
@@ -48,6 +49,7 @@ class NodeConfig:
     required: bool = False
     keys: tuple[str | float, ...] | None = None
     on_disk: bool = False
+    compute: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ from cfepy.status import (
     OsalError,
     status_to_decimal,
 )
-from cfepy.units import NS_PER_S
+from cfepy.units import NS_PER_S, NS_PER_US
 from cfepy.versions import PSP_VERSION, VersionFunctions
 
 RST_TYPE_PROCESSOR = 1
@@ -349,6 +349,18 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         for number, area in self._areas.items():
             if area is before:
                 self._areas[number] = after
+
+    def compute(self, microseconds: int) -> None:
+        """The calling task works for so long: a stand-in for code whose time counts (no function of NASA's).
+
+        Args:
+            microseconds: of virtual CPU time. More urgent tasks get in meanwhile, and the work goes on behind them.
+
+        Raises:
+            TypeError: it is no whole number.
+            ValueError: it is negative.
+        """
+        self.kernel.compute(microseconds * NS_PER_US)
 
     def watchdog_get(self) -> int:
         """The watchdog's time in ms (CFE_PSP_WatchdogGet)."""

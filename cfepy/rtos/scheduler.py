@@ -167,6 +167,37 @@ class Scheduler:
         ):
             self._catch_up(task, duration_ns)
 
+    def compute(self, duration_ns: int) -> None:
+        """The current task works for so long; what is due meanwhile happens when it is due.
+
+        More urgent tasks get in at that time, and the work goes on behind them. `charge` is for what is short: there
+        all of the time is over before anything else happens.
+
+        Raises:
+            TypeError: it is no whole number.
+            ValueError: it is negative.
+        """
+        left = whole(duration_ns)
+        if left < 0:
+            raise ValueError(f"nothing takes {left} ns; give 0 or more")
+        task = self.current
+        while left > 0 and task is not self.host:
+            if task.dying:
+                self._refuse(task)
+            step = max(min(left, self._undisturbed()), 1)
+            left -= step
+            self.charge(step)
+
+    def _undisturbed(self) -> int:
+        """How long nothing happens from now on, in ns, if the current task goes on."""
+        timers, ready = self.timers, self.ready
+        while timers and timers[0][2].timer != timers[0][1]:
+            heappop(timers)
+        until = min(self._until + 1, timers[0][0]) if timers else self._until + 1
+        if ready and ready[0][0] <= self.current.priority:
+            until = min(until, self.now + SLICE_NS)
+        return until - self.now
+
     def _catch_up(self, task: Task, duration_ns: int) -> None:
         """Time went on under a running task: fire what is due; more urgent tasks, then equals, get their turn."""
         self._fire_due()

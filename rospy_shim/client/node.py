@@ -91,6 +91,20 @@ class Node:
         self.answer_pipes = AnswerPipes(self)
         self.Rate = make_rate(self)
 
+    def working(self, name: str, unpack: Callable[[bytes, int], Any]) -> Callable[[bytes, int], Any]:
+        """`unpack` for a topic or a service, with the time that the callbacks for what it unpacks take."""
+        said = {self.names.resolve_name(each): time_ns for each, time_ns in self.config.compute.items()}
+        time_ns, compute = said.get(name, 0), self.kernel.compute
+        if not time_ns:
+            return unpack
+
+        def unpack_and_work(data: bytes, at: int) -> Any:
+            message = unpack(data, at)
+            compute(time_ns)
+            return message
+
+        return unpack_and_work
+
     @property
     def Timer(self) -> type:  # rospy's name
         """The node's class `rospy.Timer`, made at first use because it needs `threading`."""

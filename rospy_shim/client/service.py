@@ -198,7 +198,7 @@ class Service:
         self._tasks = 0  # that serve
         self._busy = 0  # of them in the handler
         self._pieces = Pieces(REQUEST_LEAD)
-        self._unpack = unpacker(self.request_class)
+        self._unpack = node.working(self.resolved_name, unpacker(self.request_class))
         self._pack = packer(self.response_class)
         self._entry: ServiceEntry
         self._refused = False  # by the master

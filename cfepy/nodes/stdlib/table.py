@@ -115,6 +115,7 @@ MADE: Mapping[str, Callable[[Universe], ModuleType]] = {
     "_socket": _socket,
     "_thread": thread_module.thread_module,
     "atexit": signal_module.atexit_module,
+    "cfepy": time_module.cfepy_module,
     "codecs": _codecs,
     "dataclasses": lookup.dataclasses_module,
     "datetime": time_module.datetime_module,

@@ -26,6 +26,17 @@ _MONOTONIC = frozenset(
 )
 
 
+def cfepy_module(universe: Universe) -> ModuleType:
+    """The package cfepy of a node, which has the host's and `compute` for the node's own processor."""
+    import cfepy
+
+    def compute(seconds: float) -> None:
+        cfepy.compute(seconds)
+        universe.kernel.compute(round(seconds * 1e9))
+
+    return proxy(cfepy, compute=compute)
+
+
 class VirtualClock:
     """The clock of a universe. Its functions are methods, because bound methods, like C functions, bind no more.
 
