@@ -169,8 +169,11 @@ class _Watched:
 
 
 def refuse_fault(lines: list[str]) -> None:
-    """Raise `Fault` when the node has died."""
+    """Raise `Fault` when the node has died, or could not be loaded."""
+    loading = f"OS_ModuleLoad: /cf/{NODE}.so: "
     for number, line in enumerate(lines):
+        if line.startswith(loading):
+            raise Fault(line.removeprefix(loading))
         if line.startswith(f"{NODE}: ") and "died of an exception" in line:
             raise Fault(next((each for each in lines[number:] if "Fault: " in each or "Error: " in each), line))
 
@@ -186,6 +189,4 @@ def ended(lines: list[str]) -> bool | None:
     for line in lines:
         if f"Application {NODE} called CFE_ES_ExitApp" in line:
             return any(f"CFE_ES 14: Exit Application {NODE}" in other for other in lines)
-        if f"{NODE}" in line and "xception" in line:
-            return True
     return None
