@@ -32,7 +32,7 @@ HERE = Path(__file__).parent
 ROOT = Path(os.environ.get("CFEPY_ROS_ROOT", "/"))
 ROOTS = [Path("/usr"), ROOT / "usr"]
 TRIPLET = "x86_64-linux-gnu"
-FLAGS = ("-std=c++17", "-O1", "-g", "-w", "-DBOOST_BIND_GLOBAL_PLACEHOLDERS", "-include", "boost/bind.hpp")
+FLAGS = ("-std=c++17", "-w", "-DBOOST_BIND_GLOBAL_PLACEHOLDERS", "-include", "boost/bind.hpp")
 """roscpp of ROS Noetic brings the names _1, _2 along, and nodes rely on it."""
 LIBRARIES = (
     "roscpp",

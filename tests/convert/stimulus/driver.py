@@ -27,8 +27,12 @@ ANSWER_S = 2.0
 OF_EVERY_NODE = ("/get_loggers", "/set_logger_level")
 
 
+_saying = threading.Lock()
+
+
 def say(*words):
-    print("@ " + json.dumps(words), flush=True)
+    with _saying:  # callbacks come in threads of their own
+        print("@ " + json.dumps(words), flush=True)
 
 
 def made(kind, text, base_ns):
