@@ -35,7 +35,8 @@ PLAIN = ("-O1", "-g", "-fno-stack-protector", "-U_FORTIFY_SOURCE", "-D_LINUX_OS_
 WITHOUT_TYPES = ("-fno-rtti",)
 WITHOUT_EXCEPTIONS = ("-fno-exceptions", *WITHOUT_TYPES)
 STRICT_WARNINGS = ("-Wextra", "-Werror")
-WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep", "signal", "sigaction")
+RANDOM = ("rand", "srand", "random", "srandom")
+WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep", "signal", "sigaction", *RANDOM)
 """Functions of libc in whose place the library's are called: they would be about the whole computer."""
 LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic")
 BOOST_REFUSED = ("config.hpp", "version.hpp")

@@ -106,6 +106,7 @@ class RoscppNode:
             self._call([PYTHON, str(script), str(TEMPLATES), *[str(made_to)] * 3])
         includes = [*self._program.includes, self._folder / "cpp"]
         system = [root / "include" for root in ROOTS if root != Path("/usr")]
+        system += [root / "include/xmlrpcpp" for root in ROOTS]  # as ROS Noetic's packages export it
         flags = [*FLAGS, *(f"-D{each}" for each in self._program.definitions), *(f"-I{each}" for each in includes)]
         flags += [f"-isystem{each}" for each in system]
         objects = []

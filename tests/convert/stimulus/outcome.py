@@ -13,6 +13,8 @@ from tests.convert.stimulus.script import SECONDS
 from tests.corpus.likeness import lines as log_lines
 
 MARK = "@ "
+UNORDERED = ("visualization_msgs/InteractiveMarkerUpdate", "visualization_msgs/InteractiveMarkerInit")
+"""Their arrays come in the order of a hash table."""
 NEAR_S = 1000
 """A time that is no further than this from the first step is one of now."""
 CUT = 120
@@ -83,7 +85,10 @@ def of_bytes(library: Library, kind: str, data: str) -> Message:
 def plain(value: Any, base: int) -> Any:
     """Plain data; times count from the first step, and those that are none of a step's are alike."""
     if isinstance(value, Message):
-        return {name: plain(getattr(value, name), base) for name in value.__slots__}
+        found = {name: plain(getattr(value, name), base) for name in value.__slots__}
+        if value._type in UNORDERED:
+            found |= {name: sorted(each, key=str) for name, each in found.items() if isinstance(each, list)}
+        return found
     if isinstance(value, Time):
         since_ns = value.to_nsec() - base * 10**9
         if abs(since_ns) > NEAR_S * 10**9:

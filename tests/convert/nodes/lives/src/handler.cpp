@@ -1,5 +1,6 @@
-// A node with handlers of signals, as many of those that read a keyboard have.
+// A node that has what is the whole process's elsewhere: handlers of signals, and random numbers.
 #include <csignal>
+#include <cstdlib>
 
 #include <ros/ros.h>
 
@@ -19,6 +20,7 @@ int main(int argc, char **argv)
     const int status = sigaction(SIGINT, nullptr, &before);
     ROS_INFO("asked %d %d", status, before.sa_handler == quit);
     ROS_INFO("refused %d", std::signal(SIGKILL, quit) == SIG_ERR);
+    ROS_INFO("drawn %d", std::rand());
     ros::spin();
     ROS_INFO("spun");
 }
