@@ -334,6 +334,16 @@ def test_what_the_store_of_critical_data_gives_ends_where_its_block_does(tmp_pat
     assert "bad address 0x, offset 0 of a block of 64 bytes, in TEST_Main (TEST.c:11)" in found(fly(folder, 1))
 
 
+@pytest.mark.slow
+def test_of_more_blocks_than_linux_has_mappings_it_is_told_at_the_end(tmp_path: Path) -> None:
+    body = "for (int i = 0; i < 33000; i++) p = malloc(112); p[112] = 1;"
+    folder = compile_app(tmp_path, SOURCE.format(body=body, before=""))
+    switch(tmp_path, True)
+    mission = fly(folder, 1)
+    text = "a block of 112 bytes at 0x was written past its end"
+    assert overwritten(mission) == [("TEST", text)] or f"{HERE} 112 of a block of 112 bytes" in found(mission)
+
+
 def image_of(tbl: TableServices) -> memoryview:
     """The active image of TEST.T."""
     table = tbl.registry.by_name("TEST.T")

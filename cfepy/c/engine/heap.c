@@ -12,7 +12,7 @@
 enum { GRAIN = 16, CLASSES = 64, POISON = 0xA5, PAST_END = -1, BEFORE_START = -2 };
 
 typedef struct {
-    uint64_t address, end;                      /* of a guarded one: where its last page ends */
+    uint64_t address, end, next;                /* of a guarded one: where its pages end, and the guard behind them */
     size_t size, room;
     uint32_t owner;
     int class;
@@ -86,8 +86,8 @@ static Block *new_block(Heap *heap, size_t size, size_t grain)
         address = place(heap, size, grain, &end);
         next = end + heap->page;
         room = size;
-        if (next <= heap->end)
-            mprotect((void *)end, heap->page, PROT_NONE);
+        if (next <= heap->end && mprotect((void *)end, heap->page, PROT_NONE) != 0)
+            end = next; /* Linux has a limit (vm.max_map_count): what is written there is found later */
     }
     if (class < 0 || next > heap->end || next < heap->top)
         return NULL;
@@ -101,7 +101,7 @@ static Block *new_block(Heap *heap, size_t size, size_t grain)
     }
     heap->top = next;
     Block *block = &heap->blocks[heap->count++];
-    *block = (Block){.address = address, .end = end, .room = room, .class = class};
+    *block = (Block){.address = address, .end = end, .next = next, .room = room, .class = class};
     return block;
 }
 
@@ -335,10 +335,10 @@ static PyObject *near(Heap *heap, PyObject *number)
     uint64_t address = PyLong_AsUnsignedLongLongMask(number);
     if (!heap->is_guarded || address < heap->base || address >= heap->top)
         Py_RETURN_NONE;
-    int low = 0, high = heap->count - 1; /* the first block whose guard page ends behind the address */
+    int low = 0, high = heap->count - 1; /* the first block whose guard ends behind the address */
     while (low < high) {
         int middle = (low + high) / 2;
-        if (heap->blocks[middle].end + heap->page > address)
+        if (heap->blocks[middle].next > address)
             high = middle;
         else
             low = middle + 1;
