@@ -101,14 +101,16 @@ LEADING = [
     threading.Thread(target=by_name),
 ]
 
+NOT_LEADING = [not_at_all, Thing, threading, threading.Thread(), "THING", weakref.ref(Thing()), len]
 
-@pytest.mark.parametrize("root", LEADING, ids=str)
+
+@pytest.mark.parametrize("root", LEADING, ids=range(len(LEADING)))
 def test_a_way_leads_there(root: object) -> None:
     assert reaches([root], THING)
     assert not reaches([root], object())
 
 
-@pytest.mark.parametrize("root", [not_at_all, Thing, threading, threading.Thread(), "THING", weakref.ref(Thing()), len])
+@pytest.mark.parametrize("root", NOT_LEADING, ids=range(len(NOT_LEADING)))
 def test_no_way_leads_there(root: object) -> None:
     assert not reaches([root], THING)
 
