@@ -6,6 +6,7 @@ TREE is a mission tree of cFS 7.0.0 (`tests.convert.mission_tree`), for `arm` wi
 
 ping    a package with a launch file, a library and a nodelet: its nodes hear each other (--profile host, pool)
 strict  nodes in the profile strict say there what they say on cfepy; one that allocates after its start ends
+lives   two nodes of one program share nothing, and one that is restarted begins anew
 arm     examples/arm: two nodes close a loop at 1 kHz beside HK, which collects from them and is commanded by a third
 """
 
@@ -20,6 +21,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 import cfepy
+from cfepy.es.packets import RESTART_APP
 from tests.convert.mission_tree import MissionTree, said
 from tests.convert.node_flights import NODES
 from tests.convert.ping import ping_package
@@ -29,6 +31,9 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 HEARD = ("heard 3 plain-beat-odd!", "doubling 3")
 LIMIT_S = 60.0
 HK = "CFE_APP, hk, HK_AppMain, HK, 50, 16384, 0x0, 0;"
+CI_LAB = "CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;"
+LIVES = ("/one", "/two")
+LIFE = "{} global {} heard 0 starts {} made before main"
 NODE_LINE = re.compile(r"^\[(/\w+)\] \[[A-Z ]+\] \[[\d.]+\]: (.*)$")
 GREEDY = "GREEDY: memory was allocated after initialisation: the profile is strict"
 
@@ -82,13 +87,37 @@ def strict(tree: Path, scratch: Path, profile: str) -> list[str]:
     return [*there, *ended]
 
 
+def lives(tree: Path, scratch: Path, profile: str) -> list[str]:
+    """Two nodes of one program, one of which is restarted; what they said."""
+    os.environ["ROS_PACKAGE_PATH"] = f"{NODES}:{TWINS}"
+    mission = MissionTree(tree, scratch)
+    apps = mission.convert([str(NODES / "lives/launch/all.launch")], profile=profile)
+    mission.build()
+    with mission.booted(scratch / "run", apps, [CI_LAB]) as cfe:
+        cfe.wait(lambda: said(cfe).count("/one count 3 ") == 1 and "/two count 3 " in said(cfe), "two nodes", LIMIT_S)
+        cfe.send(RESTART_APP.packet(Application="ONE"))
+        cfe.wait(lambda: said(cfe).count("/one count 3 ") == 2, "new start of a node", LIMIT_S)
+        found = spoken(said(cfe).splitlines())
+    one, two = ([line.partition(f"{name} count ")[2] for line in found if f"{name} count " in line] for name in LIVES)
+    again = one.index(LIFE.format(1, 5, 1), 1)
+    for texts, starts in ((one[:again], 1), (one[again:], 1), (two, 100)):
+        if texts != [LIFE.format(number, number + 4, starts) for number in range(1, len(texts) + 1)]:
+            raise SystemExit("\n".join(["old state:", *texts]))
+    return [f"/one: {again} texts, then {len(one) - again} anew; /two: {len(two)} texts", *one[again - 1 : again + 1]]
+
+
 def spoken(lines: Iterable[str]) -> list[str]:
     """What nodes logged, with their names and without the times, by node."""
     found = (NODE_LINE.match(line) for line in lines)
     return sorted((f"{each[1]} {each[2]}" for each in found if each), key=lambda line: line.split()[0])
 
 
-FLIGHTS: Mapping[str, Callable[[Path, Path, str], list[str]]] = {"ping": ping, "strict": strict, "arm": arm}
+FLIGHTS: Mapping[str, Callable[[Path, Path, str], list[str]]] = {
+    "ping": ping,
+    "strict": strict,
+    "lives": lives,
+    "arm": arm,
+}
 
 
 def run(arguments: list[str]) -> None:

@@ -108,3 +108,4 @@ def test_a_loop_at_1_khz_loses_nothing() -> None:
     with mission_of("loop") as mission:
         mission.run_for(8)
         assert texts(mission) == ["5000 commands, the last -10000"]
+        assert [line for line in mission.console.lines if "Rcv Err" in line] == []  # it waits before it has a pipe

@@ -188,9 +188,9 @@ RULES: dict[str, CheckRule] = {
             "say how many messages may wait, or raise the bound for the node",
         ),
         CheckRule(
-            *("thread", _W, _E, _E),
+            *("thread", _E, _E, _E),
             "a thread that is not cFE's",
-            "cFE knows one task of the node: it neither watches the thread nor ends it with the application",
+            "cFE knows one task of the node, and calls of ROS are that task's alone; nobody ends the thread with it",
             "use a timer or a callback",
         ),
         CheckRule(

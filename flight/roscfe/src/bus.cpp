@@ -320,6 +320,7 @@ void open_bus()
     {
         refuse("CFE_SB_CreatePipe failed", pipe_name);
     }
+    g_node.has_pipe = true;
     g_known.reserve(kKnownAtOnce);
     // As SBN does it: the Software Bus tells who subscribes, and who has. Without, every message is sent.
     if (!listen(CFE_SB_ONESUB_TLM_MID) || !listen(CFE_SB_ALLSUBS_TLM_MID))
@@ -415,8 +416,29 @@ std::vector<CFE_SB_PipeId_t> those_on(std::uint16_t msg_id)
     return found;
 }
 
+namespace
+{
+
+// What a program waits for before it is a node; messages do not concern it.
+bool wait_without_pipe(std::int64_t until_ns)
+{
+    const std::int64_t rest = until_ns == kForever ? kSecond : until_ns - now_ns();
+    if (rest > 0 && (rest >= kMillisecond || !wait_exactly(until_ns)))
+    {
+        const std::int64_t whole = std::min<std::int64_t>(std::max(rest / kMillisecond, std::int64_t(1)), kLongestWaitMs);
+        OS_TaskDelay(static_cast<std::uint32_t>(whole));
+    }
+    return rest > 0;
+}
+
+} // namespace
+
 bool pump(std::int64_t until_ns, bool exactly)
 {
+    if (!g_node.has_pipe)
+    {
+        return wait_without_pipe(until_ns);
+    }
     const bool came = take_over();
     if (came)
     {

@@ -61,6 +61,7 @@ struct Node
     ros::M_string          remappings; // resolved
 
     CFE_SB_PipeId_t  pipe{};
+    bool             has_pipe = false;
     CFE_TBL_Handle_t table{};
     bool             has_table = false;
     bool             knows_subscribers = false; // the Software Bus reports subscriptions

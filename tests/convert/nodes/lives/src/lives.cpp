@@ -49,6 +49,7 @@ int main(int argc, char **argv)
                        std::to_string(g_global.value++) + " heard " + std::to_string(g_heard) + " starts " +
                        std::to_string(starts) + " " + *g_global.text;
         g_out->publish(message);
+        ROS_INFO("%s", message.data.c_str());
         rate.sleep();
     }
 }

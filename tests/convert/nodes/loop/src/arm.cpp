@@ -16,6 +16,7 @@ static void command(const std_msgs::Float64MultiArray::ConstPtr &message)
 
 int main(int argc, char **argv)
 {
+    ros::Duration(0.2).sleep(); // before it is a node
     ros::init(argc, argv, "arm");
     ros::NodeHandle nh;
     ros::Publisher  out    = nh.advertise<std_msgs::String>("out", 1);
