@@ -12,7 +12,7 @@ from tests.c.building import needs_compiler
 pytestmark = needs_compiler
 
 
-@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+@pytest.mark.parametrize("tasks", ["thread", pytest.param("greenlet", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", NAMES)
 def test_an_application_says_what_it_says_on_nasas_cfe(tmp_path: Path, name: str, tasks: str) -> None:
     assert fly(name, tmp_path, tasks) == expected(name)

@@ -98,7 +98,8 @@ NATIVE(init)
     if (message == NULL)
         return BAD_ARGUMENT;
     memset(message, 0, size);
-    message[2] = 0xC0; /* not segmented */
+    put_word(message, 0, (message[0] & IS_COMMAND) << 8 | HAS_SECONDARY << 8); /* stays where the id cannot be */
+    message[2] |= 0xC0;                                                       /* not segmented */
     if (!is_valid_id(call, WORD(1)))
         return BAD_ARGUMENT;
     put_word(message, 0, WORD(1));
@@ -163,7 +164,6 @@ NATIVE(validate_checksum)
     uint8_t *is_valid = POINTER(1);
     if (message == NULL || is_valid == NULL)
         return BAD_ARGUMENT;
-    *is_valid = 0;
     if ((message[0] & KIND) != COMMAND_KIND)
         return WRONG_TYPE;
     *is_valid = checksum(message) == 0;
