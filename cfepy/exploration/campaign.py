@@ -52,7 +52,7 @@ class Search(Protocol):
 class Crew(Protocol):
     """Runs trials."""
 
-    def run(self, trial: Experiment, take: Take) -> Iterator[NumberedVerdict]:
+    def run(self, trial: Experiment, take: Take) -> Generator[NumberedVerdict, None, None]:
         """Run jobs until there are none; verdicts come in any order, each job has exactly one.
 
         Args:
@@ -70,7 +70,7 @@ class Crew(Protocol):
 class Inline:
     """A crew without workers: runs in this process, which a mission that ends its process takes with it."""
 
-    def run(self, trial: Experiment, take: Take) -> Iterator[NumberedVerdict]:
+    def run(self, trial: Experiment, take: Take) -> Generator[NumberedVerdict, None, None]:
         """See `Crew.run`."""
         while jobs := take(16):
             yield from ((number, judge(trial, schedule)) for number, schedule in jobs)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import os
 import pickle
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from importlib import import_module
@@ -105,7 +105,7 @@ class Cluster:
         self._again: list[Job] = []
         self._done: SimpleQueue[Any] = SimpleQueue()
 
-    def run(self, trial: Experiment, take: Take) -> Iterator[NumberedVerdict]:
+    def run(self, trial: Experiment, take: Take) -> Generator[NumberedVerdict, None, None]:
         """See `Crew.run`."""
         if not self._name:
             self._set_up(trial)

@@ -10,6 +10,7 @@ held against it.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, TextIO
@@ -251,9 +252,11 @@ class Expedition:
         files = files_read(trial.plan) if self.results is not None or self.cluster is not None else []
         file = None if self.results is None else ResultsFile(self.results, self._identity(trial, files))
         crew = make_crew(self.seeds, self.jobs, self.cluster, lambda: ship(trial.plan, files), self.longest_s)
-        if not self._is_steady(trial, crew, reference):
-            crew.close()
-            return None
+        with contextlib.ExitStack() as stack:
+            stack.callback(crew.close)
+            if not self._is_steady(trial, crew, reference):
+                return None
+            stack.pop_all()  # the campaign closes it
         progress = make_progress(self.progress, self.seeds, 0 if file is None else len(file))
 
         def take(number: int, verdict: Verdict) -> bool:
@@ -268,8 +271,8 @@ class Expedition:
         if reference.trouble or any(failure.kind in _NO_WAY for failure in reference.failures):
             return True
         once = [(0, reference.schedule)]
-        again = [verdict for _, verdict in crew.run(trial, lambda limit: [once.pop()] if once else [])]
-        return all(self._is_same(reference, each) for each in again)
+        with contextlib.closing(crew.run(trial, lambda limit: [once.pop()] if once else [])) as verdicts:
+            return all(self._is_same(reference, verdict) for _, verdict in verdicts)
 
     def _fly_again(self, trial: Trial, told: Told) -> None:
         """Whether another run, in this process, goes the way of the one that showed a failure."""

@@ -15,7 +15,7 @@ import signal
 import subprocess
 import tempfile
 from collections import Counter, deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from multiprocessing import Pipe
 from multiprocessing.connection import wait
 from pathlib import Path
@@ -191,7 +191,7 @@ class Processes:
         self._false_starts = 0
         self._batch = 1
 
-    def run(self, trial: Experiment, take: Take) -> Iterator[NumberedVerdict]:
+    def run(self, trial: Experiment, take: Take) -> Generator[NumberedVerdict, None, None]:
         """See `Crew.run`."""
         pickled = pickle.dumps(trial)
         try:
