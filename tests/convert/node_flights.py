@@ -15,14 +15,15 @@ from tests.convert.twin_flights import TWINS
 NODES = Path(__file__).parent / "nodes"
 
 
-def mission_of(package: str, **args: str) -> Mission:
+def mission_of(package: str, launch: str = "all", **args: str) -> Mission:
     """The mission of a package's launch file, not begun yet.
 
     Args:
         package: its name.
+        launch: name of the file.
         args: of the launch file.
     """
     with patch.dict(os.environ, {"ROS_PACKAGE_PATH": f"{NODES}:{TWINS}"}):
-        spec = read_launch(NODES / package / "launch/all.launch", args, build_for_flight)
+        spec = read_launch(NODES / package / f"launch/{launch}.launch", args, build_for_flight)
     assert not spec.notes, spec.notes
     return Mission(spec, console=Console(quiet=True))

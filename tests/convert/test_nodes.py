@@ -37,6 +37,17 @@ def test_a_node_that_works_takes_nothing_from_the_heap() -> None:
     assert line == "[helper] RESULT 0 allocations, many before, 100 heard, 100 ticks, 50 served, 100 answered"
 
 
+@pytest.mark.parametrize(("pairs", "taken"), [("false", 0), ("true", 3)])
+def test_what_libraries_take_from_the_heap(pairs: str, taken: int) -> None:
+    """Nothing for transforms; three blocks for each pair of a TimeSynchronizer."""
+    with mission_of("counted", "libraries", pairs=pairs) as mission:
+        mission.run_for(4)
+        assert mission.processor.compiled is not None
+        before = mission.processor.compiled.allocations
+        mission.run_for(3)
+        assert mission.processor.compiled.allocations - before == taken * 20 * 3
+
+
 def test_two_nodes_of_one_program_share_nothing() -> None:
     with mission_of("lives") as mission:
         mission.run_for(4)

@@ -11,17 +11,19 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cfepy.c import headers_folder
-from cfepy.convert.build import WITHOUT_TYPES, WRAPPED, library_sources, profile_flags
+from cfepy.convert.build import WITHOUT_TYPES, WRAPPED, library_includes, library_sources, profile_flags
 from cfepy.convert.entry import FREE_ROWS, NodeEntry, main_header
 from cfepy.convert.messages import Profile, write_headers
+from cfepy.convert.sources import collect, message_types
 from rospy_shim.parameters.table import FREE
 from tests.roscfe.building import FLIGHT_FLAGS, HERE, STRICT_FLAGS, Target, compile_objects, link_program
 from tests.roscfe.probing import REMAPS, marked
 from tests.roscfe.random_messages import LIBRARY
 
 FOLDER = Path(__file__).parent
-TYPES = ("std_msgs/Int32", "std_msgs/String", "rosgraph_msgs/Log", "geometry_msgs/TransformStamped")
-TOPICS = ("a", "b", "latched", "silent")
+ACTIONS = ("count", "shy")
+PARTS = ("goal", "cancel", "status", "feedback", "result")
+TOPICS = ("a", "b", "latched", "silent", *(f"{action}/{part}" for action in ACTIONS for part in PARTS))
 FIRST_ID = 0x0A00
 
 
@@ -30,16 +32,19 @@ class Alone:
 
     Args:
         folder: where it is made.
+        nodes: sources that are to fly, which say what of the library is needed.
         target: what it is for.
-        flags: of the compiler, more than those of a build.
     """
 
-    def __init__(self, folder: Path, target: Target = HERE, *flags: str) -> None:
+    def __init__(self, folder: Path, nodes: Sequence[Path], target: Target = HERE) -> None:
         self._folder, self._target = folder, target
-        messages = folder / "messages"
-        write_headers(TYPES, messages, Profile.HOST, LIBRARY)
-        self._flags = [f"-I{messages}", "-isystem", str(headers_folder()), *profile_flags(Profile.HOST), "-O1", *flags]
-        library = self._objects(library_sources(()), [*STRICT_FLAGS, *WITHOUT_TYPES])
+        messages, includes = folder / "messages", library_includes()
+        sources = library_sources(collect(nodes, includes).contents)
+        write_headers(
+            message_types(collect([*nodes, *sources], includes).missing, LIBRARY), messages, Profile.HOST, LIBRARY
+        )
+        self._flags = [f"-I{messages}", "-isystem", str(headers_folder()), *profile_flags(Profile.HOST), "-O1"]
+        library = self._objects(sources, [*STRICT_FLAGS, *WITHOUT_TYPES])
         self._library = [*library, *self._objects([FOLDER / "cfe_stand_in.cpp"], FLIGHT_FLAGS)]
 
     def fly(self, source: Path) -> list[str]:

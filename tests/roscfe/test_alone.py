@@ -18,7 +18,7 @@ pytestmark = [pytest.mark.slow, needs_cpp]
 
 @pytest.mark.parametrize("target", ["here", "powerpc", "arm"])
 def test_probes_print_what_is_recorded(tmp_path: Path, target: str) -> None:
-    alone = Alone(tmp_path, target_named(target))
-    for name in NAMES:
-        wanted = (PROBES / f"{name}.txt").read_text(encoding="utf-8").splitlines()
-        assert alone.fly(PROBES / f"{name}.cpp") == wanted, name
+    nodes = [PROBES / f"{name}.cpp" for name in NAMES]
+    alone = Alone(tmp_path, nodes, target_named(target))
+    for node in nodes:
+        assert alone.fly(node) == node.with_suffix(".txt").read_text(encoding="utf-8").splitlines(), node.stem

@@ -18,6 +18,13 @@ using XmlRpc::XmlRpcValue;
 namespace
 {
 
+enum class Relation
+{
+    apart,
+    same,
+    below
+};
+
 // The rows, from CFE_TBL_GetAddress to CFE_TBL_ReleaseAddress.
 class Rows
 {
@@ -65,14 +72,45 @@ class Rows
         return name;
     }
 
-    std::string text_of(int first, int end) const
+    // Whether a parameter has a name or is below it; a node may look often, and this takes no memory.
+    Relation relation_of(int first, int end, const std::string &name) const
     {
+        std::size_t at = 0;
+        for (int i = first; i < end; ++i)
+        {
+            const char *      part = rows_[i].name;
+            const std::size_t size = strnlen(part, sizeof rows_[i].name);
+            for (std::size_t of_part = i == first ? 0 : 1; of_part < size; ++of_part, ++at)
+            {
+                if (at == name.size()) // of "/" resolving leaves nothing
+                {
+                    return name.empty() || name == "/" || part[of_part] == '/' ? Relation::below : Relation::apart;
+                }
+                if (part[of_part] != name[at])
+                {
+                    return Relation::apart;
+                }
+            }
+        }
+        return at == name.size() ? Relation::same : Relation::apart;
+    }
+
+    void value_of(int first, int end, XmlRpcValue &value) const
+    {
+        if (end == first + 1) // as of all short ones: no memory is taken for the text
+        {
+            char text[sizeof(ParamRow::value) + 1];
+            std::memcpy(text, rows_[first].value, sizeof(ParamRow::value));
+            text[sizeof(ParamRow::value)] = '\0';
+            from_json(text, value);
+            return;
+        }
         std::string text;
         for (int i = first; i < end; ++i)
         {
             text += field(rows_[i].value, sizeof rows_[i].value);
         }
-        return text;
+        from_json(text.c_str(), value);
     }
 
   private:
@@ -114,13 +152,9 @@ void erase(Rows &rows, const std::string &name)
     for (int i = 0; i < rows.count();)
     {
         const int end = rows.end_of(i);
-        if (rows[i].name[0] != '\0')
+        if (rows[i].name[0] != '\0' && rows.relation_of(i, end, name) != Relation::apart)
         {
-            const std::string there = rows.name_of(i, end);
-            if (there == name || is_below(there, name))
-            {
-                std::memset(static_cast<void *>(&rows[i]), 0, sizeof(ParamRow) * static_cast<std::size_t>(end - i));
-            }
+            std::memset(static_cast<void *>(&rows[i]), 0, sizeof(ParamRow) * static_cast<std::size_t>(end - i));
         }
         i = end;
     }
@@ -214,31 +248,28 @@ bool put_all(Rows &rows, const std::string &name, const XmlRpcValue &value)
 
 bool get_row(const std::string &name, XmlRpcValue &value)
 {
-    Rows        rows;
-    bool        found  = false;
-    const std::string prefix = name == "/" ? name : name + "/";
+    Rows rows;
+    bool found = false;
     for (int i = 0; i < rows.count();)
     {
-        const int end = rows.end_of(i);
-        if (rows[i].name[0] != '\0')
+        const int      end      = rows.end_of(i);
+        const Relation relation = rows[i].name[0] != '\0' ? rows.relation_of(i, end, name) : Relation::apart;
+        if (relation == Relation::same)
         {
-            const std::string there = rows.name_of(i, end);
-            if (there == name)
+            rows.value_of(i, end, value);
+            return true;
+        }
+        if (relation == Relation::below)
+        {
+            XmlRpcValue leaf;
+            rows.value_of(i, end, leaf);
+            if (!found)
             {
-                from_json(rows.text_of(i, end).c_str(), value);
-                return true;
+                value = XmlRpcValue();
             }
-            if (is_below(there, name))
-            {
-                XmlRpcValue leaf;
-                from_json(rows.text_of(i, end).c_str(), leaf);
-                if (!found)
-                {
-                    value = XmlRpcValue();
-                }
-                put_below(value, there.substr(prefix.size()), leaf);
-                found = true;
-            }
+            const std::size_t lead = name == "/" ? 1 : name.size() + 1;
+            put_below(value, rows.name_of(i, end).substr(lead), leaf);
+            found = true;
         }
         i = end;
     }
