@@ -63,7 +63,7 @@ class Ear final : public Subscription
 {
   public:
     Ear(Buffer &buffer, const std::string &topic, bool is_static)
-        : Subscription(topic, 1, ros::getGlobalCallbackQueue()), buffer_(buffer), is_static_(is_static)
+        : Subscription(topic, 1, ros::getGlobalCallbackQueue(), 0), buffer_(buffer), is_static_(is_static)
     {
     }
 
