@@ -22,7 +22,7 @@ from cfepy.convert.flight import message_library
 from cfepy.status import UsageError
 from rospy_shim.msgs import Packages
 from tests.convert.stimulus import report
-from tests.convert.stimulus.comparing import Likeness, compared
+from tests.convert.stimulus.comparing import Likeness, Part, compared
 from tests.convert.stimulus.debian import NotBuilt, RoscppNode
 from tests.convert.stimulus.flight import Fault, NodeFlight
 from tests.convert.stimulus.script import Scene, script
@@ -66,7 +66,10 @@ def tried(node: Node, sources: Path, folder: Path, seed: int) -> dict[str, Any]:
     try:
         ours = flight.run(told, scene, first)
     except Fault as error:
-        return {**made, "verdict": "fault", "why": f"{error} (with roscpp: {first.failed})"[:500]}
+        if not first.failed:
+            return {**made, "verdict": "fault", "why": str(error)[:500]}
+        end = Part("end", Likeness.EQUAL, 1, f"an error ends it on both sides: {error}"[:500])
+        return {**made, "verdict": "equal", "seen": seen._asdict(), "parts": [end._asdict()]}
     for each in (first, ours):
         if each.note:
             return {**made, "verdict": "not driven", "why": each.note[:500]}

@@ -51,6 +51,7 @@ class Scene(NamedTuple):
         undriven: topics that get nothing.
         gap_s: between two steps, where the node needs longer.
         items: of arrays without a length of their own.
+        wild: the share of messages with any values.
     """
 
     params: Mapping[str, Any] = {}
@@ -60,6 +61,7 @@ class Scene(NamedTuple):
     undriven: tuple[str, ...] = ()
     gap_s: float = GAP_S
     items: int = ITEMS
+    wild: float = WILD
 
 
 class _Lengths(Capacities):
@@ -85,7 +87,7 @@ class Stimulus(Source):
 
     def data(self, full_name: str) -> bytes:
         """The bytes of a message."""
-        self._wild = self._random.random() < WILD
+        self._wild = self._random.random() < self._scene.wild
         made = self._transforms() if full_name == TF else self.message(full_name)
         buffer = BytesIO()
         made.serialize(buffer)
@@ -123,7 +125,8 @@ class Stimulus(Source):
             return draw.choice(frames if place.rpartition(".")[2] in FRAMES else self._scene.texts)
         if kind in WHOLE and not self._wild:
             return draw.randrange(3)
-        return super()._one(kind, place)
+        drawn = super()._one(kind, place)
+        return drawn.replace("\n", " ") if kind == "string" else drawn  # a line of the log is one
 
     def _float(self, kind: str) -> float:
         if self._wild:
