@@ -335,6 +335,28 @@ def test_what_the_store_of_critical_data_gives_ends_where_its_block_does(tmp_pat
 
 
 @pytest.mark.slow
+def test_a_table_at_an_address_of_the_application_is_validated_there(tmp_path: Path) -> None:
+    before = """
+        static struct { uint32_t first, second; } mine = {1, 2};
+        static int32_t check(void *at) { SAY("mine %d", at == (void *)&mine); return 0; }
+    """
+    body = """
+        enum { AT_ADDRESS = 6 };
+        void *at = NULL;
+        CFE_TBL_Register(&table, "T", sizeof mine, AT_ADDRESS, check);
+        CFE_TBL_Load(table, ADDRESS, &mine);
+        CFE_TBL_GetAddress(&at, table);
+        SAY("mine %d", at == (void *)&mine);
+        CFE_TBL_ReleaseAddress(table);
+        CFE_TBL_Unregister(table);
+    """
+    folder = compile_app(tmp_path, SOURCE.format(body=body, before=before))
+    for is_on in (False, True):
+        switch(tmp_path, is_on)
+        assert said(console_of(fly(folder, 1))) == ["mine 1", "mine 1", "not noticed"]
+
+
+@pytest.mark.slow
 def test_of_more_blocks_than_linux_has_mappings_it_is_told_at_the_end(tmp_path: Path) -> None:
     body = "for (int i = 0; i < 33000; i++) p = malloc(112); p[112] = 1;"
     folder = compile_app(tmp_path, SOURCE.format(body=body, before=""))
