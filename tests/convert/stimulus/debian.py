@@ -51,6 +51,7 @@ LIBRARIES = (
     "nodeletlib",
     "bondcpp",
     "class_loader",
+    "console_bridge",
     "topic_tools",
     "laser_geometry",
     "tf_conversions",
@@ -61,6 +62,23 @@ LIBRARIES = (
     "boost_chrono",
     "pthread",
 )
+OWN_FOLDERS = ("xmlrpcpp", "pluginlib", "class_loader", "rcpputils", "rcutils")
+"""Folders of headers that packages of ROS export, below the one for all."""
+NODELET = """
+#include <class_loader/class_loader_core.hpp>
+#include <nodelet/nodelet.h>
+#include <ros/ros.h>
+
+int main(int argc, char **argv)
+{
+    ros::init(argc, argv, "nodelet");
+    ros::NodeHandle nh;
+    auto *made = class_loader::impl::createInstance<nodelet::Nodelet>("TYPE", nullptr);
+    made->init(ros::this_node::getName(), ros::names::getRemappings(), nodelet::V_string());
+    ros::spin();
+}
+"""
+"""A nodelet by itself, as `nodelet standalone` has it, but for the search for its library."""
 FORMAT = "[${severity}] [${time}]: ${message}"
 LONGEST_S = 40.0
 SHUTDOWN_S = 6.0
@@ -93,8 +111,6 @@ class RoscppNode:
         Raises:
             NotBuilt: the compiler or a generator refuses something.
         """
-        if self._program.nodelet:
-            raise NotBuilt("a nodelet: Debian's nodelet loads it from an installed package only")
         sources = collect(self._program.sources, [*self._program.includes, *library_includes()])
         types = message_types(sources.missing, self._library)
         scripts = {configuration_script(each, self._program) for each in sources.missing} - {None}
@@ -106,11 +122,18 @@ class RoscppNode:
             self._call([PYTHON, str(script), str(TEMPLATES), *[str(made_to)] * 3])
         includes = [*self._program.includes, self._folder / "cpp"]
         system = [root / "include" for root in ROOTS if root != Path("/usr")]
-        system += [root / "include/xmlrpcpp" for root in ROOTS]  # as ROS Noetic's packages export it
+        system += [root / "include" / name for root in ROOTS for name in OWN_FOLDERS]
         flags = [*FLAGS, *(f"-D{each}" for each in self._program.definitions), *(f"-I{each}" for each in includes)]
         flags += [f"-isystem{each}" for each in system]
+        old = self._folder / "cpp/pluginlib/class_list_macros.h"
+        old.parent.mkdir(parents=True, exist_ok=True)
+        old.write_text("#include <pluginlib/class_list_macros.hpp>\n")  # Debian has the new name alone
         objects = []
-        for source in self._program.sources:
+        added = []
+        if self._program.nodelet:
+            added.append(self._folder / "nodelet_main.cpp")
+            added[0].write_text(NODELET.replace("TYPE", self._program.nodelet))
+        for source in [*self._program.sources, *added]:
             objects.append(self._folder / f"{hashlib.sha256(bytes(source)).hexdigest()[:12]}.o")
             self._call([*CPP, *flags, "-c", str(source), "-o", str(objects[-1])])
         folders = [f"-L{root / 'lib' / TRIPLET}" for root in ROOTS if root != Path("/usr")]

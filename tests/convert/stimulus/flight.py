@@ -113,12 +113,14 @@ class NodeFlight:
         (self._folder / "script.json").write_text(json.dumps(script))
         params = {name.replace("~", "node/"): value for name, value in scene.params.items()}
         listed = "".join(f'<rosparam param="{name}">{json.dumps(value)}</rosparam>' for name, value in params.items())
-        package, kind = self._program.package.name, self._program.type
+        package, kind, args = self._program.package.name, self._program.type, scene.args
+        if self._program.nodelet:
+            package, kind, args = "nodelet", "nodelet", f"standalone {kind}"
         launch = self._folder / "stimulus.launch"
         launch.write_text(
             f'<launch>{listed}<node pkg="stimulus" type="driver.py" name="driver" output="screen"'
             f' args="{self._folder / "script.json"}"/>'
-            f'<node pkg="{package}" type="{kind}" name="node" output="screen" args="{scene.args}"/></launch>\n'
+            f'<node pkg="{package}" type="{kind}" name="node" output="screen" args="{args}"/></launch>\n'
         )
         enroll = CompiledNodes._call
 

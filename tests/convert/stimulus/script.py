@@ -8,6 +8,7 @@ from io import BytesIO
 from typing import Any, NamedTuple
 
 from cfepy.convert.messages import Capacities
+from rospy_shim.genpy import Duration
 from rospy_shim.msgs import Library
 from rospy_shim.msgs.spec import BUILTINS, Field
 from tests.roscfe.random_messages import Source
@@ -123,6 +124,8 @@ class Stimulus(Source):
         if kind == "string" and not self._wild:
             frames = sorted({name for pair in self._scene.frames for name in pair})
             return draw.choice(frames if place.rpartition(".")[2] in FRAMES else self._scene.texts)
+        if kind == "duration" and not self._wild:
+            return Duration(draw.randrange(3), draw.randrange(10**9))
         if kind in WHOLE and not self._wild:
             return draw.randrange(3)
         drawn = super()._one(kind, place)
