@@ -85,7 +85,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("sources", type=Path, nargs="?", help="folder OWNER/NAME/...")
     parser.add_argument("--only", default="", help="a part of OWNER/NAME/file")
-    parser.add_argument("--converts", type=Path, help="the verdicts of tests.convert.survey --json")
+    parser.add_argument("--converts", type=Path, required=True, help="the verdicts of tests.convert.survey --json")
     parser.add_argument("--json", type=Path, help="results; those that are there already are kept")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="a folder for what is made")
@@ -93,12 +93,12 @@ def main() -> None:
         "--report", action="store_true", help="write what is in --json into results.tsv and the document"
     )
     arguments = parser.parse_args()
-    if arguments.report:
-        for row in report.write(report.read(arguments.json)):
-            print(row.verdict, row.node, row.why)
-        return
     verdicts = json.loads(arguments.converts.read_text(encoding="utf-8"))
     convert = {f"{each['repository']}/{each['file']}" for each in verdicts if not each["refused"]["host"]}
+    if arguments.report:
+        for row in report.write(report.read(arguments.json, sorted(convert))):
+            print(row.verdict, row.node, row.why)
+        return
     done = json.loads(arguments.json.read_text()) if arguments.json and arguments.json.is_file() else {}
     for node in listed():
         name = f"{node.repository}/{node.file}"

@@ -6,8 +6,8 @@ It runs on ROS and on cfepy. Usage: driver.py SCRIPT.json. The lines, by their f
     ready     nothing: all that the node may ask for is there
     base      the second of the first step
     message   topic, type, bytes, seconds since the first step
-    answer    service, bytes or error
-    served    service, bytes of the request
+    answer    service, type and bytes of the response; no type and the name of an error
+    served    service, type and bytes of the request
     graph     what the node publishes, subscribes to, and serves
 """
 
@@ -86,7 +86,7 @@ class Driver:
         left = list(answers)
 
         def answer(request):
-            say("served", name, written(request))
+            say("served", name, kind._type + "Request", written(request))
             left.append(left.pop(0))
             return made(kind._response_class, left[-1], self.base_ns or 0)
 
@@ -135,9 +135,10 @@ class Driver:
 
     def called(self, name, kind, request):
         try:
-            say("answer", name, written(rospy.ServiceProxy(name, kind)(request)))
+            answer = rospy.ServiceProxy(name, kind)(request)
+            say("answer", name, kind._type + "Response", written(answer))
         except (rospy.ROSException, rospy.ServiceException, genpy.MessageException) as error:
-            say("answer", name, type(error).__name__)
+            say("answer", name, "", type(error).__name__)
 
     def graph(self):
         master = rosgraph.Master(rospy.get_name())

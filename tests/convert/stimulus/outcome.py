@@ -65,10 +65,9 @@ def outcome_of(
         match row:
             case ["message", topic, kind, data, _]:
                 parts.setdefault(f"topic {topic}", []).append(plain(of_bytes(library, kind, data), base))
-            case ["answer", name, data]:
-                parts.setdefault(f"answer {name}", []).append(data)
-            case ["served", name, data]:
-                parts.setdefault(f"served {name}", []).append(data)
+            case ["answer" | "served" as what, name, kind, data]:
+                found = plain(of_bytes(library, kind, data), base) if kind else data
+                parts.setdefault(f"{what} {name}", []).append(found)
     for name, seen in parts.items():
         if name.startswith("topic "):
             number(seen)

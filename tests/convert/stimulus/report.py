@@ -45,6 +45,7 @@ VERDICTS = {
     "different": "differs, and nobody knows why",
     "not on cfepy": "compiles, but does not fly",
     "not with roscpp": "cannot be built with Debian's roscpp",
+    "not run": "was not tried",
 }
 
 
@@ -74,6 +75,8 @@ _KINDS = ("topic ", "log", "answer ")
 def _verdict(node: str, result: Mapping[str, Any], known: Mapping[tuple[str, str], str]) -> tuple[str, str]:
     parts = result.get("parts", [])
     of_all = known.get((node, ALL))
+    if result["verdict"] == "not run":
+        return "not run", ""
     if result["verdict"] == "not built":
         return "not with roscpp", of_all or result["why"]
     if not parts:
@@ -118,7 +121,12 @@ def table(made: list[Row]) -> str:
     return "\n".join(lines)
 
 
-def read(file: Path) -> list[dict[str, Any]]:
-    """The results in a file of `--json`."""
+def read(file: Path, nodes: Iterable[str]) -> list[dict[str, Any]]:
+    """The results in a file of `--json`.
+
+    Args:
+        file: that one.
+        nodes: those that should be in it.
+    """
     found: dict[str, dict[str, Any]] = json.loads(file.read_text(encoding="utf-8"))
-    return list(found.values())
+    return [found.get(name, {"node": name, "verdict": "not run"}) for name in nodes]
