@@ -89,7 +89,7 @@ def test_a_handler_of_signals_is_called_when_the_application_is_to_end() -> None
         mission.cfe.sb.transmit_msg(STOP_APP.packet(Application="HANDLER"))
         mission.run_for(3)
         said = [line.rpartition(": ")[2] for line in mission.console.lines if line.startswith("[/handler] ")]
-    assert said == ["first 1", "then 1", "asked 0 1", "refused 1", "drawn 1804289383", "signal 2", "spun"]
+    assert said == ["first 1", "then 1", "asked 0 1", "refused 1", "drawn 1804289383", "clock 0", "signal 2", "spun"]
 
 
 def test_a_node_starts_at_once_however_many_subscriptions_there_are() -> None:

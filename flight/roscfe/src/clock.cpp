@@ -311,3 +311,35 @@ bool Time::waitForValid(const WallDuration &)
 }
 
 } // namespace ros
+
+// -- C's clocks of the host: the processor's is the time, for a node as for its messages (--wrap) -----------------------
+
+extern "C" {
+
+std::time_t __wrap_time(std::time_t *also)
+{
+    const auto now = static_cast<std::time_t>(roscfe::now_ns() / roscfe::kSecond);
+    if (also != nullptr)
+    {
+        *also = now;
+    }
+    return now;
+}
+
+int __wrap_gettimeofday(struct timeval *time, void *)
+{
+    const std::int64_t now = roscfe::now_ns();
+    time->tv_sec           = static_cast<decltype(time->tv_sec)>(now / roscfe::kSecond);
+    time->tv_usec          = static_cast<decltype(time->tv_usec)>(now % roscfe::kSecond / 1000);
+    return 0;
+}
+
+int __wrap_clock_gettime(clockid_t, struct timespec *time)
+{
+    const std::int64_t now = roscfe::now_ns();
+    time->tv_sec           = static_cast<decltype(time->tv_sec)>(now / roscfe::kSecond);
+    time->tv_nsec          = static_cast<decltype(time->tv_nsec)>(now % roscfe::kSecond);
+    return 0;
+}
+
+} // extern "C"

@@ -1,6 +1,7 @@
-// A node that has what is the whole process's elsewhere: handlers of signals, and random numbers.
+// A node that has what is the whole process's elsewhere: handlers of signals, random numbers, the time.
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 
 #include <ros/ros.h>
 
@@ -21,6 +22,8 @@ int main(int argc, char **argv)
     ROS_INFO("asked %d %d", status, before.sa_handler == quit);
     ROS_INFO("refused %d", std::signal(SIGKILL, quit) == SIG_ERR);
     ROS_INFO("drawn %d", std::rand());
+    const std::time_t now = std::time(nullptr);
+    ROS_INFO("clock %d", static_cast<int>(now - ros::Time::now().sec));
     ros::spin();
     ROS_INFO("spun");
 }
