@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -21,7 +20,7 @@ from cfepy.status import UsageError
 from rospy_shim.graph.msg_ids import MsgIds, locked
 from rospy_shim.msgs import Library, OnDisk, Packages, shipped
 from rospy_shim.msgs.packages import name_of
-from rospy_shim.roslaunch.plan import LONGEST_NAME, packages_near, plan_of
+from rospy_shim.roslaunch.plan import app_name, packages_near, plan_of
 
 
 @dataclass(slots=True)
@@ -137,12 +136,7 @@ def _app_names(names: Iterable[str]) -> dict[str, str]:
     """A name of an application for each program."""
     found: dict[str, str] = {}
     for name in names:
-        base = re.sub(r"\W", "_", name.rpartition("/")[2], flags=re.ASCII).upper()[:LONGEST_NAME]
-        app, number = base, 1
-        while app in found.values():
-            number += 1
-            app = f"{base}{number}"
-        found[name] = app
+        found[name] = app_name(name.rpartition("/")[2], found.values())
     return found
 
 

@@ -7,7 +7,6 @@ Nothing is written to disk: the startup script of such a mission is bytes.
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -303,9 +302,9 @@ def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> Miss
 
 def spec_of_script(script: Path, words: Sequence[str]) -> MissionSpec:
     """The mission that one node is, with its arguments."""
-    from rospy_shim.roslaunch.plan import LONGEST_NAME, node_environment
+    from rospy_shim.roslaunch.plan import app_name, node_environment
 
     environ = node_environment(os.environ, os.environ.get("ROS_NAMESPACE", "/"))
-    app = re.sub(r"\W", "_", script.stem, flags=re.ASCII).upper()[:LONGEST_NAME]
+    app = app_name(script.stem)
     config = NodeConfig(app, args=tuple(words), env=environ, script=script, cwd=Path.cwd(), required=True)
     return spec_of(script, {app: config}, ROSCORE_PARAMS)

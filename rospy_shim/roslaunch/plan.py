@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -26,9 +26,24 @@ from rospy_shim.roslaunch.model import Launch, LaunchNode, LaunchRemark, LaunchT
 from rospy_shim.roslaunch.reader import read
 
 _TOOLS = Path(__file__).parent / "tools"
-LONGEST_NAME = 16  # of OSAL's 19 characters; the rest is for numbers
+LONGEST_NAME = 16  # an application's file has ".so" behind it, and names of files have 19 characters in OSAL
 ROS_ENVIRONMENT = {"ROS_DISTRO": "noetic", "ROS_PYTHON_VERSION": "3", "ROS_VERSION": "1"}  # as ROS's setup.sh has it
 _NOT_OURS = ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "ROS_NAMESPACE")  # of the network that is not there
+
+
+def app_name(name: str, taken: Container[str] = ()) -> str:
+    """A name for a node's application that no other has, short enough for OSAL.
+
+    Args:
+        name: of the node.
+        taken: names of the other applications.
+    """
+    base = re.sub(r"\W", "_", name, flags=re.ASCII).upper()
+    found, number = base[:LONGEST_NAME], 1
+    while found in taken:
+        number += 1
+        found = f"{base[: LONGEST_NAME - len(str(number))]}{number}"
+    return found
 
 
 class ScriptError(Exception):
@@ -245,7 +260,7 @@ def node_in_cpp(
             return None
         said = dict(word.split(":=", 1) for word in words if ":=" in word)
         namespace = said.pop("__ns", environ.get("ROS_NAMESPACE", SEP))
-        app = re.sub(r"\W", "_", node_type, flags=re.ASCII).upper()[:LONGEST_NAME]
+        app = app_name(node_type)
         return CppNode(
             app,
             package,
@@ -459,11 +474,7 @@ class Planner:
 
     def _app_name(self, node: LaunchNode) -> str:
         """A name for the application that no other has."""
-        base = re.sub(r"\W", "_", node.full_name.strip(SEP), flags=re.ASCII).upper()[:LONGEST_NAME]
-        name, number = base, 1
-        while name in self._taken:
-            number += 1
-            name = f"{base[: 19 - len(str(number))]}{number}"
+        name = app_name(node.full_name.strip(SEP), self._taken)
         self._taken.add(name)
         return name
 

@@ -15,8 +15,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from cfepy.cli.main import main
+from cfepy.es.packets import START_APP
 from tests.twin.real import RealCfe
 
+CI_LAB = "CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;"
+"""The line of a startup script for the application that takes commands from the ground."""
 STARTUP = "/cf/cfe_es_startup.scr"
 TARGETS = "sample_defs/targets.cmake"
 APPS = re.compile(r"SET\(cpu1_APPLIST [^)]*\)")
@@ -104,6 +107,24 @@ class MissionTree:
         script = {STARTUP: self.startup(apps, lines)}
         with RealCfe(self._folder / "build/exe/cpu1", folder, {**script, **(files or {})}) as cfe:
             yield cfe
+
+    def start(self, cfe: RealCfe, app: str) -> None:
+        """Start one more node while cFE runs, by a command through CI_LAB.
+
+        Args:
+            cfe: it.
+            app: name of the node's application.
+        """
+        _, file, entry, name, priority, stack, _, action = map(str.strip, self._lines[app].rstrip(";").split(","))
+        command = START_APP.packet(
+            Application=name,
+            AppEntryPoint=entry,
+            AppFileName=f"/cf/{file}.so",
+            StackSize=int(stack),
+            ExceptionAction=int(action),
+            Priority=int(priority),
+        )
+        cfe.send(command)
 
 
 def said(cfe: RealCfe) -> str:

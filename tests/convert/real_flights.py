@@ -22,7 +22,7 @@ from pathlib import Path
 
 import cfepy
 from cfepy.es.packets import RESTART_APP
-from tests.convert.mission_tree import MissionTree, said
+from tests.convert.mission_tree import CI_LAB, MissionTree, said
 from tests.convert.node_flights import NODES
 from tests.convert.ping import ping_package
 from tests.convert.twin_flights import TWINS
@@ -31,7 +31,6 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 HEARD = ("heard 3 plain-beat-odd!", "doubling 3")
 LIMIT_S = 60.0
 HK = "CFE_APP, hk, HK_AppMain, HK, 50, 16384, 0x0, 0;"
-CI_LAB = "CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;"
 LIVES = ("/one", "/two")
 LIFE = "{} global {} heard 0 starts {} made before main"
 NODE_LINE = re.compile(r"^\[(/\w+)\] \[[A-Z ]+\] \[[\d.]+\]: (.*)$")

@@ -11,8 +11,10 @@ from cfepy.cli.main import main
 from cfepy.convert.build import library_folder, library_sources
 from cfepy.convert.entry import NodeEntry, entry_symbol, parameter_rows, quoted
 from cfepy.mission import read_mission
+from cfepy.osal import OS_MAX_FILE_NAME
 from cfepy.status import UsageError
 from rospy_shim.parameters.table import ROW_BYTES
+from rospy_shim.roslaunch.plan import app_name
 from tests.convert.ping import ping_package
 
 
@@ -123,3 +125,10 @@ def test_parts_of_the_library_that_nobody_uses_stay_out(package: Path, tmp_path:
     assert "/src/tf/" not in cmake
     header = library_folder() / "include/tf2_ros/buffer.h"
     assert any(each.parent.name == "tf" for each in library_sources([header]))
+
+
+def test_names_of_applications_fit_into_osals_names_of_files() -> None:
+    first = app_name("add_two_ints_server")
+    names = [first, app_name("add_two_ints_server_class", [first])]
+    assert names == ["ADD_TWO_INTS_SER", "ADD_TWO_INTS_SE2"]
+    assert all(len(f"{name}.so") < OS_MAX_FILE_NAME for name in names)

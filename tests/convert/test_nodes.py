@@ -61,6 +61,13 @@ def test_two_nodes_of_one_program_share_nothing() -> None:
         ]
 
 
+def test_nodes_with_long_names_have_pipes_of_their_own() -> None:
+    with mission_of("lives", ends="long") as mission:
+        mission.run_for(2)
+        assert [len(said_by(mission, name)) for name in ("/a_long_name_of_one", "/a_long_name_of_another")] == [2, 2]
+        assert not any("CFE_SB_CreatePipe failed" in line for line in mission.console.lines)
+
+
 def test_a_node_that_is_restarted_begins_anew() -> None:
     """Only what it has set on the parameter server is there still."""
     with mission_of("lives") as mission:

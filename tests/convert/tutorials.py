@@ -15,12 +15,15 @@ import re
 import sys
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
 import cfepy
 from cfepy.cli.main import main
-from tests.convert.mission_tree import MissionTree, said
+from tests.convert.mission_tree import CI_LAB, MissionTree, said
+from tests.twin.real import RealCfe
 
 DOCUMENT = Path(__file__).parents[2] / "docs/convertor.md"
 BEGIN, END = "<!-- tutorials: made by python -m tests.convert.tutorials --report -->", "<!-- end of tutorials -->"
@@ -121,9 +124,18 @@ def on_cfepy(name: str, scratch: Path) -> str:
     return f"does not show {lacking[0]}" if lacking else FLIES
 
 
+def has_started(cfe: RealCfe, name: str) -> bool:
+    """Whether the event of a node's start is on the console."""
+    return f"/{name} started" in said(cfe)
+
+
 def on_cfe(name: str, mission: MissionTree, apps: Mapping[str, str], folder: Path) -> str:
     """Fly a node on NASA's cFE."""
-    with mission.booted(folder, [apps[each] for each in crew(name)]) as cfe:
+    first, *others = crew(name)
+    with mission.booted(folder, [apps[first]], [CI_LAB]) as cfe:
+        for before, each in pairwise([first, *others]):  # each when the one before is there, as somebody would by hand
+            cfe.wait(partial(has_started, cfe, before), f"start of {before}", LIMIT_S)
+            mission.start(cfe, apps[each])
         try:
             cfe.wait(lambda: not missing(name, said(cfe)), "sign of the node", LIMIT_S)
         except TimeoutError:

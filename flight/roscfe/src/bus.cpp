@@ -314,7 +314,7 @@ std::uint32_t g_addressee = 0; // of what is sent at the moment; 0 is everybody
 void open_bus()
 {
     char pipe_name[OS_MAX_API_NAME];
-    std::snprintf(pipe_name, sizeof pipe_name, "%.14s_PIPE", g_node.description->app);
+    own_name(pipe_name, "_PIPE", "_P");
     const CFE_Status_t status = CFE_SB_CreatePipe(&g_node.pipe, g_node.description->pipe_depth, pipe_name);
     if (status != CFE_SUCCESS)
     {
@@ -327,8 +327,9 @@ void open_bus()
     {
         return;
     }
-    ask_for_reports(CFE_SB_SEND_PREV_SUBS_CC);
+    // In this order no subscription is missed: what is not in the list comes after it, and is reported.
     ask_for_reports(CFE_SB_ENABLE_SUB_REPORTING_CC);
+    ask_for_reports(CFE_SB_SEND_PREV_SUBS_CC);
     bool               again = false;
     const std::int64_t until = now_ns() + kReportTimeout;
     while (!g_reports_end && pump(until))

@@ -1,6 +1,5 @@
 // Time and timers: the clock below OS_GetLocalTime, and waiting, which takes the node's messages over meanwhile.
 #include <algorithm>
-#include <cstdio>
 
 #include "internal.h"
 #include "ros/time.h"
@@ -184,7 +183,7 @@ bool has_alarm()
         return !g_no_alarms;
     }
     char name[OS_MAX_API_NAME];
-    std::snprintf(name, sizeof name, "%.14s_WAIT", g_node.description->app);
+    own_name(name, "_WAIT", "_W");
     // ES does not delete it with its application: one that was killed and started again finds it.
     g_no_alarms = OS_CondVarCreate(&g_alarm, name, 0) != OS_SUCCESS &&
                   OS_CondVarGetIdByName(&g_alarm, name) != OS_SUCCESS;

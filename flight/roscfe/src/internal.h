@@ -74,6 +74,9 @@ struct Node
 };
 extern Node g_node;
 
+// A name in OSAL that no other application has: the application's with an end, or a short end where that is too long.
+void own_name(char (&name)[OS_MAX_API_NAME], const char *end, const char *short_end);
+
 // -- bus.cpp: the node's pipe ------------------------------------------------------------------------------------------
 
 void open_bus();

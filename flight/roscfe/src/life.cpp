@@ -1,4 +1,5 @@
 // The life of a node: from the application's entry point to its end.
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -78,6 +79,13 @@ void open()
         open_bus();
         open_parameters();
     }
+}
+
+void own_name(char (&name)[OS_MAX_API_NAME], const char *end, const char *short_end)
+{
+    const char *app  = g_node.description->app;
+    const bool  fits = std::strlen(app) + std::strlen(end) < sizeof name;
+    std::snprintf(name, sizeof name, "%.17s%s", app, fits ? end : short_end);
 }
 
 void refuse(const char *what, const char *detail)
