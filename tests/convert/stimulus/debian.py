@@ -136,9 +136,8 @@ class RoscppNode:
         for source in [*self._program.sources, *added]:
             objects.append(self._folder / f"{hashlib.sha256(bytes(source)).hexdigest()[:12]}.o")
             self._call([*CPP, *flags, "-c", str(source), "-o", str(objects[-1])])
-        folders = [f"-L{root / 'lib' / TRIPLET}" for root in ROOTS if root != Path("/usr")]
-        linked = [f"-l{each}" for each in LIBRARIES if self._has(f"lib/{TRIPLET}/lib{each}.so")]
-        found = [*map(str, objects), *folders, "-Wl,--as-needed,--allow-shlib-undefined", *linked]
+        linked = [str(file) for name in LIBRARIES if (file := library_file(name)) is not None]
+        found = [*map(str, objects), "-Wl,--as-needed,--allow-shlib-undefined", *linked]
         self._call([*CPP, *found, "-o", str(self.made)])
 
     def generate_of(self, types: list[str]) -> None:
@@ -234,6 +233,12 @@ class RoscppNode:
         rows = told.read_text(errors="replace").splitlines()
         lines = (self._folder / "node.out").read_text(errors="surrogateescape").splitlines()
         return outcome_of(rows, lines, self._library, None if status is None else bool(status), begun_ns)
+
+
+def library_file(name: str) -> Path | None:
+    """Where a library is; an unpacked package for compilers has but a link to what is installed."""
+    places = (file for root in ROOTS for file in sorted((root / "lib" / TRIPLET).glob(f"lib{name}.so*")))
+    return next((file for file in places if file.is_file()), None)
 
 
 def environment(more: Path | None = None) -> dict[str, str]:
