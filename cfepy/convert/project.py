@@ -41,6 +41,10 @@ from rospy_shim.parameters.table import pack
 PRIORITY = 60
 MADE = "made by cfepy convert"
 MAIN_HEADERS = {True: "main_with_arguments.h", False: "main_without_arguments.h"}
+EXPORTS = "exports.map"
+EXPORTED = "{ global: *_AppMain; RN_*_Main; roscfe_node; local: *; };\n"
+"""What a node exports. A copy of a function of the C++ library would be used by that library, too, when the node is the
+first one that needs it; the node then stays in memory, and is started again with what it left there."""
 C_ONLY = ("-std=c99", "-pedantic", "-Wstrict-prototypes", "-Wmissing-prototypes", "-Werror")
 """Options that a cFS mission gives all languages, and that C++ sources cannot have."""
 
@@ -105,6 +109,7 @@ def _library(made: Conversion, options: BuildOptions) -> dict[str, bytes]:
     for with_arguments, name in MAIN_HEADERS.items():
         found[f"roscfe/{name}"] = main_header(with_arguments).encode()
     sources = [f"src/{each.relative_to(root / 'src')}" for each in used]
+    found[f"roscfe/{EXPORTS}"] = EXPORTED.encode()
     found["roscfe/roscfe.cmake"] = _cmake_of_library(sources, options).encode()
     return found
 
@@ -153,7 +158,7 @@ function(roscfe_node NAME MAIN_HEADER ENTRY)
     target_compile_options(${{NAME}} PRIVATE ${{ROSCFE_FLAGS}} ${{ROSCFE_NODE_FLAGS}})
     set_source_files_properties(${{ARGN}} PROPERTIES COMPILE_OPTIONS "-include;${{ROSCFE_DIR}}/${{MAIN_HEADER}}")
     target_link_libraries(${{NAME}} ${{ROSCFE_LIBRARY}})
-    target_link_options(${{NAME}} PRIVATE {linked})
+    target_link_options(${{NAME}} PRIVATE {linked} -Wl,--version-script=${{ROSCFE_DIR}}/{EXPORTS})
 endfunction()
 """
 

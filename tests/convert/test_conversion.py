@@ -45,6 +45,8 @@ def test_a_launch_file_becomes_applications(package: Path, tmp_path: Path) -> No
     cmake = (out / "arm_left/CMakeLists.txt").read_text()
     assert 'target_compile_definitions(arm_left PRIVATE ROS_PACKAGE_NAME="ping" GREETING="beat")' in cmake
     assert "../packages/ping/include" in cmake
+    assert "-Wl,--version-script=${ROSCFE_DIR}/exports.map" in (out / "roscfe/roscfe.cmake").read_text()
+    assert (out / "roscfe/exports.map").read_text() == "{ global: *_AppMain; RN_*_Main; roscfe_node; local: *; };\n"
     assert (out / "packages/ping/include/ping/words.h").read_bytes() == (package / "include/ping/words.h").read_bytes()
     assert (out / "roscfe/msg/ping/Beat.h").is_file()
     assert (len((out / "tables/arm_left_params.tbl").read_bytes()) - 64 - 52) % ROW_BYTES == 0
