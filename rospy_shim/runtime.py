@@ -101,9 +101,13 @@ class ProcessMonitor:
         if node.required:
             self._say(f"{name} has ended with exit status {status}; it is required, so the run is over")
             self._end()
-        elif self._config.ends_with_nodes and all(app in self.statuses for app in self._config.nodes):
+        elif self._config.ends_with_nodes and all(app in self.statuses for app in self._apps()):
             self._end()
         return False
+
+    def _apps(self) -> list[str]:
+        """The applications that all nodes are."""
+        return [*self._config.nodes, *self._config.compiled]
 
     def _end(self) -> None:
         self.over = True
@@ -174,12 +178,22 @@ class RosRuntime:
         if files is not None:
             files.stamps.now_ns = lambda: self._epoch_ns + kernel.now
         self.monitor = ProcessMonitor(config, console, kernel.stop)
-        self.parameters = ParameterApp(cfe, self.graph.params, CompiledNodes(self.graph, cfe.sb))
+        self.parameters = ParameterApp(cfe, self.graph.params, CompiledNodes(self.graph, cfe.sb, self._compiled_ended))
         self._started: dict[str, NodeConfig] = {}
         self._running: list[Node] = []
         self._pids = {MASTER_PORT}
         self.ended: dict[str, NodeEnd] = {}
         self._task_numbers = count(1)
+
+    def _compiled_ended(self, app: str, status: int) -> int | None:
+        """A node in C++ has ended by itself: in how many ns it is to start again; None for never."""
+        config = self._config.compiled.get(app)
+        if config is None:
+            return None
+        if self.monitor.starts_again(config, status):
+            return max(config.respawn_delay_ns, SHORTEST_RESPAWN_NS)
+        self.ended[app] = NodeEnd(config.name or app, status)
+        return None
 
     def run_node(self, script: Path, app_name: str) -> None:
         """Run a node's script to its end, in the main task of its cFE application.

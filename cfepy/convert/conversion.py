@@ -183,6 +183,8 @@ def _node(
     own = SourceNames(list(sources.texts.values()), texts_below(task.params, node.full_name))
     names = names_of(own.used(), node.namespace, node.full_name, node.remaps)
     names.open = own.open
+    if task.params.get("use_sim_time") is True:
+        names.topics["/clock"] = True
     seen = collect(program.sources, [*program.includes, *library_includes()])
     entry = NodeEntry(
         node.app,

@@ -76,7 +76,9 @@ def spec_of(
         script=made_from,
         mission_file=None,
         board="linux",
-        ros=RosConfig(nodes=nodes, params=params, spread=True, ends_with_nodes=bool(nodes) and not built),
+        ros=RosConfig(
+            nodes=nodes, params=params, spread=True, ends_with_nodes=bool(nodes or built), compiled=_ends(built)
+        ),
         limits=MissionLimits(nodes=len(nodes) + len(built) + ROOM, yields=True),
         startup=lines_for(nodes) + compiled_lines(built) + b"!\n",
         notes=notes,
@@ -132,7 +134,7 @@ def built_programs(
             break
         try:
             others = [each for each in names if each != node.full_name]
-            built[app] = BuiltProgram(node.full_name, *build(node, plan.params, others, config))
+            built[app] = BuiltProgram(node.full_name, *build(node, plan.params, others, config), node)
         except CppNodesError:
             raise
         except UsageError as error:
@@ -221,9 +223,14 @@ def with_launch_files(
         built.update(more)
         notes += [*plan.notes, *left_out]
     head = spec.startup_script.partition(b"!")[0]
-    ros = replace(spec.ros, nodes={**nodes, **added}, params=params)
+    ros = replace(spec.ros, nodes={**nodes, **added}, params=params, compiled=_ends(built))
     startup = head + lines_for(added) + compiled_lines(built) + b"!\n"
     return replace(spec, ros=ros, startup=startup, notes=tuple(notes), built=built)
+
+
+def _ends(built: Mapping[str, BuiltProgram]) -> dict[str, NodeConfig]:
+    """What is to become of nodes in C++ when they end."""
+    return {app: program.config for app, program in built.items()}
 
 
 def mission_environment() -> dict[str, str]:
@@ -296,7 +303,7 @@ def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> Miss
         {},
         params,
         (),
-        {node.app: BuiltProgram(node.full_name, *build(node, params, (), CppNodesConfig()))},
+        {node.app: BuiltProgram(node.full_name, *build(node, params, (), CppNodesConfig()), node)},
     )
 
 

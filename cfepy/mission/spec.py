@@ -14,7 +14,7 @@ from cfepy.marked_yaml import Marked
 from cfepy.mission.cpp_nodes import CppNodesConfig
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.loader import NODE_SYMBOL
-from cfepy.nodes import RosConfig
+from cfepy.nodes import CppNode, NodeConfig, RosConfig
 from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 
@@ -38,11 +38,24 @@ class BuiltProgram(NamedTuple):
         name: full name of the node.
         file: the shared object.
         entry: its entry point.
+        node: what a launch file says of it.
     """
 
     name: str
     file: Path
     entry: str
+    node: CppNode
+
+    @property
+    def config(self) -> NodeConfig:
+        """What is to become of it when it ends."""
+        return NodeConfig(
+            self.node.app,
+            name=self.name.lstrip("/"),
+            respawn=self.node.respawn,
+            respawn_delay_ns=self.node.respawn_delay_ns,
+            required=self.node.required,
+        )
 
 
 @dataclass(frozen=True)

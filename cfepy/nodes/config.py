@@ -66,7 +66,9 @@ class CppNode:
         args: what follows the program's name on its command line.
         remaps: (from, to), as the launch file has them.
         env: its environment; ROS_PACKAGE_PATH counts.
-        required: nothing runs without it.
+        required: nothing runs without it, and its end is the end of the run.
+        respawn: it is started again after its end.
+        respawn_delay_ns: how long after it.
         line: of `near`, where it stands; 0 when it stands in no file.
     """
 
@@ -82,6 +84,8 @@ class CppNode:
     env: Mapping[str, str] = field(default_factory=dict)
     required: bool = False
     line: int = 0
+    respawn: bool = False
+    respawn_delay_ns: int = 0
 
     @property
     def full_name(self) -> str:
@@ -106,6 +110,7 @@ class TopicConfig:
 class RosConfig:
     """Everything about ROS in a mission file; `nodes` by cFE application name, `topics` by resolved topic name.
 
+    `compiled` are nodes in C++, by cFE application name, too: what is to become of them when they end.
     `ordered_sets` is for the nodes that do not say it themselves. `locked_topics` and `locked_services` are MsgIds by
     name, from the mission's `topics.lock`, for what `topics` does not pin. With `spread` a topic whose MsgId is taken
     gets the next free one, in order of registration; otherwise that is an error, since the id may be another in the
@@ -126,3 +131,4 @@ class RosConfig:
     root: str = ""
     absent: Collection[str] = frozenset()
     connection_delay_ns: int = 0
+    compiled: Mapping[str, NodeConfig] = field(default_factory=dict)

@@ -417,6 +417,8 @@ def ended_badly(mission: Mission) -> list[str]:
     es = mission.cfe.es
     ended = [history.name for history in es.history.values() if history.error_exits]
     ending = [app.name for app in es.apps if app.control_request == APP_ERROR]
+    built = {} if mission.ros is None else {app: mission.ros.ended.get(app) for app in mission.spec.built}
+    ending += [app for app, end in built.items() if end is not None and end.status]  # also where the run ended with it
     return list(dict.fromkeys(ended + ending))
 
 

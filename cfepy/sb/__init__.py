@@ -10,7 +10,7 @@ from __future__ import annotations
 from cfepy.ports import PEND_FOREVER
 from cfepy.sb.buffers import BUFFER_BYTES, MessageBuffer
 from cfepy.sb.bus import POLL, SoftwareBus
-from cfepy.sb.packets import COMMANDS, TELEMETRY
+from cfepy.sb.packets import COMMANDS, ONESUB_TLM, TELEMETRY, UNSUBSCRIPTION
 from cfepy.sb.pipe import Pipe
 from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE
 from cfepy.sb.routing import Destination, Route
@@ -19,10 +19,12 @@ from cfepy.sb.task import SbTask
 __all__ = [
     "BUFFER_BYTES",
     "COMMANDS",
+    "ONESUB_TLM",
     "PEND_FOREVER",
     "PIPEOPTS_IGNOREMINE",
     "POLL",
     "TELEMETRY",
+    "UNSUBSCRIPTION",
     "Destination",
     "MessageBuffer",
     "Pipe",

@@ -24,7 +24,7 @@ ENABLE_SUB_REPORTING_CC = 9
 DISABLE_SUB_REPORTING_CC = 10
 SEND_PREV_SUBS_CC = 11
 
-SUBSCRIPTION = 0  # SubType of a subscription report; NASA's 1, of an unsubscription, is never sent
+SUBSCRIPTION, UNSUBSCRIPTION = 0, 1  # SubType of a subscription report; the bus never sends the second
 SUB_ENTRIES_PER_PKT = 20
 PIPES_IN_STATS = 32
 

@@ -200,6 +200,7 @@ class Subscription(TopicSide):
             self.topic.leave()
             if self._pipe != NO_PIPE:
                 self.node.cfe.sb.unsubscribe(self.topic.msg_id, self._pipe)
+                self.topic.tell_left(self.node.cfe.sb, self._pipe)
             self.topic = None
         self._call_attention()
 

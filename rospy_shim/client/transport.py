@@ -25,14 +25,15 @@ def whole_header(msg_id: int) -> bytes:
     return _header(msg_id, WHOLE, 0, 0)
 
 
-def addressed(packet: bytes, pipe: int) -> bytes:
+def addressed(packet: bytes, pipe: int, number: int = 0) -> bytes:
     """The same packet for one subscriber alone.
 
     Args:
         packet: of a topic.
         pipe: the id of the subscriber's pipe.
+        number: of the subscription, of those that a compiled node has to the topic; the first is 0.
     """
-    return packet[:SPARE_AT] + _address(pipe) + packet[HEADER_BYTES:]
+    return packet[:SPARE_AT] + _address(pipe, number) + packet[HEADER_BYTES:]
 
 
 def is_for_another(packet: bytes, pipe: int) -> bool:
@@ -40,8 +41,8 @@ def is_for_another(packet: bytes, pipe: int) -> bool:
     return len(packet) >= HEADER_BYTES and packet[SPARE_AT:HEADER_BYTES] != _address(pipe)
 
 
-def _address(pipe: int) -> bytes:
-    return ((pipe & 0xFFFFFF) << 8 | 1).to_bytes(4, "big")
+def _address(pipe: int, number: int = 0) -> bytes:
+    return ((pipe & 0xFFFFFF) << 8 | number << 1 | 1).to_bytes(4, "big")
 
 
 def segments(msg_id: int, payload: bytes, room: int) -> Iterator[bytes]:

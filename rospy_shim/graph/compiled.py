@@ -12,7 +12,10 @@ from collections.abc import Callable, Iterator
 from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
+from cfepy.sb import ONESUB_TLM, UNSUBSCRIPTION
 from cfepy.status import UsageError
+from cfepy.units import NS_PER_MS
+from rospy_shim.client.exceptions import ServiceException
 from rospy_shim.client.service import REQUEST_LEAD, Pieces, answer_packets, call_of_request, room_of
 from rospy_shim.client.transport import HEADER_BYTES, addressed, segments, whole_header
 from rospy_shim.graph.compiled_params import CompiledParams
@@ -33,6 +36,7 @@ class Concern(IntEnum):
     CLIENT = 3
     GONE = 4  # added to the others: no longer
     SUBSCRIBED = 8  # a subscriber's pipe is on the bus now: it wants the latched messages
+    ENDED = 32  # the node ends by itself; 16 to 31 are about parameters
 
 
 class Enrolled(NamedTuple):
@@ -41,10 +45,11 @@ class Enrolled(NamedTuple):
     msg_id: int
     raw: bool = False
     latched: bool = False
+    pipes: tuple[int, ...] = ()  # that hear it, for a publisher
 
     def packed(self) -> bytes:
-        """Its bytes: the MsgId, and a byte of flags."""
-        return struct.pack("<HB", self.msg_id, self.raw | self.latched << 1)
+        """Its bytes: the MsgId, a byte of flags, and the pipes."""
+        return struct.pack(f"<HB{len(self.pipes)}I", self.msg_id, self.raw | self.latched << 1, *self.pipes)
 
 
 class DeclaredType:
@@ -131,11 +136,13 @@ class CompiledNodes:
     Args:
         graph: the mission's ROS graph.
         bus: the Software Bus.
+        ended: takes application and exit status of a node that ends by itself; in how many ns it is to start again.
     """
 
-    def __init__(self, graph: Graph, bus: SoftwareBus) -> None:
+    def __init__(self, graph: Graph, bus: SoftwareBus, ended: Callable[[str, int], int | None]) -> None:
         self._graph = graph
         self._bus = bus
+        self._ended = ended
         self._params = CompiledParams(graph.params, bus)
         self._pieces = Pieces(REQUEST_LEAD)
 
@@ -147,7 +154,7 @@ class CompiledNodes:
             return iter(())
         try:
             good, body = True, self._answer(request)
-        except (UsageError, struct.error, UnicodeDecodeError) as error:
+        except (UsageError, ServiceException, struct.error, ValueError) as error:
             good, body = False, str(error).encode()
         return answer_packets(MASTER_TLM_MID, number, good, body, self._bus.config.sb_max_msg_size)
 
@@ -171,7 +178,14 @@ class CompiledNodes:
         who, name, *rest = _texts(body, 5)
         if self._params.takes(kind):
             return self._params.answer(kind, who, name, rest[0])
+        if kind == Concern.ENDED:
+            return self._end(name, rest[0])
         return self._enter(pipe, kind, who, name, DeclaredType(*rest)).packed()
+
+    def _end(self, app: str, status: str) -> bytes:
+        """Whether an application that ends is to start again, and after how many ms."""
+        again = self._ended(app, int(status))
+        return struct.pack("<BI", again is not None, (again or 0) // NS_PER_MS)
 
     def _enter(self, pipe: int, kind: int, who: str, name: str, declared: DeclaredType) -> Enrolled:
         self.forget_ended()
@@ -205,7 +219,9 @@ class CompiledNodes:
         topic = self._topic(node, name, declared)
         node.published[name] = declared._type
         topic.add_compiled_publisher(node)
-        return Enrolled(topic.msg_id, topic.raw)
+        route = self._bus.routes.get(topic.msg_id)
+        pipes = () if route is None else tuple(each.pipe.pipe_id for each in route.destinations)
+        return Enrolled(topic.msg_id, topic.raw, pipes=pipes)
 
     def _publish_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
         topic = self._graph.topic(name)
@@ -243,21 +259,33 @@ class CompiledNodes:
         return Enrolled(self._graph.ids.of_service(name))
 
     def _give_latched(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
-        """Python nodes' latched messages, for the one subscriber that has just come."""
-        topic = self._graph.topic(name)
+        """Python nodes' latched messages, for the one subscription that has just come."""
+        topic, number = self._graph.topic(name), int(declared._type)
         for link in topic.links:
             if link.is_latch and link.latch is not None and not topic.raw:
-                for packet in self._addressed(link, node.pipe):
+                for packet in self._addressed(link, node.pipe, number):
                     self._bus.transmit_msg(packet)
                 topic.latched += 1
         return Enrolled(topic.msg_id)
 
-    def _addressed(self, link: Link, pipe: int) -> Iterator[bytes]:
+    def _addressed(self, link: Link, pipe: int, number: int) -> Iterator[bytes]:
         payload = link.serialize(link.latch)
         room = self._bus.config.sb_max_msg_size - HEADER_BYTES
         whole = [whole_header(link.msg_id) + payload]
         for packet in whole if len(payload) <= room else segments(link.msg_id, payload, room):
-            yield addressed(packet, pipe)
+            yield addressed(packet, pipe, number)
+
+
+def tell_gone(bus: SoftwareBus, msg_id: int, pipe: int) -> None:
+    """Let compiled publishers know that a subscription has ended, which the Software Bus reports of none.
+
+    Args:
+        bus: the Software Bus.
+        msg_id: of the topic.
+        pipe: that heard it.
+    """
+    if bus.reporting:
+        bus.transmit_msg(ONESUB_TLM.packet(SubType=UNSUBSCRIPTION, MsgId=msg_id, Pipe=pipe))
 
 
 def _texts(body: bytes, count: int) -> list[str]:

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, NamedTuple
 from cfepy.cached import CachedProperty
 from rospy_shim.client.exceptions import ServiceException
 from rospy_shim.client.transport import sequence_of
-from rospy_shim.graph.compiled import CompiledNode, CompiledService, DeclaredType
+from rospy_shim.graph.compiled import CompiledNode, CompiledService, DeclaredType, tell_gone
 from rospy_shim.graph.msg_ids import COMMAND_BIT, MsgIds
 from rospy_shim.parameters.tree import ParameterTree
 
 if TYPE_CHECKING:
     from cfepy.nodes import RosConfig
     from cfepy.rtos import Task
+    from cfepy.sb import SoftwareBus
     from rospy_shim.client.link import Link
     from rospy_shim.client.node import Node
     from rospy_shim.client.service import Service
@@ -136,6 +137,11 @@ class TopicEntry:
             self.subscriptions.remove(subscription)
             for link in self.links:
                 link.peer_left(subscription)
+
+    def tell_left(self, bus: SoftwareBus, pipe: int) -> None:
+        """A subscriber's pipe hears the topic no more; compiled publishers are told."""
+        if self.compiled_publishers:
+            tell_gone(bus, self.msg_id, pipe)
 
     def _refresh(self) -> None:
         self._shared = shared = self._shared or len(self.links) > 1

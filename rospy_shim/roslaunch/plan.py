@@ -269,12 +269,17 @@ def node_in_cpp(
             folders[0] / "CMakeLists.txt",
             said.pop("__name", ""),
             SEP + namespace.strip(SEP),
-            tuple(word for word in words if ":=" not in word),
+            tuple(word for word in words if ":=" not in word or _is_private(word)),
             tuple((name, value) for name, value in said.items() if not name.startswith("_")),
             environ,
             required=True,
         )
     return None
+
+
+def _is_private(word: str) -> bool:
+    """Whether a word of a command line sets a private parameter, which a node in C++ does itself (ros::init)."""
+    return word.startswith("_") and not word.startswith("__")
 
 
 def launch_file(package: str, name: str, near: Path, environ: Mapping[str, str]) -> Path:
@@ -400,9 +405,13 @@ class Planner:
         try:
             config = self.config(replace(node, required=True), (f"--gtest_output=xml:{results}",))
         except ScriptError as error:
-            text = f"test {name} cannot run here: {error}"
+            why = str(error)
+            if compiled_folders(self._packages, node.package, node.type):
+                what = f"{node.package}/{node.type} is a test in C++"
+                why = f"{what}; GoogleTest has no cFE build: write it in Python [gtest]"
+            text = f"test {name} cannot run here: {why}"
             remarks.append(LaunchRemark(text, node.file, node.line, not error.is_there, before_runs=False))
-            return PlannedTest(node.package, name, None, limit, test.retry, results, str(error))
+            return PlannedTest(node.package, name, None, limit, test.retry, results, why)
         return PlannedTest(node.package, name, config, limit, test.retry, results)
 
     def config(self, node: LaunchNode, more_args: tuple[str, ...] = ()) -> NodeConfig:
@@ -454,11 +463,13 @@ class Planner:
             node.file,
             node.name,
             node.namespace.rstrip(SEP) or SEP,
-            tuple(word for word in words if ":=" not in word),
+            tuple(word for word in words if ":=" not in word or _is_private(word)),
             (*node.remaps, *((one, other) for one, other in remaps)),
             {**self._environ, **node.env},
             node.required,
             node.line,
+            node.respawn,
+            round(node.respawn_delay * NS_PER_S),
         )
 
     def _arguments(self, node: LaunchNode, more_args: tuple[str, ...]) -> tuple[str, ...]:

@@ -36,6 +36,7 @@ def found(report: CheckReport) -> dict[str, tuple[int, int]]:
         ("#include <nodelet_of_mine/none.h>", "include-unknown", 1),
         ("#include <gazebo/gazebo.hh>", "library-outside", 1),
         ("#include <QApplication>", "library-outside", 1),
+        ("#include <gtest/gtest.h>", "gtest", 1),
         ("#include <moveit/move_group_interface/move_group_interface.h>", "ros-library", 1),
         ("#include <rover/DriveConfig.h>", "include-unknown", 1),
         ("#include <boost/asio.hpp>", "boost-header", 1),

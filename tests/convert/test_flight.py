@@ -116,3 +116,64 @@ def test_symbols_that_nodes_would_share_are_found(tmp_path: Path) -> None:
     assert unique_symbols(made) == ["A<int>::x"]
     with pytest.raises(CompilerError):
         unique_symbols(source)
+
+
+def test_a_test_in_cpp_is_refused_with_the_rule(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (package / "test").mkdir(exist_ok=True)
+    cmake = package / "CMakeLists.txt"
+    cmake.write_text(cmake.read_text() + "\nadd_rostest_gtest(words_test test/words.test test/words_test.cpp)\n")
+    (package / "test/words_test.cpp").write_text("#include <gtest/gtest.h>\n")
+    (package / "test/words.test").write_text(
+        '<launch><test test-name="words" pkg="ping" type="words_test" time-limit="5"/></launch>\n'
+    )
+    assert main(["rostest", str(package / "test/words.test")]) == 1
+    shown = capfd.readouterr().out
+    assert "ping/words_test is a test in C++; GoogleTest has no cFE build: write it in Python [gtest]" in shown
+
+
+def test_another_type_in_python_is_told_once(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    source = package / "src/sender.cpp"
+    (package / "launch/both.launch").write_text(
+        '<launch><node pkg="ping" type="sender" name="left"/>'
+        '<node pkg="ping" type="script.py" name="script"/></launch>\n'
+    )
+    (package / "scripts/script.py").write_text(
+        "#!/usr/bin/env python3\nimport rospy\nfrom ping.msg import Beat\nrospy.init_node('script')\n"
+        "rospy.Subscriber('/other', Beat, lambda message: rospy.loginfo('heard'))\nrospy.spin()\n"
+    )
+    (package / "scripts/script.py").chmod(0o755)
+    source.write_text("""
+#include <ros/ros.h>
+#include <std_msgs/String.h>
+
+static void heard(const std_msgs::String &) { ROS_INFO("heard"); }
+
+int main(int argc, char **argv)
+{
+  ros::init(argc, argv, "left");
+  ros::NodeHandle nh;
+  ros::Duration(0.5).sleep();
+  ros::Publisher pub = nh.advertise<std_msgs::String>("/other", 4);
+  for (int i = 0; i < 5; ++i)
+  {
+    pub.publish(std_msgs::String());
+    ros::Duration(0.1).sleep();
+  }
+  pub.shutdown();
+  ros::Subscriber sub = nh.subscribe("/other", 4, heard);
+  ros::Subscriber again = nh.subscribe("/fine", 4, heard);
+  ros::spinOnce();
+  sub.shutdown();
+  ROS_INFO("goes on: %u", pub.getNumSubscribers());
+}
+""")
+    assert main(["run", str(package / "launch/both.launch"), "--for", "3"]) == 1  # events of the type ERROR
+    shown = capfd.readouterr().out
+    events = [line for line in shown.splitlines() if line.startswith("EVS") and "/LEFT 3: " in line]
+    text = (
+        "[/left] has the type std_msgs/String [992ce8a1687cec8c8bd883ec73ca41d1] for topic /other, which is ping/Beat"
+    )
+    assert [text in line for line in events] == [True, True]  # to publish, and to subscribe
+    assert "no MsgId" not in shown
+    assert "goes on: 0" in shown
+    assert "heard" not in shown

@@ -14,6 +14,7 @@ import socket
 import subprocess
 import tempfile
 import time
+import xmlrpc.client
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -35,6 +36,8 @@ NO_COLOR = "\x1b[0m"
 """What rosconsole puts behind a line."""
 REMAPS = {"from": "to", "chatter": "/talk"}
 SECONDS = 30.0
+SIMULATED = ("sim_time",)
+"""Probes whose time is that of /clock."""
 ROS_PYTHON = "/usr/bin/python3"
 """The interpreter that has Debian's rospy (python3-rospy)."""
 LIBRARIES = (
@@ -66,7 +69,8 @@ def fly(name: str, folder: Path) -> list[str]:
     if (PROBES / f"{name}.py").is_file():
         (package / f"{name}.py").write_bytes((PROBES / f"{name}.py").read_bytes())
         node += f'<node pkg="probes" type="{name}.py" name="partner" output="screen"/>'
-    launch.write_text(f'<launch><group ns="probes">{node}</group></launch>\n')
+    time = '<param name="/use_sim_time" value="true"/>' if name in SIMULATED else ""
+    launch.write_text(f'<launch>{time}<group ns="probes">{node}</group></launch>\n')
     with patch.dict(os.environ, {"ROS_PACKAGE_PATH": str(folder)}):
         spec = read_launch(launch, {}, build_for_flight)
     assert not spec.notes, spec.notes
@@ -138,6 +142,7 @@ def run_with_roscpp(name: str, folder: Path, environ: dict[str, str]) -> list[st
     if (PROBES / f"{name}.py").is_file():
         commands.append([ROS_PYTHON, "-u", str(PROBES / f"{name}.py"), "__name:=partner"])
     to = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+    xmlrpc.client.ServerProxy(environ["ROS_MASTER_URI"]).setParam("/probing", "/use_sim_time", name in SIMULATED)
     running = [subprocess.Popen(each, env=environ, **to) for each in commands]
     said = [each.communicate(timeout=60)[0].decode("utf-8", "replace") for each in running]
     return probe_first(marked("".join(said).splitlines()))

@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _status(flown: Flown, longer: str) -> int:
     """The node's exit status; what went wrong apart from the node is printed."""
     mission, results = flown.mission, flown.results
-    app = next(iter(mission.spec.ros.nodes), "")  # one in C++ has no exit status
+    app = next(iter((*mission.spec.ros.nodes, *mission.spec.built)), "")
     statuses = {} if mission.ros is None else mission.ros.monitor.statuses
     if app in statuses:
         return int(statuses[app]) & 0xFF

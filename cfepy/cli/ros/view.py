@@ -91,5 +91,7 @@ def _nodes(results: Results, mission: Mission) -> Table:
         table.add(f"/{node.name}", state, 0 if monitor is None else monitor.restarts.get(app, 0))
     for app, program in mission.spec.built.items():
         state = _STATES.get(states.get(app, NOT_STARTED), "running")
+        if monitor is not None and app in monitor.statuses and not program.node.respawn:
+            state = f"ended, exit status {monitor.statuses[app]}"
         table.add(program.name, state, restarts.get(app, 0))
     return table

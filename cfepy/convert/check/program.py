@@ -202,7 +202,9 @@ class ProgramSources:
         if is_eigen(name) and has_eigen():
             return
         folder = name.partition("/")[0]
-        if folder in ROS_LIBRARIES and "/" in name and not folder.endswith("_msgs"):
+        if folder in ("gtest", "gmock"):
+            report.add("gtest", place, f"{name} is GoogleTest's")
+        elif folder in ROS_LIBRARIES and "/" in name and not folder.endswith("_msgs"):
             report.add("ros-library", place, f"{name} is not in the interface library")
         elif is_outside(name):
             report.add("library-outside", place, f"{name} is of a library that has no cFE build")

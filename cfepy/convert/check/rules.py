@@ -73,6 +73,12 @@ RULES: dict[str, CheckRule] = {
             "leave the library out, or build the node with it by hand",
         ),
         CheckRule(
+            *("gtest", _E, _E, _E),
+            "a test program of GoogleTest",
+            "GoogleTest has no cFE build: it ends its process, and writes its results to a file of the computer",
+            "write the test in Python, with rostest or pytest; what it tests may be C++",
+        ),
+        CheckRule(
             *("ros-library", _E, _E, _E),
             "a header of a ROS library that is not in the interface library",
             "without it the node would be built against another ROS, whose code waits in threads and sockets",

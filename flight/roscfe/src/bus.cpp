@@ -15,7 +15,7 @@ namespace
 static_assert(kTelemetryHeader == 16, "topics have packets with a header of 16 bytes, as cfepy's have");
 
 constexpr std::size_t   kSpare           = 12;   // of a telemetry header: whom a repetition is for
-constexpr std::uint8_t  kAddressed       = 0x01; // in its last byte
+constexpr std::uint8_t  kAddressed       = 0x01; // in its last byte; above it stands which subscription is meant
 constexpr std::size_t   kKnownAtOnce     = 512;  // subscriptions of the whole processor, before memory is needed for more
 constexpr std::int64_t  kReportTimeout   = kSecond;
 constexpr std::int32_t  kLongestWaitMs   = 100000;
@@ -106,7 +106,18 @@ void read_report(const CFE_SB_Buffer_t *buffer, std::uint16_t msg_id)
     {
         const auto &report = reinterpret_cast<const CFE_SB_SingleSubscriptionTlm_t *>(buffer)->Payload;
         const auto  id     = static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(report.MsgId));
-        report.SubType == CFE_SB_SUBSCRIPTION ? know(id, report.Pipe) : forget(id, report.Pipe);
+        if (report.SubType != CFE_SB_SUBSCRIPTION)
+        {
+            forget(id, report.Pipe);
+        }
+        else if (report.Qos.Priority == 0)
+        {
+            know(id, report.Pipe);
+        }
+        else if (!same_pipe(report.Pipe, g_node.pipe))
+        {
+            publication_has_another(id, report.Pipe, report.Qos.Priority);
+        }
         return;
     }
     const auto &report = reinterpret_cast<const CFE_SB_AllSubscriptionsTlm_t *>(buffer)->Payload;
@@ -193,12 +204,15 @@ bool assemble(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size
     return flag == CFE_MSG_SegFlag_Last;
 }
 
-void give_to_subscriptions(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size)
+constexpr int kAll = -1; // subscriptions of a topic
+
+// What is not for all is a repetition for the subscription with a number.
+void give_to_subscriptions(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size, int number)
 {
     for (std::size_t i = 0; i < g_node.subscriptions.size(); ++i)
     {
         const boost::shared_ptr<Subscription> &each = g_node.subscriptions[i];
-        if (each->msg_id_ != msg_id || !each->alive_)
+        if (each->msg_id_ != msg_id || !each->alive_ || (number != kAll && number != each->number_))
         {
             continue;
         }
@@ -235,8 +249,22 @@ void give_to_subscriptions(std::uint16_t msg_id, const std::uint8_t *packet, std
     }
 }
 
+bool g_dispatching = false;
+
+// While one packet is given to whom it is for, no other is taken over.
+struct Dispatching
+{
+    Dispatching() : outer(g_dispatching) { g_dispatching = true; }
+    ~Dispatching() { g_dispatching = outer; }
+    Dispatching(const Dispatching &) = delete;
+    Dispatching &operator=(const Dispatching &) = delete;
+
+    const bool outer;
+};
+
 void dispatch(const CFE_SB_Buffer_t *buffer)
 {
+    const Dispatching          dispatching;
     CFE_SB_MsgId_t             id   = CFE_SB_INVALID_MSG_ID;
     CFE_MSG_Size_t             size = 0;
     CFE_MSG_SegmentationFlag_t flag = CFE_MSG_SegFlag_Unsegmented;
@@ -254,8 +282,10 @@ void dispatch(const CFE_SB_Buffer_t *buffer)
     {
         return;
     }
-    if (size >= kTelemetryHeader && packet[kSpare + 3] == kAddressed)
+    int number = kAll;
+    if (size >= kTelemetryHeader && (packet[kSpare + 3] & kAddressed) != 0)
     {
+        number = packet[kSpare + 3] >> 1;
         const std::uint32_t whom = static_cast<std::uint32_t>(packet[kSpare]) << 16 |
                                    static_cast<std::uint32_t>(packet[kSpare + 1]) << 8 | packet[kSpare + 2];
         if (whom != pipe_number(g_node.pipe))
@@ -266,20 +296,37 @@ void dispatch(const CFE_SB_Buffer_t *buffer)
     Assembly *whole = nullptr;
     if (flag == CFE_MSG_SegFlag_Unsegmented)
     {
-        give_to_subscriptions(msg_id, packet, size);
+        give_to_subscriptions(msg_id, packet, size, number);
     }
     else if (size >= kTelemetryHeader && comes_in_pieces(msg_id) && assemble(msg_id, packet, size, flag, whole))
     {
-        give_to_subscriptions(msg_id, whole->bytes.data(), whole->bytes.size());
+        give_to_subscriptions(msg_id, whole->bytes.data(), whole->bytes.size(), number);
     }
 }
 
-void address(std::uint8_t *packet, std::uint32_t pipe)
+void address(std::uint8_t *packet, std::uint32_t pipe, std::uint8_t number)
 {
     packet[kSpare]     = static_cast<std::uint8_t>(pipe >> 16);
     packet[kSpare + 1] = static_cast<std::uint8_t>(pipe >> 8);
     packet[kSpare + 2] = static_cast<std::uint8_t>(pipe);
-    packet[kSpare + 3] = kAddressed;
+    packet[kSpare + 3] = static_cast<std::uint8_t>(number << 1 | kAddressed);
+}
+
+// A report as the Software Bus makes one when a pipe subscribes.
+void report(std::uint16_t msg_id, std::uint8_t kind, std::uint8_t number)
+{
+    CFE_SB_Buffer_t *buffer = CFE_SB_AllocateMessageBuffer(sizeof(CFE_SB_SingleSubscriptionTlm_t));
+    if (buffer != nullptr)
+    {
+        CFE_MSG_Init(&buffer->Msg, CFE_SB_ValueToMsgId(CFE_SB_ONESUB_TLM_MID), sizeof(CFE_SB_SingleSubscriptionTlm_t));
+        auto &told           = reinterpret_cast<CFE_SB_SingleSubscriptionTlm_t *>(buffer)->Payload;
+        told.SubType         = kind;
+        told.MsgId           = CFE_SB_ValueToMsgId(msg_id);
+        told.Qos.Priority    = number;
+        told.Qos.Reliability = 0;
+        told.Pipe            = g_node.pipe;
+        send_packet(buffer);
+    }
 }
 
 // What waits in the pipe, and timers that are due, in this order; true when there were packets.
@@ -308,6 +355,7 @@ void ask_for_reports(CFE_MSG_FcnCode_t code)
 }
 
 std::uint32_t g_addressee = 0; // of what is sent at the moment; 0 is everybody
+std::uint8_t  g_number    = 0; // of its subscription
 
 } // namespace
 
@@ -370,15 +418,27 @@ void listen_no_more(std::uint16_t msg_id)
         return;
     }
     // The Software Bus reports no subscription that ends; publishers are to know all the same.
-    CFE_SB_Buffer_t *buffer = CFE_SB_AllocateMessageBuffer(sizeof(CFE_SB_SingleSubscriptionTlm_t));
-    if (buffer != nullptr)
+    report(msg_id, CFE_SB_UNSUBSCRIPTION, 0);
+}
+
+void ask_for_repetition(std::uint16_t msg_id, std::uint8_t number)
+{
+    if (g_node.knows_subscribers)
     {
-        CFE_MSG_Init(&buffer->Msg, CFE_SB_ValueToMsgId(CFE_SB_ONESUB_TLM_MID), sizeof(CFE_SB_SingleSubscriptionTlm_t));
-        auto &report   = reinterpret_cast<CFE_SB_SingleSubscriptionTlm_t *>(buffer)->Payload;
-        report.SubType = CFE_SB_UNSUBSCRIPTION;
-        report.MsgId   = CFE_SB_ValueToMsgId(msg_id);
-        report.Pipe    = g_node.pipe;
-        send_packet(buffer);
+        report(msg_id, CFE_SB_SUBSCRIPTION, number);
+    }
+}
+
+void know_pipes(std::uint16_t msg_id, const std::vector<CFE_SB_PipeId_t> &pipes)
+{
+    g_known.erase(std::remove_if(g_known.begin(), g_known.end(),
+                                 [&](const Known &known) {
+                                     return known.msg_id == msg_id && CFE_RESOURCEID_TO_ULONG(known.pipe) == 0;
+                                 }),
+                  g_known.end());
+    for (const CFE_SB_PipeId_t &pipe : pipes)
+    {
+        know(msg_id, pipe);
     }
 }
 
@@ -479,6 +539,14 @@ bool pump(std::int64_t until_ns, bool exactly)
     return true;
 }
 
+void take_over_now()
+{
+    if (g_node.started && !g_node.ended && !g_dispatching)
+    {
+        take_over();
+    }
+}
+
 void wait_until(std::int64_t until_ns)
 {
     const bool exactly = until_ns - now_ns() <= kFastCycle;
@@ -506,7 +574,7 @@ CFE_SB_Buffer_t *begin_packet(std::uint16_t msg_id, std::size_t size)
     CFE_MSG_Init(&buffer->Msg, CFE_SB_ValueToMsgId(msg_id), size);
     if (g_addressee != 0)
     {
-        address(bytes_of(buffer), g_addressee);
+        address(bytes_of(buffer), g_addressee, g_number);
     }
     return buffer;
 }
@@ -552,11 +620,14 @@ void send_bytes(std::uint16_t msg_id, const std::uint8_t *lead, std::size_t lead
     } while (at < size);
 }
 
-void send_to(Publication &publication, std::uint32_t pipe, const std::uint8_t *bytes, std::size_t size)
+void send_to(Publication &publication, std::uint32_t pipe, const std::uint8_t *bytes, std::size_t size,
+             std::uint8_t number)
 {
     g_addressee = pipe & 0x00FFFFFF;
+    g_number    = number;
     send_bytes(publication.msg_id_, nullptr, 0, bytes, size);
     g_addressee = 0;
+    g_number    = 0;
 }
 
 } // namespace roscfe

@@ -17,6 +17,17 @@ std::int64_t now_ns()
 namespace
 {
 constexpr std::int64_t kNever = INT64_MAX; // when a timer that fires once is expected again
+
+// Whether a timer waits for /clock, and not for the processor's clock.
+bool is_simulated(const TimerState &timer)
+{
+    return timer.of_ros_time && is_sim_time();
+}
+
+std::int64_t now_of(const TimerState &timer)
+{
+    return is_simulated(timer) ? ros_now_ns() : now_ns();
+}
 } // namespace
 
 // -- timers ------------------------------------------------------------------------------------------------------------
@@ -47,7 +58,7 @@ void TimerState::start()
     running = true;
     waiting = false;
     ++starts; // a call of an earlier start that goes on changes nothing
-    last_expected_ns = now_ns();
+    last_expected_ns = now_of(*this);
     next_expected_ns = last_expected_ns + period_ns;
     last_real_ns = last_duration_ns = last_expired_ns = 0;
 }
@@ -63,12 +74,12 @@ void TimerState::stop()
 
 bool TimerState::pending() const
 {
-    return waiting || next_expected_ns <= now_ns();
+    return waiting || next_expected_ns <= now_of(*this);
 }
 
 void TimerState::set_period(std::int64_t period, bool reset)
 {
-    const std::int64_t now  = now_ns();
+    const std::int64_t now  = now_of(*this);
     const std::int64_t gone = now - last_real_ns;
     if (reset)
     {
@@ -95,16 +106,17 @@ ros::CallbackInterface::CallResult TimerState::call_now()
         waiting = false;
         return Invalid;
     }
-    const std::int64_t  begun = now_ns();
-    const std::uint32_t start = starts;
+    const std::int64_t  begun   = now_of(*this);
+    const std::int64_t  started = now_ns();
+    const std::uint32_t start   = starts;
     fire(begun);
     if (starts != start)
     {
         return Success; // it was stopped and started
     }
-    const std::int64_t ended = now_ns();
+    const std::int64_t ended = now_of(*this);
     waiting                  = false;
-    last_duration_ns         = ended - begun;
+    last_duration_ns         = now_ns() - started; // on the wall, as in roscpp
     last_real_ns             = begun;
     last_expired_ns          = expired_ns;
     if (oneshot)
@@ -126,6 +138,7 @@ ros::CallbackInterface::CallResult TimerState::call_now()
 
 void queue_due_timers(std::int64_t now)
 {
+    const std::int64_t simulated = is_sim_time() ? ros_now_ns() : now;
     // In the order in which they are due, as roscpp's list of waiting timers is sorted.
     for (;;)
     {
@@ -133,7 +146,8 @@ void queue_due_timers(std::int64_t now)
         for (const boost::weak_ptr<TimerState> &each : g_node.timers)
         {
             const boost::shared_ptr<TimerState> timer = each.lock();
-            if (timer && timer->alive && timer->running && !timer->waiting && timer->next_expected_ns <= now &&
+            if (timer && timer->alive && timer->running && !timer->waiting &&
+                timer->next_expected_ns <= (timer->of_ros_time ? simulated : now) &&
                 (!first || timer->next_expected_ns < first->next_expected_ns))
             {
                 first = timer;
@@ -145,8 +159,22 @@ void queue_due_timers(std::int64_t now)
         }
         first->waiting = true;
         first->due_ns  = first->next_expected_ns;
-        first->expired_ns = now;
+        first->expired_ns = first->of_ros_time ? simulated : now;
         first->callbacks->addCallback(first, reinterpret_cast<std::uintptr_t>(first.get()));
+    }
+}
+
+// Time has gone back: what was expected later is expected a period from now.
+void reset_ros_timers(std::int64_t now)
+{
+    for (const boost::weak_ptr<TimerState> &each : g_node.timers)
+    {
+        const boost::shared_ptr<TimerState> timer = each.lock();
+        if (timer && timer->of_ros_time && now < timer->last_expected_ns)
+        {
+            timer->last_expected_ns = now;
+            timer->next_expected_ns = now + timer->period_ns;
+        }
     }
 }
 
@@ -157,7 +185,7 @@ NextTimer next_timer()
     {
         const boost::shared_ptr<TimerState> timer = each.lock();
         if (timer && timer->alive && timer->running && !timer->waiting && timer->next_expected_ns != kNever &&
-            (next.ns == kForever || timer->next_expected_ns < next.ns))
+            !is_simulated(*timer) && (next.ns == kForever || timer->next_expected_ns < next.ns))
         {
             next.ns   = timer->next_expected_ns;
             next.fast = timer->period_ns <= kFastCycle;
@@ -213,103 +241,6 @@ void end_exact_waits()
 }
 
 } // namespace roscfe
-
-// -- of roscpp ---------------------------------------------------------------------------------------------------------
-
-namespace ros
-{
-
-namespace
-{
-
-template <class T>
-T time_now()
-{
-    T now;
-    now.fromNSec(static_cast<std::uint64_t>(roscfe::now_ns()));
-    return now;
-}
-
-bool sleep_for(std::int64_t ns)
-{
-    if (ns > 0)
-    {
-        roscfe::wait_until(roscfe::now_ns() + ns);
-    }
-    return !roscfe::g_node.shutting_down;
-}
-
-template <class T>
-bool sleep_until(const T &end)
-{
-    roscfe::wait_until(static_cast<std::int64_t>(end.toNSec()));
-    return !roscfe::g_node.shutting_down;
-}
-
-} // namespace
-
-Time Time::now()
-{
-    return time_now<Time>();
-}
-WallTime WallTime::now()
-{
-    return time_now<WallTime>();
-}
-SteadyTime SteadyTime::now()
-{
-    return time_now<SteadyTime>();
-}
-bool Time::sleepUntil(const Time &end)
-{
-    return sleep_until(end);
-}
-bool WallTime::sleepUntil(const WallTime &end)
-{
-    return sleep_until(end);
-}
-bool SteadyTime::sleepUntil(const SteadyTime &end)
-{
-    return sleep_until(end);
-}
-bool Duration::sleep() const
-{
-    return sleep_for(toNSec());
-}
-bool WallDuration::sleep() const
-{
-    return sleep_for(toNSec());
-}
-
-void Time::init() {}
-void Time::shutdown() {}
-void Time::setNow(const Time &) {} // the processor's clock is not a node's to set
-bool Time::useSystemTime()
-{
-    return true;
-}
-bool Time::isSimTime()
-{
-    return false;
-}
-bool Time::isSystemTime()
-{
-    return true;
-}
-bool Time::isValid()
-{
-    return true;
-}
-bool Time::waitForValid()
-{
-    return true;
-}
-bool Time::waitForValid(const WallDuration &)
-{
-    return true;
-}
-
-} // namespace ros
 
 // -- C's clocks of the host: the processor's is the time, for a node as for its messages (--wrap) -----------------------
 

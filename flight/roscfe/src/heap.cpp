@@ -27,6 +27,11 @@ void seal()
     g_sealed = true;
 }
 
+void unseal()
+{
+    g_sealed = false;
+}
+
 bool is_sealed()
 {
     return g_sealed;

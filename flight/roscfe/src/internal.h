@@ -56,6 +56,7 @@ struct Node
     bool                   initialized   = false;
     bool                   started       = false;
     bool                   shutting_down = false;
+    bool                   asked_to_end  = false; // by ES
     bool                   ended         = false; // the task is gone; objects that are destroyed now leave the bus alone
     ros::CallbackQueue     queue;
     ros::M_string          remappings; // resolved
@@ -92,9 +93,16 @@ void wait_until(std::int64_t until_ns);
 // Set memory aside for messages that come in several packets, or raw.
 void set_aside(const Subscription &subscription);
 
+// Take over what waits in the pipe, unless that is under way.
+void take_over_now();
+
 bool          listen(std::uint16_t msg_id);
 void          listen_no_more(std::uint16_t msg_id);
+// The pipe has another subscription to what it hears: publishers send it the last message that they have latched.
+void          ask_for_repetition(std::uint16_t msg_id, std::uint8_t number);
 std::uint32_t pipes_on(std::uint16_t msg_id);
+// The pipes that hear a MsgId, in place of what the list of subscriptions said, which tells no pipes.
+void          know_pipes(std::uint16_t msg_id, const std::vector<CFE_SB_PipeId_t> &pipes);
 
 // The pipes that have subscribed to a MsgId; 0 stands for those of which only that they are there is known.
 std::vector<CFE_SB_PipeId_t> those_on(std::uint16_t msg_id);
@@ -113,7 +121,11 @@ void send_bytes(std::uint16_t msg_id, const std::uint8_t *lead, std::size_t lead
 void run_async(); // callbacks of asynchronous spinners, while the node waits
 bool call_handler_of_end(); // the node's own handler of SIGINT or SIGTERM, once; false when it has none
 
-std::int64_t now_ns();
+std::int64_t now_ns();     // of the processor
+std::int64_t ros_now_ns(); // of ros::Time: the same, or what /clock says
+bool         is_sim_time();
+void         open_clock();
+void         reset_ros_timers(std::int64_t now);
 void         queue_due_timers(std::int64_t now);
 
 // The timer that is due first: kForever when none runs. A fast one is due exactly.
@@ -129,6 +141,7 @@ bool wait_exactly(std::int64_t until_ns);
 void end_exact_waits(); // before the task ends
 
 void publication_has_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe);
+void publication_has_another(std::uint16_t msg_id, CFE_SB_PipeId_t pipe, std::uint8_t number);
 void publication_lost_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe);
 bool take_request(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size);
 bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size);
@@ -153,9 +166,11 @@ struct Registration
     std::uint16_t msg_id  = 0;
     bool          raw     = false;
     bool          latched = false; // there are messages for a subscriber that comes now
+    std::vector<CFE_SB_PipeId_t> pipes; // that hear a topic which the node publishes
+    bool          refused = false; // the master said why not; the name stays without a MsgId
 };
 Registration enroll(Kind kind, const std::string &name, const char *type, const char *md5, const char *definition);
-void         ask_for_latched(const std::string &topic);
+void         ask_for_latched(const std::string &topic, std::uint8_t number);
 
 // Parameters of cfepy's ROS application, where all nodes of a mission have theirs (parameter_server.cpp). Values and names
 // are as in ros/param.h.
@@ -182,6 +197,8 @@ bool erase(const std::string &name);
 bool search(const std::string &ns, const std::string &key, std::string &result);
 void names(std::vector<std::string> &found);
 } // namespace server
+
+constexpr std::uint8_t kEnded = 32; // what call_master is told by a node that ends by itself
 
 // A call of cfepy's ROS application; false when it refuses, which an event says. What else is asked are texts.
 bool call_master(std::uint8_t what, const std::string &name, const char *one, const char *two, const char *three,

@@ -11,6 +11,7 @@
 #include "ros/names.h"
 #include "ros/rate.h"
 #include "ros/time.h"
+#include "roscfe/heap.h"
 #include "roscfe/refuse.h"
 
 namespace roscfe
@@ -24,10 +25,43 @@ namespace
 int (*g_main_with_arguments)(int, char **) = nullptr;
 int (*g_main)()                            = nullptr;
 constexpr int kMostArguments               = 64;
+constexpr int kRefused                     = 134; // exit status of a program that aborts
 
-[[noreturn]] void end(std::uint32_t status)
+// cfepy looks after its nodes as roslaunch does: one that ends by itself may be required, or is started again.
+void tell_end(int status)
 {
-    g_node.ended = true;
+    static bool               is_told = false; // what ends the node on the way does not tell it again
+    std::vector<std::uint8_t> answer;
+    if (is_told || !g_node.has_master || g_node.asked_to_end)
+    {
+        return;
+    }
+    is_told              = true;
+    g_node.shutting_down = false; // otherwise nobody waits for the answer
+    const bool told      = call_master(kEnded, g_node.description->app, std::to_string(status).c_str(), "", "", answer);
+    g_node.shutting_down = true;
+    if (!told || answer.size() < 5 || answer[0] == 0)
+    {
+        return;
+    }
+    CFE_ES_AppId_t app;
+    const auto     delay_ms = static_cast<std::uint32_t>(answer[1]) | static_cast<std::uint32_t>(answer[2]) << 8 |
+                          static_cast<std::uint32_t>(answer[3]) << 16 | static_cast<std::uint32_t>(answer[4]) << 24;
+    OS_TaskDelay(delay_ms);
+    std::uint32_t run = CFE_ES_RunStatus_APP_RUN;
+    CFE_ES_RunLoop(&run); // ES restarts what it has seen running
+    if (CFE_ES_GetAppID(&app) == CFE_SUCCESS)
+    {
+        CFE_ES_RestartApp(app); // takes place when the task has ended
+    }
+}
+
+[[noreturn]] void end(int exit_status)
+{
+    heap::unseal();
+    tell_end(exit_status);
+    const std::uint32_t status = exit_status == 0 ? CFE_ES_RunStatus_APP_EXIT : CFE_ES_RunStatus_APP_ERROR;
+    g_node.ended               = true;
     end_exact_waits();
     for (;;)
     {
@@ -44,8 +78,7 @@ constexpr int kMostArguments               = 64;
     {
         arguments[count++] = const_cast<char *>(g_node.description->args[i]);
     }
-    const int status = g_main != nullptr ? g_main() : g_main_with_arguments(count, arguments);
-    end(status == 0 ? CFE_ES_RunStatus_APP_EXIT : CFE_ES_RunStatus_APP_ERROR);
+    end(g_main != nullptr ? g_main() : g_main_with_arguments(count, arguments));
 }
 
 [[noreturn]] void run_node(const NodeDescription &node)
@@ -92,7 +125,7 @@ void refuse(const char *what, const char *detail)
 {
     const char *who = g_node.description != nullptr ? g_node.description->app : "roscfe";
     CFE_EVS_SendEvent(kRefusedEid, CFE_EVS_EventType_CRITICAL, "%s: %s: %s", who, what, detail);
-    end(CFE_ES_RunStatus_APP_ERROR);
+    end(kRefused);
 }
 
 } // namespace roscfe
@@ -110,13 +143,19 @@ void remap(const std::string &from, const std::string &to)
     g_node.remappings[names::resolve(g_node.ns, from, false)] = names::resolve(g_node.ns, to, false);
 }
 
-void initialize(const std::string &name)
+void initialize(const std::string &name, std::uint32_t options)
 {
     if (g_node.initialized)
     {
         return;
     }
     std::string given = *g_node.description->name != '\0' ? g_node.description->name : name;
+    // Where MsgIds are compiled in, those of private names go with the plain name.
+    const bool has_ids = g_node.description->topic_count > 0 || g_node.description->service_count > 0;
+    if ((options & init_options::AnonymousName) != 0 && *g_node.description->name == '\0' && !has_ids)
+    {
+        given += "_" + std::to_string(roscfe::now_ns());
+    }
     if (given.find('/') != std::string::npos)
     {
         roscfe::refuse("a node's name has no slash", given.c_str());
@@ -133,17 +172,46 @@ void initialize(const std::string &name)
     }
 }
 
-// "from:=to", but for "_param:=" and "__name:=", which the convertor has read.
+// "from:=to", "_param:=value", and "__name:=name", which the convertor has read.
 bool is_remapping(const char *argument)
 {
     return std::strstr(argument, ":=") != nullptr;
 }
 
+// "_param:=value": the value is a number or a truth value, if it is one, as in roscpp.
+void set_private(const std::string &name, const char *value)
+{
+    const std::string full  = names::append(g_node.name, name);
+    char *            end   = nullptr;
+    const bool        plain = *value != '\0' && *value != ' ';
+    const long        whole = std::strtol(value, &end, 10);
+    if (plain && *end == '\0' && whole >= INT32_MIN && whole <= INT32_MAX)
+    {
+        param::set(full, static_cast<int>(whole));
+        return;
+    }
+    const double number = std::strtod(value, &end);
+    if (plain && *end == '\0')
+    {
+        param::set(full, number);
+        return;
+    }
+    for (const char *word : {"true", "True", "TRUE", "false", "False", "FALSE"})
+    {
+        if (std::strcmp(value, word) == 0)
+        {
+            param::set(full, word[0] == 't' || word[0] == 'T');
+            return;
+        }
+    }
+    param::set(full, value);
+}
+
 } // namespace
 
-void init(int &argc, char **argv, const std::string &name, std::uint32_t)
+void init(int &argc, char **argv, const std::string &name, std::uint32_t options)
 {
-    initialize(name);
+    initialize(name, options);
     int kept = 0;
     for (int i = 0; i < argc; ++i)
     {
@@ -156,23 +224,27 @@ void init(int &argc, char **argv, const std::string &name, std::uint32_t)
         {
             remap(std::string(argv[i], static_cast<std::size_t>(mark - argv[i])), mark + 2);
         }
+        else if (argv[i][1] != '_')
+        {
+            set_private(std::string(argv[i] + 1, static_cast<std::size_t>(mark - argv[i] - 1)), mark + 2);
+        }
     }
     argc = kept;
     argv[argc] = nullptr;
 }
 
-void init(const M_string &remappings, const std::string &name, std::uint32_t)
+void init(const M_string &remappings, const std::string &name, std::uint32_t options)
 {
-    initialize(name);
+    initialize(name, options);
     for (const auto &each : remappings)
     {
         remap(each.first, each.second);
     }
 }
 
-void init(const VP_string &remappings, const std::string &name, std::uint32_t)
+void init(const VP_string &remappings, const std::string &name, std::uint32_t options)
 {
-    initialize(name);
+    initialize(name, options);
     for (const auto &each : remappings)
     {
         remap(each.first, each.second);
@@ -206,6 +278,7 @@ void start()
     }
     g_node.started = true;
     roscfe::open();
+    roscfe::open_clock();
     CFE_EVS_SendEvent(roscfe::kStartedEid, CFE_EVS_EventType_INFORMATION, "%s started", g_node.name.c_str());
 }
 
@@ -226,6 +299,7 @@ bool ok()
         std::uint32_t status = CFE_ES_RunStatus_APP_RUN;
         if (!CFE_ES_RunLoop(&status))
         {
+            g_node.asked_to_end = true;
             shutdown();
             roscfe::call_handler_of_end();
         }
@@ -276,7 +350,7 @@ extern "C" {
 {
     CFE_EVS_SendEvent(roscfe::kStartedEid, CFE_EVS_EventType_INFORMATION, "%s: exit(%d)", roscfe::g_node.name.c_str(),
                       status);
-    roscfe::end(status == 0 ? CFE_ES_RunStatus_APP_EXIT : CFE_ES_RunStatus_APP_ERROR);
+    roscfe::end(status);
 }
 
 [[noreturn]] void __wrap_abort()

@@ -84,9 +84,17 @@ std::uint8_t *put_text(std::uint8_t *at, const char *text)
 // OS_printf takes so many characters at once, and cuts the rest with the end of the line.
 void show(int level, std::int64_t now, const char *text)
 {
-    static char line[kLongest + 128];
-    const int   length = std::snprintf(line, sizeof line, "[%s] [%s] [%lld.%09lld]: %s", g_node.name.c_str(), kNames[level],
-                                     static_cast<long long>(now / kSecond), static_cast<long long>(now % kSecond), text);
+    static char line[kLongest + 160];
+    char        simulated[40] = "";
+    if (is_sim_time() && ros_now_ns() != 0)
+    {
+        const std::int64_t time = ros_now_ns();
+        std::snprintf(simulated, sizeof simulated, ", %lld.%09lld", static_cast<long long>(time / kSecond),
+                      static_cast<long long>(time % kSecond));
+    }
+    const int length = std::snprintf(line, sizeof line, "[%s] [%s] [%lld.%09lld%s]: %s", g_node.name.c_str(), kNames[level],
+                                     static_cast<long long>(now / kSecond), static_cast<long long>(now % kSecond), simulated,
+                                     text);
     constexpr int kPiece = OS_BUFFER_SIZE - 2; // room for the end of the line, and of the text
     const int     size   = std::min(length, static_cast<int>(sizeof line) - 1);
     int           at     = 0;
@@ -151,7 +159,7 @@ void print(int level, const char *file, int line, const char *function, const ch
     }
     const std::int64_t now = now_ns();
     show(level, now, text);
-    publish(level, now, file, line, function, text);
+    publish(level, ros_now_ns(), file, line, function, text);
     if (level >= kEventsFrom)
     {
         send_event(level, now, text);
@@ -160,7 +168,7 @@ void print(int level, const char *file, int line, const char *function, const ch
 
 bool is_due(double period, std::int64_t &last_ns, bool first)
 {
-    const std::int64_t now = now_ns();
+    const std::int64_t now = ros_now_ns();
     if (last_ns < 0)
     {
         last_ns = now;

@@ -30,11 +30,19 @@ bool ask(Kind kind, Kind about, const std::string &name, const char *type, const
     const auto                what = static_cast<std::uint8_t>(static_cast<int>(kind) | static_cast<int>(about));
     if (!call_master(what, name, type, md5, definition, answer) || answer.size() < 3)
     {
+        place.refused = !answer.empty();
         return false;
     }
     place.msg_id  = static_cast<std::uint16_t>(answer[0] | answer[1] << 8);
     place.raw     = (answer[2] & 1) != 0;
     place.latched = (answer[2] & 2) != 0;
+    for (std::size_t at = 3; at + 4 <= answer.size(); at += 4)
+    {
+        const auto number = static_cast<std::uint32_t>(answer[at]) | static_cast<std::uint32_t>(answer[at + 1]) << 8 |
+                            static_cast<std::uint32_t>(answer[at + 2]) << 16 |
+                            static_cast<std::uint32_t>(answer[at + 3]) << 24;
+        place.pipes.push_back(CFE_SB_PIPEID_C(CFE_ResourceId_FromInteger(number)));
+    }
     return true;
 }
 
@@ -82,7 +90,7 @@ Registration enroll(Kind kind, const std::string &name, const char *type, const 
         place.msg_id = kMasterMsgId; // the master itself, which needs nobody to find it
         return place;
     }
-    if (g_node.has_master && ask(kind, Kind::begun, name, type, md5, definition, place))
+    if (g_node.has_master && (ask(kind, Kind::begun, name, type, md5, definition, place) || place.refused))
     {
         return place;
     }
@@ -124,10 +132,10 @@ void withdraw_name(Kind kind, const std::string &name)
     }
 }
 
-void ask_for_latched(const std::string &topic)
+void ask_for_latched(const std::string &topic, std::uint8_t number)
 {
     Registration place;
-    ask(Kind::subscriber, Kind::subscribed, topic, "", "", "", place);
+    ask(Kind::subscriber, Kind::subscribed, topic, std::to_string(number).c_str(), "", "", place);
 }
 
 } // namespace roscfe

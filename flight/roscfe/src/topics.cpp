@@ -32,6 +32,10 @@ boost::shared_ptr<Publication> advertise(const std::string &topic, const char *t
     boost::shared_ptr<Publication> made  = boost::make_shared<Publication>(topic, type, md5, has_header);
     made->msg_id_                        = place.msg_id;
     made->raw_                           = place.raw;
+    if (g_node.has_master && !place.refused && g_node.knows_subscribers)
+    {
+        know_pipes(place.msg_id, place.pipes);
+    }
     g_node.publications.push_back(made);
     return made;
 }
@@ -50,12 +54,12 @@ void Publication::set_aside(std::size_t most_bytes)
 
 bool Publication::is_wanted() const
 {
-    return latch_ || !g_node.knows_subscribers || pipes_on(msg_id_) > 0;
+    return msg_id_ != 0 && (latch_ || !g_node.knows_subscribers || pipes_on(msg_id_) > 0);
 }
 
 std::uint32_t Publication::subscribers() const
 {
-    return g_node.knows_subscribers ? pipes_on(msg_id_) : 1;
+    return g_node.knows_subscribers || msg_id_ == 0 ? pipes_on(msg_id_) : 1;
 }
 
 std::uint8_t *Publication::begin(std::size_t size)
@@ -180,6 +184,19 @@ void tell_of_those_on(const boost::shared_ptr<Publication> &publication, const r
 }
 } // namespace
 
+// A pipe that hears the topic already has one more subscription.
+void publication_has_another(std::uint16_t msg_id, CFE_SB_PipeId_t pipe, std::uint8_t number)
+{
+    for (const boost::shared_ptr<Publication> &each : g_node.publications)
+    {
+        if (each->msg_id_ == msg_id && each->users_ > 0 && each->latch_ && !each->latched_.empty())
+        {
+            send_to(*each, static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(pipe)), each->latched_.data(),
+                    each->latched_.size(), number);
+        }
+    }
+}
+
 void publication_lost_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
 {
     for (const boost::shared_ptr<Publication> &each : g_node.publications)
@@ -223,6 +240,9 @@ std::uint32_t queue_size(std::uint32_t asked)
 
 namespace
 {
+constexpr std::uint8_t kMostNumbers = 127;
+std::uint8_t           g_numbers    = 0; // given to subscriptions that are not the first ones
+
 // The bus tells publishers of a node's first subscription to a topic only; its own latched topics it sees itself.
 void give_latched(const boost::shared_ptr<Subscription> &subscription)
 {
@@ -241,7 +261,12 @@ void subscribe(const boost::shared_ptr<Subscription> &subscription, const char *
                const char *definition)
 {
     const Registration place = enroll(Kind::subscriber, subscription->topic_, type, md5, definition);
-    bool               known = false;
+    if (place.refused)
+    {
+        g_node.subscriptions.push_back(subscription); // which hears nothing, as in ROS
+        return;
+    }
+    bool known               = false;
     subscription->msg_id_    = place.msg_id;
     subscription->raw_       = place.raw;
     for (const boost::shared_ptr<Subscription> &each : g_node.subscriptions)
@@ -258,11 +283,14 @@ void subscribe(const boost::shared_ptr<Subscription> &subscription, const char *
     }
     if (known)
     {
+        g_numbers             = static_cast<std::uint8_t>(g_numbers % kMostNumbers + 1);
+        subscription->number_ = g_numbers;
         give_latched(subscription);
+        ask_for_repetition(place.msg_id, subscription->number_);
     }
     if (place.latched)
     {
-        ask_for_latched(subscription->topic_);
+        ask_for_latched(subscription->topic_, subscription->number_);
     }
 }
 
@@ -282,6 +310,10 @@ void unsubscribe(const boost::shared_ptr<Subscription> &subscription)
         {
             return;
         }
+    }
+    if (subscription->msg_id_ == 0)
+    {
+        return; // it was refused
     }
     listen_no_more(subscription->msg_id_);
     withdraw_name(Kind::subscriber, subscription->topic_);

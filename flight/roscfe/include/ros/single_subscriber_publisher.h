@@ -13,7 +13,8 @@
 namespace roscfe
 {
 // Send a message of a topic to one pipe alone.
-void send_to(Publication &publication, std::uint32_t pipe, const std::uint8_t *bytes, std::size_t size);
+void send_to(Publication &publication, std::uint32_t pipe, const std::uint8_t *bytes, std::size_t size,
+             std::uint8_t number = 0);
 } // namespace roscfe
 
 namespace ros

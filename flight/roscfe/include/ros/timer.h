@@ -1,6 +1,9 @@
-// ros::Timer, ros::WallTimer, ros::SteadyTimer: one clock, the processor's, and so one class for all three.
+// ros::Timer, ros::WallTimer, ros::SteadyTimer: one class for all three, on the processor's clock, but for those of
+// ros::Time where that is what /clock says.
 #ifndef ROS_TIMER_H
 #define ROS_TIMER_H
+
+#include <type_traits>
 
 #include "ros/callback_queue_interface.h"
 #include "ros/forwards.h"
@@ -9,7 +12,7 @@
 namespace roscfe
 {
 
-// The part of a timer that does not depend on its types of time; in nanoseconds of the processor's clock.
+// The part of a timer that does not depend on its types of time; in nanoseconds of its clock.
 class TimerState : public ros::CallbackInterface
 {
   public:
@@ -27,6 +30,7 @@ class TimerState : public ros::CallbackInterface
     bool                         waiting          = false; // a call is in the queue, or goes on
     bool                         alive            = true;
     bool                         has_tracked      = false;
+    bool                         of_ros_time      = false; // which may be that of /clock
     ros::VoidConstWPtr           tracked;
     ros::CallbackQueueInterface *callbacks = nullptr;
 
@@ -99,6 +103,7 @@ class TimerOf
         state_->callback    = options.callback;
         state_->period_ns   = options.period.toNSec();
         state_->oneshot     = options.oneshot;
+        state_->of_ros_time = std::is_same<T, Time>::value;
         state_->callbacks   = options.callback_queue;
         state_->tracked     = options.tracked_object;
         state_->has_tracked = options.tracked_object != nullptr;

@@ -14,6 +14,9 @@ namespace heap
 // it is an event and the end of the application.
 void seal();
 
+// The node ends: what is left to be done may allocate.
+void unseal();
+
 // Whether the node was initialised, and how many allocations there have been since.
 bool          is_sealed();
 std::uint32_t late_allocations();

@@ -33,6 +33,7 @@ class Subscription : public ros::CallbackInterface
     std::uint16_t                msg_id_  = 0;
     bool                         alive_   = true;
     bool                         raw_     = false;
+    std::uint8_t                 number_  = 0; // among those of the node to its topic; the first is 0
     std::uint32_t                dropped_ = 0; // messages for which there was no room
     std::uint32_t                bad_     = 0; // packets that were no message of the type
 };

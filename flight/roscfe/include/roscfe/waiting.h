@@ -25,22 +25,22 @@ bool wait_for_news(std::int64_t until_ns);
 template <class F>
 bool wait_until(const ros::Duration &timeout, F there)
 {
-    const std::int64_t until = static_cast<std::int64_t>(ros::Time::now().toNSec()) + timeout.toNSec();
+    const ros::WallDuration look(0.1);
+    const ros::Time         until = ros::Time::now() + timeout;
     while (!there())
     {
         if (!ros::ok())
         {
             return false;
         }
-        const std::int64_t look = static_cast<std::int64_t>(ros::Time::now().toNSec()) + 100000000;
-        if (timeout.isZero() || look < until)
-        {
-            wait_for_news(look);
-        }
-        else if (!wait_for_news(until))
+        const ros::Duration rest = until - ros::Time::now();
+        if (!timeout.isZero() && rest <= ros::Duration())
         {
             return there();
         }
+        const bool is_last = !timeout.isZero() && ros::Time::isSystemTime() && rest.toNSec() < look.toNSec();
+        const auto now     = static_cast<std::int64_t>(ros::WallTime::now().toNSec());
+        wait_for_news(now + (is_last ? rest.toNSec() : look.toNSec()));
     }
     return true;
 }
