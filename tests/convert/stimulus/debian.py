@@ -62,7 +62,7 @@ LIBRARIES = (
     "boost_chrono",
     "pthread",
 )
-OWN_FOLDERS = ("xmlrpcpp", "pluginlib", "class_loader", "rcpputils", "rcutils")
+OWN_FOLDERS = ("xmlrpcpp", "angles", "pluginlib", "class_loader", "rcpputils", "rcutils")
 """Folders of headers that packages of ROS export, below the one for all."""
 NODELET = """
 #include <class_loader/class_loader_core.hpp>
