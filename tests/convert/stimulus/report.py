@@ -42,7 +42,7 @@ class Row(NamedTuple):
 VERDICTS = {
     "equal": "the same messages, answers, lines, names in the graph and end",
     "explained": "differs, for a reason that explained.tsv has",
-    "different": "differs, and nobody knows why",
+    "different": "differs, and should not",
     "not on cfepy": "compiles, but does not fly",
     "not with roscpp": "cannot be built with Debian's roscpp",
     "not run": "was not tried",
