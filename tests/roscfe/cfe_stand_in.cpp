@@ -328,6 +328,12 @@ int32 OS_GetLocalTime(OS_time_t *time)
     return OS_SUCCESS;
 }
 
+int32 OS_TaskDelay(uint32 milliseconds)
+{
+    g_now += milliseconds * kMillisecond;
+    return OS_SUCCESS;
+}
+
 void OS_printf(const char *format, ...)
 {
     va_list values;
