@@ -18,10 +18,12 @@ if TYPE_CHECKING:
     from cfepy.convert.flight import build_for_flight
     from cfepy.convert.messages import Profile
     from cfepy.convert.output import write_files
+    from cfepy.convert.packages import Program
     from cfepy.convert.project import project_files, report
 
 __all__ = [
     "Profile",
+    "Program",
     "build_for_flight",
     "converted",
     "project_files",
@@ -40,6 +42,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".flight": ("build_for_flight",),
             ".messages": ("Profile",),
             ".output": ("write_files",),
+            ".packages": ("Program",),
             ".project": ("project_files", "report"),
         },
     )

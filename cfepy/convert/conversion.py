@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -148,12 +148,15 @@ def _of_launch(file: Path, args: Mapping[str, str], environ: Mapping[str, str]) 
     )
 
 
-def converted(task: ConversionTask, config: RosConfig) -> Conversion:
+def converted(
+    task: ConversionTask, config: RosConfig, judge: Callable[[Program], str] = lambda program: ""
+) -> Conversion:
     """Convert the nodes of a task.
 
     Args:
         task: what to convert.
         config: MsgIds that a mission and its lock file give.
+        judge: says why a program is not to be converted; an empty text for one that is.
 
     Raises:
         UsageError: two names have one MsgId, or there are no more.
@@ -165,9 +168,14 @@ def converted(task: ConversionTask, config: RosConfig) -> Conversion:
     everyone = [*task.scripts, *(each.full_name for each in task.nodes)]
     for node in task.nodes:
         try:
-            found.append(_node(node, task, packages, library, [each for each in everyone if each != node.full_name]))
+            made = _node(node, task, packages, library, [each for each in everyone if each != node.full_name])
         except UsageError as error:
             refused[node.full_name] = str(error)
+            continue
+        if why := judge(made.program):
+            refused[node.full_name] = why
+        else:
+            found.append(made)
     ids = _with_ids(config, found)
     for each in found:
         each.entry = _with_names(each, ids)

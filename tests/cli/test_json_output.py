@@ -19,7 +19,7 @@ COMMANDS: dict[str, list[str]] = {
     "explore": ["explore", *LAB, "--seeds", "1", "--jobs", "1", "--no-stuck"],
     "mids": ["mids", *LAB],
     "check": ["check", "lab"],
-    "convert": ["convert", "{ping}/launch/ping.launch", "-o", "{made}"],
+    "convert": ["convert", "{ping}/launch/ping.launch", "--no-check", "-o", "{made}"],
     "graph": ["graph", *LAB],
     "tlm": ["tlm", *LAB],
     "log": ["log", "{data}/cfe_evs.log"],

@@ -48,6 +48,8 @@ def found(report: CheckReport) -> dict[str, tuple[int, int]]:
         ("void f() { assert(false); }", "assert", 12),
         ("void f() { signal(SIGINT, g); }", "signal", 12),
         ("std::thread worker(f);", "thread", 1),
+        ("void f() { std::thread(g).detach(); }", "thread", 12),
+        ("auto *worker = new boost::thread(f);", "thread", 16),
         ("void f() { socket(AF_INET, SOCK_DGRAM, 0); }", "socket", 12),
         ("void f() { tcsetattr(0, TCSANOW, &raw); }", "serial", 12),
         ("void f() { std::ofstream log(name); }", "file", 12),

@@ -19,7 +19,8 @@ from tests.convert.ping import ping_package
 
 
 def convert(package: Path, out: Path, *more: str) -> int:
-    return main(["convert", str(package / "launch/ping.launch"), *more, "-o", str(out)])
+    """What is checked before is seen by itself."""
+    return main(["convert", str(package / "launch/ping.launch"), "--no-check", *more, "-o", str(out)])
 
 
 @pytest.fixture
@@ -76,11 +77,29 @@ def test_it_stays_the_same_and_keeps_what_its_user_changed(package: Path, tmp_pa
     assert changed.read_bytes() == first[changed]
 
 
+@pytest.mark.slow
+def test_a_node_that_the_check_refuses_is_not_converted(
+    package: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = package / "src/sender.cpp"
+    source.write_text(source.read_text() + "#include <thread>\nstatic void spare() { std::thread(spare).detach(); }\n")
+    words = ["convert", str(package / "launch/ping.launch"), "-o", str(tmp_path / "made")]
+    assert main(words) == 1
+    err = capsys.readouterr().err
+    assert "sender.cpp:" in err
+    assert "[thread]" in err
+    assert "/arm/left is not converted: 1 error, see above; --no-check converts it all the same" in err
+    said = json.loads((tmp_path / "made/report.json").read_text())
+    assert [each["node"] for each in said["nodes"]] == ["/arm/ear"]
+    assert [each["node"] for each in said["refused"]] == ["/arm/left"]
+    assert main([*words, "--no-check", "--force"]) == 0
+
+
 def run_or_raise(package: Path, out: Path) -> None:
     from cfepy.cli.convert.convert import run
     from cfepy.cli.main import parser_for
 
-    words = ["convert", str(package / "launch/ping.launch"), "-o", str(out)]
+    words = ["convert", str(package / "launch/ping.launch"), "--no-check", "-o", str(out)]
     run(parser_for(words).parse_args(words))
 
 

@@ -73,6 +73,9 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help="take profile, arena and capacities of messages from the section cpp_nodes of this mission's file",
     )
     convert.add_argument(
+        "--no-check", action="store_true", help="convert nodes that check refuses, too, and those that it cannot read"
+    )
+    convert.add_argument(
         "--ids", metavar="MISSION", help="take the MsgIds of this mission and its topics.lock, and its cpp_nodes"
     )
     convert.add_argument("--force", action="store_true", help="write over files that were changed by hand, too")

@@ -21,7 +21,7 @@ from cfepy.convert import Profile
 from cfepy.convert.check import RULES, CheckReport, Level, RuleFinding, check_program, programs_of, sarif_of
 from cfepy.status import UsageError
 
-_ONLY_TO_CONVERT = {"output": "-o", "ids": "--ids", "force": "--force"}
+_ONLY_TO_CONVERT = {"output": "-o", "ids": "--ids", "force": "--force", "no_check": "--no-check"}
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -60,7 +60,7 @@ def _print(reports: Sequence[CheckReport], profile: Profile) -> None:
     for level in Level:
         found = sorted({finding for report in reports for finding in report.at(level)})
         for finding in found:
-            print(_line(finding, level))
+            print(line_of(finding, level))
         counts += [f"{len(found)} {level.value}{'s' if len(found) > 1 else ''}"] if found else []
     for report in reports:
         for memory in report.memory:
@@ -73,7 +73,8 @@ def _print(reports: Sequence[CheckReport], profile: Profile) -> None:
     print(f"{profile.value}: {nodes}, {refused} refused; {', '.join(counts) or 'nothing'} found")
 
 
-def _line(finding: RuleFinding, level: Level) -> str:
+def line_of(finding: RuleFinding, level: Level) -> str:
+    """What was found, as a line."""
     place = ":".join(str(part) for part in (_shown(finding.place.file), *finding.place[1:]) if part)
     told = "" if level is Level.ERROR else f"{level.value}: "
     rule = RULES[finding.rule]

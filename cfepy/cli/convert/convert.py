@@ -8,11 +8,13 @@ import sys
 from pathlib import Path
 
 from cfepy.cli.convert import cpp_nodes_of
+from cfepy.cli.convert.check import line_of
 from cfepy.cli.failures import tell, writing
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
-from cfepy.convert import converted, project_files, report, task_of, write_files
-from cfepy.mission import LOCK_FILE, read_lock, read_mission
+from cfepy.convert import Profile, Program, converted, project_files, report, task_of, write_files
+from cfepy.convert.check import Level, check_program
+from cfepy.mission import LOCK_FILE, CppNodesConfig, read_lock, read_mission
 from cfepy.nodes import RosConfig
 from cfepy.status import UsageError
 
@@ -32,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     config = cpp_nodes_of(arguments)
     task = task_of(arguments.words, dict(os.environ))
     folder = Path(arguments.output or task.made_from.stem).resolve()
-    made = converted(task, _ids(arguments, folder))
+    made = converted(task, _ids(arguments, folder), (lambda program: "") if arguments.no_check else _Judge(config))
     if not made.nodes:
         raise UsageError(f"has nothing to convert: {'; '.join(made.refused.values())}", file=task.made_from)
     files = project_files(made, config, folder)
@@ -42,6 +44,25 @@ def run(arguments: argparse.Namespace) -> int:
     write_json(arguments, report(made))
     print(f"{folder}: {len(made.nodes)} nodes, {len(files)} files, {len(written)} of them new", file=sys.stdout)
     return FOUND_PROBLEMS if made.refused else ENDED_WELL
+
+
+class _Judge:
+    """Checks programs before they are converted, and prints what keeps them from it.
+
+    Args:
+        config: what nodes are built for.
+    """
+
+    def __init__(self, config: CppNodesConfig) -> None:
+        self._config = config
+
+    def __call__(self, program: Program) -> str:
+        """Why it is not to be converted; empty when nothing speaks against it."""
+        report = check_program(program, Profile(self._config.profile), dict(os.environ), self._config)
+        errors = report.at(Level.ERROR)
+        tell([line_of(each, Level.ERROR) for each in errors])
+        count = f"{len(errors)} error{'s' if len(errors) > 1 else ''}"
+        return f"{count}, see above; --no-check converts it all the same" if errors else ""
 
 
 def _ids(arguments: argparse.Namespace, folder: Path) -> RosConfig:

@@ -253,6 +253,7 @@ class _Reader:
 
     def _new(self, node: Node) -> None:
         self._meet("heap-in-callback", node, _text(node).split("\n", 1)[0][:60])
+        self._object(node, _plain(_text(node.child_by_field_name("type"))))
 
     def _qualified(self, node: Node) -> None:
         if _text(node) == "std::cin":
@@ -268,11 +269,15 @@ class _Reader:
         if name == "main" and not self._around:
             self._file.mains.append(Main(self._place(node), _taken(first)))
 
-    def _declaration(self, node: Node) -> None:
-        kind = _plain(_text(node.child_by_field_name("type")))
+    def _object(self, node: Node, kind: str) -> None:
+        """An object of a type is made."""
         rule = TYPES.get(kind)
         if rule is not None:
             self._meet(rule, node, f"a {kind}")
+
+    def _declaration(self, node: Node) -> None:
+        kind = _plain(_text(node.child_by_field_name("type")))
+        self._object(node, kind)
         words = {_text(each) for each in node.children if each.type.endswith(("specifier", "qualifier"))}
         declared = [each for each in node.children_by_field_name("declarator") if _is_variable(each)]
         for each in declared:
@@ -309,6 +314,7 @@ class _Reader:
         rule = CALLS.get(name)
         if rule is not None:
             self._meet(rule, node, f"{name}()" if rule != "rtti" else name)
+        self._object(node, name)  # one that nobody keeps: std::thread(work).detach()
         if name in _FUNCTIONS:
             self._later.append(node)
 
