@@ -301,7 +301,7 @@ bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t s
         }
         const std::uint8_t flags = segment_flags(packet);
         call->good = packet[lead - 1] != 0;
-        if (call->good) // nobody asks for the text of an error
+        if (call->good || msg_id == kMasterMsgId) // of another service nobody asks for the text of an error
         {
             append(*call->answer, packet + lead, size - lead, 0, call->most);
         }
