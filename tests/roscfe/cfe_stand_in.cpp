@@ -125,6 +125,17 @@ bool CFE_ES_RunLoop(uint32 *)
     return true;
 }
 
+CFE_Status_t CFE_ES_GetAppID(CFE_ES_AppId_t *id)
+{
+    *id = CFE_ES_AppId_t();
+    return CFE_SUCCESS;
+}
+
+CFE_Status_t CFE_ES_RestartApp(CFE_ES_AppId_t)
+{
+    return CFE_SUCCESS;
+}
+
 void CFE_ES_ExitApp(uint32 status)
 {
     end(status == CFE_ES_RunStatus_APP_EXIT ? 0 : 3);
