@@ -251,11 +251,11 @@ def test_problems_are_told_with_every_failure(suite: Suite, missions: Path) -> N
         def test_it(mission):
             flight = mission("deadly")
             flight.run_for(2)
-            assert len(flight.problems) == 2
+            assert len(flight.problems) == 3
             flight.expect_event("DYING", within=0.1)
         """
     )
-    result.stdout.fnmatch_lines(["*problem: *DYING*", "*problem: STUCK* waits for *, held by STUCK*"])
+    result.stdout.fnmatch_lines(["*problem: *DYING*", "*problem: deadlock: STUCK* waits for *, held by STUCK*", "*instead: no event of DYING*"])
 
 
 def test_pytest_finds_it_by_itself_where_it_is_installed(pytester: pytest.Pytester) -> None:
