@@ -14,6 +14,7 @@ from cfepy.faces import face
 
 if TYPE_CHECKING:
     from cfepy.convert.capacities import wrong_capacities
+    from cfepy.convert.check import RULES, CheckReport, Level, check_program, programs_of, sarif_of
     from cfepy.convert.conversion import converted, task_of
     from cfepy.convert.flight import build_for_flight
     from cfepy.convert.messages import Profile
@@ -22,12 +23,18 @@ if TYPE_CHECKING:
     from cfepy.convert.project import project_files, report
 
 __all__ = [
+    "RULES",
+    "CheckReport",
+    "Level",
     "Profile",
     "Program",
     "build_for_flight",
+    "check_program",
     "converted",
+    "programs_of",
     "project_files",
     "report",
+    "sarif_of",
     "task_of",
     "write_files",
     "wrong_capacities",
@@ -38,6 +45,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         __name__,
         {
             ".capacities": ("wrong_capacities",),
+            ".check": ("RULES", "CheckReport", "Level", "check_program", "programs_of", "sarif_of"),
             ".conversion": ("converted", "task_of"),
             ".flight": ("build_for_flight",),
             ".messages": ("Profile",),

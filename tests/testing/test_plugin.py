@@ -255,7 +255,9 @@ def test_problems_are_told_with_every_failure(suite: Suite, missions: Path) -> N
             flight.expect_event("DYING", within=0.1)
         """
     )
-    result.stdout.fnmatch_lines(["*problem: *DYING*", "*problem: deadlock: STUCK* waits for *, held by STUCK*", "*instead: no event of DYING*"])
+    result.stdout.fnmatch_lines(
+        ["*instead: no event of DYING*", "*problem: *DYING*", "*problem: deadlock: STUCK* waits for *, held by STUCK*"]
+    )
 
 
 def test_pytest_finds_it_by_itself_where_it_is_installed(pytester: pytest.Pytester) -> None:

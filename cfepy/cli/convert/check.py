@@ -17,8 +17,7 @@ from cfepy.cli.convert import cpp_nodes_of
 from cfepy.cli.failures import check_writable
 from cfepy.cli.json_output import STDOUT, check_json, write_json, write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
-from cfepy.convert import Profile
-from cfepy.convert.check import RULES, CheckReport, Level, RuleFinding, check_program, programs_of, sarif_of
+from cfepy.convert import RULES, CheckReport, Level, Profile, check_program, programs_of, sarif_of
 from cfepy.status import UsageError
 
 _ONLY_TO_CONVERT = {"output": "-o", "ids": "--ids", "force": "--force", "no_check": "--no-check"}
@@ -60,7 +59,7 @@ def _print(reports: Sequence[CheckReport], profile: Profile) -> None:
     for level in Level:
         found = sorted({finding for report in reports for finding in report.at(level)})
         for finding in found:
-            print(line_of(finding, level))
+            print(finding.line(level))
         counts += [f"{len(found)} {level.value}{'s' if len(found) > 1 else ''}"] if found else []
     for report in reports:
         for memory in report.memory:
@@ -71,19 +70,6 @@ def _print(reports: Sequence[CheckReport], profile: Profile) -> None:
     refused = sum(each.is_refused for each in reports)
     nodes = f"{len(reports)} node{'s' if len(reports) > 1 else ''}"
     print(f"{profile.value}: {nodes}, {refused} refused; {', '.join(counts) or 'nothing'} found")
-
-
-def line_of(finding: RuleFinding, level: Level) -> str:
-    """What was found, as a line."""
-    place = ":".join(str(part) for part in (_shown(finding.place.file), *finding.place[1:]) if part)
-    told = "" if level is Level.ERROR else f"{level.value}: "
-    rule = RULES[finding.rule]
-    return f"{place}: {told}{finding.message}: {rule.why}; {rule.remedy} [{rule.id}]"
-
-
-def _shown(path: Path) -> str:
-    """A path as short as it can be named from here."""
-    return os.path.relpath(path) if path.is_relative_to(Path.cwd()) else str(path)
 
 
 def _as_json(reports: Sequence[CheckReport], profile: Profile) -> dict[str, Any]:

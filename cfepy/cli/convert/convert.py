@@ -8,12 +8,10 @@ import sys
 from pathlib import Path
 
 from cfepy.cli.convert import cpp_nodes_of
-from cfepy.cli.convert.check import line_of
 from cfepy.cli.failures import tell, writing
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
-from cfepy.convert import Profile, Program, converted, project_files, report, task_of, write_files
-from cfepy.convert.check import Level, check_program
+from cfepy.convert import Level, Profile, Program, check_program, converted, project_files, report, task_of, write_files
 from cfepy.mission import LOCK_FILE, CppNodesConfig, read_lock, read_mission
 from cfepy.nodes import RosConfig
 from cfepy.status import UsageError
@@ -60,7 +58,7 @@ class _Judge:
         """Why it is not to be converted; empty when nothing speaks against it."""
         report = check_program(program, Profile(self._config.profile), dict(os.environ), self._config)
         errors = report.at(Level.ERROR)
-        tell([line_of(each, Level.ERROR) for each in errors])
+        tell([each.line(Level.ERROR) for each in errors])
         count = f"{len(errors)} error{'s' if len(errors) > 1 else ''}"
         return f"{count}, see above; --no-check converts it all the same" if errors else ""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -37,6 +38,15 @@ class RuleFinding(NamedTuple):
     rule: str
     place: SourcePlace
     message: str
+
+    def line(self, level: Level) -> str:
+        """A line for a person: `file:line:column: what: why; what to do [rule]`; a warning or note says so."""
+        file = self.place.file
+        shown = os.path.relpath(file) if file.is_relative_to(Path.cwd()) else str(file)
+        place = ":".join(str(part) for part in (shown, *self.place[1:]) if part)
+        told = "" if level is Level.ERROR else f"{level.value}: "
+        rule = RULES[self.rule]
+        return f"{place}: {told}{self.message}: {rule.why}; {rule.remedy} [{rule.id}]"
 
 
 class GraphName(NamedTuple):
