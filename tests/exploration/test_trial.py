@@ -44,7 +44,7 @@ def bank(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_default_schedule_goes_well_and_counts_decisions(bank: Path) -> None:
-    verdict, results, _ = trial(bank).fly(Schedule())
+    verdict, results, *_ = trial(bank).fly(Schedule())
     assert not verdict.failed
     assert not verdict.trouble
     assert verdict.decisions > 20
