@@ -77,7 +77,7 @@ def test_what_both_passes_see_is_told_once(tmp_path: Path) -> None:
 def test_the_first_of_many_errors_are_told(tmp_path: Path) -> None:
     checked(tmp_path, NODE + "".join(f"int a{at} = b{at};\n" for at in range(60)), "--json", str(tmp_path / "f.json"))
     (node,) = json.loads((tmp_path / "f.json").read_text())["nodes"]
-    told = [each["message"] for each in node["found"] if each["rule"] == "compile-error"]
+    told = [each["text"] for each in node["found"] if each["rule"] == "compile-error"]
     assert len(told) == 50
     assert any(each.startswith("'b0' was not declared") for each in told)
 
