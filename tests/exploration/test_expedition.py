@@ -58,6 +58,7 @@ def test_the_command_has_its_defaults() -> None:
     assert parsed.connect is usual.connect_s
 
 
+@pytest.mark.slow
 def test_a_failure_is_shrunk_and_told_with_its_timeline() -> None:
     report = Expedition(PLAN, seeds=8, jobs=1, until_failure=True).run()
     told = report.findings[0]
@@ -99,6 +100,7 @@ def test_a_mission_that_is_deterministic_is_told_as_such() -> None:
     assert Expedition(PLAN, seeds=8, jobs=1, until_failure=True).run().unsteady is None
 
 
+@pytest.mark.slow
 def test_a_failure_that_does_not_come_again_is_none_of_the_schedule(monkeypatch: pytest.MonkeyPatch) -> None:
     fly = Trial.fly
     flown: list[Schedule] = []
@@ -120,6 +122,7 @@ def test_a_failure_that_does_not_come_again_is_none_of_the_schedule(monkeypatch:
     assert stream.getvalue().startswith("seen once and not again: failure 1: ")
 
 
+@pytest.mark.slow
 def test_it_may_begin_when_the_mission_is_operational() -> None:
     report = Expedition(PLAN, seeds=3, policy="random", jobs=1, from_s=FROM_OPERATIONAL, shrink=0).run()
     assert report.tally.done == 3
@@ -132,6 +135,7 @@ def test_a_mission_that_never_is_operational_has_no_such_time() -> None:
         Expedition(plan, from_s=FROM_OPERATIONAL).run()
 
 
+@pytest.mark.slow
 def test_a_budget_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cfepy.rtos.Stopwatch.elapsed_ns", lambda self: 2_000_000_000)
     assert Expedition(PLAN, seeds=1000, budget_s=1.0, jobs=1, shrink=0).run().tally.done == 1

