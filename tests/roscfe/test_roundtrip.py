@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.convert.messages import Profile
-from tests.roscfe.building import TARGETS, needs_cpp, target_named
+from tests.roscfe.building import needs_cpp, target_named
 from tests.roscfe.random_messages import all_types
 from tests.roscfe.roundtrip import Program, frames_of
 
@@ -16,7 +16,7 @@ MESSAGES = {"here": 200, "powerpc": 30, "arm": 30}  # of each type; an emulated 
 
 
 @pytest.mark.parametrize("profile", [Profile.HOST, Profile.STRICT])
-@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("target", MESSAGES)
 def test_all_types(tmp_path: Path, profile: Profile, target: str) -> None:
     kind = target_named(target)
     types = all_types()
