@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import NoReturn
 
 from cfepy.app import Cfe
@@ -46,6 +46,7 @@ class CRuntime:
         guard: blocks of memory end where nobody may write, freed ones are gone, and fresh ones and stacks are not zero.
         on_race: gets the data races that are found while schedules are explored.
         on_overwrite: gets the application and a text for what was written past a block, where no call is at fault.
+        nodes: names of ROS nodes by the names of their applications: what they print shows them.
 
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
@@ -69,6 +70,7 @@ class CRuntime:
         guard: bool = False,
         on_race: Callable[[Race], object] = lambda race: None,
         on_overwrite: Callable[[str, str], object] = lambda app, text: None,
+        nodes: Mapping[str, str] | None = None,
     ) -> None:
         from cfepy.c.api import declare
         from cfepy.c.api.streams import Streams
@@ -108,7 +110,7 @@ class CRuntime:
         )
         self.declared = Declarations()
         self.thread_locals = ThreadLocals(kernel, self._heap, self.run)
-        self.streams = Streams(console.write)
+        self.streams = Streams(console.write, lambda: getattr(kernel.current.owner, "name", ""), nodes)
         self.ends = Ends(self.run, self.image_at)
         self.libraries: dict[str, Image] = {}
         self.modules: dict[Image, LoadedModule] = {}
@@ -182,7 +184,8 @@ class CRuntime:
         image = self.applications.pop(app_name, None)
         if image is not None:
             self.cfe.tbl.leave_memory(lambda data: self.memory.address_of(data) in image)
-            self.unload_image(image)
+            with self.streams.ending(app_name):
+                self.unload_image(image)
         for each, module in list(self.modules.items()):
             if not self._is_known(module.id):  # it was given back with what else the application had
                 self.unload_module(each)
@@ -325,8 +328,12 @@ class CRuntime:
 
     def run_main(self, function: int) -> None:
         """Run the main function of an application, on a stack of the size that its startup line says."""
-        params = getattr(self.kernel.current.owner, "params", None)
-        self.run(function, size=getattr(params, "stack_size", LEAST))
+        owner = self.kernel.current.owner
+        params = getattr(owner, "params", None)
+        try:
+            self.run(function, size=getattr(params, "stack_size", LEAST))
+        finally:
+            self.streams.finish(getattr(owner, "name", ""))
 
     def status(self, function: int, *args: int) -> int:
         """As `run`, for a function that returns an int32."""

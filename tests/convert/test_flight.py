@@ -33,6 +33,28 @@ def test_a_launch_file_is_flown(package: Path, capfd: pytest.CaptureFixture[str]
     assert "/pulse" in shown
 
 
+def test_what_a_node_prints_by_itself_is_shown_with_its_name(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    source = package / "src/sender.cpp"
+    own = """
+  struct Last { ~Last() { std::printf("at its end"); } };
+  static Last last;
+  std::printf("to be ");
+  std::cout << "continued" << std::endl;
+  for (const char byte : std::string("h\\xc3\\xb6rt\\n")) std::cout.put(byte);
+  std::cerr << "one\\ntwo\\n";
+  std::printf("half a line");
+  return 0;
+  ros::Rate rate(hz);"""
+    text = source.read_text().replace("  ros::Rate rate(hz);", own)
+    source.write_text("#include <cstdio>\n#include <iostream>\n" + text)
+    assert main(["launch", "ping", "ping.launch", "--for", "8"]) == 0
+    shown = capfd.readouterr().out.splitlines()
+    said = ["to be continued", "hört", "one", "two", "half a line", "at its end"]
+    assert [line for line in shown if line.startswith("[/arm/left] ")] == [f"[/arm/left] {line}" for line in said]
+    assert main(["node", "ping", "sender", "--for", "8"]) == 0
+    assert capfd.readouterr().out.splitlines() == said[:-1]  # the run ends with the node, before its code is unloaded
+
+
 def test_both_kinds_of_nodes_hear_each_other(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", str(package / "launch/both.launch"), "--for", "1"]) == 0
     shown = capfd.readouterr().out

@@ -7,10 +7,11 @@ libstdc++ says which exception nobody caught.
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING
 
-from cfepy.c.api.text import Printer
 from cfepy.c.faults import CFault
 from cfepy.texts import to_bytes
 
@@ -26,24 +27,81 @@ LAST_WORDS = 8
 """Lines of stderr that an abort tells."""
 
 
+class LineWriter:
+    """A stream of text: lines are shown when they are whole, those of each application by themselves.
+
+    Args:
+        show: gets the name of an application and a line of it.
+    """
+
+    def __init__(self, show: Callable[[str, str], object]) -> None:
+        self._show = show
+        self._begun: dict[str, bytes] = {}
+
+    def write(self, app: str, data: bytes) -> None:
+        """Take what an application prints."""
+        *lines, rest = (self._begun.get(app, b"") + data).split(b"\n")
+        self._begun[app] = rest
+        for line in lines:
+            self._show(app, line.decode("utf-8", "surrogateescape"))
+
+    def finish(self, app: str) -> None:
+        """Show the line that an application has begun, if there is one."""
+        if self._begun.get(app):
+            self.write(app, b"\n")
+
+
 class Streams:
     """The streams that are open, by what stands for a FILE.
 
     Args:
         show: gets lines.
+        app: the name of the application that runs.
+        nodes: names of ROS nodes, by the names of their applications: their lines begin with them.
     """
 
-    def __init__(self, show: Callable[[str], object]) -> None:
+    def __init__(
+        self, show: Callable[[str], object], app: Callable[[], str] = str, nodes: Mapping[str, str] | None = None
+    ) -> None:
         self._last: list[str] = []
-        self._show = show
+        self._show_line = show
+        self._app = app
+        self._nodes = nodes or {}
+        self._ending = ""
+        self._lines = {STDOUT: LineWriter(self._show), STDERR: LineWriter(self._show_error)}
         self.writers: dict[int, Callable[[bytes], object]] = {
-            STDOUT: _writer(Printer(show)),
-            STDERR: _writer(Printer(self._show_error)),
+            stream: partial(self._write_text, lines) for stream, lines in self._lines.items()
         }
 
-    def _show_error(self, line: str) -> None:
+    def _write_text(self, lines: LineWriter, data: bytes) -> None:
+        lines.write(self._owner(), data)
+
+    def _owner(self) -> str:
+        """Whose line it is: those that are no ROS nodes share the console, as they do on a flight computer."""
+        app = self._ending or self._app()
+        return app if app in self._nodes else ""
+
+    def _show(self, app: str, line: str) -> None:
+        self._show_line(f"[{self._nodes[app]}] {line}" if app else line)
+
+    def _show_error(self, app: str, line: str) -> None:
         self._last = [*self._last[1 - LAST_WORDS :], line]
-        self._show(line)
+        self._show(app, line)
+
+    def finish(self, app: str) -> None:
+        """Show the lines that an application has begun, if it is a ROS node: it is at its end."""
+        for lines in self._lines.values() if app in self._nodes else ():
+            lines.finish(app)
+
+    @contextmanager
+    def ending(self, app: str) -> Iterator[None]:
+        """What is printed meanwhile is of an application whose task has ended, such as by destructors."""
+        self._ending = app
+        try:
+            yield
+        finally:
+            self._ending = ""
+            self.finish(app)
 
     def write(self, stream: int, data: bytes) -> int:
         """Write to a stream; the bytes that were written.
@@ -65,10 +123,6 @@ class Streams:
         """
         last, self._last = self._last, []
         raise CFault(": ".join(("abort()", *(line.strip() for line in last))))
-
-
-def _writer(printer: Printer) -> Callable[[bytes], object]:
-    return lambda data: printer.write(data.decode("utf-8", "surrogateescape"))
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
