@@ -1,23 +1,31 @@
-"""Faults on applications: crash, hang, slow, stop, restart.
+"""Faults on applications: crash, hang, slow, compute, stop, restart.
 
-Applications are those of Executive Services, found by name when the fault happens. For those that hang or are slow, the
-methods of the kernel object are wrapped, as tasks call them; only a run whose plan asks for it has them wrapped.
+Applications are those of Executive Services, found by name when the fault happens. For those that hang, are slow
+or compute for longer, the methods of the kernel object are wrapped, as tasks call them; only a run whose plan asks for
+it has them wrapped.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from fnmatch import fnmatchcase
 from typing import Any
 
 from cfepy.faults.plan import Fault
 from cfepy.faults.report import FaultReport
 from cfepy.faults.timing import Gate
 from cfepy.mission import Processor
-from cfepy.rtos import FOREVER, InjectedCrash, Kernel, WaitList
+from cfepy.rtos import FOREVER, InjectedCrash, Kernel, Task, WaitList
+from cfepy.sb import Pipe
 from cfepy.status import CfeError
 
 CALLS = ("wait_on", "delay", "yield_cpu", "charge")
+WAITS = ("wait_on", "delay")
+COMPUTES = ("compute",)
+
+IsCalled = Callable[[bytes | bytearray, str], bool]
+"""Whether a packet is one of the messages that a plan means."""
 
 
 class AppFault(ABC):
@@ -189,3 +197,83 @@ class Strain:
             self._wait_on(WaitList("the end of a fault: its application hangs"), FOREVER)
         elif until_ns > self._kernel.now:
             self._wait_on(WaitList("the end of a fault: its application hangs"), until_ns - self._kernel.now)
+
+
+class Work:
+    """Applications whose work takes longer, where it begins or where it is said how long it takes.
+
+    A task's work begins where a wait ends, but for one for a mutex: as a `response` among the deadlines of a mission
+    file does. What a task says to take is a call of `Kernel.compute`, which stands below `cfe.psp.compute`,
+    `cfepy.compute` and `compute:` of a node.
+
+    Args:
+        fault: what the plan says: with `for` a task computes for so long more, when it took the `message`, or when a
+            wait is over; with `times` what it computes takes so many times as long.
+        gate: at which of these occasions.
+        report: is told each time.
+        kernel: whose calls are wrapped.
+    """
+
+    def __init__(self, fault: Fault, gate: Gate, report: FaultReport, kernel: Kernel) -> None:
+        self._fault = fault
+        self._gate = gate
+        self._report = report
+        self._kernel = kernel
+        self._more_ns: int = fault.options.get("for", 0)
+        self._times: float = fault.options.get("times", 1.0)
+        self._task: str = fault.options.get("task", "*")
+        self._compute = kernel.compute
+        names, wrapped = (COMPUTES, self._stretching) if "times" in fault.options else (WAITS, self._waiting)
+        for name in () if "message" in fault.options else names:
+            setattr(kernel, name, wrapped(getattr(kernel, name)))
+
+    def on_take(self, packet: bytes | bytearray, pipe: Pipe, is_called: IsCalled) -> None:
+        """An application took a message out of its pipe: what it does with it takes longer.
+
+        Args:
+            packet: the message.
+            pipe: where it waited.
+            is_called: whether it is the one that the plan means.
+        """
+        task = self._kernel.current
+        if self._means(task) and is_called(packet, self._fault.options["message"]):
+            self._works(task)
+
+    def _means(self, task: Task) -> bool:
+        owner = task.owner
+        return owner is not None and owner.name in self._fault.target and fnmatchcase(task.name, self._task)
+
+    def _works(self, task: Task) -> None:
+        """Compute, if this is one of its occasions."""
+        if self._gate.opens(self._kernel.now):
+            self._report.happened(self._fault, f"lets {task.name} compute for {self._more_ns / 1e9:g} s")
+            self._compute(self._more_ns)
+
+    def _waiting(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        """One of the kernel's waits, behind which work begins."""
+
+        def wait(*args: Any) -> Any:
+            task = self._kernel.current
+            is_work = task.mutex is not None  # to wait for one is a part of it
+            result = original(*args)
+            if not is_work and not task.dying and self._means(task):
+                self._works(task)
+            return result
+
+        return wait
+
+    def _stretching(self, original: Callable[[int], None]) -> Callable[[int], None]:
+        """The kernel's `compute`, in which work takes so many times as long."""
+
+        def compute(duration_ns: int) -> None:
+            kernel = self._kernel
+            if duration_ns and self._means(kernel.current) and self._gate.opens(kernel.now):
+                longer_ns = round(duration_ns * self._times)
+                what = (
+                    f"lets {kernel.current.name} compute for {longer_ns / 1e9:g} s instead of {duration_ns / 1e9:g} s"
+                )
+                self._report.happened(self._fault, what)
+                duration_ns = longer_ns
+            original(duration_ns)
+
+        return compute

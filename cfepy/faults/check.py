@@ -128,6 +128,7 @@ def _problems(fault: Fault, spec: MissionSpec, found: Found | None) -> Iterator[
         return
     if "to" in fault.options:
         yield from _unknown("application or pipe", [fault.options["to"]], [*apps, *found.pipes])
+    yield from _unknown("task", [fault.options["task"]] if "task" in fault.options else (), found.tasks)
     if strikes == k.PIPE:
         yield from _unknown("pipe", fault.target, found.pipes)
     if strikes == k.TABLE:

@@ -13,7 +13,7 @@ from random import Random
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.faults.apps import APP_FAULTS, AppFault, Hang, Slow, Strain
+from cfepy.faults.apps import APP_FAULTS, AppFault, Hang, Slow, Strain, Work
 from cfepy.faults.bus import MessageSwitchboard, faulty
 from cfepy.faults.calls import QUEUE_PUT, call_name
 from cfepy.faults.failures import CallFault, Fill, Puts, refusing, why_not_called
@@ -114,6 +114,8 @@ class FaultInjector(Attachment):
             self._at(fault.when.after_ns, Drift(fault, gate, report, self._at).strike)
         elif fault.kind == "slow":
             self._kernel_strain().burdens.append(Slow(fault, gate, report, kernel).burden)
+        elif fault.kind == "compute":
+            self._prepare_work(fault)
         elif fault.kind in MEMORY_FAULTS:
             self._at_times(fault, MEMORY_FAULTS[fault.kind](fault, gate.random, report).strike)
         elif fault.kind in ("crash", "hang", "stop", "restart"):
@@ -135,6 +137,12 @@ class FaultInjector(Attachment):
                 self._at_times(fault, strike)
             else:
                 self._board.on_take.append(partial(self._on_take, fault, name, strike))
+
+    def _prepare_work(self, fault: Fault) -> None:
+        """Where a wait ends, or a message is taken, or a task says how long it computes."""
+        work = Work(fault, self._gates[fault.name], self.report, self._kernel)
+        if "message" in fault.options:
+            self._board.on_take.append(lambda packet, pipe: work.on_take(packet, pipe, self._board.is_called))
 
     def _app_fault(self, fault: Fault, name: str) -> AppFault:
         if fault.kind == "hang":
@@ -211,6 +219,8 @@ def _counts_messages(fault: Fault) -> bool:
 
 
 def _needs_bus(fault: Fault) -> bool:
+    if fault.kind == "compute":
+        return "message" in fault.options
     return _is_message(fault) or (fault.kind in ("crash", "hang", "stop", "restart") and _counts_messages(fault))
 
 

@@ -62,6 +62,7 @@ KINDS: dict[str, FaultKind] = {
     "crash": FaultKind(APP, _APP, "an exception comes out of the application's next call", OCCASIONS),
     "hang": FaultKind(APP, (*_APP, "for"), "the application does not come back from its next call", OCCASIONS),
     "slow": FaultKind(APP, ("after", "until", "times", "extra"), "its calls take more CPU time", ("times", "extra")),
+    "compute": FaultKind(APP, (*_APP, "task", "for", "times"), "its work takes longer", ("for", "times")),
     "stop": FaultKind(APP, _APP, "the application is ended", OCCASIONS),
     "restart": FaultKind(APP, _APP, "the application is started anew", OCCASIONS),
     "fill": FaultKind(PIPE, ("at", "for"), "the pipe takes no message", ("at",)),

@@ -28,8 +28,8 @@ LONGEST_S = 1e9
 DATAGRAMS = "udp:"
 WHEN = {"at": "at_ns", "after": "after_ns", "until": "until_ns"}
 """The options of `When` whose names in a plan are others; those are in s, these in ns."""
-ALTERNATIVES = (("bits", "bytes", "fields"), ("at", *kinds.WINDOW))
-EXAMPLES = {"at": "2.5", "by": "0.01", "times": "10", "extra": "0.001"}
+ALTERNATIVES = (("bits", "bytes", "fields"), ("for", "times"), ("message", "times"), ("at", *kinds.WINDOW))
+EXAMPLES = {"at": "2.5", "by": "0.01", "times": "10", "extra": "0.001", "for": "0.02"}
 _TIMES = ("after", "until", "within", "for", "extra")
 
 
@@ -325,6 +325,7 @@ READERS: dict[str, Callable[[Marked], Any]] = {
     "fields": _fields,
     "checksum": _choice(kinds.CHECKSUMS),
     "message": Marked.text,
+    "task": Marked.text,
     "for": _duration,
     "times": lambda item: float(_number(item, 0, 1e6, "how many times as much, such as 10")),
     "extra": _duration,

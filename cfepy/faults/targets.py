@@ -175,12 +175,14 @@ class Found:
     Attributes:
         messages: all names of messages that were sent or subscribed to.
         pipes, tables: names of all of them.
+        tasks: names of those that sent a message, or were there in the end.
         targets: what a random plan chooses from.
     """
 
     messages: tuple[str, ...]
     pipes: tuple[str, ...]
     tables: tuple[str, ...]
+    tasks: tuple[str, ...]
     targets: Targets
 
 
@@ -224,11 +226,13 @@ def look_at(spec: MissionSpec, look_s: float = LOOK_S) -> Found:
     """
     counts: dict[str, int] = {}
     called: dict[str, None] = {}
+    tasks: dict[str, None] = {}
     names = MissionNames()
 
     def note(seen: Seen) -> None:
         all_names = names.of(seen.packet)
         called.update(dict.fromkeys(all_names))
+        tasks[mission.kernel.current.name] = None
         route = mission.cfe.sb.routes.get(seen.msg_id)
         if route is not None and route.active:
             counts[all_names[0]] = counts.get(all_names[0], 0) + 1
@@ -241,6 +245,7 @@ def look_at(spec: MissionSpec, look_s: float = LOOK_S) -> Found:
             messages=tuple(dict.fromkeys(known)),
             pipes=tuple(sorted(pipe.name for pipe in mission.cfe.sb.pipes)),
             tables=tuple(sorted(table.name for table in mission.cfe.tbl.registry.tables)),
+            tasks=tuple(dict.fromkeys([*tasks, *(task.name for task in mission.kernel.tasks)])),
             targets=_targets(mission, counts),
         )
 

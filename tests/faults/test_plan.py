@@ -29,6 +29,7 @@ faults:
   - {crash: [A, B], at: 1}
   - {hang: A, message: /a, number: 3, for: 1}
   - {slow: A, times: 2.5, extra: 0.001, until: 3}
+  - {compute: A, task: A.1, message: /a, number: 3, for: 0.5}
   - {stop: A, at: 1}
   - {restart: A, at: 1}
   - {fill: P, at: 1, for: 1}
