@@ -57,7 +57,7 @@ class PointCounter(Policy):
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
-        self.kinds["connections" if decision.connection is not None else kind_of(sys._getframe(1))] += 1
+        self.kinds["questions" if decision.question is not None else kind_of(sys._getframe(1))] += 1
         return self._inner.choose(decision)
 
 

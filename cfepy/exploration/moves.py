@@ -21,18 +21,18 @@ class Move(NamedTuple):
     """Not what fifo would do.
 
     Attributes:
-        task: name of the task that fifo would run, or of a connection.
+        task: name of the task that fifo would run, or of a question.
         number: which of the decisions in which it is that task; see `_Numbers`.
-        chosen: name of the task that runs, or HOLD, or how long the connection takes.
+        chosen: name of the task that runs, or HOLD, or the answer.
         preempts: the task was running, and could have gone on.
-        connects: it is about a connection.
+        question: the kind of the question that it answers; empty for a change of turns.
     """
 
     task: str
     number: int
     chosen: str
     preempts: bool = True
-    connects: bool = False
+    question: str = ""
 
 
 class Choice(NamedTuple):
@@ -43,11 +43,11 @@ class Choice(NamedTuple):
     number: int
     others: tuple[str, ...]
     preempts: bool
-    connects: bool = False
+    question: str = ""
 
     def move(self, chosen: str) -> Move:
         """The move that another answer is."""
-        return Move(self.task, self.number, chosen, self.preempts, self.connects)
+        return Move(self.task, self.number, chosen, self.preempts, self.question)
 
 
 class MoveNotingPolicy(Policy):
@@ -70,8 +70,8 @@ class MoveNotingPolicy(Policy):
         choice = self._inner.choose(decision)
         answers, task = decision.answers, decision.subject
         number = self._numbers.next(decision.now, task)
-        connects = decision.connection is not None
-        made = Choice(decision.now, task, number, tuple(answers[1:]), decision.running, connects)
+        question = "" if decision.question is None else decision.question.kind
+        made = Choice(decision.now, task, number, tuple(answers[1:]), decision.running, question)
         self.choices.append(made)
         if choice:
             self.moves.append(made.move(answers[choice]))

@@ -160,9 +160,9 @@ class Shrinker(Generic[T]):
 
         Without these the same place in the task's own work may be a decision earlier or later.
         """
-        names = sorted({name for move in best.moves if not move.connects for name in (move.task, move.chosen)})
+        names = sorted({name for move in best.moves if not move.question for name in (move.task, move.chosen)})
         for at, move in enumerate(best.moves):
-            if move.connects:
+            if move.question:
                 continue
             targets = [name for name in names if name not in (move.task, move.chosen)]
             candidates = (
@@ -181,7 +181,7 @@ class Shrinker(Generic[T]):
         """Move each towards the failure, as far as it still fails: what is left happens close together."""
         for at in range(len(best.moves)):
             step = 1
-            while step <= REACH and at < len(best.moves) and not best.moves[at].connects:
+            while step <= REACH and at < len(best.moves) and not best.moves[at].question:
                 move = best.moves[at]
                 moved = (*best.moves[:at], move._replace(number=move.number + step), *best.moves[at + 1 :])
                 found = self._try(moved)
@@ -193,7 +193,7 @@ class Shrinker(Generic[T]):
     def _sooner(self, best: _Flight) -> _Flight:
         """Connections come as soon as they may, for it to fail."""
         for at, move in enumerate(best.moves):
-            if not move.connects:
+            if not move.question:
                 continue
             delays = best.choices[_place(best, move)].others
             shorter = delays[: delays.index(move.chosen)]

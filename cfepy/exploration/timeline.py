@@ -33,7 +33,7 @@ AROUND = 5  # rows that are shown before and after each move
 LAST = 10  # rows that are shown before the failure
 BEFORE = 50  # decisions before the first move, from which on rows are kept
 GAP = 2
-AT, WAITS, SENDS, PREEMPTED, ORDERED, CONNECTS = "at", "waits", "sends", "preempted", "ordered", "connects"
+AT, WAITS, SENDS, PREEMPTED, ORDERED, ANSWERS = "at", "waits", "sends", "preempted", "ordered", "answers"
 
 
 def timeline_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[Move]) -> list[str]:
@@ -68,8 +68,8 @@ def columns(rows: Sequence[Row], moves: Sequence[Move], culprit: str = "") -> tu
         moves: what the schedule does.
         culprit: the task in which the failure showed; empty when that is not known.
     """
-    moved = [name for move in moves if not move.connects for name in (move.task, move.chosen)]
-    moved += [row.task for row in rows if row.kind == CONNECTS]
+    moved = [name for move in moves if not move.question for name in (move.task, move.chosen)]
+    moved += [row.task for row in rows if row.kind == ANSWERS]
     wanted = list(dict.fromkeys([culprit, *reversed(moved)]))
     at_least = MOST_COLUMNS if HOLD in moved else 2
     wanted = [name for name in wanted if name not in ("", HOLD)]
@@ -114,13 +114,13 @@ def _without_file(rows: Sequence[Row]) -> tuple[str, Sequence[Row]]:
 
 def _shown(rows: Sequence[Row]) -> list[int]:
     """The rows that are shown."""
-    moves = [at for at, row in enumerate(rows) if row.kind in (PREEMPTED, ORDERED, CONNECTS)]
+    moves = [at for at, row in enumerate(rows) if row.kind in (PREEMPTED, ORDERED, ANSWERS)]
     near = {each for at in moves for each in range(at - AROUND, at + AROUND + 1)}
     return [at for at in range(len(rows)) if at in near or at >= len(rows) - LAST]
 
 
 def _text(row: Row, width: int) -> str:
-    if row.kind == CONNECTS:
+    if row.kind == ANSWERS:
         return f"=== {row.text} ==="
     if row.kind not in (PREEMPTED, ORDERED):
         return row.text
@@ -154,7 +154,7 @@ class Row:
         at_ns: virtual time.
         task: its name.
         kind: AT a line of source, WAITS for something, SENDS a message, is PREEMPTED by `text`, or `text` is ORDERED
-            before it, or it CONNECTS a topic as late as the schedule has it.
+            before it, or it ANSWERS a question as the schedule has it.
         text: what.
     """
 
@@ -210,10 +210,10 @@ class TaskLook(Attachment):
         if self._goes_on():
             self._keep(task, kind, text)
 
-    def connects(self, text: str) -> None:
-        """Keep that the running task, which may be of a node that only just begins, connects a topic."""
+    def answers(self, text: str) -> None:
+        """Keep what became of a question; the running task may be of a node that only just begins."""
         if self._mission is not None:
-            self.add(self._mission.kernel.current.name, CONNECTS, text)
+            self.add(self._mission.kernel.current.name, ANSWERS, text)
 
     def look(self, frame: FrameType | None) -> None:
         """Keep where the running task is."""
@@ -278,8 +278,8 @@ class _LookingPolicy(Policy):
         choice = self._inner.choose(decision)
         self._look.reached(decision.number)
         self._look.look(sys._getframe(1))
-        if choice and decision.connection is not None:
-            self._look.connects(f"{decision.connection.topic} connects in {decision.answers[choice]}")
+        if choice and decision.question is not None:
+            self._look.answers(decision.question.told.format(decision.answers[choice]))
         elif choice:
             kind = PREEMPTED if decision.running else ORDERED
             self._look.add(decision.subject, kind, decision.answers[choice])

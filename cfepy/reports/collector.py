@@ -211,8 +211,8 @@ class _SwitchNotes(Policy):
 def _switch_text(moment: Moment, place: str) -> str:
     at = f" at {place}" if place else ""
     number = f"(decision at:{moment.decision}={moment.choice})"
-    if moment.connects:
-        return f"{moment.instead_of} takes {moment.chosen} {number}"
+    if moment.question:
+        return f"{moment.instead_of}: {moment.chosen} {number}"
     if moment.chosen == HOLD:
         return f"{moment.instead_of} is held up{at} {number}"
     if moment.preemption:

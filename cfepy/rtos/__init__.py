@@ -20,8 +20,8 @@ from cfepy.rtos.policy import (
     Deviations,
     Moment,
     NotingPolicy,
-    OpenConnection,
     Policy,
+    Question,
     SeededRandom,
 )
 from cfepy.rtos.queue import EMPTY, Queue
@@ -53,9 +53,9 @@ __all__ = [
     "Moment",
     "Mutex",
     "NotingPolicy",
-    "OpenConnection",
     "Pacer",
     "Policy",
+    "Question",
     "Queue",
     "Schedule",
     "SeededRandom",

@@ -12,9 +12,10 @@ from typing import Any
 
 from cfepy import trace as tr
 from cfepy.rtos.kernel import Kernel
-from cfepy.rtos.policy import Decision, OpenConnection, Policy
+from cfepy.rtos.policy import Decision, Policy, Question
 from cfepy.rtos.scheduler import SLICE_NS
 from cfepy.rtos.task import Task
+from cfepy.units import time_word
 
 CONNECTION_DELAYS = 8  # of a connection that are tried, at even distances up to the longest, besides the usual one
 
@@ -164,7 +165,7 @@ class ExploringKernel(Kernel):
         owner = task.owner
         return [each for each in self.tasks if each.timer and each.owner is owner and each.name in self._early]
 
-    # -- connections ---------------------------------------------------------------------------------------------------
+    # -- questions -----------------------------------------------------------------------------------------------------
 
     def connection_delay(self, publisher: str, subscriber: str, topic: str, usual_ns: int) -> int:
         """See `Scheduler.connection_delay`; the policy chooses, if connections are open to it."""
@@ -173,11 +174,17 @@ class ExploringKernel(Kernel):
         if not longest_ns:
             return usual_ns
         tried = (longest_ns * step // CONNECTION_DELAYS for step in range(CONNECTION_DELAYS + 1))
-        connection = OpenConnection(publisher, subscriber, topic, tuple(dict.fromkeys((usual_ns, *tried))))
+        delays = tuple(dict.fromkeys((usual_ns, *tried)))
+        name = f"connection of {publisher} to {subscriber} on {topic}"
+        words = tuple(time_word(delay) for delay in delays)
+        return delays[self.answer(Question(name, "slow connection", words, f"{topic} connects in {{}}"))]
+
+    def answer(self, question: Question) -> int:
+        """See `Scheduler.answer`."""
         number = self._decisions
         self._decisions = number + 1
-        choice = self.policy.choose(Decision(number, self.now, (), False, False, None, connection))
-        return connection.delays[choice]
+        assert self.policy is not None
+        return self.policy.choose(Decision(number, self.now, (), False, False, None, question))
 
     # -- choosing --------------------------------------------------------------------------------------------------
 

@@ -1,43 +1,41 @@
 """Policies: they decide which task runs next, where there is a choice.
 
 Without a policy the kernel goes on with the running task, or takes the one that has been ready for longest (fifo). A
-policy is asked at every scheduling point of an `ExploringKernel` that has more than one candidate, and how long each
-connection between two nodes takes, if that is open: these decisions, counted from 0, are what a schedule is made of.
+policy is asked at every scheduling point of an `ExploringKernel` that has more than one candidate, and each `Question`
+that is open, such as how long a connection between two nodes takes: these decisions, counted from 0, are what a
+schedule is made of.
 Giving the same answers again gives the same run.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
 from typing import NamedTuple
 
 from cfepy.rtos.task import Task
-from cfepy.units import time_word
 
 HOLD_ODDS = 16  # one in so many chances to hold a task up is taken: time would else run away from the work
 HOLD = "hold"  # in place of a task's name: no task runs until the next timer
 
 
-class OpenConnection(NamedTuple):
-    """A publisher and a subscriber that are about to be connected.
+class Question(NamedTuple):
+    """Something other than who runs that is open to the schedule: how long a connection takes, whether a fault strikes.
 
     Attributes:
-        publisher, subscriber: the names of the nodes.
-        topic: its resolved name.
-        delays: how many ns it may take; the first one is as without a policy.
+        name: what it is called in moves and reports.
+        kind: what another answer than the first is counted as, such as "slow connection".
+        answers: those that there are, in words; the first one is as without a policy.
+        told: what an answer makes of it, in words, with {} for the answer.
+        is_rare: whether it is asked again and again, and seldom has another answer than the first.
     """
 
-    publisher: str
-    subscriber: str
-    topic: str
-    delays: tuple[int, ...]
-
-    @property
-    def name(self) -> str:
-        """What it is called in moves and reports."""
-        return f"connection of {self.publisher} to {self.subscriber} on {self.topic}"
+    name: str
+    kind: str
+    answers: tuple[str, ...]
+    told: str
+    is_rare: bool = False
 
 
 @dataclass(slots=True)
@@ -51,8 +49,8 @@ class Decision:
         running: whether `tasks[0]` is the running task, which could go on: another answer than 0 preempts it.
         hold: whether there is one more answer, `len(tasks)`: the running task is held up until the next timer is due.
         left: the task that gave up its turn just now, as it yields or used the CPU for a whole time slice, or None.
-        connection: not who runs is asked, but which of its delays this connection has; None for all other decisions,
-            and `tasks` are empty when there is one.
+        question: not who runs is asked, but this; None for all other decisions, and `tasks` are empty when there is
+            one.
     """
 
     number: int
@@ -61,23 +59,23 @@ class Decision:
     running: bool
     hold: bool
     left: Task | None
-    connection: OpenConnection | None = None
+    question: Question | None = None
 
     @property
     def width(self) -> int:
         """The number of possible answers, 2 or more; 1 where a policy (`From`) leaves no choice."""
-        return len(self.tasks) + self.hold if self.connection is None else len(self.connection.delays)
+        return len(self.tasks) + self.hold if self.question is None else len(self.question.answers)
 
     @property
     def subject(self) -> str:
-        """What it is about: the task that fifo would run, or the connection."""
-        return self.tasks[0].name if self.connection is None else self.connection.name
+        """What it is about: the task that fifo would run, or the question."""
+        return self.tasks[0].name if self.question is None else self.question.name
 
     @property
     def answers(self) -> list[str]:
-        """The possible answers in words: tasks by name, `HOLD`, or delays such as 25ms."""
-        if self.connection is not None:
-            return [time_word(delay) for delay in self.connection.delays]
+        """The possible answers in words: tasks by name, `HOLD`, or those of the question, such as 25ms."""
+        if self.question is not None:
+            return list(self.question.answers)
         return [*(task.name for task in self.tasks), *([HOLD] if self.hold else [])]
 
 
@@ -106,13 +104,41 @@ class SeededRandom(Policy):
     def __init__(self, seed: int, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0) -> None:
         super().__init__(any_priority, hold_ns, connect_ns)
         self._random = Random(seed).random
+        self._seldom = _Seldom(self._random)
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
+        if decision.question is not None and decision.question.is_rare:
+            return self._seldom.choose(decision.question)
         width = decision.width - decision.hold
         if decision.hold and self._random() * HOLD_ODDS < 1:
             return width
         return int(self._random() * width)
+
+
+class _Seldom:
+    """Draws when a question that is asked again and again has its second answer.
+
+    How often it will be asked is not known. So the number is drawn from 1 to `MOST`, any power of two being as likely
+    as the next: early and late occasions both have their chance.
+    """
+
+    MOST = 1024
+
+    def __init__(self, random: Callable[[], float]) -> None:
+        self._random = random
+        self._left: dict[str, int] = {}
+
+    def choose(self, question: Question) -> int:
+        """The answer, 0 or 1."""
+        left = self._left.get(question.name)
+        if left is None:
+            left = int(self.MOST ** self._random()) - 1
+        self._left[question.name] = left - 1
+        if left:
+            return 0
+        del self._left[question.name]
+        return 1
 
 
 class PCT(Policy):
@@ -124,7 +150,7 @@ class PCT(Policy):
     (depth - 1)). A task that gives up its turn, as one that polls does at the end of each slice, falls below all
     others too: the paper's guarantee assumes that no task waits for another by polling.
 
-    Connections are no tasks: each draws its delay.
+    Questions are no tasks: each draws its answer.
 
     Args:
         seed: of ranks and places.
@@ -144,11 +170,14 @@ class PCT(Policy):
         self._ranks: dict[Task, float] = {}
         self._lowest = 0
         self._count = -1
+        self._seldom = _Seldom(random.random)
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
         self._count += 1
-        if decision.connection is not None:
+        if decision.question is not None:
+            if decision.question.is_rare:
+                return self._seldom.choose(decision.question)
             return int(self._random.random() * decision.width)
         if decision.left is not None:
             self._demote(decision.left)
@@ -211,8 +240,8 @@ class From(Policy):
         if decision.now >= self._from_ns:
             return self._inner.choose(decision)
         decision.tasks, decision.hold = decision.tasks[:1], False
-        if decision.connection is not None:
-            decision.connection = decision.connection._replace(delays=decision.connection.delays[:1])
+        if decision.question is not None:
+            decision.question = decision.question._replace(answers=decision.question.answers[:1])
         return 0
 
 
@@ -223,10 +252,10 @@ class Moment(NamedTuple):
         decision: its number.
         choice: the answer.
         now: virtual ns.
-        instead_of: name of the task that fifo would have run, or of the connection.
-        chosen: name of the task that ran, or `HOLD`, or the delay.
+        instead_of: name of the task that fifo would have run, or of the question.
+        chosen: name of the task that ran, or `HOLD`, or the answer.
         preemption: whether the one that fifo would have run was running, and could have gone on.
-        connects: whether it is the delay of a connection.
+        question: the kind of the question that it answers; empty for a change of turns.
     """
 
     decision: int
@@ -235,14 +264,14 @@ class Moment(NamedTuple):
     instead_of: str
     chosen: str
     preemption: bool
-    connects: bool = False
+    question: str = ""
 
     @classmethod
     def of(cls, decision: Decision, choice: int) -> Moment:
         """What a decision and its answer were, which is not 0."""
         chosen = decision.answers[choice]
-        connects = decision.connection is not None
-        return cls(decision.number, choice, decision.now, decision.subject, chosen, decision.running, connects)
+        question = "" if decision.question is None else decision.question.kind
+        return cls(decision.number, choice, decision.now, decision.subject, chosen, decision.running, question)
 
 
 class NotingPolicy(Policy):

@@ -17,7 +17,7 @@ from operator import index
 from typing import Any
 
 from cfepy import trace as tr
-from cfepy.rtos.policy import Policy
+from cfepy.rtos.policy import Policy, Question
 from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit, WaitList
 
 HOST_PRIORITY = 256
@@ -95,6 +95,10 @@ class Scheduler:
             usual_ns: as the mission has it, in virtual ns.
         """
         return usual_ns
+
+    def answer(self, question: Question) -> int:
+        """Which of the answers of a question that is open to the schedule it has; without a policy the first, 0."""
+        return 0
 
     def wait_on(self, waits: WaitList, timeout_ns: int = FOREVER) -> Any:
         """Wait in a list until `wake_first` or `wake_all`.

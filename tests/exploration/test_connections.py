@@ -61,11 +61,15 @@ def test_a_message_that_nobody_was_there_for_is_found_and_shrunk(plan: RunPlan) 
     assert "ARM" in told.finding.failure.title
     assert told.shrunk is not None
     (move,) = told.shrunk.moves
-    assert (move.task, move.chosen, move.connects) == ("connection of /base to /arm on /enable", "100ms", True)
+    assert (move.task, move.chosen, move.question) == (
+        "connection of /base to /arm on /enable",
+        "100ms",
+        "slow connection",
+    )
     assert any("/enable connects in 100ms" in line for line in told.timeline)
     schedule = told.shrunk.verdict.schedule
     assert str(schedule).endswith(":connect=200ms")
-    assert report.to_dict()["failures"][0]["shrunk"]["moves"][0]["connects"] is True
+    assert report.to_dict()["failures"][0]["shrunk"]["moves"][0]["question"] == "slow connection"
 
 
 def test_a_failure_replays_to_its_digest(plan: RunPlan) -> None:

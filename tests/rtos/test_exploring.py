@@ -218,7 +218,7 @@ def test_a_more_urgent_task_is_never_kept_waiting_by_default() -> None:
 def test_a_moment_tells_who_was_preempted_by_whom() -> None:
     _, recorded, _ = fly(lost_update, Schedule.parse("at:1=1"))
     (moment,) = recorded.moments
-    assert moment == (1, 1, 0, "a", "b", True, False)
+    assert moment == (1, 1, 0, "a", "b", True, "")
     assert recorded.choices[:2] == [0, 1]
     assert recorded.preemptions == 1
     assert len(recorded.choices) == len(recorded.widths) == len(recorded.running)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import TextIO
@@ -73,8 +74,8 @@ def _about(report: Report, told: Told) -> Iterator[str]:
         yield f"shrunk: {shrunk.trial.command(shrunk.verdict.schedule)}"
         yield f"        {_moves_text(shrunk)}, found in {shrunk.probes} runs"
         for move in shrunk.moves:
-            if move.connects:
-                yield f"        the {move.task} takes {move.chosen}"
+            if move.question:
+                yield f"        {move.task}: {move.chosen}"
     if told.timeline:
         yield ""
         yield from told.timeline
@@ -91,13 +92,12 @@ def _how_often(report: Report, finding: Finding) -> Iterator[str]:
 
 def _moves_text(shrunk: Shrunk[Trial]) -> str:
     preemptions = shrunk.verdict.preemptions
-    connections = sum(move.connects for move in shrunk.moves)
-    others = len(shrunk.verdict.deviations) - preemptions - connections
+    answers = Counter(move.question for move in shrunk.moves if move.question)
+    others = len(shrunk.verdict.deviations) - preemptions - answers.total()
     parts = [f"{preemptions} {'preemption' if preemptions == 1 else 'preemptions'}"]
     if others:
         parts.append(f"{others} {'change' if others == 1 else 'changes'} of order")
-    if connections:
-        parts.append(f"{connections} slow {'connection' if connections == 1 else 'connections'}")
+    parts += [f"{count} {kind if count == 1 else f'{kind}s'}" for kind, count in answers.items()]
     return " and ".join(parts)
 
 
