@@ -9,7 +9,7 @@ from math import expm1, log1p
 from types import FrameType
 
 from cfepy.exploration.verdict import Verdict
-from cfepy.rtos import Decision, Policy
+from cfepy.rtos import AskingPolicy, Decision, Policy
 
 _KINDS = {
     "cfepy.nodes.stdlib.locks": "locks",
@@ -40,7 +40,7 @@ _OF_THE_KERNEL = ("cfepy.rtos", "cfepy.mission.call_points", __name__)
 OTHER = "other calls"
 
 
-class PointCounter(Policy):
+class PointCounter(AskingPolicy):
     """Asks another policy, and counts the decisions by what their calls are.
 
     Args:
@@ -51,8 +51,7 @@ class PointCounter(Policy):
     """
 
     def __init__(self, inner: Policy) -> None:
-        super().__init__(inner.any_priority, inner.hold_ns, inner.connect_ns)
-        self._inner = inner
+        super().__init__(inner)
         self.kinds: Counter[str] = Counter()
 
     def choose(self, decision: Decision) -> int:

@@ -22,7 +22,7 @@ from cfepy.ground import dictionary_of, line_of, plain
 from cfepy.mission import CORE_APPS, Mission, MissionSpec
 from cfepy.monitors import Heard, MessageWatch
 from cfepy.pilot.determinism_look import place_text
-from cfepy.rtos import HOLD, Decision, Policy, Task
+from cfepy.rtos import HOLD, AskingPolicy, Decision, Policy, Task
 from cfepy.sb import SoftwareBus
 from cfepy.units import NS_PER_S
 
@@ -267,10 +267,9 @@ class TaskLook(Attachment):
         self._keep(task.name, SENDS, f"sends {heard.topic}: {line_of(values) if isinstance(values, dict) else values}")
 
 
-class _LookingPolicy(Policy):
+class _LookingPolicy(AskingPolicy):
     def __init__(self, inner: Policy, look: TaskLook) -> None:
-        super().__init__(inner.any_priority, inner.hold_ns, inner.connect_ns)
-        self._inner = inner
+        super().__init__(inner)
         self._look = look
 
     def choose(self, decision: Decision) -> int:

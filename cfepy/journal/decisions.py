@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from cfepy.rtos import Decision, Policy
+from cfepy.rtos import AskingPolicy, Decision, Policy
 
 
 def settings_of(policy: Policy) -> dict[str, Any]:
@@ -13,7 +13,7 @@ def settings_of(policy: Policy) -> dict[str, Any]:
     return {name: value for name, value in vars(policy).items() if not name.startswith("_")}
 
 
-class JournalPolicy(Policy):
+class JournalPolicy(AskingPolicy):
     """Asks another policy, and keeps what is not fifo's answer.
 
     Args:
@@ -24,10 +24,9 @@ class JournalPolicy(Policy):
     """
 
     def __init__(self, inner: Policy) -> None:
-        super().__init__()
+        super().__init__(inner)
         vars(self).update(settings_of(inner))
         self.count = 0
-        self._inner = inner
         self._last = -1
         self._pending: list[int] = []  # the distance from one such decision to the next, and the answer, in turn
 
@@ -47,7 +46,7 @@ class JournalPolicy(Policy):
         return pending
 
 
-class RetoldPolicy(Policy):
+class RetoldPolicy(AskingPolicy):
     """Gives the recorded answers again; asks the schedule's own policy for those that the journal does not have.
 
     Args:
@@ -57,17 +56,16 @@ class RetoldPolicy(Policy):
     """
 
     def __init__(self, answers: Mapping[int, int], known: int, own: Policy) -> None:
-        super().__init__()
+        super().__init__(own)
         vars(self).update(settings_of(own))
         self._answers = answers
         self._known = known
-        self._own = own
         self._count = -1
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
         self._count += 1
-        own = self._own.choose(decision)
+        own = self._inner.choose(decision)
         if self._count >= self._known:
             return own
         return min(self._answers.get(self._count, 0), decision.width - 1)

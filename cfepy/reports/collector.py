@@ -16,7 +16,7 @@ from cfepy.monitors import Observer, Sent, app_of
 from cfepy.pilot.determinism_look import place_text
 from cfepy.reports.bins import Bins, Histogram
 from cfepy.reports.noteworthy import event_in, mark_of
-from cfepy.rtos import HOLD, Decision, Moment, Policy, Task
+from cfepy.rtos import HOLD, AskingPolicy, Decision, Moment, Policy, Task
 from cfepy.sb import Pipe
 
 MOST = 2_000
@@ -192,12 +192,12 @@ class Collector(Observer):
         return max((bins.width_ns for bins in all_bins), default=1)
 
 
-class _SwitchNotes(Policy):
+class _SwitchNotes(AskingPolicy):
     """Asks another policy, and tells of what is not fifo's answer, with the line that was about to go on."""
 
     def __init__(self, inner: Policy, note: Callable[[Moment, str], None]) -> None:
-        super().__init__(inner.any_priority, inner.hold_ns, inner.connect_ns)
-        self._inner, self._note = inner, note
+        super().__init__(inner)
+        self._note = note
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`; a policy is asked in the task that gives the processor away, so its stack is there."""

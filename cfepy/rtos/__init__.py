@@ -16,6 +16,7 @@ from cfepy.rtos.mutex import Mutex
 from cfepy.rtos.policy import (
     HOLD,
     PCT,
+    AskingPolicy,
     Decision,
     Deviations,
     Moment,
@@ -42,6 +43,7 @@ __all__ = [
     "STALL_S",
     "STEPS",
     "TIMEOUT",
+    "AskingPolicy",
     "CpuCosts",
     "DeadlockError",
     "Decision",

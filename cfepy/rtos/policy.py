@@ -97,6 +97,42 @@ class Policy:
         """The answer, from 0 to below `decision.width`."""
         return 0
 
+    @property
+    def missed(self) -> tuple[str, ...]:
+        """What of its schedule was not possible in the run until now, as text."""
+        return ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user of a run should know of its schedule when the run is over."""
+        return ()
+
+
+class AskingPolicy(Policy):
+    """Answers as another policy does; the base of those that look on, or overrule it.
+
+    Args:
+        inner: the other one, whose options it has.
+    """
+
+    def __init__(self, inner: Policy) -> None:
+        super().__init__(inner.any_priority, inner.hold_ns, inner.connect_ns)
+        self._inner = inner
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`."""
+        return self._inner.choose(decision)
+
+    @property
+    def missed(self) -> tuple[str, ...]:
+        """See `Policy.missed`."""
+        return self._inner.missed
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """See `Policy.notes`."""
+        return self._inner.notes
+
 
 class SeededRandom(Policy):
     """Any of the candidates, the same ones for the same seed; the other arguments are those of `Policy`."""
@@ -222,7 +258,7 @@ class Deviations(Policy):
         return min(self._choices.get(decision.number, 0), decision.width - 1)
 
 
-class From(Policy):
+class From(AskingPolicy):
     """Fifo up to an instant, then another policy.
 
     Args:
@@ -231,8 +267,7 @@ class From(Policy):
     """
 
     def __init__(self, inner: Policy, from_ns: int) -> None:
-        super().__init__(inner.any_priority, inner.hold_ns, inner.connect_ns)
-        self._inner = inner
+        super().__init__(inner)
         self._from_ns = from_ns
 
     def choose(self, decision: Decision) -> int:
@@ -274,7 +309,7 @@ class Moment(NamedTuple):
         return cls(decision.number, choice, decision.now, decision.subject, chosen, decision.running, question)
 
 
-class NotingPolicy(Policy):
+class NotingPolicy(AskingPolicy):
     """Asks another policy, and keeps what was decided.
 
     Args:
@@ -288,8 +323,7 @@ class NotingPolicy(Policy):
     """
 
     def __init__(self, inner: Policy | None = None) -> None:
-        self._inner = inner or Policy()
-        super().__init__(self._inner.any_priority, self._inner.hold_ns, self._inner.connect_ns)
+        super().__init__(inner or Policy())
         self.choices: list[int] = []
         self.widths: list[int] = []
         self.running: list[bool] = []
