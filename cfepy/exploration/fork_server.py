@@ -50,7 +50,7 @@ class _Gate(Policy):
     """Goes on as fifo until schedules part; then this process waits for schedules, and its children follow them."""
 
     def __init__(self, server: ForkServer) -> None:
-        super().__init__(server.options.any_priority, server.options.hold_ns, server.options.connect_ns)
+        super().__init__(*server.options.settings)
         self._server = server
         self._from_ns = server.options.from_ns
         self._inner: Policy | None = None

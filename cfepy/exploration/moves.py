@@ -59,7 +59,7 @@ class MoveNotingPolicy(Policy):
     """
 
     def __init__(self, inner: Policy) -> None:
-        super().__init__(inner.any_priority, inner.hold_ns, inner.connect_ns)
+        super().__init__(*inner.settings)
         self._inner = inner
         self._numbers = _Numbers()
         self.moves: list[Move] = []
@@ -87,7 +87,7 @@ class MovePolicy(Policy):
     """
 
     def __init__(self, moves: Iterable[Move], options: Schedule) -> None:
-        super().__init__(options.any_priority, options.hold_ns, options.connect_ns)
+        super().__init__(*options.settings)
         self._chosen = {(_plain(move.task), move.number): move.chosen for move in moves}
         self._numbers = _Numbers()
 

@@ -13,6 +13,7 @@ from cfepy.rtos.errors import DeadlockError, InjectedCrash
 from cfepy.rtos.exploring import ExploringKernel, make_kernel
 from cfepy.rtos.kernel import ENDLESS, Kernel
 from cfepy.rtos.mutex import Mutex
+from cfepy.rtos.points import Points
 from cfepy.rtos.policy import (
     HOLD,
     PCT,
@@ -56,6 +57,7 @@ __all__ = [
     "Mutex",
     "NotingPolicy",
     "Pacer",
+    "Points",
     "Policy",
     "Question",
     "Queue",

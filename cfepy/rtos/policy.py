@@ -17,6 +17,8 @@ from typing import NamedTuple
 from cfepy.rtos.task import Task
 
 HOLD_ODDS = 16  # one in so many chances to hold a task up is taken: time would else run away from the work
+Settings = tuple[bool, int, int, str]
+"""What the kernel reads of a policy besides its answers; see the arguments of `Policy`."""
 HOLD = "hold"  # in place of a task's name: no task runs until the next timer
 
 
@@ -86,12 +88,19 @@ class Policy:
         any_priority: candidates are all ready tasks, not only those of the most urgent priority.
         hold_ns: a task may be held up until the next timer is due, if that is within so many ns; 0 for never.
         connect_ns: a connection between two nodes may take up to so many ns; 0 leaves it as the mission has it.
+        points: where mission code lets others in besides calls (`cfepy.rtos.points`); empty for nowhere.
     """
 
-    def __init__(self, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0) -> None:
+    def __init__(self, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0, points: str = "") -> None:
         self.any_priority = any_priority
         self.hold_ns = hold_ns
         self.connect_ns = connect_ns
+        self.points = points
+
+    @property
+    def settings(self) -> Settings:
+        """The arguments of this class, for a policy that asks this one."""
+        return self.any_priority, self.hold_ns, self.connect_ns, self.points
 
     def choose(self, decision: Decision) -> int:
         """The answer, from 0 to below `decision.width`."""
@@ -116,7 +125,7 @@ class AskingPolicy(Policy):
     """
 
     def __init__(self, inner: Policy) -> None:
-        super().__init__(inner.any_priority, inner.hold_ns, inner.connect_ns)
+        super().__init__(*inner.settings)
         self._inner = inner
 
     def choose(self, decision: Decision) -> int:
@@ -137,8 +146,10 @@ class AskingPolicy(Policy):
 class SeededRandom(Policy):
     """Any of the candidates, the same ones for the same seed; the other arguments are those of `Policy`."""
 
-    def __init__(self, seed: int, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0) -> None:
-        super().__init__(any_priority, hold_ns, connect_ns)
+    def __init__(
+        self, seed: int, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0, points: str = ""
+    ) -> None:
+        super().__init__(any_priority, hold_ns, connect_ns, points)
         self._random = Random(seed).random
         self._seldom = _Seldom(self._random)
 
@@ -195,12 +206,20 @@ class PCT(Policy):
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
+        points: see `Policy`.
     """
 
     def __init__(
-        self, seed: int, depth: int, steps: int, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0
+        self,
+        seed: int,
+        depth: int,
+        steps: int,
+        any_priority: bool = False,
+        hold_ns: int = 0,
+        connect_ns: int = 0,
+        points: str = "",
     ) -> None:
-        super().__init__(any_priority, hold_ns, connect_ns)
+        super().__init__(any_priority, hold_ns, connect_ns, points)
         self._random = random = Random(seed)
         self._changes = frozenset(random.sample(range(steps), min(depth - 1, steps)))
         self._ranks: dict[Task, float] = {}
@@ -245,12 +264,18 @@ class Deviations(Policy):
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
+        points: see `Policy`.
     """
 
     def __init__(
-        self, choices: Mapping[int, int], any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0
+        self,
+        choices: Mapping[int, int],
+        any_priority: bool = False,
+        hold_ns: int = 0,
+        connect_ns: int = 0,
+        points: str = "",
     ) -> None:
-        super().__init__(any_priority, hold_ns, connect_ns)
+        super().__init__(any_priority, hold_ns, connect_ns, points)
         self._choices = dict(choices)
 
     def choose(self, decision: Decision) -> int:

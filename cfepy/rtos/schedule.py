@@ -8,8 +8,9 @@
 
 Every kind but fifo takes options at its end: `any` (tasks of less urgent priority may run before more urgent ones),
 `hold=500us` (the running task may be held up until the next timer is due, if that is within 500 us), `connect=50ms`
-(a connection between two ROS nodes may take up to 50 ms), and `from=600ms` (fifo up to 600 ms after the start of the
-run; what comes before still counts as decisions).
+(a connection between two ROS nodes may take up to 50 ms), `points=attributes` or `points=lines,arm` (tasks may be
+interrupted between the calls of their code as well: `cfepy.rtos.points`), and `from=600ms` (fifo up to 600 ms after the
+start of the run; what comes before still counts as decisions).
 """
 
 from __future__ import annotations
@@ -19,7 +20,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from cfepy.rtos.policy import PCT, Deviations, From, Policy, SeededRandom
+from cfepy.rtos.points import Points
+from cfepy.rtos.policy import PCT, Deviations, From, Policy, SeededRandom, Settings
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS, time_word
 
@@ -28,7 +30,7 @@ STEPS = 1000
 _TIME = re.compile(r"(\d+)(ns|us|ms|s)")
 _FORMS = (
     "fifo, random:SEED, pct:SEED:DEPTH[:STEPS] or at:DECISION=CHOICE,..., the last three with :any, :hold=500us, "
-    ":connect=50ms or :from=600ms"
+    ":connect=50ms, :points=attributes or :from=600ms"
 )
 
 
@@ -45,6 +47,7 @@ class Schedule:
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
+        points: see `Policy`.
         from_ns: virtual ns up to which it is fifo.
     """
 
@@ -56,6 +59,7 @@ class Schedule:
     any_priority: bool = False
     hold_ns: int = 0
     connect_ns: int = 0
+    points: str = ""
     from_ns: int = 0
 
     @classmethod
@@ -97,6 +101,7 @@ class Schedule:
         words += ["any"] if self.any_priority else []
         words += [f"hold={time_word(self.hold_ns)}"] if self.hold_ns else []
         words += [f"connect={time_word(self.connect_ns)}"] if self.connect_ns else []
+        words += [f"points={self.points}"] if self.points else []
         words += [f"from={time_word(self.from_ns)}"] if self.from_ns else []
         return ":".join(words)
 
@@ -111,12 +116,16 @@ class Schedule:
         return From(policy, self.from_ns) if self.from_ns else policy
 
     def _policy(self) -> Policy:
-        options = self.any_priority, self.hold_ns, self.connect_ns
         if self.kind == "random":
-            return SeededRandom(self.seed, *options)
+            return SeededRandom(self.seed, *self.settings)
         if self.kind == "pct":
-            return PCT(self.seed, self.depth, self.steps, *options)
-        return Deviations(dict(self.deviations), *options)
+            return PCT(self.seed, self.depth, self.steps, *self.settings)
+        return Deviations(dict(self.deviations), *self.settings)
+
+    @property
+    def settings(self) -> Settings:
+        """Those of its policy."""
+        return self.any_priority, self.hold_ns, self.connect_ns, self.points
 
     def at(self, deviations: Mapping[int, int]) -> Schedule:
         """The schedule that takes some decisions otherwise than fifo, with this one's options.
@@ -140,6 +149,8 @@ def _option(field: str) -> dict[str, Any] | None:
     if field == "any":
         return {"any_priority": True}
     name, _, time = field.partition("=")
+    if name == "points":
+        return {"points": Points.parse(time, "--schedule").text()}
     if name not in ("hold", "connect", "from"):
         return None
     match = _TIME.fullmatch(time)

@@ -11,7 +11,9 @@ from cfepy.status import UsageError
 
 TASKS = [Kernel().host, Kernel().host]
 NUMBERS = st.integers(0, 10**9)
-OPTIONS = {"any_priority": st.booleans(), "hold_ns": NUMBERS, "from_ns": NUMBERS}
+POINTS = st.sampled_from(["", "lines", "attributes,arm", "calls,a-b,c.d"])
+OPTIONS = {"any_priority": st.booleans(), "hold_ns": NUMBERS, "from_ns": NUMBERS, "points": POINTS}
+AT_POINTS = Schedule("at", deviations=((3, 1),), any_priority=True, points="attributes,arm,util")
 SCHEDULES = st.one_of(
     st.just(Schedule()),
     st.builds(Schedule, st.just("random"), seed=NUMBERS, **OPTIONS),
@@ -40,6 +42,7 @@ def test_the_text_of_a_schedule_means_it(schedule: Schedule) -> None:
         ("at", Schedule("at")),
         ("random:1:from=600ms", Schedule("random", 1, from_ns=600_000_000)),
         ("at:3=1:any:connect=50ms", Schedule("at", deviations=((3, 1),), any_priority=True, connect_ns=50_000_000)),
+        ("at:3=1:points=attributes,arm,util.py:any", AT_POINTS),
         ("at:3=1:hold=500us", Schedule("at", deviations=((3, 1),), hold_ns=500_000)),
     ],
 )
@@ -54,6 +57,8 @@ def test_what_a_person_writes(text: str, schedule: Schedule) -> None:
         ("rondom:1", "no schedule is called 'rondom:1'"),
         ("fifo:any", "no schedule is called"),
         ("fifo:1", "no schedule is called"),
+        ("random:1:points=all", "'all' is no kind of points; write lines, attributes or calls"),
+        ("random:1:points=lines,", "'' is no module; write for instance lines:arm,util"),
         ("random:1:2", "no schedule is called"),
         ("random:-1", "SEED is a whole number of at least 0, not '-1'"),
         ("pct:1:0", "DEPTH is a whole number of at least 1, not '0'"),
