@@ -49,7 +49,7 @@ class _Pointed:
         if not isinstance(value, MethodType):
             return value
         wrap = _giving if name in GIVING else _pointed
-        call = vars(self)[name] = wrap(self._service, name, self._kernel.point)
+        call = vars(self)[name] = wrap(self._service, name, self._kernel)
         return call
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -57,20 +57,28 @@ class _Pointed:
         setattr(self._service, name, value)
 
 
-def _pointed(service: Any, name: str, point: Callable[[], None]) -> Callable[..., Any]:
+def _pointed(service: Any, name: str, kernel: ExploringKernel) -> Callable[..., Any]:
+    point = kernel.point
+
     def call(*args: Any, **options: Any) -> Any:
         point()
-        return getattr(service, name)(*args, **options)
+        observer = kernel.observer
+        if observer is None:
+            return getattr(service, name)(*args, **options)
+        observer.called(service, name, args)
+        result = getattr(service, name)(*args, **options)
+        observer.returned(service, name, args, result)
+        return result
 
     return call
 
 
-def _giving(service: Any, name: str, point: Callable[[], None]) -> Callable[..., Any]:
-    call = _pointed(service, name, point)
+def _giving(service: Any, name: str, kernel: ExploringKernel) -> Callable[..., Any]:
+    call = _pointed(service, name, kernel)
 
     def give(*args: Any, **options: Any) -> Any:
         result = call(*args, **options)
-        point()
+        kernel.point()
         return result
 
     return give

@@ -8,7 +8,7 @@ of `Kernel`, which pays nothing for this module.
 from __future__ import annotations
 
 from heapq import heappop, heappush
-from typing import Any
+from typing import Any, Protocol
 
 from cfepy import trace as tr
 from cfepy.rtos.kernel import Kernel
@@ -34,12 +34,34 @@ def make_kernel(
     return ExploringKernel(context, trace, policy, tick_ns, switch_cost_ns, seed)
 
 
+class CallObserver(Protocol):
+    """Is told of the calls that are scheduling points, in the task that makes them; it must not wait, nor call back.
+
+    A call that raises something never returns.
+    """
+
+    def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
+        """Others have had their chance, and the call begins now.
+
+        Args:
+            subject: whose method it is: a service of cFE, or a lock of a node; `__init__` says that this was made.
+            call: the method's name.
+            args: what it gets.
+        """
+
+    def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
+        """It has come to its end, with this result."""
+
+
 class ExploringKernel(Kernel):
     """A kernel whose choices are a policy's.
 
     Args:
         context: see `Kernel`, as for the arguments not named here.
         policy: decides which task runs next.
+
+    Attributes:
+        observer: is told of calls; None for nobody.
     """
 
     def __init__(
@@ -53,6 +75,7 @@ class ExploringKernel(Kernel):
     ) -> None:
         super().__init__(context, trace, tick_ns, switch_cost_ns, seed)
         self.policy = policy
+        self.observer: CallObserver | None = None
         self.frames_wanted = True
         self._any = policy.any_priority
         self._hold_ns = policy.hold_ns

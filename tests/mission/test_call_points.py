@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from cfepy.attachment import Attachment
 from cfepy.mission.call_points import GIVING
 from cfepy.osal import Osal
 from cfepy.pilot.pilot import fly
@@ -45,3 +47,46 @@ def test_what_comes_right_after_letting_go_is_found(tmp_path: Path, policy: str)
 def test_there_are_such_calls() -> None:
     known = {name for service in (Osal, SoftwareBus, TableServices) for name in dir(service)}
     assert known >= GIVING
+
+
+class Listener(Attachment):
+    """Keeps what the kernel's observer is told."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[str, str]] = []
+
+    def begin(self, mission: Any) -> None:
+        """See `Attachment.begin`."""
+        mission.kernel.observer = self
+
+    def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
+        """See `CallObserver.called`."""
+        self.told.append(("called", call))
+
+    def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
+        """See `CallObserver.returned`."""
+        self.told.append(("returned", call))
+
+
+LOCKS = """
+import threading, time
+lock = threading.RLock()
+with lock:
+    pass
+"""
+
+
+def test_an_observer_is_told_of_calls_of_services_and_of_locks(tmp_path: Path) -> None:
+    (tmp_path / "counting.py").write_text(LETS_GO_TOO_EARLY)
+    (tmp_path / "locking.py").write_text(LOCKS)
+    lines = (
+        "CFE_APP, counting, main, COUNTING, 50, 16384, 0x0, 0;",
+        "CFE_APP, locking.py, __main__, LOCKING, 50, 0, 0, 0;",
+    )
+    (tmp_path / "startup.scr").write_text("\n".join([*lines, "!\n"]))
+    plan = RunPlan((str(tmp_path),), seconds=0.8, schedule=Schedule("at"))
+    bare, listener = fly(plan), Listener()
+    assert fly(plan, attachments=[listener]).trace == bare.trace
+    told = listener.told
+    for call in ("mut_sem_create", "mut_sem_take", "mut_sem_give", "__init__", "__enter__", "__exit__"):
+        assert told.index(("called", call)) < told.index(("returned", call))

@@ -64,32 +64,36 @@ def make_lock_types(universe: Universe) -> LockTypes:
 
 
 def _explore(lock: type, kernel: ExploringKernel) -> None:
-    """Make each call that takes or gives back a lock a scheduling point, and note the holder of a plain one."""
+    """Make each call that takes or gives back a lock a scheduling point, and note the holder of a plain one.
 
-    def taking(method: Callable[..., bool]) -> Callable[..., bool]:
-        def take(self: Any, *args: Any, **options: Any) -> bool:
-            kernel.point()
-            taken = method(self, *args, **options)
-            if taken and self.holder is not _ANY_TASK:
+    The kernel's observer is told of these calls, of the making of a lock, and when a condition looks whose it is.
+    """
+    methods = vars(lock)
+    plain = "holder" in methods
+
+    def observed(name: str, has_point: bool = True) -> Callable[..., Any]:
+        method = methods[name]
+        takes = plain and name in _TAKING
+
+        def call(self: Any, *args: Any, **options: Any) -> Any:
+            if has_point:
+                kernel.point()
+            observer = kernel.observer
+            if observer is not None:
+                observer.called(self, name, args)
+            result = method(self, *args, **options)
+            if takes and result and self.holder is not _ANY_TASK:
                 self.holder = kernel.current
-            return taken
-
-        return take
-
-    def pointed(method: Callable[..., Any]) -> Callable[..., Any]:
-        def call(self: Any, *args: Any) -> Any:
-            kernel.point()
-            return method(self, *args)
+            if observer is not None:
+                observer.returned(self, name, args, result)
+            return result
 
         return call
 
-    plain = "holder" in vars(lock)
-    for name in _TAKING:
-        if name in vars(lock):
-            setattr(lock, name, (taking if plain else pointed)(vars(lock)[name]))
-    for name in _GIVING:
-        if name in vars(lock):
-            setattr(lock, name, pointed(vars(lock)[name]))
+    changed = {name: observed(name) for name in (*_TAKING, *_GIVING) if name in methods}
+    changed |= {name: observed(name, has_point=False) for name in ("__init__", "_is_owned")}
+    for name, call in changed.items():
+        setattr(lock, name, call)
 
 
 def without_holder(lock: Any) -> Any:
