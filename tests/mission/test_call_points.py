@@ -81,7 +81,7 @@ def test_an_observer_is_told_of_calls_of_services_and_of_locks(tmp_path: Path) -
     (tmp_path / "locking.py").write_text(LOCKS)
     lines = (
         "CFE_APP, counting, main, COUNTING, 50, 16384, 0x0, 0;",
-        "CFE_APP, locking.py, __main__, LOCKING, 50, 0, 0, 0;",
+        "CFE_APP, locking.py, __main__, LOCKING, 50, 16384, 0, 0;",
     )
     (tmp_path / "startup.scr").write_text("\n".join([*lines, "!\n"]))
     plan = RunPlan((str(tmp_path),), seconds=0.8, schedule=Schedule("at"))
