@@ -118,6 +118,15 @@ def _add_guard(parser: Options) -> None:
     )
 
 
+def _add_cpp_nodes(parser: Options) -> None:
+    parser.add_argument(
+        "--cpp-nodes",
+        metavar="PROFILE|MISSION",
+        help="build the nodes in C++ of launch files for a profile (host, pool, strict), or as the section cpp_nodes "
+        "of this mission's file says",
+    )
+
+
 RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "launch_args": _add_launch_args,
     "seconds": _add_seconds,
@@ -131,6 +140,7 @@ RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "play": _add_play,
     "stall": _add_stall,
     "guard": _add_guard,
+    "cpp_nodes": _add_cpp_nodes,
 }
 """What adds the option for each attribute of `RunPlan`, but for the words and the command, which are what is run."""
 
@@ -157,9 +167,9 @@ def plan_of(arguments: argparse.Namespace, words: Sequence[str], command: str | 
         command: as of `RunPlan`; None is that of a mission, or of a node, if they begin with one.
 
     Raises:
-        UsageError: the schedule is none.
+        UsageError: the schedule is none, or what is said of nodes in C++ is nowhere.
     """
-    from cfepy.mission import is_node
+    from cfepy.mission import cpp_nodes_source, is_node
     from cfepy.pilot import LAUNCH, NODE, RUN, RunPlan
     from cfepy.rtos import Schedule
 
@@ -168,6 +178,8 @@ def plan_of(arguments: argparse.Namespace, words: Sequence[str], command: str | 
         said["schedule"] = Schedule.parse(said["schedule"], said["seed"])
     if "launch_args" in said:
         said["launch_args"] = () if command == LAUNCH else tuple(said["launch_args"])
+    if said.get("cpp_nodes") is not None:
+        said["cpp_nodes"] = cpp_nodes_source(said["cpp_nodes"])
     if command is None:
         command = NODE if is_node(words[0]) else RUN
     return RunPlan(tuple(words), command, **said)
@@ -209,6 +221,7 @@ _USUAL: Mapping[str, tuple[str, object]] = {
     "play": ("--play", None),
     "stall": ("--stall", DEFAULT_STALL_S),
     "guard": ("--guard", False),
+    "cpp_nodes": ("--cpp-nodes", None),
 }
 """The option for each attribute, and its value when nothing is said."""
 

@@ -8,6 +8,7 @@ from typing import Any, TypedDict
 
 from cfepy.attachment import Attachment
 from cfepy.faults import FaultInjector, FaultPlan
+from cfepy.mission import cpp_nodes_source
 from cfepy.pilot import NODE, RUN, RunPlan
 from cfepy.rtos import Schedule
 from cfepy.suggestions import did_you_mean
@@ -36,6 +37,8 @@ class MissionOptions(TypedDict, total=False):
         args: of a launch file.
         stall: seconds of wall time after which a task that does not give up the CPU ends the run; 0 waits for ever.
         guard: compiled applications fault where they write past a buffer, or use one that was freed.
+        cpp_nodes: how nodes in C++ of launch files are built: "host", "pool", "strict", or a mission whose
+            file has the section `cpp_nodes:`, or that file.
     """
 
     seed: int
@@ -47,6 +50,7 @@ class MissionOptions(TypedDict, total=False):
     args: Mapping[str, object] | None
     stall: float
     guard: bool
+    cpp_nodes: str | os.PathLike[str] | None
 
 
 class RunOptions(MissionOptions, total=False):
@@ -73,7 +77,7 @@ def plan_of(mission: MissionWords, options: Mapping[str, Any], known: Iterable[s
 
     Raises:
         TypeError: an option that there is not.
-        UsageError: the schedule is none.
+        UsageError: the schedule is none, or what is said of nodes in C++ is nowhere.
     """
     names = sorted(known)
     for name in options:
@@ -86,6 +90,8 @@ def plan_of(mission: MissionWords, options: Mapping[str, Any], known: Iterable[s
             said[name] = os.fspath(said[name])
     if "schedule" in said:
         said["schedule"] = schedule_of(said["schedule"])
+    if "cpp_nodes" in said:
+        said["cpp_nodes"] = cpp_nodes_source(os.fspath(said["cpp_nodes"]))
     if "faults" in said:
         said["faults"] = fault_text(said["faults"])
     said["launch_args"] = tuple((name, str(value)) for name, value in said.pop("args", {}).items())

@@ -215,7 +215,8 @@ def moved_plan(header: Header, root: str) -> RunPlan:
     """The plan of a run, with the paths that its files have below a root."""
     plan = header.plan
     files: dict[str, Any] = {
-        name: _moved(getattr(plan, name), header.cwd, root) for name in ("script", "faults", "play", "board")
+        name: _moved(getattr(plan, name), header.cwd, root)
+        for name in ("script", "faults", "play", "board", "cpp_nodes")
     }
     return replace(plan, words=(root + header.startup, *_arguments(header)), **files)
 

@@ -22,6 +22,8 @@ from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, endless_waits
 from cfepy.mission.finding import (
     LOCK_FILE,
     STARTUP_SCRIPT,
+    cpp_nodes_of,
+    cpp_nodes_source,
     find_script,
     is_node,
     mission_file_of,
@@ -101,6 +103,8 @@ __all__ = [
     "Traffic",
     "app_traceback",
     "built_programs",
+    "cpp_nodes_of",
+    "cpp_nodes_source",
     "described",
     "endless_waits",
     "find_code",

@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from cfepy.marked_yaml import Mistakes, load
+from cfepy.mission.cpp_nodes import PROFILES, CppNodesConfig
 from cfepy.mission.launch import (
     LAUNCH_FILES,
     NodeBuilder,
@@ -157,6 +158,41 @@ def read_sections(mission: str) -> MissionSections:
         named if named.suffix in (".yaml", ".yml") and os.path.isfile(named) else mission_file_of(find_script(mission))
     )
     return MissionSections() if path is None else read_mission_file(path, Mistakes())
+
+
+def cpp_nodes_source(said: str) -> str:
+    """Where it stands how nodes in C++ are built, as a command line says: a profile's name, or the path of a YAML file.
+
+    Args:
+        said: a profile, a YAML file with a section `cpp_nodes:`, or the mission of one.
+
+    Raises:
+        UsageError: there is neither.
+    """
+    if said in PROFILES or (said.endswith((".yaml", ".yml")) and os.path.isfile(said)):
+        return said
+    path = mission_file_of(find_script(said))
+    if path is None:
+        raise UsageError("has no mission file", file=said, field="--cpp-nodes")
+    return str(path)
+
+
+def cpp_nodes_of(said: str) -> CppNodesConfig:
+    """How nodes in C++ are built, as a command line says.
+
+    Args:
+        said: see `cpp_nodes_source`.
+
+    Raises:
+        UsageError: there is no such file or no such section, or something in the file is wrong.
+    """
+    source = cpp_nodes_source(said)
+    if source in PROFILES:
+        return CppNodesConfig(profile=source)
+    sections = read_mission_file(Path(source), Mistakes())
+    if "cpp_nodes" not in sections.places:
+        raise UsageError("has no section cpp_nodes", file=source, field="--cpp-nodes")
+    return sections.cpp_nodes
 
 
 def read_lock(path: Path, ros: RosConfig) -> RosConfig:

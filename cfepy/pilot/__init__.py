@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cfepy.pilot.course import BOOT_S, DEFAULT_S, STALLED, SUDDEN, Course
 from cfepy.pilot.pilot import BootError, Flown, Host, LiveRun, booting, fly, takeoff
-from cfepy.pilot.plan import LAUNCH, NODE, RUN, RunPlan, built_node
+from cfepy.pilot.plan import LAUNCH, NODE, RUN, RunPlan, builder, built_node
 from cfepy.pilot.results import (
     ENDED,
     NOT_STARTED,
@@ -44,6 +44,7 @@ __all__ = [
     "RunProblem",
     "TopicResult",
     "booting",
+    "builder",
     "built_node",
     "end_of",
     "ended_badly",

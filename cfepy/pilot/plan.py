@@ -14,7 +14,16 @@ from shlex import join
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.mission import CppNodesConfig, MissionSpec, launch_file, read_launch, read_mission, spec_of_node
+from cfepy.mission import (
+    CppNodesConfig,
+    MissionSpec,
+    NodeBuilder,
+    cpp_nodes_of,
+    launch_file,
+    read_launch,
+    read_mission,
+    spec_of_node,
+)
 from cfepy.nodes import CppNode
 from cfepy.pilot.course import BOOT_S, DEFAULT_S, NODE_S
 from cfepy.rtos import STALL_S, Schedule
@@ -29,6 +38,21 @@ def built_node(
     from cfepy.convert import build_for_flight
 
     return build_for_flight(node, params, others, config)
+
+
+def builder(cpp_nodes: str | None = None) -> NodeBuilder:
+    """What builds the nodes in C++ of a mission.
+
+    Args:
+        cpp_nodes: how, as a command line says, in place of what the mission says; see `cfepy.mission.cpp_nodes_of`.
+
+    Raises:
+        UsageError: there is no such file, or something in it is wrong.
+    """
+    if cpp_nodes is None:
+        return built_node
+    said = cpp_nodes_of(cpp_nodes)
+    return lambda node, params, others, config: built_node(node, params, others, said)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +78,8 @@ class RunPlan:
             until the run is ended for that; 0 for any time. It decides only whether a run comes to its end, and none of
             the trace of one that does.
         guard: compiled applications get memory that nothing can be written past, and that is not zero.
+        cpp_nodes: how nodes in C++ are built: a profile, or a YAML file with a section `cpp_nodes:` in place of the
+            mission's own; None leaves it to the mission.
     """
 
     words: tuple[str, ...]
@@ -70,6 +96,7 @@ class RunPlan:
     play: str | None = None
     stall: float = STALL_S
     guard: bool = False
+    cpp_nodes: str | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.schedule, Schedule):
@@ -87,11 +114,12 @@ class RunPlan:
         return self.with_played_bag(spec)
 
     def _spec(self) -> MissionSpec:
+        build = builder(self.cpp_nodes)
         if self.command == LAUNCH:
-            return read_launch(*launch_file(self.words), build=built_node)
+            return read_launch(*launch_file(self.words), build=build)
         if self.command == NODE:
-            return spec_of_node(self.words, built_node)
-        return read_mission(self.words[0], dict(self.launch_args), built_node)
+            return spec_of_node(self.words, build)
+        return read_mission(self.words[0], dict(self.launch_args), build)
 
     def with_played_bag(self, spec: MissionSpec) -> MissionSpec:
         """A mission into which the bag of the plan is played, if it has one.
@@ -131,9 +159,9 @@ class RunPlan:
             options += ["--arg", f"{name}:={value}"]
         if plan.seconds is not None:
             options += ["--for", f"{plan.seconds:.12g}"]
-        for each in ("seed", "board", "tasks", "schedule", "script", "play", "faults"):
+        for each in ("seed", "board", "tasks", "schedule", "script", "play", "faults", "cpp_nodes"):
             if getattr(plan, each) != getattr(_USUAL, each):
-                options += [f"--{each}", str(getattr(plan, each))]
+                options += [f"--{each.replace('_', '-')}", str(getattr(plan, each))]
         if plan.stall != _USUAL.stall:
             options += ["--stall", f"{plan.stall:g}"]
         for each in ("stop_on_failure", "guard"):

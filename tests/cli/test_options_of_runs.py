@@ -91,6 +91,7 @@ OPTIONS: dict[str, tuple[list[str], Any]] = {
     "play": (["--play", "drive.bag"], "drive.bag"),
     "stall": (["--stall", "2.5"], 2.5),
     "guard": (["--guard"], True),
+    "cpp_nodes": (["--cpp-nodes", "pool"], "pool"),
 }
 SAID_OTHERWISE = {
     ("launch", "launch_args"): "its words have them, as for roslaunch",

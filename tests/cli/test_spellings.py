@@ -23,6 +23,7 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--board": ("NAME|FILE", "board instead of the mission's own"),
     "--console": (None, "show the flight computer's console"),
     "-n --count": ("N", "end after so many"),
+    "--cpp-nodes": ("PROFILE|MISSION", "section cpp_nodes of this mission's file"),
     "--dot": ("FILE|-", "for graphviz"),
     "--enable": ("HOST[:PORT]", "ask TO_LAB there to begin to send"),
     "--faults": ("FILE|seed:N", "fault"),

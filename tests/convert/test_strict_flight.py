@@ -131,3 +131,24 @@ def test_the_folder_for_cfe_has_both(mission: Path, capfd: pytest.CaptureFixture
     capfd.readouterr()
     assert main(["run", str(made / "mission"), "--for", "3"]) == 1  # the mission in it is built in the same way
     assert "12 at most, 16 wanted" in capfd.readouterr().out
+
+
+def test_a_launch_file_by_itself_is_built_as_the_command_line_says(
+    mission: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    fill(mission, "sender", word=12)
+    launch, journal = str(mission / "all.launch"), str(mission / "run.journal")
+    assert main(["launch", launch, "--for", "3"]) == 0
+    assert "12 at most" not in capfd.readouterr().out  # of the profile host
+    assert main(["launch", launch, "--cpp-nodes", "pool", "--for", "3"]) == 0
+    assert "12 at most" not in capfd.readouterr().out
+    monkeypatch.chdir(mission.parent)
+    said = ["--cpp-nodes", "mission/mission.yaml"]
+    assert main(["launch", launch, *said, "--for", "3", "--console", "--record", journal]) == 1
+    assert "12 at most, 16 wanted" in capfd.readouterr().out
+    assert main(["check", launch, "--cpp-nodes", "tight"]) == 2
+    assert "no startup script" in capfd.readouterr().err
+    (mission / "mission.yaml").unlink()
+    monkeypatch.chdir(mission)
+    assert main(["replay", journal]) == 0
+    assert "the same run as" in capfd.readouterr().err

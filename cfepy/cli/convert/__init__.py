@@ -32,7 +32,7 @@ class _WordsAction(argparse.Action):
             namespace.module = "convert.check"
 
 
-def cpp_nodes_of(arguments: argparse.Namespace) -> CppNodesConfig:
+def cpp_nodes_config(arguments: argparse.Namespace) -> CppNodesConfig:
     """What nodes are built for, as the command line and the mission file that it names say.
 
     Args:
@@ -41,10 +41,12 @@ def cpp_nodes_of(arguments: argparse.Namespace) -> CppNodesConfig:
     Raises:
         UsageError: there is no such mission, or its file is wrong.
     """
-    from cfepy.mission import CppNodesConfig, read_sections
+    from cfepy.mission import CppNodesConfig, cpp_nodes_of, read_sections
 
-    mission = arguments.cpp_nodes or arguments.ids
-    said = CppNodesConfig() if mission is None else read_sections(mission).cpp_nodes
+    if arguments.cpp_nodes is not None:
+        said = cpp_nodes_of(arguments.cpp_nodes)
+    else:
+        said = CppNodesConfig() if arguments.ids is None else read_sections(arguments.ids).cpp_nodes
     return said if arguments.profile is None else replace(said, profile=arguments.profile)
 
 
@@ -69,8 +71,9 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     )
     convert.add_argument(
         "--cpp-nodes",
-        metavar="MISSION",
-        help="take profile, arena and capacities of messages from the section cpp_nodes of this mission's file",
+        metavar="PROFILE|MISSION",
+        help="take the profile of this name, or profile, arena and capacities of messages from the section cpp_nodes "
+        "of this mission's file",
     )
     convert.add_argument(
         "--no-check", action="store_true", help="convert nodes that check refuses, too, and those that it cannot read"

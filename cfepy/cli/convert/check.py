@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from cfepy import __version__
-from cfepy.cli.convert import cpp_nodes_of
+from cfepy.cli.convert import cpp_nodes_config
 from cfepy.cli.failures import check_writable
 from cfepy.cli.json_output import STDOUT, check_json, write_json, write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_json(arguments)
     if arguments.sarif not in (None, STDOUT):
         check_writable(arguments.sarif, "--sarif")
-    config = cpp_nodes_of(arguments)
+    config = cpp_nodes_config(arguments)
     profile = Profile(config.profile)
     environ = dict(os.environ)
     reports = [check_program(each, profile, environ, config) for each in programs_of(words, environ)]

@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from cfepy.cli.convert import cpp_nodes_of
+from cfepy.cli.convert import cpp_nodes_config
 from cfepy.cli.failures import tell, writing
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.sarif is not None:
         raise UsageError("is what check finds: `cfepy convert check WORD --sarif FILE`", field="--sarif")
     check_json(arguments)
-    config = cpp_nodes_of(arguments)
+    config = cpp_nodes_config(arguments)
     task = task_of(arguments.words, dict(os.environ))
     folder = Path(arguments.output or task.made_from.stem).resolve()
     made = converted(task, _ids(arguments, folder), (lambda program: "") if arguments.no_check else _Judge(config))

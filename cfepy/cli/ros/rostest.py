@@ -22,7 +22,7 @@ from cfepy.cli.run.outputs import SavedRunFiles
 from cfepy.markup import printable
 from cfepy.mission import BuiltProgram, built_programs, launch_file, spec_of
 from cfepy.nodes import NodeConfig
-from cfepy.pilot import LAUNCH, Flown, built_node, fly
+from cfepy.pilot import LAUNCH, Flown, builder, fly
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 from rospy_shim.roslaunch.plan import LaunchPlan, PlannedTest, plan_of
@@ -159,7 +159,7 @@ def run(arguments: argparse.Namespace) -> int:
         plan = plan_of(file, args, environ, cwd=Path.cwd(), results=results, with_compiled=True)
         if not plan.tests:
             raise UsageError("has no <test>; `cfepy launch` runs what it has", file=file)
-        built, left_out = built_programs(plan, built_node)
+        built, left_out = built_programs(plan, builder(arguments.cpp_nodes))
         tell([*plan.notes, *left_out])
         tests = TestResults()
         for test in plan.tests:

@@ -65,6 +65,7 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     add_mission(check)
     RUN_OPTIONS["launch_args"](check)
+    RUN_OPTIONS["cpp_nodes"](check)
     check.add_argument("--board", metavar="NAME|FILE", help="check against this board instead of the mission's own")
     check.add_argument(
         "--faults",

@@ -26,7 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: there is no such mission, or the JSON cannot be written.
     """
     check_json(arguments)
-    findings = check_mission(arguments.mission, arguments.board, dict(arguments.launch_args))
+    findings = check_mission(arguments.mission, arguments.board, dict(arguments.launch_args), arguments.cpp_nodes)
     if arguments.faults is not None:
         findings += _check_faults(arguments, flies=all(finding.is_warning for finding in findings))
     errors = [finding for finding in findings if not finding.is_warning]

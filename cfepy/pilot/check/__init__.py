@@ -15,7 +15,9 @@ from cfepy.marked_yaml import Mistakes
 from cfepy.mission import (
     LAUNCH_FILES,
     NODE_SYMBOL,
+    CppNodesConfig,
     MissionSections,
+    cpp_nodes_of,
     find_node,
     find_script,
     is_node,
@@ -43,7 +45,7 @@ __all__ = ["MissionProblem", "check_mission", "problem_of"]
 
 
 def check_mission(
-    mission: str, board: str | None = None, args: Mapping[str, str] | None = None
+    mission: str, board: str | None = None, args: Mapping[str, str] | None = None, cpp_nodes: str | None = None
 ) -> list[MissionProblem]:
     """Find everything that is wrong with a mission.
 
@@ -51,30 +53,32 @@ def check_mission(
         mission: see `cfepy.mission.find_script`; or the script of a node.
         board: name or file of a board; None takes the mission's own.
         args: arguments for a launch file.
+        cpp_nodes: how nodes in C++ are built, in place of what the mission says; see `cfepy.mission.cpp_nodes_of`.
 
     Returns:
         What was found, by file and line; nothing but warnings for a mission that can boot.
 
     Raises:
-        UsageError: there is no such mission, or it takes no arguments.
+        UsageError: there is no such mission, or it takes no arguments; what is said of nodes in C++ is wrong.
     """
+    config = None if cpp_nodes is None else cpp_nodes_of(cpp_nodes)
     if is_node(mission):
         return _sorted(_check_node(Path(mission).resolve()))
     script = find_script(mission)
     if script.suffix in LAUNCH_FILES:
-        return _sorted(_check_launch_file(script, args or {}))
+        return _sorted(_check_launch_file(script, args or {}, config))
     if args:
         raise UsageError("only a launch file takes arguments", file=mission, field="--arg")
-    return _sorted(_check_folder(script, board))
+    return _sorted(_check_folder(script, board, config))
 
 
 def _sorted(found: Iterable[MissionProblem]) -> list[MissionProblem]:
     return sorted(dict.fromkeys(found), key=lambda problem: (str(problem.file), problem.line))
 
 
-def _check_launch_file(file: Path, args: Mapping[str, str]) -> list[MissionProblem]:
+def _check_launch_file(file: Path, args: Mapping[str, str], config: CppNodesConfig | None) -> list[MissionProblem]:
     """A launch file by itself, in the user's environment."""
-    found, scripts = check_launch(file, args, dict(os.environ), alone=True)
+    found, scripts = check_launch(file, args, dict(os.environ), alone=True, config=config)
     return [*found, *check_nodes(scripts), *check_definitions_of(scripts, file)]
 
 
@@ -84,7 +88,7 @@ def _check_node(file: Path) -> list[MissionProblem]:
     return [*check_nodes(scripts), *check_definitions_of(scripts, file)]
 
 
-def _check_folder(script: Path, board: str | None) -> list[MissionProblem]:
+def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None) -> list[MissionProblem]:
     """A startup script with all that belongs to it."""
     data = script.read_bytes()
     mistakes = Mistakes(keep=True)
@@ -99,7 +103,9 @@ def _check_folder(script: Path, board: str | None) -> list[MissionProblem]:
         found += wrong_names(source, entry_point)
     nodes = _nodes_of(script.parent, started, said)
     for file, args in said.launch:
-        problems, scripts = check_launch(file, args, mission_environment(), alone=False, config=said.cpp_nodes)
+        problems, scripts = check_launch(
+            file, args, mission_environment(), alone=False, config=config or said.cpp_nodes
+        )
         found += [*problems, *check_nodes(scripts)]
         nodes += scripts
     found += check_nodes_said(said, started)
