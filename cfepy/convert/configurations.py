@@ -102,8 +102,10 @@ def header_text(package: str, name: str, description: Mapping[str, Any]) -> str:
 
 def _lines(package: str, name: str, description: Mapping[str, Any]) -> Iterator[str]:
     config = f"{name}Config"
-    groups = list(_groups(description["group"]))
-    parameters = [(each, index) for index, group in enumerate(groups) for each in group["parameters"]]
+    groups = list(_inside_out(description["group"]))
+    number = {group["id"]: index for index, group in enumerate(groups)}
+    outside_in = list(_outside_in(description["group"], "groups"))
+    parameters = [(each, number[group["id"]]) for group, _ in outside_in for each in group["parameters"]]
     guard = f"ROSCFE_{package}_{config}_H".upper()
     yield f"// Made by cfepy from cfg/{name}.cfg of the package {package}."
     yield from (f"#ifndef {guard}", f"#define {guard}", "", "#include <string>", "")
@@ -115,19 +117,25 @@ def _lines(package: str, name: str, description: Mapping[str, Any]) -> Iterator[
     yield from ("", f"    {config}()", "    {", "        visit(roscfe::configuration::SetDefaults(), *this);")
     yield from ("        fill_groups();", "    }", "")
     yield from _visitors(config, parameters)
+    yield from ("    template <class V>", f"    static void visit_groups(V visitor, {config} &config)", "    {")
+    yield from (f"        visitor(config.{place}.state, {_group(group)});" for group, place in outside_in)
+    yield from ("    }", "")
     yield from ("    static int group_count() { return " + f"{len(groups)}; }}",)
     yield "    static const roscfe::ConfigGroup *groups_of()"
     yield "    {"
     yield "        static const roscfe::ConfigGroup groups[] = {"
-    for group in groups:
-        state = "true" if group.get("state", True) else "false"
-        fields = (quoted(group["name"]), quoted(group["type"]), str(group["parent"]), str(group["id"]), state)
-        yield f"            {{{', '.join(fields)}}},"
+    yield from (f"            {_group(group)}," for group in groups)
     yield from ("        };", "        return groups;", "    }", "")
     yield from (
         "    void __fromServer__(const ros::NodeHandle &node)",
         "    {",
+        "        static bool is_first = true;",
         "        visit(roscfe::configuration::FromServer{node}, *this);",
+        "        if (is_first)",
+        "        {",
+        "            is_first = false;",
+        "            visit_groups(roscfe::configuration::InitialState(), *this);",
+        "        }",
         "    }",
         "    void __toServer__(const ros::NodeHandle &node) const",
         "    {",
@@ -144,13 +152,21 @@ def _lines(package: str, name: str, description: Mapping[str, Any]) -> Iterator[
         f"        {config} one = *this, another = other;",
         "        return roscfe::configuration::levels_between(one, another);",
         "    }",
+        "    bool __fromMessage__(const dynamic_reconfigure::Config &message)",
+        "    {",
+        f"        return roscfe::configuration::take(message, *this, {quoted(config)});",
+        "    }",
+        "    void __toMessage__(dynamic_reconfigure::Config &message) const",
+        "    {",
+        "        message = roscfe::configuration::message_of(*this);",
+        "    }",
         f"    static {config} __getDefault__() {{ return {config}(); }}",
         "",
         "  private:",
         "    // Groups have their parameters once more.",
         "    void fill_groups()",
         "    {",
-        *(f"        {place} = {name};" for place, name in _grouped(description["group"], "groups")),
+        *(f"        {at}.{each['name']} = {each['name']};" for group, at in outside_in for each in group["parameters"]),
         "    }",
         "};",
         "",
@@ -175,28 +191,34 @@ def _visitors(config: str, parameters: Sequence[tuple[Mapping[str, Any], int]]) 
     yield from ("    }", "")
 
 
-def _groups(group: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    """A group and those inside, in the order of their numbers."""
-    found = [group, *(each for one in _inner(group) for each in _groups(one))]
-    yield from sorted(found, key=lambda each: int(each["id"]))
+def _inside_out(group: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    """A group and those inside, in the order in which ROS describes them."""
+    for each in _inner(group):
+        yield from _inside_out(each)
+    yield group
+
+
+def _outside_in(group: Mapping[str, Any], place: str) -> Iterator[tuple[Mapping[str, Any], str]]:
+    """A group and those inside, in the order of parameters and states, each with its member of the class."""
+    yield group, place
+    for each in _inner(group):
+        yield from _outside_in(each, f"{place}.{_identifier(each['name']).lower()}")
+
+
+def _group(group: Mapping[str, Any]) -> str:
+    state = "true" if group.get("state", True) else "false"
+    fields = (quoted(group["name"]), quoted(group["type"]), str(group["parent"]), str(group["id"]), state)
+    return f"roscfe::ConfigGroup{{{', '.join(fields)}}}"
 
 
 def _group_members(group: Mapping[str, Any], member: str) -> list[str]:
     """A group as a member of a class, with its parameters and the groups inside, as dynamic_reconfigure has it."""
-    state = "true" if group.get("state", True) else "false"
-    lines = [f"struct {_identifier(group['name']).upper()}", "{", f"    bool        state = {state};"]
+    lines = [f"struct {_identifier(group['name']).upper()}", "{", "    bool        state = true;"]
     lines += [f"    std::string name  = {quoted(group['name'])};"]
     lines += [f"    {_C_TYPES[each['type']]} {each['name']};" for each in group["parameters"]]
     for each in _inner(group):
         lines += _group_members(each, _identifier(each["name"]).lower())
     return [f"    {line}" for line in [*lines, f"}} {member};"]]
-
-
-def _grouped(group: Mapping[str, Any], place: str) -> Iterator[tuple[str, str]]:
-    """The members of a group that are parameters, and the parameters."""
-    yield from ((f"{place}.{each['name']}", each["name"]) for each in group["parameters"])
-    for each in _inner(group):
-        yield from _grouped(each, f"{place}.{_identifier(each['name']).lower()}")
 
 
 def _inner(group: Mapping[str, Any]) -> list[Mapping[str, Any]]:

@@ -2,6 +2,11 @@
 #ifndef ROSCFE_DYNAMIC_RECONFIGURE_SERVER_H
 #define ROSCFE_DYNAMIC_RECONFIGURE_SERVER_H
 
+#include <exception>
+#if defined(__cpp_exceptions)
+#include <cxxabi.h>
+#endif
+
 #include "dynamic_reconfigure/Reconfigure.h"
 #include "roscfe/configuration.h"
 
@@ -17,7 +22,7 @@ class Server
     explicit Server(const ros::NodeHandle &node = ros::NodeHandle("~")) : node_(node) { begin(); }
     // With a mutex of the node's, which nothing contends for: all callbacks run in one task.
     template <class Mutex>
-    explicit Server(Mutex &, const ros::NodeHandle &node = ros::NodeHandle("~")) : node_(node)
+    explicit Server(Mutex &, const ros::NodeHandle &node = ros::NodeHandle("~")) : node_(node), warns_(false)
     {
         begin();
     }
@@ -28,16 +33,24 @@ class Server
     void setCallback(const CallbackType &callback)
     {
         callback_ = callback;
-        if (callback_)
-        {
-            callback_(config_, ~std::uint32_t(0));
-        }
+        call(config_, ~std::uint32_t(0));
         update(config_);
     }
     void clearCallback() { callback_ = CallbackType(); }
 
     // The node's own changes: they are told, and the callback is not called.
-    void updateConfig(const ConfigType &config) { update(config); }
+    void updateConfig(const ConfigType &config)
+    {
+        if (warns_)
+        {
+            ROS_WARN("updateConfig() called on a dynamic_reconfigure::Server that provides its own mutex. This can "
+                     "lead to deadlocks if updateConfig() is called during an update. Providing a mutex to the "
+                     "constructor is highly recommended in this case. Please forward this message to the node "
+                     "author.");
+            warns_ = false;
+        }
+        update(config);
+    }
 
     void getConfigMax(ConfigType &config) const { config = most_; }
     void getConfigMin(ConfigType &config) const { config = least_; }
@@ -89,16 +102,42 @@ class Server
         updates_.publish(roscfe::configuration::message_of(config_));
     }
 
+    // What the callback throws is logged, and the configuration counts all the same.
+    void call(ConfigType &config, std::uint32_t level)
+    {
+        if (!callback_)
+        {
+            return;
+        }
+#if defined(__cpp_exceptions)
+        try
+        {
+            callback_(config, level);
+        }
+        catch (const abi::__forced_unwind &) // the end of the task
+        {
+            throw;
+        }
+        catch (const std::exception &exception)
+        {
+            ROS_WARN("Reconfigure callback failed with exception %s: ", exception.what());
+        }
+        catch (...)
+        {
+            ROS_WARN("Reconfigure callback failed with unprintable exception.");
+        }
+#else
+        callback_(config, level);
+#endif
+    }
+
     bool set(Reconfigure::Request &request, Reconfigure::Response &response)
     {
         ConfigType changed = config_;
-        ConfigType::visit(roscfe::configuration::FromMessage{request.config}, changed);
+        changed.__fromMessage__(request.config);
         changed.__clamp__();
         const std::uint32_t level = changed.__level__(config_);
-        if (callback_)
-        {
-            callback_(changed, level);
-        }
+        call(changed, level);
         update(changed);
         response.config = roscfe::configuration::message_of(config_);
         return true;
@@ -113,6 +152,7 @@ class Server
     ros::ServiceServer service_;
     ros::Publisher     updates_;
     ros::Publisher     description_;
+    bool               warns_ = true; // without a mutex of the node's, of its own changes
 };
 
 } // namespace dynamic_reconfigure

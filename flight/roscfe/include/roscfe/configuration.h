@@ -9,12 +9,13 @@
 
 #include "dynamic_reconfigure/Config.h"
 #include "dynamic_reconfigure/ConfigDescription.h"
+#include "ros/console.h"
 #include "ros/node_handle.h"
 
 namespace roscfe
 {
 
-// What a generated configuration says of one of its parameters.
+// What a generated configuration says of one of its parameters; `group` counts groups as they are described.
 template <class T>
 struct ConfigParameter
 {
@@ -72,12 +73,11 @@ struct SetMost
 
 struct Clamp
 {
-    void operator()(int &field, const ConfigParameter<int> &p) { field = std::min(std::max(field, p.least), p.most); }
-    void operator()(double &field, const ConfigParameter<double> &p)
+    template <class T>
+    void operator()(T &field, const ConfigParameter<T> &p)
     {
         field = std::min(std::max(field, p.least), p.most);
     }
-    void operator()(bool &, const ConfigParameter<bool> &) {}
     void operator()(std::string &, const ConfigParameter<const char *> &) {}
 };
 
@@ -121,33 +121,77 @@ struct ToMessage
     }
 };
 
+// Counts the parameters that the message has. Of two values for one the first counts.
 struct FromMessage
 {
     const dynamic_reconfigure::Config &message;
+    std::size_t &                      found;
 
     template <class L, class T>
-    static void get(const L &list, const char *name, T &field)
+    void get(const L &list, const char *name, T &field)
     {
         for (const auto &each : list)
         {
             if (each.name == name)
             {
-                field = static_cast<T>(each.value);
+                put(field, each.value);
+                ++found;
+                return;
             }
         }
+    }
+    template <class T, class V>
+    static void put(T &field, const V &value)
+    {
+        field = static_cast<T>(value);
+    }
+    template <class V>
+    static void put(std::string &field, const V &value)
+    {
+        field.assign(value.data(), value.size());
     }
     void operator()(bool &field, const ConfigParameter<bool> &p) { get(message.bools, p.name, field); }
     void operator()(int &field, const ConfigParameter<int> &p) { get(message.ints, p.name, field); }
     void operator()(double &field, const ConfigParameter<double> &p) { get(message.doubles, p.name, field); }
-    void operator()(std::string &field, const ConfigParameter<const char *> &p)
+    void operator()(std::string &field, const ConfigParameter<const char *> &p) { get(message.strs, p.name, field); }
+};
+
+// Visitors of the groups of a configuration, an outer one before those inside: Config::visit_groups(visitor, config).
+
+struct InitialState
+{
+    void operator()(bool &state, const ConfigGroup &group) { state = group.state; }
+};
+
+struct GroupToMessage
+{
+    dynamic_reconfigure::Config &message;
+    void operator()(bool &state, const ConfigGroup &group)
     {
-        for (const auto &each : message.strs)
+        message.groups.emplace_back();
+        message.groups.back().name   = group.name;
+        message.groups.back().state  = state;
+        message.groups.back().id     = group.id;
+        message.groups.back().parent = group.parent;
+    }
+};
+
+// As in ROS, the first group that the message does not have keeps those behind it as they are.
+struct GroupFromMessage
+{
+    const dynamic_reconfigure::Config &message;
+    bool &                             is_over;
+    void operator()(bool &state, const ConfigGroup &group)
+    {
+        for (std::size_t i = 0; !is_over && i < message.groups.size(); ++i)
         {
-            if (each.name == p.name)
+            if (message.groups[i].name == group.name)
             {
-                field = each.value.c_str();
+                state = message.groups[i].state;
+                return;
             }
         }
+        is_over = true;
     }
 };
 
@@ -189,18 +233,41 @@ dynamic_reconfigure::Config message_of(const Config &config)
     dynamic_reconfigure::Config message;
     Config                      copy = config;
     Config::visit(ToMessage{message}, copy);
-    for (int i = 0; i < Config::group_count(); ++i)
-    {
-        const ConfigGroup &group = Config::groups_of()[i];
-        message.groups.emplace_back();
-        message.groups.back().name   = group.name;
-        message.groups.back().state  = group.state;
-        message.groups.back().id     = group.id;
-        message.groups.back().parent = group.parent;
-    }
+    Config::visit_groups(GroupToMessage{message}, copy);
     return message;
 }
 
+template <class List>
+void log_names(const char *title, const List &list)
+{
+    ROS_ERROR("%s:", title);
+    for (const auto &each : list)
+    {
+        ROS_ERROR("  %s", each.name.c_str());
+    }
+}
+
+// Take over what a message has; false, with lines in the log, when it has other parameters, too, or one twice.
+template <class Config>
+bool take(const dynamic_reconfigure::Config &message, Config &config, const char *name)
+{
+    std::size_t found   = 0;
+    bool        is_over = false;
+    Config::visit(FromMessage{message, found}, config);
+    Config::visit_groups(GroupFromMessage{message, is_over}, config);
+    if (found == message.bools.size() + message.ints.size() + message.doubles.size() + message.strs.size())
+    {
+        return true;
+    }
+    ROS_ERROR("%s::__fromMessage__ called with an unexpected parameter.", name);
+    log_names("Booleans", message.bools);
+    log_names("Integers", message.ints);
+    log_names("Doubles", message.doubles);
+    log_names("Strings", message.strs);
+    return false;
+}
+
+// Groups and their parameters, without limits and defaults.
 template <class Config>
 dynamic_reconfigure::ConfigDescription description_of()
 {
@@ -216,12 +283,6 @@ dynamic_reconfigure::ConfigDescription description_of()
     }
     Config config;
     Config::visit(Describe{message}, config);
-    Config::visit(SetMost(), config);
-    message.max = message_of(config);
-    Config::visit(SetLeast(), config);
-    message.min = message_of(config);
-    Config::visit(SetDefaults(), config);
-    message.dflt = message_of(config);
     return message;
 }
 
