@@ -22,6 +22,7 @@ from rospy_shim.client.node import Node
 from rospy_shim.client.tasks import NodeTasks
 from rospy_shim.graph.compiled import CompiledNodes
 from rospy_shim.graph.graph import Graph, TopicEntry, TopicRow
+from rospy_shim.graph.process_numbers import ProcessNumbers
 from rospy_shim.library_parts import FOLDER, STAND_INS, ConfigModules, library_names, library_parts
 from rospy_shim.master import MASTER_PORT, Switchboard, xmlrpc_client
 from rospy_shim.msgs import make_module
@@ -178,10 +179,11 @@ class RosRuntime:
         if files is not None:
             files.stamps.now_ns = lambda: self._epoch_ns + kernel.now
         self.monitor = ProcessMonitor(config, console, kernel.stop)
-        self.parameters = ParameterApp(cfe, self.graph.params, CompiledNodes(self.graph, cfe.sb, self._compiled_ended))
+        self._pids = ProcessNumbers({MASTER_PORT})
+        compiled = CompiledNodes(self.graph, cfe.sb, self._compiled_ended, self._pids)
+        self.parameters = ParameterApp(cfe, self.graph.params, compiled)
         self._started: dict[str, NodeConfig] = {}
         self._running: list[Node] = []
-        self._pids = {MASTER_PORT}
         self.ended: dict[str, NodeEnd] = {}
         self._task_numbers = count(1)
 
@@ -224,7 +226,7 @@ class RosRuntime:
             return self._crashed(node, error)
         finally:
             self._running.remove(node)
-            self._pids.remove(node.universe.pid)
+            self._pids.give(node.universe.pid)
             self.ended[app_name] = NodeEnd(node.universe.name, node.universe.exit_status)
             node.abandon()
 
@@ -260,7 +262,7 @@ class RosRuntime:
             overlay=None if config.on_disk else self._files,
             on_thread_start=tasks.thread,
         )
-        universe.pid = self._free_pid(universe.pid)
+        universe.pid = self._pids.take(universe.pid)
         node = Node(self._cfe, self.graph, universe, config, tasks, self._call_ns, self._publish_slot_ns)
         universe.importer.path[1:1] = [*_python_path(universe), *map(str, node.packages.code_folders())]
         find = _finder(
@@ -313,13 +315,6 @@ class RosRuntime:
     def app_names(self) -> list[str]:
         """Names that a new node's application cannot have."""
         return [*(app.name for app in self._cfe.es.apps), *self._config.nodes, *self._started]
-
-    def _free_pid(self, wanted: int) -> int:
-        """A process number that no other node has; it is the port in the node's URI, too."""
-        while wanted in self._pids:
-            wanted += 1
-        self._pids.add(wanted)
-        return wanted
 
     def begin_shutdown(self, reason: str, app_name: str | None = None) -> None:
         """Ask all nodes to end, as Ctrl-C ends a roslaunch, or the one of an application.

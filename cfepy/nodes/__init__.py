@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
     from cfepy.nodes.reach import held_by, is_private, reaches
     from cfepy.nodes.refused import RefusedError
-    from cfepy.nodes.universe import Factory, StartThread, Universe
+    from cfepy.nodes.universe import Factory, StartThread, Universe, process_number
 
 __all__ = [
     "ASKED",
@@ -45,6 +45,7 @@ __all__ = [
     "held_by",
     "is_private",
     "make_app_universe",
+    "process_number",
     "reaches",
 ]
 
@@ -60,6 +61,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Factory",
                 "StartThread",
                 "Universe",
+                "process_number",
             ),
         },
     )

@@ -118,7 +118,7 @@ class Universe:
         self.script = self.shown(os.path.abspath(script)) if script else ""
         self.argv = [self.shown(os.fspath(script)), *argv]
         self.host_name = "cfepy"
-        self.pid = 1000 + zlib.crc32(name.encode()) % 30000
+        self.pid = process_number(name)
         self.priority = priority
         self.cwd = self.shown(os.path.abspath(cwd if cwd is not None else os.getcwd()))
         self.rng = random.Random(f"{seed}/{name}")
@@ -366,6 +366,15 @@ class Universe:
 
     def _write_line(self, line: str) -> None:
         self._sink(f"[{self.name}] {line}")
+
+
+def process_number(name: str) -> int:
+    """The number that the process of a node has, unless another has it already.
+
+    Args:
+        name: of the node.
+    """
+    return 1000 + zlib.crc32(name.encode()) % 30000
 
 
 def _free() -> None:

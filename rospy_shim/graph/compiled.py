@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
+from cfepy.nodes import process_number
 from cfepy.sb import ONESUB_TLM, UNSUBSCRIPTION
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_MS
@@ -19,6 +20,7 @@ from rospy_shim.client.exceptions import ServiceException
 from rospy_shim.client.service import REQUEST_LEAD, Pieces, answer_packets, call_of_request, room_of
 from rospy_shim.client.transport import HEADER_BYTES, addressed, segments, whole_header
 from rospy_shim.graph.compiled_params import CompiledParams
+from rospy_shim.graph.process_numbers import ProcessNumbers
 from rospy_shim.parameters.table import MASTER_TLM_MID
 
 if TYPE_CHECKING:
@@ -81,7 +83,7 @@ class CompiledService:
         self.resolved_name = name
         self.service_class = declared
         self.type = declared._type
-        self.uri = f"rosrpc://cfepy{name}"
+        self.uri = f"rosrpc://cfepy:{node.pid}"
 
     def has_room(self, packet: bytes) -> bool:
         """Whether a packet of a request may be sent."""
@@ -103,7 +105,7 @@ class _Client(NamedTuple):
     uri: str
 
     def get_node_uri(self) -> str:
-        """Where the node would answer; nobody does."""
+        """Where the node answers: `rospy_shim.master` does in its place."""
         return self.uri
 
 
@@ -114,11 +116,13 @@ class CompiledNode:
         name: its full name.
         pipe: through which it hears everything.
         bus: the Software Bus.
+        pid: the number that stands for its process, and the port in its URIs.
     """
 
-    def __init__(self, name: str, pipe: int, bus: SoftwareBus) -> None:
+    def __init__(self, name: str, pipe: int, bus: SoftwareBus, pid: int) -> None:
         self.names = _Names(name)
-        self.client = _Client(f"http://cfepy{name}")
+        self.client = _Client(f"http://cfepy:{pid}/")
+        self.pid = pid
         self.pipe = pipe
         self.bus = bus
         self.published: dict[str, str] = {}  # types by topic
@@ -137,12 +141,16 @@ class CompiledNodes:
         graph: the mission's ROS graph.
         bus: the Software Bus.
         ended: takes application and exit status of a node that ends by itself; in how many ns it is to start again.
+        pids: gives the numbers of processes.
     """
 
-    def __init__(self, graph: Graph, bus: SoftwareBus, ended: Callable[[str, int], int | None]) -> None:
+    def __init__(
+        self, graph: Graph, bus: SoftwareBus, ended: Callable[[str, int], int | None], pids: ProcessNumbers
+    ) -> None:
         self._graph = graph
         self._bus = bus
         self._ended = ended
+        self._pids = pids
         self._params = CompiledParams(graph.params, bus)
         self._pieces = Pieces(REQUEST_LEAD)
 
@@ -162,6 +170,7 @@ class CompiledNodes:
         """Nodes whose applications have ended leave the graph."""
         for node in [each for each in self._graph.compiled.values() if not each.is_alive]:
             del self._graph.compiled[node.names.name]
+            self._pids.give(node.pid)
             for name in {**node.published, **node.subscribed}:
                 self._graph.topic(name).leave_compiled(node)
             services = self._graph.services
@@ -191,7 +200,9 @@ class CompiledNodes:
         self.forget_ended()
         node = self._graph.compiled.get(who)
         if node is None or node.pipe != pipe:
-            node = self._graph.compiled[who] = CompiledNode(who, pipe, self._bus)
+            if node is not None:
+                self._pids.give(node.pid)
+            node = self._graph.compiled[who] = CompiledNode(who, pipe, self._bus, self._pids.take(process_number(who)))
         does: dict[int, Callable[[CompiledNode, str, DeclaredType], Enrolled]] = {
             Concern.PUBLISHER: self._publish,
             Concern.SUBSCRIBER: self._subscribe,

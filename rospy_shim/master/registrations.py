@@ -21,7 +21,7 @@ Entries = dict[str, dict[str, str]]
 
 
 def uri_of(node: Node | CompiledNode) -> str:
-    """The URI at which a node answers; nobody does at that of a compiled node."""
+    """The URI at which a node answers."""
     return node.client.get_node_uri() or ""
 
 

@@ -147,15 +147,19 @@ class SlaveApi:
         """The header that a probe of the service gets: type and md5sum. ROS asks at the service's own TCP port."""
         for each in self._node.services:
             if each.resolved_name == service:
-                kind = each.service_class
-                header = {
-                    "callerid": self._node.names.name,
-                    "md5sum": kind._md5sum,
-                    "service": service,
-                    "type": kind._type,
-                }
-                return 1, "service header", header
+                return 1, "service header", service_header(self._node.names.name, service, each.service_class)
         return -1, f"Not a provider of [{service}]", {}
+
+
+def service_header(node: str, service: str, kind: Any) -> dict[str, str]:
+    """What a service says of itself.
+
+    Args:
+        node: that offers it.
+        service: its name.
+        kind: its type, as a class or as a compiled node declares it.
+    """
+    return {"callerid": node, "md5sum": kind._md5sum, "service": service, "type": kind._type}
 
 
 def _types(sides: Iterable[tuple[str, TopicSide]]) -> list[list[str]]:

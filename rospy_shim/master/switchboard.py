@@ -17,6 +17,7 @@ from urllib.parse import urlsplit
 
 from cfepy.nodes.refused import RefusedError
 from rospy_shim.master.calls import UnknownMethod, call
+from rospy_shim.master.compiled_api import CompiledApi
 from rospy_shim.master.master_api import MasterApi
 from rospy_shim.master.registrations import uri_of
 from rospy_shim.master.slave_api import SlaveApi
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from rospy_shim.graph.graph import Graph
 
 MASTER_PORT = 11311
+MASTER_URI = f"http://cfepy:{MASTER_PORT}/"
 HERE = frozenset({"cfepy", "localhost", "127.0.0.1", "127.0.1.1", "[::1]"})
 NAME = "xmlrpc.client"
 ROUND_TRIP_NS = 500_000  # about what a request takes on one computer; a loop that asks until something is there gets on
@@ -42,9 +44,9 @@ class Switchboard:
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
-        self._master = MasterApi(graph, f"http://cfepy:{MASTER_PORT}/")
+        self._master = MasterApi(graph, MASTER_URI)
 
-    def find(self, asker: Node, address: str) -> MasterApi | SlaveApi | None:
+    def find(self, asker: Node, address: str) -> MasterApi | SlaveApi | CompiledApi | None:
         """The object that answers, or None.
 
         Args:
@@ -57,6 +59,9 @@ class Switchboard:
         for node in self._graph.nodes.values():
             if place == _place(_host(uri_of(node))):
                 return SlaveApi(node, self._master)
+        for compiled in self._graph.compiled.values():
+            if place == _place(_host(uri_of(compiled))):
+                return CompiledApi(compiled, self._graph, MASTER_URI)
         return None
 
 

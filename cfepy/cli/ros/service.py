@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 from typing import Any
 
 from cfepy.cli.json_output import write_json
@@ -11,9 +12,11 @@ from cfepy.cli.looked_at import flight_plan
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.ros.source import FlightSource
 from cfepy.console import Console
+from cfepy.flight import library_near
 from cfepy.ground import GroundConsole, is_bag, with_ground_node
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
+from rospy_shim.graph.compiled import DeclaredType
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -38,13 +41,24 @@ def _services(arguments: argparse.Namespace) -> dict[str, dict[str, Any]]:
     with FlightSource(flight_plan(arguments)) as source:
         ros = source.fly().ros
         found = {} if ros is None else dict(sorted(ros.graph.services.items()))
-        return {name: _described(name, entry.service) for name, entry in found.items()}
+        near = source.mission.spec.folder
+        return {name: _described(name, entry.service, near) for name, entry in found.items()}
 
 
-def _described(name: str, service: Any) -> dict[str, Any]:
+def _described(name: str, service: Any, near: Path) -> dict[str, Any]:
     kind = service.service_class
-    fields = list(kind._request_class.__slots__)
+    fields = _arguments(kind, near)
     return {"service": name, "node": service.node.names.name, "uri": service.uri, "type": kind._type, "args": fields}
+
+
+def _arguments(kind: Any, near: Path) -> list[str]:
+    """Fields of the request; a compiled node names the type only: its definition is looked for near the mission."""
+    if isinstance(kind, DeclaredType):
+        try:
+            kind = library_near(near).service_class(kind._type)
+        except UsageError:
+            return []
+    return list(kind._request_class.__slots__)
 
 
 def _list(services: dict[str, dict[str, Any]], arguments: argparse.Namespace) -> int:

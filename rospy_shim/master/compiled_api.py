@@ -1,0 +1,91 @@
+"""The answers of a compiled node to calls at its URI (wiki.ros.org/ROS/Slave_API).
+
+The node itself hears the Software Bus only. What is asked of it is known to the graph, which answers in its place. It
+is ended by commands of ES: `shutdown` is none of its methods.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from rospy_shim.master import calls
+from rospy_shim.master.calls import Answer, answers
+from rospy_shim.master.registrations import uri_of
+from rospy_shim.master.slave_api import TRANSPORT, service_header
+
+if TYPE_CHECKING:
+    from rospy_shim.graph.compiled import CompiledNode
+    from rospy_shim.graph.graph import Graph
+
+
+class CompiledApi:
+    """What others ask a compiled node; each method takes the caller's name first and gives code, text and value.
+
+    Args:
+        node: the node.
+        graph: the mission's ROS graph.
+        master_uri: the master's.
+    """
+
+    def __init__(self, node: CompiledNode, graph: Graph, master_uri: str) -> None:
+        self._node = node
+        self._graph = graph
+        self._master_uri = master_uri
+
+    @answers("")
+    def getUri(self, caller: str) -> Answer:
+        """Where the node answers."""
+        return 1, "", uri_of(self._node)
+
+    @answers("")
+    def getName(self, caller: str) -> Answer:
+        """The node's name."""
+        return 1, "", self._node.names.name
+
+    @answers(-1)
+    def getPid(self, caller: str) -> Answer:
+        """A number that no other node has; all of them are one process."""
+        return 1, "", self._node.pid
+
+    @answers("")
+    def getMasterUri(self, caller: str) -> Answer:
+        """The master's URI."""
+        return 1, self._master_uri, self._master_uri
+
+    @answers([])
+    def getSubscriptions(self, caller: str) -> Answer:
+        """[topic, type] of what the node subscribes to."""
+        return 1, "subscriptions", [list(each) for each in self._node.subscribed.items()]
+
+    @answers([])
+    def getPublications(self, caller: str) -> Answer:
+        """[topic, type] of what the node publishes."""
+        return 1, "publications", [list(each) for each in self._node.published.items()]
+
+    @answers([])
+    def getBusInfo(self, caller: str) -> Answer:
+        """[number, other side, direction, transport, topic, connected, text] for each connection."""
+        return 1, "bus info", [[number, *each] for number, each in enumerate(self._connections(), 1)]
+
+    def _connections(self) -> Iterator[tuple[str, str, str, str, bool, str]]:
+        for name in self._node.published:
+            topic = self._graph.topic(name)
+            hear: list[Any] = [*(each.node for each in topic.subscriptions), *topic.compiled_subscribers]
+            for node in hear:
+                text = f"{TRANSPORT} connection on MsgId 0x{topic.msg_id:04X} to [{node.names.name}]"
+                yield node.names.name, "o", TRANSPORT, name, True, text
+        for name in self._node.subscribed:
+            topic = self._graph.topic(name)
+            say: list[Any] = [*(each.node for each in topic.links), *topic.compiled_publishers]
+            for node in say:
+                text = f"{TRANSPORT} connection on MsgId 0x{topic.msg_id:04X} to [{uri_of(node)}]"
+                yield uri_of(node), "i", TRANSPORT, name, True, text
+
+    @answers({}, calls.name_of_thing("service"))
+    def getServiceHeader(self, caller: str, service: str) -> Answer:
+        """The header that a probe of the service gets: type and md5sum."""
+        entry = self._graph.services.get(service)
+        if entry is None or entry.service.node is not self._node:
+            return -1, f"Not a provider of [{service}]", {}
+        return 1, "service header", service_header(self._node.names.name, service, entry.service.service_class)
