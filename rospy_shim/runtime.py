@@ -204,7 +204,8 @@ class RosRuntime:
             script: the Python file.
             app_name: cFE name of the application.
 
-        A node that fails ends its application with CFE_ES_RunStatus_APP_ERROR.
+        A node that fails ends its application with CFE_ES_RunStatus_APP_ERROR. One that crashes and is not to respawn
+        is an exception to ES, which does what its line in the startup script says.
         """
         config = self._started.get(app_name) or self._config.nodes.get(app_name) or NodeConfig(app_name)
         self._cfe.es.run_loop()  # tells ES that the application runs, so that the mission can become operational
@@ -213,6 +214,8 @@ class RosRuntime:
         while self.monitor.starts_again(self._started.get(app_name, config), status):
             self._kernel.delay(max(config.respawn_delay_ns, SHORTEST_RESPAWN_NS))
             status = self._run_process(script, app_name, config)
+        if status == CRASHED and config.is_of_startup_script and not self.monitor.closing:
+            raise InjectedCrash(f"node {self.ended[app_name].name}")
         if status != 0 and not self.monitor.closing:
             self._cfe.es.exit_app(APP_ERROR)
 

@@ -23,8 +23,9 @@ from cfepy.faults.names import MissionNames
 from cfepy.faults.plan import DATAGRAMS, Fault, FaultPlan
 from cfepy.faults.processor import MEMORY_FAULTS, Drift, Jump, LostSignal, ProcessorFault
 from cfepy.faults.report import FaultReport
-from cfepy.faults.timing import Agenda, Gate
+from cfepy.faults.timing import Agenda, Gate, OpenCalls, asker
 from cfepy.mission import Mission, Processor
+from cfepy.rtos import WaitList
 from cfepy.sb import Pipe, SoftwareBus
 
 Strike = Callable[[Processor], object]
@@ -51,6 +52,7 @@ class FaultInjector(Attachment):
         self._power_ups: list[Strike] = []
         self._first: list[Strike] = []
         self._strain: Strain | None = None
+        self._calls: OpenCalls | None = None
         self._gates: dict[str, Gate] = {}
         self._faults: list[Fault] = []  # of the plan, with applications by their cFE names
         self._processor: Processor
@@ -67,9 +69,10 @@ class FaultInjector(Attachment):
         self.report = FaultReport(self.plan.faults, lambda: kernel.now, mission.console.write, mission.trace.note)
         mission.record.tables["faults"] = self.rows
         self._agenda = Agenda(kernel)
-        self._power_ups, self._first, self._strain = [], [], None
+        self._power_ups, self._first, self._strain, self._calls = [], [], None, None
         self._gates = {
-            fault.name: Gate(fault.when, Random(f"{mission.seed}:{fault.name}")) for fault in self.plan.faults
+            fault.name: Gate(fault.when, Random(f"{mission.seed}:{fault.name}"), asker(kernel, fault.name))
+            for fault in self.plan.faults
         }
         names = MissionNames()
         names.begin(mission)
@@ -120,6 +123,8 @@ class FaultInjector(Attachment):
             self._at_times(fault, MEMORY_FAULTS[fault.kind](fault, gate.random, report).strike)
         elif fault.kind in ("crash", "hang", "stop", "restart"):
             self._prepare_app(fault)
+        elif _is_at_calls(fault):
+            self._at_calls(fault, None, self._once(fault))
         else:
             self._at_times(fault, self._once(fault))
 
@@ -133,7 +138,9 @@ class FaultInjector(Attachment):
         """At its times, or when the application has taken certain messages out of its pipes."""
         for name in fault.target:
             strike = self._app_fault(fault, name).strike
-            if not _counts_messages(fault):
+            if _is_at_calls(fault):
+                self._at_calls(fault, name, strike)
+            elif not _counts_messages(fault):
                 self._at_times(fault, strike)
             else:
                 self._board.on_take.append(partial(self._on_take, fault, name, strike))
@@ -157,12 +164,26 @@ class FaultInjector(Attachment):
         if wanted is not None and not self._board.is_called(packet, wanted):
             return
         if self._gates[fault.name].opens(self._kernel.now):
-            self._agenda.add(self._kernel.now, lambda: strike(self._processor))
+            self._strike_now(fault, strike)
 
     def _kernel_strain(self) -> Strain:
         if self._strain is None:
             self._strain = Strain(self._kernel)
         return self._strain
+
+    def _at_calls(self, fault: Fault, app_name: str | None, strike: Strike) -> None:
+        """Before whichever call of an application, or of any, the schedule chooses."""
+        if self._calls is None:
+            self._calls = OpenCalls(self._kernel)
+        self._calls.add(app_name, self._gates[fault.name], partial(self._strike_now, fault, strike))
+
+    def _strike_now(self, fault: Fault, strike: Strike) -> None:
+        """Let a fault happen in this instant. In an application that crashes the calling task comes no further."""
+        record = self.report.records[fault.name]
+        before = record.times
+        self._agenda.add(self._kernel.now, lambda: strike(self._processor))
+        if fault.kind == "crash" and record.times > before:
+            self._kernel.wait_on(WaitList("the end of its application, which has crashed"))
 
     def _at_times(self, fault: Fault, strike: Strike) -> None:
         """At its instants; what has none happens before the boot, and so does a change of memory at 0."""
@@ -182,7 +203,8 @@ class FaultInjector(Attachment):
         for name, gate in self._gates.items():
             record = self.report.records[name]
             if not record.times and not gate.fired and not _is_timed(record.fault):
-                record.why_not = gate.why_not() if gate.seen else _without_occasion(record.fault, gate)
+                had_occasions = gate.seen or gate.when.explored
+                record.why_not = gate.why_not() if had_occasions else _without_occasion(record.fault, gate)
         return self.report.rows()
 
 
@@ -213,9 +235,15 @@ def _is_put(fault: Fault) -> bool:
     return fault.kind == "fail" and call_name(fault.target[0]) == QUEUE_PUT
 
 
+def _is_at_calls(fault: Fault) -> bool:
+    """Whether the schedule may choose any call for it."""
+    is_of_apps = fault.kind in ("crash", "hang", "stop", "restart") and "message" not in fault.options
+    return bool(fault.when.explored) and (is_of_apps or fault.kind == "reset")
+
+
 def _counts_messages(fault: Fault) -> bool:
     """Whether an application's fault waits for messages, and not for a time alone."""
-    return not fault.when.at_ns or "message" in fault.options
+    return not _is_at_calls(fault) and (not fault.when.at_ns or "message" in fault.options)
 
 
 def _needs_bus(fault: Fault) -> bool:
@@ -226,6 +254,8 @@ def _needs_bus(fault: Fault) -> bool:
 
 def _is_timed(fault: Fault) -> bool:
     """Whether it happens at a time, whatever goes on then."""
+    if _is_at_calls(fault):
+        return False
     if fault.kind in ("crash", "hang", "stop", "restart"):
         return not _counts_messages(fault)
     return fault.kind in ("fill", "jump_clock", "reset", "drift_clock", *MEMORY_FAULTS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-WINDOW = ("after", "until", "number", "every", "probability", "count")
+WINDOW = ("after", "until", "number", "every", "probability", "count", "explored")
 OCCASIONS = ("at", *WINDOW)
 
 MESSAGE, APP, PIPE, SECONDS, PPM, SIGNAL, FILE, TABLE, MEMORY, CALL, RESET = (
@@ -73,5 +73,5 @@ KINDS: dict[str, FaultKind] = {
     "corrupt_table": FaultKind(TABLE, ("at", "bits", "bytes"), "the active image of a table is changed", ("at",)),
     "corrupt_memory": FaultKind(MEMORY, ("at", "block", "bits", "bytes"), "retained memory is changed", ("at",)),
     "fail": FaultKind(CALL, (*OCCASIONS, "app", "object", "status"), "a call of cFE, OSAL or PSP fails"),
-    "reset": FaultKind(RESET, ("at",), "the processor is reset", ("at",)),
+    "reset": FaultKind(RESET, ("at", "after", "until", "explored"), "the processor is reset", ("at", "explored")),
 }

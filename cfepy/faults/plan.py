@@ -28,8 +28,15 @@ LONGEST_S = 1e9
 DATAGRAMS = "udp:"
 WHEN = {"at": "at_ns", "after": "after_ns", "until": "until_ns"}
 """The options of `When` whose names in a plan are others; those are in s, these in ns."""
-ALTERNATIVES = (("bits", "bytes", "fields"), ("for", "times"), ("message", "times"), ("at", *kinds.WINDOW))
-EXAMPLES = {"at": "2.5", "by": "0.01", "times": "10", "extra": "0.001", "for": "0.02"}
+ALTERNATIVES = (
+    ("bits", "bytes", "fields"),
+    ("for", "times"),
+    ("message", "times"),
+    ("explored", "probability"),
+    ("explored", "count"),
+    ("at", *kinds.WINDOW),
+)
+EXAMPLES = {"at": "2.5", "explored": "1", "by": "0.01", "times": "10", "extra": "0.001", "for": "0.02"}
 _TIMES = ("after", "until", "within", "for", "extra")
 
 
@@ -313,6 +320,7 @@ READERS: dict[str, Callable[[Marked], Any]] = {
     "every": _positive,
     "probability": _probability,
     "count": _positive,
+    "explored": _positive,
     "from": Marked.text,
     "to": Marked.text,
     "unit": _choice(kinds.UNITS),

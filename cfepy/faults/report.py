@@ -86,6 +86,7 @@ def _row(record: FaultRecord) -> dict[str, Any]:
     return {
         "name": record.fault.name,
         "what": record.fault.text,
+        "explored": record.fault.when.explored > 0,
         "times": record.times,
         "first_at_s": record.at_ns[0] / 1e9 if record.times else None,
         "last_at_s": record.last_ns / 1e9 if record.times else None,

@@ -1,7 +1,8 @@
 """When faults happen: at occasions, as `When` says and a `Gate` counts, and at the times of an `Agenda`.
 
-An occasion is a message, a call or a tick. Faults that are due at a time are carried out by a task of priority 0, which
-exists only while some are left.
+An occasion is a message, a call or a tick. At which of them it happens can be open to the schedule: the fault then asks
+at each, and the answer is a decision like any other, no under fifo. Faults that are due at a time are carried out by a
+task of priority 0, which exists only while some are left.
 """
 
 from __future__ import annotations
@@ -11,12 +12,15 @@ from contextlib import suppress
 from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 from random import Random
+from typing import Any
 
-from cfepy.rtos import Kernel, WaitList
+from cfepy.rtos import ExploringKernel, Kernel, Question, WaitList
 from cfepy.status import CfeError
 
 PRIORITY = 0
 TASK_NAME = "FAULTS"
+CALLS = ("point", "charge", "delay")
+NO, YES = "does not strike", "strikes"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +34,8 @@ class When:
         every: only every so many-th of them.
         probability: of each that is left, 0 to 1.
         count: most times that it happens; None for no limit.
+        explored: it is open to the schedule at which of these occasions it happens, at most so many times; 0 where it
+            is not.
     """
 
     at_ns: tuple[int, ...] = ()
@@ -39,6 +45,7 @@ class When:
     every: int = 1
     probability: float = 1.0
     count: int | None = None
+    explored: int = 0
 
 
 class Gate:
@@ -47,15 +54,17 @@ class Gate:
     Args:
         when: at which occasions.
         random: the fault's own stream of random numbers, so that no other fault changes its draws.
+        strikes: asks the schedule whether it happens at an occasion, where that is open.
 
     Attributes:
         seen: occasions so far, outside the window too.
         fired: how often it happened.
     """
 
-    def __init__(self, when: When, random: Random) -> None:
+    def __init__(self, when: When, random: Random, strikes: Callable[[], bool] = lambda: False) -> None:
         self.when = when
         self.random = random
+        self._strikes = strikes
         self.seen = self.fired = 0
         self._inside = 0
         self._waiting = sorted(when.at_ns)
@@ -85,16 +94,74 @@ class Gate:
         self._inside += 1
         if (when.number and self._inside not in when.number) or self._inside % when.every:
             return False
+        if when.explored:
+            return self.fired < when.explored and self._strikes()
         return when.probability >= 1 or self.random.random() < when.probability
 
     def why_not(self) -> str:
         """Why it never happened, as far as its occasions can tell."""
+        if self.when.explored:
+            return "no schedule asked for it; cfepy explore tries those that do"
         if not self.seen:
             return "nothing that it is about happened"
         times = "1 time" if self.seen == 1 else f"{self.seen} times"
         if not self._inside:
             return f"matched {times}, but not in its window of time"
         return f"matched {times}, but no time was one of those that it asks for"
+
+
+def asker(kernel: Kernel, name: str) -> Callable[[], bool]:
+    """What asks the schedule whether the fault of a name happens at an occasion."""
+    question = Question(f"fault {name}", "fault", (NO, YES), f"fault {name} {{}}", is_rare=True)
+    return lambda: bool(kernel.answer(question))
+
+
+class OpenCalls:
+    """The calls of applications as occasions of faults. Its kernel's methods are wrapped, if that explores.
+
+    An occasion is before each call, and before each bit of CPU time that is paid for: wherever others could get in.
+
+    Args:
+        kernel: whose calls they are.
+    """
+
+    def __init__(self, kernel: Kernel) -> None:
+        self._kernel = kernel
+        self._open: list[tuple[str | None, Gate, Callable[[], object]]] = []
+        self._is_asking = False
+        for name in CALLS if isinstance(kernel, ExploringKernel) else ():
+            setattr(kernel, name, self._wrapped(getattr(kernel, name)))
+
+    def add(self, app_name: str | None, gate: Gate, strike: Callable[[], object]) -> None:
+        """Let a fault happen at calls.
+
+        Args:
+            app_name: of this application; None for those of all.
+            gate: asks.
+            strike: does it, in the task that calls.
+        """
+        self._open.append((app_name, gate, strike))
+
+    def _wrapped(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        def call(*args: Any) -> Any:
+            task = self._kernel.current
+            if task.owner is not None and not task.dying and not self._is_asking:
+                self._ask(task.owner.name)
+            return original(*args)
+
+        return call
+
+    def _ask(self, app_name: str) -> None:
+        self._is_asking = True  # what strikes makes calls of its own
+        try:
+            due = [strike for app, gate, strike in self._open if app in (None, app_name) and self._opens(gate)]
+        finally:
+            self._is_asking = False
+        for strike in due:
+            strike()
+
+    def _opens(self, gate: Gate) -> bool:
+        return gate.opens(self._kernel.now)
 
 
 class Agenda:

@@ -146,6 +146,11 @@ def read_nodes(section: Marked, mistakes: Mistakes) -> dict[str, NodeConfig]:
         for name, value in mistakes.fields(entry, _NODE_FIELDS):
             said[name] = mistakes.attempt(partial(_NODE_FIELDS[name], value))
         if len(mistakes.errors) == before:
+            if said.get("respawn") and said.get("required"):
+                mistakes.add(entry.fail("has both respawn and required; a node that ends the run cannot come back"))
+                continue
+            if "respawn_delay" in said:
+                said["respawn_delay_ns"] = said.pop("respawn_delay")
             said["params"] = merged(said.pop("params_from", {}), said.get("params", {}))
             nodes[app] = NodeConfig(app, **said)
     return nodes
@@ -233,6 +238,9 @@ _NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
     "ordered_sets": _truth,
     "keys": _keys,
     "compute": lambda entry: {name: value.time() for name, value in entry.mapping().items()},
+    "respawn": _truth,
+    "respawn_delay": Marked.time,
+    "required": _truth,
 }
 """What reads each field of a node; the results are those of `NodeConfig`."""
 

@@ -51,6 +51,11 @@ class NodeConfig:
     on_disk: bool = False
     compute: Mapping[str, int] = field(default_factory=dict)
 
+    @property
+    def is_of_startup_script(self) -> bool:
+        """Whether it has a line there, with an exception action; a launch file says where its program is instead."""
+        return self.script is None
+
 
 @dataclass(frozen=True, slots=True)
 class CppNode:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.mission import Mission
 from tests.faults.worlds import fly, row, told, values
 
 BOTH = pytest.mark.parametrize("tasks", ["thread", "greenlet"])
@@ -134,7 +135,31 @@ def test_a_node_crashes_as_a_process_does(tmp_path: Path, tasks: str) -> None:
     assert not any("caught" in line or "cleaned up" in line for line in mission.console.lines)
     assert told(mission, "[talker] Segmentation fault (fault crash-1)")
     assert mission.ros.ended["TALKER"].status == 139
-    assert mission.record.history["TALKER"].error_exits == 1
+    assert mission.record.history["TALKER"].deaths == 1
+
+
+def goes_on(mission: Mission) -> bool:
+    """Whether the node runs again after its crash."""
+    lines = mission.console.lines
+    crash = next(at for at, line in enumerate(lines) if "Segmentation fault" in line)
+    return any("now" in line for line in lines[crash:])
+
+
+@pytest.mark.parametrize("action", [0, 1])
+def test_es_does_with_a_crashed_node_what_its_line_says(tmp_path: Path, action: int) -> None:
+    startup = NODE_STARTUP.replace("0x0, 0;", f"0x0, {action};")
+    mission = fly(tmp_path, {"crash": "TALKER", "at": 1.8}, startup=startup, talker=TALKER, seconds=12)
+    assert (mission.record.history["TALKER"].restarts, len(mission.record.resets)) == (1 - action, action)
+    assert goes_on(mission)
+
+
+def test_a_node_that_respawns_is_no_exception(tmp_path: Path) -> None:
+    mission_yaml = "nodes: {TALKER: {respawn: true, respawn_delay: 0.5 s}}"
+    crash = {"crash": "TALKER", "at": 1.8}
+    mission = fly(tmp_path, crash, startup=NODE_STARTUP, talker=TALKER, mission_yaml=mission_yaml)
+    assert told(mission, "launch: TALKER has ended with exit status 139 and is started again")
+    assert mission.record.history["TALKER"].deaths == 0
+    assert goes_on(mission)
 
 
 def test_a_node_that_hangs_prints_nothing(tmp_path: Path) -> None:
