@@ -28,6 +28,7 @@ from cfepy.exploration.timeline import timeline_of
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import RACE, STALLED, Failure, Finding, Findings, Verdict
 from cfepy.exploration.workers import LONGEST_S, PROCESS_DIED
+from cfepy.monitors import InversionWatch
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Policy, Schedule, Stopwatch
 from cfepy.status import UsageError
@@ -36,6 +37,7 @@ from cfepy.units import NS_PER_S
 FROM_OPERATIONAL = 0.0
 BASE = "at"  # fifo as a policy, which is asked, so that decisions can be counted and options count
 DEFAULT_SEEDS = 100
+MOST_INVERSIONS = 3  # that are told of one failure
 _NO_WAY = (PROCESS_DIED, STALLED)  # a run that was broken off has no trace to compare
 DEFAULT_PROBES = 800
 POLICIES = ("all", "random", "pct", "dfs")
@@ -50,6 +52,8 @@ class Told:
         finding: the failure, and the schedules that showed it.
         shrunk: its schedule with the fewest preemptions; None when it was not looked for, or has none.
         timeline: what happens under that schedule, a line each.
+        inversions: the priority inversions before it, a sentence each, the longest first; of the task that failed where
+            it had any.
         repeats: whether a second run under the schedule that showed it fails in the same way. If not, it is not the
             schedule that decides.
         is_steady: whether that run had the same trace.
@@ -58,6 +62,7 @@ class Told:
     finding: Finding
     shrunk: Shrunk[Trial] | None = None
     timeline: list[str] = field(default_factory=list)
+    inversions: list[str] = field(default_factory=list)
     repeats: bool = True
     is_steady: bool = True
 
@@ -105,6 +110,7 @@ class Report:
         for told in self.findings:
             command = self.trial.command(_showing(told.finding.failure, told.finding.verdict.schedule))
             entry = told.finding.to_dict() | {"command": command, "timeline": told.timeline, "repeats": told.repeats}
+            entry |= {"inversions": told.inversions}
             found.append(entry | {"shrunk": None if told.shrunk is None else _shrunk_numbers(told.shrunk)})
         return {
             "plan": self.trial.plan.to_dict(),
@@ -300,6 +306,7 @@ class Expedition:
         try:
             if not tally.interrupted:
                 self._fly_again(trial, told)
+                told.inversions = _inversions(trial, finding)
                 told.shrunk = self._shrunk(trial, finding) if told.repeats else None
             if told.shrunk is not None:
                 told.timeline = _timeline(told.shrunk, finding)
@@ -319,6 +326,18 @@ class Expedition:
             return None
         plan = replace(shrunk.trial.plan, stall=trial.plan.stall)
         return replace(shrunk, trial=replace(shrunk.trial, plan=plan))
+
+
+def _inversions(trial: Trial, finding: Finding) -> list[str]:
+    """The priority inversions of the run that showed a failure, which is flown once more."""
+    if finding.failure.kind in _NO_WAY:
+        return []
+    watch, failure = InversionWatch(), finding.failure
+    trial.fly(finding.verdict.schedule, [watch])
+    before = [each for each in watch.found if failure.at_ns is None or each.at_ns <= failure.at_ns]
+    longest = {each.group: each for each in sorted(before, key=lambda each: each.lost_ns)}
+    told = [each for each in longest.values() if each.victim == failure.task] or list(longest.values())
+    return [each.text for each in reversed(told)][:MOST_INVERSIONS]
 
 
 def _timeline(shrunk: Shrunk[Trial], finding: Finding) -> list[str]:

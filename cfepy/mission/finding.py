@@ -32,7 +32,8 @@ from cfepy.suggestions import did_you_mean
 STARTUP_SCRIPT = "startup.scr"
 MISSION_FILE = "mission.yaml"
 LOCK_FILE = "topics.lock"
-_MISSION_FILES = (".scr", *LAUNCH_FILES)
+STARTUP_SUFFIX = ".scr"
+_MISSION_FILES = (STARTUP_SUFFIX, *LAUNCH_FILES)
 _LONGEST_FIRST_LINE = 200
 
 
@@ -45,8 +46,9 @@ def find_script(mission: str) -> Path:
     """The startup script or launch file that a user means.
 
     Args:
-        mission: a path of a script or launch file, a folder with a startup.scr, the name of a shipped mission, or a
-            package and the name of a launch file in it, with a blank between them.
+        mission: a path of a script or launch file, a folder with a startup.scr, the name of a shipped mission, that
+            with another startup script in its folder (`pathfinder/mended.scr`), or a package and the name of a launch
+            file in it, with a blank between them.
 
     Raises:
         UsageError: nothing of the kind.
@@ -59,6 +61,10 @@ def find_script(mission: str) -> Path:
         return (path / STARTUP_SCRIPT).resolve()
     if mission in shipped_missions():
         return shipped("missions") / mission / STARTUP_SCRIPT
+    if path.suffix == STARTUP_SUFFIX and str(path.parent) in shipped_missions():
+        script = shipped("missions") / path
+        if os.path.isfile(script):
+            return script
     file = launch_file_of_package(mission)
     if file is not None:
         return file

@@ -23,7 +23,7 @@ from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import NodeConfig, RosConfig, TopicConfig
 from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
-DEMANDS = ("invariants", "results", "deadlines")
+DEMANDS = ("invariants", "results", "deadlines", "inversions")
 """Sections that say what must hold of a run."""
 
 LaunchFile = tuple[Path, Mapping[str, str]]

@@ -15,6 +15,7 @@ from cfepy.monitors.deadlines import Check, DeadlineResult, Overrun, time_text
 
 if TYPE_CHECKING:
     from cfepy.monitors.demands import Demands, demands_of, judges_of, read_demands
+    from cfepy.monitors.inversions import InversionWatch
     from cfepy.monitors.messages import Heard, MessageWatch
     from cfepy.monitors.observer import Observer, Sent, app_of
     from cfepy.monitors.predicate import Predicate, short, shortened
@@ -24,6 +25,7 @@ __all__ = [
     "DeadlineResult",
     "Demands",
     "Heard",
+    "InversionWatch",
     "MessageWatch",
     "Observer",
     "Overrun",
@@ -48,6 +50,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "judges_of",
                 "read_demands",
             ),
+            ".inversions": ("InversionWatch",),
             ".messages": (
                 "Heard",
                 "MessageWatch",

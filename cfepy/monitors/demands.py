@@ -1,4 +1,4 @@
-"""What a mission file demands of a run: its sections `invariants`, `results` and `deadlines`, and their monitors.
+"""What a mission file demands of a run: `invariants`, `results`, `deadlines` and `inversions`, and their monitors.
 
 The mission keeps these sections as they stand (`MissionSpec.demands`). Here is the table of their readers, for a run,
 which raises the first mistake, and for `cfepy check`, which keeps all.
@@ -28,11 +28,13 @@ class Demands:
         invariants: what must hold of messages.
         results: those that must not depend on the schedule.
         deadlines: how quick applications must answer, and how fresh topics must be.
+        inversions: virtual ns from which on a priority inversion is told; None looks for none.
     """
 
     invariants: tuple[Invariant, ...] = ()
     results: tuple[SelectedResult, ...] = ()
     deadlines: Deadlines = field(default_factory=Deadlines)
+    inversions: int | None = None
 
 
 def read_demands(sections: Mapping[str, Marked], mistakes: Mistakes) -> Demands:
@@ -58,7 +60,7 @@ def demands_of(spec: MissionSpec) -> Demands:
 
 
 def judges_of(spec: MissionSpec) -> list[Attachment]:
-    """What watches over the invariants and deadlines of a mission; only a mission that has some imports it.
+    """What watches over a mission's invariants, deadlines and priority inversions; only one that has some imports it.
 
     Args:
         spec: the mission.
@@ -76,6 +78,10 @@ def judges_of(spec: MissionSpec) -> list[Attachment]:
         from cfepy.monitors.deadline_monitor import DeadlineMonitor
 
         judges.append(DeadlineMonitor(demands.deadlines))
+    if demands.inversions is not None:
+        from cfepy.monitors.inversions import InversionWatch
+
+        judges.append(InversionWatch(demands.inversions))
     return judges
 
 
@@ -83,6 +89,10 @@ def _invariants(section: Marked, mistakes: Mistakes) -> tuple[Invariant, ...]:
     from cfepy.monitors.invariants import read_invariants
 
     return read_invariants(section, mistakes)
+
+
+def _inversions(section: Marked, mistakes: Mistakes) -> int | None:
+    return mistakes.attempt(section.time)
 
 
 def _results(section: Marked, mistakes: Mistakes) -> tuple[SelectedResult, ...]:
@@ -95,5 +105,6 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "invariants": _invariants,
     "results": _results,
     "deadlines": read_deadlines,
+    "inversions": _inversions,
 }
 """What reads each section; the results are the attributes of `Demands`."""

@@ -1,13 +1,18 @@
-"""What monitors write into the record of a run: how deadlines were kept, and which invariants did not hold.
+"""What monitors write into the record of a run: how deadlines were kept, which invariants did not hold, inversions.
 
-`RunRecord.part` keeps a `DeadlineRecord` and an `InvariantRecords` for each run, over all resets of the processor.
+`RunRecord.part` keeps a `DeadlineRecord`, an `InvariantRecords` and an `InversionRecord` for each run, over all resets
+of the processor.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
-from cfepy.monitors.deadlines import Check, Overrun
+from cfepy.monitors.deadlines import Check, Overrun, time_text
+from cfepy.units import NS_PER_S
+
+KEPT_INVERSIONS = 1000
 
 
 @dataclass(slots=True)
@@ -41,3 +46,72 @@ class InvariantRecord:
 
 class InvariantRecords(dict[str, InvariantRecord]):
     """The invariants of a run, by name, as in the mission file."""
+
+
+class Inversion(NamedTuple):
+    """One wait with a priority inversion. Times in virtual ns.
+
+    Attributes:
+        at_ns: when the wait began.
+        victim, victim_priority: the task that waited.
+        what: for what, such as "semaphore SELECT".
+        holder, holder_priority: the task that had it when the wait began.
+        waited_ns: how long the wait was.
+        others: name, priority and time of each task that ran meanwhile, without being more urgent than the victim.
+    """
+
+    at_ns: int
+    victim: str
+    victim_priority: int
+    what: str
+    holder: str
+    holder_priority: int
+    waited_ns: int
+    others: tuple[tuple[str, int, int], ...]
+
+    @property
+    def group(self) -> tuple[str, str, str]:
+        """Victim, lock and holder."""
+        return self.victim, self.what, self.holder
+
+    @property
+    def lost_ns(self) -> int:
+        """How long others ran in that time."""
+        return sum(time_ns for _, _, time_ns in self.others)
+
+    @property
+    def text(self) -> str:
+        """One sentence."""
+        ran = " and ".join(f"{name} (priority {it}) ran for {time_text(ns)}" for name, it, ns in self.others)
+        waited = f"{self.victim} (priority {self.victim_priority}) waited {time_text(self.waited_ns)} for {self.what}"
+        return f"{waited} held by {self.holder} (priority {self.holder_priority}) while {ran}"
+
+
+@dataclass(frozen=True, slots=True)
+class InversionResult:
+    """The worst priority inversion of a victim, and how many it had. Times in virtual s."""
+
+    victim: str
+    what: str
+    holder: str
+    times: int
+    worst_s: float
+    at_s: float
+    text: str
+
+
+class InversionRecord(list[Inversion]):
+    """The priority inversions of a run, the first 1000, in the order in which they ended."""
+
+    def results(self) -> list[InversionResult]:
+        """For each victim and lock the worst, in the order in which they came first."""
+        groups: dict[tuple[str, str, str], list[Inversion]] = {}
+        for each in self:
+            groups.setdefault(each.group, []).append(each)
+        return [_result(group) for group in groups.values()]
+
+
+def _result(group: list[Inversion]) -> InversionResult:
+    worst = max(group, key=lambda each: each.lost_ns)
+    lost_s, at_s = worst.lost_ns / NS_PER_S, worst.at_ns / NS_PER_S
+    return InversionResult(worst.victim, worst.what, worst.holder, len(group), lost_s, at_s, worst.text)

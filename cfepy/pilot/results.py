@@ -13,12 +13,13 @@ from cfepy.es import APP_ERROR, CFE_APP, CFE_LIB, STATE_NAMES, BadLine, StartupE
 from cfepy.evs import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.ground import kind_of, names_in
 from cfepy.mission import CORE_APPS, Mission, Reset, Traffic, described, endless_waits
-from cfepy.monitors.record import DeadlineRecord, InvariantRecord, InvariantRecords
+from cfepy.monitors.record import DeadlineRecord, InvariantRecord, InvariantRecords, InversionRecord
 from cfepy.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
     from cfepy.monitors import DeadlineResult
+    from cfepy.monitors.record import InversionResult
 
 EVENT_TYPES = {DEBUG: "DEBUG", INFORMATION: "INFORMATION", ERROR: "ERROR", CRITICAL: "CRITICAL"}
 RESET_TYPES = {RST_TYPE_PROCESSOR: "PROCESSOR", RST_TYPE_POWERON: "POWERON"}
@@ -179,8 +180,9 @@ class Results:
     `booted_s` is of the first boot, `resets` are in order; pipes, memory and `sb` are of the processor since the last
     one. `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` says, a line each,
     why the run did not end well, `faults` has a row for each fault that was to happen, `deadlines` one for each of the
-    mission file, `script_problems` what of the startup script could not be started, `endless_waits` a
-    line for each task that nobody can wake any more.
+    mission file, `inversions` one for each lock that a task waited for while a third one held up its holder,
+    `script_problems` what of the startup script could not be started, `endless_waits` a line for each task that nobody
+    can wake any more.
     """
 
     mission: str
@@ -202,6 +204,7 @@ class Results:
     pipes: list[PipeResult]
     memory: MemoryResult
     deadlines: list[DeadlineResult]
+    inversions: list[InversionResult]
     faults: list[dict[str, Any]]
     script_problems: list[str]
     endless_waits: list[str]
@@ -240,6 +243,7 @@ class Results:
             pipes=at.pipes,
             memory=at.memory,
             deadlines=[check.result() for check in record.part(DeadlineRecord).checks],
+            inversions=record.part(InversionRecord).results(),
             faults=record.rows("faults"),
             script_problems=_script_problems(mission, apps),
             endless_waits=at.endless_waits,

@@ -119,6 +119,6 @@ LISTENER = """
 def test_callbacks_of_nodes(tmp_path: Path) -> None:
     third = {"compute": "LISTENER", "message": "/times", "number": 3, "for": 0.02}
     yaml = "nodes: {LISTENER: {compute: {/times: 2 ms}}}"
-    nodes = {"talker": TALKER, "listener": LISTENER, "mission_yaml": yaml}
-    mission = fly(tmp_path, third, {"compute": "LISTENER", "times": 2}, startup=NODES, **nodes)
+    twice = {"compute": "LISTENER", "times": 2}
+    mission = fly(tmp_path, third, twice, startup=NODES, talker=TALKER, listener=LISTENER, mission_yaml=yaml)
     assert [line.split()[-1] for line in mission.console.lines if "] after " in line] == ["4", "4", "24", "4"]

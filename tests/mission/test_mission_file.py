@@ -57,7 +57,7 @@ def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
         ["/a", "/c"],
     )
     assert list(said.demands) == ["invariants"]
-    assert set(said.places) == set(SECTIONS) - {"results", "deadlines"}
+    assert set(said.places) == set(SECTIONS) - {"results", "deadlines", "inversions"}
 
 
 def test_a_run_ends_with_the_first_mistake_of_the_file(tmp_path: Path) -> None:
@@ -81,11 +81,11 @@ def test_what_is_no_mapping_at_all(tmp_path: Path) -> None:
 
 def test_demands_are_kept_as_they_stand(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text("!")
-    text = "invariants: {a: 1}\nresults: {b: 2}\ndeadlines: {c: 3}\n"
+    text = "invariants: {a: 1}\nresults: {b: 2}\ndeadlines: {c: 3}\ninversions: 4\n"
     (tmp_path / "mission.yaml").write_text(text)
     demands = read_mission(str(tmp_path)).demands
     assert {name: section.plain() for name, section in demands.items()} == dict(
-        zip(DEMANDS, ({"a": 1}, {"b": 2}, {"c": 3}), strict=True)
+        zip(DEMANDS, ({"a": 1}, {"b": 2}, {"c": 3}, 4), strict=True)
     )
 
 

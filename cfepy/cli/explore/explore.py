@@ -68,6 +68,8 @@ def _about(report: Report, told: Told) -> Iterator[str]:
     yield from failure.detail.splitlines()
     for other in finding.others:
         yield f"and in the same run: {other}"
+    for inversion in told.inversions:
+        yield f"priority inversion before that: {inversion}"
     yield from _how_often(report, finding)
     yield f"replay: {report.trial.command(report.schedule_of(told))}"
     if shrunk is not None:

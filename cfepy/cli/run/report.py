@@ -18,6 +18,7 @@ def show(results: Results, stream: TextIO) -> None:
         *faults(results),
         *_pipes(results),
         *_deadlines(results),
+        *_inversions(results),
         *_invariants(results),
         *_memory(results),
     ]
@@ -114,6 +115,17 @@ def _deadlines(results: Results) -> list[Table]:
             "" if each.worst_s is None else time_text(round(each.worst_s * NS_PER_S)),
             "" if each.first_at_s is None else f"{each.first_at_s:.3f}",
         )
+    return [table] if table.rows else []
+
+
+def _inversions(results: Results) -> list[Table]:
+    """Whom a less urgent task held up that did not have what it waited for: of each the longest time."""
+    table = Table(
+        "Priority inversions", ("of", "times", "longest", "at, s", "what happened"), right=(1, 2, 3), least=(4,)
+    )
+    for each in results.inversions:
+        longest = time_text(round(each.worst_s * NS_PER_S))
+        table.add(each.victim, each.times, longest, f"{each.at_s:.3f}", each.text)
     return [table] if table.rows else []
 
 
