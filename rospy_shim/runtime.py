@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from cfepy.app import Cfe
     from cfepy.console import Console
-    from cfepy.nodes import Factory, Overlay
+    from cfepy.nodes import Accesses, Factory, Overlay
     from cfepy.osal import Network
     from cfepy.rtos import Kernel
 
@@ -144,6 +144,7 @@ class RosRuntime:
         console: where nodes print and log.
         network: what their sockets are plugged into; None refuses sockets.
         files: what they see of files; None is the computer's own.
+        accesses: what their code tells of what it touches; None for nothing.
 
     Attributes:
         parameters: the application ROS, which starts before the first node.
@@ -163,6 +164,7 @@ class RosRuntime:
         console: Console,
         network: Network | None = None,
         files: Overlay | None = None,
+        accesses: Accesses | None = None,
     ) -> None:
         self.graph = Graph(config)
         self._switchboard = Switchboard(self.graph)
@@ -176,6 +178,7 @@ class RosRuntime:
         self._console = console
         self._network = network
         self._files = files
+        self._accesses = accesses
         if files is not None:
             files.stamps.now_ns = lambda: self._epoch_ns + kernel.now
         self.monitor = ProcessMonitor(config, console, kernel.stop)
@@ -263,6 +266,7 @@ class RosRuntime:
             network=self._network,
             root=self._config.root,
             overlay=None if config.on_disk else self._files,
+            accesses=self._accesses,
             on_thread_start=tasks.thread,
         )
         universe.pid = self._pids.take(universe.pid)

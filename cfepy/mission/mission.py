@@ -29,6 +29,7 @@ from cfepy.mission.python_code import find_code
 from cfepy.mission.record import Reset, RunRecord
 from cfepy.mission.spec import MissionSpec
 from cfepy.mission.tracebacks import app_traceback, is_own_code, reason
+from cfepy.nodes import Accesses
 from cfepy.osal import FileSystem, Network
 from cfepy.psp import EEPROM_BYTES, BoardProfile, MemoryBudget, PanicError, Retained, load_profile
 from cfepy.rtos import Policy, StallWatch, Stopwatch, Task, make_kernel
@@ -83,6 +84,7 @@ class Mission:
         kernel, trace, files, network: the parts that outlive a reset.
         outside: the door through which anything comes in while it runs.
         record: what the report tells; `record.resets` are the resets so far.
+        accesses: what its Python code tells of what it touches.
         stall_watch: ends the run when a task does not give up the CPU.
         processor: what runs between two resets; a reset puts another one here.
         booted: virtual ns at which the mission became OPERATIONAL for the first time, None before.
@@ -118,6 +120,7 @@ class Mission:
         self.outside = Outside(self.kernel, self.network, self.trace)
         self.outside.do = HostActs(self).do
         self.kernel.on_task_error = _while_there_is_one(self._task_failed, False)
+        self.accesses = Accesses(kernel)
         self.stall_watch = StallWatch(self.kernel, is_own=is_own_code)
         self._first_boot: int | None = None
         self._resetting = self._is_closed = False
@@ -152,6 +155,7 @@ class Mission:
             bus=bus,
             on_restart=_while_there_is_one(self._on_restart, None),
             run_files=RunFiles(),
+            accesses=self.accesses,
             stall_watch=self.stall_watch,
         )
 

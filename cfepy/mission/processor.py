@@ -25,7 +25,7 @@ from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
 from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
 from cfepy.mission.record import DataRace, Overwrite, RunRecord
 from cfepy.mission.spec import MissionSpec
-from cfepy.nodes import AppModules, make_app_universe
+from cfepy.nodes import Accesses, AppModules, make_app_universe
 from cfepy.osal import (
     OS_FILE_FLAG_CREATE,
     OS_FILE_FLAG_TRUNCATE,
@@ -63,7 +63,8 @@ class Machine:
 
     `retained` is the memory that outlives a processor reset, `network` what sockets are plugged into, `bus` the class
     of the Software Bus, `on_restart` what the PSP calls for a reset: (type, reason, fault). `run_files` what apps and
-    nodes see of files, `stall_watch` what ends a run that does not go on.
+    nodes see of files, `accesses` what their code tells of what it touches, `stall_watch` what ends a run that does not
+    go on.
     """
 
     spec: MissionSpec
@@ -79,6 +80,7 @@ class Machine:
     bus: type[SoftwareBus]
     on_restart: Callable[[int, str, bool], object]
     run_files: RunFiles
+    accesses: Accesses
     stall_watch: StallWatch
 
     @property
@@ -165,7 +167,7 @@ class Processor:
         """What is asked for the code of applications, in this order."""
         machine, folder = self.machine, self.machine.spec.folder
         self._compiled = CompiledFiles(machine.files, self._make_compiled_loader, files_of_built(machine.spec))
-        python = PythonLoader(machine.console, lambda: self.handle, AppModules(self._app_universe))
+        python = PythonLoader(machine.console, lambda: self.handle, AppModules(self._app_universe, machine.accesses))
         return [
             BuiltInApps({ROS_FILE: self._ros_main}),
             NodeScripts(machine.files, folder, self._script_of, self._node_main),
@@ -298,6 +300,7 @@ class Processor:
             console=machine.console,
             network=machine.network,
             files=machine.run_files.of(machine),
+            accesses=machine.accesses,
         )
 
     @property

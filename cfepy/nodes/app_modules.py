@@ -20,6 +20,7 @@ from types import ModuleType
 from typing import IO, TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from cfepy.nodes.accesses import Accesses
     from cfepy.nodes.universe import Universe
 
 # fmt: off
@@ -38,13 +39,15 @@ class AppModules:
 
     Args:
         make: makes the universe whose modules that open files they have, and whose other modules are the host's.
+        accesses: what their code tells of what it touches; None for nothing.
 
     Attributes:
         builtins: what their code has as `__builtins__`.
     """
 
-    def __init__(self, make: Callable[[], Universe]) -> None:
+    def __init__(self, make: Callable[[], Universe], accesses: Accesses | None = None) -> None:
         self._make = make
+        self._accesses = accesses
         self._made: Universe | None = None
         self.builtins: dict[str, Any] = {**vars(builtins), "open": self._opener(), "__import__": self._import}
 
@@ -63,7 +66,17 @@ class AppModules:
         loader = module.__loader__
         assert isinstance(loader, SourceFileLoader)
         vars(module)["__builtins__"] = self.builtins
-        loader.exec_module(module)
+        file = loader.get_filename(loader.name)
+        kinds = None if self._accesses is None else self._accesses.kinds(file, is_main=False)
+        if self._accesses is None or kinds is None:
+            loader.exec_module(module)
+            return
+        from cfepy.nodes.instrument import compile_with_hooks
+
+        self.builtins.update(self._accesses.hooks())
+        self._accesses.adopt(vars(module))
+        with self._accesses.loading():
+            exec(compile_with_hooks(loader.get_data(file), file, kinds), vars(module))
 
     def close(self) -> None:
         """The processor has come to its end: close what its applications left open."""

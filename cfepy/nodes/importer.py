@@ -20,7 +20,7 @@ from contextlib import contextmanager
 from copy import copy
 from functools import cache
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes import sharing
@@ -29,6 +29,7 @@ from cfepy.nodes.synth import proxy
 from cfepy.rtos import WaitList
 
 if TYPE_CHECKING:
+    from cfepy.nodes.accesses import Accesses
     from cfepy.nodes.universe import Universe
     from cfepy.rtos import Kernel, Task
 
@@ -143,6 +144,7 @@ class Importer:
         ordered: set displays in the node's code make ordered sets.
         provision: what it has in place of the host's modules.
         find_factory: asked for names of modules of which the provision has no factory; None is "not mine".
+        accesses: what the node's own code tells of what it touches; None for nothing.
     """
 
     def __init__(
@@ -155,6 +157,7 @@ class Importer:
         ordered: bool,
         provision: sharing.Provision,
         find_factory: Callable[[str], Factory | None],
+        accesses: Accesses | None = None,
     ) -> None:
         self.modules: dict[str, ModuleType] = {}
         self.path: list[str] = [*folders, *libraries, *sys.path]
@@ -166,6 +169,7 @@ class Importer:
         self._hosts = frozenset((*libraries, *sys.path))
         self._provision = provision
         self._find_factory = find_factory
+        self._accesses = accesses if accesses is not None and accesses.is_on else None
         self._shared: set[str] = set()
         self._locks = ImportLocks(universe.kernel)
 
@@ -351,12 +355,28 @@ class Importer:
         if own:
             if not isinstance(spec.loader, SourceFileLoader) or spec.origin is None:
                 raise ImportError(f"{spec.name}: a node's own module must be a Python source file, not {spec.origin}")
-            code = code_of_file(spec.origin, self._ordered, self._universe.shown(spec.origin))
+            code = self.own_code(spec.origin, self._universe.shown(spec.origin))
         else:
             code = code_of_library(spec)
         vars(module)["__builtins__"] = vars(self._universe.builtins)
         with self._locks.loading(spec.name):
-            exec(code, vars(module))
+            if own and self._accesses is not None:
+                self._accesses.adopt(vars(module))
+                with self._accesses.loading():
+                    exec(code, vars(module))
+            else:
+                exec(code, vars(module))
+
+    def own_code(self, file: str, name: str, is_main: bool = False) -> CodeType:
+        """The code of a source file of the node; errors as `code_of_file`.
+
+        Args:
+            file: where it is.
+            name: what the code believes to be its file.
+            is_main: it is the node's script.
+        """
+        kinds = None if self._accesses is None else self._accesses.kinds(name, is_main)
+        return code_of_file(file, self._ordered, name, kinds)
 
     def _is_shared(self, package: str) -> bool:
         """Whether the modules in a package are the host's."""

@@ -183,6 +183,11 @@ def compile_ordered(source: bytes | str, file: str) -> CodeType:
     Raises:
         SyntaxError: as `compile` does.
     """
-    tree = _SetLiterals().visit(parsed(source, file))
-    code: CodeType = compile(tree, file, "exec", dont_inherit=True)
+    code: CodeType = compile(with_ordered_sets(parsed(source, file)), file, "exec", dont_inherit=True)
     return code
+
+
+def with_ordered_sets(tree: ast.Module) -> ast.Module:
+    """A module whose set displays make ordered sets."""
+    made: ast.Module = _SetLiterals().visit(tree)
+    return made

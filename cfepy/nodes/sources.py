@@ -11,7 +11,10 @@ import os
 import sys
 import warnings
 from types import CodeType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from cfepy.nodes.instrument import Kinds
 
 AGAIN = "cfepy.source"  # Python's audit hooks are told of a file that was compiled before, as they are of opened ones
 
@@ -29,20 +32,21 @@ class Doubt(NamedTuple):
 _doubts: dict[CodeType, tuple[Doubt, ...]] = {}
 
 
-def code_of_file(path: str, ordered: bool, name: str) -> CodeType:
+def code_of_file(path: str, ordered: bool, name: str, kinds: Kinds | None = None) -> CodeType:
     """The code of a source file of a node.
 
     Args:
         path: the file.
         ordered: set displays in it make ordered sets.
         name: what the code believes to be its file.
+        kinds: where it calls hooks; None for nowhere.
 
     Raises:
         OSError: it cannot be read.
         SyntaxError: it cannot be compiled.
     """
     stat = os.stat(path)
-    key = (path, stat.st_mtime_ns, stat.st_size, ordered)
+    key = (path, stat.st_mtime_ns, stat.st_size, ordered, kinds)
     code = _compiled.get(key)
     if code is not None:
         sys.audit(AGAIN, path)
@@ -51,7 +55,7 @@ def code_of_file(path: str, ordered: bool, name: str) -> CodeType:
         source = file.read()
     with warnings.catch_warnings(record=True) as seen:  # they are for who reads the node's output
         warnings.simplefilter("default")
-        _compiled[key] = code = _compile(source, name, ordered)
+        _compiled[key] = code = _compile(source, name, ordered, kinds)
     if seen:
         _doubts[code] = tuple(Doubt(str(each.message), each.category, each.lineno) for each in seen)
     return code
@@ -67,7 +71,11 @@ def own_files() -> list[str]:
     return list(dict.fromkeys(str(key[0]) for key in _compiled if len(key) > 1))
 
 
-def _compile(source: bytes, path: str, ordered: bool) -> CodeType:
+def _compile(source: bytes, path: str, ordered: bool, kinds: Kinds | None) -> CodeType:
+    if kinds is not None:
+        from cfepy.nodes.instrument import compile_with_hooks
+
+        return compile_with_hooks(source, path, kinds, ordered)
     if not ordered:
         return compile(source, path, "exec", dont_inherit=True)
     from cfepy.nodes.ordered_sets import compile_ordered

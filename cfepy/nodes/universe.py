@@ -24,7 +24,7 @@ from cfepy.nodes.files import OpenFiles
 from cfepy.nodes.importer import Factory, Importer
 from cfepy.nodes.report import traceback_text
 from cfepy.nodes.sharing import Provision
-from cfepy.nodes.sources import code_of_file, doubts_of
+from cfepy.nodes.sources import doubts_of
 from cfepy.nodes.stdlib import os_module, signal_module, sys_module, time_module
 from cfepy.nodes.stdlib.descriptors import SocketTable
 from cfepy.nodes.stdlib.locks import make_lock_types
@@ -34,6 +34,7 @@ from cfepy.nodes.stdlib.table import for_nodes
 from cfepy.rtos import Task, TaskExit
 
 if TYPE_CHECKING:
+    from cfepy.nodes.accesses import Accesses
     from cfepy.nodes.files import Overlay
     from cfepy.nodes.stdlib.terminal import Key, Terminal
     from cfepy.osal import Network
@@ -80,6 +81,7 @@ class Universe:
         root: folder that stands for the computer's root: what is there is taken from there, and the program believes
             that it is where it was ("" for none).
         overlay: the files of its run, in which that root counts already; None lets it read and write the computer's.
+        accesses: what its code tells of what it touches; None for nothing.
         on_thread_start: `(task name, entry, priority) -> Task`, starts the task of a thread, so that the owner of the
             node also owns its threads; None uses `Kernel.spawn`.
     """
@@ -109,6 +111,7 @@ class Universe:
         network: Network | None = None,
         root: str = "",
         overlay: Overlay | None = None,
+        accesses: Accesses | None = None,
         on_thread_start: StartThread | None = None,
     ) -> None:
         self.kernel = kernel
@@ -160,8 +163,13 @@ class Universe:
             ordered=ordered_sets,
             provision=replace(provided, factories={**provided.factories, **(modules or {})}),
             find_factory=find_module,
+            accesses=accesses,
         )
         self.builtins = sys_module.builtins_module(self, ordered_sets)
+        self._adopt: Callable[[dict[str, Any]], None] | None = None
+        if accesses is not None and accesses.is_on:
+            vars(self.builtins).update(accesses.hooks())
+            self._adopt = accesses.adopt
         self.importer.modules["builtins"] = self.builtins
         self.importer.load("sys")
 
@@ -177,6 +185,11 @@ class Universe:
             TaskExit: the task was ended from outside; the node's threads are ended too, its exit hooks do not run.
         """
         return _run_script(self)
+
+    def adopts(self, variables: dict[str, Any]) -> None:
+        """The variables of the script's module are the mission's."""
+        if self._adopt is not None:
+            self._adopt(variables)
 
     def spawn(self) -> Task:
         """Start a task that executes the script."""
@@ -416,7 +429,8 @@ def _execute(universe: Universe) -> int:
     )
     universe.importer.modules["__main__"] = module
     try:
-        code = code_of_file(universe.resolve(universe.script), universe.ordered_sets, universe.script)
+        code = universe.importer.own_code(universe.resolve(universe.script), universe.script, is_main=True)
+        universe.adopts(vars(module))
         for doubt in doubts_of(code):  # of the program alone: modules come from Python's byte code cache
             universe.importer.load("warnings").warn_explicit(doubt.text, doubt.category, universe.script, doubt.line)
         exec(code, vars(module))

@@ -10,7 +10,7 @@ from __future__ import annotations
 from cfepy.rtos.costs import CpuCosts
 from cfepy.rtos.cpus import allowed_cpus
 from cfepy.rtos.errors import DeadlockError, InjectedCrash
-from cfepy.rtos.exploring import CallObserver, ExploringKernel, make_kernel
+from cfepy.rtos.exploring import CallObserver, CallPointKernel, ExploringKernel, make_kernel
 from cfepy.rtos.kernel import ENDLESS, Kernel
 from cfepy.rtos.mutex import Mutex
 from cfepy.rtos.points import Points
@@ -46,6 +46,7 @@ __all__ = [
     "TIMEOUT",
     "AskingPolicy",
     "CallObserver",
+    "CallPointKernel",
     "CpuCosts",
     "DeadlockError",
     "Decision",

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 
 from cfepy import trace as tr
 from cfepy.rtos.kernel import Kernel
+from cfepy.rtos.points import CALLS, Points
 from cfepy.rtos.policy import Decision, Policy, Question
 from cfepy.rtos.scheduler import SLICE_NS
 from cfepy.rtos.task import Task
@@ -31,7 +32,8 @@ def make_kernel(
     """The kernel for a run: the plain one without a policy. The arguments are those of `ExploringKernel`."""
     if policy is None:
         return Kernel(context, trace, tick_ns, switch_cost_ns, seed)
-    return ExploringKernel(context, trace, policy, tick_ns, switch_cost_ns, seed)
+    kind = CallPointKernel if Points.parse(policy.points).kind == CALLS else ExploringKernel
+    return kind(context, trace, policy, tick_ns, switch_cost_ns, seed)
 
 
 class CallObserver(Protocol):
@@ -273,3 +275,33 @@ class ExploringKernel(Kernel):
         while timers and timers[0][2].timer != timers[0][1]:
             heappop(timers)
         return timers[0][0] if timers and timers[0][0] - self.now <= self._hold_ns else None
+
+
+class CallPointKernel(ExploringKernel):
+    """One that knows which tasks have called it lately, for points behind such calls; the arguments are those above.
+
+    Attributes:
+        entered: tasks that have called, until somebody takes them out.
+    """
+
+    def __init__(
+        self,
+        context: str,
+        trace: tr.Trace | None,
+        policy: Policy,
+        tick_ns: int = 0,
+        switch_cost_ns: int = 0,
+        seed: int = 0,
+    ) -> None:
+        super().__init__(context, trace, policy, tick_ns, switch_cost_ns, seed)
+        self.entered: dict[Task, bool] = {}
+
+    def point(self) -> None:
+        """See `ExploringKernel.point`."""
+        self.entered[self.current] = True
+        super().point()
+
+    def charge(self, duration_ns: int) -> None:
+        """See `Scheduler.charge`."""
+        self.entered[self.current] = True
+        super().charge(duration_ns)

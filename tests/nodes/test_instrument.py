@@ -1,0 +1,60 @@
+"""Code with hooks does what it does without them, and its hooks tell of what it touches."""
+
+from __future__ import annotations
+
+import linecache
+import traceback
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from cfepy.nodes.accesses import Access, Accesses
+from cfepy.nodes.instrument import Kinds, compile_with_hooks
+from cfepy.rtos import Policy, make_kernel
+from tests.nodes.programs import PROGRAMS
+
+ALL = Kinds(accesses=True, lines=True, calls=False, is_main=True)
+FILE = "program.py"
+
+
+def flown(source: str, kinds: Kinds | None, policy: Policy | None = None) -> tuple[Any, list[Access], Accesses]:
+    """What a program comes to: what it leaves in `out`, how it ends, with which lines; and what it touched."""
+    kernel = make_kernel(policy=policy)
+    accesses, seen = Accesses(kernel), list[Access]()
+    accesses.observers.append(seen.append)
+    names: dict[str, Any] = {"__name__": "__main__", "__file__": FILE, "out": []}
+    module = ModuleType("builtins")
+    import builtins
+
+    vars(module).update(vars(builtins))
+    vars(module).update(accesses.hooks())
+    names["__builtins__"] = vars(module)
+    code = (
+        compile(source, FILE, "exec", dont_inherit=True) if kinds is None else compile_with_hooks(source, FILE, kinds)
+    )
+    accesses.adopt(names)
+    ended: Any = None
+    linecache.cache[FILE] = (len(source), None, source.splitlines(True), FILE)
+    try:
+        exec(code, names)
+    except Exception as error:
+        lines = [
+            (each.lineno, each.name) for each in traceback.extract_tb(error.__traceback__) if each.filename == FILE
+        ]
+        ended = type(error).__name__, str(error), lines
+    return (names["out"], ended), seen, accesses
+
+
+@pytest.mark.parametrize("source", PROGRAMS.values(), ids=PROGRAMS.keys())
+def test_a_program_does_the_same_with_hooks(source: str) -> None:
+    assert flown(source, ALL)[0] == flown(source, None)[0]
+
+
+@pytest.mark.parametrize("source", PROGRAMS.values(), ids=PROGRAMS.keys())
+def test_the_same_accesses_are_told_each_time(source: str) -> None:
+    once, again = (
+        [(each.thing, each.key, each.is_write, each.name, each.place) for each in flown(source, ALL)[1]]
+        for _ in range(2)
+    )
+    assert once == again
