@@ -6,6 +6,7 @@ target is linked with is a library of the package, one of another package near b
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -261,7 +262,7 @@ def _plugins(manifest: ElementTree.Element | None, folder: Path) -> Iterator[Plu
     for each in exported:
         name = each.get("plugin", "").replace("${prefix}/", "")
         try:
-            root = ElementTree.fromstring((folder / name).read_bytes()) if name else None
+            root = _plugin_file((folder / name).read_bytes()) if name else None
         except (OSError, ElementTree.ParseError):
             continue
         for library in () if root is None else root.iter("library"):
@@ -270,6 +271,16 @@ def _plugins(manifest: ElementTree.Element | None, folder: Path) -> Iterator[Plu
                 type_name = one.get("type", "")
                 yield PluginClass(one.get("name") or type_name, type_name, one.get("base_class_type", ""), target)
 
+
+def _plugin_file(text: bytes) -> ElementTree.Element:
+    """What a file of plugins has; pluginlib takes several libraries, one behind the other, which is no XML."""
+    try:
+        return ElementTree.fromstring(text)
+    except ElementTree.ParseError:
+        return ElementTree.fromstring(b"<class_libraries>%b</class_libraries>" % _DECLARATION.sub(b"", text, count=1))
+
+
+_DECLARATION = re.compile(rb"^\s*<\?xml.*?\?>", re.DOTALL)
 
 # -- CMakeLists.txt ----------------------------------------------------------------------------------------------------
 

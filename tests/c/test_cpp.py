@@ -236,6 +236,40 @@ def test_a_mutex_of_the_standard_library_keeps_others_out(tmp_path: Path) -> Non
     assert said(console) == ["once", "main in", "main out", "child in", "child out"]
 
 
+def test_a_recursive_mutex_is_taken_twice_by_its_task_alone(tmp_path: Path) -> None:
+    console = fly_cpp(
+        tmp_path,
+        """
+        #include <pthread.h>
+        static pthread_mutex_t lock;
+        static void work(const char *who)
+        {
+            pthread_mutex_lock(&lock);
+            pthread_mutex_lock(&lock);
+            SAY("%s in", who);
+            pthread_mutex_unlock(&lock);
+            OS_TaskDelay(100);
+            SAY("%s out", who);
+            pthread_mutex_unlock(&lock);
+        }
+        static void child() { work("child"); }
+        extern "C" void TEST_Main()
+        {
+            uint32_t id;
+            pthread_mutexattr_t attributes;
+            pthread_mutexattr_init(&attributes);
+            pthread_mutexattr_settype(&attributes, PTHREAD_MUTEX_RECURSIVE);
+            pthread_mutex_init(&lock, &attributes);
+            pthread_mutexattr_destroy(&attributes);
+            CFE_ES_CreateChildTask(&id, "CHILD", child, NULL, 16384, 40, 0);
+            work("main");
+            OS_TaskDelay(200);
+        }
+        """,
+    )
+    assert said(console) == ["main in", "main out", "child in", "child out"]
+
+
 def test_a_computer_without_libstdcpp_says_how_to_link(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     compile_cpp(tmp_path, "TEST", LIBRARY)
     folder = write_mission(tmp_path, "TEST")

@@ -89,6 +89,13 @@ def test_a_package_is_read_as_catkin_does(tmp_path: Path) -> None:
     assert program.outside == ["PCL"]
 
 
+def test_a_file_of_plugins_may_have_several_libraries(tmp_path: Path) -> None:
+    more = NODELETS.replace("demo/Filter", "demo/Other").replace("libdemo_core", "libother")
+    write(tmp_path, FILES | {"demo/nodelets.xml": f'<?xml version="1.0"?>\n{NODELETS}\n{more}\n'})
+    found = read_package(tmp_path / "demo", "demo").nodelets()
+    assert {name: each.library for name, each in found.items()} == {"demo/Filter": "demo_core", "demo/Other": "other"}
+
+
 def test_headers_of_eigen_that_a_package_offers_are_those_of_its_users(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -69,7 +69,13 @@ def declare(api: Declarations, c: CRuntime) -> None:
             c.handle.os.task_delay(WAIT_MS)
         return 0
 
+    def set_up(attributes: int) -> None:
+        """All mutexes are recursive, as OSAL's are: there is nothing to be kept."""
+
     c.on_unload.append(forget_all)
+    api.add("pthread_mutexattr_init", "P", set_up, errno.EINVAL)
+    api.add("pthread_mutexattr_destroy", "P", set_up, errno.EINVAL)
+    api.add("pthread_mutexattr_settype", "P-", set_up, errno.EINVAL)
     api.add("pthread_mutex_init", "P-", forget, errno.EINVAL)
     api.add("pthread_mutex_destroy", "P", forget, errno.EINVAL)
     api.add("pthread_mutex_lock", "P", lock, errno.EINVAL)

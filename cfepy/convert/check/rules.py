@@ -195,18 +195,18 @@ RULES: dict[str, CheckRule] = {
         ),
         CheckRule(
             *("thread", _E, _E, _E),
-            "a thread that is not cFE's",
+            "a thread that is not cFE's, or a condition that another thread has to make true",
             "cFE knows one task of the node, and calls of ROS are that task's alone; nobody ends the thread with it",
             "use a timer or a callback",
         ),
         CheckRule(
-            *("socket", _W, _E, _E),
-            "a socket of the operating system",
+            *("socket", _E, _E, _E),
+            "a socket of the operating system, or what waits in boost::asio",
             "cFE does not know of it: it stays open after a restart, and a wait in it holds up the task",
             "use OSAL's sockets, or a bridge application",
         ),
         CheckRule(
-            *("serial", _W, _E, _E),
+            *("serial", _E, _E, _E),
             "a device or terminal of the operating system",
             "a driver belongs to the board: a wait in it holds up the task, and it stays open after a restart",
             "put the device behind a driver application that speaks on the Software Bus",
@@ -218,13 +218,13 @@ RULES: dict[str, CheckRule] = {
             "use OSAL's files, parameters or a table",
         ),
         CheckRule(
-            *("process", _W, _E, _E),
+            *("process", _E, _E, _E),
             "another process is started",
             "there are no processes on cFE, but tasks of one",
             "start an application instead",
         ),
         CheckRule(
-            *("getchar", _W, _E, _E),
+            *("getchar", _E, _E, _E),
             "the keyboard is read",
             "an application has no keyboard, and a wait for it holds up the task",
             "subscribe to a topic or offer a service",

@@ -28,7 +28,8 @@ CALLS: dict[str, str] = {
     **dict.fromkeys(("sleep", "usleep", "nanosleep", "clock_nanosleep"), "sleep"),
     **dict.fromkeys(("std::this_thread::sleep_for", "std::this_thread::sleep_until"), "sleep"),
     **dict.fromkeys(("boost::this_thread::sleep", "boost::this_thread::sleep_for"), "sleep"),
-    **dict.fromkeys(("getchar", "getch", "scanf", "std::getchar", "kbhit"), "getchar"),
+    **dict.fromkeys(("getchar", "std::getchar", "getwchar", "getch", "wgetch", "kbhit"), "getchar"),
+    **dict.fromkeys(("scanf", "std::scanf", "vscanf", "gets", "readline", "isatty"), "getchar"),
     **dict.fromkeys(("socket", "recvfrom", "sendto", "getaddrinfo", "gethostbyname"), "socket"),
     **dict.fromkeys(("tcsetattr", "tcgetattr", "cfsetispeed", "cfsetospeed", "ioctl", "cfmakeraw"), "serial"),
     **dict.fromkeys(("fopen", "freopen", "open", "opendir", "std::fopen", "mkstemp"), "file"),
@@ -41,10 +42,19 @@ TYPES: dict[str, str] = {
     **dict.fromkeys(("std::thread", "boost::thread", "boost::thread_group", "std::jthread", "pthread_t"), "thread"),
     **dict.fromkeys(("std::ifstream", "std::ofstream", "std::fstream", "ifstream", "ofstream", "fstream"), "file"),
     **dict.fromkeys(("boost::asio::io_service", "boost::asio::ip::tcp::socket"), "socket"),
-    **dict.fromkeys(("boost::asio::ip::udp::socket", "sockaddr_in"), "socket"),
+    **dict.fromkeys(("boost::asio::ip::udp::socket", "sockaddr_in", "boost::asio::io_context"), "socket"),
+    **dict.fromkeys(("boost::asio::deadline_timer", "boost::asio::steady_timer"), "socket"),
+    **dict.fromkeys(("boost::condition_variable", "boost::condition_variable_any", "boost::condition"), "thread"),
+    **dict.fromkeys(("std::condition_variable", "std::condition_variable_any", "boost::barrier"), "thread"),
     **dict.fromkeys(("serial::Serial", "boost::asio::serial_port", "termios"), "serial"),
 }
 """Types by the rule that what is declared with them falls under."""
+_EMPTY = ("std::thread", "boost::thread", "boost::thread_group", "std::jthread", "pthread_t")
+"""Members of these types start nothing by themselves."""
+_MEMBERS = frozenset(name for name, rule in TYPES.items() if rule in ("socket", "serial", "thread")) - {*_EMPTY}
+_METHODS = {"create_thread": "thread"}
+_KEYBOARD = frozenset(("stdin", "STDIN_FILENO", "cin"))
+"""What a function that is given it reads; std::cin is met wherever it stands."""
 GROWING = frozenset(
     ("push_back", "emplace_back", "resize", "insert", "emplace", "reserve", "push_front", "append", "assign")
 )
@@ -188,6 +198,8 @@ class _Reader:
             "catch_clause": self._catch,
             "new_expression": self._new,
             "declaration": self._declaration,
+            "field_declaration": self._member,
+            "binary_expression": self._binary,
             "function_definition": self._function,
             "qualified_identifier": self._qualified,
         }
@@ -259,6 +271,15 @@ class _Reader:
         if _text(node) == "std::cin":
             self._meet("getchar", node, "std::cin")
 
+    def _binary(self, node: Node) -> None:
+        if _text(node.child_by_field_name("operator")) == ">>" and _text(node.child_by_field_name("left")) == "cin":
+            self._meet("getchar", node, "cin")
+
+    def _member(self, node: Node) -> None:
+        kind = _plain(_text(node.child_by_field_name("type")))
+        if kind in _MEMBERS and node.child_by_field_name("declarator") is not None:
+            self._object(node, kind)
+
     def _function(self, node: Node) -> None:
         name = _function_name(node)
         declarator = _declarator(node)
@@ -314,12 +335,18 @@ class _Reader:
         rule = CALLS.get(name)
         if rule is not None:
             self._meet(rule, node, f"{name}()" if rule != "rtti" else name)
+        elif _reads_keyboard(name, [_text(each) for each in _arguments(node)]):
+            self._meet("getchar", node, f"{name}()")
         self._object(node, name)  # one that nobody keeps: std::thread(work).detach()
         if name in _FUNCTIONS:
             self._later.append(node)
 
     def _method(self, node: Node, function: Node) -> None:
         name = _plain(_text(function.child_by_field_name("field")))
+        if name in _METHODS:
+            self._meet(_METHODS[name], node, f"{name}()")
+        if _text(function.child_by_field_name("argument")) == "cin":
+            self._meet("getchar", node, f"cin.{name}()")
         if name in GROWING:
             self._meet("heap-in-callback", node, f"{name}()")
         if name in _CALLBACK_TAKERS:
@@ -400,6 +427,11 @@ def _constant_text(node: Node | None, constants: dict[str, str] | None = None) -
 
 
 _LONGEST_NAME = 500  # bytes of an expression that is looked into
+
+
+def _reads_keyboard(function: str, given: list[str]) -> bool:
+    """Whether a call reads what is typed: it is given the standard input, or read() its number."""
+    return not _KEYBOARD.isdisjoint(given) or (function in ("read", "::read") and given[:1] == ["0"])
 
 
 def _arguments(call: Node) -> list[Node]:
