@@ -11,7 +11,7 @@ from cfepy.convert.flight import message_library
 from rospy_shim.msgs import Packages, shipped
 from tests.convert.stimulus.comparing import Likeness, Part, compared
 from tests.convert.stimulus.flight import NodeFlight, ended, printed_by_node
-from tests.convert.stimulus.outcome import Outcome, outcome_of
+from tests.convert.stimulus.outcome import Outcome, log_of, outcome_of
 from tests.convert.stimulus.report import rows
 from tests.convert.stimulus.script import Scene, Seen, script
 from tests.convert.twin_flights import TWINS
@@ -70,6 +70,11 @@ def test_times_count_from_the_first_step() -> None:
 
 def test_a_driver_that_fails_is_told_of() -> None:
     assert outcome_of(["ImportError: rospy"], [], shipped(), None).note == "the driver failed: ImportError: rospy"
+
+
+def test_warnings_of_tf2_are_lines_of_the_log() -> None:
+    printed = ["Warning: no frame", "         at line 126 in ./tf2/src/buffer_core.cpp", "Warning: of the node"]
+    assert log_of(printed) == ["[ WARN] [t]: no frame", "Warning: of the node"]
 
 
 def test_lines_of_the_console() -> None:

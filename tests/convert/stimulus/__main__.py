@@ -25,7 +25,7 @@ from tests.convert.stimulus import report
 from tests.convert.stimulus.comparing import Likeness, Part, compared
 from tests.convert.stimulus.debian import NotBuilt, RoscppNode
 from tests.convert.stimulus.flight import Fault, NodeFlight
-from tests.convert.stimulus.script import Scene, script
+from tests.convert.stimulus.script import Scene, Seen, script
 from tests.convert.survey import Node, listed
 
 HERE = Path(__file__).parent
@@ -48,14 +48,15 @@ def tried(node: Node, sources: Path, folder: Path, seed: int) -> dict[str, Any]:
     library = message_library(Packages(file, environ))
     made = {"node": name}
     flight = NodeFlight(program, library, environ, folder)
+    debian = RoscppNode(program, library, folder)
+    fault = None
     try:
         seen = flight.look(scene)
     except (UsageError, AssertionError) as error:
         return {**made, "verdict": "does not fly", "why": str(error)[:500]}
     except Fault as error:
-        return {**made, "verdict": "fault", "why": str(error)[:500]}
+        seen, fault = Seen({}, {}, {}, {}), error
     told = script(f"{seed} {name}", seen, library, scene)
-    debian = RoscppNode(program, library, folder)
     try:
         debian.build()
         kinds = {*seen.publishes.values(), *seen.subscribes.values(), *seen.serves.values(), *seen.calls.values()}
@@ -64,6 +65,8 @@ def tried(node: Node, sources: Path, folder: Path, seed: int) -> dict[str, Any]:
     except NotBuilt as error:
         return {**made, "verdict": "not built", "why": str(error)[:500]}
     try:
+        if fault is not None:
+            raise fault
         ours = flight.run(told, scene, first)
     except Fault as error:
         if not first.failed:

@@ -15,6 +15,7 @@ from unittest.mock import patch
 import cfepy.convert.flight
 from cfepy.console import Console
 from cfepy.convert import build_for_flight
+from cfepy.convert.build import provided_packages
 from cfepy.convert.packages import Program
 from cfepy.es.packets import START_APP
 from cfepy.mission import Mission
@@ -116,6 +117,8 @@ class NodeFlight:
         package, kind, args = self._program.package.name, self._program.type, scene.args
         if self._program.nodelet:
             package, kind, args = "nodelet", "nodelet", f"standalone {kind}"
+        elif package in provided_packages():
+            package = "stimulus"  # cfepy's own program of that name would be taken
         launch = self._folder / "stimulus.launch"
         launch.write_text(
             f'<launch>{listed}<node pkg="stimulus" type="driver.py" name="driver" output="screen"'

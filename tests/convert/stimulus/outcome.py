@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable
 from itertools import groupby
 from typing import Any, NamedTuple
@@ -19,6 +20,10 @@ NEAR_S = 1000
 """A time that is no further than this from the first step is one of now."""
 CUT = 120
 """Of a line of the log: the console of cfepy is no wider."""
+
+
+_OF_TF2 = re.compile(r"^(Warning|Error): +(.*)\n +at line \d+ in \S+$", re.MULTILINE)
+_LEVELS = {"Warning": " WARN", "Error": "ERROR"}
 
 
 class Outcome(NamedTuple):
@@ -113,8 +118,12 @@ def number(seen: list[Any]) -> None:
 
 
 def log_of(printed: Iterable[str]) -> list[str]:
-    """What a node has printed, without times; log4cxx writes a question mark for each byte that is not of ASCII."""
-    kept = ("".join(map(_plain_letter, line))[:CUT] for line in log_lines("\n".join(printed)))
+    """What a node has printed, without times; log4cxx writes a question mark for each byte that is not of ASCII.
+
+    The warnings and errors of tf2, which come past the log and with a line of a file, are lines of the log on cfepy.
+    """
+    text = _OF_TF2.sub(lambda found: f"[{_LEVELS[found[1]]}] [t]: {found[2]}", "\n".join(printed))
+    kept = ("".join(map(_plain_letter, line))[:CUT] for line in log_lines(text))
     return [line for line, _ in groupby(kept)]
 
 
