@@ -25,7 +25,8 @@ _MARKS = (_BINARY, _TIME, _ESCAPED)
 _BRACKETS = ("[", "{", '"')
 _ODD = re.compile(rb"[^!-~]|[%/]")
 _ESCAPE = re.compile(r"%([0-9A-F]{2})")
-_DATE_TIME = re.compile(r"\d{8}T\d\d:\d\d:\d\d")
+_DATE_TIME = re.compile(r"\d{5,8}T\d\d:\d\d:\d\d")
+"""A year that counts from 1900, as in a struct tm of a node in C++, has fewer digits."""
 _NOT_IN_XML = re.compile("[\x00-\x08\x0b-\x1f\ud800-\udfff\ufffe\uffff]")
 _NO_NAME = "%"  # the part of a name that has no characters
 

@@ -3,9 +3,12 @@
 #define ROSCFE_XMLRPCVALUE_H
 
 #include <cstdint>
+#include <ctime>
 #include <map>
 #include <ostream>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "XmlRpcException.h"
@@ -36,11 +39,16 @@ class XmlRpcValue
     typedef ValueStruct::const_iterator        const_iterator;
 
     XmlRpcValue() {}
-    XmlRpcValue(bool value) : type_(TypeBoolean), boolean_(value) {}
-    XmlRpcValue(int value) : type_(TypeInt), int_(value) {}
-    XmlRpcValue(double value) : type_(TypeDouble), double_(value) {}
-    XmlRpcValue(const std::string &value) : type_(TypeString), text_(value) {}
-    XmlRpcValue(const char *value) : type_(TypeString), text_(value) {}
+    XmlRpcValue(bool value) : value_(std::in_place_type<bool>, value) {}
+    XmlRpcValue(int value) : value_(std::in_place_type<int>, value) {}
+    XmlRpcValue(double value) : value_(std::in_place_type<double>, value) {}
+    XmlRpcValue(const std::string &value) : value_(std::in_place_type<std::string>, value) {}
+    XmlRpcValue(const char *value) : value_(std::in_place_type<std::string>, value) {}
+    XmlRpcValue(std::tm *value) : value_(std::in_place_type<Date>, *value) {}
+    XmlRpcValue(void *value, int size)
+        : value_(std::in_place_type<BinaryData>, static_cast<char *>(value), static_cast<char *>(value) + size)
+    {
+    }
 
     XmlRpcValue &operator=(bool value) { return *this = XmlRpcValue(value); }
     XmlRpcValue &operator=(int value) { return *this = XmlRpcValue(value); }
@@ -48,48 +56,54 @@ class XmlRpcValue
     XmlRpcValue &operator=(const std::string &value) { return *this = XmlRpcValue(value); }
     XmlRpcValue &operator=(const char *value) { return *this = XmlRpcValue(value); }
 
-    Type getType() const { return type_; }
-    bool valid() const { return type_ != TypeInvalid; }
+    Type getType() const { return static_cast<Type>(value_.index()); }
+    bool valid() const { return getType() != TypeInvalid; }
     void clear() { *this = XmlRpcValue(); }
 
     // Reading another type than the value has is an XmlRpcException; an invalid value becomes what is asked for.
-    operator bool &() { return is(TypeBoolean).boolean_; }
-    operator int &() { return is(TypeInt).int_; }
-    operator double &() { return is(TypeDouble).double_; }
-    operator std::string &() { return is(TypeString).text_; }
-    operator const bool &() const { return is(TypeBoolean).boolean_; }
-    operator const int &() const { return is(TypeInt).int_; }
-    operator const double &() const { return is(TypeDouble).double_; }
-    operator const std::string &() const { return is(TypeString).text_; }
+    operator bool &() { return as<bool>(); }
+    operator int &() { return as<int>(); }
+    operator double &() { return as<double>(); }
+    operator std::string &() { return as<std::string>(); }
+    operator BinaryData &() { return as<BinaryData>(); }
+    operator std::tm &() { return as<std::tm>(); }
+    operator const bool &() const { return as<bool>(); }
+    operator const int &() const { return as<int>(); }
+    operator const double &() const { return as<double>(); }
+    operator const std::string &() const { return as<std::string>(); }
+    operator const BinaryData &() const { return as<BinaryData>(); }
+    operator const std::tm &() const { return as<std::tm>(); }
 
-    // Number of characters, elements or members.
+    // Number of characters, bytes, elements or members.
     int size() const
     {
-        switch (type_)
+        switch (getType())
         {
             case TypeString:
-                return static_cast<int>(text_.size());
+                return static_cast<int>(as<std::string>().size());
+            case TypeBase64:
+                return static_cast<int>(as<BinaryData>().size());
             case TypeArray:
-                return static_cast<int>(array_.size());
+                return static_cast<int>(as<ValueArray>().size());
             case TypeStruct:
-                return static_cast<int>(members_.size());
+                return static_cast<int>(as<ValueStruct>().size());
             default:
                 XmlRpcException::fail("type error");
         }
     }
     void setSize(int size)
     {
-        ValueArray &array = is(TypeArray).array_;
+        ValueArray &array = as<ValueArray>();
         if (static_cast<int>(array.size()) < size) // it never becomes smaller
         {
             array.resize(static_cast<std::size_t>(size));
         }
     }
-    bool hasMember(const std::string &name) const { return type_ == TypeStruct && members_.count(name) > 0; }
+    bool hasMember(const std::string &name) const { return getType() == TypeStruct && as<ValueStruct>().count(name) > 0; }
 
     XmlRpcValue &operator[](int index)
     {
-        ValueArray &array = is(TypeArray).array_;
+        ValueArray &array = as<ValueArray>();
         if (index >= static_cast<int>(array.size()))
         {
             array.resize(static_cast<std::size_t>(index) + 1);
@@ -98,18 +112,18 @@ class XmlRpcValue
     }
     const XmlRpcValue &operator[](int index) const
     {
-        const ValueArray &array = is(TypeArray).array_;
+        const ValueArray &array = as<ValueArray>();
         if (index < 0 || index >= static_cast<int>(array.size()))
         {
             XmlRpcException::fail("range error: array index too large");
         }
         return array[static_cast<std::size_t>(index)];
     }
-    XmlRpcValue &operator[](const std::string &name) { return is(TypeStruct).members_[name]; }
-    XmlRpcValue &operator[](const char *name) { return is(TypeStruct).members_[name]; }
+    XmlRpcValue &operator[](const std::string &name) { return as<ValueStruct>()[name]; }
+    XmlRpcValue &operator[](const char *name) { return as<ValueStruct>()[name]; }
     const XmlRpcValue &operator[](const std::string &name) const
     {
-        const ValueStruct &members = is(TypeStruct).members_;
+        const ValueStruct &members = as<ValueStruct>();
         const auto         found   = members.find(name);
         if (found == members.end())
         {
@@ -120,43 +134,43 @@ class XmlRpcValue
     }
     const XmlRpcValue &operator[](const char *name) const { return (*this)[std::string(name)]; }
 
-    iterator       begin() { return is(TypeStruct).members_.begin(); }
-    iterator       end() { return is(TypeStruct).members_.end(); }
-    const_iterator begin() const { return is(TypeStruct).members_.begin(); }
-    const_iterator end() const { return is(TypeStruct).members_.end(); }
+    iterator       begin() { return as<ValueStruct>().begin(); }
+    iterator       end() { return as<ValueStruct>().end(); }
+    const_iterator begin() const { return as<ValueStruct>().begin(); }
+    const_iterator end() const { return as<ValueStruct>().end(); }
 
-    bool operator==(const XmlRpcValue &other) const
-    {
-        return type_ == other.type_ && boolean_ == other.boolean_ && int_ == other.int_ && double_ == other.double_ &&
-               text_ == other.text_ && array_ == other.array_ && members_ == other.members_;
-    }
+    bool operator==(const XmlRpcValue &other) const { return value_ == other.value_; }
     bool operator!=(const XmlRpcValue &other) const { return !(*this == other); }
 
-    // As roscpp writes it: {1,two} for an array, [name:value] for a struct.
+    // As roscpp writes it: {1,two} for an array, [name:value] for a struct, a date as its numbers are, base64 in lines.
     std::ostream &write(std::ostream &stream) const
     {
-        switch (type_)
+        switch (getType())
         {
             case TypeBoolean:
-                return stream << boolean_;
+                return stream << as<bool>();
             case TypeInt:
-                return stream << int_;
+                return stream << as<int>();
             case TypeDouble:
-                return stream << double_;
+                return stream << as<double>();
             case TypeString:
-                return stream << text_;
+                return stream << as<std::string>();
+            case TypeDateTime:
+                return stream << dateText();
+            case TypeBase64:
+                return stream << base64Lines();
             case TypeArray:
                 stream << '{';
-                for (const XmlRpcValue &each : array_)
+                for (const XmlRpcValue &each : as<ValueArray>())
                 {
-                    each.write(&each == &array_.front() ? stream : stream << ',');
+                    each.write(&each == &as<ValueArray>().front() ? stream : stream << ',');
                 }
                 return stream << '}';
             case TypeStruct:
                 stream << '[';
-                for (auto each = members_.begin(); each != members_.end(); ++each)
+                for (auto each = begin(); each != end(); ++each)
                 {
-                    each->second.write((each == members_.begin() ? stream : stream << ',') << each->first << ':');
+                    each->second.write((each == begin() ? stream : stream << ',') << each->first << ':');
                 }
                 return stream << ']';
             default:
@@ -168,87 +182,58 @@ class XmlRpcValue
     std::string toJson() const;
 
   private:
-    XmlRpcValue &is(Type type)
+    // std::tm has no comparison of its own; roscpp's looks at what XML-RPC carries.
+    struct Date : std::tm
     {
-        if (type_ == TypeInvalid)
+        Date(const std::tm &value) : std::tm(value) {}
+        bool operator==(const Date &other) const
         {
-            type_ = type;
+            return tm_sec == other.tm_sec && tm_min == other.tm_min && tm_hour == other.tm_hour &&
+                   tm_mday == other.tm_mday && tm_mon == other.tm_mon && tm_year == other.tm_year;
         }
-        else if (type_ != type)
+    };
+
+    template <class T>
+    using Kept = std::conditional_t<std::is_same<T, std::tm>::value, Date, T>;
+
+    template <class T>
+    T &as()
+    {
+        if (!valid())
         {
-            mismatch(type);
+            value_.template emplace<Kept<T>>(T());
         }
-        return *this;
+        check<T>();
+        return *std::get_if<Kept<T>>(&value_);
     }
-    const XmlRpcValue &is(Type type) const
+    template <class T>
+    const T &as() const
     {
-        if (type_ != type)
+        check<T>();
+        return *std::get_if<Kept<T>>(&value_);
+    }
+    template <class T>
+    void check() const
+    {
+        if (!std::holds_alternative<Kept<T>>(value_))
         {
-            mismatch(type);
+            XmlRpcException::fail(std::is_same<T, ValueArray>::value    ? "type error: expected an array"
+                                  : std::is_same<T, ValueStruct>::value ? "type error: expected a struct"
+                                                                        : "type error");
         }
-        return *this;
     }
 
-    [[noreturn]] static void mismatch(Type wanted)
-    {
-        XmlRpcException::fail(wanted == TypeArray    ? "type error: expected an array"
-                              : wanted == TypeStruct ? "type error: expected a struct"
-                                                     : "type error");
-    }
+    std::string dateText() const;
+    std::string base64Lines() const;
 
-    friend class Access;
-
-    Type        type_    = TypeInvalid;
-    bool        boolean_ = false;
-    int         int_     = 0;
-    double      double_  = 0;
-    std::string text_;
-    ValueArray  array_;
-    ValueStruct members_;
+    // In the order of the types.
+    std::variant<std::monostate, bool, int, double, std::string, Date, BinaryData, ValueArray, ValueStruct> value_;
 };
 
 inline std::ostream &operator<<(std::ostream &stream, const XmlRpcValue &value)
 {
     return value.write(stream);
 }
-
-// For the library, which never asks for what a value is not.
-class Access
-{
-  public:
-    static void make(XmlRpcValue &value, XmlRpcValue::Type type) { value.type_ = type; }
-
-    template <class V>
-    static auto &boolean(V &value)
-    {
-        return value.boolean_;
-    }
-    template <class V>
-    static auto &integer(V &value)
-    {
-        return value.int_;
-    }
-    template <class V>
-    static auto &number(V &value)
-    {
-        return value.double_;
-    }
-    template <class V>
-    static auto &text(V &value)
-    {
-        return value.text_;
-    }
-    template <class V>
-    static auto &array(V &value)
-    {
-        return value.array_;
-    }
-    template <class V>
-    static auto &members(V &value)
-    {
-        return value.members_;
-    }
-};
 
 } // namespace XmlRpc
 

@@ -1,6 +1,7 @@
 // Parameters as JSON: the texts that stand in the rows of a table of parameters.
 #include "json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -9,13 +10,153 @@
 namespace roscfe
 {
 
-using XmlRpc::Access;
 using XmlRpc::XmlRpcValue;
 
 namespace
 {
 
 constexpr int kDeepest = 32; // values in values
+
+// What JSON lacks is an object with one member of such a name; one of the user's that looks like it is in "!!map".
+constexpr char kBinary[]  = "!!binary";
+constexpr char kTime[]    = "!!timestamp";
+constexpr char kEscaped[] = "!!map";
+
+constexpr char kSigns[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+bool from_base64(const std::string &text, XmlRpcValue::BinaryData &bytes)
+{
+    std::uint32_t bits  = 0;
+    std::size_t   count = 0;
+    for (const char sign : text)
+    {
+        const char *found = sign == '=' || sign == '\0' ? nullptr : std::strchr(kSigns, sign);
+        if (found == nullptr && sign != '=')
+        {
+            return false;
+        }
+        bits = bits << 6 | static_cast<std::uint32_t>(found != nullptr ? found - kSigns : 0);
+        if (++count % 4 == 0)
+        {
+            bytes.insert(bytes.end(), {static_cast<char>(bits >> 16), static_cast<char>(bits >> 8), static_cast<char>(bits)});
+        }
+    }
+    const std::size_t filled = text.size() - std::min(text.find('='), text.size());
+    if (count % 4 != 0 || filled > 2)
+    {
+        return false;
+    }
+    bytes.resize(bytes.size() - filled);
+    return true;
+}
+
+// Without ends of lines, or with one behind each 72 characters and at the end.
+std::string to_base64(const XmlRpcValue::BinaryData &bytes, bool in_lines)
+{
+    std::string text;
+    for (std::size_t at = 0; at < bytes.size(); at += 3)
+    {
+        std::uint32_t     bits = 0;
+        const std::size_t here = std::min<std::size_t>(3, bytes.size() - at);
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            bits = bits << 8 | (i < here ? static_cast<std::uint8_t>(bytes[at + i]) : 0u);
+        }
+        for (std::size_t i = 0; i < 4; ++i)
+        {
+            text += i <= here ? kSigns[bits >> (18 - 6 * i) & 63] : '=';
+        }
+        if (in_lines && here == 3 && (at / 3 + 1) % 18 == 0)
+        {
+            text += '\n';
+        }
+    }
+    return in_lines ? text + '\n' : text;
+}
+
+// A date as XML-RPC has it, "20261121T18:50:00"; std::tm has its numbers as they are, as in roscpp.
+bool from_date(const std::string &text, std::tm &date)
+{
+    date           = std::tm();
+    date.tm_isdst  = -1;
+    const char *at = text.c_str();
+    struct Part
+    {
+        int *       number;
+        int         digits;
+        const char *end;
+    };
+    for (const Part &part : {Part{&date.tm_year, 4, ""}, Part{&date.tm_mon, 2, ""}, Part{&date.tm_mday, 2, "T"},
+                             Part{&date.tm_hour, 2, ":"}, Part{&date.tm_min, 2, ":"}, Part{&date.tm_sec, 2, ""}})
+    {
+        at += std::strspn(at, " ");
+        const char *begin = at;
+        for (; at - begin < part.digits && *at >= '0' && *at <= '9'; ++at)
+        {
+            *part.number = *part.number * 10 + (*at - '0');
+        }
+        if (at == begin || std::strncmp(at, part.end, std::strlen(part.end)) != 0)
+        {
+            return false;
+        }
+        at += std::strlen(part.end);
+    }
+    return true;
+}
+
+bool is_marked(const XmlRpcValue &value)
+{
+    return value.size() == 1 && (value.hasMember(kBinary) || value.hasMember(kTime) || value.hasMember(kEscaped));
+}
+
+bool restore(XmlRpcValue &value);
+
+bool restore_members(XmlRpcValue &value)
+{
+    bool good = true;
+    for (auto &each : value)
+    {
+        good = good && restore(each.second);
+    }
+    return good;
+}
+
+// Structs that stand for what JSON lacks become that; false when there is nothing of the kind.
+bool restore(XmlRpcValue &value)
+{
+    if (value.getType() == XmlRpcValue::TypeArray)
+    {
+        bool good = true;
+        for (int i = 0; i < value.size(); ++i)
+        {
+            good = good && restore(value[i]);
+        }
+        return good;
+    }
+    if (value.getType() != XmlRpcValue::TypeStruct)
+    {
+        return true;
+    }
+    if (!is_marked(value))
+    {
+        return restore_members(value);
+    }
+    const std::string mark = value.begin()->first;
+    const XmlRpcValue said = value.begin()->second;
+    if (mark == kEscaped)
+    {
+        value = said;
+        return said.getType() == XmlRpcValue::TypeStruct && restore_members(value);
+    }
+    XmlRpcValue::BinaryData bytes;
+    std::tm                 date;
+    if (said.getType() != XmlRpcValue::TypeString || !(mark == kBinary ? from_base64(said, bytes) : from_date(said, date)))
+    {
+        return false;
+    }
+    value = mark == kBinary ? XmlRpcValue(bytes.data(), static_cast<int>(bytes.size())) : XmlRpcValue(&date);
+    return true;
+}
 
 class Reader
 {
@@ -29,7 +170,7 @@ class Reader
             return false;
         }
         skip();
-        return *at_ == '\0';
+        return *at_ == '\0' && restore(value);
     }
 
   private:
@@ -66,12 +207,10 @@ class Reader
             case '[':
                 return read_array(value, depth);
             case '"':
-                Access::make(value, XmlRpcValue::TypeString);
-                return read_text(Access::text(value));
+                return read_string(value);
             case 't':
             case 'f':
-                Access::make(value, XmlRpcValue::TypeBoolean);
-                Access::boolean(value) = *at_ == 't';
+                value = XmlRpcValue(*at_ == 't');
                 return word(*at_ == 't' ? "true" : "false");
             default:
                 return read_number(value);
@@ -86,8 +225,7 @@ class Reader
         const char *begin = at_;
         if (word("NaN") || word("Infinity") || word("-Infinity"))
         {
-            Access::make(value, XmlRpcValue::TypeDouble);
-            Access::number(value) = std::strtod(begin, nullptr);
+            value = XmlRpcValue(std::strtod(begin, nullptr));
             return true;
         }
         const char *      end   = begin + (*begin == '-' ? 1 : 0);
@@ -110,8 +248,7 @@ class Reader
         at_ = end;
         if (end != behind)
         {
-            Access::make(value, XmlRpcValue::TypeDouble);
-            Access::number(value) = std::strtod(begin, nullptr);
+            value = XmlRpcValue(std::strtod(begin, nullptr));
             return true;
         }
         const long long number = std::strtoll(begin, nullptr, 10);
@@ -119,8 +256,7 @@ class Reader
         {
             return false; // XML-RPC has 32 bits
         }
-        Access::make(value, XmlRpcValue::TypeInt);
-        Access::integer(value) = static_cast<int>(number);
+        value = XmlRpcValue(static_cast<int>(number));
         return true;
     }
 
@@ -172,6 +308,14 @@ class Reader
         return true;
     }
 
+    bool read_string(XmlRpcValue &value)
+    {
+        std::string text;
+        const bool  good = read_text(text);
+        value            = XmlRpcValue(text);
+        return good;
+    }
+
     bool hexadecimal(std::uint32_t &value)
     {
         value = 0;
@@ -217,7 +361,7 @@ class Reader
 
     bool read_array(XmlRpcValue &value, int depth)
     {
-        Access::make(value, XmlRpcValue::TypeArray);
+        value.setSize(0);
         ++at_;
         skip();
         if (*at_ == ']')
@@ -227,8 +371,7 @@ class Reader
         }
         for (;;)
         {
-            Access::array(value).emplace_back();
-            if (!read(Access::array(value).back(), depth + 1))
+            if (!read(value[value.size()], depth + 1))
             {
                 return false;
             }
@@ -247,7 +390,7 @@ class Reader
 
     bool read_members(XmlRpcValue &value, int depth)
     {
-        Access::make(value, XmlRpcValue::TypeStruct);
+        value.begin(); // it is a struct from now on
         ++at_;
         skip();
         if (*at_ == '}')
@@ -264,7 +407,7 @@ class Reader
                 return false;
             }
             skip();
-            if (*at_++ != ':' || !read(Access::members(value)[name], depth + 1))
+            if (*at_++ != ':' || !read(value[name], depth + 1))
             {
                 return false;
             }
@@ -308,6 +451,23 @@ void write_text(const std::string &text, std::string &to)
     to += '"';
 }
 
+std::string date_text(const std::tm &date)
+{
+    char text[40];
+    std::snprintf(text, sizeof text, "%4d%02d%02dT%02d:%02d:%02d", date.tm_year, date.tm_mon, date.tm_mday, date.tm_hour,
+                  date.tm_min, date.tm_sec);
+    return text;
+}
+
+void write_marked(const char *mark, const std::string &said, std::string &to)
+{
+    to += "{\"";
+    to += mark;
+    to += "\": ";
+    write_text(said, to);
+    to += '}';
+}
+
 void write_number(double number, std::string &to)
 {
     if (std::isnan(number) || std::isinf(number))
@@ -336,33 +496,41 @@ void write(const XmlRpcValue &value, std::string &to)
     switch (value.getType())
     {
         case XmlRpcValue::TypeBoolean:
-            to += Access::boolean(value) ? "true" : "false";
+            to += static_cast<bool>(value) ? "true" : "false";
             return;
         case XmlRpcValue::TypeInt:
-            to += std::to_string(Access::integer(value));
+            to += std::to_string(static_cast<int>(value));
             return;
         case XmlRpcValue::TypeDouble:
-            write_number(Access::number(value), to);
+            write_number(value, to);
             return;
         case XmlRpcValue::TypeString:
-            write_text(Access::text(value), to);
+            write_text(value, to);
             return;
-        case XmlRpcValue::TypeArray:
+        case XmlRpcValue::TypeDateTime:
         {
-            const char *before = "[";
-            for (const XmlRpcValue &each : Access::array(value))
-            {
-                to += before;
-                write(each, to);
-                before = ", ";
-            }
-            to += Access::array(value).empty() ? "[]" : "]";
+            const std::string text = date_text(value);
+            write_marked(kTime, text.substr(text.find_first_not_of(' ')), to); // as the master strips it
             return;
         }
+        case XmlRpcValue::TypeBase64:
+            write_marked(kBinary, to_base64(value, false), to);
+            return;
+        case XmlRpcValue::TypeArray:
+            to += '[';
+            for (int i = 0; i < value.size(); ++i)
+            {
+                to += i > 0 ? ", " : "";
+                write(value[i], to);
+            }
+            to += ']';
+            return;
         case XmlRpcValue::TypeStruct:
         {
-            const char *before = "{";
-            for (const auto &each : Access::members(value))
+            const char *before = "";
+            const bool  marked = is_marked(value);
+            to += marked ? "{\"!!map\": {" : "{";
+            for (const auto &each : value)
             {
                 to += before;
                 write_text(each.first, to);
@@ -370,7 +538,7 @@ void write(const XmlRpcValue &value, std::string &to)
                 write(each.second, to);
                 before = ", ";
             }
-            to += Access::members(value).empty() ? "{}" : "}";
+            to += marked ? "}}" : "}";
             return;
         }
         default:
@@ -393,6 +561,16 @@ void from_json(const char *text, XmlRpcValue &value)
 
 namespace XmlRpc
 {
+
+std::string XmlRpcValue::dateText() const
+{
+    return roscfe::date_text(*this);
+}
+
+std::string XmlRpcValue::base64Lines() const
+{
+    return roscfe::to_base64(*this, true);
+}
 
 std::string XmlRpcValue::toJson() const
 {

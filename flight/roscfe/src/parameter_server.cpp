@@ -10,7 +10,6 @@ namespace roscfe
 namespace server
 {
 
-using XmlRpc::Access;
 using XmlRpc::XmlRpcValue;
 
 namespace
@@ -132,13 +131,14 @@ void names(std::vector<std::string> &found)
     XmlRpcValue list;
     std::string told;
     found.clear();
-    if (ask(ParameterCall::names, "/", "", told))
+    if (!ask(ParameterCall::names, "/", "", told))
     {
-        from_json(told.c_str(), list);
+        return;
     }
-    for (const XmlRpcValue &each : Access::array(list))
+    from_json(told.c_str(), list);
+    for (int i = 0; i < list.size(); ++i)
     {
-        found.push_back(Access::text(each));
+        found.push_back(static_cast<const std::string &>(list[i]));
     }
 }
 

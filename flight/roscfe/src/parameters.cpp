@@ -12,7 +12,6 @@
 namespace roscfe
 {
 
-using XmlRpc::Access;
 using XmlRpc::XmlRpcValue;
 
 namespace
@@ -135,9 +134,12 @@ void put_below(XmlRpcValue &root, const std::string &path, const XmlRpcValue &va
     std::size_t  begin = 0;
     for (;;)
     {
-        Access::make(*at, XmlRpcValue::TypeStruct);
+        if (at->getType() != XmlRpcValue::TypeStruct)
+        {
+            at->clear();
+        }
         const std::size_t slash = path.find('/', begin);
-        at                      = &Access::members(*at)[path.substr(begin, slash - begin)];
+        at                      = &(*at)[path.substr(begin, slash - begin)];
         if (slash == std::string::npos)
         {
             break;
@@ -232,12 +234,12 @@ std::string text_of(const XmlRpcValue &value)
 // The leaves of a tree, each a parameter of its own; an empty namespace is one.
 bool put_all(Rows &rows, const std::string &name, const XmlRpcValue &value)
 {
-    if (value.getType() != XmlRpcValue::TypeStruct || Access::members(value).empty())
+    if (value.getType() != XmlRpcValue::TypeStruct || value.size() == 0)
     {
         return put(rows, name, text_of(value));
     }
     bool good = true;
-    for (const auto &each : Access::members(value))
+    for (const auto &each : value)
     {
         good = put_all(rows, ros::names::append(name, each.first), each.second) && good;
     }
@@ -456,7 +458,7 @@ bool param_to(XmlRpcValue &value, std::string &to)
     {
         return false;
     }
-    to = Access::text(value);
+    to = static_cast<const std::string &>(value);
     return true;
 }
 
@@ -464,14 +466,14 @@ bool param_to(XmlRpcValue &value, double &to)
 {
     if (value.getType() == XmlRpcValue::TypeInt)
     {
-        to = Access::integer(value);
+        to = static_cast<int>(value);
         return true;
     }
     if (value.getType() != XmlRpcValue::TypeDouble)
     {
         return false;
     }
-    to = Access::number(value);
+    to = static_cast<double>(value);
     return true;
 }
 
@@ -490,7 +492,7 @@ bool param_to(XmlRpcValue &value, int &to)
 {
     if (value.getType() == XmlRpcValue::TypeDouble)
     {
-        const double number = Access::number(value);
+        const double number = static_cast<double>(value);
         to = static_cast<int>(std::fmod(number, 1.0) < 0.5 ? std::floor(number) : std::ceil(number));
         return true;
     }
@@ -498,7 +500,7 @@ bool param_to(XmlRpcValue &value, int &to)
     {
         return false;
     }
-    to = Access::integer(value);
+    to = static_cast<int>(value);
     return true;
 }
 
@@ -508,7 +510,7 @@ bool param_to(XmlRpcValue &value, bool &to)
     {
         return false;
     }
-    to = Access::boolean(value);
+    to = static_cast<bool>(value);
     return true;
 }
 
@@ -524,7 +526,7 @@ bool number_of(XmlRpcValue &value, double &number)
 {
     if (value.getType() == XmlRpcValue::TypeBoolean)
     {
-        number = Access::boolean(value) ? 1 : 0;
+        number = static_cast<bool>(value) ? 1 : 0;
         return true;
     }
     return param_to(value, number);

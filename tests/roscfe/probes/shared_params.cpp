@@ -40,6 +40,23 @@ static void show(const Value &value, int depth = 0)
                 std::printf(")");
             }
             break;
+        case Value::TypeBase64:
+        {
+            const Value::BinaryData &bytes = value;
+            std::printf("base64 of %d:", value.size());
+            for (const char byte : bytes)
+            {
+                std::printf(" %02x", static_cast<unsigned char>(byte));
+            }
+            break;
+        }
+        case Value::TypeDateTime:
+        {
+            const std::tm &date = value;
+            std::printf("date %d %d %d %d %d %d %d", date.tm_year, date.tm_mon, date.tm_mday, date.tm_hour, date.tm_min,
+                        date.tm_sec, date.tm_isdst);
+            break;
+        }
         default:
             std::printf("type %d", value.getType());
     }
@@ -106,16 +123,32 @@ int main(int argc, char **argv)
     mixed["gains"][1]     = 2.5;
     mixed["deep"]["name"] = "x";
     own.setParam("mixed", mixed);
+    char bytes[]    = "\x00\x01\xfe\xff?";
+    std::tm date    = {};
+    date.tm_year    = 2026, date.tm_mon = 11, date.tm_mday = 23, date.tm_hour = 17, date.tm_min = 5;
+    Value with_bytes;
+    with_bytes["!!binary"] = "looks like it";
+    own.setParam("bytes", Value(bytes, 5));
+    own.setParam("no_bytes", Value(bytes, 0));
+    own.setParam("date", Value(&date));
+    own.setParam("like", with_bytes);
+    date.tm_year = 126;
+    own.setParam("short_date", Value(&date));
+    Value held;
+    held["in"][0] = Value(bytes, 2);
+    held["in"][1] = Value(&date);
+    own.setParam("held", held);
     ros::param::set("/from_cpp", 1);
     ros::param::set("/done_cpp", true);
 
     wait_for("/done_py");
     for (const char *name : {"int", "least", "double", "whole", "bool", "text", "digits", "marks", "empty", "lines", "unicode",
-                             "list", "texts", "nothing", "tree", "tuple", "big", "absent"})
+                             "list", "texts", "nothing", "tree", "tuple", "bytes", "none", "date", "like", "held", "big", "absent"})
     {
         read(std::string("/py/") + name);
     }
     read("/py");
+    read("/probes/probe/short_date");
     std::printf("P| gone %d\n", ros::param::has("/from_cpp"));
     std::printf("P| type of digits %d\n", ros::param::param("/py/digits", 5));
     std::string found;

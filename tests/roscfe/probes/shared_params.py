@@ -1,7 +1,21 @@
 #!/usr/bin/env python3
 """Parameters that a node in C++ has set, and those that it reads."""
 
+import datetime
+import xmlrpc.client
+
 import rospy
+
+
+def shown(value):
+    """A value as text; base64 and dates as what they hold."""
+    if isinstance(value, dict):
+        return "{%s}" % ", ".join("%r: %s" % (name, shown(each)) for name, each in sorted(value.items()))
+    if isinstance(value, list):
+        return "[%s]" % ", ".join(shown(each) for each in value)
+    if isinstance(value, xmlrpc.client.Binary):
+        return "base64 %r" % value.data
+    return "date %s" % value.value if isinstance(value, xmlrpc.client.DateTime) else ascii(value)
 
 
 def wait_for(name, value):
@@ -13,7 +27,7 @@ def wait_for(name, value):
 rospy.init_node("partner")
 wait_for("/done_cpp", True)
 for name, value in sorted(rospy.get_param("/probes/probe").items()):
-    print("P| py", name, type(value).__name__, ascii(value), flush=True)
+    print("P| py", name, type(value).__name__, shown(value), flush=True)
 rospy.delete_param("/from_cpp")
 for name, value in {
     "int": 7,
@@ -32,6 +46,11 @@ for name, value in {
     "nothing": [],
     "tree": {"leaf": 1, "branch": {"leaf": "x"}},
     "tuple": (1, 2),
+    "bytes": xmlrpc.client.Binary(bytes(range(250, 256)) + b"\0a"),
+    "none": xmlrpc.client.Binary(b""),
+    "date": xmlrpc.client.DateTime(datetime.datetime(2026, 11, 23, 17, 6, 59)),
+    "like": {"!!binary": "AAEC"},
+    "held": [xmlrpc.client.Binary(b"x"), {"at": xmlrpc.client.DateTime("20010203T04:05:06")}, {"!!map": {"!!map": 1}}],
 }.items():
     rospy.set_param(f"/py/{name}", value)
 for value in (2**31, -(2**31) - 1, 2**40):

@@ -29,12 +29,22 @@ int main(int argc, char **argv)
 {
     ros::init(argc, argv, "values");
     Value nothing, yes(true), three(3), half(0.5), word("word"), list, tree;
+    char      bytes[100];
+    for (int i = 0; i < 100; ++i)
+    {
+        bytes[i] = static_cast<char>(i * 5);
+    }
+    std::tm date = {};
+    date.tm_year = 2026, date.tm_mon = 11, date.tm_mday = 3, date.tm_hour = 18, date.tm_sec = 7;
+    Value       binary(bytes, 100), nil(bytes, 0), when(&date);
+    std::tm     short_year = date;
+    short_year.tm_year     = 126;
     list[0] = 1;
     list[2] = "x";
     tree["a"] = 1;
     tree["b"]["c"] = 2.25;
     const Value constant = tree, fixed = list, text = word;
-    for (const Value *each : {&nothing, &yes, &three, &half, &word, &list, &tree})
+    for (const Value *each : {&nothing, &yes, &three, &half, &word, &list, &tree, &binary, &nil, &when})
     {
         const Value &of = *each;
         PRINT(of.getType());
@@ -51,6 +61,25 @@ int main(int argc, char **argv)
         PRINT(of == three);
         PRINT(of != three);
     }
+    PRINT(Value(bytes, 1));
+    PRINT(Value(bytes, 2));
+    PRINT(Value(bytes, 3));
+    PRINT(Value(bytes, 54));
+    PRINT(Value(bytes, 55));
+    PRINT(Value(bytes, 100) == binary);
+    PRINT(Value(bytes, 99) == binary);
+    PRINT(static_cast<const Value::BinaryData &>(binary).size());
+    PRINT(static_cast<const Value::BinaryData &>(when).size());
+    PRINT(static_cast<const std::tm &>(when).tm_mon);
+    PRINT(static_cast<const std::tm &>(binary).tm_mon);
+    PRINT(Value(&short_year));
+    PRINT(Value(&short_year) == when);
+    DO(date.tm_wday = 3);
+    PRINT(Value(&date) == when);
+    DO(static_cast<Value::BinaryData &>(nil).push_back('x'));
+    PRINT(nil);
+    DO(Value().operator Value::BinaryData &().size());
+    DO(Value().operator std::tm &().tm_mon = 3);
     PRINT(static_cast<int>(half));
     PRINT(static_cast<double>(three));
     PRINT(static_cast<const double &>(constant["b"]["c"]));
