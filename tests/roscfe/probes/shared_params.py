@@ -10,12 +10,12 @@ import rospy
 def shown(value):
     """A value as text; base64 and dates as what they hold."""
     if isinstance(value, dict):
-        return "{%s}" % ", ".join("%r: %s" % (name, shown(each)) for name, each in sorted(value.items()))
+        return "{" + ", ".join(f"{name!r}: {shown(each)}" for name, each in sorted(value.items())) + "}"
     if isinstance(value, list):
-        return "[%s]" % ", ".join(shown(each) for each in value)
+        return "[" + ", ".join(shown(each) for each in value) + "]"
     if isinstance(value, xmlrpc.client.Binary):
-        return "base64 %r" % value.data
-    return "date %s" % value.value if isinstance(value, xmlrpc.client.DateTime) else ascii(value)
+        return f"base64 {value.data!r}"
+    return f"date {value.value}" if isinstance(value, xmlrpc.client.DateTime) else ascii(value)
 
 
 def wait_for(name, value):
