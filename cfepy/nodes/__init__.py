@@ -18,7 +18,7 @@ from cfepy.faces import face
 from cfepy.nodes.config import ROSCORE_PARAMS, CppNode, NodeConfig, RosConfig, TopicConfig
 
 if TYPE_CHECKING:
-    from cfepy.nodes.accesses import WHOLE, Access, Accesses, Observer
+    from cfepy.nodes.accesses import WHOLE, Accesses, Observer, Touch
     from cfepy.nodes.app_modules import AppModules, make_app_universe
     from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
     from cfepy.nodes.reach import held_by, is_private, reaches
@@ -33,7 +33,6 @@ __all__ = [
     "PREFIX",
     "ROSCORE_PARAMS",
     "WHOLE",
-    "Access",
     "Accesses",
     "AppModules",
     "CppNode",
@@ -45,6 +44,7 @@ __all__ = [
     "RosConfig",
     "StartThread",
     "TopicConfig",
+    "Touch",
     "Universe",
     "below_root",
     "held_by",
@@ -58,7 +58,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".accesses": ("WHOLE", "Access", "Accesses", "Observer"),
+            ".accesses": ("WHOLE", "Touch", "Accesses", "Observer"),
             ".app_modules": ("AppModules", "make_app_universe"),
             ".files": ("ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Overlay", "below_root"),
             ".reach": ("held_by", "is_private", "reaches"),

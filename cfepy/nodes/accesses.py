@@ -31,7 +31,7 @@ _SIMPLE = (str, int, float, bool, bytes, type(None))
 _SWEEP_AT = 512
 
 
-class Access(NamedTuple):
+class Touch(NamedTuple):
     """Something that a task is about to do.
 
     Attributes:
@@ -63,11 +63,11 @@ class Access(NamedTuple):
         return f"{self.code.co_qualname} ({PurePath(self.code.co_filename).name}:{self.line})"
 
 
-Observer = Callable[[Access], object]
+Observer = Callable[[Touch], object]
 
 
-class Numbers:
-    """Numbers of objects, in the order of first sight. They keep no object alive for long."""
+class ThingNumbers:
+    """ThingNumbers of objects, in the order of first sight. They keep no object alive for long."""
 
     def __init__(self) -> None:
         self._last = 0
@@ -116,7 +116,7 @@ class Accesses:
         self._point = kernel.point if isinstance(kernel, ExploringKernel) else None
         self._loading: dict[Task, int] = {}  # tasks that execute the body of a module
         self._covered: dict[str, bool] = {}
-        self._numbers = Numbers()
+        self._numbers = ThingNumbers()
         self._modules: dict[int, str] = {}  # by number of their variables
         self._held: dict[tuple[int, int], tuple[Any, ...]] = {}
 
@@ -187,7 +187,7 @@ class Accesses:
 
     def _tell_now(self, frame: FrameType, thing: int, key: str, is_write: bool, name: str) -> None:
         if self.observers:
-            access = Access(self._kernel.current, thing, key, is_write, name, frame.f_code, frame.f_lineno)
+            access = Touch(self._kernel.current, thing, key, is_write, name, frame.f_code, frame.f_lineno)
             for observer in self.observers:
                 observer(access)
 

@@ -16,8 +16,7 @@ from types import CodeType
 from typing import NamedTuple, TypeVar
 
 from cfepy.nodes.ordered_sets import with_ordered_sets
-from cfepy.nodes.scopes import FUNCTION, MODULE, Scopes
-from cfepy.syntax_trees import parsed
+from cfepy.syntax_trees import FUNCTION, MODULE, NameScopes, parsed
 
 READING_METHODS = frozenset(
     {
@@ -99,7 +98,7 @@ def compile_with_hooks(source: bytes | str, file: str, kinds: Kinds, ordered: bo
 class _Hooking(ast.NodeTransformer):
     def __init__(self, tree: ast.Module, kinds: Kinds) -> None:
         self._kinds = kinds
-        self._scopes = Scopes(tree).of
+        self._scopes = NameScopes(tree).of
         self._scope = self._scopes[tree]
         self._is_on = kinds.is_main
         self._classes: list[str] = []

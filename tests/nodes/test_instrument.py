@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from cfepy.nodes.accesses import Access, Accesses
+from cfepy.nodes.accesses import Accesses, Touch
 from cfepy.nodes.instrument import Kinds, compile_with_hooks
 from cfepy.rtos import Policy, make_kernel
 from tests.nodes.programs import PROGRAMS
@@ -18,10 +18,10 @@ ALL = Kinds(accesses=True, lines=True, calls=False, is_main=True)
 FILE = "program.py"
 
 
-def flown(source: str, kinds: Kinds | None, policy: Policy | None = None) -> tuple[Any, list[Access], Accesses]:
+def flown(source: str, kinds: Kinds | None, policy: Policy | None = None) -> tuple[Any, list[Touch], Accesses]:
     """What a program comes to: what it leaves in `out`, how it ends, with which lines; and what it touched."""
     kernel = make_kernel(policy=policy)
-    accesses, seen = Accesses(kernel), list[Access]()
+    accesses, seen = Accesses(kernel), list[Touch]()
     accesses.observers.append(seen.append)
     names: dict[str, Any] = {"__name__": "__main__", "__file__": FILE, "out": []}
     module = ModuleType("builtins")
