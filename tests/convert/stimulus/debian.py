@@ -79,6 +79,12 @@ int main(int argc, char **argv)
 }
 """
 """A nodelet by itself, as `nodelet standalone` has it, but for the search for its library."""
+OLD_PLUGINS = """
+#include <pluginlib/class_list_macros.hpp>
+
+#define PLUGINLIB_DECLARE_CLASS(package, name, type, base) PLUGINLIB_EXPORT_CLASS(type, base)
+"""
+"""Debian has the new names alone."""
 FORMAT = "[${severity}] [${time}]: ${message}"
 LONGEST_S = 40.0
 SHUTDOWN_S = 6.0
@@ -127,7 +133,7 @@ class RoscppNode:
         flags += [f"-isystem{each}" for each in system]
         old = self._folder / "cpp/pluginlib/class_list_macros.h"
         old.parent.mkdir(parents=True, exist_ok=True)
-        old.write_text("#include <pluginlib/class_list_macros.hpp>\n")  # Debian has the new name alone
+        old.write_text(OLD_PLUGINS)
         objects = []
         added = []
         if self._program.nodelet:

@@ -119,6 +119,8 @@ class NodeFlight:
             package, kind, args = "nodelet", "nodelet", f"standalone {kind}"
         elif package in provided_packages():
             package = "stimulus"  # cfepy's own program of that name would be taken
+            cmake = f"project(stimulus)\nadd_executable({kind} {kind}.cpp)\n"
+            (self._folder / "stimulus/CMakeLists.txt").write_text(cmake)
         launch = self._folder / "stimulus.launch"
         launch.write_text(
             f'<launch>{listed}<node pkg="stimulus" type="driver.py" name="driver" output="screen"'
