@@ -99,7 +99,7 @@ def main() -> None:
     verdicts = json.loads(arguments.converts.read_text(encoding="utf-8"))
     convert = {f"{each['repository']}/{each['file']}" for each in verdicts if not each["refused"]["host"]}
     if arguments.report:
-        for row in report.write(report.read(arguments.json, sorted(convert))):
+        for row in report.write(report.read(arguments.json, verdicts)):
             print(row.verdict, row.node, row.why)
         return
     done = json.loads(arguments.json.read_text()) if arguments.json and arguments.json.is_file() else {}

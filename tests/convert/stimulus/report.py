@@ -43,7 +43,8 @@ VERDICTS = {
     "equal": "the same messages, answers, lines, names in the graph and end",
     "explained": "differs, for a reason that explained.tsv has",
     "different": "differs, and should not",
-    "not on cfepy": "compiles, but does not fly",
+    "refused": "compiles, but does what nothing flies: a rule of the check says so",
+    "not on cfepy": "converts, but does not fly",
     "not with roscpp": "cannot be built with Debian's roscpp",
     "not run": "was not tried",
 }
@@ -75,8 +76,8 @@ _KINDS = ("topic ", "log", "answer ")
 def _verdict(node: str, result: Mapping[str, Any], known: Mapping[tuple[str, str], str]) -> tuple[str, str]:
     parts = result.get("parts", [])
     of_all = known.get((node, ALL))
-    if result["verdict"] == "not run":
-        return "not run", ""
+    if result["verdict"] in ("not run", "refused"):
+        return result["verdict"], result.get("why", "")
     if result["verdict"] == "not built":
         return "not with roscpp", of_all or result["why"]
     if not parts:
@@ -109,7 +110,7 @@ def table(made: list[Row]) -> str:
     counts = Counter(row.verdict for row in made)
     there = [row for row in made if row.verdict in ("equal", "explained", "different")]
     lines = [
-        f"Of {len(made)} nodes that convert for the host:",
+        f"Of {len(made)} nodes that compile for the host:",
         "",
         "| verdict | nodes | what it means |",
         "|---|---|---|",
@@ -121,12 +122,19 @@ def table(made: list[Row]) -> str:
     return "\n".join(lines)
 
 
-def read(file: Path, nodes: Iterable[str]) -> list[dict[str, Any]]:
+def read(file: Path, verdicts: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """The results in a file of `--json`.
 
     Args:
         file: that one.
-        nodes: those that should be in it.
+        verdicts: of `tests.convert.survey`: nodes that convert should be in it.
     """
     found: dict[str, dict[str, Any]] = json.loads(file.read_text(encoding="utf-8"))
-    return [found.get(name, {"node": name, "verdict": "not run"}) for name in nodes]
+    results = []
+    for each in verdicts:
+        node, rules = f"{each['repository']}/{each['file']}", each["refused"]["host"]
+        if not rules:
+            results.append(found.get(node, {"node": node, "verdict": "not run"}))
+        elif node in found:
+            results.append({"node": node, "verdict": "refused", "why": ", ".join(rules)})
+    return results
