@@ -19,13 +19,15 @@ if TYPE_CHECKING:
     from cfepy.exploration.failures import TracebackReader
     from cfepy.exploration.moves import Move
     from cfepy.exploration.shrink import Shrinkable, Shrinker, Shrunk
-    from cfepy.exploration.timeline import TaskLook, columns, drawn
+    from cfepy.exploration.task_look import TaskLook
+    from cfepy.exploration.timeline import WIDTH, Story, important
     from cfepy.exploration.trial import Trial, Tried
     from cfepy.exploration.verdict import Failure, Finding, Verdict
 
 __all__ = [
     "DEFAULT_PROBES",
     "DEFAULT_SEEDS",
+    "WIDTH",
     "Expedition",
     "Failure",
     "Finding",
@@ -34,14 +36,14 @@ __all__ = [
     "Shrinkable",
     "Shrinker",
     "Shrunk",
+    "Story",
     "TaskLook",
     "Told",
     "TracebackReader",
     "Trial",
     "Tried",
     "Verdict",
-    "columns",
-    "drawn",
+    "important",
 ]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
@@ -62,10 +64,11 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Shrinker",
                 "Shrunk",
             ),
+            ".task_look": ("TaskLook",),
             ".timeline": (
-                "TaskLook",
-                "columns",
-                "drawn",
+                "WIDTH",
+                "Story",
+                "important",
             ),
             ".trial": (
                 "Trial",

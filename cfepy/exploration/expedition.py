@@ -24,7 +24,7 @@ from cfepy.exploration.search import SeededSearch, SystematicSearch, make_search
 from cfepy.exploration.shipment import files_read, identity_of, ship
 from cfepy.exploration.shrink import Shrinker, Shrunk
 from cfepy.exploration.stuck import waits_of
-from cfepy.exploration.timeline import timeline_of
+from cfepy.exploration.timeline import Story, story_of
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import RACE, STALLED, Failure, Finding, Findings, Verdict
 from cfepy.exploration.workers import LONGEST_S, PROCESS_DIED
@@ -51,7 +51,7 @@ class Told:
     Attributes:
         finding: the failure, and the schedules that showed it.
         shrunk: its schedule with the fewest preemptions; None when it was not looked for, or has none.
-        timeline: what happens under that schedule, a line each.
+        story: what happens under that schedule.
         inversions: the priority inversions before it, a sentence each, the longest first; of the task that failed where
             it had any.
         repeats: whether a second run under the schedule that showed it fails in the same way. If not, it is not the
@@ -61,10 +61,15 @@ class Told:
 
     finding: Finding
     shrunk: Shrunk[Trial] | None = None
-    timeline: list[str] = field(default_factory=list)
+    story: Story = field(default_factory=Story)
     inversions: list[str] = field(default_factory=list)
     repeats: bool = True
     is_steady: bool = True
+
+    @property
+    def timeline(self) -> list[str]:
+        """The story, a line each, 100 characters wide."""
+        return self.story.lines()
 
 
 @dataclass(slots=True)
@@ -109,8 +114,8 @@ class Report:
         found = []
         for told in self.findings:
             command = self.trial.command(_showing(told.finding.failure, told.finding.verdict.schedule))
-            entry = told.finding.to_dict() | {"command": command, "timeline": told.timeline, "repeats": told.repeats}
-            entry |= {"inversions": told.inversions}
+            entry = told.finding.to_dict() | {"command": command, "repeats": told.repeats}
+            entry |= {"inversions": told.inversions, "cause": told.story.cause, "timeline": told.timeline}
             found.append(entry | {"shrunk": None if told.shrunk is None else _shrunk_numbers(told.shrunk)})
         return {
             "plan": self.trial.plan.to_dict(),
@@ -309,7 +314,7 @@ class Expedition:
                 told.inversions = _inversions(trial, finding)
                 told.shrunk = self._shrunk(trial, finding) if told.repeats else None
             if told.shrunk is not None:
-                told.timeline = _timeline(told.shrunk, finding)
+                told.story = _story(told.shrunk, finding)
         except KeyboardInterrupt:  # what was found must not be lost with it
             tally.interrupted = True
         return told
@@ -340,6 +345,6 @@ def _inversions(trial: Trial, finding: Finding) -> list[str]:
     return [each.text for each in reversed(told)][:MOST_INVERSIONS]
 
 
-def _timeline(shrunk: Shrunk[Trial], finding: Finding) -> list[str]:
+def _story(shrunk: Shrunk[Trial], finding: Finding) -> Story:
     failure = shrunk.verdict.failure(finding.failure.group)
-    return [] if failure is None else timeline_of(shrunk.trial, shrunk.verdict, failure, shrunk.moves)
+    return Story() if failure is None else story_of(shrunk.trial, shrunk.verdict, failure, shrunk.moves)

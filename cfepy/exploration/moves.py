@@ -88,13 +88,13 @@ class MovePolicy(Policy):
 
     def __init__(self, moves: Iterable[Move], options: Schedule) -> None:
         super().__init__(*options.settings)
-        self._chosen = {(_plain(move.task), move.number): move.chosen for move in moves}
+        self._chosen = {(plain_name(move.task), move.number): move.chosen for move in moves}
         self._numbers = _Numbers()
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
         task = decision.subject
-        chosen = self._chosen.get((_plain(task), self._numbers.next(decision.now, task)))
+        chosen = self._chosen.get((plain_name(task), self._numbers.next(decision.now, task)))
         return 0 if chosen is None else _index(decision.answers, chosen)
 
 
@@ -109,13 +109,13 @@ class _Numbers:
 
     def next(self, now_ns: int, task: str) -> int:
         """The number of a decision; they only grow."""
-        name = _plain(task)
+        name = plain_name(task)
         number = max(self._following.get(name, 0), now_ns // NS_PER_MS * DECISIONS_PER_MS)
         self._following[name] = number + 1
         return number
 
 
-def _plain(name: str) -> str:
+def plain_name(name: str) -> str:
     """A task's name without the number that tasks of ROS nodes get in the order of their making."""
     return _NUMBER.sub("", name)
 
@@ -124,4 +124,4 @@ def _index(names: list[str], chosen: str) -> int:
     """Which of the answers is meant, 0 if none is."""
     if chosen in names:
         return names.index(chosen)
-    return next((at for at, name in enumerate(names) if _plain(name) == _plain(chosen)), 0)
+    return next((at for at, name in enumerate(names) if plain_name(name) == plain_name(chosen)), 0)

@@ -1,43 +1,83 @@
-"""A failing run as a timeline: a column for each task that matters, from the first preemption to the failure.
+"""A failing run as a story: its cause in a sentence, and a column for each task that matters, up to the failure.
 
-The run is flown once more with a `TaskLook`, which notes where in its source each task was whenever another could have
-got in; it changes nothing, so the run is that of the schedule. What it noted is drawn as plain text of 100 columns.
+The run is flown once more with a `TaskLook`, which notes where in its source each task was whenever another could
+have got in, and what it did to locks, messages and the like. So is the run under fifo, for what was otherwise there.
+What was noted is drawn as plain text.
 """
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from textwrap import wrap
-from types import FrameType
-from typing import Any
 
-from cfepy.attachment import Attachment
+from cfepy.exploration.cause import Evidence, cause_of
 from cfepy.exploration.failures import FailureWatch
 from cfepy.exploration.moves import Move
+from cfepy.exploration.task_look import ANSWERS, AT, DOES, ORDERED, PREEMPTED, SENDS, WAITS, Row, TaskLook
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import INVARIANT, Failure, Verdict
-from cfepy.ground import dictionary_of, line_of, plain
-from cfepy.mission import CORE_APPS, Mission, MissionSpec
-from cfepy.monitors import Heard, MessageWatch
-from cfepy.pilot.determinism_look import place_text
-from cfepy.rtos import HOLD, AskingPolicy, Decision, Policy, Task
-from cfepy.sb import SoftwareBus
+from cfepy.rtos import HOLD, Policy
 from cfepy.units import NS_PER_S
 
 WIDTH = 100
+"""Of a story in a file, a pipe, a test: always the same, so that it can be compared."""
+
 TIME_WIDTH = 12
-MOST_COLUMNS = 3
+LEAST_COLUMN = 26  # characters: there are as many columns as fit
 AROUND = 5  # rows that are shown before and after each move
 LAST = 10  # rows that are shown before the failure
 BEFORE = 50  # decisions before the first move, from which on rows are kept
 GAP = 2
-AT, WAITS, SENDS, PREEMPTED, ORDERED, ANSWERS = "at", "waits", "sends", "preempted", "ordered", "answers"
+LONGEST = 16  # rows of a group
+FEW = 2  # rows: a group of so few is folded only when it comes three times
+BETWEEN = " ... "  # stands between the first and the last message of those that are told once
+CAUSE = "cause: "
+_MADE_AT = re.compile(r" \((?:line |[\w.]+:)\d+\)")  # behind the name of a lock; the first to go where there is no room
 
 
-def timeline_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[Move]) -> list[str]:
-    """The lines of it; the run is flown once more.
+@dataclass(frozen=True, slots=True)
+class Story:
+    """What happened in a run, to be drawn.
+
+    Attributes:
+        rows: what the tasks did.
+        tasks: those that matter, the most important first.
+        cause: of the failure, a sentence; empty where it is not known.
+        end: what failed, a line; empty for nothing.
+        end_ns: virtual time at which it failed; None for the end of the run.
+    """
+
+    rows: tuple[Row, ...] = ()
+    tasks: tuple[str, ...] = ()
+    cause: str = ""
+    end: str = ""
+    end_ns: int | None = None
+
+    def lines(self, width: int = WIDTH) -> list[str]:
+        """It as text.
+
+        Args:
+            width: characters of a line.
+        """
+        most = max(1, (width - TIME_WIDTH) // (LEAST_COLUMN + GAP))
+        chosen = set(self.tasks[:most])
+        named = dict.fromkeys(row.task for row in self.rows if row.task in chosen)
+        tasks = tuple(dict.fromkeys([*named, *(task for task in self.tasks if task in chosen)]))
+        cause = wrap(CAUSE + self.cause, width, subsequent_indent=" " * len(CAUSE)) if self.cause else []
+        return [*cause, *([""] if cause else []), *drawn(self.rows, tasks, width), *self._last_lines(width)]
+
+    def _last_lines(self, width: int) -> list[str]:
+        if not self.end:
+            return []
+        at = "at the end" if self.end_ns is None else f"{self.end_ns / NS_PER_S:.6f}"
+        lines = wrap(self.end, width - TIME_WIDTH)
+        return [(at if not number else "").ljust(TIME_WIDTH) + line for number, line in enumerate(lines)]
+
+
+def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[Move]) -> Story:
+    """What happened; the run is flown once more, and the one under fifo.
 
     Args:
         trial: what is flown.
@@ -50,57 +90,85 @@ def timeline_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequenc
     watch = FailureWatch(trial.events)
     look = TaskLook(trial.plan.spec(), first - BEFORE, lambda: watch.saw(failure.group))
     trial.fly(schedule, [watch, look], look.policy(schedule.policy() or Policy()))
+    fifo, usual = schedule.at({}), TaskLook(trial.plan.spec())
+    known = trial.fly(fifo, [usual], usual.policy(fifo.policy() or Policy())).verdict.failure(failure.group)
     end_ns = verdict.end_ns if failure.at_ns is None else failure.at_ns
-    rows = [row for row in look.rows if row.at_ns <= end_ns]
+    rows = tuple(row for row in look.rows if row.at_ns <= end_ns)
     sender = rows[-1].task if rows and failure.kind == INVARIANT and rows[-1].kind == SENDS else ""
     culprit = failure.task or sender
-    return [*drawn(rows, columns(rows, moves, culprit)), *_last_lines(failure, culprit)]
+    evidence = Evidence(failure, moves, rows, look.deeds, usual.deeds, look.names)
+    cause = "" if known is not None else cause_of(evidence)
+    title, text = (_named(each, look.names) for each in (failure.title, failure.text))
+    end = f"FAILURE{f' in {culprit}:' if culprit else ''} {title}"
+    return Story(rows, important(rows, moves, culprit, f"{cause} {text}"), cause, end, failure.at_ns)
 
 
-def columns(rows: Sequence[Row], moves: Sequence[Move], culprit: str = "") -> tuple[str, ...]:
-    """The tasks that have a column, in the order in which they appear.
+def _named(text: str, names: Mapping[str, str]) -> str:
+    """A text with the names of locks in the place of their numbers."""
+    for told, name in names.items():
+        text = text.replace(told, name)
+    return text
 
-    These are the one in which the failure showed, those of the last moves, and those that connect. When these are not
-    two, or a task was held up and others ran in the meantime, it is also who did something last.
+
+def important(rows: Sequence[Row], moves: Sequence[Move], culprit: str = "", text: str = "") -> tuple[str, ...]:
+    """The tasks that may have a column, those that matter most first.
+
+    These are the one in which the failure showed, those of the moves, the last one first, those that a question was
+    about, and those that the failure and its cause name. When these are not two, or a task was held up and others ran
+    in the meantime, it is also who did something last.
 
     Args:
         rows: what all tasks did.
         moves: what the schedule does.
         culprit: the task in which the failure showed; empty when that is not known.
+        text: of the failure and its cause.
     """
+    words = set(text.replace(",", " ").replace(";", " ").replace("'", " ").split())
     moved = [name for move in moves if not move.question for name in (move.task, move.chosen)]
     moved += [row.task for row in rows if row.kind == ANSWERS]
-    wanted = list(dict.fromkeys([culprit, *reversed(moved)]))
-    at_least = MOST_COLUMNS if HOLD in moved else 2
-    wanted = [name for name in wanted if name not in ("", HOLD)]
-    for row in reversed(rows):
-        if len(wanted) >= at_least:
-            break
-        if row.task not in wanted:
-            wanted.append(row.task)
-    chosen = wanted[:MOST_COLUMNS]
-    return tuple(name for name in dict.fromkeys([*moved, *(row.task for row in rows), *chosen]) if name in chosen)
+    acting = list(dict.fromkeys(row.task for row in reversed(rows)))
+    wanted = dict.fromkeys([culprit, *reversed(moved), *(task for task in reversed(acting) if task in words)])
+    for no_task in ("", HOLD):
+        wanted.pop(no_task, None)
+    at_least = 3 if HOLD in moved else 2
+    return (*wanted, *[task for task in acting if task not in wanted][: max(0, at_least - len(wanted))])
 
 
-def drawn(rows: Sequence[Row], tasks: Sequence[str]) -> list[str]:
+def drawn(rows: Sequence[Row], tasks: Sequence[str], width: int = WIDTH) -> list[str]:
     """A line a row, in the column of its task; rows that are far from every move and from the end are left out."""
     if not tasks:
         return []
-    rows = [row for row in rows if row.task in tasks]
-    file, rows = _without_file(rows)
-    width = (WIDTH - TIME_WIDTH) // len(tasks) - GAP
+    file, rows = _without_file(_moving([row for row in rows if row.task in tasks]))
+    groups = _folded(rows)
+    shown = _shown(groups)
+    widths = _widths([_need(task, [groups[at] for at in shown]) for task in tasks], width - TIME_WIDTH)
     lines = [f"lines of {file}", ""] if file else []
-    lines += [_line("time, s", tasks, width).rstrip(), _line("", ["-" * width] * len(tasks), width)]
+    lines += [_line("time, s", tasks, widths), _line("", ["-" * each for each in widths], widths)]
     before = -1
-    for at in _shown(rows):
+    for at in shown:
         if at != before + 1:
-            lines.append(_line("...", [], width))
+            lines.append("...")
         before = at
-        row = rows[at]
-        cells = [_text(row, width) if row.task == task else "" for task in tasks]
-        time = f"{row.at_ns / NS_PER_S:.6f}"
-        lines.append(_line(time, [_cut(cell, width) for cell in cells], width))
+        lines += [_row_line(row, tasks, widths) for row in groups[at].rows]
+        if groups[at].times > 1:
+            what = "row" if len(groups[at].rows) == 1 else f"{len(groups[at].rows)} rows"
+            until = f"the {what} above, until {groups[at].until_ns / NS_PER_S:.6f}"
+            lines.append(_line(f"x {groups[at].times}", [until], [len(until)]))
     return lines
+
+
+def _moving(rows: Sequence[Row]) -> list[Row]:
+    """The rows without lines at which a task was already, and went on with only what other rows tell."""
+    kept: list[Row] = []
+    at: dict[str, str] = {}
+    for row in rows:
+        if kept and kept[-1].task != row.task:
+            at.clear()
+        if row.kind != AT or at.get(row.task) != row.text:
+            kept.append(row)
+        if row.kind == AT:
+            at[row.task] = row.text
+    return kept
 
 
 def _without_file(rows: Sequence[Row]) -> tuple[str, Sequence[Row]]:
@@ -109,177 +177,124 @@ def _without_file(rows: Sequence[Row]) -> tuple[str, Sequence[Row]]:
     if len(files) != 1:
         return "", rows
     file = files.pop()
-    return file, [replace(row, text=row.text[len(file) + 1 :]) if row.kind == AT else row for row in rows]
+    return file, [replace(row, text=_short(row, file)) for row in rows]
 
 
-def _shown(rows: Sequence[Row]) -> list[int]:
-    """The rows that are shown."""
-    moves = [at for at, row in enumerate(rows) if row.kind in (PREEMPTED, ORDERED, ANSWERS)]
+def _short(row: Row, file: str) -> str:
+    if row.kind == AT:
+        return row.text[len(file) + 1 :]
+    return row.text.replace(f" ({file}:", " (line ") if row.kind in (DOES, WAITS) else row.text
+
+
+def _shown(groups: Sequence[_Group]) -> list[int]:
+    """The groups of rows that are shown."""
+    moves = [
+        at for at, group in enumerate(groups) if any(row.kind in (PREEMPTED, ORDERED, ANSWERS) for row in group.rows)
+    ]
     near = {each for at in moves for each in range(at - AROUND, at + AROUND + 1)}
-    return [at for at in range(len(rows)) if at in near or at >= len(rows) - LAST]
+    return [at for at in range(len(groups)) if at in near or at >= len(groups) - LAST]
 
 
-def _text(row: Row, width: int) -> str:
+def _need(task: str, groups: Sequence[_Group]) -> int:
+    """How wide a column must be for all that is in it."""
+    texts = (_forms(row)[0] for group in groups for row in group.rows if row.task == task)
+    return max(len(task), *map(len, texts), LEAST_COLUMN)
+
+
+def _widths(needs: Sequence[int], width: int) -> list[int]:
+    """How wide each column is: what it needs, while there is room; the room is shared out evenly among the others."""
+    widths = [0] * len(needs)
+    left = width - GAP * len(needs)
+    for place, at in enumerate(sorted(range(len(needs)), key=lambda at: needs[at])):
+        widths[at] = min(needs[at], left // (len(needs) - place))
+        left -= widths[at]
+    return widths
+
+
+def _row_line(row: Row, tasks: Sequence[str], widths: Sequence[int]) -> str:
+    cells = ["" if row.task != task else _cell(row, width) for task, width in zip(tasks, widths, strict=True)]
+    return _line(f"{row.at_ns / NS_PER_S:.6f}", cells, widths)
+
+
+def _cell(row: Row, width: int) -> str:
+    forms = _forms(row)
+    return next((text for text in forms if len(text) <= width), _cut(forms[-1], width))
+
+
+def _forms(row: Row) -> tuple[str, ...]:
+    """What a row says, the longest form first."""
     if row.kind == ANSWERS:
-        return f"=== {row.text} ==="
+        return (f"=== {row.text} ===",)
     if row.kind not in (PREEMPTED, ORDERED):
-        return row.text
+        return row.text, _MADE_AT.sub("", row.text)
     if row.text == HOLD:
-        return "=== HELD UP ==="
+        return ("=== HELD UP ===",)
     short, whole = ("PREEMPTED", "PREEMPTED by") if row.kind == PREEMPTED else ("NOT FIRST", "AFTER")
-    forms = (f"=== {whole} {row.text} ===", f"{whole} {row.text}")
-    return next((text for text in forms if len(text) <= width), f"=== {short} ===")
+    return f"=== {whole} {row.text} ===", f"{whole} {row.text}", f"=== {short} ==="
 
 
-def _line(time: str, cells: Sequence[str], width: int) -> str:
-    return (time.ljust(TIME_WIDTH) + (" " * GAP).join(cell.ljust(width) for cell in cells)).rstrip()
+def _line(time: str, cells: Sequence[str], widths: Sequence[int]) -> str:
+    texts = (_cut(cell, width).ljust(width) for cell, width in zip(cells, widths, strict=True))
+    return (time.ljust(TIME_WIDTH) + (" " * GAP).join(texts)).rstrip()
 
 
 def _cut(text: str, width: int) -> str:
     return text if len(text) <= width else f"{text[: width - 3]}..."
 
 
-def _last_lines(failure: Failure, culprit: str) -> list[str]:
-    at = "at the end" if failure.at_ns is None else f"{failure.at_ns / NS_PER_S:.6f}"
-    where = f" in {culprit}:" if culprit else ""
-    lines = wrap(f"FAILURE{where} {failure.title}", WIDTH - TIME_WIDTH)
-    return [(at if not number else "").ljust(TIME_WIDTH) + line for number, line in enumerate(lines)]
-
-
 @dataclass(frozen=True, slots=True)
-class Row:
-    """Something that a task did.
+class _Group:
+    """Rows that come one after the other.
 
     Attributes:
-        at_ns: virtual time.
-        task: its name.
-        kind: AT a line of source, WAITS for something, SENDS a message, is PREEMPTED by `text`, or `text` is ORDERED
-            before it, or it ANSWERS a question as the schedule has it.
-        text: what.
+        rows: as they came the first time.
+        times: how often they came.
+        until_ns: virtual time at which they were over.
     """
 
-    at_ns: int
-    task: str
-    kind: str
-    text: str
+    rows: tuple[Row, ...]
+    times: int
+    until_ns: int
 
 
-class TaskLook(Attachment):
-    """Keeps what the tasks of a mission's applications do, up to a failure.
-
-    Args:
-        spec: the mission.
-        first: from this decision on.
-        is_over: whether the failure has been seen, and nothing is kept any more.
-
-    Attributes:
-        rows: in the order in which it happened.
-    """
-
-    def __init__(self, spec: MissionSpec, first: int = 0, is_over: Callable[[], bool] = lambda: False) -> None:
-        self.rows: list[Row] = []
-        self.is_on = first <= 0
-        self._first = first
-        self._is_over = is_over
-        self._closed = False
-        packets = dictionary_of(spec)
-        names = (*packets.commands, *(name for name in packets.telemetry if not name.startswith("/")))
-        self._messages = MessageWatch(spec, self._take_message, ("*",), names)
-        self._mission: Mission | None = None
-
-    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
-        return self._messages.bus(base)
-
-    def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`; every wait goes through the kernel's `block`, which is looked up anew each time."""
-        self._mission = mission
-        self._messages.begin(mission)
-        mission.kernel.block = self._blocking(mission.kernel.block)  # type: ignore[method-assign]
-
-    def policy(self, inner: Policy) -> Policy:
-        """A policy that decides as another does, and notes the place of each task when it is asked."""
-        return _LookingPolicy(inner, self)
-
-    def reached(self, decision: int) -> None:
-        """So many decisions are behind."""
-        self.is_on = self.is_on or decision >= self._first
-
-    def add(self, task: str, kind: str, text: str) -> None:
-        """Keep something, until the failure has been seen."""
-        if self._goes_on():
-            self._keep(task, kind, text)
-
-    def answers(self, text: str) -> None:
-        """Keep what became of a question; the running task may be of a node that only just begins."""
-        if self._mission is not None:
-            self.add(self._mission.kernel.current.name, ANSWERS, text)
-
-    def look(self, frame: FrameType | None) -> None:
-        """Keep where the running task is."""
-        task = self._watched()
-        if task is not None and self._goes_on():
-            self._keep_place(task, frame)
-
-    def _goes_on(self) -> bool:
-        self._closed = self._closed or self._is_over()
-        return not self._closed
-
-    def _watched(self) -> Task | None:
-        """The running task, if it is one of the mission's applications, and its deeds are kept by now."""
-        if not self.is_on or self._mission is None:
-            return None
-        task = self._mission.kernel.current
-        return None if task.owner is None or task.owner.name in CORE_APPS else task
-
-    def _keep_place(self, task: Task, frame: FrameType | None) -> None:
-        text = place_text(frame)
-        if text:
-            self._keep(task.name, AT, text)
-
-    def _keep(self, task: str, kind: str, text: str) -> None:
-        assert self._mission is not None
-        row = Row(self._mission.kernel.now, task, kind, text)
-        if not self.rows or (self.rows[-1].task, self.rows[-1].kind, self.rows[-1].text) != (task, kind, text):
-            self.rows.append(row)
-
-    def _blocking(self, block: Callable[[], Any]) -> Callable[[], Any]:
-        def wait() -> Any:
-            task = self._watched()
-            if task is not None:
-                self.look(sys._getframe(1))
-                what = "sleeps" if task.waits is None else f"waits for {task.waits.what}"
-                self.add(task.name, WAITS, what)
-            return block()
-
-        return wait
-
-    def _take_message(self, heard: Heard) -> None:
-        """The message may be the failure itself, so it is kept when that has just been seen."""
-        task = self._watched()
-        if task is None or self._closed:
-            return
-        try:
-            values = plain(heard.msg)
-        except Exception as error:  # the type of its messages is not known
-            values = {"?": str(error)}
-        self._keep_place(task, sys._getframe(1))
-        self._keep(task.name, SENDS, f"sends {heard.topic}: {line_of(values) if isinstance(values, dict) else values}")
+def _folded(rows: Sequence[Row]) -> list[_Group]:
+    """The same rows, in which what comes again at once is told once; most groups are a single row."""
+    groups: list[_Group] = []
+    kinds = [_kind(row) for row in rows]
+    at = 0
+    while at < len(rows):
+        length, times = max(((each, _times(kinds, at, each)) for each in range(1, LONGEST + 1)), key=_saved)
+        if _saved((length, times)) == 0:
+            length, times = 1, 1
+        end = at + length * times
+        last = rows[end - length : end]
+        both = zip(rows[at : at + length], last, strict=True)
+        groups.append(_Group(tuple(_merged(*each) for each in both), times, rows[end - 1].at_ns))
+        at = end
+    return groups
 
 
-class _LookingPolicy(AskingPolicy):
-    def __init__(self, inner: Policy, look: TaskLook) -> None:
-        super().__init__(inner)
-        self._look = look
+def _kind(row: Row) -> tuple[str, str, str]:
+    """What rows that are told once have in common: of messages the topic, of all others everything but the time."""
+    text = row.text.partition(":")[0] if row.kind == SENDS else row.text
+    return row.task, row.kind, text
 
-    def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`. It is asked in the task that gives the processor away."""
-        choice = self._inner.choose(decision)
-        self._look.reached(decision.number)
-        self._look.look(sys._getframe(1))
-        if choice and decision.question is not None:
-            self._look.answers(decision.question.told.format(decision.answers[choice]))
-        elif choice:
-            kind = PREEMPTED if decision.running else ORDERED
-            self._look.add(decision.subject, kind, decision.answers[choice])
-        return choice
+
+def _times(kinds: Sequence[tuple[str, str, str]], at: int, length: int) -> int:
+    """How often so many rows come one after the other."""
+    group, times = kinds[at : at + length], 1
+    while len(group) == length and kinds[at + times * length : at + (times + 1) * length] == group:
+        times += 1
+    return times
+
+
+def _saved(folding: tuple[int, int]) -> int:
+    """How many rows it saves to fold; 0 where that is not worth a line that says so."""
+    length, times = folding
+    return length * (times - 1) if times > 2 or (times == 2 and length > FEW) else 0
+
+
+def _merged(first: Row, last: Row) -> Row:
+    if first.text == last.text:
+        return first
+    return replace(first, text=first.text + BETWEEN + last.text.partition(": ")[2])

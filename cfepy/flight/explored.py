@@ -29,7 +29,8 @@ class FoundFailure:
         under_fifo: whether the default schedule shows it as well.
         schedule: the shortest schedule known that shows it.
         preemptions: of that schedule; None when it was not shrunk.
-        timeline: what happens under it, a line each; empty when it was not shrunk.
+        cause: a sentence, where what was observed says it; empty otherwise.
+        timeline: what happens under it, a line each, the cause above it; empty when it was not shrunk.
         plan: the shortest run that shows it.
     """
 
@@ -41,7 +42,7 @@ class FoundFailure:
         self.schedules, self.under_fifo = len(finding.numbers), finding.in_reference
         self.schedule: Schedule = report.schedule_of(told) if shrunk is None else shrunk.verdict.schedule
         self.preemptions = None if shrunk is None else shrunk.verdict.preemptions
-        self.timeline = list(told.timeline)
+        self.cause, self.timeline = told.story.cause, list(told.timeline)
         trial = report.trial if shrunk is None else shrunk.trial
         self.plan: RunPlan = replace(trial.plan, schedule=self.schedule)
 

@@ -13,7 +13,7 @@ from typing import Literal, cast
 import pytest
 from _pytest.runner import runtestprotocol
 
-from cfepy.exploration import Failure, Move, Shrinker, Shrunk, TaskLook, Tried, Verdict, columns, drawn
+from cfepy.exploration import Failure, Move, Shrinker, Shrunk, Story, TaskLook, Tried, Verdict, important
 from cfepy.rtos import DEPTH, STEPS, Policy, Schedule
 from cfepy.status import UsageError
 from cfepy.testing.missions import SECTION, UNDER_TEST, Conditions, Missions
@@ -205,7 +205,7 @@ class ExploredTest:
         look = TaskLook(self._last.conditions.plans[0].spec())
         policy = look.policy(schedule.policy() or Policy())
         self._last = self._once(Conditions(schedule, policy, (look,)))
-        return drawn(look.rows, columns(look.rows, moves))
+        return Story(tuple(look.rows), important(look.rows, moves)).lines()
 
     # -- one run -------------------------------------------------------------------------------------------------------
 

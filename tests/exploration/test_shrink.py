@@ -8,7 +8,7 @@ import pytest
 
 from cfepy.exploration.moves import Move, MovePolicy
 from cfepy.exploration.shrink import Shrinker
-from cfepy.exploration.timeline import timeline_of
+from cfepy.exploration.timeline import story_of
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import INVARIANT
 from cfepy.pilot.plan import RunPlan
@@ -82,7 +82,7 @@ def test_the_timeline_shows_both_tasks_up_to_the_failure(bank: Path) -> None:
     assert shrunk is not None
     failure = shrunk.verdict.failure(group)
     assert failure is not None
-    lines = timeline_of(shrunk.trial, shrunk.verdict, failure, shrunk.moves)
+    lines = story_of(shrunk.trial, shrunk.verdict, failure, shrunk.moves).lines()
     golden = Path(__file__).with_name("golden_timeline.txt").read_text().splitlines()
     assert lines == golden
     assert max(map(len, lines)) <= 100

@@ -1,4 +1,7 @@
-"""`python -m tests.quality report`: measure how soon the planted bugs are found, and write docs/planted_bugs.md."""
+"""`python -m tests.quality report`: measure how soon the planted bugs are found, and write docs/planted_bugs.md.
+
+`python -m tests.quality stories` writes down the cause that is told of each of them (`stories.txt`).
+"""
 
 from __future__ import annotations
 
@@ -7,18 +10,24 @@ import argparse
 from tests.quality.bugs import BUGS
 from tests.quality.measure import MOST
 from tests.quality.report import measure
+from tests.quality.stories import write
 
 
 def main() -> None:
     """The command line."""
     parser = argparse.ArgumentParser(prog="python -m tests.quality", description=__doc__)
-    commands = parser.add_subparsers(required=True)
+    commands = parser.add_subparsers(required=True, dest="command")
     report = commands.add_parser("report", help="measure what is missing, and write the page")
     report.add_argument("bugs", nargs="*", choices=[[], *(bug.name for bug in BUGS)], help="only these")
     report.add_argument("--jobs", type=int, default=2, help="processes (2)")
     report.add_argument("--most", type=int, default=MOST, help=f"schedules for one cell of the table ({MOST})")
+    stories = commands.add_parser("stories", help="tell the cause of each bug anew")
+    stories.add_argument("bugs", nargs="*", choices=[[], *(bug.name for bug in BUGS)], help="only these")
     given = parser.parse_args()
-    measure(given.bugs, given.jobs, given.most)
+    if given.command == "report":
+        measure(given.bugs, given.jobs, given.most)
+    else:
+        write(given.bugs)
 
 
 if __name__ == "__main__":

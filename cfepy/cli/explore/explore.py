@@ -6,6 +6,7 @@ Each failure is told once, with the command that replays it and its timeline.
 from __future__ import annotations
 
 import argparse
+import shutil
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -17,13 +18,14 @@ from cfepy.cli.failures import tell
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of
-from cfepy.exploration import Expedition, Finding, Report, Shrunk, Told, Trial
+from cfepy.exploration import WIDTH, Expedition, Finding, Report, Shrunk, Told, Trial
 from cfepy.pilot import NODE, RunPlan
 from cfepy.rtos import Schedule
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
 RUNS_THAT_ARE_COMPARED = 2
+INDENT = 2  # of what is told of a failure
 
 
 def show(report: Report, stream: TextIO) -> None:
@@ -31,8 +33,8 @@ def show(report: Report, stream: TextIO) -> None:
     for number, told in enumerate(report.findings, 1):
         seen = "failure" if told.repeats else "seen once and not again: failure"
         print(f"{seen} {number}: {told.finding.failure.title}", file=stream)
-        for line in _about(report, told):
-            print(f"  {line}".rstrip(), file=stream)
+        for line in _about(report, told, _width_of(stream)):
+            print(f"{' ' * INDENT}{line}".rstrip(), file=stream)
         print(file=stream)
     for trouble in report.troubles[:1]:
         print(f"an error in cfepy itself, under {trouble.schedule}; please report it:", file=stream)
@@ -60,7 +62,12 @@ def summary(report: Report) -> str:
     return f"{', '.join(parts)}: {found}"
 
 
-def _about(report: Report, told: Told) -> Iterator[str]:
+def _width_of(stream: TextIO) -> int:
+    """Characters of a line of a story: as many as a terminal has, if that is wide; anywhere else always the same."""
+    return max(WIDTH, shutil.get_terminal_size().columns - INDENT) if stream.isatty() else WIDTH
+
+
+def _about(report: Report, told: Told, width: int) -> Iterator[str]:
     finding, shrunk = told.finding, told.shrunk
     failure = finding.failure
     if failure.at_ns is not None:
@@ -78,9 +85,10 @@ def _about(report: Report, told: Told) -> Iterator[str]:
         for move in shrunk.moves:
             if move.question:
                 yield f"        {move.task}: {move.chosen}"
-    if told.timeline:
+    lines = told.story.lines(width)
+    if lines:
         yield ""
-        yield from told.timeline
+        yield from lines
 
 
 def _how_often(report: Report, finding: Finding) -> Iterator[str]:

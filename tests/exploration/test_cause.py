@@ -1,0 +1,94 @@
+"""The cause of a failure is told where deeds say it, and nothing is told where they do not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cfepy.exploration.cause import Evidence, cause_of
+from cfepy.exploration.deeds import AWAITS, GETS, GIVES_UP, LOSES, NOTIFIES, READS, WAKES, WRITES, Deed
+from cfepy.exploration.moves import Move
+from cfepy.exploration.task_look import AT, PREEMPTED, Row
+from cfepy.exploration.verdict import DEADLOCK, ENDED, Failure
+
+ENDED_BADLY = Failure(ENDED, "A", "exit status 1")
+NO_MOVES: tuple[Move, ...] = ()
+
+
+def deed(text: str) -> Deed:
+    """A deed of `task verb thing line note`."""
+    task, verb, thing, line, *note = text.split("|")
+    return Deed(0, task, task, verb, thing, f"a.py:{line}", "".join(note))
+
+
+def told(
+    failing: Sequence[str],
+    usual: Sequence[str] = (),
+    failure: Failure = ENDED_BADLY,
+    moves: Sequence[Move] = NO_MOVES,
+    rows: Sequence[Row] = (),
+) -> str:
+    """The cause that deeds tell."""
+    names = {"lock 5 of A": "left (a.py:3)"}
+    return cause_of(Evidence(failure, moves, rows, list(map(deed, failing)), list(map(deed, usual)), names))
+
+
+def test_without_deeds_nothing_is_told() -> None:
+    assert told([]) == ""
+
+
+def test_an_update_is_lost_between_a_read_and_a_write() -> None:
+    lost = [f"A|{READS}|x|1", f"B|{READS}|x|1", f"B|{WRITES}|x|2", f"A|{WRITES}|x|2"]
+    usual = [f"B|{READS}|x|1", f"B|{WRITES}|x|2", f"A|{READS}|x|1", f"A|{WRITES}|x|2"]
+    cause = "an update of x is lost: B wrote it at a.py:2, between A's read at a.py:1 and A's write at a.py:2"
+    assert told(lost, usual) == cause
+    assert told(lost, lost) == ""  # it is lost under fifo as well, and nothing fails
+    assert told(usual, lost) == ""
+
+
+def test_no_update_is_lost_where_it_is_read_again_before_the_write() -> None:
+    assert told([f"A|{READS}|x|1", f"B|{WRITES}|x|2", f"A|{READS}|x|1", f"A|{WRITES}|x|2"]) == ""
+    assert told([f"A|{READS}|x|1", f"B|{WRITES}|y|2", f"A|{WRITES}|x|2"]) == ""
+    assert told([f"B|{WRITES}|x|2", f"A|{READS}|x|1", f"A|{WRITES}|x|2"]) == ""
+
+
+def test_a_notification_comes_before_the_wait() -> None:
+    early = [f"B|{NOTIFIES}|c|21|0", f"A|{AWAITS}|c|14"]
+    late = [f"A|{AWAITS}|c|14", f"B|{NOTIFIES}|c|21|1", f"A|{WAKES}|c|14"]
+    cause = "B's notify at a.py:21 came before A's wait at a.py:14: nobody waited then"
+    assert told(early, late) == cause
+    assert told([*early, f"A|{GIVES_UP}|c|14"], late) == cause
+    assert told([*early, f"A|{WAKES}|c|14"], late) == ""  # it did not wait in vain
+    assert told(early, early) == ""
+
+
+def test_a_message_is_lost_that_is_not_lost_under_fifo() -> None:
+    lost = f"A|{LOSES}|/a|7|B, 2"
+    assert told([lost]).startswith(
+        "a message /a was lost that A sent at a.py:7: the pipe of B was full, with 2 messages"
+    )
+    assert told([lost], [lost]) == ""
+
+
+def test_messages_come_in_another_order_to_an_application_of_the_moves() -> None:
+    failing, usual = [f"A|{GETS}|/b|1|P", f"A|{GETS}|/a|1|Q"], [f"A|{GETS}|/a|1|Q", f"A|{GETS}|/b|1|P"]
+    moves = [Move("A", 0, "B"), Move("C", 0, "A")]
+    assert told(failing, usual, moves=moves) == "A got /b before /a; under fifo it gets /a first"
+    assert told(failing, usual, moves=[Move("B", 0, "C"), Move("B", 1, "C")]) == ""
+
+
+def test_a_circle_of_waits_is_told_with_the_names_of_locks() -> None:
+    text = "A waits for lock 5 of A, held by B; B waits for mutex CARD, held by A"
+    circle = Failure(DEADLOCK, "A", text)
+    assert (
+        told([], failure=circle) == "A has mutex CARD and wants left (a.py:3); B has left (a.py:3) and wants mutex CARD"
+    )
+    ended = Failure(DEADLOCK, "A", "A waits for lock 5 of A, held by B")
+    assert told([], failure=ended) == ""  # by one that has ended: there is no circle
+
+
+def test_a_single_switch_is_told_when_there_is_no_other() -> None:
+    rows = [Row(0, "A", AT, "a.py:7: go()"), Row(0, "A", PREEMPTED, "B")]
+    cause = "B got in while A was at a.py:7; without that one switch it does not fail"
+    assert told([], moves=[Move("A", 0, "B")], rows=rows) == cause
+    assert told([], moves=[Move("A", 0, "B"), Move("B", 0, "A")], rows=rows) == ""
+    assert told([], moves=[Move("A", 0, "B")], rows=rows[1:]) == ""

@@ -1,0 +1,20 @@
+"""The cause that is told of each planted bug is the one that was read and found true."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.quality.bugs import BUGS, Bug
+from tests.quality.stories import read, told
+
+QUICK = ("lock_order", "parameter_update", "lost_wakeup")
+
+
+@pytest.mark.parametrize(
+    "bug", [pytest.param(bug, marks=[] if bug.name in QUICK else [pytest.mark.slow], id=bug.name) for bug in BUGS]
+)
+def test_the_cause_is_the_one_that_was_found_true(bug: Bug) -> None:
+    recorded = read()[bug.name]
+    story = told(bug, recorded.schedule)
+    assert story is not None, f"{recorded.schedule} does not show {bug.name}"
+    assert story.cause == recorded.cause
