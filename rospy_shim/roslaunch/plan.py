@@ -112,6 +112,20 @@ def _is_built(folder: Path, package: str, node_type: str) -> bool:
     return False
 
 
+def _offers(folder: Path, nodelet: str) -> bool:
+    """Whether a file of plugins that a package exports has a nodelet."""
+    word = re.compile(rf'\b(?:name|type)\s*=\s*"{re.escape(nodelet)}"')
+    try:
+        files = _EXPORTED.findall((folder / "package.xml").read_text(encoding="utf-8", errors="replace"))
+        texts = [(folder / each).read_text(encoding="utf-8", errors="replace") for each in files]
+    except OSError:
+        return False
+    return any(word.search(text) for text in texts)
+
+
+_EXPORTED = re.compile(r'<nodelet\s+plugin\s*=\s*"\$\{prefix\}/([^"]+)"')
+
+
 def _programs(folders: list[Path]) -> list[str]:
     """Names of the Python scripts in a package's folders that may be nodes."""
     files = (Path(place) / name for folder in folders for place, _, names in os.walk(folder) for name in names)
@@ -444,12 +458,20 @@ class Planner:
                 remarks.append(LaunchRemark(text, node.file, node.line, before_runs=False))
                 return (None,)
             case ["standalone", name, *rest] | ["load", name, _, *rest]:
-                package = name.partition(SEP)[0]
+                package = self._package_of_nodelet(name)
                 folders = (each for each in self._packages.folders(package) if os.path.isfile(each / "CMakeLists.txt"))
                 found = tuple(folders)
                 plain = replace(node, package=package, type=name, args=shlex.join(rest))
                 return (self._compiled(plain, found),) if found else None
         return None
+
+    def _package_of_nodelet(self, name: str) -> str:
+        """The package that offers a nodelet; by custom, not by rule, its name stands before the slash."""
+        package = name.partition(SEP)[0]
+        if self._packages.folders(package):
+            return package
+        near = self._packages.names()
+        return next((each for each in near if _offers(self._packages.folders(each)[0], name)), package)
 
     def _compiled(self, node: LaunchNode, folders: tuple[Path, ...]) -> CppNode:
         """The application of a node in C++; remaps among its arguments are remaps."""

@@ -62,7 +62,10 @@ def test_both_kinds_of_nodes_hear_each_other(package: Path, capfd: pytest.Captur
     assert 8 <= shown.count("[/arm/ear]") <= 11  # ten a second
 
 
-def test_a_nodelet_is_an_application(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("name", ["ping/Doubler", "Filters/Doubler"])
+def test_a_nodelet_is_an_application(package: Path, name: str, capfd: pytest.CaptureFixture[str]) -> None:
+    for file in (package / "nodelets.xml", package / "launch/nodelet.launch"):
+        file.write_text(file.read_text().replace("ping/Doubler", name))
     assert main(["launch", "ping", "nodelet.launch", "--for", "1"]) == 0
     shown, told = capfd.readouterr()
     assert "doubling 3" in shown
