@@ -19,6 +19,10 @@ SLOWEST, FASTEST = 1e-3, 1e9  # times real time
 HIGHEST_PORT = 65_535
 DEFAULT_SEED, DEFAULT_TASKS, DEFAULT_SCHEDULE, DEFAULT_STALL_S = 0, "thread", "fifo", 10.0
 
+POINTS_HELP = (
+    "before each of its lines, before each access to attributes, items and variables that tasks may share, or behind "
+    "its calls, too (lines, attributes or calls; lines:arm,util in these modules alone)"
+)
 MISSION_HELP = (
     "a startup script, a folder with a startup.scr, a shipped mission's name, a launch file (or PACKAGE FILE), or "
     "a node's .py"
@@ -73,6 +77,12 @@ def _add_schedule(parser: Options) -> None:
         help="who runs next where there is a choice: fifo (default), random[:SEED], pct:SEED:DEPTH[:STEPS] or at:42=1 "
         "(at decision 42 candidate 1), these with :any (of any priority), :hold=500us (tasks may be held up) or "
         ":connect=50ms (connections of nodes may take as long)",
+    )
+    parser.add_argument(
+        "--points",
+        metavar="KIND[:MODULE,...]",
+        help="let others in at more points of the mission's Python code than at its calls, under this schedule: "
+        f"{POINTS_HELP}",
     )
 
 
@@ -171,11 +181,13 @@ def plan_of(arguments: argparse.Namespace, words: Sequence[str], command: str | 
     """
     from cfepy.mission import cpp_nodes_source, is_node
     from cfepy.pilot import LAUNCH, NODE, RUN, RunPlan
-    from cfepy.rtos import Schedule
+    from cfepy.rtos import Points, Schedule
 
     said = {name: getattr(arguments, name) for name in RUN_OPTIONS if hasattr(arguments, name)}
     if "schedule" in said:
-        said["schedule"] = Schedule.parse(said["schedule"], said["seed"])
+        points = Points.parse(getattr(arguments, "points", None) or "").text()
+        schedule = Schedule.parse(said["schedule"], said["seed"])
+        said["schedule"] = schedule.with_points(points) if points else schedule
     if "launch_args" in said:
         said["launch_args"] = () if command == LAUNCH else tuple(said["launch_args"])
     if said.get("cpp_nodes") is not None:
@@ -215,6 +227,7 @@ _USUAL: Mapping[str, tuple[str, object]] = {
     "board": ("--board", None),
     "tasks": ("--tasks", DEFAULT_TASKS),
     "schedule": ("--schedule", DEFAULT_SCHEDULE),
+    "points": ("--points", None),
     "script": ("--script", None),
     "stop_on_failure": ("--stop-on-failure", False),
     "faults": ("--faults", None),

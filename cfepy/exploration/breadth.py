@@ -34,6 +34,7 @@ _KINDS = {
     "cfepy.evs": "events",
     "cfepy.es": "executive services",
     "cfepy.c": "calls of C",
+    "cfepy.nodes.accesses": "lines and accesses",
 }
 """What a point is at, by the module of the call; the longest name that fits counts."""
 _OF_THE_KERNEL = ("cfepy.rtos", "cfepy.mission.call_points", __name__)

@@ -30,7 +30,7 @@ from cfepy.exploration.verdict import RACE, STALLED, Failure, Finding, Findings,
 from cfepy.exploration.workers import LONGEST_S, PROCESS_DIED
 from cfepy.monitors import InversionWatch
 from cfepy.pilot import RunPlan
-from cfepy.rtos import Policy, Schedule, Stopwatch
+from cfepy.rtos import Points, Policy, Schedule, Stopwatch
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -160,6 +160,7 @@ class Expedition:
         any_priority: less urgent tasks may run before more urgent ones.
         hold_s: how long the running task may be held up, in virtual s.
         connect_s: how long a connection between two ROS nodes may take, in virtual s.
+        points: where others may get in besides calls (`cfepy.rtos.points`); empty for nowhere.
         from_s: virtual time until which all is fifo's; 0 for that at which the mission becomes OPERATIONAL.
         until_failure: whether the first failure ends it.
         events: which events are failures: "error", "critical" or "none".
@@ -181,6 +182,7 @@ class Expedition:
     any_priority: bool = False
     hold_s: float | None = None
     connect_s: float | None = None
+    points: str = ""
     from_s: float | None = None
     until_failure: bool = False
     events: str = "error"
@@ -240,7 +242,7 @@ class Expedition:
                 Schedule.parse(":".join(words))
             except UsageError as error:
                 raise UsageError(error.text, field=f"--{option}") from None
-        return Schedule.parse(":".join(words))
+        return Schedule.parse(":".join(words)).with_points(Points.parse(self.points).text())
 
     @staticmethod
     def _from_operational(options: Schedule, booted_ns: int | None) -> Schedule:
@@ -303,6 +305,7 @@ class Expedition:
         """What a results file goes on with only when it is the same, by the option's name."""
         search = {name: getattr(self, name) for name in ("policy", "depth", "first_seed", "any_priority", "events")}
         search |= {"hold": self.hold_s, "connect": self.connect_s, "from": self.from_s, "no_stuck": not self.stuck}
+        search |= {"points": self.points} if self.points else {}
         return identity_of(trial.plan, files, search)
 
     def _told(self, trial: Trial, finding: Finding, tally: Tally) -> Told:

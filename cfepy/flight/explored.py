@@ -122,6 +122,7 @@ def explore(
     any_priority: bool = False,
     hold: float | None = None,
     connect: float | None = None,
+    points: str = "",
     start: float | None = None,
     events: str = "error",
     jobs: int | None = None,
@@ -143,6 +144,8 @@ def explore(
         any_priority: less urgent tasks may run before more urgent ones.
         hold: how long the running task may be held up, in virtual s.
         connect: how long a connection between two ROS nodes may take, in virtual s.
+        points: where others may get in besides calls: "lines", "attributes" or "calls", in some modules alone as
+            "lines:arm,util"; empty for nowhere.
         start: virtual time in s until which all is as by default; 0 for that at which the mission is OPERATIONAL.
         events: which events of the mission's applications are failures: "error", "critical" or "none".
         jobs: processes; None is one on each CPU.
@@ -167,6 +170,7 @@ def explore(
         any_priority=any_priority,
         hold_s=hold,
         connect_s=connect,
+        points=points,
         from_s=start,
         events=events,
         jobs=jobs,

@@ -135,6 +135,10 @@ class Schedule:
         """
         return replace(self, kind="at", seed=0, depth=DEPTH, steps=STEPS, deviations=tuple(sorted(deviations.items())))
 
+    def with_points(self, points: str) -> Schedule:
+        """The same with other points, as `Points.text` has them; fifo without a change of order, if it is fifo."""
+        return replace(self.at({}) if points and self.kind == "fifo" else self, points=points)
+
     def with_seed(self, seed: int) -> Schedule:
         """The same with another seed."""
         return replace(self, seed=seed)

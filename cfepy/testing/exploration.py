@@ -14,7 +14,7 @@ import pytest
 from _pytest.runner import runtestprotocol
 
 from cfepy.exploration import Failure, Move, Shrinker, Shrunk, Story, TaskLook, Tried, Verdict, important
-from cfepy.rtos import DEPTH, STEPS, Policy, Schedule
+from cfepy.rtos import DEPTH, STEPS, Points, Policy, Schedule
 from cfepy.status import UsageError
 from cfepy.testing.missions import SECTION, UNDER_TEST, Conditions, Missions
 
@@ -50,6 +50,7 @@ def explore(
     any_priority: bool = False,
     hold: str = "",
     connect: str = "",
+    points: str = "",
     start: str = "",
     shrink: int = MOST_PROBES,
 ) -> pytest.MarkDecorator:
@@ -67,6 +68,8 @@ def explore(
         any_priority: tasks of less urgent priority may go before more urgent ones.
         hold: how long the running task may be held up, such as "500us"; empty for not at all.
         connect: how long a connection between two ROS nodes may take, such as "50ms"; empty for what the mission has.
+        points: where others may get in besides calls: "lines", "attributes" or "calls", in some modules alone as
+            "lines:arm,util"; empty for nowhere.
         start: virtual time from the boot until which all is as with fifo, such as "600ms"; empty for none.
         shrink: how many runs it may take to shrink a schedule; 0 leaves it as it is.
 
@@ -83,6 +86,7 @@ def explore(
         raise UsageError("there is nothing to run; give at least one", field="seeds" if policies else "policy")
     options = (":any" if any_priority else "") + (f":hold={hold}" if hold else "")
     options += f":connect={connect}" if connect else ""
+    options += f":points={Points.parse(points, 'points').text()}" if points else ""
     options += f":from={start}" if start else ""
     numbers = {"random": "", "pct": f":{depth}:{steps}"}
     kinds = [Schedule.parse(f"{each}:{seed}{numbers[each]}{options}") for seed, each in enumerate(policies, 1)]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 
-from cfepy.cli.options import RUN_OPTIONS, add_json, add_mission, add_run_options, seconds_of
+from cfepy.cli.options import POINTS_HELP, RUN_OPTIONS, add_json, add_mission, add_run_options, seconds_of
 
 INTENSITIES = ("low", "medium", "high")
 DEFAULT_SEEDS = 100
@@ -89,6 +89,12 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
         type=seconds_of,
         metavar="SECONDS",
         help="a connection between two ROS nodes may take any time up to this, such as 50ms",
+    )
+    explore.add_argument(
+        "--points",
+        default="",
+        metavar="KIND[:MODULE,...]",
+        help=f"others may get in at more points of the mission's Python code than at its calls: {POINTS_HELP}",
     )
     explore.add_argument(
         "--from",

@@ -149,7 +149,7 @@ def _expedition(arguments: argparse.Namespace) -> Expedition:
         _plan(arguments),
         seeds=arguments.seeds or (DEFAULT_SEEDS if arguments.budget is None else MOST_SEEDS),
         budget_s=arguments.budget,
-        **{name: getattr(arguments, name) for name in (*names, "results", "shrink")},
+        **{name: getattr(arguments, name) for name in (*names, "results", "shrink", "points")},
         hold_s=arguments.hold,
         connect_s=arguments.connect,
         from_s=getattr(arguments, "from"),
