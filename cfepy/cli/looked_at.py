@@ -41,6 +41,7 @@ class LookedAt:
         schedule: the schedule of the run.
         notes: what is good to know.
         warnings: why it is not the run that is meant; none when it is.
+        plan: of a run that was flown; None for a replay.
     """
 
     flown: Flown
@@ -48,6 +49,7 @@ class LookedAt:
     schedule: str
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    plan: RunPlan | None = None
 
     def status(self) -> int:
         """The exit status of the command; notes and warnings go to standard error."""
@@ -124,9 +126,8 @@ def _fly(
     policy = plan.schedule.policy()
     if policy is not None and plan.schedule.deviations:
         policy = watched(policy)
-    return LookedAt(
-        fly(plan, attachments=attachments, policy=policy, trace=trace), plan.command_line(), plan.schedule.text()
-    )
+    flown = fly(plan, attachments=attachments, policy=policy, trace=trace)
+    return LookedAt(flown, plan.command_line(), plan.schedule.text(), plan=plan)
 
 
 def _replay(

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from cfepy.exploration.moves import Move
     from cfepy.exploration.shrink import Shrinkable, Shrinker, Shrunk
     from cfepy.exploration.task_look import TaskLook
-    from cfepy.exploration.timeline import WIDTH, Story, important
+    from cfepy.exploration.timeline import WIDTH, Story, important, story_of_run
     from cfepy.exploration.trial import Trial, Tried
     from cfepy.exploration.verdict import Failure, Finding, Verdict
 
@@ -44,6 +44,7 @@ __all__ = [
     "Tried",
     "Verdict",
     "important",
+    "story_of_run",
 ]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
@@ -69,6 +70,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "WIDTH",
                 "Story",
                 "important",
+                "story_of_run",
             ),
             ".trial": (
                 "Trial",

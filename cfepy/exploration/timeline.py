@@ -14,10 +14,11 @@ from textwrap import wrap
 
 from cfepy.exploration.cause import Evidence, cause_of
 from cfepy.exploration.failures import FailureWatch
-from cfepy.exploration.moves import Move
+from cfepy.exploration.moves import Move, MoveNotingPolicy
 from cfepy.exploration.task_look import ANSWERS, AT, DOES, ORDERED, PREEMPTED, SENDS, WAITS, Row, TaskLook
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import INVARIANT, Failure, Verdict
+from cfepy.pilot import RunPlan
 from cfepy.rtos import HOLD, Policy
 from cfepy.units import NS_PER_S
 
@@ -34,6 +35,8 @@ LONGEST = 16  # rows of a group
 FEW = 2  # rows: a group of so few is folded only when it comes three times
 BETWEEN = " ... "  # stands between the first and the last message of those that are told once
 CAUSE = "cause: "
+MOST_OF_A_PAGE = 6  # tasks that have a column where there is as much room as one wants
+MOVES = (PREEMPTED, ORDERED, ANSWERS)
 _MADE_AT = re.compile(r" \((?:line |[\w.]+:)\d+\)")  # behind the name of a lock; the first to go where there is no room
 
 
@@ -62,11 +65,32 @@ class Story:
             width: characters of a line.
         """
         most = max(1, (width - TIME_WIDTH) // (LEAST_COLUMN + GAP))
-        chosen = set(self.tasks[:most])
-        named = dict.fromkeys(row.task for row in self.rows if row.task in chosen)
-        tasks = tuple(dict.fromkeys([*named, *(task for task in self.tasks if task in chosen)]))
+        tasks = self._tasks(most)
         cause = wrap(CAUSE + self.cause, width, subsequent_indent=" " * len(CAUSE)) if self.cause else []
         return [*cause, *([""] if cause else []), *drawn(self.rows, tasks, width), *self._last_lines(width)]
+
+    def table(self) -> tuple[tuple[str, ...], list[tuple[int | None, str, str, bool]]]:
+        """It as a table: the tasks that have a column, and the rows.
+
+        A row has its virtual time in ns, its task, what it did, and whether the schedule did that; time and task are
+        None and empty where it stands for others.
+        """
+        tasks = self._tasks(MOST_OF_A_PAGE)
+        groups = _folded(_moving([row for row in self.rows if row.task in tasks]))
+        rows: list[tuple[int | None, str, str, bool]] = []
+        before = -1
+        for at in _shown(groups):
+            rows += [] if at == before + 1 else [(None, "", "...", False)]
+            before = at
+            rows += [(row.at_ns, row.task, _forms(row)[0], row.kind in MOVES) for row in groups[at].rows]
+            rows += [] if groups[at].times == 1 else [(None, "", f"x {groups[at].times}: {_until(groups[at])}", False)]
+        return tasks, rows
+
+    def _tasks(self, most: int) -> tuple[str, ...]:
+        """Those that have a column, in the order in which they appear."""
+        chosen = set(self.tasks[:most])
+        named = (row.task for row in self.rows if row.task in chosen)
+        return tuple(dict.fromkeys([*named, *(task for task in self.tasks if task in chosen)]))
 
     def _last_lines(self, width: int) -> list[str]:
         if not self.end:
@@ -101,6 +125,23 @@ def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[M
     title, text = (_named(each, look.names) for each in (failure.title, failure.text))
     end = f"FAILURE{f' in {culprit}:' if culprit else ''} {title}"
     return Story(rows, important(rows, moves, culprit, f"{cause} {text}"), cause, end, failure.at_ns)
+
+
+def story_of_run(plan: RunPlan) -> Story | None:
+    """What happened in a run under a schedule with some deviations from fifo.
+
+    Args:
+        plan: the run; it is flown again, and the one under fifo.
+
+    Returns:
+        The story of the first failure that the run under fifo does not have; None when there is none.
+    """
+    fifo = Trial(plan).fly(plan.schedule.at({}))
+    trial = Trial(plan).against(fifo.results)
+    noting = MoveNotingPolicy(plan.schedule.policy() or Policy())
+    verdict = trial.fly(plan.schedule, policy=noting).verdict
+    failure = next((each for each in verdict.failures if each.group not in fifo.verdict.groups), None)
+    return None if failure is None else story_of(trial, verdict, failure, noting.moves)
 
 
 def _named(text: str, names: Mapping[str, str]) -> str:
@@ -151,10 +192,14 @@ def drawn(rows: Sequence[Row], tasks: Sequence[str], width: int = WIDTH) -> list
         before = at
         lines += [_row_line(row, tasks, widths) for row in groups[at].rows]
         if groups[at].times > 1:
-            what = "row" if len(groups[at].rows) == 1 else f"{len(groups[at].rows)} rows"
-            until = f"the {what} above, until {groups[at].until_ns / NS_PER_S:.6f}"
+            until = _until(groups[at])
             lines.append(_line(f"x {groups[at].times}", [until], [len(until)]))
     return lines
+
+
+def _until(group: _Group) -> str:
+    what = "row" if len(group.rows) == 1 else f"{len(group.rows)} rows"
+    return f"the {what} above, until {group.until_ns / NS_PER_S:.6f}"
 
 
 def _moving(rows: Sequence[Row]) -> list[Row]:
@@ -188,9 +233,7 @@ def _short(row: Row, file: str) -> str:
 
 def _shown(groups: Sequence[_Group]) -> list[int]:
     """The groups of rows that are shown."""
-    moves = [
-        at for at, group in enumerate(groups) if any(row.kind in (PREEMPTED, ORDERED, ANSWERS) for row in group.rows)
-    ]
+    moves = [at for at, group in enumerate(groups) if any(row.kind in MOVES for row in group.rows)]
     near = {each for at in moves for each in range(at - AROUND, at + AROUND + 1)}
     return [at for at in range(len(groups)) if at in near or at >= len(groups) - LAST]
 

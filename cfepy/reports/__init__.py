@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from cfepy.reports.collector import Collector
     from cfepy.reports.curves import Change, Curve, Curves, curves_of, picture_of, save, thinned
     from cfepy.reports.page import About, page_of
+    from cfepy.reports.page_story import PageStory, StoryRow
     from cfepy.reports.perfetto import PerfettoTrace
     from cfepy.reports.trace_events import write_perf_log
 
@@ -26,7 +27,9 @@ __all__ = [
     "Collector",
     "Curve",
     "Curves",
+    "PageStory",
     "PerfettoTrace",
+    "StoryRow",
     "curves_of",
     "page_of",
     "picture_of",
@@ -52,6 +55,10 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".page": (
                 "About",
                 "page_of",
+            ),
+            ".page_story": (
+                "PageStory",
+                "StoryRow",
             ),
             ".perfetto": ("PerfettoTrace",),
             ".trace_events": ("write_perf_log",),

@@ -24,6 +24,7 @@ from cfepy.pilot import Flown, Results, RunProblem, problems_in
 from cfepy.reports.bins import Histogram
 from cfepy.reports.collector import MOST, MOST_OF_A_KIND, SWITCH, Collector
 from cfepy.reports.html_text import Numbers, PageSection, TableCell, json_text, meter, section, table
+from cfepy.reports.page_story import STORY, PageStory, instant, story_section
 from cfepy.reports.page_values import value_data, values_section
 from cfepy.units import NS_PER_S
 
@@ -56,12 +57,14 @@ class About:
         schedule: the schedule of the run, as `--schedule` takes it.
         source: what the page was made from: a journal, or a mission.
         warnings: what its reader should know.
+        story: of a failure that the schedule shows and fifo does not; None for none.
     """
 
     command: str
     schedule: str
     source: str
     warnings: tuple[str, ...] = ()
+    story: PageStory | None = None
 
 
 def page_of(flown: Flown, collector: Collector, about: About, recorded: SeriesSet | None = None) -> str:
@@ -81,6 +84,7 @@ def page_of(flown: Flown, collector: Collector, about: About, recorded: SeriesSe
     numbers = Numbers(plain)
     body = [
         _header(flown, numbers, about, collector),
+        "" if about.story is None else story_section(about.story),
         _timeline(),
         "" if values is None or recorded is None else values_section(values, recorded),
         _deadlines(results, numbers),
@@ -147,7 +151,7 @@ def _header(flown: Flown, numbers: Numbers, about: About, collector: Collector) 
     listed = "".join(element("div", element("dt", name) + element("dd", value)) for name, value in facts.items())
     command = element("dt", "The same run again") + element("dd", element("code", escaped(about.command)))
     warnings = "".join(element("p", escaped(text), class_="banner bad", role="note") for text in about.warnings)
-    title = element("h1", escaped(results.mission)) + warnings + _problems(flown, collector)
+    title = element("h1", escaped(results.mission)) + warnings + _problems(flown, collector, about.story)
     return element("header", title + element("dl", listed + element("div", command, class_="wide"), class_="facts"))
 
 
@@ -203,13 +207,16 @@ def timeline_data(collector: Collector) -> dict[str, Any]:
     return {"end": collector.end_ns, "width": width_ns, "lanes": lanes, "marks": marks}
 
 
-def _problems(flown: Flown, collector: Collector) -> str:
+def _problems(flown: Flown, collector: Collector, story: PageStory | None) -> str:
     """Whether the run went well, in a word and a list; each problem with its time, which leads to the timeline."""
     found = list(_found(flown, collector))
     if not found:
         return element("p", "No problems", class_="banner good")
     title = element("p", f"{len(found)} problem{'s' if len(found) > 1 else ''}")
     items = element("ul", "".join(_item(problem) for problem in found))
+    if story is not None:
+        cause = f": {escaped(story.cause)}" if story.cause else ""
+        items += element("p", element("a", "What happened", href=f"#{STORY}") + cause)
     switches = [RunProblem(mark.text, mark.at_ns) for mark in collector.marks if mark.kind == SWITCH]
     if switches:
         one = len(switches) == 1
@@ -237,13 +244,8 @@ def _item(problem: RunProblem, kind: str = "") -> str:
     """A problem, with a link to its place in the timeline."""
     if problem.at_ns is None:
         return element("li", escaped(problem.text), class_=kind or None)
-    link = _instant(problem.at_ns, f"{problem.at_ns / NS_PER_S:.6f} s")
+    link = instant(problem.at_ns, f"{problem.at_ns / NS_PER_S:.6f} s")
     return element("li", f"{link}: {escaped(problem.text)}", class_=kind or None)
-
-
-def _instant(at_ns: int, text: str) -> str:
-    """A link to an instant in the timeline."""
-    return element("a", text, href="#timeline", data_at=at_ns, title="Show this instant in the timeline")
 
 
 def _deadlines(results: Results, numbers: Numbers) -> str:
@@ -325,7 +327,7 @@ def _marks(results: Results, numbers: Numbers, collector: Collector) -> str:
     ]
     for mark in collector.marks:
         if mark.kind != "reset":
-            at = TableCell(_instant(mark.at_ns, f"{mark.at_ns / NS_PER_S:.6f}"), mark.at_ns / NS_PER_S)
+            at = TableCell(instant(mark.at_ns, f"{mark.at_ns / NS_PER_S:.6f}"), mark.at_ns / NS_PER_S)
             rows.append((at, escaped(mark.kind), escaped(mark.text)))
     if not rows:
         return ""

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cfepy.cli.main import main
 from cfepy.ground.series import SeriesRecorder
 from cfepy.markup import escaped
 from cfepy.pilot import RunPlan, pilot
@@ -227,3 +228,15 @@ def test_the_switches_of_a_schedule_are_marked(tmp_path: Path) -> None:
     page = page_of(flown, collector, About("", plan.schedule.text(), mission))
     assert f"The schedule made {len(switches)} switches before" in page
     assert any("is preempted by" in text for text in items(page))
+
+
+def test_a_failure_is_told_as_a_story(tmp_path: Path) -> None:
+    """Of a run under a shrunk schedule; the problem leads to it, and the switch is marked."""
+    mission, page = str(Path(__file__).parents[1] / "quality" / "missions" / "lock_order"), tmp_path / "report.html"
+    words = ["report", mission, "--for", "1.3", "--tasks", "greenlet", "-o", str(page)]
+    assert main([*words, "--schedule", "at:70=1"]) == 0
+    text = page.read_text()
+    assert '<a href="#story">What happened</a>: MAPPER.scan.1 has self.map_lock (mapper.py:11) and wants' in text
+    assert '<strong class="switch">=== PREEMPTED by MAPPER.odom.2 ===</strong>' in text
+    assert main([*words, "--schedule", "at:71=1"]) == 0  # which does not fail
+    assert "What happened" not in page.read_text()

@@ -14,6 +14,7 @@ from cfepy.ground.series import SeriesRecorder
 from cfepy.reports.collector import Collector
 from cfepy.reports.html_text import numbers_in
 from cfepy.reports.page import About, page_of
+from cfepy.reports.page_story import PageStory, StoryRow
 from tests.reports import looked_at
 from tests.reports.browser import Browser, find_browser
 from tests.reports.conftest import Shown
@@ -176,6 +177,29 @@ def test_the_time_of_a_problem_leads_to_the_timeline(opened: Browser, shown: Sho
     assert begin <= at <= end
     assert end - begin < shown.collector.end_ns / 10
     assert opened.evaluate("document.location.hash") == "#timeline"
+
+
+def test_a_problem_leads_to_its_story_and_that_to_the_timeline(browser: Browser, shown: Shown, tmp_path: Path) -> None:
+    rows = [StoryRow(1_000_000_000, 0, "a.py:1: go()"), StoryRow(1_000_000_001, 0, "=== PREEMPTED by B ===", True)]
+    story = PageStory(
+        "B got in", ("A", "B"), [*rows, StoryRow(1_000_000_001, 1, "has lock"), StoryRow(None, None, "x 4")], ""
+    )
+    page = tmp_path / "story.html"
+    page.write_text(page_of(shown.flown, shown.collector, About("", "at:1=1", shown.mission, (), story)))
+    browser.errors.clear()
+    browser.open(page)
+    assert browser.errors == []
+    browser.evaluate("document.querySelector('.banner a[href=\"#story\"]').click()")
+    assert browser.evaluate("document.location.hash") == "#story"
+    cells = "[...document.querySelectorAll('.story tbody tr')].map(row => [...row.cells].map(each => each.innerText))"
+    assert browser.evaluate(cells)[1:] == [
+        ["1.000000", "=== PREEMPTED by B ===", ""],
+        ["1.000000", "", "has lock"],
+        ["", "x 4", ""],
+    ]
+    browser.evaluate("document.querySelector('.story a[data-at]').click()")
+    begin, end = shown_range(browser)
+    assert begin <= 1_000_000_000 <= end
 
 
 def test_events_are_filtered(opened: Browser, shown: Shown) -> None:

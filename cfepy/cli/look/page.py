@@ -8,7 +8,8 @@ from pathlib import Path
 from cfepy.cli.failures import check_writable, writing
 from cfepy.cli.looked_at import look_at
 from cfepy.ground import SeriesRecorder
-from cfepy.reports import About, Collector, page_of
+from cfepy.pilot import RunPlan
+from cfepy.reports import About, Collector, PageStory, StoryRow, page_of
 
 MOST_KEPT = 10_000  # messages of each topic and packet, of which the values are drawn
 
@@ -26,8 +27,23 @@ def run(arguments: argparse.Namespace) -> int:
     check_writable(path, "--output")
     collector, recorder = Collector(), SeriesRecorder(most=MOST_KEPT)
     looked_at = look_at(arguments, [collector, recorder], collector.policy)
-    about = About(looked_at.command, looked_at.schedule, arguments.source, looked_at.warnings)
+    story = None if looked_at.plan is None else _story(looked_at.plan)
+    about = About(looked_at.command, looked_at.schedule, arguments.source, looked_at.warnings, story)
     with writing(path, "--output"):
         path.write_text(page_of(looked_at.flown, collector, about, recorder), encoding="utf-8")
     print(f"{path}: {path.stat().st_size:,} bytes; open it in a browser")
     return looked_at.status()
+
+
+def _story(plan: RunPlan) -> PageStory | None:
+    """What happened under a schedule such as `cfepy explore` finds; None for all others, and when nothing failed."""
+    if not plan.schedule.deviations:
+        return None
+    from cfepy.exploration import story_of_run
+
+    story = story_of_run(plan)
+    if story is None:
+        return None
+    tasks, rows = story.table()
+    shown = [StoryRow(at_ns, tasks.index(task) if task else None, text, moves) for at_ns, task, text, moves in rows]
+    return PageStory(story.cause, tasks, shown, story.end)
