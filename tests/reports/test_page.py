@@ -230,6 +230,7 @@ def test_the_switches_of_a_schedule_are_marked(tmp_path: Path) -> None:
     assert any("is preempted by" in text for text in items(page))
 
 
+@pytest.mark.slow
 def test_a_failure_is_told_as_a_story(tmp_path: Path) -> None:
     """Of a run under a shrunk schedule; the problem leads to it, and the switch is marked."""
     mission, page = str(Path(__file__).parents[1] / "quality" / "missions" / "lock_order"), tmp_path / "report.html"
