@@ -99,6 +99,7 @@ class XmlRpcValue
             array.resize(static_cast<std::size_t>(size));
         }
     }
+    bool hasMember(const char *name) const { return getType() == TypeStruct && member(as<ValueStruct>(), name) != nullptr; }
     bool hasMember(const std::string &name) const { return getType() == TypeStruct && as<ValueStruct>().count(name) > 0; }
 
     XmlRpcValue &operator[](int index)
@@ -120,19 +121,18 @@ class XmlRpcValue
         return array[static_cast<std::size_t>(index)];
     }
     XmlRpcValue &operator[](const std::string &name) { return as<ValueStruct>()[name]; }
-    XmlRpcValue &operator[](const char *name) { return as<ValueStruct>()[name]; }
-    const XmlRpcValue &operator[](const std::string &name) const
+    XmlRpcValue &operator[](const char *name)
     {
-        const ValueStruct &members = as<ValueStruct>();
-        const auto         found   = members.find(name);
-        if (found == members.end())
-        {
-            static const XmlRpcValue none;
-            return none;
-        }
-        return found->second;
+        XmlRpcValue *const found = member(as<ValueStruct>(), name);
+        return found != nullptr ? *found : as<ValueStruct>()[name];
     }
-    const XmlRpcValue &operator[](const char *name) const { return (*this)[std::string(name)]; }
+    const XmlRpcValue &operator[](const char *name) const
+    {
+        static const XmlRpcValue none;
+        const XmlRpcValue *const found = member(as<ValueStruct>(), name);
+        return found != nullptr ? *found : none;
+    }
+    const XmlRpcValue &operator[](const std::string &name) const { return (*this)[name.c_str()]; }
 
     iterator       begin() { return as<ValueStruct>().begin(); }
     iterator       end() { return as<ValueStruct>().end(); }
@@ -221,6 +221,20 @@ class XmlRpcValue
                                   : std::is_same<T, ValueStruct>::value ? "type error: expected a struct"
                                                                         : "type error");
         }
+    }
+
+    // A member by its name, of which no std::string is made; null when there is none.
+    template <class Members>
+    static auto member(Members &members, const char *name) -> decltype(&members.begin()->second)
+    {
+        for (auto &each : members)
+        {
+            if (each.first == name)
+            {
+                return &each.second;
+            }
+        }
+        return nullptr;
     }
 
     std::string dateText() const;

@@ -43,6 +43,7 @@ constexpr std::size_t   kCommandHeader   = sizeof(CFE_MSG_CommandHeader_t);
 constexpr std::uint16_t kCommandBit      = 0x1000; // requests of a service are commands, its answers telemetry
 constexpr std::uint16_t kMasterMsgId     = 0x08FC; // of the answers of cfepy's ROS application, as of a service
 constexpr std::uint16_t kRosoutMsgId     = 0x0900;
+constexpr std::size_t   kLongestKey      = 256; // characters of a parameter's name that is looked up without memory
 constexpr std::int64_t  kMillisecond     = 1000000;
 constexpr std::int64_t  kSecond          = 1000000000;
 constexpr std::int64_t  kForever         = -1;
@@ -148,6 +149,7 @@ bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t s
 
 void open();            // the bus and the parameters, once
 void open_parameters();
+void reserve_keys();
 void close_logging();
 
 // What a master says of a name; of cfepy's when it is there, else of the tables that the convertor has made.

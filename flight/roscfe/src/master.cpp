@@ -52,8 +52,9 @@ bool ask(Kind kind, Kind about, const std::string &name, const char *type, const
 bool call_master(std::uint8_t what, const std::string &name, const char *one, const char *two, const char *three,
                  std::vector<std::uint8_t> &answer)
 {
-    static Client             master("", nullptr, nullptr);
-    std::vector<std::uint8_t> request;
+    static Client                    master("", nullptr, nullptr);
+    static std::vector<std::uint8_t> request; // its memory is used again
+    request.clear();
     const auto pipe = static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(g_node.pipe));
     for (int byte = 0; byte < 4; ++byte)
     {

@@ -28,10 +28,11 @@ std::map<std::string, Cached> &kept()
     return all;
 }
 
-// The text of an answer; false when the answer is no, or there is none.
+// The text of an answer; false when the answer is no, or there is none. Nothing is asked while another answer is read, so
+// the memory of both is used again.
 bool ask(ParameterCall what, const std::string &name, const std::string &text, std::string &told)
 {
-    std::vector<std::uint8_t> answer;
+    static std::vector<std::uint8_t> answer;
     if (!call_master(static_cast<std::uint8_t>(what), name, text.c_str(), "", "", answer) || answer.empty() ||
         answer[0] == 0)
     {
@@ -49,7 +50,7 @@ bool ask(ParameterCall what, const std::string &name, const std::string &text = 
 
 bool value_of(ParameterCall what, const std::string &name, XmlRpcValue &value)
 {
-    std::string told;
+    static std::string told;
     if (!ask(what, name, "", told))
     {
         return false;
@@ -77,7 +78,8 @@ bool get(const std::string &name, XmlRpcValue &value)
 bool get_cached(const std::string &name, XmlRpcValue &value)
 {
     pump(0); // notices wait in the pipe
-    Cached &cached = kept()[name];
+    const auto found  = kept().find(name);
+    Cached &   cached = found != kept().end() ? found->second : kept()[name];
     if (!cached.is_known)
     {
         cached.is_known = true; // a notice that comes meanwhile says otherwise

@@ -278,6 +278,19 @@ bool get_row(const std::string &name, XmlRpcValue &value)
     return found;
 }
 
+bool has_row(const std::string &name)
+{
+    Rows rows;
+    for (int i = 0; i < rows.count(); i = rows.end_of(i))
+    {
+        if (rows[i].name[0] != '\0' && rows.relation_of(i, rows.end_of(i), name) != Relation::apart)
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
 void set_rows(const std::string &name, const XmlRpcValue &value)
 {
     bool good = false;
@@ -356,6 +369,7 @@ bool take_over_load()
 
 void open_parameters()
 {
+    reserve_keys();
     const NodeDescription &node = *g_node.description;
     if (node.param_rows == 0)
     {
@@ -404,8 +418,7 @@ void set_param(const std::string &name, const XmlRpcValue &value)
 
 bool has_param(const std::string &name)
 {
-    XmlRpcValue value;
-    return take_over_load() ? server::has(name) : get_row(name, value);
+    return take_over_load() ? server::has(name) : has_row(name);
 }
 
 bool delete_param(const std::string &name)
@@ -574,9 +587,9 @@ namespace ros
 namespace param
 {
 
-bool has(const std::string &key)
+bool has(roscfe::Name key)
 {
-    return roscfe::has_param(names::resolve(key));
+    return roscfe::has_param(roscfe::full_key(key));
 }
 
 bool del(const std::string &key)

@@ -292,24 +292,24 @@ class NodeHandle
     // -- parameters ---------------------------------------------------------------------------------------------------
 
     template <class T>
-    bool getParam(const std::string &key, T &value) const
+    bool getParam(roscfe::Name key, T &value) const
     {
-        return param::get(resolveName(key), value);
+        return param::get(full_key(key), value);
     }
     template <class T>
-    bool getParamCached(const std::string &key, T &value) const
+    bool getParamCached(roscfe::Name key, T &value) const
     {
-        return param::getCached(resolveName(key), value);
+        return param::getCached(full_key(key), value);
     }
     template <class T>
-    bool param(const std::string &key, T &value, const T &otherwise) const
+    bool param(roscfe::Name key, T &value, const T &otherwise) const
     {
-        return param::param(resolveName(key), value, otherwise);
+        return param::param(full_key(key), value, otherwise);
     }
     template <class T>
-    T param(const std::string &key, const T &otherwise) const
+    T param(roscfe::Name key, const T &otherwise) const
     {
-        return param::param(resolveName(key), otherwise);
+        return param::param(full_key(key), otherwise);
     }
     template <class T>
     void setParam(const std::string &key, const T &value) const
@@ -317,7 +317,7 @@ class NodeHandle
         param::set(resolveName(key), value);
     }
     void setParam(const std::string &key, const char *value) const { param::set(resolveName(key), value); }
-    bool hasParam(const std::string &key) const { return param::has(resolveName(key)); }
+    bool hasParam(roscfe::Name key) const { return param::has(full_key(key)); }
     bool deleteParam(const std::string &key) const { return param::del(resolveName(key)); }
     bool searchParam(const std::string &key, std::string &result) const
     {
@@ -367,6 +367,7 @@ class NodeHandle
 
     std::string resolved(const std::string &name, bool remap) const; // without a look at what is valid
     std::string remapped(const std::string &resolved) const;
+    const std::string &full_key(roscfe::Name key) const; // as resolveName, in memory that is used again
 
     std::string             namespace_;
     std::string             unresolved_namespace_;

@@ -9,6 +9,7 @@
 #include "XmlRpcValue.h"
 #include "ros/forwards.h"
 #include "ros/names.h"
+#include "roscfe/name.h"
 
 namespace roscfe
 {
@@ -21,6 +22,9 @@ void set_param(const std::string &name, const XmlRpc::XmlRpcValue &value);
 bool has_param(const std::string &name);
 bool delete_param(const std::string &name);
 void param_names(std::vector<std::string> &names);
+// The full name of a parameter, in memory that is used again for the next one: looking a name up allocates nothing.
+const std::string &full_key(Name key);
+
 bool search_param(const std::string &ns, const std::string &key, std::string &result);
 
 bool param_to(XmlRpc::XmlRpcValue &value, std::string &to);
@@ -114,19 +118,19 @@ namespace param
 {
 
 template <class T>
-bool get(const std::string &key, T &value)
+bool get(roscfe::Name key, T &value)
 {
     XmlRpc::XmlRpcValue found;
-    return roscfe::get_param(names::resolve(key), found) && roscfe::param_to(found, value);
+    return roscfe::get_param(roscfe::full_key(key), found) && roscfe::param_to(found, value);
 }
 template <class T>
-bool getCached(const std::string &key, T &value)
+bool getCached(roscfe::Name key, T &value)
 {
     XmlRpc::XmlRpcValue found;
-    return roscfe::get_param_cached(names::resolve(key), found) && roscfe::param_to(found, value);
+    return roscfe::get_param_cached(roscfe::full_key(key), found) && roscfe::param_to(found, value);
 }
 template <class T>
-bool param(const std::string &key, T &value, const T &otherwise)
+bool param(roscfe::Name key, T &value, const T &otherwise)
 {
     if (get(key, value))
     {
@@ -136,7 +140,7 @@ bool param(const std::string &key, T &value, const T &otherwise)
     return false;
 }
 template <class T>
-T param(const std::string &key, const T &otherwise)
+T param(roscfe::Name key, const T &otherwise)
 {
     T value{};
     return get(key, value) ? value : otherwise;
@@ -151,7 +155,7 @@ inline void set(const std::string &key, const char *value)
     roscfe::set_param(names::resolve(key), roscfe::param_from(value));
 }
 
-bool has(const std::string &key);
+bool has(roscfe::Name key);
 bool del(const std::string &key);
 bool search(const std::string &ns, const std::string &key, std::string &result);
 bool search(const std::string &key, std::string &result);

@@ -1,4 +1,4 @@
-// Names of frames as arguments, and texts that are written into memory of a fixed size.
+// Texts that are written into memory of a fixed size.
 #ifndef ROSCFE_FRAMES_TEXT_H
 #define ROSCFE_FRAMES_TEXT_H
 
@@ -7,32 +7,14 @@
 #include <string>
 #include <string_view>
 
-#include "roscfe/fixed.h"
+#include "roscfe/name.h"
 
 namespace roscfe
 {
 namespace frames
 {
 
-// A frame's name as nodes give it: text in quotes, std::string or a message's field. It is not copied.
-class Name
-{
-  public:
-    Name(const char *text) : text_(text) {}
-    Name(const std::string &text) : text_(text) {}
-    Name(std::string_view text) : text_(text) {}
-    template <std::size_t N>
-    Name(const FixedString<N> &text) : text_(text.view())
-    {
-    }
-
-    std::string_view view() const { return text_; }
-    operator std::string_view() const { return text_; }
-    std::string str() const { return std::string(text_); }
-
-  private:
-    std::string_view text_;
-};
+using roscfe::Name;
 
 // A number with so many digits behind the point.
 struct Fixed

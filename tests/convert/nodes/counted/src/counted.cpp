@@ -47,10 +47,27 @@ static bool set(std_srvs::SetBool::Request &request, std_srvs::SetBool::Response
     return ++g_calls > 0;
 }
 
+// By names that have no room in a std::string itself: how many were there.
+static int look_up(ros::NodeHandle &nh, ros::NodeHandle &own, const XmlRpc::XmlRpcValue &tree)
+{
+    double      number = 0;
+    int         whole = 0, found = 0;
+    found += nh.getParam("/a_number_with_quite_a_long_name", number) && number == 2.5;
+    found += own.getParam("in_a_namespace_that_is_there/whole_number", whole) && whole == 7;
+    found += own.getParamCached("in_a_namespace_that_is_there/whole_number", whole) && whole == 7;
+    found += ros::param::get("~in_a_namespace_that_is_there/whole_number", whole) && whole == 7;
+    found += nh.hasParam("a_number_with_quite_a_long_name") && !nh.hasParam("a_number_that_nobody_has_ever_set");
+    found += own.param("a_number_that_nobody_has_ever_set", 9) == 9;
+    found += tree.hasMember("whole_number_of_the_tree") && static_cast<int>(tree["whole_number_of_the_tree"]) == 8;
+    return found;
+}
+
 int main(int argc, char **argv)
 {
     ros::init(argc, argv, "counted");
-    ros::NodeHandle nh;
+    ros::NodeHandle nh, own("~");
+    XmlRpc::XmlRpcValue tree;
+    own.getParam("in_a_namespace_that_is_there", tree);
     g_twists                  = nh.advertise<geometry_msgs::Twist>("twists_out", 10);
     g_texts                   = nh.advertise<std_msgs::String>("texts_out", 10);
     g_latched                 = nh.advertise<std_msgs::Int32>("latched", 10, true);
@@ -66,23 +83,25 @@ int main(int argc, char **argv)
     {
         ros::spinOnce();
         client.call(call);
+        look_up(nh, own, tree);
         ros::Duration(0.05).sleep();
     }
     g_heard = g_ticks = g_calls = 0;
-    int answered                = 0;
+    int answered = 0, found = 0;
     g_counts                    = true;
     ros::Rate rate(20);
     for (ros::Time end = ros::Time::now() + ros::Duration(5.0); ros::Time::now() < end;)
     {
         ros::spinOnce();
         answered += client.call(call);
+        found += look_up(nh, own, tree);
         rate.sleep();
     }
     g_counts = false;
     std_msgs::String message;
-    message.data = std::to_string(g_allocations) + " allocations" + (g_before > 99 ? ", many before, " : ", few before, ") + std::to_string(g_heard) + " heard, " +
+    message.data = std::to_string(g_allocations) + " allocations" + (g_before > 9 ? ", many before, " : ", few before, ") + std::to_string(g_heard) + " heard, " +
                    std::to_string(g_ticks) + " ticks, " + std::to_string(g_calls) + " served, " +
-                   std::to_string(answered) + " answered";
+                   std::to_string(answered) + " answered, " + std::to_string(found) + " found";
     result.publish(message);
     ros::spin();
 }
