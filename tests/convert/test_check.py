@@ -87,6 +87,20 @@ def test_each_rule_is_met(tmp_path: Path, line: str, rule: str, column: int) -> 
 @pytest.mark.parametrize(
     "line",
     [
+        "void f() { getchar(); }",
+        "void f() { tcgetattr(0, &raw); }",
+        "void f() { socket(AF_INET, SOCK_DGRAM, 0); }",
+        'void f() { system("reboot"); }',
+        "std::condition_variable changed;",
+    ],
+)
+def test_what_nothing_flies_refuses_a_node_for_the_host_too(tmp_path: Path, line: str) -> None:
+    assert len(look(tmp_path, f"{MAIN}{line}", Profile.HOST).at(Level.ERROR)) == 1
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
         "#include <ros/ros.h>",
         "#include <std_msgs/String.h>",
         "#include <std_srvs/SetBool.h>",

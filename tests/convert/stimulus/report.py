@@ -136,5 +136,6 @@ def read(file: Path, verdicts: Iterable[Mapping[str, Any]]) -> list[dict[str, An
         if not rules:
             results.append(found.get(node, {"node": node, "verdict": "not run"}))
         elif node in found:
-            results.append({"node": node, "verdict": "refused", "why": ", ".join(rules)})
+            flew = "; flown without the check it was equal" if found[node]["verdict"] == "equal" else ""
+            results.append({"node": node, "verdict": "refused", "why": f"{', '.join(rules)}{flew}"})
     return results
