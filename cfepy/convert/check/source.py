@@ -29,7 +29,7 @@ CALLS: dict[str, str] = {
     **dict.fromkeys(("std::this_thread::sleep_for", "std::this_thread::sleep_until"), "sleep"),
     **dict.fromkeys(("boost::this_thread::sleep", "boost::this_thread::sleep_for"), "sleep"),
     **dict.fromkeys(("getchar", "std::getchar", "getwchar", "getch", "wgetch", "kbhit"), "getchar"),
-    **dict.fromkeys(("scanf", "std::scanf", "vscanf", "gets", "readline", "isatty"), "getchar"),
+    **dict.fromkeys(("scanf", "std::scanf", "vscanf", "gets", "isatty"), "getchar"),
     **dict.fromkeys(("socket", "recvfrom", "sendto", "getaddrinfo", "gethostbyname"), "socket"),
     **dict.fromkeys(("tcsetattr", "tcgetattr", "cfsetispeed", "cfsetospeed", "ioctl", "cfmakeraw"), "serial"),
     **dict.fromkeys(("fopen", "freopen", "open", "opendir", "std::fopen", "mkstemp"), "file"),
