@@ -128,6 +128,33 @@ def test_what_is_right_is_not_told(tmp_path: Path, line: str) -> None:
     assert not report.findings
 
 
+WORKER_H = "#ifndef WORKER_H\n#define WORKER_H\nclass Worker { public: void begin(); };\n#endif\n"
+WORKER = '#include "worker.h"\nvoid Worker::begin() { std::thread(work).detach(); }\n'
+
+
+@pytest.mark.parametrize(
+    ("node", "worker", "rule"),
+    [
+        (MAIN, WORKER, "unused-code"),
+        (f"{MAIN}", f"static void help() {{ }}\n{WORKER}", "unused-code"),
+        (f'#include "worker.h"\n{MAIN}', WORKER, "thread"),
+        (MAIN, f"{WORKER}void begin_all() {{ Worker().begin(); }}", "thread"),
+        (MAIN, f"{WORKER}static const Worker one;", "thread"),
+        (MAIN, f"{WORKER}int Other::begin() {{ Worker().begin(); }}", "thread"),
+        (MAIN, f"{WORKER}PLUGINLIB_EXPORT_CLASS(Worker, Base)", "thread"),
+    ],
+)
+def test_code_of_a_library_that_a_node_cannot_call_does_not_refuse_it(
+    tmp_path: Path, node: str, worker: str, rule: str
+) -> None:
+    sources = {"node.cpp": node, "worker.cpp": worker, "worker.h": WORKER_H}
+    for name, text in sources.items():
+        (tmp_path / name).write_text(text)
+    report = CheckReport("node", Profile.STRICT)
+    ProgramSources([tmp_path / "node.cpp", tmp_path / "worker.cpp"], [], shipped()).look(report)
+    assert {each.rule for each in report.findings} & {"thread", "unused-code"} == {rule}
+
+
 def test_own_headers_are_read(tmp_path: Path) -> None:
     guarded = "#ifndef MINE_H\n#define MINE_H\n#include <pcl/point_cloud.h>\n#endif\n"
     report = look(tmp_path, f'#include "mine.h"\n{MAIN}', mine=guarded)

@@ -33,6 +33,8 @@ from rospy_shim.msgs import Library
 
 LONGEST_SOURCE = 2_000_000
 """Bytes of a source; one that is longer is no source that somebody has written."""
+CARRIED_OUT = ("thread", "socket", "serial", "process", "getchar")
+"""Rules about what refuses a node only where it is carried out."""
 _MOST_FILES = 2000
 _NODELET = re.compile(rb"\bPLUGINLIB_(?:EXPORT|DECLARE)_CLASS\b|\bNODELET_EXPORT\b")
 _PARTS = ("Request", "Response")
@@ -71,9 +73,14 @@ class ProgramSources:
             self._look_at_include(report, include)
         self._look_at_mains(report)
         callbacks = {"lambda"}.union(*(each.callbacks for each in self.files.values()))
+        unused = self._unused()
         for file in self.files.values():
             for met in file.met:
-                if met.rule != "heap-in-callback" or met.function in callbacks:
+                if met.rule in CARRIED_OUT and file.path in unused:
+                    report.add(
+                        "unused-code", met.place, f"{met.message} in code that nothing else of the node can call"
+                    )
+                elif met.rule != "heap-in-callback" or met.function in callbacks:
                     report.add(met.rule, met.place, met.message)
         report.names += self.names()
         for name in report.names:
@@ -222,6 +229,30 @@ class ProgramSources:
         for main in mains[:1]:
             if main.takes not in ("nothing", "arguments"):
                 report.add("main-form", main.place, f"main takes ({main.takes})")
+
+    def _unused(self) -> set[Path]:
+        """Sources with nothing that another file can call, and headers that they alone include.
+
+        They define methods of their own classes alone, and no object that is made when the program is loaded: as the
+        sources of a library do that the node links with for something else.
+        """
+        includers: dict[Path, set[Path]] = {}
+        for path, file in self.files.items():
+            for include in file.includes:
+                own = self._own(path, include.name)
+                if own is not None:
+                    includers.setdefault(own, set()).add(path)
+        unused: set[Path] = set()
+        for source in self.sources if not self.has_plugin else ():
+            paths = [source, *(header for header, users in includers.items() if users == {source})]
+            files = [self.files[each] for each in paths if each in self.files]
+            classes = set().union(*(each.classes for each in files))
+            if all(
+                each.owners <= classes and not each.mains and not each.unparsed and not each.has_objects
+                for each in files
+            ):
+                unused.update(paths)
+        return unused
 
     def _look_at_name(self, report: CheckReport, name: GraphName) -> None:
         if name.name is None and name.kind not in ("parameter",):

@@ -230,6 +230,12 @@ RULES: dict[str, CheckRule] = {
             "subscribe to a topic or offer a service",
         ),
         CheckRule(
+            *("unused-code", _W, _W, _W),
+            "what would refuse the node, in a source of a library that the node links with for something else",
+            "what nothing can call is not carried out",
+            "nothing, or leave the source out",
+        ),
+        CheckRule(
             *("sleep", _W, _W, _W),
             "a sleep of the operating system",
             "it is made to wait as ROS's sleeps do, in cFE's time; messages wait meanwhile",

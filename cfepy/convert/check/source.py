@@ -139,6 +139,10 @@ class SourceFile:
         constants: variables and macros that hold a text.
         defaults: variables that get a parameter's value, and the default that is written there.
         handlers: the callback of each subscription, by its place.
+        classes: names of classes that are defined in it.
+        owners: of the functions that are defined outside of classes, the class; "" for those of none. Functions that
+            other files cannot call are left out.
+        has_objects: whether there are variables of the whole program that may be made when it is loaded.
         unparsed: places that the parser does not understand.
     """
 
@@ -148,10 +152,13 @@ class SourceFile:
     mains: list[Main] = field(default_factory=list)
     names: list[GraphName] = field(default_factory=list)
     callbacks: set[str] = field(default_factory=set)
+    classes: set[str] = field(default_factory=set)
+    owners: set[str] = field(default_factory=set)
     parameters: dict[str, str] = field(default_factory=dict)
     constants: dict[str, str] = field(default_factory=dict)
     defaults: dict[str, str] = field(default_factory=dict)
     handlers: dict[SourcePlace, str] = field(default_factory=dict)
+    has_objects: bool = False
     unparsed: int = 0
 
 
@@ -201,6 +208,8 @@ class _Reader:
             "field_declaration": self._member,
             "binary_expression": self._binary,
             "function_definition": self._function,
+            "class_specifier": self._class,
+            "struct_specifier": self._class,
             "qualified_identifier": self._qualified,
         }
 
@@ -287,8 +296,16 @@ class _Reader:
             return
         first = _parameters(declarator)
         self._file.parameters.setdefault(_last(name), _text(first[0]) if first else "")
+        around = {each.kind for each in self._around}
+        is_static = any(each.type == "storage_class_specifier" and _text(each) == "static" for each in node.children)
+        if not is_static and around.isdisjoint(("class_specifier", "struct_specifier")):
+            self._file.owners.add(_last(name.rpartition("::")[0]))
         if name == "main" and not self._around:
             self._file.mains.append(Main(self._place(node), _taken(first)))
+
+    def _class(self, node: Node) -> None:
+        if node.child_by_field_name("body") is not None:
+            self._file.classes.add(_plain(_text(node.child_by_field_name("name"))))
 
     def _object(self, node: Node, kind: str) -> None:
         """An object of a type is made."""
@@ -314,9 +331,11 @@ class _Reader:
 
     def _keep(self, node: Node, name: str, words: set[str]) -> None:
         """A variable that outlives what it stands in."""
+        kinds = {each.kind for each in self._around} - set(_CONDITIONS)
+        if not kinds and not words & {"constexpr", "extern", "using", "typedef"} and _is_outermost(node):
+            self._file.has_objects = True
         if words & {"const", "constexpr", "extern", "using", "typedef"} or not name:
             return
-        kinds = {each.kind for each in self._around} - set(_CONDITIONS)
         if not kinds and _is_outermost(node):
             self._meet("global-state", node, f"{name} is a variable of the whole program")
         elif "static" in words and kinds & {"function_definition", "lambda_expression"}:
