@@ -10,55 +10,17 @@ An access to memory that several tasks may use is a scheduling point as well.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from typing import Any, NamedTuple
+from typing import Any
 
 from cfepy.c.calls import Declarations
 from cfepy.c.engine import engine
 from cfepy.c.memory import CMemory
-from cfepy.rtos import ExploringKernel, Task
+from cfepy.rtos import ExploringKernel, Race, RaceSide, Task
 
 Key = Callable[[tuple[Any, ...]], Hashable]
 """What a call orders by, from its arguments."""
 Told = tuple[int, int, bool, list[int]]
 """An access: its address in the code, number of the task, whether it writes, where its calls return to."""
-
-
-class RaceSide(NamedTuple):
-    """One side of a race: where in the source it is, whether it writes, the task, and its calls, outermost first."""
-
-    place: str
-    is_write: bool
-    task: str
-    calls: tuple[str, ...] = ()
-
-    def __str__(self) -> str:
-        """`write in add (case.c:12) of ADDER`."""
-        return f"{'write' if self.is_write else 'read'} in {self.place} of {self.task}"
-
-    @property
-    def stack(self) -> str:
-        """`ADDER: child (case.c:40) > add (case.c:12)`."""
-        return f"{self.task}: {' > '.join((*self.calls, self.place))}"
-
-
-class Race(NamedTuple):
-    """A data race: the variable, the access that found it, the one before, and who was running when, in virtual ns."""
-
-    what: str
-    before: RaceSide
-    now: RaceSide
-    who: str
-    at_ns: int
-
-    def __str__(self) -> str:
-        """One line; the same whichever of the two came first."""
-        first, second = sorted((str(self.before), str(self.now)))
-        return f"{self.what}: {first}, {second}: nothing orders them"
-
-    def told(self) -> tuple[int, str, str, str, str]:
-        """Itself as plain values: virtual ns, text, which came first and by which calls, application, task."""
-        lines = (f"{self.before} came first, then {self.now}", self.before.stack, self.now.stack)
-        return self.at_ns, str(self), "\n".join(lines), self.who, self.now.task
 
 
 def _first(arguments: tuple[Any, ...]) -> Hashable:
@@ -133,7 +95,7 @@ TAKES: dict[str, Key] = {
 """What a call that went well has taken."""
 
 
-class RaceWatch:
+class CompiledRaceWatch:
     """Knows what orders the tasks of a processor, and takes the races that the engine finds.
 
     Args:

@@ -18,11 +18,11 @@ from cfepy.c.lives import Ends, ThreadLocals
 from cfepy.c.memory import CMemory, Constants
 from cfepy.c.packets import PacketImages
 from cfepy.c.places import CallFrames, CodePlace, PreemptedFrames, raise_at
-from cfepy.c.races import Race, RaceWatch
+from cfepy.c.races import CompiledRaceWatch
 from cfepy.c.stacks import LEAST, Stacks
 from cfepy.c.unwinding import Unwinder
 from cfepy.console import Console
-from cfepy.rtos import ExploringKernel, Kernel
+from cfepy.rtos import ExploringKernel, Kernel, Race
 from cfepy.status import CfeError, OsalError
 
 HEAP = 1 << 30
@@ -121,7 +121,7 @@ class CRuntime:
         declare(self.declared, self)
         self._calls = CallTable(self.arena, self.table, self.declared)
         self._races = (
-            RaceWatch(
+            CompiledRaceWatch(
                 kernel,
                 self.table,
                 self.declared,

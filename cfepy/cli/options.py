@@ -137,6 +137,14 @@ def _add_cpp_nodes(parser: Options) -> None:
     )
 
 
+def _add_races(parser: Options) -> None:
+    parser.add_argument(
+        "--races",
+        action="store_true",
+        help="find accesses of Python code to one attribute, item or variable that nothing orders, one of them a write",
+    )
+
+
 RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "launch_args": _add_launch_args,
     "seconds": _add_seconds,
@@ -150,6 +158,7 @@ RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "play": _add_play,
     "stall": _add_stall,
     "guard": _add_guard,
+    "races": _add_races,
     "cpp_nodes": _add_cpp_nodes,
 }
 """What adds the option for each attribute of `RunPlan`, but for the words and the command, which are what is run."""
@@ -234,6 +243,7 @@ _USUAL: Mapping[str, tuple[str, object]] = {
     "play": ("--play", None),
     "stall": ("--stall", DEFAULT_STALL_S),
     "guard": ("--guard", False),
+    "races": ("--races", False),
     "cpp_nodes": ("--cpp-nodes", None),
 }
 """The option for each attribute, and its value when nothing is said."""

@@ -178,7 +178,7 @@ def _violations(mission: Mission) -> Iterator[Failure]:
 def _of_compiled_code(mission: Mission) -> Iterator[Failure]:
     """Accesses of compiled code that nothing orders, and memory that was written past."""
     for race in mission.record.data_races:
-        yield Failure(verdict.RACE, race.app, race.text, race.at_ns, race.detail, race.task)
+        yield Failure(verdict.RACE, race.app, race.text, race.at_ns, race.detail, race.task, race.cause)
     for each in mission.record.overwrites:
         yield Failure(verdict.OVERWRITE, each.app, each.text, each.at_ns)
 

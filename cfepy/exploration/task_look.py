@@ -107,7 +107,7 @@ class TaskLook(Attachment):
         self._messages.begin(mission)
         mission.kernel.block = self._blocking(mission.kernel.block)  # type: ignore[method-assign]
         if isinstance(mission.kernel, ExploringKernel):
-            mission.kernel.observer = self
+            mission.kernel.watch(self)
 
     def conclude(self) -> None:
         """See `Attachment.conclude`: how tasks are ended is no part of it."""

@@ -36,6 +36,7 @@ class MissionOptions(TypedDict, total=False):
         play: a bag that is played into the mission.
         args: of a launch file.
         stall: seconds of wall time after which a task that does not give up the CPU ends the run; 0 waits for ever.
+        races: accesses of Python code that nothing orders are looked for, and told with what went wrong.
         guard: compiled applications fault where they write past a buffer, or use one that was freed.
         cpp_nodes: how nodes in C++ of launch files are built: "host", "pool", "strict", or a mission whose
             file has the section `cpp_nodes:`, or that file.
@@ -50,6 +51,7 @@ class MissionOptions(TypedDict, total=False):
     args: Mapping[str, object] | None
     stall: float
     guard: bool
+    races: bool
     cpp_nodes: str | os.PathLike[str] | None
 
 

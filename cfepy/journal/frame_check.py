@@ -138,9 +138,10 @@ PLAN: dict[str, Check] = {
     "play": _perhaps(_text),
     "stall": _number,
     "guard": _flag,
+    "races": _flag,
     "cpp_nodes": _perhaps(_text),
 }
-_LATER = {"outcome", "mode", "cpp_nodes"}  # may be missing
+_LATER = {"outcome", "mode", "cpp_nodes", "races"}  # may be missing
 
 
 def problem_of(kind: str, body: Any) -> str | None:

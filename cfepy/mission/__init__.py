@@ -56,7 +56,7 @@ from cfepy.mission.packet_watch import HOST, PacketWatch, Seen, hearing, receive
 from cfepy.mission.pieces import FIRST_PIECE_NS, PieceLength
 from cfepy.mission.processor import CORE_APPS, Processor
 from cfepy.mission.python_code import find_code, find_node
-from cfepy.mission.record import Reset, Traffic
+from cfepy.mission.record import DataRace, Reset, Traffic
 from cfepy.mission.spec import BuiltProgram, MissionSpec
 from cfepy.mission.topic_watch import TopicMessage, TopicWatch, matches
 from cfepy.mission.tracebacks import app_traceback, described, is_library, is_own_code, is_shown, is_standard, reason
@@ -85,6 +85,7 @@ __all__ = [
     "BuiltProgram",
     "CppNodesConfig",
     "CppNodesError",
+    "DataRace",
     "EndlessWait",
     "EndlessWaits",
     "HostCall",

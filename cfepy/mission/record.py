@@ -53,13 +53,16 @@ class Traffic:
 
 
 class DataRace(NamedTuple):
-    """Two accesses of compiled code that nothing orders: when the second came, what is told, of whom, in which task."""
+    """Two accesses that nothing orders: when the second came, what is told, of whom, in which task; what tells it from
+    others, where the text does not.
+    """
 
     at_ns: int
     text: str
     detail: str
     app: str
     task: str
+    cause: str = ""
 
 
 class Overwrite(NamedTuple):
@@ -81,7 +84,7 @@ class RunRecord:
     Attachments keep what they have to tell in a part of their own. `history` is by application name, `event_counts` by
     event type, `errors_by_app` counts ERROR and CRITICAL events: the services of each processor write into these three
     themselves. `topics` has rows of ROS topics by MsgId. `tables` gives further rows for the report, by their title
-    there; an attachment that has some puts a function here. `data_races` are those of compiled code, `overwrites` what
+    there; an attachment that has some puts a function here. `data_races` are those that were found, `overwrites` what
     the guard found in its memory.
     """
 

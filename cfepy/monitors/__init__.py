@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from cfepy.monitors.messages import Heard, MessageWatch
     from cfepy.monitors.observer import Observer, Sent, app_of
     from cfepy.monitors.predicate import Predicate, short, shortened
+    from cfepy.monitors.race_watch import RaceWatch
 
 __all__ = [
     "Check",
@@ -30,6 +31,7 @@ __all__ = [
     "Observer",
     "Overrun",
     "Predicate",
+    "RaceWatch",
     "Sent",
     "app_of",
     "demands_of",
@@ -51,6 +53,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "read_demands",
             ),
             ".inversions": ("InversionWatch",),
+            ".race_watch": ("RaceWatch",),
             ".messages": (
                 "Heard",
                 "MessageWatch",

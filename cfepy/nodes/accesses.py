@@ -71,6 +71,7 @@ class ThingNumbers:
 
     def __init__(self) -> None:
         self._last = 0
+        self.on_gone: Callable[[int], object] = lambda number: None
         self._weak: dict[int, tuple[int, ref[Any]]] = {}
         self._kept: dict[int, tuple[int, Any]] = {}  # those that take no weak references
         self._sweep_at = _SWEEP_AT
@@ -83,19 +84,24 @@ class ThingNumbers:
             return found[0]
         self._last = number = self._last + 1
         try:
-            self._weak[address] = number, ref(thing, lambda gone: self._weak.pop(address, None))
+            self._weak[address] = number, ref(thing, lambda gone: self._forget(address))
         except TypeError:
             if len(self._kept) >= self._sweep_at:
                 self._sweep()
             self._kept[address] = number, thing
         return number
 
+    def _forget(self, address: int) -> None:
+        found = self._weak.pop(address, None)
+        if found is not None:
+            self.on_gone(found[0])
+
     def _sweep(self) -> None:
         """Let go of objects that nobody else has: they are never seen again."""
         alone = sys.getrefcount(next(iter({0: (0, object())}.values()))[1])
         gone = [address for address, entry in self._kept.items() if sys.getrefcount(entry[1]) <= alone]
         for address in gone:
-            del self._kept[address]
+            self.on_gone(self._kept.pop(address)[0])
         self._sweep_at = max(_SWEEP_AT, 2 * len(self._kept))
 
 
@@ -107,10 +113,12 @@ class Accesses:
 
     Attributes:
         observers: get each access; set before the mission boots.
+        files: the source files whose code tells of accesses.
     """
 
     def __init__(self, kernel: Kernel) -> None:
         self.observers: list[Observer] = []
+        self.files: set[str] = set()
         self._kernel = kernel
         self._points = Points.parse("" if kernel.policy is None else kernel.policy.points)
         self._point = kernel.point if isinstance(kernel, ExploringKernel) else None
@@ -137,7 +145,16 @@ class Accesses:
             return None
         from cfepy.nodes.instrument import Kinds
 
+        self.files.add(file)
         return Kinds(bool(self.observers) or kind == ATTRIBUTES, kind == LINES, kind == CALLS, is_main)
+
+    def number(self, thing: object) -> int:
+        """The number of an object, from 1."""
+        return self._numbers.of(thing)
+
+    def on_gone(self, action: Callable[[int], object]) -> None:
+        """Have something done with the number of each object that is no more, at any time after its end."""
+        self._numbers.on_gone = action
 
     def hooks(self) -> dict[str, Callable[..., Any]]:
         """What code with hooks needs among its builtins."""

@@ -285,9 +285,9 @@ def takeoff(
             plan,
             spec,
             console,
-            plan.schedule.policy() if policy is None else policy,
+            _policy(plan) if policy is None else policy,
             trace,
-            [*_judges(spec), *([] if script is None else [script]), *plan.attachments(), *attachments, *faults],
+            [*_judges(spec), *_race_watch(plan), *_own(plan, script), *attachments, *faults],
         )
     _watch_for_stalls(mission, plan, host)
     seconds = plan.virtual_s
@@ -335,6 +335,25 @@ def _judges(spec: MissionSpec) -> list[Attachment]:
     from cfepy.monitors import judges_of
 
     return judges_of(spec)
+
+
+def _own(plan: RunPlan, script: ScriptRun | None) -> list[Attachment]:
+    """What the plan itself brings along."""
+    return [*([] if script is None else [script]), *plan.attachments()]
+
+
+def _policy(plan: RunPlan) -> Policy | None:
+    """That of the schedule; races are found by a kernel that asks one, if only for the default."""
+    return plan.schedule.policy() or (Policy() if plan.races else None)
+
+
+def _race_watch(plan: RunPlan) -> list[Attachment]:
+    """What finds races; only a run that asks for them imports it."""
+    if not plan.races:
+        return []
+    from cfepy.monitors import RaceWatch
+
+    return [RaceWatch()]
 
 
 def _script_run(plan: RunPlan, spec: MissionSpec) -> ScriptRun | None:

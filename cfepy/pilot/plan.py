@@ -77,6 +77,7 @@ class RunPlan:
         stall: seconds of wall time for which virtual time may stand still, because a task does not give up the CPU,
             until the run is ended for that; 0 for any time. It decides only whether a run comes to its end, and none of
             the trace of one that does.
+        races: accesses of Python code that nothing orders are looked for; it decides none of the trace.
         guard: compiled applications get memory that nothing can be written past, and that is not zero.
         cpp_nodes: how nodes in C++ are built: a profile, or a YAML file with a section `cpp_nodes:` in place of the
             mission's own; None leaves it to the mission.
@@ -96,6 +97,7 @@ class RunPlan:
     play: str | None = None
     stall: float = STALL_S
     guard: bool = False
+    races: bool = False
     cpp_nodes: str | None = None
 
     def __post_init__(self) -> None:
@@ -164,7 +166,7 @@ class RunPlan:
                 options += [f"--{each.replace('_', '-')}", str(getattr(plan, each))]
         if plan.stall != _USUAL.stall:
             options += ["--stall", f"{plan.stall:g}"]
-        for each in ("stop_on_failure", "guard"):
+        for each in ("stop_on_failure", "guard", "races"):
             if getattr(plan, each):
                 options.append(f"--{each.replace('_', '-')}")
         return join(["cfepy", plan.command, *options, *plan.words])

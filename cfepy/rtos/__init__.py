@@ -27,6 +27,7 @@ from cfepy.rtos.policy import (
     SeededRandom,
 )
 from cfepy.rtos.queue import EMPTY, Queue
+from cfepy.rtos.races import Race, RaceSide, VectorClocks
 from cfepy.rtos.realtime import Pacer, Stopwatch
 from cfepy.rtos.schedule import DEPTH, STEPS, Schedule
 from cfepy.rtos.semaphore import Semaphore
@@ -63,6 +64,8 @@ __all__ = [
     "Policy",
     "Question",
     "Queue",
+    "Race",
+    "RaceSide",
     "Schedule",
     "SeededRandom",
     "Semaphore",
@@ -70,6 +73,7 @@ __all__ = [
     "Stopwatch",
     "Task",
     "TaskExit",
+    "VectorClocks",
     "Wait",
     "WaitList",
     "allowed_cpus",

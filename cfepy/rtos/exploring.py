@@ -7,6 +7,7 @@ of `Kernel`, which pays nothing for this module.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from heapq import heappop, heappush
 from typing import Any, Protocol
 
@@ -55,6 +56,21 @@ class CallObserver(Protocol):
         """It has come to its end, with this result."""
 
 
+class _Both:
+    """Two observers, one after the other."""
+
+    def __init__(self, first: CallObserver, second: CallObserver) -> None:
+        self._first, self._second = first, second
+
+    def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
+        self._first.called(subject, call, args)
+        self._second.called(subject, call, args)
+
+    def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
+        self._first.returned(subject, call, args, result)
+        self._second.returned(subject, call, args, result)
+
+
 class ExploringKernel(Kernel):
     """A kernel whose choices are a policy's.
 
@@ -63,7 +79,8 @@ class ExploringKernel(Kernel):
         policy: decides which task runs next.
 
     Attributes:
-        observer: is told of calls; None for nobody.
+        observer: is told of calls; None for nobody. `watch` adds one.
+        on_wake: is told of a task that the running one lets go on; None for nobody.
     """
 
     def __init__(
@@ -78,6 +95,7 @@ class ExploringKernel(Kernel):
         super().__init__(context, trace, tick_ns, switch_cost_ns, seed)
         self.policy = policy
         self.observer: CallObserver | None = None
+        self.on_wake: Callable[[Task], object] | None = None
         self.frames_wanted = True
         self._any = policy.any_priority
         self._hold_ns = policy.hold_ns
@@ -87,6 +105,15 @@ class ExploringKernel(Kernel):
         self._early: dict[str, None] = {}  # names of tasks that may start before their time
         self._busy: Task | None = None  # the task that used the CPU last, and how much it may use in one go
         self._busy_until = 0
+
+    def watch(self, observer: CallObserver) -> None:
+        """Have an observer told of calls, besides those that are."""
+        self.observer = observer if self.observer is None else _Both(self.observer, observer)
+
+    def began(self, subject: object) -> None:
+        """See `Scheduler.began`; observers are told of it as of a call."""
+        if self.observer is not None:
+            self.observer.called(subject, "began", ())
 
     # -- scheduling points -----------------------------------------------------------------------------------------
 
@@ -108,6 +135,12 @@ class ExploringKernel(Kernel):
     def preempt(self) -> None:
         """Others may run now, more urgent ones as always."""
         self.point()
+
+    def enqueue(self, task: Task, value: Any) -> None:
+        """See `Scheduler.enqueue`."""
+        if self.on_wake is not None:
+            self.on_wake(task)
+        super().enqueue(task, value)
 
     def delay(self, duration_ns: int) -> None:
         """See `Scheduler.delay`."""

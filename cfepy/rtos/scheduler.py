@@ -85,6 +85,13 @@ class Scheduler:
     def has_started(self) -> None:
         """That delay of the current task is over."""
 
+    def began(self, subject: object) -> None:
+        """Something that the current task has made may run in others from now on, such as a callback.
+
+        Args:
+            subject: what calls it.
+        """
+
     def connection_delay(self, publisher: str, subscriber: str, topic: str, usual_ns: int) -> int:
         """How long it takes until two nodes are connected.
 

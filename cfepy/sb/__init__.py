@@ -10,6 +10,7 @@ from __future__ import annotations
 from cfepy.ports import PEND_FOREVER
 from cfepy.sb.buffers import BUFFER_BYTES, MessageBuffer
 from cfepy.sb.bus import POLL, SoftwareBus
+from cfepy.sb.packet_listener import listened
 from cfepy.sb.packets import COMMANDS, ONESUB_TLM, TELEMETRY, UNSUBSCRIPTION
 from cfepy.sb.pipe import Pipe
 from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE
@@ -31,4 +32,5 @@ __all__ = [
     "Route",
     "SbTask",
     "SoftwareBus",
+    "listened",
 ]

@@ -91,6 +91,7 @@ OPTIONS: dict[str, tuple[list[str], Any]] = {
     "play": (["--play", "drive.bag"], "drive.bag"),
     "stall": (["--stall", "2.5"], 2.5),
     "guard": (["--guard"], True),
+    "races": (["--races"], True),
     "cpp_nodes": (["--cpp-nodes", "pool"], "pool"),
 }
 SAID_OTHERWISE = {

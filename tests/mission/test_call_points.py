@@ -57,7 +57,7 @@ class Listener(Attachment):
 
     def begin(self, mission: Any) -> None:
         """See `Attachment.begin`."""
-        mission.kernel.observer = self
+        mission.kernel.watch(self)
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
         """See `CallObserver.called`."""

@@ -92,6 +92,8 @@ def _explore(lock: type, kernel: ExploringKernel) -> None:
 
     changed = {name: observed(name) for name in (*_TAKING, *_GIVING) if name in methods}
     changed |= {name: observed(name, has_point=False) for name in ("__init__", "_is_owned")}
+    if "_acquire_restore" in methods:  # by which a condition takes its lock again
+        changed["_acquire_restore"] = observed("_acquire_restore", has_point=False)
     for name, call in changed.items():
         setattr(lock, name, call)
 

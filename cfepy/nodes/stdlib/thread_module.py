@@ -254,7 +254,11 @@ def fix_threading(universe: Universe, module: Any) -> None:
 
     def charged_is_set(event: Any) -> bool:
         universe.charge()
-        return bool(is_set(event))
+        result = bool(is_set(event))
+        kernel = universe.kernel
+        if result and isinstance(kernel, ExploringKernel) and kernel.observer is not None:
+            kernel.observer.returned(event._cond._lock, "is_set", (), result)  # who set it held that lock
+        return result
 
     if isinstance(universe.kernel, ExploringKernel):
         allocate_lock = module._allocate_lock  # which makes the locks by which `Condition` wakes its waiters

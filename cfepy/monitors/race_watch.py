@@ -1,0 +1,264 @@
+"""`RaceWatch`: two accesses of mission code to one thing, one of them a write, that nothing orders.
+
+It looks on at one run with vector clocks (`cfepy.rtos.races`). What orders tasks is what hands something on: a lock, a
+semaphore, a queue, a message, a table, the start of a task, the call of a waker. That one task happened to run before
+another is no order; on a computer with more cores, or with another load, they might run the other way round.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import deque
+from collections.abc import Callable, Hashable
+from pathlib import PurePath
+from types import CodeType, FrameType
+from typing import Any, NamedTuple
+
+from cfepy.attachment import Attachment
+from cfepy.mission import DataRace, Mission
+from cfepy.nodes import WHOLE, Touch
+from cfepy.rtos import ExploringKernel, Race, RaceSide, Task, VectorClocks
+from cfepy.sb import Pipe, SoftwareBus, listened
+
+Frames = tuple[tuple[CodeType, int], ...]
+Key = Callable[[tuple[Any, ...]], Hashable]
+"""What a call orders by, from its arguments."""
+
+_ANY_ITEM = "[*]"  # all items of a container, where all of it is meant
+
+
+def _first(arguments: tuple[Any, ...]) -> Hashable:
+    return "osal", arguments[0] if arguments else None
+
+
+def _always(what: str) -> Key:
+    return lambda arguments: what
+
+
+_TABLES = ("get_address", "get_addresses", "release_address", "release_addresses", "load", "update", "manage")
+_LOCKS_GIVEN = ("release", "release_lock", "__exit__", "_release_save")
+_LOCKS_TAKEN = ("acquire", "acquire_lock", "__enter__", "_acquire_restore", "is_set")
+_LETS_GO: dict[str, Key] = {
+    **dict.fromkeys(
+        (
+            *("mut_sem_give", "bin_sem_give", "bin_sem_flush", "count_sem_give", "cond_var_unlock", "cond_var_signal"),
+            *("cond_var_broadcast", "cond_var_wait", "cond_var_timed_wait", "rw_lock_read_give", "rw_lock_write_give"),
+            "queue_put",
+        ),
+        _first,
+    ),
+    **dict.fromkeys(_TABLES, _always("tables")),
+    **dict.fromkeys(("run_loop", "wait_for_startup_sync", "wait_for_system_state"), _always("startup")),
+}
+"""What calls of services hand on: whoever takes it later knows what the caller did before."""
+_TAKES: dict[str, Key] = {
+    **dict.fromkeys(
+        (
+            *("mut_sem_take", "bin_sem_take", "bin_sem_timed_wait", "count_sem_take", "count_sem_timed_wait"),
+            *("cond_var_lock", "cond_var_wait", "cond_var_timed_wait", "rw_lock_read_take", "rw_lock_write_take"),
+            "queue_get",
+        ),
+        _first,
+    ),
+    **dict.fromkeys(_TABLES, _always("tables")),
+    **dict.fromkeys(("wait_for_startup_sync", "wait_for_system_state"), _always("startup")),
+}
+"""What calls that came back have taken."""
+
+
+class _Seen(NamedTuple):
+    """The last access of a task: its clock, what it was, and where."""
+
+    clock: int
+    touch: Touch
+    frames: Frames
+    at_ns: int
+
+
+class _Place:
+    """What was done to one attribute, item or variable, by each task: the last read and the last write."""
+
+    __slots__ = ("reads", "writes")
+
+    def __init__(self) -> None:
+        self.reads: dict[Task, _Seen] = {}
+        self.writes: dict[Task, _Seen] = {}
+
+
+class RaceWatch(Attachment):
+    """Finds the races of a run, and tells the mission's record of them. It wants a kernel that explores."""
+
+    def __init__(self) -> None:
+        self._clocks = VectorClocks()
+        self._things: dict[int, dict[str, _Place]] = {}
+        self._told: set[str] = set()
+        self._waiting: dict[Pipe, deque[tuple[bytes, dict[Task, int]]]] = {}
+        self._mission: Mission | None = None
+        self._is_over = False
+
+    # -- what orders ---------------------------------------------------------------------------------------------------
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        made: type[SoftwareBus] = listened(base, self)
+        return made
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._mission = mission
+        kernel = mission.kernel
+        assert isinstance(kernel, ExploringKernel)
+        kernel.on_wake = self._woken
+        kernel.watch(self)
+        mission.accesses.observers.append(self._touched)
+        mission.accesses.on_gone(self._gone)
+
+    def conclude(self) -> None:
+        """See `Attachment.conclude`: how nodes end when they are asked to is no part of what is judged."""
+        self._is_over = True
+
+    @property
+    def _task(self) -> Task:
+        assert self._mission is not None
+        return self._mission.kernel.current
+
+    def _woken(self, task: Task) -> None:
+        """The running task lets another one go on."""
+        self._clocks.hand(self._task, task)
+
+    def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
+        """See `CallObserver`."""
+        if call in _LOCKS_GIVEN:
+            self._clocks.let_go(self._task, self._lock(subject))
+        elif call == "began":
+            self._clocks.let_go(self._task, ("began", self._task.owner))
+        elif call in _LETS_GO:
+            self._clocks.let_go(self._task, _LETS_GO[call](args))
+
+    def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
+        """See `CallObserver`."""
+        if call in _LOCKS_TAKEN:
+            if result is not False:
+                self._clocks.take(self._task, self._lock(subject))
+        elif call in _TAKES:
+            self._clocks.take(self._task, _TAKES[call](args))
+
+    def _lock(self, lock: Any) -> Hashable:
+        assert self._mission is not None
+        return "lock", self._mission.accesses.number(lock)
+
+    # -- messages: see `cfepy.sb.PacketListener` -----------------------------------------------------------------------
+
+    def made(self, packet: bytes) -> None:
+        """A packet was made."""
+
+    def sent(self, packet: bytes) -> None:
+        """A packet was sent."""
+
+    def put(self, packet: bytes, pipe: Pipe) -> None:
+        """A packet carries what its sender knows into a pipe."""
+        self._waiting.setdefault(pipe, deque()).append((packet, self._clocks.send(self._task)))
+
+    def dropped(self, packet: bytes, pipe: Pipe) -> None:
+        """A packet is lost."""
+        self._out(packet, pipe)
+
+    def taken(self, packet: bytes, pipe: Pipe) -> None:
+        """The running task has a packet; its callbacks are those that were given to the node before."""
+        task = self._task
+        known = self._out(packet, pipe)
+        if known is not None:
+            self._clocks.receive(task, known)
+        self._clocks.take(task, ("began", task.owner))
+
+    def pipe_gone(self, pipe: Pipe, packets: list[bytes]) -> None:
+        """A pipe was deleted."""
+        self._waiting.pop(pipe, None)
+
+    def _out(self, packet: bytes, pipe: Pipe) -> dict[Task, int] | None:
+        """What a packet in a pipe carries; one that faults have changed is the oldest."""
+        waiting = self._waiting.get(pipe)
+        if not waiting:
+            return None
+        for number, (each, known) in enumerate(waiting):
+            if each is packet:
+                del waiting[number]
+                return known
+        return waiting.popleft()[1]
+
+    # -- accesses ------------------------------------------------------------------------------------------------------
+
+    def _gone(self, thing: int) -> None:
+        """An object is no more."""
+        self._things.pop(thing, None)
+        self._clocks.forget(("lock", thing))
+
+    def _touched(self, touch: Touch) -> None:
+        if self._is_over:
+            return
+        assert self._mission is not None
+        task, kernel = touch.task, self._mission.kernel
+        known = self._clocks.of(task)
+        places = self._things.setdefault(touch.thing, {})
+        place = places.setdefault(touch.key, _Place())
+        mine = (place.writes if touch.is_write else place.reads).get(task)
+        if mine is not None and mine.clock == known[task]:
+            return  # nothing that another did since then was missed: it looked at this one
+        seen = _Seen(known[task], touch, self._frames(), kernel.now)
+        for each in self._others(places, touch):
+            self._compare(each, known, seen)
+        self._keep(place, seen)
+        if touch.key.startswith("["):
+            self._keep(places.setdefault(_ANY_ITEM, _Place()), seen)
+
+    @staticmethod
+    def _keep(place: _Place, seen: _Seen) -> None:
+        (place.writes if seen.touch.is_write else place.reads)[seen.touch.task] = seen
+
+    @staticmethod
+    def _others(places: dict[str, _Place], touch: Touch) -> list[_Place]:
+        """What an access may race with: of an item also what was done to the whole, and the other way round."""
+        keys = [touch.key]
+        if touch.key == WHOLE:
+            keys.append(_ANY_ITEM)
+        elif touch.key.startswith("["):
+            keys.append(WHOLE)
+        return [places[key] for key in keys if key in places]
+
+    def _compare(self, place: _Place, known: dict[Task, int], now: _Seen) -> None:
+        kinds = (place.writes, place.reads) if now.touch.is_write else (place.writes,)
+        for seen in kinds:
+            for task, before in seen.items():
+                if task is not now.touch.task and known.get(task, 0) < before.clock:
+                    self._found(before, now)
+                    return
+
+    def _frames(self) -> Frames:
+        """The lines of mission code that the running task is in, innermost first."""
+        assert self._mission is not None
+        files = self._mission.accesses.files
+        found = []
+        frame: FrameType | None = sys._getframe(2)
+        while frame is not None:
+            if frame.f_code.co_filename in files:
+                found.append((frame.f_code, frame.f_lineno))
+            frame = frame.f_back
+        return tuple(found)
+
+    def _found(self, before: _Seen, now: _Seen) -> None:
+        name = now.touch.name
+        if name in self._told:
+            return
+        self._told.add(name)
+        assert self._mission is not None
+        task = now.touch.task
+        who = task.owner.name if task.owner is not None else task.name
+        race = Race(name, _side(before), _side(now), who, now.at_ns)
+        self._mission.record.data_races.append(DataRace(*race.told(), cause=name))
+
+
+def _side(seen: _Seen) -> RaceSide:
+    """One side of a race."""
+    places = [f"{code.co_qualname} ({PurePath(code.co_filename).name}:{line})" for code, line in seen.frames]
+    here = places[0] if places else seen.touch.place
+    return RaceSide(here, seen.touch.is_write, seen.touch.task.name, tuple(places[:0:-1]), seen.at_ns)
