@@ -8,14 +8,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from cfepy.exploration import deeds as do
 from cfepy.exploration.deeds import Deed, keys_of
 from cfepy.exploration.moves import Move, plain_name
 from cfepy.exploration.task_look import AT, ORDERED, PREEMPTED, Row
-from cfepy.exploration.verdict import DEADLOCK, Failure
+from cfepy.exploration.things import is_made_of
+from cfepy.exploration.verdict import DEADLOCK, DIED, RAISED, Failure
 from cfepy.rtos import HOLD
 
+_PLACE = re.compile(r"\(([\w.-]+:\d+)\)$")  # of an exception, at the end of its text
 NOBODY = "0"  # waits for what is notified
 _HELD = re.compile(r"(?P<task>\S+) waits for (?P<what>[^;]+), held by (?P<holder>[^;,]+)")
 
@@ -66,6 +70,9 @@ def cause_of(evidence: Evidence) -> str:
         _late_subscription,
         _deleted,
         _message_order,
+        _torn,
+        _raised,
+        _order,
         _one_switch,
     )
     return next((text for text in (sentence(evidence) for sentence in sentences) if text), "")
@@ -89,38 +96,191 @@ def _deadlock(evidence: Evidence) -> str:
 # -- accesses --------------------------------------------------------------------------------------------------------
 
 
+class Torn(NamedTuple):
+    """Two accesses of a task, and one of another task between them that does not go together with both.
+
+    These are the interleavings that no order of the two tasks as wholes gives (Lu, Tucek, Qin, Zhou: AVIO, ASPLOS
+    2006).
+
+    Attributes:
+        first: what the task did.
+        other: what another task did then.
+        last: what the first one did next to the same.
+        switch: how many switches of the schedule there were when the other task did it; 0 where none of them let it in.
+    """
+
+    first: Deed
+    other: Deed
+    last: Deed
+    switch: int
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it has in common with the same in another run."""
+        places = (self.first.place, self.other.place, self.last.place)
+        return (plain_name(self.first.task), plain_name(self.other.task), self.other.thing, *places)
+
+
+_DO_NOT_GO_TOGETHER = {
+    (do.READS, do.WRITES, do.READS),
+    (do.WRITES, do.WRITES, do.READS),
+    (do.READS, do.WRITES, do.WRITES),
+    (do.WRITES, do.READS, do.WRITES),
+}
+
+
 def _lost_update(evidence: Evidence) -> str:
-    """One task reads, another one writes, and the first writes over that without having read it."""
-    usual = {_lost_key(*each) for each in _lost(evidence.usual)}
-    for read, other, write in _lost(evidence.deeds):
-        if _lost_key(read, other, write) not in usual:
+    """Another task writes what a task has read, and this one writes over that without having read it."""
+    return _told(evidence, _is_lost_update, _update_text)
+
+
+def _torn(evidence: Evidence) -> str:
+    """Another task accesses a variable between two accesses of a task."""
+    return _told(evidence, lambda torn: True, _torn_text)
+
+
+def _told(evidence: Evidence, is_meant: Callable[[Torn], bool], text: Callable[[Torn], str]) -> str:
+    """The first one after the last switch that let any in, and that is not there under fifo."""
+    usual = {torn.key for torn in _torn_in(evidence.usual)}
+    found = [each for each in _torn_in(evidence.deeds) if each.switch and each.key not in usual and is_meant(each)]
+    last = max((torn.switch for torn in found), default=0)
+    return next((text(torn) for torn in found if torn.switch == last), "")
+
+
+@dataclass(slots=True)
+class _Own:
+    """What a task did to an object, and what others did to it since then.
+
+    Attributes:
+        epoch: of the task: it is another one with each message that the task goes for.
+        own: its accesses, each with the number of the last switch.
+        others: those of others since, each with the switch by which the task gave way; 0 for none.
+    """
+
+    epoch: int
+    own: list[tuple[Deed, int]] = field(default_factory=list)
+    others: list[tuple[Deed, int]] = field(default_factory=list)
+
+
+def _torn_in(deeds: Sequence[Deed]) -> Iterator[Torn]:
+    """All of a run, in the order of their ends; a task that went for another message has begun anew."""
+    seen: dict[int | str, dict[str, _Own]] = {}  # by object, by task
+    epochs: dict[str, int] = {}
+    gave_way: dict[str, int] = {}
+    switches = 0
+    for deed in deeds:
+        if deed.verb == do.GIVES_WAY:
+            switches += 1
+            gave_way[deed.task] = switches
+        elif deed.verb == do.RECEIVES:
+            epochs[deed.task] = epochs.get(deed.task, 0) + 1
+        elif deed.verb in (do.READS, do.WRITES):
+            by_task = seen.setdefault(deed.ident or deed.thing, {})
+            epoch = epochs.get(deed.task, 0)
+            mine = by_task.get(deed.task)
+            if mine is None or mine.epoch != epoch:
+                mine = by_task[deed.task] = _Own(epoch)
+            yield from _ended_by(deed, mine)
+            mine.own = [each for each in mine.own if not each[0].is_of_same(deed)] + [(deed, switches)]
+            mine.others = [each for each in mine.others if not each[0].is_of_same(deed)]
+            for task, its in by_task.items():
+                if task != deed.task and not any(_is_like(each, deed) for each, _ in its.others):
+                    its.others.append((deed, gave_way.get(task, 0)))
+
+
+def _is_like(one: Deed, other: Deed) -> bool:
+    """Whether an access tells no more than one before it."""
+    return (one.task, one.verb, one.key) == (other.task, other.verb, other.key)
+
+
+def _ended_by(last: Deed, mine: _Own) -> Iterator[Torn]:
+    for first, since in mine.own:
+        for other, switch in mine.others:
+            kinds = (first.verb, other.verb, last.verb)
+            if first.is_of_same(last) and other.is_of_same(last) and kinds in _DO_NOT_GO_TOGETHER:
+                yield Torn(first, other, last, switch if switch > since else 0)
+
+
+def _is_lost_update(torn: Torn) -> bool:
+    if (torn.first.verb, torn.other.verb, torn.last.verb) != (do.READS, do.WRITES, do.WRITES):
+        return False
+    return not torn.first.ident or is_made_of(torn.last.note, torn.first.place, torn.last.place, torn.last.key)
+
+
+def _update_text(torn: Torn) -> str:
+    first, other, last, _ = torn
+    return (
+        f"an update of {other.thing} is lost: {other.task} wrote it at {other.place}, between {first.task}'s read at "
+        f"{first.place} and {last.task}'s write at {last.place}"
+    )
+
+
+def _torn_text(torn: Torn) -> str:
+    first, other, last, _ = torn
+    words = {do.READS: "read", do.WRITES: "change" if other.key == do.ALL else "write"}
+    one, two = words[first.verb], words[last.verb]
+    between = f"{one}s at {first.place} and {last.place}"
+    if one != two:
+        between = f"{one} at {first.place} and {first.task}'s {two} at {last.place}"
+    return f"{other.task} {_did(other)} {other.thing} at {other.place}, between {first.task}'s {between}"
+
+
+def _raised(evidence: Evidence) -> str:
+    """What a line has read was changed by another task when the line raised an exception."""
+    place = _PLACE.search(evidence.failure.text)
+    if evidence.failure.kind not in (RAISED, DIED) or place is None:
+        return ""
+    task = evidence.failure.task
+    begun = max(
+        (at for at, deed in _of(evidence.deeds, do.GIVES_WAY) if deed.task == task), default=len(evidence.deeds)
+    )
+    read = [deed for deed in evidence.deeds[:begun] if (deed.task, deed.place, deed.verb) == (task, place[1], do.READS)]
+    for deed in evidence.deeds[begun:]:
+        if deed.verb == do.WRITES and deed.task != task and any(each.is_of_same(deed) for each in read[-1:]):
             return (
-                f"an update of {read.thing} is lost: {other.task} wrote it at {other.place}, between {read.task}'s "
-                f"read at {read.place} and {read.task}'s write at {write.place}"
+                f"{deed.task} {_did(deed)} {deed.thing} at {deed.place}, between {task}'s read at {place[1]} and the "
+                "exception there"
             )
     return ""
 
 
-def _lost_key(read: Deed, other: Deed, write: Deed) -> tuple[str, ...]:
-    return plain_name(read.task), read.thing, plain_name(other.task), read.place, other.place, write.place
+def _order(evidence: Evidence) -> str:
+    """A read and a write come in another order than under fifo, of this one variable and of no other."""
+    found = list(_flipped_accesses(evidence))
+    if len({later.thing for _, later in found}) != 1:
+        return ""
+    earlier, later = found[0]
+    return (
+        f"{earlier.task} {_did(earlier)} {later.thing} at {earlier.place} before {later.task} {_did(later)} it at "
+        f"{later.place}; under fifo after that"
+    )
 
 
-def _lost(deeds: Sequence[Deed]) -> Iterator[tuple[Deed, Deed, Deed]]:
-    """The updates that are lost: what was read, what was written since, and what was written over that."""
-    read_by: dict[tuple[str, str], Deed] = {}
-    overtaken: dict[tuple[str, str], Deed] = {}
-    for deed in deeds:
-        key = (deed.task, deed.thing)
-        if deed.verb == do.READS:
-            read_by[key] = deed
-            overtaken.pop(key, None)
-        elif deed.verb == do.WRITES:
-            if key in overtaken:
-                yield read_by[key], overtaken[key], deed
-            read_by.pop(key, None)
-            overtaken.pop(key, None)
-            for other in [each for each in read_by if each[1] == deed.thing and each[0] != deed.task]:
-                overtaken[other] = deed
+def _flipped_accesses(evidence: Evidence) -> Iterator[tuple[Deed, Deed]]:
+    """Accesses of two tasks in another order than under fifo, where a switch kept the second one back."""
+    gave_way: dict[str, int] = {}
+    seen: dict[int, list[int]] = {}
+    for at, deed in enumerate(evidence.deeds):
+        if deed.verb == do.GIVES_WAY:
+            gave_way[deed.task] = at
+        elif deed.verb in (do.READS, do.WRITES) and deed.ident:
+            for earlier_at in seen.setdefault(deed.ident, []):
+                earlier = evidence.deeds[earlier_at]
+                is_kept_back = earlier_at > gave_way.get(deed.task, at) and earlier.task != deed.task
+                if is_kept_back and _is_order_seen(earlier, deed) and evidence.is_flipped(earlier_at, at):
+                    yield earlier, deed
+            seen[deed.ident].append(at)
+
+
+def _is_order_seen(one: Deed, other: Deed) -> bool:
+    """Whether it matters which of two accesses comes first; who changes all of a container also looks at it."""
+    both = (one, other)
+    reads = any(each.verb == do.READS or each.key == do.ALL for each in both)
+    return one.is_of_same(other) and reads and any(each.verb == do.WRITES for each in both)
+
+
+def _did(deed: Deed) -> str:
+    return "read" if deed.verb == do.READS else "changed" if deed.key == do.ALL else "wrote"
 
 
 # -- wake-ups --------------------------------------------------------------------------------------------------------

@@ -26,6 +26,7 @@ SENDS, GETS, LOSES, SUBSCRIBES = "sends", "gets", "loses", "subscribes to"
 DELETES, RECEIVES = "deletes", "receives from"
 READS, WRITES = "reads", "writes"
 GIVES_WAY = "gives way to"
+ALL = "*"
 
 
 class Deed(NamedTuple):
@@ -38,7 +39,9 @@ class Deed(NamedTuple):
         verb: HAS, SENDS and so on.
         thing: `self.lock (bank.py:12)`, `/odom`, `pipe HK_PIPE`.
         place: the line of the mission's own code, `bank.py:14`; empty where it runs none.
-        note: more of it: the depth of a pipe, how many tasks were notified, in whose pipe.
+        note: more of it: the depth of a pipe, how many tasks were notified, in whose pipe, the file of an access.
+        ident: number of the object that was read or written, 0 where the thing has its name alone.
+        key: of what was accessed in it, an attribute or an item; ALL for all of a container.
     """
 
     at_ns: int
@@ -48,6 +51,14 @@ class Deed(NamedTuple):
     thing: str
     place: str
     note: str = ""
+    ident: int = 0
+    key: str = ""
+
+    def is_of_same(self, other: Deed) -> bool:
+        """Whether two accesses are of the same variable, or one is of all of a container."""
+        if self.ident or other.ident:
+            return self.ident == other.ident and (self.key == other.key or ALL in (self.key, other.key))
+        return self.thing == other.thing
 
 
 class DeedKey(NamedTuple):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import PurePath
 from types import FrameType
 from typing import Any
 
@@ -19,12 +20,14 @@ from cfepy.exploration.things import Things, Use, use_of
 from cfepy.ground import dictionary_of, line_of, plain
 from cfepy.mission import CORE_APPS, Mission, MissionSpec, is_shown
 from cfepy.monitors import Heard, MessageWatch
+from cfepy.nodes import WHOLE, Touch
 from cfepy.pilot.determinism_look import place_text
 from cfepy.rtos import TIMEOUT, AskingPolicy, Decision, ExploringKernel, Policy, Task
 from cfepy.sb import PEND_FOREVER, Pipe, Route, SoftwareBus
 from cfepy.status import CfeError
 
 AT, WAITS, SENDS, DOES, PREEMPTED, ORDERED, ANSWERS = "at", "waits", "sends", "does", "preempted", "ordered", "answers"
+TOUCHES = "touches"
 _TAKING = ("acquire", "acquire_lock", "__enter__")
 _GIVING = ("release", "release_lock", "__exit__")
 _OF_CONDITIONS = {"set": do.SETS, "clear": do.CLEARS, "notify": do.NOTIFIES, "notify_all": do.NOTIFIES}
@@ -51,9 +54,10 @@ class Row:
     Attributes:
         at_ns: virtual time.
         task: its name.
-        kind: AT a line of source, WAITS for something, SENDS a message, DOES something to a lock or the like, is
-            PREEMPTED by `text`, or `text` is ORDERED before it, or it ANSWERS a question as the schedule has it.
-        text: what.
+        kind: AT a line of source, WAITS for something, SENDS a message, DOES something to a lock or the like, TOUCHES
+            a variable, is PREEMPTED by `text`, or `text` is ORDERED before it, or it ANSWERS a question as the schedule
+            has it.
+        text: what; of TOUCHES first the line of source, then what it does in a line of its own.
     """
 
     at_ns: int
@@ -108,6 +112,7 @@ class TaskLook(Attachment):
         mission.kernel.block = self._blocking(mission.kernel.block)  # type: ignore[method-assign]
         if isinstance(mission.kernel, ExploringKernel):
             mission.kernel.watch(self)
+            mission.accesses.observers.append(self._take_touch)
 
     def conclude(self) -> None:
         """See `Attachment.conclude`: how tasks are ended is no part of it."""
@@ -377,6 +382,20 @@ class TaskLook(Attachment):
             values = {"?": str(error)}
         self._keep_place(task, frame)
         self._keep(task.name, SENDS, _sending(heard.topic, values))
+
+    def _take_touch(self, touch: Touch) -> None:
+        """A variable is accessed; there are many of these, so none are kept that come long before the first move."""
+        task = self._watched()
+        if task is None or not self.is_on or not self._goes_on():
+            return
+        assert self._mission is not None
+        verb = do.WRITES if touch.is_write else do.READS
+        place, key = f"{PurePath(touch.file).name}:{touch.line}", do.ALL if touch.key == WHOLE else touch.key
+        deed = Deed(
+            self._mission.kernel.now, task.name, task.owner.name, verb, touch.name, place, touch.file, touch.thing, key
+        )
+        self.deeds.append(deed)
+        self._keep(task.name, TOUCHES, f"{place_text(_outside(sys._getframe(1)))}\n{verb} {touch.name}")
 
     def _look_at_parameters(self, ros: Any) -> None:
         """ROS has just begun, on a processor that may not be the first."""

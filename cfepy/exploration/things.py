@@ -108,6 +108,46 @@ class Things:
         return f"{variable}#{number + 1} {place}" if number else f"{variable} {place}"
 
 
+def is_made_of(file: str, read: str, written: str, variable: str) -> bool:
+    """Whether what a statement writes into a variable is made of what another one has read from it.
+
+    Args:
+        file: the source of both.
+        read: where it is read, `bank.py:12`.
+        written: where it is written.
+        variable: name of an attribute or of a variable that several functions share.
+    """
+    read_at, written_at = (int(place.rpartition(":")[2]) for place in (read, written))
+    try:
+        tree = parsed(Path(file).read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return False
+    sources: dict[str, list[ast.AST]] = {}
+    values: list[ast.AST] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.AugAssign) and node.lineno == written_at == read_at:
+            return True
+        if isinstance(node, ast.Assign) and read_at <= node.lineno <= written_at:
+            for target in node.targets:
+                sources.setdefault(ast.unparse(target), []).append(node.value)
+            values += [node.value] if node.lineno == written_at else []
+    return _comes_from(values, sources, variable)
+
+
+def _comes_from(values: list[ast.AST], sources: dict[str, list[ast.AST]], variable: str) -> bool:
+    """Whether values, or what the local variables in them were set to, have a variable in them."""
+    known: set[str] = set()
+    while values:
+        for node in ast.walk(values.pop()):
+            name = node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+            if name == variable:
+                return True
+            if isinstance(node, ast.Name) and name not in known:
+                known.add(name)
+                values += sources.get(name, [])
+    return False
+
+
 def _variables(frame: FrameType | None) -> Iterator[tuple[str, Any]]:
     if frame is None or not is_own_code(frame.f_code.co_filename):
         return

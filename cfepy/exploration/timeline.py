@@ -8,14 +8,14 @@ What was noted is drawn as plain text.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from textwrap import wrap
 
 from cfepy.exploration.cause import Evidence, cause_of
 from cfepy.exploration.failures import FailureWatch
 from cfepy.exploration.moves import Move, MoveNotingPolicy
-from cfepy.exploration.task_look import ANSWERS, AT, DOES, ORDERED, PREEMPTED, SENDS, WAITS, Row, TaskLook
+from cfepy.exploration.task_look import ANSWERS, AT, DOES, ORDERED, PREEMPTED, SENDS, TOUCHES, WAITS, Row, TaskLook
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import INVARIANT, Failure, Verdict
 from cfepy.pilot import RunPlan
@@ -122,6 +122,7 @@ def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[M
     culprit = failure.task or sender
     evidence = Evidence(failure, moves, rows, look.deeds, usual.deeds, look.names)
     cause = "" if known is not None else cause_of(evidence)
+    rows = tuple(_without_touches(rows, {deed.thing for deed in look.deeds if deed.ident and deed.thing in cause}))
     title, text = (_named(each, look.names) for each in (failure.title, failure.text))
     end = f"FAILURE{f' in {culprit}:' if culprit else ''} {title}"
     return Story(rows, important(rows, moves, culprit, f"{cause} {text}"), cause, end, failure.at_ns)
@@ -195,6 +196,17 @@ def drawn(rows: Sequence[Row], tasks: Sequence[str], width: int = WIDTH) -> list
             until = _until(groups[at])
             lines.append(_line(f"x {groups[at].times}", [until], [len(until)]))
     return lines
+
+
+def _without_touches(rows: Sequence[Row], but: Collection[str]) -> Iterator[Row]:
+    """The rows without accesses to variables, but for those to some."""
+    for row in rows:
+        place, _, text = row.text.partition("\n")
+        if row.kind != TOUCHES:
+            yield row
+        elif text.partition(" ")[2] in but:
+            yield replace(row, kind=AT, text=place)
+            yield replace(row, kind=DOES, text=text)
 
 
 def _until(group: _Group) -> str:

@@ -4,11 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import pytest
+
 from cfepy.exploration.cause import Evidence, cause_of
-from cfepy.exploration.deeds import AWAITS, GETS, GIVES_UP, LOSES, NOTIFIES, READS, WAKES, WRITES, Deed
+from cfepy.exploration.deeds import (
+    AWAITS,
+    GETS,
+    GIVES_UP,
+    GIVES_WAY,
+    LOSES,
+    NOTIFIES,
+    READS,
+    RECEIVES,
+    WAKES,
+    WRITES,
+    Deed,
+)
 from cfepy.exploration.moves import Move
 from cfepy.exploration.task_look import AT, PREEMPTED, Row
-from cfepy.exploration.verdict import DEADLOCK, ENDED, Failure
+from cfepy.exploration.verdict import DEADLOCK, ENDED, RAISED, Failure
 
 ENDED_BADLY = Failure(ENDED, "A", "exit status 1")
 NO_MOVES: tuple[Move, ...] = ()
@@ -17,7 +31,8 @@ NO_MOVES: tuple[Move, ...] = ()
 def deed(text: str) -> Deed:
     """A deed of `task verb thing line note`."""
     task, verb, thing, line, *note = text.split("|")
-    return Deed(0, task, task, verb, thing, f"a.py:{line}", "".join(note))
+    ident, key = (1 + ord(thing[-1]), thing) if thing.startswith("o.") else (0, "")
+    return Deed(0, task, task, verb, thing, f"a.py:{line}", "".join(note), ident, key)
 
 
 def told(
@@ -36,19 +51,69 @@ def test_without_deeds_nothing_is_told() -> None:
     assert told([]) == ""
 
 
+def accesses(text: str) -> list[str]:
+    """Accesses of a variable: `A:R1 A>B B:W2` says that A reads it at line 1 and gives way to B, which writes it."""
+    found = []
+    for word in text.split():
+        task, _, what = word.partition(":")
+        verb = {"R": READS, "W": WRITES, "?": RECEIVES}.get(what[:1])
+        found.append(f"{task}|{verb}|x|{what[1:]}" if verb else f"{word[0]}|{GIVES_WAY}|{word[2]}|0")
+    return found
+
+
 def test_an_update_is_lost_between_a_read_and_a_write() -> None:
-    lost = [f"A|{READS}|x|1", f"B|{READS}|x|1", f"B|{WRITES}|x|2", f"A|{WRITES}|x|2"]
-    usual = [f"B|{READS}|x|1", f"B|{WRITES}|x|2", f"A|{READS}|x|1", f"A|{WRITES}|x|2"]
+    lost, usual = accesses("A:R1 A>B B:R1 B:W2 A:W2"), accesses("B:R1 B:W2 A:R1 A:W2")
     cause = "an update of x is lost: B wrote it at a.py:2, between A's read at a.py:1 and A's write at a.py:2"
     assert told(lost, usual) == cause
     assert told(lost, lost) == ""  # it is lost under fifo as well, and nothing fails
     assert told(usual, lost) == ""
 
 
-def test_no_update_is_lost_where_it_is_read_again_before_the_write() -> None:
-    assert told([f"A|{READS}|x|1", f"B|{WRITES}|x|2", f"A|{READS}|x|1", f"A|{WRITES}|x|2"]) == ""
-    assert told([f"A|{READS}|x|1", f"B|{WRITES}|y|2", f"A|{WRITES}|x|2"]) == ""
-    assert told([f"B|{WRITES}|x|2", f"A|{READS}|x|1", f"A|{WRITES}|x|2"]) == ""
+@pytest.mark.parametrize(
+    "text",
+    [
+        "A:R1 A>B B:W2 A:R1 A:W2 A:W3",  # written after it was read again
+        "A:R1 B:W2 A:W2",  # no switch let B in
+        "B:W2 A>B A:R1 A:W2",
+        "A:R1 A>B B:W2 A:?3 A:W2",  # with another message
+        "A:R1 A>B B:R2 A:W2",
+    ],
+)
+def test_no_update_is_lost(text: str) -> None:
+    assert "lost" not in told(accesses(text))
+
+
+@pytest.mark.parametrize(
+    ("text", "cause"),
+    [
+        ("A:R1 A>B B:W2 A:R3", "B wrote x at a.py:2, between A's reads at a.py:1 and a.py:3"),
+        ("A:W1 A>B B:W2 A:R3", "B wrote x at a.py:2, between A's write at a.py:1 and A's read at a.py:3"),
+        ("A:W1 A>B B:R2 A:W3", "B read x at a.py:2, between A's writes at a.py:1 and a.py:3"),
+        ("A:R1 A>B B:R2 A:R3", ""),
+        ("A:W1 A>B B:W2 A:W3", ""),
+        ("A:R1 A>B B:W2 A>B A:R3 A>B B:W2 A:R4", "B wrote x at a.py:2, between A's reads at a.py:3 and a.py:4"),
+    ],
+)
+def test_two_accesses_are_torn_by_a_third(text: str, cause: str) -> None:
+    assert told(accesses(text)) == cause
+
+
+def test_an_order_is_told_when_it_is_that_of_one_variable_only() -> None:
+    failing = [f"A|{GIVES_WAY}|B|0", f"B|{READS}|o.x|2", f"A|{WRITES}|o.x|1"]
+    usual = [failing[2], failing[1]]
+    assert told(failing, usual) == "B read o.x at a.py:2 before A wrote it at a.py:1; under fifo after that"
+    assert told(failing[1:], usual) == ""  # no switch kept A back
+    more = [f"B|{READS}|o.y|2", f"A|{WRITES}|o.y|1"]
+    assert told([*failing, *more], [*usual, more[1], more[0]]) == ""
+
+
+def test_what_a_line_had_read_was_changed_when_it_raised() -> None:
+    failing = [f"A|{READS}|o.x|7", f"A|{GIVES_WAY}|B|0", f"B|{WRITES}|o.x|2"]
+    raised = Failure(RAISED, "a", "RuntimeError: changed (a.py:7)", task="A")
+    cause = "B wrote o.x at a.py:2, between A's read at a.py:7 and the exception there"
+    assert told(failing, failure=raised) == cause
+    assert told(failing, failure=Failure(RAISED, "a", "RuntimeError: changed (a.py:8)", task="A")) == ""
+    assert told(failing, failure=Failure(RAISED, "b", "RuntimeError: changed (a.py:7)", task="B")) == ""
 
 
 def test_a_notification_comes_before_the_wait() -> None:
