@@ -91,6 +91,7 @@ class RaceWatch(Attachment):
     def __init__(self) -> None:
         self._clocks = VectorClocks()
         self._things: dict[int, dict[str, _Place]] = {}
+        self._inner: set[int] = set()  # numbers of locks that order nothing
         self._told: set[str] = set()
         self._waiting: dict[Pipe, deque[tuple[bytes, dict[Task, int]]]] = {}
         self._mission: Mission | None = None
@@ -128,7 +129,9 @@ class RaceWatch(Attachment):
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
         """See `CallObserver`."""
-        if call in _LOCKS_GIVEN:
+        if call == "__init__":
+            self._made(subject)
+        elif call in _LOCKS_GIVEN:
             self._clocks.let_go(self._task, self._lock(subject))
         elif call == "began":
             self._clocks.let_go(self._task, ("began", self._task.owner))
@@ -145,7 +148,21 @@ class RaceWatch(Attachment):
 
     def _lock(self, lock: Any) -> Hashable:
         assert self._mission is not None
-        return "lock", self._mission.accesses.number(lock)
+        number = self._mission.accesses.number(lock)
+        return ("lock of its own", self._task) if number in self._inner else ("lock", number)
+
+    def _made(self, lock: Any) -> None:
+        """A lock of Python's own, for its lists of threads and log handlers, orders nothing that a program means."""
+        assert self._mission is not None
+        frame: FrameType | None = sys._getframe(2)
+        while frame is not None and frame.f_globals.get("__name__", "").startswith("cfepy."):
+            frame = frame.f_back
+        module = "" if frame is None else frame.f_globals.get("__name__", "")
+        while frame is not None and frame.f_back is not None and frame.f_back.f_globals.get("__name__") == module:
+            frame = frame.f_back
+        is_of_module = module == "threading" and frame is not None and frame.f_code.co_name == "<module>"
+        if is_of_module or module.partition(".")[0] == "logging":
+            self._inner.add(self._mission.accesses.number(lock))
 
     # -- messages: see `cfepy.sb.PacketListener` -----------------------------------------------------------------------
 
@@ -192,6 +209,7 @@ class RaceWatch(Attachment):
         """An object is no more."""
         self._things.pop(thing, None)
         self._clocks.forget(("lock", thing))
+        self._inner.discard(thing)
 
     def _touched(self, touch: Touch) -> None:
         if self._is_over:
@@ -246,7 +264,7 @@ class RaceWatch(Attachment):
         return tuple(found)
 
     def _found(self, before: _Seen, now: _Seen) -> None:
-        name = now.touch.name
+        name = " or ".join(sorted({before.touch.name, now.touch.name}))
         if name in self._told:
             return
         self._told.add(name)

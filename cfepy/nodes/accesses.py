@@ -276,6 +276,8 @@ class Accesses:
             if owner is None or not owner.__flags__ & _HEAP_TYPE or _is_code(vars(owner).get(name)):
                 return None
             return self._numbers.of(owner), name
+        if any(each.__name__ == "_local" and each.__module__ == "_thread" for each in kind.__mro__):
+            return None  # `threading.local`: each thread has attributes of its own
         owner = _class_with(kind, name)
         if owner is None:
             return self._numbers.of(thing), name

@@ -34,7 +34,9 @@ def test_a_node_that_works_takes_nothing_from_the_heap() -> None:
         assert mission.processor.compiled.allocations == before > 100
         mission.run_for(3.5)
         (line,) = [line for line in mission.console.lines if "RESULT" in line]
-    assert line == "[helper] RESULT 0 allocations, many before, 100 heard, 100 ticks, 50 served, 100 answered, 700 found"
+    assert (
+        line == "[helper] RESULT 0 allocations, many before, 100 heard, 100 ticks, 50 served, 100 answered, 700 found"
+    )
 
 
 @pytest.mark.parametrize(("pairs", "taken"), [("false", 0), ("true", 3)])
