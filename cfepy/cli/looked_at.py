@@ -124,7 +124,7 @@ def _fly(
     if arguments.until is not None:
         plan = replace(plan, seconds=min(arguments.until, plan.seconds or LONGEST_S))
     policy = plan.schedule.policy()
-    if policy is not None and plan.schedule.deviations:
+    if policy is not None and plan.schedule.is_told:
         policy = watched(policy)
     flown = fly(plan, attachments=attachments, policy=policy, trace=trace)
     return LookedAt(flown, plan.command_line(), plan.schedule.text(), plan=plan)
@@ -143,7 +143,7 @@ def _replay(
     until_ns = None if arguments.until is None else round(arguments.until * NS_PER_S)
     with staged(journal, arguments.from_disk) as stage:
         again = Replay(journal, stage, until_ns=until_ns)
-        if again.policy is not None and journal.plan.schedule.deviations:
+        if again.policy is not None and journal.plan.schedule.is_told:
             again.policy = watched(again.policy)
         flown = again.fly(attachments, trace=trace)
     verdict = again.verdict

@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from cfepy.debugger.breakpoints import breakpoints
 from cfepy.ground import LiveNames
-from cfepy.mission import Mission, MissionSpec, is_own_code, is_shown
+from cfepy.mission import Mission, MissionSpec
 from cfepy.monitors import Observer, Sent, app_of
+from cfepy.own_code import is_own_code, is_shown
 from cfepy.pilot.determinism_look import stack_of
 from cfepy.units import NS_PER_S
 

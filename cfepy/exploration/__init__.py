@@ -15,23 +15,22 @@ from typing import TYPE_CHECKING
 from cfepy.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.exploration.expedition import DEFAULT_PROBES, DEFAULT_SEEDS, Expedition, Report, Told
+    from cfepy.exploration.expedition import DEFAULT_SEEDS, Expedition, Report, Told
     from cfepy.exploration.failures import TracebackReader
-    from cfepy.exploration.moves import Move
-    from cfepy.exploration.shrink import Shrinkable, Shrinker, Shrunk
+    from cfepy.exploration.moves import MadeMove
+    from cfepy.exploration.shrink import Shrinkable, Shrinker, Shrunk, budget_of
     from cfepy.exploration.task_look import TaskLook
     from cfepy.exploration.timeline import WIDTH, Story, important, story_of_run
     from cfepy.exploration.trial import Trial, Tried
     from cfepy.exploration.verdict import Failure, Finding, Verdict
 
 __all__ = [
-    "DEFAULT_PROBES",
     "DEFAULT_SEEDS",
     "WIDTH",
     "Expedition",
     "Failure",
     "Finding",
-    "Move",
+    "MadeMove",
     "Report",
     "Shrinkable",
     "Shrinker",
@@ -43,6 +42,7 @@ __all__ = [
     "Trial",
     "Tried",
     "Verdict",
+    "budget_of",
     "important",
     "story_of_run",
 ]
@@ -52,18 +52,18 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         __name__,
         {
             ".expedition": (
-                "DEFAULT_PROBES",
                 "DEFAULT_SEEDS",
                 "Expedition",
                 "Report",
                 "Told",
             ),
             ".failures": ("TracebackReader",),
-            ".moves": ("Move",),
+            ".moves": ("MadeMove",),
             ".shrink": (
                 "Shrinkable",
                 "Shrinker",
                 "Shrunk",
+                "budget_of",
             ),
             ".task_look": ("TaskLook",),
             ".timeline": (

@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 from cfepy.exploration import deeds as do
 from cfepy.exploration.deeds import Deed, keys_of
-from cfepy.exploration.moves import Move, plain_name
+from cfepy.exploration.moves import MadeMove
 from cfepy.exploration.task_look import AT, ORDERED, PREEMPTED, Row
 from cfepy.exploration.things import is_made_of
 from cfepy.exploration.verdict import DEADLOCK, DIED, RAISED, Failure
-from cfepy.rtos import HOLD
+from cfepy.rtos import HOLD, plain_name
 
 _PLACE = re.compile(r"\(([\w.-]+:\d+)\)$")  # of an exception, at the end of its text
 NOBODY = "0"  # waits for what is notified
@@ -39,7 +39,7 @@ class Evidence:
     def __init__(
         self,
         failure: Failure,
-        moves: Sequence[Move],
+        moves: Sequence[MadeMove],
         rows: Sequence[Row],
         deeds: Sequence[Deed],
         usual: Sequence[Deed],

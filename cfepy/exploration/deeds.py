@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from cfepy.exploration.moves import plain_name
+from cfepy.rtos import plain_name
 
 WANTS, HAS, RELEASES = "wants", "has", "releases"
 SETS, CLEARS, NOTIFIES, AWAITS, WAKES, GIVES_UP = (

@@ -22,7 +22,7 @@ from cfepy.exploration.progress import make_progress
 from cfepy.exploration.results_file import ResultsFile
 from cfepy.exploration.search import SeededSearch, SystematicSearch, make_search
 from cfepy.exploration.shipment import files_read, identity_of, ship
-from cfepy.exploration.shrink import Shrinker, Shrunk
+from cfepy.exploration.shrink import Shrinker, Shrunk, budget_of
 from cfepy.exploration.stuck import waits_of
 from cfepy.exploration.timeline import Story, story_of
 from cfepy.exploration.trial import Trial
@@ -39,7 +39,6 @@ BASE = "at"  # fifo as a policy, which is asked, so that decisions can be counte
 DEFAULT_SEEDS = 100
 MOST_INVERSIONS = 3  # that are told of one failure
 _NO_WAY = (PROCESS_DIED, STALLED)  # a run that was broken off has no trace to compare
-DEFAULT_PROBES = 800
 POLICIES = ("all", "random", "pct", "dfs")
 EVENTS = ("error", "critical", "none")
 
@@ -141,7 +140,7 @@ def _shrunk_numbers(shrunk: Shrunk[Trial]) -> dict[str, Any]:
         "schedule": shrunk.verdict.schedule.text(),
         "command": shrunk.trial.command(shrunk.verdict.schedule),
         "preemptions": shrunk.verdict.preemptions,
-        "moves": [move._asdict() for move in shrunk.moves],
+        "moves": [each._asdict() | {"move": each.move.text()} for each in shrunk.moves],
         "probes": shrunk.probes,
     }
 
@@ -169,7 +168,8 @@ class Expedition:
         cluster: address of a dask scheduler, or local:N.
         longest_s: wall time that a schedule may take.
         results: file that keeps the verdicts, and that it goes on from.
-        shrink: how many runs it may take to shrink a failure; 0 leaves it as it is.
+        shrink: how many runs it may take to shrink a failure; None for those of `budget_of`, 0 leaves it as
+            it is.
         progress: where it is shown how far it has come; None shows nothing.
     """
 
@@ -191,7 +191,7 @@ class Expedition:
     cluster: str | None = None
     longest_s: float = LONGEST_S
     results: str | None = None
-    shrink: int = DEFAULT_PROBES
+    shrink: int | None = None
     progress: TextIO | None = None
 
     def run(self, tell: Callable[[tuple[str, ...]], object] = lambda notes: None) -> Report:
@@ -315,21 +315,23 @@ class Expedition:
             if not tally.interrupted:
                 self._fly_again(trial, told)
                 told.inversions = _inversions(trial, finding)
-                told.shrunk = self._shrunk(trial, finding) if told.repeats else None
+                told.shrunk = self._shrunk(trial, finding, tally.done) if told.repeats else None
             if told.shrunk is not None:
                 told.story = _story(told.shrunk, finding)
         except KeyboardInterrupt:  # what was found must not be lost with it
             tally.interrupted = True
         return told
 
-    def _shrunk(self, trial: Trial, finding: Finding) -> Shrunk[Trial] | None:
+    def _shrunk(self, trial: Trial, finding: Finding, flown: int) -> Shrunk[Trial] | None:
         """The fewest preemptions; None for a failure that needs none, or ends the process that flies it."""
-        if not self.shrink or finding.in_reference or finding.failure.kind == PROCESS_DIED:
+        if self.shrink == 0 or finding.in_reference or finding.failure.kind == PROCESS_DIED:
             return None
         if self.progress is not None and self.progress.isatty():
             print("cfepy: shrinking", finding.failure.title, file=self.progress, flush=True)
         probed = trial.probe() if finding.failure.kind == STALLED else trial
-        shrunk = Shrinker(probed, finding.simplest.schedule, finding.failure.group, self.shrink).run()
+        schedules = [verdict.schedule for verdict in finding.simplest]
+        budget = budget_of(flown) if self.shrink is None else self.shrink
+        shrunk = Shrinker(probed, schedules, finding.failure.group, budget).run()
         if shrunk is None:
             return None
         plan = replace(shrunk.trial.plan, stall=trial.plan.stall)

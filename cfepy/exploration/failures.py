@@ -24,10 +24,10 @@ from cfepy.mission import (
     Seen,
     app_traceback,
     endless_waits,
-    is_own_code,
     reason,
 )
 from cfepy.monitors.record import DeadlineRecord, InvariantRecords
+from cfepy.own_code import is_own_code
 from cfepy.pilot import end_of, ended_badly
 from cfepy.rtos import DeadlockError, InjectedCrash, Task, Wait
 from cfepy.sb import SoftwareBus

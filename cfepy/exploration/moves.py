@@ -1,127 +1,166 @@
-"""A schedule as moves: "when this task would go on for the n-th time, that one runs instead".
+"""What a run did otherwise than fifo, and what it could have done, each as a move; and what is known by that of others.
 
-The numbers of decisions in an `at:` schedule all change when one deviation is left out. Moves count for each task by
-itself, so the others keep their meaning, which is what makes a schedule easy to shorten.
+The numbers of decisions in an `at:` schedule all change when one deviation is left out. Moves (`cfepy.rtos.moves`) keep
+their meaning, which is what makes a schedule easy to shorten.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable
-from typing import NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
-from cfepy.rtos import Decision, Policy, Schedule
-from cfepy.units import NS_PER_MS
-
-DECISIONS_PER_MS = 1_000_000  # more than there ever are
-_NUMBER = re.compile(r"\.\d+$")
+from cfepy.rtos import AskingPolicy, Decision, Move, MoveNumbers, MovesToMake, Policy
 
 
-class Move(NamedTuple):
-    """Not what fifo would do.
+class MadeMove(NamedTuple):
+    """A move that a run made.
 
     Attributes:
-        task: name of the task that fifo would run, or of a question.
-        number: which of the decisions in which it is that task; see `_Numbers`.
-        chosen: name of the task that runs, or HOLD, or the answer.
+        move: itself.
+        task: name of the task that fifo would have run, or of a question.
+        chosen: name of the task that ran, or HOLD, or the answer.
         preempts: the task was running, and could have gone on.
         question: the kind of the question that it answers; empty for a change of turns.
+        decision: which of the decisions of the run it was.
+        choice: which of the answers.
     """
 
+    move: Move
     task: str
-    number: int
     chosen: str
-    preempts: bool = True
-    question: str = ""
+    preempts: bool
+    question: str
+    decision: int
+    choice: int
 
 
 class Choice(NamedTuple):
-    """A decision of a run: when in virtual ns, and as of `Move`; `others` are the answers that are not fifo's."""
+    """A decision of a run.
+
+    Attributes:
+        now: virtual ns.
+        answers: by name, fifo's first.
+        moves: what the other answers are.
+        taken: the answer.
+        subject: what it was about, by name.
+        preempts, question: see `MadeMove`.
+    """
 
     now: int
-    task: str
-    number: int
-    others: tuple[str, ...]
+    subject: str
+    answers: tuple[str, ...]
+    moves: tuple[Move, ...]
+    taken: int
     preempts: bool
     question: str = ""
 
-    def move(self, chosen: str) -> Move:
-        """The move that another answer is."""
-        return Move(self.task, self.number, chosen, self.preempts, self.question)
 
-
-class MoveNotingPolicy(Policy):
+class MoveNotingPolicy(AskingPolicy):
     """Asks another policy, and keeps its moves.
 
     Attributes:
-        moves: those that it made.
         choices: all decisions that there were.
     """
 
     def __init__(self, inner: Policy) -> None:
-        super().__init__(*inner.settings)
-        self._inner = inner
-        self._numbers = _Numbers()
-        self.moves: list[Move] = []
+        super().__init__(inner)
+        self._numbers = MoveNumbers()
         self.choices: list[Choice] = []
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
-        choice = self._inner.choose(decision)
-        answers, task = decision.answers, decision.subject
-        number = self._numbers.next(decision.now, task)
+        taken = self._inner.choose(decision)
+        moves = self._numbers.moves(decision)
         question = "" if decision.question is None else decision.question.kind
-        made = Choice(decision.now, task, number, tuple(answers[1:]), decision.running, question)
-        self.choices.append(made)
-        if choice:
-            self.moves.append(made.move(answers[choice]))
-        return choice
+        answers = tuple(decision.answers)
+        subject = decision.subject
+        self.choices.append(Choice(decision.now, subject, answers, moves, taken, decision.running, question))
+        return taken
+
+    @property
+    def made(self) -> tuple[MadeMove, ...]:
+        """The moves that it made."""
+        return tuple(
+            MadeMove(
+                each.moves[each.taken - 1],
+                each.subject,
+                each.answers[each.taken],
+                each.preempts,
+                each.question,
+                number,
+                each.taken,
+            )
+            for number, each in enumerate(self.choices)
+            if each.taken
+        )
 
 
-class MovePolicy(Policy):
-    """Fifo but for some moves; one that is not possible is left out.
+class NotedRun(Protocol):
+    """A run that was flown."""
 
-    Args:
-        moves: which ones.
-        options: a schedule whose options it has.
-    """
-
-    def __init__(self, moves: Iterable[Move], options: Schedule) -> None:
-        super().__init__(*options.settings)
-        self._chosen = {(plain_name(move.task), move.number): move.chosen for move in moves}
-        self._numbers = _Numbers()
-
-    def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
-        task = decision.subject
-        chosen = self._chosen.get((plain_name(task), self._numbers.next(decision.now, task)))
-        return 0 if chosen is None else _index(decision.answers, chosen)
+    @property
+    def choices(self) -> Sequence[Choice]:
+        """All its decisions."""
 
 
-class _Numbers:
-    """Numbers decisions, for each task by itself, anew in each millisecond of virtual time.
+R = TypeVar("R", bound=NotedRun)
 
-    So a move keeps its meaning when others are left out long before it.
+
+class _Node(Generic[R]):
+    """All known runs that have begun with the same deviations from fifo."""
+
+    def __init__(self) -> None:
+        self.following: dict[tuple[int, int], _Node[R]] = {}
+        self.runs: list[tuple[int, R]] = []  # each with the decision at which it deviates next
+
+
+class KnownRuns(Generic[R]):
+    """Runs of one mission, whose schedules have the same options: they tell what other schedules would come to.
+
+    Runs whose policies have given the same answers until now are asked the same next. So a schedule is followed along a
+    known run; where it decides otherwise, along another one that has decided so there; until the end of one, or to
+    where none has been.
     """
 
     def __init__(self) -> None:
-        self._following: dict[str, int] = {}
+        self._root: _Node[R] = _Node()
 
-    def next(self, now_ns: int, task: str) -> int:
-        """The number of a decision; they only grow."""
-        name = plain_name(task)
-        number = max(self._following.get(name, 0), now_ns // NS_PER_MS * DECISIONS_PER_MS)
-        self._following[name] = number + 1
-        return number
+    def add(self, run: R) -> None:
+        """Know a run."""
+        node = self._root
+        deviations = [(number, choice.taken) for number, choice in enumerate(run.choices) if choice.taken]
+        for deviation in deviations:
+            node.runs.append((deviation[0], run))
+            node = node.following.setdefault(deviation, _Node())
+        node.runs.append((len(run.choices), run))
+
+    def find(self, moves: Iterable[Move]) -> R | None:
+        """The run that these moves give; None when that is not known."""
+        to_make = MovesToMake(moves)
+        node, number = self._root, 0
+        while node.runs:
+            until, run = max(node.runs, key=lambda each: each[0])
+            for choice in run.choices[number:until]:
+                answer = _answer(to_make, choice)
+                number += 1
+                if answer:
+                    break
+            else:
+                if until == len(run.choices):
+                    return run
+                answer = _answer(to_make, run.choices[until])  # no known run goes on as fifo from there
+                number = until + 1
+                if not answer:
+                    return None
+            if (number - 1, answer) not in node.following:
+                return None
+            node = node.following[number - 1, answer]
+        return None
 
 
-def plain_name(name: str) -> str:
-    """A task's name without the number that tasks of ROS nodes get in the order of their making."""
-    return _NUMBER.sub("", name)
-
-
-def _index(names: list[str], chosen: str) -> int:
-    """Which of the answers is meant, 0 if none is."""
-    if chosen in names:
-        return names.index(chosen)
-    return next((at for at, name in enumerate(names) if plain_name(name) == plain_name(chosen)), 0)
+def _answer(to_make: MovesToMake, choice: Choice) -> int:
+    if not choice.moves or not to_make.concerns(choice.moves[0].subject, choice.now):
+        return 0
+    first = choice.moves[0]
+    others = [move.chosen for move in choice.moves]
+    return to_make.answer(first.subject, choice.now, others, lambda: first.place)

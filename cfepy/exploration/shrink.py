@@ -1,28 +1,45 @@
 """Shrinking: the shortest schedule that still gives the same failure, found by flying shorter ones.
 
-First moves are left out, in halves, quarters, and one by one (Zeller's delta debugging). Then one preemption is tried
-in the place of several, also one to another task, and those that are left are moved towards the failure; connections
-that must be slow get the shortest delay. The result is an `at:` schedule.
+First moves are left out, in halves, quarters, and one by one (Zeller's delta debugging), of each of the shortest
+failing schedules that are known. With the best of them, one move is tried in the place of all and of several, also one
+to another task, and those that are left are moved towards the failure; connections that must be slow get the shortest
+delay. In the end each subset of what is left is flown, if it is few. The result is a schedule of moves.
+
+A run is flown only when what is known of others does not tell how it ends (`KnownRuns`), and goes no further than the
+failure.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import combinations, islice
 from typing import Generic, Protocol, Self, TypeVar
 
-from cfepy.exploration.moves import Choice, Move, MoveNotingPolicy, MovePolicy
+from cfepy.exploration.moves import Choice, KnownRuns, MadeMove, MoveNotingPolicy
 from cfepy.exploration.trial import Tried
 from cfepy.exploration.verdict import RESULTS, Verdict
-from cfepy.rtos import Policy, Schedule
-from cfepy.units import NS_PER_S
+from cfepy.rtos import Move, Policy, Schedule
+from cfepy.units import NS_PER_MS, NS_PER_S
 
-MOST_PROBES = 800
+LEAST_PROBES, MOST_PROBES = 100, 800
+STARTS = 3  # failing schedules that are shrunk, the shortest ones
+SUBSETS_OF = 6  # moves of which all subsets are flown
 REACH = 64  # how many decisions a move is tried later
 SINGLES = 200  # how many single moves are tried
 AROUND = 30  # how many decisions before and after two moves one is tried in their place
 TENTH_NS = NS_PER_S // 10
+
+Moves = tuple[Move, ...]
+
+
+def budget_of(schedules: int) -> int:
+    """How many runs it may take to shrink a failure, where nobody says: as many as the search took.
+
+    Args:
+        schedules: how many were flown in search of failures.
+    """
+    return min(max(schedules, LEAST_PROBES), MOST_PROBES)
 
 
 class Shrinkable(Protocol):
@@ -49,31 +66,37 @@ class Shrunk(Generic[T]):
 
     Attributes:
         trial: with a shorter run, if that still fails.
-        verdict: of the shortest schedule, an `at:`.
+        verdict: of the shortest schedule, one of moves.
         moves: what that does.
         probes: how many runs it took.
     """
 
     trial: T
     verdict: Verdict
-    moves: tuple[Move, ...]
+    moves: tuple[MadeMove, ...]
     probes: int
 
 
 @dataclass(frozen=True, slots=True)
 class _Flight:
-    """A run; `fails` says that it failed in the way that is looked for."""
+    """A run; `fails` says that it failed in the way that is looked for, `options` is a schedule with its options."""
 
+    options: Schedule
     fails: bool
     verdict: Verdict
-    moves: tuple[Move, ...]
+    made: tuple[MadeMove, ...]
     choices: tuple[Choice, ...]
+
+    @property
+    def moves(self) -> Moves:
+        """The moves that it made, which give it again."""
+        return tuple(each.move for each in self.made)
 
     @property
     def cost(self) -> tuple[int, int, int]:
         """What is to become small: preemptions first, then other moves."""
-        preemptions = sum(move.preempts for move in self.moves)
-        return preemptions, len(self.moves), sum(choice for _, choice in self.verdict.deviations)
+        preemptions = sum(each.preempts for each in self.made)
+        return preemptions, len(self.made), sum(each.choice for each in self.made)
 
 
 class Shrinker(Generic[T]):
@@ -81,48 +104,73 @@ class Shrinker(Generic[T]):
 
     Args:
         trial: what is flown.
-        schedule: under which it fails.
+        schedules: under which it fails, the shortest first.
         group: of the failure.
-        most_probes: how many runs it may take.
+        most_probes: how many runs it may take; that none of what is left can be left out is looked at in any case.
     """
 
-    def __init__(self, trial: T, schedule: Schedule, group: str, most_probes: int = MOST_PROBES) -> None:
+    def __init__(self, trial: T, schedules: Sequence[Schedule], group: str, most_probes: int = MOST_PROBES) -> None:
         self._trial = trial
-        self._schedule = schedule
+        self._schedules = schedules
         self._group = group
         self._most = most_probes
-        self._tried: set[tuple[Move, ...]] = set()
+        self._known: dict[Schedule, KnownRuns[_Flight]] = {}
+        self._limit = most_probes
         self.probes = 0
 
     def run(self) -> Shrunk[T] | None:
-        """Shrink; None when the schedule does not fail in this way."""
-        best = self._fly(self._schedule.policy() or Policy())
-        if not best.fails:
+        """Shrink; None when the first schedule does not fail in this way."""
+        first = self._fly(self._schedules[0])
+        if not first.fails:
             return None
-        best = self._without_tail(best)
-        best = self._with_less(best, self._most // 2)
-        best = self._with_one(best)
-        best = self._sooner(self._later(self._redirected(self._merged(best))))
-        return self._finish(best)
+        first = self._cut(first)
+        self._limit = self._most // 2
+        best = self._with_less(self._without_tail(first))
+        for schedule in self._schedules[1:STARTS]:
+            if len(best.made) > 1 and self.probes < self._limit:
+                other = self._fly(schedule)
+                if other.fails:
+                    best = min(best, self._with_less(self._without_tail(other)), key=lambda flight: flight.cost)
+        self._limit = self._most
+        best = self._with_one(self._merged(self._redirected(best)))
+        best = self._sooner(self._later(best))
+        return self._finish(self._fewest(best))
 
     # -- steps -------------------------------------------------------------------------------------------------------
+
+    def _cut(self, first: _Flight) -> _Flight:
+        """Let all runs end behind the failure, if it comes in one that does; what was known is of longer ones."""
+        failure = first.verdict.failure(self._group)
+        assert failure is not None
+        if failure.at_ns is None or failure.kind == RESULTS:
+            return first
+        whole, end_ns = self._trial, _end_of(failure.at_ns)
+        short = whole.until(end_ns) if end_ns < first.verdict.end_ns else None
+        if short is None:
+            return first
+        known, self._known, self._trial = self._known, {}, short
+        again = self._fly(first.options.by_moves(first.moves))
+        if again.fails:
+            return again
+        self._known, self._trial = known, whole
+        return first
 
     def _without_tail(self, best: _Flight) -> _Flight:
         """Leave out what comes after the failure: the shortest beginning that fails, by bisection."""
         least, most = 0, len(best.moves)
         while least < most:
             middle = (least + most) // 2
-            found = self._try(best.moves[:middle])
+            found = self._try(best.moves[:middle], best)
             if found is not None:
                 best, most = found, min(middle, len(found.moves))
             else:
                 least = middle + 1
         return best
 
-    def _with_less(self, best: _Flight, most: int | None = None) -> _Flight:
+    def _with_less(self, best: _Flight) -> _Flight:
         """Leave out pieces, smaller and smaller ones, until no single move can be left out."""
         size = max(len(best.moves) // 2, 1)
-        while best.moves and (most is None or self.probes < most):
+        while best.moves:
             found = next(self._tries(_without_pieces(best.moves, size), best), None)
             if found is not None:
                 best = found
@@ -135,20 +183,20 @@ class Shrinker(Generic[T]):
 
     def _with_one(self, best: _Flight) -> _Flight:
         """One move in the place of all, tried in the run of fifo, where it stands closest to the failure first."""
-        if len(best.moves) < 2 or self.probes >= self._most:
+        if len(best.made) < 2 or self.probes >= self._limit:
             return best
-        fifo = self._fly(MovePolicy((), self._schedule))
+        fifo = self._flight((), best.options)
         at_ns = best.verdict.end_ns if (failure := best.verdict.failure(self._group)) is None else failure.at_ns
         ones = islice(_single_moves(fifo, at_ns, _names(best)), SINGLES)
         return next(self._tries(((move,) for move in ones), best), best)
 
     def _merged(self, best: _Flight) -> _Flight:
         """One move in the place of two that follow each other."""
-        for at in range(len(best.moves) - 1):
+        for at in range(len(best.made) - 1):
             kept = (*best.moves[:at], *best.moves[at + 2 :])
-            if self.probes >= self._most:
+            if self.probes >= self._limit:
                 break
-            without = self._fly(MovePolicy(kept, self._schedule))
+            without = self._flight(kept, best.options)
             candidates = ((*kept[:at], move, *kept[at:]) for move in _between(best, without, at))
             found = without if without.fails else next(self._tries(candidates, best), None)
             if found is not None:
@@ -160,17 +208,19 @@ class Shrinker(Generic[T]):
 
         Without these the same place in the task's own work may be a decision earlier or later.
         """
-        names = sorted({name for move in best.moves if not move.question for name in (move.task, move.chosen)})
-        for at, move in enumerate(best.moves):
-            if move.question:
+        if len(best.made) < 2:
+            return best
+        moves, names = best.moves, sorted(_names(best))
+        for at, made in enumerate(best.made):
+            if made.question:
                 continue
-            targets = [name for name in names if name not in (move.task, move.chosen)]
+            near = [move for choice in _near(best, made) for move in choice.moves if move.chosen in names]
             candidates = (
-                (*best.moves[: at - before], move._replace(chosen=name, number=number), *best.moves[at + 1 + behind :])
+                (*moves[: at - before], move, *moves[at + 1 + behind :])
                 for before, behind in ((1, 1), (1, 0), (0, 1))
-                for name in targets
-                for number in (move.number, move.number + 1, move.number - 1, move.number + 2)
                 if before <= at
+                for move in near
+                if move.chosen != made.move.chosen
             )
             found = next(self._tries(candidates, best), None)
             if found is not None:
@@ -179,77 +229,81 @@ class Shrinker(Generic[T]):
 
     def _later(self, best: _Flight) -> _Flight:
         """Move each towards the failure, as far as it still fails: what is left happens close together."""
-        for at in range(len(best.moves)):
+        for at in range(len(best.made)):
             step = 1
-            while step <= REACH and at < len(best.moves) and not best.moves[at].question:
-                move = best.moves[at]
-                moved = (*best.moves[:at], move._replace(number=move.number + step), *best.moves[at + 1 :])
-                found = self._try(moved)
+            while step <= REACH and at < len(best.made) and not best.made[at].question:
+                move = next(islice(_same_later(best, best.made[at]), step - 1, None), None)
+                if move is None:
+                    break
+                found = self._try((*best.moves[:at], move, *best.moves[at + 1 :]), best)
                 if found is None or found.cost > best.cost:
                     break
                 best, step = found, step * 2
         return best
 
     def _sooner(self, best: _Flight) -> _Flight:
-        """Connections come as soon as they may, for it to fail."""
-        for at, move in enumerate(best.moves):
-            if not move.question:
+        """Of what has answers in an order, such as how long a connection takes, the first one with which it fails."""
+        for at, made in enumerate(best.made):
+            if not made.question:
                 continue
-            delays = best.choices[_place(best, move)].others
-            shorter = delays[: delays.index(move.chosen)]
-            candidates = ((*best.moves[:at], move._replace(chosen=each), *best.moves[at + 1 :]) for each in shorter)
+            sooner = best.choices[made.decision].moves[: made.choice - 1]
+            candidates = ((*best.moves[:at], move, *best.moves[at + 1 :]) for move in sooner)
             found = next(self._tries(candidates, best), None)
-            if found is not None and len(found.moves) == len(best.moves):
+            if found is not None and len(found.made) == len(best.made):
                 best = found
         return best
 
-    def _finish(self, best: _Flight) -> Shrunk[T] | None:
-        """The result as an `at:` schedule, in a run that is no longer than it need be; flown once more to be sure."""
-        schedule = self._schedule.at(dict(best.verdict.deviations))
-        trial, verdict = self._shorter_run(schedule)
-        if verdict is None:
-            return None
-        return Shrunk(trial, verdict, best.moves, self.probes)
+    def _fewest(self, best: _Flight) -> _Flight:
+        """The smallest subset of the moves that fails, or, of many moves, one of which none can be left out."""
+        self._limit = self.probes + 2**SUBSETS_OF
+        count = len(best.made)
+        if count > SUBSETS_OF:
+            return self._with_less(best)
+        subsets = (subset for size in range(count) for subset in combinations(best.moves, size))
+        return next(self._tries(subsets, best), best)
 
-    def _shorter_run(self, schedule: Schedule) -> tuple[T, Verdict | None]:
-        whole = self._trial.fly(schedule).verdict
+    def _finish(self, best: _Flight) -> Shrunk[T] | None:
+        """The result as a schedule of moves; flown once more to be sure."""
         self.probes += 1
-        failure = whole.failure(self._group)
-        if failure is None:
-            return self._trial, None
-        end_ns = _end_of(failure.at_ns, whole.end_ns)
-        trial = None if failure.kind == RESULTS or end_ns >= whole.end_ns else self._trial.until(end_ns)
-        if trial is None:
-            return self._trial, whole
-        short = trial.fly(schedule).verdict
-        self.probes += 1
-        return (trial, short) if short.failure(self._group) is not None else (self._trial, whole)
+        verdict = self._trial.fly(best.options.by_moves(best.moves)).verdict
+        return None if verdict.failure(self._group) is None else Shrunk(self._trial, verdict, best.made, self.probes)
 
     # -- probes ------------------------------------------------------------------------------------------------------
 
-    def _tries(self, candidates: Iterable[tuple[Move, ...]], best: _Flight) -> Iterator[_Flight]:
+    def _tries(self, candidates: Iterable[Moves], best: _Flight) -> Iterator[_Flight]:
         """Those that fail and cost less than the best so far."""
         for moves in candidates:
-            found = self._try(moves)
+            found = self._try(moves, best)
             if found is not None and found.cost < best.cost:
                 yield found
 
-    def _try(self, moves: tuple[Move, ...]) -> _Flight | None:
-        if moves in self._tried or self.probes >= self._most:
-            return None
-        self._tried.add(moves)
-        found = self._fly(MovePolicy(moves, self._schedule))
+    def _try(self, moves: Moves, like: _Flight) -> _Flight | None:
+        """A flight with the options of another, if it fails and there may be one."""
+        found = self._runs(like.options).find(moves)
+        if found is None:
+            if self.probes >= self._limit:
+                return None
+            found = self._fly(like.options.by_moves(moves))
         return found if found.fails else None
 
-    def _fly(self, policy: Policy) -> _Flight:
+    def _flight(self, moves: Moves, options: Schedule) -> _Flight:
+        """A flight, whether it fails or not."""
+        return self._runs(options).find(moves) or self._fly(options.by_moves(moves))
+
+    def _runs(self, options: Schedule) -> KnownRuns[_Flight]:
+        return self._known.setdefault(options, KnownRuns())
+
+    def _fly(self, schedule: Schedule) -> _Flight:
         self.probes += 1
-        recorder = MoveNotingPolicy(policy)
-        verdict = self._trial.fly(self._schedule, policy=recorder).verdict
+        recorder = MoveNotingPolicy(schedule.policy() or Policy())
+        verdict = self._trial.fly(schedule, policy=recorder).verdict
         fails = verdict.failure(self._group) is not None
-        return _Flight(fails, verdict, tuple(recorder.moves), tuple(recorder.choices))
+        flight = _Flight(schedule.by_moves(()), fails, verdict, recorder.made, tuple(recorder.choices))
+        self._runs(flight.options).add(flight)
+        return flight
 
 
-def _without_pieces(moves: tuple[Move, ...], size: int) -> Iterator[tuple[Move, ...]]:
+def _without_pieces(moves: Moves, size: int) -> Iterator[Moves]:
     """All but so many moves in a row; the last ones are left out first."""
     for start in reversed(range(0, len(moves), size)):
         yield (*moves[:start], *moves[start + size :])
@@ -258,34 +312,51 @@ def _without_pieces(moves: tuple[Move, ...], size: int) -> Iterator[tuple[Move, 
 def _single_moves(fifo: _Flight, at_ns: int | None, names: set[str]) -> Iterator[Move]:
     """All that there are between the tasks that matter, before the failure, the last ones first."""
     for choice in reversed(fifo.choices):
-        if choice.task in names and (at_ns is None or choice.now <= at_ns):
-            others = [name for name in choice.others if name in names]
-            yield from map(choice.move, others)
+        if at_ns is None or choice.now <= at_ns:
+            yield from _among(choice, names)
 
 
 def _between(best: _Flight, without: _Flight, at: int) -> Iterator[Move]:
     """Moves that might do what two do, near their places, in a run without the two."""
-    places = [_place(best, move) for move in best.moves[at : at + 2]]
-    least = 0 if not at else _place(best, best.moves[at - 1]) + 1
-    names = _names(best)
-    for choice in without.choices[max(least, places[0] - AROUND) : places[1] + AROUND]:
-        for other in choice.others:
-            if choice.task in names and other in names:
-                yield choice.move(other)
+    least = 0 if not at else best.made[at - 1].decision + 1
+    first, last = best.made[at].decision, best.made[at + 1].decision
+    places = range(max(least, first - AROUND), min(last + AROUND, len(without.choices)))
+    for place in sorted(places, key=lambda place: min(abs(place - first), abs(place - last))):
+        yield from _among(without.choices[place], _names(best))
+
+
+def _among(choice: Choice, names: set[str]) -> Iterator[Move]:
+    """The moves that a decision offers between some tasks."""
+    return (move for move in choice.moves if move.subject in names and move.chosen in names)
+
+
+def _near(best: _Flight, made: MadeMove) -> Iterator[Choice]:
+    """The decision of a move, and those before and after it that are about the same task."""
+    same = [choice for choice in best.choices if choice.moves and choice.moves[0].subject == made.move.subject]
+    at = same.index(best.choices[made.decision])
+    for each in (at, at + 1, at - 1, at + 2):
+        if 0 <= each < len(same):
+            yield same[each]
+
+
+def _same_later(best: _Flight, made: MadeMove) -> Iterator[Move]:
+    """The moves that are between the same tasks, later in the same millisecond."""
+    for choice in best.choices[made.decision + 1 :]:
+        if choice.now // NS_PER_MS > made.move.from_ms:
+            return
+        for move in choice.moves:
+            if (move.subject, move.chosen) == (
+                made.move.subject,
+                made.move.chosen,
+            ) and choice.preempts == made.preempts:
+                yield move
 
 
 def _names(best: _Flight) -> set[str]:
     """The tasks that matter."""
-    return {name for move in best.moves for name in (move.task, move.chosen)}
+    return {name for made in best.made for name in (made.move.subject, made.move.chosen)}
 
 
-def _place(flight: _Flight, move: Move) -> int:
-    """Which decision of a run a move is."""
-    return next(
-        place for place, choice in enumerate(flight.choices) if (choice.task, choice.number) == (move.task, move.number)
-    )
-
-
-def _end_of(at_ns: int | None, end_ns: int) -> int:
+def _end_of(at_ns: int) -> int:
     """A round time at which a failure has happened."""
-    return end_ns if at_ns is None else (at_ns // TENTH_NS + 1) * TENTH_NS
+    return (at_ns // TENTH_NS + 1) * TENTH_NS

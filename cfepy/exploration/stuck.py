@@ -18,7 +18,8 @@ from typing import Any, NamedTuple
 
 from cfepy.attachment import Attachment
 from cfepy.exploration.verdict import STUCK, Failure
-from cfepy.mission import CORE_APPS, Mission, is_library, is_shown
+from cfepy.mission import CORE_APPS, Mission
+from cfepy.own_code import is_library, is_shown
 from cfepy.pilot import BOOT_S, RUN, RunPlan, fly
 from cfepy.rtos import Policy, Task
 from cfepy.units import NS_PER_S

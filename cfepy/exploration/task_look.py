@@ -18,9 +18,10 @@ from cfepy.exploration import deeds as do
 from cfepy.exploration.deeds import Deed
 from cfepy.exploration.things import Things, Use, use_of
 from cfepy.ground import dictionary_of, line_of, plain
-from cfepy.mission import CORE_APPS, Mission, MissionSpec, is_shown
+from cfepy.mission import CORE_APPS, Mission, MissionSpec
 from cfepy.monitors import Heard, MessageWatch
 from cfepy.nodes import WHOLE, Touch
+from cfepy.own_code import is_shown
 from cfepy.pilot.determinism_look import place_text
 from cfepy.rtos import TIMEOUT, AskingPolicy, Decision, ExploringKernel, Policy, Task
 from cfepy.sb import PEND_FOREVER, Pipe, Route, SoftwareBus

@@ -13,7 +13,7 @@ from pathlib import Path, PurePath
 from types import CodeType, FrameType
 from typing import Any, NamedTuple
 
-from cfepy.mission import is_own_code, is_shown, is_standard
+from cfepy.own_code import is_own_code, is_shown, is_standard
 from cfepy.syntax_trees import parsed
 
 _MAKING = "__init__"

@@ -14,7 +14,7 @@ from textwrap import wrap
 
 from cfepy.exploration.cause import Evidence, cause_of
 from cfepy.exploration.failures import FailureWatch
-from cfepy.exploration.moves import Move, MoveNotingPolicy
+from cfepy.exploration.moves import MadeMove, MoveNotingPolicy
 from cfepy.exploration.task_look import ANSWERS, AT, DOES, ORDERED, PREEMPTED, SENDS, TOUCHES, WAITS, Row, TaskLook
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import INVARIANT, Failure, Verdict
@@ -100,7 +100,7 @@ class Story:
         return [(at if not number else "").ljust(TIME_WIDTH) + line for number, line in enumerate(lines)]
 
 
-def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[Move]) -> Story:
+def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[MadeMove]) -> Story:
     """What happened; the run is flown once more, and the one under fifo.
 
     Args:
@@ -110,7 +110,7 @@ def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[M
         moves: what the schedule does.
     """
     schedule = verdict.schedule
-    first = min((decision for decision, _ in schedule.deviations), default=0)
+    first = min((decision for decision, _ in verdict.deviations), default=0)
     watch = FailureWatch(trial.events)
     look = TaskLook(trial.plan.spec(), first - BEFORE, lambda: watch.saw(failure.group))
     trial.fly(schedule, [watch, look], look.policy(schedule.policy() or Policy()))
@@ -142,7 +142,7 @@ def story_of_run(plan: RunPlan) -> Story | None:
     noting = MoveNotingPolicy(plan.schedule.policy() or Policy())
     verdict = trial.fly(plan.schedule, policy=noting).verdict
     failure = next((each for each in verdict.failures if each.group not in fifo.verdict.groups), None)
-    return None if failure is None else story_of(trial, verdict, failure, noting.moves)
+    return None if failure is None else story_of(trial, verdict, failure, noting.made)
 
 
 def _named(text: str, names: Mapping[str, str]) -> str:
@@ -152,7 +152,7 @@ def _named(text: str, names: Mapping[str, str]) -> str:
     return text
 
 
-def important(rows: Sequence[Row], moves: Sequence[Move], culprit: str = "", text: str = "") -> tuple[str, ...]:
+def important(rows: Sequence[Row], moves: Sequence[MadeMove], culprit: str = "", text: str = "") -> tuple[str, ...]:
     """The tasks that may have a column, those that matter most first.
 
     These are the one in which the failure showed, those of the moves, the last one first, those that a question was

@@ -155,6 +155,7 @@ class Trial:
             decisions=len(policy.choices),
             deviations=deviations,
             preemptions=policy.preemptions,
+            missed=policy.missed,
             widths=tuple(-width if running else width for width, running in pairs) if self.keep_widths else (),
         )
 

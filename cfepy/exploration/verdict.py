@@ -31,6 +31,7 @@ INVARIANT = "invariant"
 EVENT = "event"
 PROBLEM = "problem"
 RESULTS = "results differ"
+SIMPLEST = 3  # runs that are kept of each finding, to be shrunk
 LEAVES_OTHERS_WAITING = frozenset([DIED, RAISED, ENDED, RESET, DEADLOCK, STALLED])
 """What takes a task away, for which others may wait then."""
 _PLACE_OR_VALUE = re.compile(
@@ -92,6 +93,7 @@ class Verdict:
             systematic search.
         end_ns: virtual time at the end of the run, before the nodes were asked to shut down.
         trouble: traceback of an error of cfepy itself, which says nothing about the mission; empty otherwise.
+        missed: the moves of the schedule that were not possible, as text.
     """
 
     schedule: Schedule
@@ -104,6 +106,7 @@ class Verdict:
     widths: tuple[int, ...] = ()
     end_ns: int = 0
     trouble: str = ""
+    missed: tuple[str, ...] = ()
 
     @property
     def failed(self) -> bool:
@@ -143,9 +146,10 @@ class Verdict:
         schedule = Schedule.parse(plain["schedule"])
         failures = tuple(Failure(**each) for each in plain["failures"])
         deviations = tuple((int(at), int(candidate)) for at, candidate in plain["deviations"])
-        own = {"schedule": schedule, "failures": failures, "deviations": deviations}
+        missed = tuple(plain.get("missed", ()))
+        own = {"schedule": schedule, "failures": failures, "deviations": deviations, "missed": missed}
         found = cls(**{**plain, **own, "widths": tuple(map(int, plain["widths"]))})
-        texts = [found.results, found.trace, found.trouble]
+        texts = [found.results, found.trace, found.trouble, *found.missed]
         for each in failures:
             texts += [each.kind, each.who, each.text, each.detail, each.task, each.cause]
         numbers = [found.decisions, found.preemptions, found.end_ns, *(each.at_ns or 0 for each in failures)]
@@ -164,7 +168,7 @@ class Finding:
         verdict: on that.
         numbers: of all schedules that showed it.
         others: titles of the other failures in the first run.
-        simplest: the verdict of the run that showed it with the fewest preemptions: the best one to shrink.
+        simplest: the verdicts of the runs that showed it with the fewest preemptions: the best ones to shrink.
     """
 
     failure: Failure
@@ -172,15 +176,16 @@ class Finding:
     verdict: Verdict
     numbers: list[int] = field(default_factory=list)
     others: tuple[str, ...] = ()
-    simplest: Verdict = field(init=False)
+    simplest: list[Verdict] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.simplest = self.verdict
+        self.simplest = [self.verdict]
 
     def again(self, number: int, verdict: Verdict) -> None:
         """Another run showed it."""
         self.numbers.append(number)
-        self.simplest = min(self.simplest, verdict, key=_moves)
+        if verdict is not self.verdict:
+            self.simplest = sorted([*self.simplest, verdict], key=_moves)[:SIMPLEST]
 
     @property
     def in_reference(self) -> bool:

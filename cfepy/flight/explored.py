@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Unpack
 
-from cfepy.exploration import DEFAULT_PROBES, DEFAULT_SEEDS, Expedition, Report, Told
+from cfepy.exploration import DEFAULT_SEEDS, Expedition, Report, Told
 from cfepy.flight.expectations import counted
 from cfepy.flight.plans import MissionWords, RunOptions, plan_of
 from cfepy.flight.run import Run
@@ -127,7 +127,7 @@ def explore(
     events: str = "error",
     jobs: int | None = None,
     results: str | os.PathLike[str] | None = None,
-    shrink: int = DEFAULT_PROBES,
+    shrink: int | None = None,
     **options: Unpack[RunOptions],
 ) -> Explored:
     """Fly a mission under many schedules, and find what fails under some of them.
@@ -150,7 +150,8 @@ def explore(
         events: which events of the mission's applications are failures: "error", "critical" or "none".
         jobs: processes; None is one on each CPU.
         results: file that keeps the verdicts, and that it goes on from.
-        shrink: how many runs it may take to shrink a failure; 0 leaves it as it is.
+        shrink: how many runs it may take to shrink a failure; None for as many as there were schedules, 100 to 800; 0
+            leaves it as it is.
         options: `seconds`, `seed`, `board`, `script`, `faults` and so on, see `RunOptions`. A schedule is none of them.
 
     Raises:

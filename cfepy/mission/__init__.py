@@ -59,7 +59,7 @@ from cfepy.mission.python_code import find_code, find_node
 from cfepy.mission.record import DataRace, Reset, Traffic
 from cfepy.mission.spec import BuiltProgram, MissionSpec
 from cfepy.mission.topic_watch import TopicMessage, TopicWatch, matches
-from cfepy.mission.tracebacks import app_traceback, described, is_library, is_own_code, is_shown, is_standard, reason
+from cfepy.mission.tracebacks import app_traceback, described, reason
 
 __all__ = [
     "ARENA_BYTES",
@@ -113,11 +113,7 @@ __all__ = [
     "find_node",
     "find_script",
     "hearing",
-    "is_library",
     "is_node",
-    "is_own_code",
-    "is_shown",
-    "is_standard",
     "launch_file",
     "lines_for",
     "matches",

@@ -15,6 +15,7 @@ from types import MethodType
 from typing import Any
 
 from cfepy.app import Cfe
+from cfepy.own_code import called_as
 from cfepy.rtos import ExploringKernel, Kernel
 
 GIVING = frozenset(
@@ -70,7 +71,7 @@ def _pointed(service: Any, name: str, kernel: ExploringKernel) -> Callable[..., 
         observer.returned(service, name, args, result)
         return result
 
-    return call
+    return called_as(call, name)
 
 
 def _giving(service: Any, name: str, kernel: ExploringKernel) -> Callable[..., Any]:
@@ -81,7 +82,7 @@ def _giving(service: Any, name: str, kernel: ExploringKernel) -> Callable[..., A
         kernel.point()
         return result
 
-    return give
+    return called_as(give, name)
 
 
 def handle_for_apps(cfe: Cfe, kernel: Kernel) -> Cfe:

@@ -28,9 +28,10 @@ from cfepy.mission.processor import Machine, Processor, RunFiles
 from cfepy.mission.python_code import find_code
 from cfepy.mission.record import Reset, RunRecord
 from cfepy.mission.spec import MissionSpec
-from cfepy.mission.tracebacks import app_traceback, is_own_code, reason
+from cfepy.mission.tracebacks import app_traceback, reason
 from cfepy.nodes import Accesses
 from cfepy.osal import FileSystem, Network
+from cfepy.own_code import is_own_code
 from cfepy.psp import EEPROM_BYTES, BoardProfile, MemoryBudget, PanicError, Retained, load_profile
 from cfepy.rtos import Policy, StallWatch, Stopwatch, Task, make_kernel
 from cfepy.sb import SoftwareBus

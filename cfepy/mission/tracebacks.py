@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import functools
-import linecache
-import os
 import re
 import traceback
 from pathlib import Path
 
 from cfepy.nodes.report import strip
+from cfepy.own_code import PACKAGE
 from cfepy.texts import without_addresses
 
-PACKAGE = str(Path(__file__).resolve().parents[1])
 SHARED = str(Path(PACKAGE) / "share")
-_CFEPY = os.path.join(PACKAGE, "")
-_ROSPY = os.path.join(os.path.dirname(PACKAGE), "rospy_shim", "")
-_LIBRARIES = os.path.join(_ROSPY, "libraries", "")
-_STANDARD_LIBRARY = os.path.join(os.path.dirname(linecache.__file__), "")
-_INSTALLED = ("site-packages", "dist-packages")
 _PLACE = re.compile(r"\([^\s():]+:\d+\)")
 FILES = 4096  # of which it is remembered whose they are
 INNERMOST = 50  # frames that are shown: how deep a runaway recursion gets differs between task contexts
@@ -52,31 +44,6 @@ def described(error: BaseException) -> str:
         return f"{type(error).__name__}: {error}"
     except Exception:
         return f"{type(error).__name__}: its text cannot be had"
-
-
-@functools.lru_cache(maxsize=FILES)
-def is_shown(file: str) -> bool:
-    """Whether code is the mission's or a library's, not the simulator's."""
-    hidden = file.startswith((_CFEPY, "<")) or (file.startswith(_ROSPY) and not file.startswith(_LIBRARIES))
-    return not hidden
-
-
-@functools.lru_cache(maxsize=FILES)
-def is_library(file: str) -> bool:
-    """Whether a source file is the standard library's or that of an installed package."""
-    parts = Path(file).parts
-    return file.startswith((_STANDARD_LIBRARY, _LIBRARIES)) or any(name in parts for name in _INSTALLED)
-
-
-@functools.lru_cache(maxsize=FILES)
-def is_standard(file: str) -> bool:
-    """Whether a source file is the standard library's."""
-    return file.startswith(_STANDARD_LIBRARY) and not any(name in Path(file).parts for name in _INSTALLED)
-
-
-def is_own_code(file: str) -> bool:
-    """Whether a source file is the mission's own, neither the simulator's nor a library's."""
-    return is_shown(file) and not is_library(file)
 
 
 def _is_ours(file: str) -> bool:

@@ -19,7 +19,7 @@ from cfepy.pilot.results import (
     end_of,
     ended_badly,
     mark,
-    never_struck,
+    never_happened,
     problems_in,
 )
 
@@ -50,7 +50,7 @@ __all__ = [
     "ended_badly",
     "fly",
     "mark",
-    "never_struck",
+    "never_happened",
     "problems_in",
     "takeoff",
 ]

@@ -17,8 +17,8 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, NamedTuple
 
-from cfepy.mission import is_library, is_shown, is_standard
 from cfepy.nodes.sources import own_files
+from cfepy.own_code import is_library, is_shown, is_standard
 from cfepy.syntax_trees import parsed
 from cfepy.trace import TimedRecords, Trace
 

@@ -218,7 +218,7 @@ class LiveRun:
         """What it came to, when the mission has been closed."""
         assert self._digest is not None
         results = Results.of(self.mission, self.course.at, self._digest)
-        notes = (*self.notes, *results.never_struck)
+        notes = (*self.notes, *results.never_happened)
         return Flown(self.mission, results, self.course.outcome, self.reason, notes)
 
 

@@ -182,7 +182,7 @@ class Results:
     why the run did not end well, `faults` has a row for each fault that was to happen, `deadlines` one for each of the
     mission file, `inversions` one for each lock that a task waited for while a third one held up its holder,
     `script_problems` what of the startup script could not be started, `endless_waits` a line for each task that nobody
-    can wake any more.
+    can wake any more, `missed_moves` which moves of the schedule were not possible.
     """
 
     mission: str
@@ -208,6 +208,7 @@ class Results:
     faults: list[dict[str, Any]]
     script_problems: list[str]
     endless_waits: list[str]
+    missed_moves: list[str]
     invariants: list[InvariantResult]
     problems: list[str]
 
@@ -247,6 +248,7 @@ class Results:
             faults=record.rows("faults"),
             script_problems=_script_problems(mission, apps),
             endless_waits=at.endless_waits,
+            missed_moves=_missed_moves(mission),
             invariants=[_invariant(each) for each in record.part(InvariantRecords).values()],
             problems=[
                 *(problem.text for problem in problems_in(mission)),
@@ -255,23 +257,29 @@ class Results:
         )
 
     @property
-    def never_struck(self) -> list[str]:
-        """A line for each fault that was to happen and never did."""
-        return _never_struck(self.faults)
+    def never_happened(self) -> list[str]:
+        """What of the plan never happened in the run: a line for each such fault, and for moves of the schedule."""
+        return _never_happened(self.faults, self.missed_moves)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dicts, lists, numbers and text."""
         return asdict(self)
 
 
-def never_struck(mission: Mission) -> list[str]:
-    """See `Results.never_struck`; of a mission that may still fly."""
-    return _never_struck(mission.record.rows("faults"))
+def never_happened(mission: Mission) -> list[str]:
+    """See `Results.never_happened`; of a mission that may still fly."""
+    return _never_happened(mission.record.rows("faults"), _missed_moves(mission))
 
 
-def _never_struck(rows: list[dict[str, Any]]) -> list[str]:
+def _never_happened(rows: list[dict[str, Any]], missed_moves: list[str]) -> list[str]:
     unseen = (row for row in rows if not row["times"] and not row["explored"])  # that is up to the schedule
-    return [f"fault {row['name']} ({row['what']}) never happened: {row['never']}" for row in unseen]
+    faults = [f"fault {row['name']} ({row['what']}) never happened: {row['never']}" for row in unseen]
+    return [*faults, *missed_moves]
+
+
+def _missed_moves(mission: Mission) -> list[str]:
+    policy = mission.kernel.policy
+    return [] if policy is None else list(policy.notes)
 
 
 def _invariant(record: InvariantRecord) -> InvariantResult:

@@ -16,7 +16,7 @@ from cfepy.monitors import Observer, Sent, app_of
 from cfepy.pilot.determinism_look import place_text
 from cfepy.reports.bins import Bins, Histogram
 from cfepy.reports.noteworthy import event_in, mark_of
-from cfepy.rtos import HOLD, AskingPolicy, Decision, Moment, Policy, Task
+from cfepy.rtos import HOLD, AskingPolicy, Decision, Moment, Move, MoveNumbers, Policy, Task
 from cfepy.sb import Pipe
 
 MOST = 2_000
@@ -176,7 +176,7 @@ class Collector(Observer):
 
     def policy(self, inner: Policy) -> Policy:
         """A policy that decides as another does, and lets each decision that is not fifo's be marked as a switch."""
-        return _SwitchNotes(inner, lambda moment, place: self._mark(SWITCH, _switch_text(moment, place), moment.now))
+        return _SwitchNotes(inner, lambda *switch: self._mark(SWITCH, _switch_text(*switch), switch[0].now))
 
     def _mark(self, kind: str, text: str, at_ns: int) -> None:
         self.mark_counts[kind] = count = self.mark_counts.get(kind, 0) + 1
@@ -195,22 +195,24 @@ class Collector(Observer):
 class _SwitchNotes(AskingPolicy):
     """Asks another policy, and tells of what is not fifo's answer, with the line that was about to go on."""
 
-    def __init__(self, inner: Policy, note: Callable[[Moment, str], None]) -> None:
+    def __init__(self, inner: Policy, note: Callable[[Moment, Move, str], None]) -> None:
         super().__init__(inner)
         self._note = note
+        self._numbers = MoveNumbers()
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`; a policy is asked in the task that gives the processor away, so its stack is there."""
         choice = self._inner.choose(decision)
+        moves = self._numbers.moves(decision)
         if choice:
             place = place_text(sys._getframe(1)) if decision.running else ""
-            self._note(Moment.of(decision, choice), place)
+            self._note(Moment.of(decision, choice), moves[choice - 1], place)
         return choice
 
 
-def _switch_text(moment: Moment, place: str) -> str:
+def _switch_text(moment: Moment, move: Move, place: str) -> str:
     at = f" at {place}" if place else ""
-    number = f"(decision at:{moment.decision}={moment.choice})"
+    number = f"(move {move.text()})"
     if moment.question:
         return f"{moment.instead_of}: {moment.chosen} {number}"
     if moment.chosen == HOLD:

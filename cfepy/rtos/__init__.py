@@ -12,6 +12,7 @@ from cfepy.rtos.cpus import allowed_cpus
 from cfepy.rtos.errors import DeadlockError, InjectedCrash
 from cfepy.rtos.exploring import CallObserver, CallPointKernel, ExploringKernel, make_kernel
 from cfepy.rtos.kernel import ENDLESS, Kernel
+from cfepy.rtos.moves import Move, MoveNumbers, MovePolicy, MovesToMake, plain_name
 from cfepy.rtos.mutex import Mutex
 from cfepy.rtos.points import Points
 from cfepy.rtos.policy import (
@@ -57,6 +58,10 @@ __all__ = [
     "Kernel",
     "LastResort",
     "Moment",
+    "Move",
+    "MoveNumbers",
+    "MovePolicy",
+    "MovesToMake",
     "Mutex",
     "NotingPolicy",
     "Pacer",
@@ -80,4 +85,5 @@ __all__ = [
     "circles",
     "endless",
     "make_kernel",
+    "plain_name",
 ]

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 
 from cfepy import trace as tr
 from cfepy.rtos.kernel import Kernel
+from cfepy.rtos.moves import stable_name
 from cfepy.rtos.points import CALLS, Points
 from cfepy.rtos.policy import Decision, Policy, Question
 from cfepy.rtos.scheduler import SLICE_NS
@@ -207,6 +208,12 @@ class ExploringKernel(Kernel):
             or bool(self._hold_ns and self._next_timer() is not None)
             or bool(self._early and self._starters(task))
         )
+
+    # -- tasks ---------------------------------------------------------------------------------------------------------
+
+    def _enlist(self, task: Task) -> None:
+        task.alias = stable_name(task, self.tasks)
+        super()._enlist(task)
 
     # -- tasks that may start early ----------------------------------------------------------------------------------
 

@@ -97,9 +97,13 @@ class Kernel(Scheduler):
         task = Task(name, ident, entry, priority)
         task.owner = self.current.owner if owner is None else owner
         self.context.create(task, self._main)  # fails where the host has no more threads
-        self.tasks.append(task)
+        self._enlist(task)
         self.make_ready(task, None)
         return task
+
+    def _enlist(self, task: Task) -> None:
+        """It is one of the tasks from now on."""
+        self.tasks.append(task)
 
     @property
     def tasks_made(self) -> int:

@@ -80,6 +80,18 @@ class Decision:
             return list(self.question.answers)
         return [*(task.name for task in self.tasks), *([HOLD] if self.hold else [])]
 
+    @property
+    def alias(self) -> str:
+        """As `subject`, by the name that a task has in moves."""
+        return self.tasks[0].alias if self.question is None else self.question.name
+
+    @property
+    def alias_answers(self) -> list[str]:
+        """As `answers`, tasks by their names in moves."""
+        if self.question is not None:
+            return list(self.question.answers)
+        return [*(task.alias for task in self.tasks), *([HOLD] if self.hold else [])]
+
 
 class Policy:
     """Goes on as fifo would; the base of the others.

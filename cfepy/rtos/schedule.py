@@ -5,6 +5,9 @@
     pct:7:3                 PCT, seed 7, for bugs of depth 3 (`cfepy.rtos.policy.PCT`)
     pct:7:3:5000            the same for runs of about 5000 decisions
     at:42=1,97=2            fifo, but at decision 42 candidate 1, and at decision 97 candidate 2
+    moves:A@650/add.publish=B
+                            fifo, but where A, from 650 ms on, calls publish in its function add, B runs
+                            (`cfepy.rtos.moves`)
 
 Every kind but fifo takes options at its end: `any` (tasks of less urgent priority may run before more urgent ones),
 `hold=500us` (the running task may be held up until the next timer is due, if that is within 500 us), `connect=50ms`
@@ -16,10 +19,11 @@ start of the run; what comes before still counts as decisions).
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from cfepy.rtos.moves import Move, MovePolicy
 from cfepy.rtos.points import Points
 from cfepy.rtos.policy import PCT, Deviations, From, Policy, SeededRandom, Settings
 from cfepy.status import UsageError
@@ -29,8 +33,8 @@ DEPTH = 3  # of PCT, where the text gives none
 STEPS = 1000
 _TIME = re.compile(r"(\d+)(ns|us|ms|s)")
 _FORMS = (
-    "fifo, random:SEED, pct:SEED:DEPTH[:STEPS] or at:DECISION=CHOICE,..., the last three with :any, :hold=500us, "
-    ":connect=50ms, :points=attributes or :from=600ms"
+    "fifo, random:SEED, pct:SEED:DEPTH[:STEPS], moves:TASK@MS/FUNCTION.CALL=TASK,... or at:DECISION=CHOICE,..., all "
+    "but fifo with :any, :hold=500us, :connect=50ms, :points=attributes or :from=600ms"
 )
 
 
@@ -39,11 +43,12 @@ class Schedule:
     """Who runs next, where there is a choice.
 
     Args:
-        kind: "fifo", "random", "pct" or "at".
+        kind: "fifo", "random", "pct", "at" or "moves".
         seed: of random and pct.
         depth: of the bugs pct looks for, at least 1.
         steps: how many decisions pct expects of the run, at least 1.
         deviations: pairs of decision and choice of at, in order.
+        moves: those of moves.
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
@@ -61,6 +66,7 @@ class Schedule:
     connect_ns: int = 0
     points: str = ""
     from_ns: int = 0
+    moves: tuple[Move, ...] = ()
 
     @classmethod
     def parse(cls, text: str, seed: int = 0) -> Schedule:
@@ -86,6 +92,8 @@ class Schedule:
             return replace(found, **_numbers(text, fields))
         if kind == "at" and len(fields) <= 1:
             return replace(found, seed=0, deviations=_deviations(text, fields[0] if fields else ""))
+        if kind == "moves" and len(fields) <= 1:
+            return replace(found, seed=0, moves=_moves(text, fields[0] if fields else ""))
         raise _wrong(text)
 
     def text(self) -> str:
@@ -98,6 +106,8 @@ class Schedule:
             words += [str(self.steps)] if self.steps != STEPS else []
         if self.deviations:
             words.append(",".join(f"{decision}={choice}" for decision, choice in self.deviations))
+        if self.moves:
+            words.append(",".join(move.text() for move in self.moves))
         words += ["any"] if self.any_priority else []
         words += [f"hold={time_word(self.hold_ns)}"] if self.hold_ns else []
         words += [f"connect={time_word(self.connect_ns)}"] if self.connect_ns else []
@@ -120,7 +130,14 @@ class Schedule:
             return SeededRandom(self.seed, *self.settings)
         if self.kind == "pct":
             return PCT(self.seed, self.depth, self.steps, *self.settings)
+        if self.kind == "moves":
+            return MovePolicy(self.moves, self.settings)
         return Deviations(dict(self.deviations), *self.settings)
+
+    @property
+    def is_told(self) -> bool:
+        """Whether it says itself what it does otherwise than fifo, as a shrunk schedule does."""
+        return bool(self.deviations or self.moves)
 
     @property
     def settings(self) -> Settings:
@@ -133,7 +150,14 @@ class Schedule:
         Args:
             deviations: choice by number of the decision, as `NotingPolicy.deviations` has them.
         """
-        return replace(self, kind="at", seed=0, depth=DEPTH, steps=STEPS, deviations=tuple(sorted(deviations.items())))
+        return replace(self._bare("at"), deviations=tuple(sorted(deviations.items())))
+
+    def by_moves(self, moves: Iterable[Move]) -> Schedule:
+        """The schedule that makes some moves and is fifo's otherwise, with this one's options."""
+        return replace(self._bare("moves"), moves=tuple(moves))
+
+    def _bare(self, kind: str) -> Schedule:
+        return replace(self, kind=kind, seed=0, depth=DEPTH, steps=STEPS, deviations=(), moves=())
 
     def with_points(self, points: str) -> Schedule:
         """The same with other points, as `Points.text` has them; fifo without a change of order, if it is fifo."""
@@ -187,6 +211,14 @@ def _deviations(text: str, field: str) -> tuple[tuple[int, int], ...]:
             raise UsageError(f"schedule {text!r}: {wrong}; write for instance at:42=1,97=2", field="--schedule")
         found[int(match[1])] = int(match[2])
     return tuple((decision, choice) for decision, choice in sorted(found.items()) if choice)
+
+
+def _moves(text: str, field: str) -> tuple[Move, ...]:
+    try:
+        return tuple(Move.parse(each) for each in field.split(",")) if field else ()
+    except ValueError as error:
+        wrong = f"{error}; write for instance moves:ARM@650/add.publish=ARM.commands"
+        raise UsageError(f"schedule {text!r}: {wrong}", field="--schedule") from None
 
 
 def _wrong(text: str) -> UsageError:

@@ -59,6 +59,7 @@ class Task:
 
     __slots__ = (
         "__weakref__",
+        "alias",
         "awaits",
         "base_priority",
         "carrier",
@@ -91,6 +92,7 @@ class Task:
 
     def __init__(self, name: str, ident: int, entry: Callable[[], object] | None, priority: int) -> None:
         self.name = name
+        self.alias = name  # what schedules call it
         self.ident = ident
         self.entry = entry
         self.priority = self.base_priority = priority

@@ -13,7 +13,7 @@ from typing import Literal, cast
 import pytest
 from _pytest.runner import runtestprotocol
 
-from cfepy.exploration import Failure, Move, Shrinker, Shrunk, Story, TaskLook, Tried, Verdict, important
+from cfepy.exploration import Failure, MadeMove, Shrinker, Shrunk, Story, TaskLook, Tried, Verdict, budget_of, important
 from cfepy.rtos import DEPTH, STEPS, Points, Policy, Schedule
 from cfepy.status import UsageError
 from cfepy.testing.missions import SECTION, UNDER_TEST, Conditions, Missions
@@ -22,7 +22,6 @@ EXPLORE_MARK = "cfepy_explore"
 """The mark of an explored test; the plugin looks for it before this module is loaded."""
 
 POLICIES = ("random", "pct")
-MOST_PROBES = 200
 FAILED = "test failed"
 
 
@@ -32,7 +31,7 @@ class Exploration:
 
     seeds: int
     kinds: tuple[Schedule, ...]
-    shrink: int
+    shrink: int | None
 
     def schedules(self, count: int | None = None) -> Iterator[Schedule]:
         """So many schedules; fifo comes first, then the kinds take turns, each with a seed of its own."""
@@ -52,7 +51,7 @@ def explore(
     connect: str = "",
     points: str = "",
     start: str = "",
-    shrink: int = MOST_PROBES,
+    shrink: int | None = None,
 ) -> pytest.MarkDecorator:
     """Run a test under many schedules, until it fails under one.
 
@@ -71,7 +70,8 @@ def explore(
         points: where others may get in besides calls: "lines", "attributes" or "calls", in some modules alone as
             "lines:arm,util"; empty for nowhere.
         start: virtual time from the boot until which all is as with fifo, such as "600ms"; empty for none.
-        shrink: how many runs it may take to shrink a schedule; 0 leaves it as it is.
+        shrink: how many runs it may take to shrink a schedule; None for as many as there were until then, 100 to 800; 0
+            leaves it as it is.
 
     Raises:
         UsageError: an argument that cannot be.
@@ -150,6 +150,7 @@ class ExploredTest:
         self._item = item
         self._exploration = exploration
         self._properties = len(item.user_properties)
+        self._flown = 0
         self._last: OneRun
 
     def explore(self, nextitem: pytest.Item | None) -> Sequence[pytest.TestReport]:
@@ -157,6 +158,7 @@ class ExploredTest:
         count = self._item.config.getoption("--cfepy-schedules") or self._exploration.seeds
         for number, schedule in enumerate(self._exploration.schedules(count), 1):
             when = f"under the {number}. of {count} schedules"
+            self._flown = number
             self._last = self._once(Conditions(schedule))
             if self._last.is_done:
                 break
@@ -200,11 +202,12 @@ class ExploredTest:
         """The shortest schedule; None when there is none to look for."""
         recorded = self._last.conditions.recorded
         is_alone = len(recorded) == 1 and recorded[0].moments
-        if not (self._exploration.shrink and is_alone) or self._item.config.getoption("usepdb"):
+        if self._exploration.shrink == 0 or not is_alone or self._item.config.getoption("usepdb"):
             return None
-        return Shrinker(self, schedule, group, self._exploration.shrink).run()
+        budget = budget_of(self._flown) if self._exploration.shrink is None else self._exploration.shrink
+        return Shrinker(self, [schedule], group, budget).run()
 
-    def _timeline(self, schedule: Schedule, moves: Sequence[Move]) -> list[str]:
+    def _timeline(self, schedule: Schedule, moves: Sequence[MadeMove]) -> list[str]:
         """What happens under a schedule, a column for each task that matters; the test is run once more for it."""
         look = TaskLook(self._last.conditions.plans[0].spec())
         policy = look.policy(schedule.policy() or Policy())

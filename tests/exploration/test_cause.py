@@ -20,12 +20,13 @@ from cfepy.exploration.deeds import (
     WRITES,
     Deed,
 )
-from cfepy.exploration.moves import Move
+from cfepy.exploration.moves import MadeMove
 from cfepy.exploration.task_look import AT, PREEMPTED, Row
 from cfepy.exploration.verdict import DEADLOCK, ENDED, RAISED, Failure
+from tests.exploration.made import moved
 
 ENDED_BADLY = Failure(ENDED, "A", "exit status 1")
-NO_MOVES: tuple[Move, ...] = ()
+NO_MOVES: tuple[MadeMove, ...] = ()
 
 
 def deed(text: str) -> Deed:
@@ -39,7 +40,7 @@ def told(
     failing: Sequence[str],
     usual: Sequence[str] = (),
     failure: Failure = ENDED_BADLY,
-    moves: Sequence[Move] = NO_MOVES,
+    moves: Sequence[MadeMove] = NO_MOVES,
     rows: Sequence[Row] = (),
 ) -> str:
     """The cause that deeds tell."""
@@ -136,9 +137,9 @@ def test_a_message_is_lost_that_is_not_lost_under_fifo() -> None:
 
 def test_messages_come_in_another_order_to_an_application_of_the_moves() -> None:
     failing, usual = [f"A|{GETS}|/b|1|P", f"A|{GETS}|/a|1|Q"], [f"A|{GETS}|/a|1|Q", f"A|{GETS}|/b|1|P"]
-    moves = [Move("A", 0, "B"), Move("C", 0, "A")]
+    moves = [moved("A", "B"), moved("C", "A")]
     assert told(failing, usual, moves=moves) == "A got /b before /a; under fifo it gets /a first"
-    assert told(failing, usual, moves=[Move("B", 0, "C"), Move("B", 1, "C")]) == ""
+    assert told(failing, usual, moves=[moved("B", "C"), moved("B", "C")]) == ""
 
 
 def test_a_circle_of_waits_is_told_with_the_names_of_locks() -> None:
@@ -154,6 +155,6 @@ def test_a_circle_of_waits_is_told_with_the_names_of_locks() -> None:
 def test_a_single_switch_is_told_when_there_is_no_other() -> None:
     rows = [Row(0, "A", AT, "a.py:7: go()"), Row(0, "A", PREEMPTED, "B")]
     cause = "B got in while A was at a.py:7; without that one switch it does not fail"
-    assert told([], moves=[Move("A", 0, "B")], rows=rows) == cause
-    assert told([], moves=[Move("A", 0, "B"), Move("B", 0, "A")], rows=rows) == ""
-    assert told([], moves=[Move("A", 0, "B")], rows=rows[1:]) == ""
+    assert told([], moves=[moved("A", "B")], rows=rows) == cause
+    assert told([], moves=[moved("A", "B"), moved("B", "A")], rows=rows) == ""
+    assert told([], moves=[moved("A", "B")], rows=rows[1:]) == ""

@@ -13,7 +13,7 @@ import pytest
 from cfepy.cli import explore as room
 from cfepy.cli.explore.explore import show
 from cfepy.exploration import Expedition, Report, Trial
-from cfepy.exploration.expedition import DEFAULT_PROBES, DEFAULT_SEEDS, FROM_OPERATIONAL
+from cfepy.exploration.expedition import DEFAULT_SEEDS, FROM_OPERATIONAL
 from cfepy.exploration.trial import Tried
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Schedule
@@ -40,7 +40,7 @@ def options() -> argparse.Namespace:
 
 def test_the_command_has_its_defaults() -> None:
     parsed, usual = options(), Expedition(PLAN)
-    assert parsed.shrink == DEFAULT_PROBES
+    assert parsed.shrink is None
     for name in (
         "policy",
         "depth",

@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-from cfepy.exploration.moves import Move
 from cfepy.exploration.task_look import AT, DOES, PREEMPTED, SENDS, WAITS, Row
 from cfepy.exploration.timeline import WIDTH, Story, drawn, important
-from cfepy.rtos.policy import HOLD
+from cfepy.rtos import HOLD
+from tests.exploration.made import moved
 
 
 def test_the_tasks_of_the_last_moves_matter_most() -> None:
-    moves = [Move("A", 0, "B"), Move("B", 0, "C"), Move("C", 1, "D"), Move("D", 0, HOLD)]
+    moves = [moved("A", "B"), moved("B", "C"), moved("C", "D"), moved("D", HOLD)]
     assert important([], moves) == ("D", "C", "B", "A")
-    assert important([], [Move("A", 0, HOLD)]) == ("A",)
+    assert important([], [moved("A", HOLD)]) == ("A",)
 
 
 def test_the_task_in_which_the_failure_showed_matters_most_and_those_that_its_text_names_matter() -> None:
     rows = [Row(number, name, AT, "a.py:1: pass") for number, name in enumerate("FEDCBA")]
-    moves = [Move("A", 0, "B"), Move("B", 0, "C"), Move("C", 1, "D")]
+    moves = [moved("A", "B"), moved("B", "C"), moved("C", "D")]
     assert important(rows, moves, "E", "F has it; and so on") == ("E", "D", "C", "B", "A", "F")
 
 
 def test_who_ran_last_matters_when_there_would_be_one_only_or_one_was_held_up() -> None:
     rows = [Row(number, name, AT, "a.py:1: pass") for number, name in enumerate("ABCDD")]
-    assert important(rows, [Move("A", 0, "A")]) == ("A", "D")
-    assert important(rows, [Move("A", 0, "B")]) == ("B", "A")
-    assert important(rows, [Move("A", 0, HOLD)]) == ("A", "D", "C")
+    assert important(rows, [moved("A", "A")]) == ("A", "D")
+    assert important(rows, [moved("A", "B")]) == ("B", "A")
+    assert important(rows, [moved("A", HOLD)]) == ("A", "D", "C")
 
 
 def test_as_many_tasks_have_a_column_as_fit() -> None:

@@ -18,8 +18,7 @@ from cfepy.pilot import RunPlan, pilot
 from cfepy.reports.collector import Collector
 from cfepy.reports.html_text import json_text, numbers_in
 from cfepy.reports.page import About, page_of
-from cfepy.rtos import NotingPolicy
-from cfepy.rtos.schedule import Schedule
+from cfepy.rtos import Move, NotingPolicy, Schedule
 from tests.mission.flights import write_mission
 from tests.reports import looked_at
 from tests.reports.conftest import Shown
@@ -222,7 +221,7 @@ def test_the_switches_of_a_schedule_are_marked(tmp_path: Path) -> None:
     switches = [mark for mark in collector.marks if mark.kind == "switch"]
     assert [mark.at_ns for mark in switches] == [moment.now for moment in noting.moments]
     for mark, moment in zip(switches, noting.moments, strict=True):
-        assert f"(decision at:{moment.decision}={moment.choice})" in mark.text
+        assert Move.parse(mark.text.partition("(move ")[2][:-1]).chosen in moment.chosen
         assert f"{moment.instead_of} is preempted by {moment.chosen}" in mark.text or not moment.preemption
     assert any("odometer.py:" in mark.text for mark in switches)
     page = page_of(flown, collector, About("", plan.schedule.text(), mission))

@@ -29,7 +29,7 @@ def test_a_race_is_found_and_shrunk_and_found_again(suite: Suite, missions: Path
     result.assert_outcomes(failed=1)
     text = result.stdout.str()
     assert re.search(r"failed under the \d+\. of 60 schedules, random:\d+", text)
-    shortest = re.search(r"the shortest schedule that fails in this way, after \d+ runs: at:(\S+)", text)
+    shortest = re.search(r"the shortest schedule that fails in this way, after \d+ runs: moves:(\S+)", text)
     assert shortest is not None
     assert shortest[1].count("=") <= 3
     assert 1 <= len(re.findall("=== (?:PREEMPTED|NOT FIRST|AFTER)", text)) <= shortest[1].count("=")
@@ -47,11 +47,11 @@ def check_command(text: str, command: str, folder: Path) -> None:
     assert instead[0] == instead[1] != []
 
 
-def check_journal(folder: Path, deviations: str) -> None:
+def check_journal(folder: Path, moves: str) -> None:
     """One journal is kept, that of the shrunk run, and replays."""
     (path,) = folder.iterdir()
     journal = read_journal(path)
-    assert journal.plan.schedule.text() == f"at:{deviations}"
+    assert journal.plan.schedule.text() == f"moves:{moves}"
     assert replay(journal).verdict.same
 
 

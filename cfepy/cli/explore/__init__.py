@@ -13,7 +13,6 @@ from cfepy.cli.options import POINTS_HELP, RUN_OPTIONS, add_json, add_mission, a
 INTENSITIES = ("low", "medium", "high")
 DEFAULT_SEEDS = 100
 MOST_SEEDS = 100_000_000
-MOST_PROBES = 800
 STATUS_HELP = """exit status:
   0    no schedule made the mission fail
   1    a failure was found, or an error in cfepy itself
@@ -149,9 +148,9 @@ def _add_outputs(explore: argparse.ArgumentParser) -> None:
     explore.add_argument(
         "--shrink",
         type=_number_of,
-        default=MOST_PROBES,
         metavar="N",
-        help=f"how many runs shrinking a failure may take; 0 leaves it as it is (default: {MOST_PROBES})",
+        help="how many runs shrinking a failure may take; 0 leaves it as it is (default: as many as there "
+        "were schedules, 100 to 800)",
     )
     explore.add_argument("--quiet", action="store_true", help="show no progress")
 

@@ -15,7 +15,7 @@ from cfepy.cli.table import Table, show_paragraph, show_tables
 from cfepy.ground import CI_PORT, CommandTrial, Dictionary, dictionary_of, packet_of
 from cfepy.io import udp
 from cfepy.msg import Command
-from cfepy.pilot import RunPlan, never_struck, takeoff
+from cfepy.pilot import RunPlan, never_happened, takeoff
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -102,7 +102,7 @@ def _fly(plan: RunPlan, dictionary: Dictionary, declared: Command, packet: bytes
         tell(run.notes)
         trial.run(run.run_until, seconds)
         problems = run.mission.record.deaths()
-        unstruck = never_struck(run.mission)
+        unstruck = never_happened(run.mission)
     print(f"{trial.sent_ns / NS_PER_S:.3f} {declared.name} sent to {', '.join(trial.receivers) or 'nobody'}")
     _say_what_followed(trial, dictionary)
     tell((*problems, *unstruck))

@@ -12,7 +12,7 @@ from cfepy.cli.failures import tell
 from cfepy.cli.options import plan_of
 from cfepy.ground import LOOK_S
 from cfepy.mission import Mission, MissionSpec
-from cfepy.pilot import RunPlan, never_struck, takeoff
+from cfepy.pilot import RunPlan, never_happened, takeoff
 
 
 def survey_plan(arguments: argparse.Namespace) -> tuple[RunPlan, MissionSpec]:
@@ -32,6 +32,6 @@ def surveyed(plan: RunPlan, spec: MissionSpec, attachments: Sequence[Attachment]
     with takeoff(plan, spec=spec, attachments=attachments) as run:
         tell(run.notes)
         run.run_until(run.course.until_ns)
-        problems = [*run.mission.record.deaths(), *never_struck(run.mission)]
+        problems = [*run.mission.record.deaths(), *never_happened(run.mission)]
         yield run.mission
     tell(problems)

@@ -22,7 +22,7 @@ from cfepy.ground import CI_PORT, TO_PORT, Decoded, Dictionary, dictionary_of, p
 from cfepy.io import udp
 from cfepy.mission import MissionSpec, PacketWatch, Seen, find_script, is_node
 from cfepy.msg import TLM_HEADER_SIZE, get_header_size, get_msg_id
-from cfepy.pilot import LiveRun, RunPlan, never_struck, takeoff
+from cfepy.pilot import LiveRun, RunPlan, never_happened, takeoff
 from cfepy.rtos import Stopwatch
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_MS, NS_PER_S
@@ -274,7 +274,10 @@ def _fly(plan: RunPlan, names: list[str], arguments: argparse.Namespace) -> int:
     ):
         tell(run.notes)
         shown = _show_flight(run, seen, output, dictionary, arguments.count)
-        problems, end_s = [*run.mission.record.deaths(), *never_struck(run.mission)], run.mission.kernel.now / NS_PER_S
+        problems, end_s = (
+            [*run.mission.record.deaths(), *never_happened(run.mission)],
+            run.mission.kernel.now / NS_PER_S,
+        )
     tell(problems)
     is_topic = any(name.startswith("/") for name in names)
     hint = "; a topic is sent when somebody subscribes, `cfepy topic echo` shows it in any case" if is_topic else ""

@@ -37,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _story(plan: RunPlan) -> PageStory | None:
     """What happened under a schedule such as `cfepy explore` finds; None for all others, and when nothing failed."""
-    if not plan.schedule.deviations:
+    if not plan.schedule.is_told:
         return None
     from cfepy.exploration import story_of_run
 

@@ -57,7 +57,7 @@ class NodeView(View):
     def end(self, flown: Flown, outputs: Outputs, longer: str) -> int:
         """Print what went wrong apart from the node, and return the node's exit status, or that of the run's script."""
         outputs.save_files(flown)
-        tell(flown.results.never_struck)
+        tell(flown.results.never_happened)
         if flown.outcome is not None:
             print(flown.outcome.text())
         tell([] if flown.stall is None else [flown.stall])

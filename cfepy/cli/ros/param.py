@@ -13,7 +13,7 @@ from cfepy.cli.json_output import write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import plan_of, refuse_run_options
 from cfepy.ground.parameters import Parameters, at_start, changed, is_source_of_files, of_files, present, table_files
-from cfepy.pilot import never_struck, takeoff
+from cfepy.pilot import never_happened, takeoff
 from cfepy.plain_yaml import YamlError, plain_yaml
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
@@ -48,7 +48,7 @@ def _parameters(arguments: argparse.Namespace) -> Parameters:
         with takeoff(plan) as run:
             tell(run.notes)
             run.run_until(run.course.until_ns)
-            tell(never_struck(run.mission))
+            tell(never_happened(run.mission))
             return present(run.mission)
     refuse_run_options(arguments, "is for a mission that flies; say how long, such as --for 5", but=["launch_args"])
     unknown: list[str] = []

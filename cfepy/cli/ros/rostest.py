@@ -222,7 +222,7 @@ class _Runner:
         written = SavedRunFiles(Path("/"), os.path.realpath(test.results.parent))
         with WatchedHost(self._interrupts, self._display) as host:
             flown = fly(run, spec=spec, attachments=[written], console=host.console, host=host)
-        tell(flown.results.never_struck)
+        tell(flown.results.never_happened)
         return self._judged(test, node, suite, flown)
 
     def _display(self, seconds: float) -> Display:

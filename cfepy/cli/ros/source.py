@@ -14,7 +14,7 @@ from cfepy.cli.options import refuse_run_options
 from cfepy.console import Console
 from cfepy.ground import BagReader, header_of, is_bag
 from cfepy.mission import Mission, MissionSpec, TopicMessage, TopicWatch
-from cfepy.pilot import LiveRun, RunPlan, never_struck, takeoff
+from cfepy.pilot import LiveRun, RunPlan, never_happened, takeoff
 from cfepy.units import NS_PER_MS, NS_PER_S
 
 PIECE_NS = 100 * NS_PER_MS
@@ -135,7 +135,7 @@ class FlightSource:
     ) -> None:
         if self._run is None:
             return
-        problems = [*self.mission.record.deaths(), *never_struck(self.mission)]
+        problems = [*self.mission.record.deaths(), *never_happened(self.mission)]
         self._flight.__exit__(kind, error, where)
         tell(problems)
 

@@ -151,7 +151,7 @@ def _nothing() -> None:
 
 def _explain(flown: Flown, longer: str) -> None:
     results, mission = flown.results, flown.mission
-    tell((*results.script_problems, *results.problems, *results.endless_waits, *results.never_struck))
+    tell((*results.script_problems, *results.problems, *results.endless_waits, *results.never_happened))
     if results.script_problems:
         script = mission.spec.script
         tell([f'the console says why, and "cfepy check {script}" what can be seen without running it'])

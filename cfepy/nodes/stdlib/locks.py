@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from cfepy.own_code import called_as
 from cfepy.rtos import FOREVER, TIMEOUT, ExploringKernel, WaitList
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ def _explore(lock: type, kernel: ExploringKernel) -> None:
                 observer.returned(self, name, args, result)
             return result
 
-        return call
+        return called_as(call, name)
 
     changed = {name: observed(name) for name in (*_TAKING, *_GIVING) if name in methods}
     changed |= {name: observed(name, has_point=False) for name in ("__init__", "_is_owned")}

@@ -117,7 +117,7 @@ class Opening:
         lines.append(f"trace: {flown.trace}")
         return Ended(
             lines,
-            [*results.script_problems, *results.problems, *results.endless_waits, *results.never_struck],
+            [*results.script_problems, *results.problems, *results.endless_waits, *results.never_happened],
             self._status(session, flown),
         )
 
