@@ -89,6 +89,7 @@ class Breadth:
         tasks: how many tasks there were under it.
         orders: digests of the runs that differ from each other.
         pct: by depth, how many schedules of PCT there were for bugs of that depth.
+        gaps: functions that touch what others touch, too, with no point between, a line each.
         steps: the most decisions that a run of PCT's had, or was drawn for.
     """
 
@@ -97,6 +98,7 @@ class Breadth:
     orders: set[str] = field(default_factory=set)
     pct: Counter[int] = field(default_factory=Counter)
     steps: int = 1
+    gaps: list[str] = field(default_factory=list)
 
     def take(self, verdict: Verdict) -> None:
         """Another schedule was flown."""
@@ -126,6 +128,11 @@ class Breadth:
         if chances:
             bound = f"PCT's bound for {self.tasks} tasks and {self.steps} points"
             found.append(f"chance that a bug has shown, at least: {', '.join(chances)} ({bound})")
+        if self.gaps:
+            found.append(
+                "accesses with no call between were one step here; --points attributes lets others in between:"
+            )
+            found += [f"  {gap}" for gap in self.gaps]
         return found
 
     def to_dict(self) -> dict[str, object]:
@@ -135,5 +142,6 @@ class Breadth:
             "points": self.points,
             "tasks": self.tasks,
             "steps": self.steps,
+            "gaps": self.gaps,
             "chances": {depth: self.chance(depth) for depth in sorted(self.pct)},
         }

@@ -18,6 +18,7 @@ from typing import Any, TextIO
 from cfepy.exploration.breadth import Breadth, PointCounter
 from cfepy.exploration.campaign import Campaign, Crew, Tally
 from cfepy.exploration.crews import make_crew
+from cfepy.exploration.gaps import gaps_of
 from cfepy.exploration.progress import make_progress
 from cfepy.exploration.results_file import ResultsFile
 from cfepy.exploration.search import SeededSearch, SystematicSearch, make_search
@@ -224,6 +225,8 @@ class Expedition:
         report = Report(trial, reference, tally, findings.troubles, notes=notes, breadth=breadth)
         for finding in findings.all():
             report.findings.append(self._told(trial, finding, tally))
+        if not report.findings and not tally.interrupted and not has_stalled and not self.points:
+            breadth.gaps = gaps_of(bare, options)
         return report
 
     def _options(self) -> Schedule:

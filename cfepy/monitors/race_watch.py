@@ -86,9 +86,14 @@ class _Place:
 
 
 class RaceWatch(Attachment):
-    """Finds the races of a run, and tells the mission's record of them. It wants a kernel that explores."""
+    """Finds the races of a run, and tells the mission's record of them. It wants a kernel that explores.
+
+    Attributes:
+        racing: the numbers of the objects, and the keys, that were raced for.
+    """
 
     def __init__(self) -> None:
+        self.racing: set[tuple[int, str]] = set()
         self._clocks = VectorClocks()
         self._things: dict[int, dict[str, _Place]] = {}
         self._inner: set[int] = set()  # numbers of locks that order nothing
@@ -264,6 +269,7 @@ class RaceWatch(Attachment):
         return tuple(found)
 
     def _found(self, before: _Seen, now: _Seen) -> None:
+        self.racing |= {(each.touch.thing, each.touch.key) for each in (before, now)}
         name = " or ".join(sorted({before.touch.name, now.touch.name}))
         if name in self._told:
             return

@@ -14,7 +14,7 @@ from cfepy.rtos.exploring import CallObserver, CallPointKernel, ExploringKernel,
 from cfepy.rtos.kernel import ENDLESS, Kernel
 from cfepy.rtos.moves import Move, MoveNumbers, MovePolicy, MovesToMake, plain_name
 from cfepy.rtos.mutex import Mutex
-from cfepy.rtos.points import Points
+from cfepy.rtos.points import CALLS, Points
 from cfepy.rtos.policy import (
     HOLD,
     PCT,
@@ -37,6 +37,7 @@ from cfepy.rtos.wait_graph import Wait, circles, endless
 from cfepy.rtos.watchdog import STALL_S, LastResort, StallWatch
 
 __all__ = [
+    "CALLS",
     "DEPTH",
     "EMPTY",
     "ENDLESS",

@@ -322,6 +322,7 @@ class CallPointKernel(ExploringKernel):
 
     Attributes:
         entered: tasks that have called, until somebody takes them out.
+        passed: how many calls there were.
     """
 
     def __init__(
@@ -335,13 +336,16 @@ class CallPointKernel(ExploringKernel):
     ) -> None:
         super().__init__(context, trace, policy, tick_ns, switch_cost_ns, seed)
         self.entered: dict[Task, bool] = {}
+        self.passed = 0
 
     def point(self) -> None:
         """See `ExploringKernel.point`."""
+        self.passed += 1
         self.entered[self.current] = True
         super().point()
 
     def charge(self, duration_ns: int) -> None:
         """See `Scheduler.charge`."""
+        self.passed += 1
         self.entered[self.current] = True
         super().charge(duration_ns)

@@ -178,3 +178,12 @@ def test_a_command_line_has_points(plan_of: Plans, capsys: pytest.CaptureFixture
     assert main(["explore", *words, "--for", "1", "--points", "lines:", "--quiet"]) == 2
     assert "'' is no module; write for instance lines:arm,util" in capsys.readouterr().err
     assert main(["run", *words, "--for", "1", "--points", "lines:counter", "--quiet"]) == 0
+
+
+@pytest.mark.slow
+def test_what_no_schedule_looked_at_is_told(plan_of: Plans) -> None:
+    plan = plan_of("counter", COUNTER)
+    assert explored(plan, "", 2).breadth.gaps == ["Counter.add (counter.py:14): Counter.n"]
+    guarded = COUNTER.replace("self.n = self.n + 1", "with lock: self.n = self.n + 1")
+    guarded = guarded.replace("    class Counter", "    lock = threading.Lock()\n\n\n    class Counter")
+    assert explored(plan_of("counter", guarded), "", 2).breadth.gaps == []
