@@ -27,7 +27,9 @@ STARTS = 3  # failing schedules that are shrunk, the shortest ones
 SUBSETS_OF = 6  # moves of which all subsets are flown
 REACH = 64  # how many decisions a move is tried later
 SINGLES = 200  # how many single moves are tried
-AROUND = 30  # how many decisions before and after two moves one is tried in their place
+MERGED = (2, 3)  # how many moves are replaced by one
+AROUND = 30  # how many decisions before and after them that is looked for
+CANDIDATES = 25  # how many such moves are tried
 TENTH_NS = NS_PER_S // 10
 
 Moves = tuple[Move, ...]
@@ -191,13 +193,15 @@ class Shrinker(Generic[T]):
         return next(self._tries(((move,) for move in ones), best), best)
 
     def _merged(self, best: _Flight) -> _Flight:
-        """One move in the place of two that follow each other."""
-        for at in range(len(best.made) - 1):
-            kept = (*best.moves[:at], *best.moves[at + 2 :])
+        """One move in the place of two or three that follow each other."""
+        pieces = [(at, size) for size in MERGED for at in range(len(best.made) - size + 1)]
+        for at, size in pieces:
+            kept = (*best.moves[:at], *best.moves[at + size :])
             if self.probes >= self._limit:
                 break
             without = self._flight(kept, best.options)
-            candidates = ((*kept[:at], move, *kept[at:]) for move in _between(best, without, at))
+            near = islice(_between(best, without, at, size), CANDIDATES)
+            candidates = ((*kept[:at], move, *kept[at:]) for move in near)
             found = without if without.fails else next(self._tries(candidates, best), None)
             if found is not None:
                 return self._merged(self._with_less(found))
@@ -316,13 +320,19 @@ def _single_moves(fifo: _Flight, at_ns: int | None, names: set[str]) -> Iterator
             yield from _among(choice, names)
 
 
-def _between(best: _Flight, without: _Flight, at: int) -> Iterator[Move]:
-    """Moves that might do what two do, near their places, in a run without the two."""
+def _between(best: _Flight, without: _Flight, at: int, size: int) -> list[Move]:
+    """Moves that might do what some do, near their places, in a run without these; those at like places first."""
     least = 0 if not at else best.made[at - 1].decision + 1
-    first, last = best.made[at].decision, best.made[at + 1].decision
-    places = range(max(least, first - AROUND), min(last + AROUND, len(without.choices)))
-    for place in sorted(places, key=lambda place: min(abs(place - first), abs(place - last))):
-        yield from _among(without.choices[place], _names(best))
+    replaced = [made.decision for made in best.made[at : at + size]]
+    places = range(max(least, replaced[0] - AROUND), min(replaced[-1] + AROUND, len(without.choices)))
+    moves = [(move, place) for place in places for move in _among(without.choices[place], _names(best))]
+    like = {(move.subject, move.place) for move in best.moves}
+
+    def rank(found: tuple[Move, int]) -> tuple[bool, int]:
+        move, place = found
+        return (move.subject, move.place) not in like, min(abs(place - each) for each in replaced)
+
+    return [move for move, _ in sorted(moves, key=rank)]
 
 
 def _among(choice: Choice, names: set[str]) -> Iterator[Move]:

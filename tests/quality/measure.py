@@ -146,8 +146,8 @@ def find(trial: Trial, policy: str, most: int = LONGEST) -> Verdict | None:
     return None
 
 
-def simplest(trial: Trial, policy: str) -> Verdict | None:
-    """Of the runs that `cfepy explore` would have made, the failure with the fewest preemptions."""
+def simplest(trial: Trial, policy: str) -> list[Verdict]:
+    """Of the runs that `cfepy explore` would have made, those that show the first failure with few preemptions."""
     (hunt,) = hunts(trial, policy, 1)
     findings = Findings(trial.run(Schedule()))
     for number in range(LONGEST):
@@ -157,7 +157,7 @@ def simplest(trial: Trial, policy: str) -> Verdict | None:
         findings.take(number, verdict)
         if findings.all() and number >= SHOWN:
             break
-    return findings.all()[0].simplest if findings.all() else None
+    return findings.all()[0].simplest if findings.all() else []
 
 
 def as_deviations(verdict: Verdict) -> Schedule:

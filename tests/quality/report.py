@@ -105,9 +105,9 @@ def _cell(job: tuple[str, str, int]) -> tuple[str, str, dict[str, Any]]:
 def _shrink(job: tuple[str, str]) -> tuple[str, str, dict[str, Any]]:
     name, policy = job
     bug = by_name(name)
-    verdict = simplest(reference_trial(bug.folder), policy)
-    assert verdict is not None, f"{policy} does not find {name}"
-    return name, SHRUNK, shrunk(bug, verdict).to_dict()
+    verdicts = simplest(reference_trial(bug.folder), policy)
+    assert verdicts, f"{policy} does not find {name}"
+    return name, SHRUNK, shrunk(bug, verdicts).to_dict()
 
 
 def _text(column: str, found: dict[str, Any]) -> str:

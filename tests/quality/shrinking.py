@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from cfepy.exploration.shrink import Shrinker
+from cfepy.exploration.expedition import DEFAULT_SEEDS
+from cfepy.exploration.shrink import Shrinker, budget_of
 from cfepy.exploration.verdict import Verdict
 from tests.quality.bugs import Bug, reference_trial
 
@@ -34,15 +35,16 @@ class Shrunk:
         return asdict(self)
 
 
-def shrunk(bug: Bug, verdict: Verdict) -> Shrunk:
-    """Shrink a schedule.
+def shrunk(bug: Bug, verdicts: list[Verdict]) -> Shrunk:
+    """Shrink as `cfepy explore` does it.
 
     Args:
         bug: that it shows.
-        verdict: on this schedule.
+        verdicts: on failing schedules, the shortest first.
     """
     trial = reference_trial(bug.folder)
-    found = Shrinker(trial, verdict.schedule, verdict.groups[0]).run()
-    assert found is not None, f"{verdict.schedule} does not show {bug.name} again"
+    schedules = [verdict.schedule for verdict in verdicts]
+    found = Shrinker(trial, schedules, verdicts[0].groups[0], budget_of(DEFAULT_SEEDS)).run()
+    assert found is not None, f"{schedules[0]} does not show {bug.name} again"
     preemptions = sum(move.preempts for move in found.moves)
     return Shrunk(preemptions, len(found.moves) - preemptions, found.probes, found.verdict.schedule.text())

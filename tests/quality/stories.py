@@ -54,9 +54,9 @@ def write(names: list[str]) -> None:
         schedule = stories[bug.name].schedule if bug.name in stories else load()[bug.name]["shrunk"]["schedule"]
         story = told(bug, schedule)
         if story is None:
-            verdict = simplest(reference_trial(bug.folder), shown_by(load(), bug.name))
-            assert verdict is not None
-            schedule = shrunk(bug, verdict).schedule
+            verdicts = simplest(reference_trial(bug.folder), shown_by(load(), bug.name))
+            assert verdicts
+            schedule = shrunk(bug, verdicts).schedule
             story = told(bug, schedule)
         assert story is not None
         stories[bug.name] = Story(schedule, story.cause)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import pytest
 
+from cfepy.exploration.shrink import SUBSETS_OF
 from cfepy.exploration.stuck import waits_of
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import Verdict
@@ -82,12 +84,16 @@ def test_mended_it_never_fails(bug: Bug, policy: str, tmp_path: Path) -> None:
 
 def shrinks(bug: Bug) -> None:
     """What shrinking leaves fails in the same way, on both contexts."""
-    verdict = simplest(reference_trial(bug.folder), shown_by(load(), bug.name))
-    assert verdict is not None
-    small = shrunk(bug, verdict)
+    verdicts = simplest(reference_trial(bug.folder), shown_by(load(), bug.name))
+    assert verdicts
+    small = shrunk(bug, verdicts)
     assert small.preemptions <= bug.preemptions
+    schedule, group = Schedule.parse(small.schedule), verdicts[0].groups[0]
     for tasks in ("greenlet", "thread"):
-        assert verdict.groups[0] in reference_trial(bug.folder, tasks).run(Schedule.parse(small.schedule)).groups
+        assert group in reference_trial(bug.folder, tasks).run(schedule).groups
+    for size in range(len(schedule.moves) if len(schedule.moves) <= SUBSETS_OF else 0):
+        for subset in combinations(schedule.moves, size):
+            assert group not in reference_trial(bug.folder).run(schedule.by_moves(subset)).groups
 
 
 @pytest.mark.parametrize("name", SHRUNK_HERE)
