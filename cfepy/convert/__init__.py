@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from cfepy.convert.check import RULES, CheckReport, Level, check_program, programs_of, sarif_of
     from cfepy.convert.conversion import converted, task_of
     from cfepy.convert.flight import build_for_flight
+    from cfepy.convert.google_test import TEST_RESULTS
     from cfepy.convert.messages import Profile
     from cfepy.convert.output import write_files
     from cfepy.convert.packages import Program
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "RULES",
+    "TEST_RESULTS",
     "CheckReport",
     "Level",
     "Profile",
@@ -48,6 +50,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".check": ("RULES", "CheckReport", "Level", "check_program", "programs_of", "sarif_of"),
             ".conversion": ("converted", "task_of"),
             ".flight": ("build_for_flight",),
+            ".google_test": ("TEST_RESULTS",),
             ".messages": ("Profile",),
             ".output": ("write_files",),
             ".packages": ("Program",),

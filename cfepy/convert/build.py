@@ -209,6 +209,7 @@ class NodeBuild:
         header = library_folder() / "include/roscfe/node.h"
         around = known if entry.nodelet else _digest(header.read_bytes())
         units.append(CompileUnit(start, flags, includes, _digest(entry.text(), around)))
+        units += [self._support(each, flags, includes) for each in program.support]
         core = core_key(self._options, self._real_boost, self._types, self.sources.contents)
         key = _digest(core, *link_flags(self._options.profile), *(each.key for each in units))
         made = _folder() / f"{entry.app.lower()}-{key}.so"
@@ -220,6 +221,12 @@ class NodeBuild:
             warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
         told = [warnings.read_text(encoding="utf-8")] if warnings.is_file() else []
         return BuiltNode(made, entry.symbol, self.sources, self.types, list(filter(None, told)))
+
+    def _support(self, source: Path, flags: Sequence[str], includes: Sequence[Path]) -> CompileUnit:
+        """A source of a library that is compiled with the program: it stays as it is when the program changes."""
+        known = collect([source], includes).contents
+        defined = [f"-D{each}" for each in self._program.definitions if each.startswith("GTEST_")]
+        return CompileUnit(source, [*flags, *defined], includes, _digest(*known.values()), needs_cfe=True)
 
 
 # -- the library -------------------------------------------------------------------------------------------------------

@@ -13,10 +13,11 @@ from cfepy.c import CompilerError
 from cfepy.convert.build import BuildOptions, build_node, provided_packages
 from cfepy.convert.capacities import capacities_of
 from cfepy.convert.entry import NodeEntry, parameter_rows
+from cfepy.convert.google_test import add_google_test, uses_google_test
 from cfepy.convert.messages import Profile
 from cfepy.convert.names import resolved
 from cfepy.convert.packages import program_of, read_package
-from cfepy.convert.sources import main_form
+from cfepy.convert.sources import collect, main_form
 from cfepy.mission import CppNodesConfig
 from cfepy.nodes import CppNode
 from cfepy.status import UsageError
@@ -47,7 +48,12 @@ def build_for_flight(
     config = config or CppNodesConfig()
     packages = Packages(node.near, node.env)
     package = read_package(node.folders[0], node.package)
+    if node.type not in (*package.executables(), *package.nodelets()):
+        package = read_package(node.folders[0], node.package, testing=True)
     program = program_of(package, node.type, packages, provided_packages())
+    missing = collect(program.sources, program.includes).missing
+    if uses_google_test(missing):
+        add_google_test(program, missing)
     name = node.full_name
 
     def in_graph(one: str) -> str:

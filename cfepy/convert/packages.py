@@ -122,6 +122,7 @@ class Program:
         definitions: the compiler's -D, without -D.
         outside: libraries that it is linked with and that have no sources here, as written.
         nodelet: the class of C++ that it is, such as "demo::Filter"; empty for a program.
+        support: sources of a library that is compiled with it, which has nothing of the program's in it.
     """
 
     package: CppPackage
@@ -131,14 +132,16 @@ class Program:
     definitions: list[str] = field(default_factory=list)
     outside: list[str] = field(default_factory=list)
     nodelet: str = ""
+    support: list[Path] = field(default_factory=list)
 
 
-def read_package(folder: Path, name: str) -> CppPackage:
+def read_package(folder: Path, name: str, testing: bool = False) -> CppPackage:
     """Read a package.
 
     Args:
         folder: where its package.xml is.
         name: of the package.
+        testing: whether its tests are among its targets, as with catkin's CATKIN_ENABLE_TESTING.
 
     Returns:
         What it has; nothing of C++ when it has no CMakeLists.txt.
@@ -148,7 +151,7 @@ def read_package(folder: Path, name: str) -> CppPackage:
     package.depends = _depends(manifest)
     file = folder / FILE
     if file.is_file():
-        _CatkinReader(package, folder).read(file)
+        _CatkinReader(package, folder, _TESTING if testing else None).read(file)
     for plugin in _plugins(manifest, folder):
         package.plugins[plugin.name] = plugin
     return package
@@ -285,6 +288,23 @@ _DECLARATION = re.compile(rb"^\s*<\?xml.*?\?>", re.DOTALL)
 # -- CMakeLists.txt ----------------------------------------------------------------------------------------------------
 
 
+_TESTING = {
+    "CATKIN_ENABLE_TESTING": ["1"],
+    "GTEST_FOUND": ["1"],
+    "GTEST_LIBRARIES": ["gtest"],
+    "GTEST_MAIN_LIBRARIES": ["gtest_main"],
+    "GMOCK_LIBRARIES": ["gmock"],
+    "GMOCK_MAIN_LIBRARIES": ["gmock_main"],
+}
+_TESTS = (
+    "catkin_add_gtest",
+    "catkin_add_gmock",
+    "catkin_add_executable_with_gtest",
+    "catkin_add_executable_with_gmock",
+)
+_ROSTESTS = ("add_rostest_gtest", "add_rostest_gmock")
+
+
 class _CatkinReader(CMakeScript):
     """Reads the CMakeLists.txt of a package, and those of its subfolders.
 
@@ -303,6 +323,7 @@ class _CatkinReader(CMakeScript):
         known |= {"CMAKE_CURRENT_SOURCE_DIR": here, "CMAKE_CURRENT_LIST_DIR": here}
         super().__init__(folder, known)
         self._package = package
+        self._tests = "CATKIN_ENABLE_TESTING" in known
         self._includes: list[Path] = []
         self._definitions: list[str] = []
         self._made: list[CppTarget] = []
@@ -329,6 +350,10 @@ class _CatkinReader(CMakeScript):
                 self._add(target, sources, is_library=False)
             case "add_library" | "cs_add_library" | "rosbuild_add_library", [target, *sources]:
                 self._add(target, sources, is_library=True)
+            case _, [target, *sources] if name in _TESTS and self._tests:
+                self._add(target, sources, is_library=False)
+            case _, [target, _, *sources] if name in _ROSTESTS and self._tests:
+                self._add(target, sources, is_library=False)
             case "add_subdirectory", [inner, *_] if (self.folder / inner / FILE).is_file():
                 reader = _CatkinReader(self._package, self.folder / inner, self.variables)
                 reader.read(self.folder / inner / FILE)

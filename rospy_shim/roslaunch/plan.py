@@ -180,6 +180,7 @@ class PlannedTest:
     retry: int
     results: Path  # where the test writes what came of it
     problem: str = ""  # why it has no node
+    compiled: CppNode | None = None  # its node, if it is in C++
 
 
 @dataclass(slots=True)
@@ -419,10 +420,11 @@ class Planner:
         try:
             config = self.config(replace(node, required=True), (f"--gtest_output=xml:{results}",))
         except ScriptError as error:
+            folders = compiled_folders(self._packages, node.package, node.type) if self._with_compiled else ()
+            if folders:
+                program = self._compiled(replace(node, required=True), folders)
+                return PlannedTest(node.package, name, None, limit, test.retry, results, compiled=program)
             why = str(error)
-            if compiled_folders(self._packages, node.package, node.type):
-                what = f"{node.package}/{node.type} is a test in C++"
-                why = f"{what}; GoogleTest has no cFE build: write it in Python [gtest]"
             text = f"test {name} cannot run here: {why}"
             remarks.append(LaunchRemark(text, node.file, node.line, not error.is_there, before_runs=False))
             return PlannedTest(node.package, name, None, limit, test.retry, results, why)

@@ -143,19 +143,6 @@ def test_symbols_that_nodes_would_share_are_found(tmp_path: Path) -> None:
         unique_symbols(source)
 
 
-def test_a_test_in_cpp_is_refused_with_the_rule(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    (package / "test").mkdir(exist_ok=True)
-    cmake = package / "CMakeLists.txt"
-    cmake.write_text(cmake.read_text() + "\nadd_rostest_gtest(words_test test/words.test test/words_test.cpp)\n")
-    (package / "test/words_test.cpp").write_text("#include <gtest/gtest.h>\n")
-    (package / "test/words.test").write_text(
-        '<launch><test test-name="words" pkg="ping" type="words_test" time-limit="5"/></launch>\n'
-    )
-    assert main(["rostest", str(package / "test/words.test")]) == 1
-    shown = capfd.readouterr().out
-    assert "ping/words_test is a test in C++; GoogleTest has no cFE build: write it in Python [gtest]" in shown
-
-
 def test_another_type_in_python_is_told_once(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     source = package / "src/sender.cpp"
     (package / "launch/both.launch").write_text(

@@ -19,9 +19,10 @@ from cfepy.cli.options import launch_words
 from cfepy.cli.options import plan_of as run_plan_of
 from cfepy.cli.ros.view import NodesDisplay
 from cfepy.cli.run.outputs import SavedRunFiles
+from cfepy.convert import TEST_RESULTS
 from cfepy.markup import printable
-from cfepy.mission import BuiltProgram, built_programs, launch_file, spec_of
-from cfepy.nodes import NodeConfig
+from cfepy.mission import BuiltProgram, CppNodesConfig, NodeBuilder, built_programs, launch_file, spec_of
+from cfepy.nodes import CppNode, NodeConfig
 from cfepy.pilot import LAUNCH, Flown, builder, fly
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -159,12 +160,13 @@ def run(arguments: argparse.Namespace) -> int:
         plan = plan_of(file, args, environ, cwd=Path.cwd(), results=results, with_compiled=True)
         if not plan.tests:
             raise UsageError("has no <test>; `cfepy launch` runs what it has", file=file)
-        built, left_out = built_programs(plan, builder(arguments.cpp_nodes))
+        build = builder(arguments.cpp_nodes)
+        built, left_out = built_programs(plan, build)
         tell([*plan.notes, *left_out])
         tests = TestResults()
         for test in plan.tests:
             if not interrupts.asked:
-                tests.add(_Runner(file, plan, built, arguments, interrupts).run(test))
+                tests.add(_Runner(file, plan, built, build, arguments, interrupts).run(test))
     print(tests.text())
     if arguments.results is not None:
         with writing(arguments.results, "--results"):
@@ -181,6 +183,7 @@ class _Runner:
         file: the launch file.
         plan: what is in it (`rospy_shim.roslaunch.plan.LaunchPlan`).
         built: its nodes in C++.
+        build: builds tests in C++.
         arguments: of the command line.
         interrupts: says whether the user pressed Ctrl-C.
     """
@@ -190,11 +193,13 @@ class _Runner:
         file: Path,
         plan: LaunchPlan,
         built: Mapping[str, BuiltProgram],
+        build: NodeBuilder,
         arguments: argparse.Namespace,
         interrupts: Interrupts,
     ) -> None:
         self._file = file
         self._built = built
+        self._build = build
         self._plan = plan
         self._arguments = arguments
         self._interrupts = interrupts
@@ -212,18 +217,37 @@ class _Runner:
     def _once(self, test: PlannedTest, number: int = 0) -> TestResults:
         """A run of a test; that of a retry has another seed, for with the same one it would be the same run."""
         suite = f"{test.package}.{test.test_name}"
-        if test.node is None:
+        nodes, built = dict(self._plan.nodes), dict(self._built)
+        if test.compiled is not None:
+            try:
+                built[test.compiled.app] = self._program(test.compiled)
+            except UsageError as error:
+                return broken(suite, "can_run_here", f"the test cannot be built: {error}")
+            node = built[test.compiled.app].config
+        elif test.node is not None:
+            node = nodes[test.node.app] = test.node
+        else:
             return broken(suite, "can_run_here", test.problem)
-        node, seconds = test.node, test.time_limit_ns / NS_PER_S
+        seconds = test.time_limit_ns / NS_PER_S
         run = replace(run_plan_of(self._arguments, [str(self._file)], LAUNCH), seconds=seconds)
         run = replace(run, seed=run.seed + number)
-        nodes = {**self._plan.nodes, node.app: node}
-        spec = run.with_played_bag(replace(spec_of(self._file, nodes, self._plan.params, (), self._built), board=BOARD))
+        spec = run.with_played_bag(replace(spec_of(self._file, nodes, self._plan.params, (), built), board=BOARD))
         written = SavedRunFiles(Path("/"), os.path.realpath(test.results.parent))
         with WatchedHost(self._interrupts, self._display) as host:
             flown = fly(run, spec=spec, attachments=[written], console=host.console, host=host)
         tell(flown.results.never_happened)
+        if test.compiled is not None:
+            _keep_results(test, flown)
         return self._judged(test, node, suite, flown)
+
+    def _program(self, node: CppNode) -> BuiltProgram:
+        """A test in C++, built.
+
+        Raises:
+            UsageError: it cannot be built.
+        """
+        others = [f"/{each.name}" for each in self._plan.nodes.values()] + [each.name for each in self._built.values()]
+        return BuiltProgram(node.full_name, *self._build(node, self._plan.params, others, CppNodesConfig()), node)
 
     def _display(self, seconds: float) -> Display:
         return NodesDisplay(PlainDisplay(sys.stdout)) if self._arguments.text else SilentDisplay()
@@ -231,6 +255,9 @@ class _Runner:
     def _judged(self, test: PlannedTest, node: NodeConfig, suite: str, flown: Flown) -> TestResults:
         """What the test wrote; without that, why it wrote nothing."""
         ros = flown.mission.ros
+        died = [each for each in flown.results.problems if each.startswith(f"{node.app} died")]
+        if died:  # a node in C++; one in Python ends with an exit status
+            return broken(suite, "test_ran", f"{died[0]}{_last_lines(node, flown)}")
         if ros is None or node.app not in ros.monitor.statuses:
             limit = f"{test.time_limit_ns / NS_PER_S:g} virtual seconds"
             text = f"did not end in its {limit}; give it more (time-limit), or look why"
@@ -243,8 +270,16 @@ class _Runner:
             return broken(suite, "test_ran", f"the test node {why}, exit status {status}{_last_lines(node, flown)}")
 
 
+def _keep_results(test: PlannedTest, flown: Flown) -> None:
+    """What a test in C++ has written is in the mission's own files: put it where it was to write."""
+    assert test.compiled is not None
+    file = flown.mission.files.find(TEST_RESULTS)
+    if file is not None:
+        test.results.write_bytes(file.data)
+
+
 def _last_lines(node: NodeConfig, flown: Flown) -> str:
     """The end of what the test node printed."""
-    begins = f"[{node.name}] "
-    lines = [line.removeprefix(begins) for line in flown.mission.console.lines if line.startswith(begins)]
+    begins = (f"[{node.name}] ", f"[/{node.name}] ")  # of a node in C++
+    lines = [line.partition("] ")[2] for line in flown.mission.console.lines if line.startswith(begins)]
     return "".join(f"\n| {line}" for line in lines[-LAST_LINES:])

@@ -75,8 +75,8 @@ RULES: dict[str, CheckRule] = {
         CheckRule(
             *("gtest", _E, _E, _E),
             "a test program of GoogleTest",
-            "GoogleTest has no cFE build: it ends its process, and writes its results to a file of the computer",
-            "write the test in Python, with rostest or pytest; what it tests may be C++",
+            "a test is no part of what flies: it is flown on cfepy, with GoogleTest of the computer",
+            "leave it where it is; `cfepy rostest` runs it",
         ),
         CheckRule(
             *("ros-library", _E, _E, _E),

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.marked_yaml import Mistakes
 from cfepy.mission import CppNodesConfig, CppNodesError, sources
+from cfepy.nodes import CppNode
 from cfepy.pilot.check.problem import MissionProblem, problem_of
 from cfepy.pilot.plan import built_node
 from cfepy.status import UsageError
@@ -65,14 +66,19 @@ def check_launch(
     found += [MissionProblem(each.file, each.line, each.text, not each.is_error) for each in plan.remarks]
     found += _built(plan, config or CppNodesConfig())
     scripts = _scripts_of(plan)
-    if alone and not scripts and not plan.compiled and all(each.is_warning for each in found):
+    if alone and not scripts and not plan.compiled and not _tests_of(plan) and all(each.is_warning for each in found):
         found.append(MissionProblem(file, 0, "has no node that can run here"))
     return found, scripts
 
 
+def _tests_of(plan: LaunchPlan) -> list[CppNode]:
+    """The tests in C++."""
+    return [test.compiled for test in plan.tests if test.compiled is not None]
+
+
 def _built(plan: LaunchPlan, config: CppNodesConfig) -> Iterator[MissionProblem]:
     """Build the nodes in C++; one that cannot be built is left out of a run, unless it is required."""
-    for node in plan.compiled.values():
+    for node in (*plan.compiled.values(), *_tests_of(plan)):
         try:
             built_node(node, plan.params, (), config)
         except CppNodesError:

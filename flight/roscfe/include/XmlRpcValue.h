@@ -99,8 +99,11 @@ class XmlRpcValue
             array.resize(static_cast<std::size_t>(size));
         }
     }
-    bool hasMember(const char *name) const { return getType() == TypeStruct && member(as<ValueStruct>(), name) != nullptr; }
-    bool hasMember(const std::string &name) const { return getType() == TypeStruct && as<ValueStruct>().count(name) > 0; }
+    bool hasMember(const char *name) const
+    {
+        return getType() == TypeStruct && member(as<ValueStruct>(), name) != nullptr;
+    }
+    bool hasMember(const std::string &name) const { return hasMember(name.c_str()); }
 
     XmlRpcValue &operator[](int index)
     {

@@ -1,5 +1,6 @@
 // Time and timers: the clock below OS_GetLocalTime, and waiting, which takes the node's messages over meanwhile.
 #include <algorithm>
+#include <chrono>
 
 #include "internal.h"
 #include "ros/time.h"
@@ -273,3 +274,24 @@ int __wrap_clock_gettime(clockid_t, struct timespec *time)
 }
 
 } // extern "C"
+
+// -- std::chrono's clocks, which libstdc++ would ask the computer for: these have the names of its functions ------------
+
+namespace roscfe
+{
+
+std::chrono::system_clock::time_point system_clock_now() noexcept __asm__("_ZNSt6chrono3_V212system_clock3nowEv");
+std::chrono::steady_clock::time_point steady_clock_now() noexcept __asm__("_ZNSt6chrono3_V212steady_clock3nowEv");
+
+std::chrono::system_clock::time_point system_clock_now() noexcept
+{
+    const std::chrono::nanoseconds now(now_ns());
+    return std::chrono::system_clock::time_point(std::chrono::duration_cast<std::chrono::system_clock::duration>(now));
+}
+
+std::chrono::steady_clock::time_point steady_clock_now() noexcept
+{
+    return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(now_ns()));
+}
+
+} // namespace roscfe
