@@ -124,6 +124,7 @@ class Accesses:
         self._point = kernel.point if isinstance(kernel, ExploringKernel) else None
         self._loading: dict[Task, int] = {}  # tasks that execute the body of a module
         self._covered: dict[str, bool] = {}
+        self._local: dict[type, bool] = {}
         self._numbers = ThingNumbers()
         self._modules: dict[int, str] = {}  # by number of their variables
         self._held: dict[tuple[int, int], tuple[Any, ...]] = {}
@@ -276,8 +277,8 @@ class Accesses:
             if owner is None or not owner.__flags__ & _HEAP_TYPE or _is_code(vars(owner).get(name)):
                 return None
             return self._numbers.of(owner), name
-        if any(each.__name__ == "_local" and each.__module__ == "_thread" for each in kind.__mro__):
-            return None  # `threading.local`: each thread has attributes of its own
+        if self._is_local(kind):
+            return None
         owner = _class_with(kind, name)
         if owner is None:
             return self._numbers.of(thing), name
@@ -289,6 +290,14 @@ class Accesses:
         if is_write or name in _variables(thing):
             return self._numbers.of(thing), name
         return None if _is_code(value) else (self._numbers.of(owner), name)
+
+    def _is_local(self, kind: type) -> bool:
+        """Whether objects of a class are `threading.local`, of which each thread has attributes of its own."""
+        found = self._local.get(kind)
+        if found is None:
+            found = any(each.__name__ == "_local" and each.__module__ == "_thread" for each in kind.__mro__)
+            self._local[kind] = found
+        return found
 
     def _name_of(self, thing: Any, name: str) -> str:
         if type(thing) is ModuleType:
