@@ -225,7 +225,7 @@ def refuse_run_options(arguments: argparse.Namespace, why: str, but: Sequence[st
     from cfepy.status import UsageError
 
     for name, (option, usual) in _USUAL.items():
-        if name not in but and getattr(arguments, name, usual) not in (usual, []):
+        if name not in but and getattr(arguments, name, usual) not in (usual, [], ""):
             raise UsageError(why, field=option)
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from cfepy.exploration.expedition import DEFAULT_SEEDS, Expedition, Report, Told
     from cfepy.exploration.failures import TracebackReader
     from cfepy.exploration.moves import MadeMove
+    from cfepy.exploration.replays import GONE, NOT_POSSIBLE, STILL_THERE, Replayed, replay_all
     from cfepy.exploration.shrink import Shrinkable, Shrinker, Shrunk, budget_of
     from cfepy.exploration.task_look import TaskLook
     from cfepy.exploration.timeline import WIDTH, Story, important, story_of_run
@@ -26,11 +27,15 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DEFAULT_SEEDS",
+    "GONE",
+    "NOT_POSSIBLE",
+    "STILL_THERE",
     "WIDTH",
     "Expedition",
     "Failure",
     "Finding",
     "MadeMove",
+    "Replayed",
     "Report",
     "Shrinkable",
     "Shrinker",
@@ -44,6 +49,7 @@ __all__ = [
     "Verdict",
     "budget_of",
     "important",
+    "replay_all",
     "story_of_run",
 ]
 
@@ -59,6 +65,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ),
             ".failures": ("TracebackReader",),
             ".moves": ("MadeMove",),
+            ".replays": ("GONE", "NOT_POSSIBLE", "STILL_THERE", "Replayed", "replay_all"),
             ".shrink": (
                 "Shrinkable",
                 "Shrinker",

@@ -20,13 +20,13 @@ from cfepy.exploration.campaign import Campaign, Crew, Tally
 from cfepy.exploration.crews import make_crew
 from cfepy.exploration.gaps import gaps_of
 from cfepy.exploration.progress import make_progress
-from cfepy.exploration.results_file import ResultsFile
+from cfepy.exploration.results_file import ResultsFile, keep_failure
 from cfepy.exploration.search import SeededSearch, SystematicSearch, make_search
 from cfepy.exploration.shipment import files_read, identity_of, ship
 from cfepy.exploration.shrink import Shrinker, Shrunk, budget_of
 from cfepy.exploration.stuck import waits_of
 from cfepy.exploration.timeline import Story, story_of
-from cfepy.exploration.trial import Trial
+from cfepy.exploration.trial import Trial, Tried
 from cfepy.exploration.verdict import RACE, STALLED, Failure, Finding, Findings, Verdict
 from cfepy.exploration.workers import LONGEST_S, PROCESS_DIED
 from cfepy.monitors import InversionWatch
@@ -209,14 +209,11 @@ class Expedition:
         counter = PointCounter(options.policy() or Policy())
         first = bare.fly(options, policy=counter)
         breadth = Breadth(dict(counter.kinds), first.tasks)
-        reference, results, notes = first.verdict, first.results, first.notes
+        reference, notes = first.verdict, first.notes
         tell(notes)
         if self.from_s == FROM_OPERATIONAL:
             options = self._from_operational(options, first.booted_ns)
-        has_stalled = any(failure.kind == STALLED for failure in reference.failures)  # and come to no results
-        trial = bare if has_stalled else bare.against(results)
-        if self.stuck and reference.end_ns and not has_stalled:
-            trial = replace(trial, waits=waits_of(self.plan, reference.end_ns, options.policy()))
+        trial = beside_fifo(bare, first, options if self.stuck else None)
         findings = Findings(reference)
         search = make_search(self.policy, self.depth, reference.decisions, options, self.first_seed, first.tick_ns)
         tally = self._fly(trial, search, findings, reference, watch, breadth)
@@ -225,7 +222,8 @@ class Expedition:
         report = Report(trial, reference, tally, findings.troubles, notes=notes, breadth=breadth)
         for finding in findings.all():
             report.findings.append(self._told(trial, finding, tally))
-        if not report.findings and not tally.interrupted and not has_stalled and not self.points:
+        self._keep(report)
+        if not report.findings and not tally.interrupted and not self.points:
             breadth.gaps = gaps_of(bare, options)
         return report
 
@@ -281,6 +279,14 @@ class Expedition:
             return (findings.take(number, verdict) and self.until_failure) or is_over
 
         return Campaign(trial, search, self.seeds, crew, file, progress).run(take)
+
+    def _keep(self, report: Report) -> None:
+        """Write the shortest schedule of each failure to the results file, for `cfepy explore --replay-all`."""
+        if self.results is None:
+            return
+        for told in report.findings:
+            shortest = report.schedule_of(told) if told.shrunk is None else told.shrunk.verdict.schedule
+            keep_failure(self.results, told.finding.failure.group, told.finding.failure.title, shortest)
 
     def _is_steady(self, trial: Trial, crew: Crew, reference: Verdict) -> bool:
         """Whether the run under the default schedule goes the same way again, in a process of the crew's."""
@@ -339,6 +345,22 @@ class Expedition:
             return None
         plan = replace(shrunk.trial.plan, stall=trial.plan.stall)
         return replace(shrunk, trial=replace(shrunk.trial, plan=plan))
+
+
+def beside_fifo(bare: Trial, first: Tried, options: Schedule | None) -> Trial:
+    """A trial whose runs are held against the one under the default schedule.
+
+    Args:
+        bare: the trial.
+        first: its flight under the default schedule.
+        options: a schedule that is fifo's with the options of the others; None where who waits for ever may wait.
+    """
+    if any(failure.kind == STALLED for failure in first.verdict.failures):  # which comes to no results
+        return bare
+    trial, end_ns = bare.against(first.results), first.verdict.end_ns
+    if options is None or not end_ns:
+        return trial
+    return replace(trial, waits=waits_of(bare.plan, end_ns, options.policy()))
 
 
 def _inversions(trial: Trial, finding: Finding) -> list[str]:

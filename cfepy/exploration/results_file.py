@@ -1,5 +1,7 @@
 """The results of a campaign in a file: JSON, a line a verdict behind a line that says which campaign it is.
 
+Behind the verdicts there is a line for each distinct failure, with the shortest schedule that is known to show it.
+
 Lines are only ever added, each in one write, as verdicts come in. Whatever ends the process in the middle of a write
 leaves half a line at the end, which the next run cuts off; then it goes on with what is missing.
 """
@@ -12,8 +14,10 @@ from array import array
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
+from cfepy.exploration.verdict import Verdict
+from cfepy.rtos import Schedule
 from cfepy.status import UsageError
 
 FORMAT = "cfepy exploration 1"
@@ -105,9 +109,9 @@ class ResultsFile:
             self._write({"format": FORMAT, "campaign": identity})
 
     def _take_in(self, record: dict[str, Any], start: int, line: int) -> None:
-        number = record.get("number")
-        if not isinstance(number, int) or number < 0 or not isinstance(record.get("verdict"), dict):
-            raise _damaged(self.path, line)
+        if is_failure(record):
+            return
+        number, _ = _numbered(record, self.path, line)
         self._remember(number, start)
 
     def _remember(self, number: int, start: int) -> None:
@@ -152,6 +156,62 @@ def whole_lines(file: Any, path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         raise _damaged(path, 1)  # half a first line may be cut off; a file of another kind may not
 
 
+def is_failure(record: Mapping[str, Any]) -> bool:
+    """Whether a line is about a distinct failure."""
+    return isinstance(record.get("failure"), dict) and "number" not in record
+
+
+def keep_failure(path: str | Path, group: str, title: str, schedule: Schedule) -> None:
+    """Add a distinct failure to a results file that is whole; the last line about a group counts.
+
+    Args:
+        path: of the file.
+        group: what failures of this cause have in common.
+        title: of the failure, for a person.
+        schedule: the shortest one that is known to show it.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    record = {"failure": {"group": group, "title": title, "schedule": schedule.text()}}
+    try:
+        with Path(path).open("ab") as file:
+            file.write(json.dumps(record, separators=(",", ":")).encode() + b"\n")
+    except OSError as error:
+        raise UsageError(f"could not be written: {error.strerror}", file=path, field=OPTION) from None
+
+
+def read_failures(path: str | Path) -> dict[str, tuple[str, Schedule]]:
+    """The distinct failures of a results file: by group the title, and a schedule that shows it.
+
+    These are those that the campaign told, with the shortest schedule, or, where it did not come to that, those of its
+    verdicts.
+
+    Raises:
+        UsageError: it is no results file, or cannot be read.
+    """
+    path = Path(path)
+    told: dict[str, tuple[str, Schedule]] = {}
+    seen: dict[str, tuple[str, Schedule]] = {}
+    with _opened(path) as file:
+        for line, (_, record) in enumerate(whole_lines(file, path), 1):
+            if is_failure(record):
+                told |= _told_failure(record["failure"], path, line)
+            elif line > 1:
+                _, plain = _numbered(record, path, line)
+                verdict = Verdict.from_dict(plain)
+                for failure in verdict.failures[:1]:
+                    seen.setdefault(failure.group, (failure.title, verdict.schedule))
+    return told or seen
+
+
+def _told_failure(plain: dict[str, Any], path: Path, line: int) -> dict[str, tuple[str, Schedule]]:
+    group, title, text = (plain.get(each) for each in ("group", "title", "schedule"))
+    if not (isinstance(group, str) and isinstance(title, str) and isinstance(text, str)):
+        raise _damaged(path, line)
+    return {group: (title, Schedule.parse(text))}
+
+
 def read_results(path: str | Path) -> tuple[dict[str, Any], Iterator[tuple[int, dict[str, Any]]]]:
     """Read a results file, also one that is being written.
 
@@ -162,11 +222,7 @@ def read_results(path: str | Path) -> tuple[dict[str, Any], Iterator[tuple[int, 
         UsageError: it is no results file, or cannot be read.
     """
     path = Path(path)
-    try:
-        file = path.open("rb")
-    except OSError as error:
-        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
-    lines = whole_lines(file, path)
+    lines = whole_lines(_opened(path), path)
     head = next(lines, (0, {}))[1]
     if head.get("format") != FORMAT:
         raise _foreign(path)
@@ -177,10 +233,22 @@ def read_results(path: str | Path) -> tuple[dict[str, Any], Iterator[tuple[int, 
 
 def _verdicts(path: Path, lines: Iterator[tuple[int, dict[str, Any]]]) -> Iterator[tuple[int, dict[str, Any]]]:
     for line, (_, record) in enumerate(lines, 2):
-        number, verdict = record.get("number"), record.get("verdict")
-        if not isinstance(number, int) or number < 0 or not isinstance(verdict, dict):
-            raise _damaged(path, line)
-        yield number, verdict
+        if not is_failure(record):
+            yield _numbered(record, path, line)
+
+
+def _numbered(record: Mapping[str, Any], path: Path, line: int) -> tuple[int, dict[str, Any]]:
+    number, verdict = record.get("number"), record.get("verdict")
+    if not isinstance(number, int) or number < 0 or not isinstance(verdict, dict):
+        raise _damaged(path, line)
+    return number, verdict
+
+
+def _opened(path: Path) -> BinaryIO:
+    try:
+        return path.open("rb")
+    except OSError as error:
+        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
 
 
 def _check(head: dict[str, Any], identity: dict[str, Any], path: Path) -> None:

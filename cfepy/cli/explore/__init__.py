@@ -15,7 +15,7 @@ DEFAULT_SEEDS = 100
 MOST_SEEDS = 100_000_000
 STATUS_HELP = """exit status:
   0    no schedule made the mission fail
-  1    a failure was found, or an error in cfepy itself
+  1    a failure was found (with --replay-all: is still there), or an error in cfepy itself
   2    bad usage, or a mission that cannot be read
   130  ended by Ctrl-C (what was found is reported)"""
 
@@ -34,7 +34,7 @@ def _add_explore(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "failure once, with the command that replays it and the fewest preemptions that still fail.",
         epilog=STATUS_HELP,
     )
-    add_mission(explore)
+    add_mission(explore, nargs="?")
     explore.add_argument("node_args", metavar="ARG", nargs="*", help="what a node's .py gets")
     add_run_options(explore, without=["schedule"])  # it is what explore chooses
     _add_search(explore)
@@ -143,6 +143,12 @@ def _add_outputs(explore: argparse.ArgumentParser) -> None:
         "--results",
         metavar="FILE",
         help="write the result of every schedule to a file; the same command goes on from there",
+    )
+    explore.add_argument(
+        "--replay-all",
+        metavar="RESULTS",
+        help="search nothing: fly each failure of a results file again, in the mission as it now is, and tell which "
+        "are gone; MISSION may be left out",
     )
     add_json(explore, "what was found")
     explore.add_argument(

@@ -120,6 +120,12 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: it cannot be explored like this.
     """
+    if arguments.replay_all is not None:
+        from cfepy.cli.explore.replay_all import run as replay
+
+        return replay(arguments)
+    if arguments.mission is None:
+        raise UsageError("say which mission is to be explored", field="MISSION")
     check_json(arguments)
     report = _expedition(arguments).run(tell)
     show(report, sys.stdout)
