@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import CodeType, FrameType
 from typing import Any
 
 from cfepy.attachment import Attachment
@@ -23,6 +25,11 @@ MOST_REASONS = 3
 _EVENT = re.compile(r"([A-Za-z_]\w*|\*):(\d+|\*|[A-Z]+)")
 _NAME = re.compile(r"(0[xX])?\w+", re.ASCII)
 _TOPIC = re.compile(r"/[\w/*?\[\]~-]*")
+
+_HARMLESS = frozenset(
+    {"abs", "all", "any", "bool", "float", "int", "isinstance", "len", "max", "min", "round", "str", "sum"}
+)
+"""What an expression about variables may call."""
 
 Hit = Callable[[str], object]
 """Is called with each event or message, in the task that sends it and before any receiver gets it."""
@@ -166,3 +173,48 @@ def _shown(heard: Heard) -> str:
 def breakpoints(texts: Sequence[str], spec: MissionSpec, hit: Hit) -> list[Breakpoint]:
     """What stops a run at several things; see `Breakpoint`."""
     return [Breakpoint(text, spec, hit) for text in texts]
+
+
+class VariableCondition:
+    """An expression about what the code of a mission has in its variables.
+
+    Args:
+        text: a Python expression, in which nothing is called but a few built-in functions that change nothing.
+
+    Raises:
+        UsageError: it is none.
+    """
+
+    def __init__(self, text: str) -> None:
+        try:
+            tree = ast.parse(text, mode="eval")
+        except (SyntaxError, ValueError):
+            raise UsageError(f"{text!r} is no Python expression", field="--back-to") from None
+        calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+        harmful = [each for each in calls if not (isinstance(each.func, ast.Name) and each.func.id in _HARMLESS)]
+        if harmful or any(isinstance(node, ast.NamedExpr | ast.Await | ast.Yield) for node in ast.walk(tree)):
+            raise UsageError(f"{text!r} may change the run: leave out calls", field="--back-to")
+        self._code: CodeType = compile(tree, "--back-to", "eval")
+
+    def holds(self, frame: FrameType | None) -> bool:
+        """Whether it holds in code that is being executed; not where its names are not known."""
+        if frame is None:
+            return False
+        try:
+            return bool(eval(self._code, frame.f_globals, frame.f_locals))
+        except Exception:  # whatever the code of the mission has there
+            return False
+
+
+def finders(text: str, spec: MissionSpec, hit: Callable[[str], object]) -> list[Breakpoint] | VariableCondition:
+    """What a text looks for: what a breakpoint stops at, or, when it is none, what holds of variables.
+
+    Raises:
+        UsageError: it is neither.
+    """
+    try:
+        return breakpoints([text], spec, hit)
+    except UsageError:
+        if text.replace("_", "").isalnum():
+            raise
+        return VariableCondition(text)

@@ -13,15 +13,18 @@ import pdb
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
+from functools import partial
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, TextIO
 
-from cfepy.debugger.breakpoints import breakpoints
+from cfepy.debugger.breakpoints import Breakpoint, VariableCondition, breakpoints, finders
+from cfepy.debugger.journey import NOTHING_BEFORE, Journey, LineWay, RunMoment
 from cfepy.ground import LiveNames
 from cfepy.mission import Mission, MissionSpec
 from cfepy.monitors import Observer, Sent, app_of
 from cfepy.own_code import is_own_code, is_shown
 from cfepy.pilot.determinism_look import stack_of
+from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
@@ -38,6 +41,11 @@ HELP = """\
   pipes          all pipes, and how many messages wait in them
   pdb            Python's debugger in the task that runs
   q, quit        end the run here"""
+BACK = """
+  b, back        back to the thing that happened before
+  rc             back to the last breakpoint
+  bt WHAT        back to the last time at which WHAT, as of --break, happened, or an expression about variables held"""
+NO_WAY = "there is no way back"
 
 
 class Debugger(Observer):
@@ -54,6 +62,7 @@ class Debugger(Observer):
         on_quit: ends the run.
         commands, stream: where the user writes and reads; None for this process's own.
         root: folder that the mission's files lie below, and that their paths are shown without.
+        journey: lets the user go back, by other flights of the same run; None for no way back.
 
     Raises:
         UsageError: a breakpoint that cannot be.
@@ -75,11 +84,16 @@ class Debugger(Observer):
         commands: TextIO | None = None,
         stream: TextIO | None = None,
         root: str = "",
+        journey: Journey | None = None,
     ) -> None:
         super().__init__()
         self._root = root
         self.count = 0
-        self._breakpoints = breakpoints(stops, spec, self._stop)
+        self._journey = journey
+        self._spec = spec
+        self._moment = RunMoment(0)
+        self._breakpoints = breakpoints(stops, spec, self._hit)
+        self._finders, self._conditions = self._looked_for(spec)
         self._stepping = step and from_ns is None
         self._steps_from = from_ns
         self._then_steps = step
@@ -99,7 +113,7 @@ class Debugger(Observer):
 
     def bus(self, base: Any) -> Any:
         """See `Attachment.bus`."""
-        for each in self._breakpoints:
+        for each in (*self._breakpoints, *self._finders):
             base = each.bus(base)
         return super().bus(base)
 
@@ -108,7 +122,7 @@ class Debugger(Observer):
         super().begin(mission)
         self._mission = mission
         self._names = LiveNames(mission)
-        for each in self._breakpoints:
+        for each in (*self._breakpoints, *self._finders):
             each.begin(mission)
         kernel: Any = mission.kernel
         kernel.frames_wanted = True
@@ -130,12 +144,32 @@ class Debugger(Observer):
 
         def start(name: str, entry: Callable[[], object], *args: Any, **options: Any) -> Task:
             def begin() -> object:
+                task = self._kernel.current
+                if self._journey is not None and app_of(task) == self._app and self._gdb is None:
+                    self._debugger_of(task).count_lines()
                 self._look_around("begins")
                 return entry()
 
             return spawn(name, begin, *args, **options)
 
         return start
+
+    def conclude(self) -> None:
+        """See `Attachment.conclude`: at the end of the run there is a way back, too."""
+        super().conclude()
+        journey = self._journey
+        if journey is None or self._is_over:
+            return
+        self._moment = self._after()
+        if journey.search is not None and journey.search.limit is None and not journey.ends_search():
+            self._say(NOTHING_BEFORE)
+        if journey.arrives(self._moment) or (journey.asks_at_end and not journey.is_silent):
+            self._looks = False
+            self._on_quit = lambda: None  # it is the end anyway
+            self._say(f"{self._kernel.now / NS_PER_S:.9f} the end of the run")
+            with self._mission.stall_watch.paused():
+                self._ask()
+            self._is_over = True
 
     def close(self) -> None:
         """See `Attachment.close`."""
@@ -171,7 +205,8 @@ class Debugger(Observer):
         """See `Observer.on_console`; a task that writes a traceback there has just caught the exception."""
         self._look_around(f"console: {line}")
         error = sys.exc_info()[1]
-        if TRACEBACK in line and error is not None and error is not self._error:
+        is_silent = self._journey is not None and self._journey.is_silent
+        if TRACEBACK in line and error is not None and error is not self._error and not is_silent:
             self._error = error
             self._look_at(error)
 
@@ -187,6 +222,10 @@ class Debugger(Observer):
         kernel = self._kernel
         if self._is_over or kernel.current is kernel.host:
             return
+        self._moment = self._after()
+        if self._journey is not None and self._journey.is_silent:
+            self._pass_by(self._journey, what)
+            return
         if self._looks and app_of(kernel.current) == self._app:
             self._looks = False
             self._look_into(kernel.current)
@@ -195,6 +234,94 @@ class Debugger(Observer):
             self._stop(what)
         elif self._stepping:
             self._stop(what)
+
+    def _after(self) -> RunMoment:
+        return RunMoment(self._moment.happened + 1)
+
+    # -- the way back ------------------------------------------------------------------------------------------------
+
+    def _looked_for(self, spec: MissionSpec) -> tuple[list[Breakpoint], dict[str, VariableCondition]]:
+        """What finds the moments that were looked for: messages and events, or what holds of variables."""
+        found: list[Breakpoint] = []
+        conditions: dict[str, VariableCondition] = {}
+        for text in () if self._journey is None else self._journey.texts:
+            means = finders(text, spec, partial(self._find, text))
+            if isinstance(means, VariableCondition):
+                conditions[text] = means
+            else:
+                found += means
+        return found, conditions
+
+    def _find(self, text: str, what: str) -> None:
+        """A message or an event that was looked for."""
+        if self._journey is None or self._is_over:
+            return
+        at = self._moment
+        self._moment = moment = RunMoment(at.happened, at.hits, at.finds + 1, text)
+        self._journey.finds(moment, text)
+        if self._journey.is_silent:
+            self._arrive(self._journey, moment, what)
+
+    def _pass_by(self, journey: Journey, what: str) -> None:
+        """Something happens that the user has seen before, or that is only looked at in search of another."""
+        moment = self._moment
+        for text, condition in self._conditions.items():
+            if journey.search is not None and journey.search.text == text and condition.holds(own_frame()):
+                journey.finds(moment, text)
+        self._arrive(journey, moment, what)
+
+    def _arrive(self, journey: Journey, moment: RunMoment, what: str) -> None:
+        was_search = journey.search is not None
+        if journey.arrives(moment):
+            self._looks = self._stepping = False
+            self._steps_from = None
+            if was_search:
+                self._say(NOTHING_BEFORE)
+            self._stop(what)
+        elif journey.flies_again:
+            self._break_off()
+
+    def _break_off(self) -> None:
+        """This flight is over, and another one goes where the user wants to be."""
+        self._is_over = True
+        self._on_quit()
+
+    def _hit(self, what: str) -> None:
+        """A breakpoint stops."""
+        if self._is_over:
+            return
+        at, journey = self._moment, self._journey
+        self._moment = moment = RunMoment(at.happened, at.hits + 1)
+        if journey is not None and journey.is_silent:
+            journey.finds(moment)
+            self._arrive(journey, moment, what)
+        else:
+            self._stop(what)
+
+    def _back(self) -> bool:
+        """To the thing that happened before."""
+        return self._go(lambda journey: journey.go_to(self._moment.before()), self._moment.before().happened > 0)
+
+    def _reverse(self) -> bool:
+        """To the last breakpoint."""
+        return self._go(lambda journey: journey.look_for("", self._moment), bool(self._breakpoints))
+
+    def _back_to(self, text: str) -> bool:
+        """To the last time at which something happened or held."""
+        try:
+            finders(text, self._spec, lambda what: None)
+        except UsageError as error:
+            self._say(str(error))
+            return False
+        return self._go(lambda journey: journey.look_for(text, self._moment))
+
+    def _go(self, choose: Callable[[Journey], None], is_possible: bool = True) -> bool:
+        if self._journey is None or not is_possible:
+            self._say(NO_WAY if self._journey is None else NOTHING_BEFORE)
+            return False
+        choose(self._journey)
+        self._break_off()
+        return True
 
     def _stop(self, what: str) -> None:
         """The run stops here: say where that is, and ask."""
@@ -227,15 +354,21 @@ class Debugger(Observer):
             "pipes": self._pipes,
             "pdb": self._pdb,
             "q": self._quit,
+            "b": self._back,
+            "rc": self._reverse,
         }
         while True:
             word = self._read()
             if word is None:
                 self._stepping = self._then_steps  # the input has ended: the stops are shown, and the run goes on
                 return
-            short = {"continue": "c", "step": "s", "": "s", "where": "w", "quit": "q"}.get(word, word)
-            if short not in answers:
-                self._say(HELP)
+            short = {"continue": "c", "step": "s", "": "s", "where": "w", "quit": "q", "back": "b"}.get(word, word)
+            verb, _, text = word.partition(" ")
+            if verb == "bt" and text.strip():
+                if self._back_to(text.strip()):
+                    return
+            elif short not in answers:
+                self._say(HELP + (BACK if self._journey is not None else ""))
             elif answers[short]():
                 return
 
@@ -293,6 +426,8 @@ class Debugger(Observer):
             self._debuggers[task] = AppDebugger(
                 self._quit, self._mission.stall_watch.paused, self._commands, self._stream, self._root
             )
+            if self._journey is not None:
+                self._debuggers[task].way_back = LineWay(self._journey, task.ident, self._break_off, self._say)
         return self._debuggers[task]
 
     def _place(self, task: Task) -> str:
@@ -328,6 +463,60 @@ class AppDebugger(pdb.Pdb):
             super().__init__(stdin=commands, stdout=stream, nosigint=True, readrc=False)
         self._on_quit = on_quit
         self._waiting = waiting
+        self._has_quit = False
+        self.way_back: LineWay | None = None
+
+    def count_lines(self) -> None:
+        """The task begins: from now on its own lines are counted, so that they are found again."""
+        here = sys._getframe()
+        self.reset()
+        self.botframe = here  # not a frame that is ever executed again: nothing stops
+        self._runs_on()
+        sys.settrace(self.trace_dispatch)
+
+    def trace_dispatch(self, frame: FrameType, event: str, arg: Any) -> Any:
+        """As of `bdb.Bdb`; each line of the task's own code counts."""
+        if self._has_quit:
+            return None
+        way = self.way_back
+        if way is not None and event == "line" and is_own(frame):
+            if way.passes(self._has_break(frame)):
+                self.set_step()
+            elif way.is_silent:
+                return self.trace_dispatch
+        traced = super().trace_dispatch(frame, event, arg)
+        return self.trace_dispatch if traced is None and way is not None and is_own(frame) else traced
+
+    def _has_break(self, frame: FrameType) -> bool:
+        return frame.f_lineno in self.breaks.get(self.canonic(frame.f_code.co_filename), ())
+
+    def set_continue(self) -> None:
+        """As of `bdb.Bdb`, which would not look at lines any more where there is no breakpoint."""
+        if self.way_back is None:
+            super().set_continue()
+        else:
+            self._runs_on()
+
+    def _runs_on(self) -> None:
+        """Stop at breakpoints alone; lines are looked at nevertheless."""
+        base: Any = super()
+        base._set_stopinfo(self.botframe, None, -1)
+
+    def do_rstep(self, arg: str) -> bool:
+        """rstep: back to the line of this task that was executed before."""
+        return self._goes(LineWay.step_back)
+
+    def do_rcontinue(self, arg: str) -> bool:
+        """rcontinue: back to the last line of this task that has a breakpoint."""
+        return self._goes(LineWay.to_break)
+
+    do_rs, do_rc = do_rstep, do_rcontinue
+
+    def _goes(self, way: Callable[[LineWay], bool]) -> bool:
+        if self.way_back is None:
+            self.message("there is no way back without cfepy replay --back")
+            return False
+        return way(self.way_back) and bool(self.do_continue(""))
 
     def canonic(self, filename: str) -> str:
         """As of `bdb.Bdb`: by this path a file is shown, and has its breakpoints."""
@@ -355,6 +544,7 @@ class AppDebugger(pdb.Pdb):
 
     def do_quit(self, arg: str) -> bool:
         """End the run here."""
+        self._has_quit = True
         self._on_quit()
         return bool(self.do_continue(arg))
 

@@ -135,6 +135,7 @@ class Replay:
     ) -> None:
         self.journal = journal
         self.stage = stage
+        self._given = (tasks, until_ns, describe)
         self.plan = stage.plan if tasks is None else replace(stage.plan, tasks=tasks)
         self.until_ns = until_ns
         self.policy = self._policy()
@@ -143,6 +144,11 @@ class Replay:
         self.attachments: list[Attachment] = [*([_Answers(journal.answers)] if paced else []), self.checker]
         self.attachments += [HiddenRoot(stage.root)] if stage.root else []
         self._course: ReplayCourse
+
+    def anew(self) -> Replay:
+        """Another replay of the same, as this one was made."""
+        tasks, until_ns, describe = self._given
+        return Replay(self.journal, self.stage, tasks=tasks, until_ns=until_ns, describe=describe)
 
     def _policy(self) -> Policy | None:
         own = self.plan.schedule.policy()

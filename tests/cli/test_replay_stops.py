@@ -131,3 +131,36 @@ def test_breakpoints_of_python_take_the_path_that_it_had(
     assert "breakpoint already hit 1 time" in out
     assert "('total', 1)" in out
     assert "cfepy-replay-" not in out
+
+
+def test_a_user_who_goes_back_from_the_end(
+    journal: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was seen is not shown again, and the last flight is the one that is reported and compared."""
+    typed = "bt /numbers\nbt number == 1\nb\nc\nc\n"
+    assert replayed(journal, "--back", typed=typed, monkeypatch=monkeypatch) == 0
+    said = capsys.readouterr()
+    lines = [line for line in said.out.splitlines() if line.startswith("0.")]
+    assert "the end of the run" in lines[0]
+    assert lines[1].endswith("/numbers of /counter: data: 3")
+    assert float(lines[1].split()[0]) > float(lines[2].split()[0]) >= float(lines[3].split()[0])
+    assert "the end of the run" in lines[4]
+    assert said.out.count("CFE_ES_Main entering OPERATIONAL") == 1
+    assert "the same run as" in said.err
+
+
+@pytest.mark.slow
+def test_the_last_time_of_something(
+    journal: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert replayed(journal, "--back-to", "msg.data < 2", "--quiet", typed="c\n", monkeypatch=monkeypatch) == 0
+    said = capsys.readouterr()
+    assert said.out.splitlines()[0].endswith("/numbers of /counter: data: 1")
+    assert "the same run as" in said.err
+    assert replayed(journal, "--back-to", "msg.data > 9", "--quiet", typed="", monkeypatch=monkeypatch) == 0
+    assert "that has not been" in capsys.readouterr().out
+
+
+def test_there_is_no_way_back_from_gdb(journal: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["replay", journal, "--back", "--gdb", "COUNTER"]) == 2
+    assert "there is no way back from it" in capsys.readouterr().err

@@ -62,6 +62,19 @@ def _add_stops(replay: argparse.ArgumentParser) -> None:
         "--until on; and where an exception ends it",
     )
     replay.add_argument(
+        "--back",
+        action="store_true",
+        help="stop at the end of the run, or at --until, too; at each stop, b goes back to what happened before, rc to "
+        "the last breakpoint, bt WHAT to the last time at which something happened or held, and in Python's debugger "
+        "there are rstep and rcontinue",
+    )
+    replay.add_argument(
+        "--back-to",
+        metavar="WHAT",
+        help="stop at the last time at which WHAT, as of --break, happened, or at which an expression about variables "
+        "held, such as 'self.state == 3'",
+    )
+    replay.add_argument(
         "--gdb",
         metavar="APP",
         help="open gdb on this process, with the symbols of compiled applications: it stops at the main function of "

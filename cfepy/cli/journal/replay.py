@@ -8,10 +8,9 @@ import os
 import sys
 from collections.abc import Iterator
 from itertools import islice
-from typing import TYPE_CHECKING, TextIO
+from typing import TextIO
 
 from cfepy.attachment import Attachment
-from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.ros.node import NodeView
 from cfepy.cli.ros.view import NodesView
@@ -22,9 +21,6 @@ from cfepy.mission import Mission
 from cfepy.pilot import LAUNCH, NODE, STALLED, SUDDEN
 from cfepy.trace import TimedRecords
 from cfepy.units import NS_PER_S
-
-if TYPE_CHECKING:
-    from cfepy.debugger import Debugger
 
 MOST_LINES = 12
 _FILES = ("json", "save_files", "bag", "trace")  # what a replay leaves behind
@@ -93,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
         text = f"{how}, and the run was broken off in the middle of a task; its end is not compared"
         print(f"cfepy: {text}", file=sys.stderr)
     with replaying(arguments, journal) as replay:
-        status = _fly(arguments, replay)
+        status, replay = _fly(arguments, replay)
         _tell(replay, sys.stderr)
     if status == INTERRUPTED:
         return INTERRUPTED
@@ -118,23 +114,29 @@ def replaying(arguments: argparse.Namespace, journal: Journal) -> Iterator[Repla
         yield replay
 
 
-def _fly(arguments: argparse.Namespace, replay: Replay) -> int:
-    """Fly the mission of a replay, and report as its command does; the exit status of that.
+def _fly(arguments: argparse.Namespace, replay: Replay) -> tuple[int, Replay]:
+    """Fly the mission of a replay, and report as its command does.
 
     Args:
         arguments: of `cfepy replay`.
-        replay: the replay; it has a verdict afterwards.
-    """
-    debugger: Debugger | None = None
-    view = _view(replay.plan.command, arguments)
-    if arguments.stops or arguments.step or _looks_into(arguments):
-        from cfepy.cli.journal.debugging import DebugView, debugger_of
+        replay: the replay.
 
-        debugger, view = debugger_of(arguments, replay), DebugView(view)
-        replay.attachments.append(debugger)
-    status = fly_again(arguments, replay, view)
-    tell(debugger.missed if debugger is not None else ())
-    return status
+    Returns:
+        The exit status of that, and the replay that it is of, which has a verdict: the one that was given, or the last
+        of those that were flown to go back in it.
+    """
+    view = _view(replay.plan.command, arguments)
+    if not (arguments.stops or arguments.step or _looks_into(arguments) or _goes_back(arguments)):
+        return fly_again(arguments, replay, view), replay
+    from cfepy.cli.journal.debugging import fly_with_debugger
+
+    looking_on = [each for each in replay.attachments if isinstance(each, RecordLines)]
+    return fly_with_debugger(arguments, replay, view, looking_on)
+
+
+def _goes_back(arguments: argparse.Namespace) -> bool:
+    """Whether the replay stops at its end, to go back from there."""
+    return bool(arguments.back) or arguments.back_to is not None
 
 
 def _looks_into(arguments: argparse.Namespace) -> bool:
