@@ -98,7 +98,8 @@ class ThingNumbers:
 
     def _sweep(self) -> None:
         """Let go of objects that nobody else has: they are never seen again."""
-        alone = sys.getrefcount(next(iter({0: (0, object())}.values()))[1])
+        entry: tuple[int, Any] = (0, object())
+        alone = sys.getrefcount(entry[1])
         gone = [address for address, entry in self._kept.items() if sys.getrefcount(entry[1]) <= alone]
         for address in gone:
             self.on_gone(self._kept.pop(address)[0])
