@@ -44,7 +44,7 @@ def told(bug: Bug, schedule: str) -> Told | None:
     policy = MoveNotingPolicy(parsed.policy() or Policy())
     verdict = trial.fly(parsed, policy=policy).verdict
     failure = next((failure for failure in verdict.failures if failure.kind in bug.kinds), None)
-    return None if failure is None else story_of(trial, verdict, failure, policy.moves)
+    return None if failure is None else story_of(trial, verdict, failure, policy.made)
 
 
 def write(names: list[str]) -> None:
