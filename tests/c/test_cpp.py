@@ -236,6 +236,7 @@ def test_a_mutex_of_the_standard_library_keeps_others_out(tmp_path: Path) -> Non
     assert said(console) == ["once", "main in", "main out", "child in", "child out"]
 
 
+@pytest.mark.slow
 def test_a_recursive_mutex_is_taken_twice_by_its_task_alone(tmp_path: Path) -> None:
     console = fly_cpp(
         tmp_path,
