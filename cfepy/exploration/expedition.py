@@ -18,10 +18,12 @@ from typing import Any, TextIO
 from cfepy.exploration.breadth import Breadth, PointCounter
 from cfepy.exploration.campaign import Campaign, Crew, Tally
 from cfepy.exploration.crews import make_crew
+from cfepy.exploration.footprints import check_visible
 from cfepy.exploration.gaps import gaps_of
+from cfepy.exploration.orders import OrderSearch
 from cfepy.exploration.progress import make_progress
 from cfepy.exploration.results_file import ResultsFile, keep_failure
-from cfepy.exploration.search import SeededSearch, SystematicSearch, make_search
+from cfepy.exploration.search import AnySearch, make_search
 from cfepy.exploration.shipment import files_read, identity_of, ship
 from cfepy.exploration.shrink import Shrinker, Shrunk, budget_of
 from cfepy.exploration.stuck import waits_of
@@ -40,7 +42,6 @@ BASE = "at"  # fifo as a policy, which is asked, so that decisions can be counte
 DEFAULT_SEEDS = 100
 MOST_INVERSIONS = 3  # that are told of one failure
 _NO_WAY = (PROCESS_DIED, STALLED)  # a run that was broken off has no trace to compare
-POLICIES = ("all", "random", "pct", "dfs")
 EVENTS = ("error", "critical", "none")
 
 
@@ -154,8 +155,10 @@ class Expedition:
         plan: what is flown; its own schedule does not matter.
         seeds: how many schedules.
         budget_s: wall time after which no further schedule is begun; None for no limit.
-        policy: where they come from: "random", "pct", "dfs" (every one with few preemptions), or "all".
-        depth: of the bugs that pct looks for; most preemptions of dfs.
+        policy: where they come from: "random", "pct", "dfs" (every one with few preemptions), "orders" (all orders that
+            differ, each once), or "all".
+        depth: of the bugs that pct looks for; most preemptions of dfs; how many steps of a run the orders
+            may differ in.
         first_seed: seed of the first schedule.
         any_priority: less urgent tasks may run before more urgent ones.
         hold_s: how long the running task may be held up, in virtual s.
@@ -205,6 +208,8 @@ class Expedition:
             UsageError: it cannot be explored like this.
         """
         watch, options = Stopwatch(), self._options()
+        if self.policy == "orders":
+            check_visible(self.plan.spec())
         bare = Trial(self.plan, self.events, keep_widths=self.policy == "dfs")
         counter = PointCounter(options.policy() or Policy())
         first = bare.fly(options, policy=counter)
@@ -216,9 +221,14 @@ class Expedition:
         trial = beside_fifo(bare, first, options if self.stuck else None)
         findings = Findings(reference)
         search = make_search(self.policy, self.depth, reference.decisions, options, self.first_seed, first.tick_ns)
+        if self.policy == "orders":
+            trial = replace(trial, steps_from_ns=options.from_ns)
         tally = self._fly(trial, search, findings, reference, watch, breadth)
         if tally is None:
             return Report(trial, reference, Tally(), [], notes=notes, is_steady=False)
+        if isinstance(search, OrderSearch):
+            breadth.classes, breadth.is_complete, breadth.astray = search.orders, search.exhausted, search.astray
+            trial = replace(trial, steps_from_ns=None)
         report = Report(trial, reference, tally, findings.troubles, notes=notes, breadth=breadth)
         for finding in findings.all():
             report.findings.append(self._told(trial, finding, tally))
@@ -254,7 +264,7 @@ class Expedition:
     def _fly(
         self,
         trial: Trial,
-        search: SeededSearch | SystematicSearch,
+        search: AnySearch,
         findings: Findings,
         reference: Verdict,
         watch: Stopwatch,

@@ -13,10 +13,12 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from cfepy.exploration.orders import OrderSearch
 from cfepy.exploration.verdict import Verdict
+from cfepy.mission import CORE_APPS
 from cfepy.rtos import Schedule
 
-POLICIES = ("all", "random", "pct", "dfs")
+POLICIES = ("all", "random", "pct", "dfs", "orders")
 PCT_DEPTH, DFS_DEPTH = 3, 2
 PORTFOLIO_DEPTHS = (2, 3, 1)
 """Of PCT in the policy `all`: most races need two ordered events, some three, and starvation one."""
@@ -83,15 +85,18 @@ class SystematicSearch:
         self._tree.learn(verdict.schedule, widths, [width < 0 for width in verdict.widths])
 
 
+AnySearch = SeededSearch | SystematicSearch | OrderSearch
+
+
 def make_search(
     policy: str, depth: int | None, steps: int, options: Schedule, first_seed: int = 0, tick_ns: int = 0
-) -> SeededSearch | SystematicSearch:
+) -> AnySearch:
     """The search that a command asks for.
 
     Args:
         policy: one of POLICIES.
         depth: of the bugs that PCT looks for, and the most preemptions of a systematic search; None takes 3 and 2,
-            and for `all` PCT of depths 1 to 3.
+            and for `all` PCT of depths 1 to 3. Of a search of orders it is how many steps may come in another order.
         steps: decisions of a run, at least, as the reference run had them.
         options: a schedule whose options all have.
         first_seed: of the first schedule.
@@ -100,6 +105,8 @@ def make_search(
     steps = max(steps, 1)
     if policy == "dfs":
         return SystematicSearch(DFS_DEPTH if depth is None else depth, options)
+    if policy == "orders":
+        return OrderSearch(options, CORE_APPS, depth)
     random = replace(options, kind="random")
     depths = PORTFOLIO_DEPTHS if depth is None and policy == "all" else (PCT_DEPTH if depth is None else depth,)
     pct = [replace(options, kind="pct", depth=each, steps=steps) for each in depths]

@@ -13,11 +13,12 @@ from typing import NamedTuple
 from cfepy.attachment import Attachment
 from cfepy.exploration import verdict
 from cfepy.exploration.failures import FailureWatch
+from cfepy.exploration.footprints import Footprints
 from cfepy.exploration.result_watch import Result, ResultWatch, differences, digest_of
 from cfepy.exploration.stuck import Waits, WaitWatch, stuck_for_good
 from cfepy.exploration.verdict import Failure, Verdict
 from cfepy.pilot import BootError, RunPlan, fly
-from cfepy.rtos import NotingPolicy, Policy, Schedule
+from cfepy.rtos import ORDER, NotingPolicy, Policy, Schedule
 from cfepy.status import StallError, UsageError
 from cfepy.units import NS_PER_S
 
@@ -53,6 +54,8 @@ class Trial:
         events: which events are failures: "error" (ERROR and CRITICAL), "critical" or "none".
         reference: the results of the run that others are held against; None holds them against nothing.
         keep_widths: verdicts have the widths of decisions, which a systematic search needs.
+        steps_from_ns: verdicts have the steps of the run from this virtual time on, as a search of orders needs; None
+            keeps none.
         waits: of the default schedule (`cfepy.exploration.stuck`), against which tasks that wait for ever are found;
             None lets them wait.
     """
@@ -61,6 +64,7 @@ class Trial:
     events: str = "error"
     reference: tuple[Result, ...] | None = None
     keep_widths: bool = False
+    steps_from_ns: int | None = None
     waits: Waits | None = None
 
     def run(self, schedule: Schedule, attachments: Sequence[Attachment] = ()) -> Verdict:
@@ -92,9 +96,12 @@ class Trial:
         spec = self.plan.spec()
         results = ResultWatch(spec)
         waits = [WaitWatch()] if self.waits is not None else []
+        steps = [Footprints(self.steps_from_ns)] if self.steps_from_ns is not None else []
         failed: tuple[Failure, ...]
         try:
-            flown = fly(self.plan, spec=spec, attachments=[*attachments, watch, results, *waits], policy=recorded)
+            flown = fly(
+                self.plan, spec=spec, attachments=[*attachments, watch, results, *waits, *steps], policy=recorded
+            )
         except BootError as error:
             return Tried(self._verdict(schedule, recorded, (Failure(verdict.PROBLEM, "", error.text),)))
         except (UsageError, KeyboardInterrupt):
@@ -112,6 +119,7 @@ class Trial:
         told = self._verdict(schedule, recorded, failed)
         trouble = "\n".join(watch.trouble)
         told = replace(told, results=digest_of(found), trace=flown.trace, end_ns=watch.end_ns, trouble=trouble)
+        told = replace(told, steps=steps[0].steps if steps else ())
         kernel = flown.mission.kernel
         return Tried(told, found, flown.notes, flown.mission.booted, kernel.tick_ns, kernel.tasks_made)
 
@@ -148,6 +156,8 @@ class Trial:
 
     def _verdict(self, schedule: Schedule, policy: NotingPolicy, failed: tuple[Failure, ...]) -> Verdict:
         deviations = tuple(sorted(policy.deviations.items())) if failed else ()
+        if schedule.kind == ORDER:  # a text that means the same
+            schedule = schedule.at(policy.deviations)
         pairs = zip(policy.widths, policy.running, strict=True)
         return Verdict(
             schedule,

@@ -13,6 +13,7 @@ from itertools import pairwise
 from statistics import median
 from typing import Any
 
+from cfepy.exploration.steps import Step
 from cfepy.rtos import Schedule
 from cfepy.status import UsageError
 
@@ -91,6 +92,7 @@ class Verdict:
         preemptions: how many of them took the processor from a task that could have gone on.
         widths: how many answers each decision had, negative where the running task could have gone on; kept only for a
             systematic search.
+        steps: what the tasks did, and what they touched; kept only for a search of orders.
         end_ns: virtual time at the end of the run, before the nodes were asked to shut down.
         trouble: traceback of an error of cfepy itself, which says nothing about the mission; empty otherwise.
         missed: the moves of the schedule that were not possible, as text.
@@ -104,6 +106,7 @@ class Verdict:
     deviations: tuple[tuple[int, int], ...] = ()
     preemptions: int = 0
     widths: tuple[int, ...] = ()
+    steps: tuple[Step, ...] = ()
     end_ns: int = 0
     trouble: str = ""
     missed: tuple[str, ...] = ()
@@ -147,7 +150,8 @@ class Verdict:
         failures = tuple(Failure(**each) for each in plain["failures"])
         deviations = tuple((int(at), int(candidate)) for at, candidate in plain["deviations"])
         missed = tuple(plain.get("missed", ()))
-        own = {"schedule": schedule, "failures": failures, "deviations": deviations, "missed": missed}
+        steps = tuple(Step.of(each) for each in plain.get("steps", ()))
+        own = {"schedule": schedule, "failures": failures, "deviations": deviations, "missed": missed, "steps": steps}
         found = cls(**{**plain, **own, "widths": tuple(map(int, plain["widths"]))})
         texts = [found.results, found.trace, found.trouble, *found.missed]
         for each in failures:

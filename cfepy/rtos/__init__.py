@@ -21,6 +21,7 @@ from cfepy.rtos.policy import (
     AskingPolicy,
     Decision,
     Deviations,
+    InOrder,
     Moment,
     NotingPolicy,
     Policy,
@@ -30,9 +31,9 @@ from cfepy.rtos.policy import (
 from cfepy.rtos.queue import EMPTY, Queue
 from cfepy.rtos.races import Race, RaceSide, VectorClocks
 from cfepy.rtos.realtime import Pacer, Stopwatch
-from cfepy.rtos.schedule import DEPTH, STEPS, Schedule
+from cfepy.rtos.schedule import DEPTH, ORDER, STEPS, Schedule
 from cfepy.rtos.semaphore import Semaphore
-from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit, WaitList
+from cfepy.rtos.task import FOREVER, PLACE, TIMEOUT, Task, TaskExit, WaitList
 from cfepy.rtos.wait_graph import Wait, circles, endless
 from cfepy.rtos.watchdog import STALL_S, LastResort, StallWatch
 
@@ -43,7 +44,9 @@ __all__ = [
     "ENDLESS",
     "FOREVER",
     "HOLD",
+    "ORDER",
     "PCT",
+    "PLACE",
     "STALL_S",
     "STEPS",
     "TIMEOUT",
@@ -55,6 +58,7 @@ __all__ = [
     "Decision",
     "Deviations",
     "ExploringKernel",
+    "InOrder",
     "InjectedCrash",
     "Kernel",
     "LastResort",

@@ -95,7 +95,10 @@ class Kernel(Scheduler):
         """
         self._idents = ident = self._idents + 1
         task = Task(name, ident, entry, priority)
-        task.owner = self.current.owner if owner is None else owner
+        parent = self.current
+        task.owner = parent.owner if owner is None else owner
+        parent.children += 1
+        task.path = f"{parent.path}.{parent.children}" if parent.path else str(parent.children)
         self.context.create(task, self._main)  # fails where the host has no more threads
         self._enlist(task)
         self.make_ready(task, None)

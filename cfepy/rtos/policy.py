@@ -9,10 +9,10 @@ Giving the same answers again gives the same run.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from cfepy.rtos.task import Task
 
@@ -293,6 +293,32 @@ class Deviations(Policy):
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
         return min(self._choices.get(decision.number, 0), decision.width - 1)
+
+
+class InOrder(Policy):
+    """Lets tasks run in a given order, as far as that is possible, and goes on as fifo then.
+
+    Args:
+        runs: pairs of a task's path and a number: that task runs until it has passed so many places (`Task.passed`).
+        settings: those of the policy.
+    """
+
+    def __init__(self, runs: Iterable[tuple[str, int]], *settings: Any) -> None:
+        super().__init__(*settings)
+        self._runs = list(runs)
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`. A task that cannot run now keeps its turns for later."""
+        candidates = {task.path: (at, task) for at, task in enumerate(decision.tasks)}
+        runs = self._runs
+        for place, (path, number) in enumerate(runs):
+            if path in candidates:
+                at, task = candidates[path]
+                if task.passed < number:
+                    return at
+                runs[place] = "", 0
+        self._runs = [run for run in runs if run[0]]
+        return 0
 
 
 class From(AskingPolicy):

@@ -25,10 +25,11 @@ from typing import Any
 
 from cfepy.rtos.moves import Move, MovePolicy
 from cfepy.rtos.points import Points
-from cfepy.rtos.policy import PCT, Deviations, From, Policy, SeededRandom, Settings
+from cfepy.rtos.policy import PCT, Deviations, From, InOrder, Policy, SeededRandom, Settings
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS, time_word
 
+ORDER = "order"
 DEPTH = 3  # of PCT, where the text gives none
 STEPS = 1000
 _TIME = re.compile(r"(\d+)(ns|us|ms|s)")
@@ -43,12 +44,14 @@ class Schedule:
     """Who runs next, where there is a choice.
 
     Args:
-        kind: "fifo", "random", "pct", "at" or "moves".
+        kind: "fifo", "random", "pct", "at", "moves" or "order".
         seed: of random and pct.
         depth: of the bugs pct looks for, at least 1.
         steps: how many decisions pct expects of the run, at least 1.
         deviations: pairs of decision and choice of at, in order.
         moves: those of moves.
+        runs: pairs of a task's path and a number of order, which a search of orders makes, and no text means: see
+            `InOrder`. A run under it is one under an `at` as well.
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
@@ -61,6 +64,7 @@ class Schedule:
     depth: int = DEPTH
     steps: int = STEPS
     deviations: tuple[tuple[int, int], ...] = ()
+    runs: tuple[tuple[str, int], ...] = ()
     any_priority: bool = False
     hold_ns: int = 0
     connect_ns: int = 0
@@ -108,6 +112,8 @@ class Schedule:
             words.append(",".join(f"{decision}={choice}" for decision, choice in self.deviations))
         if self.moves:
             words.append(",".join(move.text() for move in self.moves))
+        if self.runs:
+            words.append(",".join(f"{path}={number}" for path, number in self.runs))
         words += ["any"] if self.any_priority else []
         words += [f"hold={time_word(self.hold_ns)}"] if self.hold_ns else []
         words += [f"connect={time_word(self.connect_ns)}"] if self.connect_ns else []
@@ -132,6 +138,8 @@ class Schedule:
             return PCT(self.seed, self.depth, self.steps, *self.settings)
         if self.kind == "moves":
             return MovePolicy(self.moves, self.settings)
+        if self.kind == ORDER:
+            return InOrder(self.runs, *self.settings)
         return Deviations(dict(self.deviations), *self.settings)
 
     @property
@@ -156,8 +164,12 @@ class Schedule:
         """The schedule that makes some moves and is fifo's otherwise, with this one's options."""
         return replace(self._bare("moves"), moves=tuple(moves))
 
+    def in_order(self, runs: Iterable[tuple[str, int]]) -> Schedule:
+        """The schedule in which tasks run in an order, with this one's options."""
+        return replace(self._bare(ORDER), runs=tuple(runs))
+
     def _bare(self, kind: str) -> Schedule:
-        return replace(self, kind=kind, seed=0, depth=DEPTH, steps=STEPS, deviations=(), moves=())
+        return replace(self, kind=kind, seed=0, depth=DEPTH, steps=STEPS, deviations=(), moves=(), runs=())
 
     def with_points(self, points: str) -> Schedule:
         """The same with other points, as `Points.text` has them; fifo without a change of order, if it is fifo."""

@@ -30,6 +30,8 @@ class Timeout:
 
 TIMEOUT = Timeout()
 FOREVER = -1
+PLACE = 1000
+"""What a place where others could get in adds to `Task.passed`."""
 
 
 class WaitList(list["Task"]):
@@ -63,6 +65,7 @@ class Task:
         "awaits",
         "base_priority",
         "carrier",
+        "children",
         "cpu_ns",
         "done",
         "dying",
@@ -79,6 +82,8 @@ class Task:
         "number",
         "owner",
         "park",
+        "passed",
+        "path",
         "priority",
         "refusals",
         "resume",
@@ -114,6 +119,9 @@ class Task:
         self.error: BaseException | None = None
         self.refusals = 0
         self.cpu_ns = 0
+        self.children = 0  # tasks that it has made
+        self.passed = 0  # PLACE for each place where others could get in, 1 for each wait and task woken since
+        self.path = ""  # which child of which task it is, such as "3.1": the same whoever runs when
         self.mark = trace.mark(trace.DISPATCH, ident)
         self.wake_mark = trace.mark(trace.WAKE, ident)
         self.exit_mark = trace.mark(trace.EXIT, ident)

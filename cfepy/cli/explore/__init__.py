@@ -60,16 +60,17 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
     )
     explore.add_argument(
         "--policy",
-        choices=("all", "random", "pct", "dfs"),
+        choices=("all", "random", "pct", "dfs", "orders"),
         default="all",
-        help="where they come from: random, PCT, every one with few preemptions (dfs), or random and PCT of depths 1 "
-        "to 3 by turns (all, the default)",
+        help="where they come from: random, PCT, every one with few preemptions (dfs), every order of what depends on "
+        "each other, once (orders), or random and PCT of depths 1 to 3 by turns (all, the default)",
     )
     explore.add_argument(
         "--depth",
         type=_count_of,
         metavar="N",
-        help="of the bugs that pct looks for; most preemptions of dfs (default: 3 for pct, 2 for dfs)",
+        help="of the bugs that pct looks for; most preemptions of dfs; how many steps orders may differ in (default: "
+        "3, 2, all)",
     )
     explore.add_argument(
         "--first-seed", type=_number_of, default=0, metavar="N", help="seed of the first schedule (default: 0)"

@@ -81,7 +81,7 @@ def _explore(lock: type, kernel: ExploringKernel) -> None:
                 kernel.point()
             observer = kernel.observer
             if observer is not None:
-                observer.called(self, name, args)
+                observer.called(self, name, (*args, *options.values()))
             result = method(self, *args, **options)
             if takes and result and self.holder is not _ANY_TASK:
                 self.holder = kernel.current

@@ -1,0 +1,305 @@
+"""What the steps of a mission touch, as far as cfepy sees it: an attachment that keeps a run's steps.
+
+Seen are pipes and messages, locks, semaphores and queues, what tasks wait for, tables, parameters, the ROS graph, and
+in code of the mission attributes, items of containers, and variables that functions share. Where it is not known what a
+call touches, it is all of its service. Two things are not seen: the time of day, which differs by microseconds from
+one order to the next, and files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, cast
+
+from cfepy.attachment import Attachment
+from cfepy.exploration.steps import GIVES, READS, TAKES, WRITES, Step, StepLog, Touched
+from cfepy.mission import Mission, MissionSpec, Processor, find_compiled
+from cfepy.nodes import WHOLE, Touch
+from cfepy.ports import PEND_FOREVER
+from cfepy.rtos import ExploringKernel, Kernel, Task, WaitList
+from cfepy.sb import Destination, Pipe, SoftwareBus
+from cfepy.status import UsageError
+
+GRAPH, PARAMETERS, ROUTES = "ROS graph", "ROS parameters", "routes"
+_LOOKING = ("find", "get", "has", "is_", "locked", "_is_owned", "names", "published", "search")
+_OWN = frozenset(
+    {
+        *("__init__", "compute", "exit_app", "exit_child_task", "get_app_id", "get_task_id", "perf_log_add", "printf"),
+        *("run_loop", "task_delay", "task_get_id", "wait_for_startup_sync", "write_to_sys_log"),
+    }
+)
+"""Calls that concern the caller alone, or that are seen where they wait or send."""
+_TAKING = frozenset({"acquire", "acquire_lock", "__enter__", "mut_sem_take"})
+_GIVING = frozenset({"release", "release_lock", "__exit__", "_release_save", "mut_sem_give"})
+_SERVICES = frozenset(
+    {
+        *("ConfigServices", "EventServices", "ExecutiveServices", "FileServices", "Osal", "Psp", "TableServices"),
+        "TimeServices",
+    }
+)
+_GRAPH_CHANGES = ("topic", "register_node", "forget_node", "register_service", "forget_service", "caller")
+_TREE_CHANGES = ("give", "offer", "on_change", "set", "delete")
+_TREE_LOOKS = ("find", "search", "names")
+_limit: Any = Destination.__dict__["limit"]
+
+
+def check_visible(spec: MissionSpec) -> None:
+    """Check that it is seen what a mission touches.
+
+    Raises:
+        UsageError: it has compiled code, whose memory is not seen.
+    """
+    compiled = [entry.name for entry in spec.entries if find_compiled(entry.path, spec.folder) is not None]
+    compiled += spec.ros.compiled
+    if compiled:
+        text = f"orders needs to see what tasks touch, and {compiled[0]} is compiled; take another policy, such as dfs"
+        raise UsageError(text, field="--policy")
+
+
+class Footprints(Attachment):
+    """Keeps the steps of a run, and what they touch.
+
+    Args:
+        from_ns: virtual time from which on.
+    """
+
+    def __init__(self, from_ns: int = 0) -> None:
+        self._from_ns = from_ns
+        self._log: StepLog | None = None
+        self._numbers: dict[int, tuple[int, Any]] = {}  # by identity: of locks, which are kept for that
+        self._pipes = _Pipes(self.touch)
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """In the order in which they were made."""
+        return () if self._log is None else self._log.steps
+
+    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+        """See `Attachment.bus`."""
+        return _touching(base, self._pipes)
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        kernel = mission.kernel
+        assert isinstance(kernel, ExploringKernel)
+        self._log = StepLog(kernel, self._from_ns)
+        self._pipes.kernel = kernel
+        mission.accesses.observers.append(self._take)
+        kernel.observer = self
+        _also(kernel, "charge", self._calls)
+        for name in ("wait_on", "wake_first", "wake_all"):
+            _also(kernel, name, self._waits)
+
+    def power_up(self, processor: Processor) -> None:
+        """See `Attachment.power_up`."""
+        if processor.ros is not None:
+            graph = processor.ros.graph
+            for name in _GRAPH_CHANGES:
+                _also(graph, name, lambda *args, **options: self.touch(GRAPH))
+            for name in _TREE_CHANGES:
+                _also(graph.params, name, lambda *args, **options: self.touch(PARAMETERS))
+            for name in _TREE_LOOKS:
+                _also(graph.params, name, lambda *args, **options: self.touch(PARAMETERS, READS))
+
+    def conclude(self) -> None:
+        """See `Attachment.conclude`: what nodes do when they are ended is no part of it."""
+        if self._log is not None:
+            self._log.is_open = False
+
+    def touch(self, thing: str, how: str = WRITES) -> None:
+        """The current task touches something; see `StepLog.touch`."""
+        if self._log is not None:
+            self._log.touch(thing, how)
+
+    def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
+        """See `CallObserver.called`: a service of cFE, or a lock of a node."""
+        if self._log is not None:
+            self._log.end()  # of a call before it that has raised something
+            self._log.begin(self._things(subject, call, args))
+
+    def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
+        """See `CallObserver.returned`: a lock is taken when a call comes back with it."""
+        if self._log is not None:
+            self._log.end()
+        if call in _TAKING:
+            name = self._name(subject, args)
+            self.touch(f"state of {name}", READS)
+            if result is not False:
+                self.touch(name, TAKES)
+
+    def _things(self, subject: Any, call: str, args: tuple[Any, ...]) -> list[Touched]:
+        if isinstance(subject, SoftwareBus) or call in _OWN:
+            return []
+        name = self._name(subject, args)
+        if call in _TAKING:  # one that need not wait finds out whether somebody has the lock
+            has_limit = bool(args) and type(subject).__name__ not in _SERVICES
+            return [(f"state of {name}", WRITES)] if has_limit else []
+        if call in _GIVING:
+            return [(name, GIVES), (f"state of {name}", READS)]
+        return [(name, READS if call.startswith(_LOOKING) else WRITES)]
+
+    def _name(self, subject: Any, args: tuple[Any, ...]) -> str:
+        """A lock by its number; what a service has by its id; else all of the service."""
+        service = type(subject).__name__
+        if service not in _SERVICES:
+            return f"{service} {self._numbers.setdefault(id(subject), (len(self._numbers), subject))[0]}"
+        return f"{service} {args[0]}" if args and isinstance(args[0], int) else service
+
+    def _take(self, touch: Touch) -> None:
+        """Code of the mission is about to touch something; all of a container is whatever is in it, too."""
+        how = WRITES if touch.is_write else READS
+        if touch.key == WHOLE:
+            self.touch(f"all in {touch.thing}", how)
+            return
+        if touch.key.startswith("["):
+            self.touch(f"all in {touch.thing}", READS)
+        self.touch(f"{touch.key} of {touch.thing}", how)
+
+    def _calls(self, duration_ns: int) -> None:
+        """A node calls something of ROS or Python, which may look at the ROS graph."""
+        self.touch(GRAPH, READS)
+
+    def _waits(self, waits: WaitList, *others: Any) -> None:
+        """Waits within calls are those of what these are about."""
+        if self._log is not None and not self._pipes.waits() and not self._log.is_in_a_call:
+            self.touch(f"wait for {waits.what}")
+
+
+class _Pipes:
+    """What becomes of pipes. Where one is neither empty nor full, whoever puts and whoever gets are in no one's way."""
+
+    kernel: Kernel
+
+    def __init__(self, touch: Callable[..., None]) -> None:
+        self.touch = touch
+        self._getting: dict[Task, tuple[Pipe, bool]] = {}  # who gets from which, and whether it had to wait
+
+    def puts(self, destination: Destination) -> None:
+        """The current task puts a message into a pipe, in this instant."""
+        pipe, waiting = destination.pipe, len(destination.pipe.items)
+        self.touch(f"tail of {pipe.name}")
+        if not waiting:
+            self.touch(f"emptiness of {pipe.name}")
+        left = min(pipe.depth - waiting, _limit.__get__(destination) - (destination.puts - destination.gets))
+        if left <= 1:
+            self.touch(f"room of {pipe.name}")
+
+    def gets(self, pipe: Pipe) -> None:
+        """The current task is about to get one."""
+        self._getting[self.kernel.current] = pipe, False
+
+    def waits(self) -> bool:
+        """Whether the current task waits for one."""
+        task = self.kernel.current
+        if task not in self._getting:
+            return False
+        pipe = self._getting[task][0]
+        self._getting[task] = pipe, True
+        self.touch(f"emptiness of {pipe.name}")
+        return True
+
+    def got(self, packet: bytes | None) -> None:
+        """It has got it; None where there was none."""
+        pipe, has_waited = self._getting.pop(self.kernel.current)
+        if packet is None:
+            self.touch(f"emptiness of {pipe.name}", READS)
+        elif not has_waited:
+            waited = len(pipe.items) + 1
+            self.touch(f"head of {pipe.name}")
+            if waited == 1:
+                self.touch(f"emptiness of {pipe.name}")
+            if waited >= min(pipe.depth, _SMALL_LIMIT) - 1:
+                self.touch(f"room of {pipe.name}")
+
+
+_SMALL_LIMIT = 4  # messages of one kind that a pipe takes by default
+
+
+def _also(subject: Any, name: str, before: Callable[..., object]) -> None:
+    """Have something called before a method of an object."""
+    original = getattr(subject, name)
+
+    def both(*args: Any, **options: Any) -> Any:
+        before(*args, **options)
+        return original(*args, **options)
+
+    setattr(subject, name, both)
+
+
+def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
+    """A class of Software Bus that tells which pipes are touched.
+
+    Args:
+        base: the class to start from.
+        pipes: is told.
+    """
+
+    class TouchingBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
+        """A Software Bus that tells of its pipes."""
+
+        destination_type: type[Destination]
+
+        def __init__(self, kernel: Kernel, *args: Any) -> None:
+            super().__init__(kernel, *args)
+            self.destination_type = _touchable(self.destination_type, pipes)
+
+        def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
+            """See `SoftwareBus.transmit_msg`."""
+            pipes.touch(ROUTES, READS)
+            pipes.touch(f"message {packet[0] << 8 | packet[1]}")
+            super().transmit_msg(packet, is_origination)
+
+        def receive_buffer(self, pipe_id: int, timeout_ms: int = PEND_FOREVER) -> bytes | None:
+            """See `SoftwareBus.receive_buffer`."""
+            pipe = self.find_pipe(pipe_id)
+            if pipe is None:
+                pipes.touch(ROUTES, READS)
+                return cast("bytes | None", super().receive_buffer(pipe_id, timeout_ms))
+            pipes.gets(pipe)
+            packet: bytes | None = None
+            try:
+                packet = super().receive_buffer(pipe_id, timeout_ms)
+            finally:
+                pipes.got(packet)
+            return packet
+
+        def _subscribe(self, *args: Any) -> None:
+            pipes.touch(ROUTES)
+            super()._subscribe(*args)
+
+        def _unsubscribe(self, *args: Any) -> None:
+            pipes.touch(ROUTES)
+            super()._unsubscribe(*args)
+
+        def create_pipe(self, *args: Any) -> int:
+            """See `SoftwareBus.create_pipe`."""
+            pipes.touch(ROUTES)
+            return cast(int, super().create_pipe(*args))
+
+        def delete_pipe(self, pipe_id: int) -> None:
+            """See `SoftwareBus.delete_pipe`."""
+            pipes.touch(ROUTES)
+            super().delete_pipe(pipe_id)
+
+    return TouchingBus
+
+
+def _touchable(base: type[Destination], pipes: _Pipes) -> type[Destination]:
+    """A kind of destination that tells of each put."""
+
+    class TouchableDestination(base):  # type: ignore[misc, valid-type]
+        """One whose message limit is asked for right before each put."""
+
+        __slots__ = ()
+
+        @property
+        def limit(self) -> int:
+            """The message limit."""
+            pipes.puts(self)
+            return int(_limit.__get__(self))
+
+        @limit.setter
+        def limit(self, limit: int) -> None:
+            _limit.__set__(self, limit)
+
+    return TouchableDestination

@@ -1,0 +1,278 @@
+"""All orders that differ in something, each flown once: dynamic partial-order reduction.
+
+Two runs are of one order when each step has the same steps before it that it depends on (`cfepy.exploration.steps`):
+then they differ in nothing but who waited a little longer. From each order that was flown the search goes on to its
+neighbours: where two steps follow each other that depend on each other, and nothing else orders them, the later one
+goes first, and what depends on the other is left out. Such a beginning is flown unless an order is known that has it.
+Every order is reached like that, and hardly one is flown twice (the idea is that of Flanagan and Godefroid, POPL 2005;
+that of looking for beginnings among the orders seen, instead of keeping a stack, lets many processes fly at once).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from hashlib import blake2b
+
+from cfepy.exploration.steps import GIVES, TAKES, TIMER, WRITES, Step
+from cfepy.exploration.verdict import Verdict
+from cfepy.rtos import PLACE, Schedule
+
+BATCH = 8  # schedules that are handed out at a time; what is known of orders changes only between
+
+
+Key = tuple[str, int, int]
+"""A step of any order: its task, which place of it, and which of the steps there that touch something."""
+
+
+@dataclass(frozen=True, slots=True)
+class Beginning:
+    """How runs may begin.
+
+    Attributes:
+        runs: who runs until when, as of `cfepy.rtos.InOrder`.
+        names: of its steps but the last one.
+        last: the last step, which goes earlier here than in the order that this was made from: its task and place. What
+            it does there, such as to wait, and so its name, is not known.
+    """
+
+    runs: tuple[tuple[str, int], ...]
+    names: frozenset[int]
+    last: Key
+
+
+class Order:
+    """The order of a run: what each step depends on.
+
+    Args:
+        steps: of the run.
+
+    Attributes:
+        steps: of the run.
+        names: of the steps that touch something, each with all that it depends on; two runs with the same names are
+            of one order.
+        places: numbers of these steps.
+    """
+
+    def __init__(self, steps: Sequence[Step]) -> None:
+        self.steps = steps
+        self._direct: list[_Dependences] = []
+        self._past: list[int] = []  # of each step as bits: all on which it depends, and itself
+        self._floor: list[int] = []  # none of those before can come later, since time goes on between
+        self._names: list[frozenset[int]] = []  # its own; of one that touches nothing, those of the ones before it
+        self._touches: defaultdict[str, list[tuple[int, str]]] = defaultdict(list)  # by thing: who, and how
+        self._before: list[int | None] = []  # the step before of the same task
+        self._keys: list[Key] = []
+        latest: dict[str, int] = {}
+        for at, step in enumerate(steps):
+            before = latest.get(step.task)
+            self._before.append(before)
+            self._keys.append(self._key(step, before))
+            latest[step.task] = at
+            direct = self._dependences(at)
+            self._direct.append(direct)
+            self._past.append(1 << at)
+            for each in direct.all:
+                self._past[at] |= self._past[each]
+            own = step.ready if step.waker == TIMER else 0
+            self._floor.append(max([own, *(self._floor[each] for each in direct.all)]))
+            self._names.append(self._named(at, direct))
+            for thing, how in step.touched:
+                self._touches[thing].append((at, how))
+        touching = [at for at, step in enumerate(steps) if step.touched]
+        self.names = frozenset(name for at in touching for name in self._names[at])
+        self.places = {self._keys[at]: at for at in touching}
+
+    def _dependences(self, at: int) -> _Dependences:
+        """On which steps one depends directly."""
+        step = self.steps[at]
+        conflicts: defaultdict[int, set[str]] = defaultdict(set)
+        gives: dict[int, str] = {}
+        for thing, how in step.touched:
+            before = reversed(self._touches[thing])
+            if how == TAKES:
+                self._after_lock(thing, before, conflicts, gives)
+            elif how != GIVES:
+                for other, other_how in before:
+                    if WRITES in (how, other_how):
+                        conflicts[other].add(thing)
+                    if other_how == WRITES:
+                        break
+        ordered = {each for each in (self._before[at],) if each is not None}
+        if step.waker != TIMER:
+            taken = {thing for thing, how in step.touched if how == TAKES}
+            given = {thing for thing, how in self.steps[step.waker].touched if how == GIVES}
+            if not taken & given:  # a lock that was handed over might have been taken before, without a wait
+                ordered.add(step.waker)
+        return _Dependences(dict(conflicts), gives, ordered)
+
+    @staticmethod
+    def _after_lock(
+        thing: str, before: Iterable[tuple[int, str]], conflicts: defaultdict[int, set[str]], gives: dict[int, str]
+    ) -> None:
+        """A lock is taken after whoever took it last, and gave it back."""
+        for other, how in before:
+            if how == TAKES:
+                conflicts[other].add(thing)
+                return
+            if how == GIVES and thing not in gives.values():
+                gives[other] = thing
+
+    def _named(self, at: int, direct: _Dependences) -> frozenset[int]:
+        step = self.steps[at]
+        before = frozenset(name for each in direct.all for name in self._names[each])
+        if not step.touched:
+            return before
+        told = repr((*self._keys[at], sorted(before)))
+        return frozenset([int.from_bytes(blake2b(told.encode(), digest_size=8).digest())])
+
+    def _key(self, step: Step, before: int | None) -> Key:
+        place = step.number // PLACE
+        if before is None or self._keys[before][1] != place:
+            return step.task, place, 0
+        return step.task, place, self._keys[before][2] + bool(self.steps[before].touched)
+
+    def begins(self, beginning: Beginning) -> bool:
+        """Whether it has all steps of a beginning, and all that comes before the last one there is among them."""
+        at = self.places.get(beginning.last)
+        if at is None or not beginning.names <= self.names:
+            return False
+        past = self._past[at] & ~(1 << at)
+        return all(
+            self._names[each] <= beginning.names for each in range(at) if past >> each & 1 and self.steps[each].touched
+        )
+
+    def races(self) -> Iterator[tuple[int, int]]:
+        """Pairs of steps that may go the other way round, the earlier one first."""
+        for later, direct in enumerate(self._direct):
+            yield from ((earlier, later) for earlier in direct.conflicts if self._is_open(earlier, later))
+
+    def _is_open(self, earlier: int, later: int) -> bool:
+        """Whether nothing else has the one come before the other: no task, no wake-up, no time."""
+        step, direct = self.steps[later], self._direct[later]
+        if self.steps[earlier].task == step.task or earlier in direct.ordered or earlier in direct.gives:
+            return False
+        if step.waker == TIMER and step.ready > earlier:
+            return False
+        locks = direct.conflicts[earlier]
+        others = {*direct.conflicts, *direct.ordered} - {earlier}
+        others |= {each for each, thing in direct.gives.items() if thing not in locks}
+        return not any(self._past[each] >> earlier & 1 or self._floor[each] > earlier for each in others)
+
+    def reversed(self, earlier: int, later: int) -> Beginning:
+        """The beginning in which the later of two steps goes first; what depends on the earlier one is left out."""
+        bit = 1 << earlier
+        kept = [at for at in range(later) if not self._past[at] & bit]
+        names = frozenset(name for at in kept if self.steps[at].touched for name in self._names[at])
+        return Beginning(_runs(self.steps[at] for at in (*kept, later)), names, self._keys[later])
+
+
+@dataclass(frozen=True, slots=True)
+class _Dependences:
+    """The steps on which one depends directly.
+
+    Attributes:
+        conflicts: those that touched what it touches, with these things.
+        gives: those that gave back a lock that it takes, with the lock.
+        ordered: the one before of its task, and the one that woke it.
+    """
+
+    conflicts: dict[int, set[str]]
+    gives: dict[int, str]
+    ordered: set[int]
+
+    @property
+    def all(self) -> set[int]:
+        """All of them."""
+        return {*self.conflicts, *self.gives, *self.ordered}
+
+
+def _runs(steps: Iterable[Step]) -> tuple[tuple[str, int], ...]:
+    """Who runs until when for steps to come in this order: a step is over when the next place is passed."""
+    found: list[tuple[str, int]] = []
+    for step in steps:
+        if found and found[-1][0] == step.task:
+            found.pop()
+        found.append((step.task, step.number + 1))
+    return tuple(found)
+
+
+class OrderSearch:
+    """Schedules of orders that differ, those that are closer to fifo first.
+
+    Args:
+        options: a schedule whose options all have.
+        left: applications whose tasks keep the order among themselves that they have.
+        depth: how many steps of a run may come in another order, from the instant on at which schedules part; None for
+            all of them.
+
+    Attributes:
+        astray: how many schedules did not go as they were to begin, since time or a priority was against it.
+    """
+
+    def __init__(self, options: Schedule, left: Collection[str] = (), depth: int | None = None) -> None:
+        self._left = left
+        self._depth = depth
+        self._options = options
+        self._open: deque[Beginning] = deque()
+        self._ready: deque[Beginning | None] = deque([None])  # the first run is fifo's
+        self._away: list[Beginning | None] = []
+        self._told: list[Order] = []
+        self._known: set[tuple[Key, int]] = set()
+        self._seen: dict[frozenset[int], Order] = {}
+        self.astray = 0
+
+    @property
+    def orders(self) -> int:
+        """How many different ones were seen."""
+        return len(self._seen)
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether there are no others."""
+        return not (self._ready or self._open or self._away)
+
+    def next(self) -> Schedule | None:
+        """See `cfepy.exploration.campaign.Search`."""
+        if not self._ready and not self._away:
+            self._fill()
+        if not self._ready:
+            return None
+        beginning = self._ready.popleft()
+        self._away.append(beginning)
+        return self._options.in_order(() if beginning is None else beginning.runs)
+
+    def tell(self, number: int, verdict: Verdict) -> None:
+        """See `cfepy.exploration.campaign.Search`. What is new counts when all that were handed out are back."""
+        order = Order(verdict.steps[: self._depth])
+        self._told.append(order)
+        if len(self._told) < len(self._away) or self._ready:
+            return
+        for beginning, each in zip(self._away, self._told, strict=True):
+            self.astray += beginning is not None and not each.begins(beginning)
+            self._learn(each)
+        self._away, self._told = [], []
+
+    def _learn(self, order: Order) -> None:
+        if order.names in self._seen:
+            return
+        self._seen[order.names] = order
+        for pair in order.races():
+            if all(order.steps[at].app in self._left for at in pair):
+                continue
+            beginning = order.reversed(*pair)
+            key = beginning.last, hash(beginning.names)
+            if key not in self._known:
+                self._known.add(key)
+                self._open.append(beginning)
+
+    def _fill(self) -> None:
+        """The next ones to fly: beginnings that no order seen has."""
+        while self._open and len(self._ready) < BATCH:
+            beginning = self._open.popleft()
+            if not self._is_seen(beginning):
+                self._ready.append(beginning)
+
+    def _is_seen(self, beginning: Beginning) -> bool:
+        return any(each.begins(beginning) for each in self._seen.values())

@@ -1,0 +1,204 @@
+"""The steps of a run: what each task did between two places where others could have got in, and what it touched.
+
+A step has a name that does not depend on the order of the others: the path of its task (which child of which task it
+is), how many places the task had passed, and which step it is between two of them. A place is where code calls
+something, or uses CPU time; within a call a step ends where it makes another task ready, or waits.
+
+Two steps depend on each other when they touch one thing and one of them changes it, or when both take one lock; a step
+depends on the one that woke its task. All else may be swapped without any difference. Where two things share a name,
+more steps depend on each other than need to: that costs flights, and misses nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from cfepy.rtos import PLACE, ExploringKernel, Task
+
+PLACES = ("point", "charge", "delay", "yield_cpu")
+QUIET = ("make_ready", "preempt", "wake_all")
+TIMER = -1
+READS, WRITES, TAKES, GIVES = "reads", "writes", "takes", "gives"
+Touched = tuple[str, str]
+"""The name of a thing, and what becomes of it: READS and WRITES of data, TAKES and GIVES of locks."""
+
+
+class Step(NamedTuple):
+    """A step, or several of one task in a row of which only the last one touches anything.
+
+    Attributes:
+        task: the path of its task.
+        number: what the task had passed (`cfepy.rtos.Task`).
+        touched: in order.
+        ready: how many steps of the run were over when its task became ready; 0 where it never waited.
+        waker: number of the step in the run that woke the task, TIMER for none.
+        app: whose task it is.
+    """
+
+    task: str
+    number: int
+    touched: tuple[Touched, ...] = ()
+    ready: int = 0
+    waker: int = TIMER
+    app: str = ""
+
+    @classmethod
+    def of(cls, plain: Sequence[Any]) -> Step:
+        """A step from plain data."""
+        task, number, touched, ready, waker, app = plain
+        pairs = tuple((str(thing), str(how)) for thing, how in touched)
+        return cls(str(task), int(number), pairs, int(ready), int(waker), str(app))
+
+
+@dataclass(slots=True)
+class _Call:
+    """What a task is in the middle of: what it touches, and whether its steps since have touched that."""
+
+    things: list[Touched]
+    is_noted: bool = True
+
+
+class StepLog:
+    """Keeps the steps of a run.
+
+    Args:
+        kernel: whose methods are wrapped; nothing of it has run.
+        from_ns: virtual time from which on steps are kept; before it places are only counted.
+
+    Attributes:
+        is_open: whether steps are kept.
+    """
+
+    def __init__(self, kernel: ExploringKernel, from_ns: int = 0) -> None:
+        self.is_open = True
+        self._kernel = kernel
+        self._from_ns = from_ns
+        self._log: list[tuple[Task, int, dict[Touched, None], int, int]] = []
+        self._ready: dict[Task, tuple[int, int]] = {}  # when and by which step it was woken, until its next step
+        self._calls: dict[Task, _Call] = {}
+        self._quiet: dict[Task, int] = {}  # in the middle of what makes others ready, if somebody waits
+        for name in PLACES:
+            setattr(kernel, name, self._passing(getattr(kernel, name)))
+        for name in QUIET:
+            setattr(kernel, name, self._quietly(getattr(kernel, name)))
+        for name, hook in (("enqueue", self._woken), ("_time_out", self._timed_out), ("wait_on", self._waiting)):
+            setattr(kernel, name, hook(getattr(kernel, name)))
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """In the order in which they were made."""
+        return tuple(
+            Step(task.path, number, tuple(sorted(touched)), ready, waker, getattr(task.owner, "name", ""))
+            for task, number, touched, ready, waker in self._log
+        )
+
+    def touch(self, thing: str, how: str = WRITES) -> None:
+        """The current task touches something.
+
+        Args:
+            thing: its name.
+            how: READS, WRITES, TAKES or GIVES.
+        """
+        step = self._step()
+        if step is not None:
+            step[2][thing, how] = None
+
+    def begin(self, things: Iterable[Touched]) -> None:
+        """The current task begins something that touches these things, in this step and in those after other places."""
+        call = _Call(list(things))
+        self._calls[self._kernel.current] = call
+        self._note(call)
+
+    def end(self) -> None:
+        """The current task is in the middle of nothing any more."""
+        call = self._calls.pop(self._kernel.current, None)
+        if call is not None and not call.is_noted:
+            self._note(call)
+
+    @property
+    def is_in_a_call(self) -> bool:
+        """Whether the current task is in the middle of something."""
+        return self._kernel.current in self._calls
+
+    def _note(self, call: _Call) -> None:
+        call.is_noted = True
+        for thing, how in call.things:
+            self.touch(thing, how)
+
+    def _step(self) -> tuple[Task, int, dict[Touched, None], int, int] | None:
+        """The step that the current task makes; None where none are kept."""
+        kernel, log = self._kernel, self._log
+        task = kernel.current
+        if kernel.now < self._from_ns or task is kernel.host or not self.is_open:
+            return None
+        if log and log[-1][0] is task:
+            if log[-1][1] == task.passed:
+                return log[-1]
+            if not log[-1][2]:  # it touched nothing: this one goes on where that began
+                log[-1] = (task, task.passed, *log[-1][2:])
+                return log[-1]
+        log.append((task, task.passed, {}, *self._ready.pop(task, (0, TIMER))))
+        return log[-1]
+
+    # -- what the kernel does ------------------------------------------------------------------------------------------
+
+    def _passing(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        def passing(*args: Any) -> Any:
+            task = self._kernel.current
+            if self._quiet.get(task):
+                return original(*args)
+            call = self._calls.get(task)
+            self._step()
+            if call is None:
+                task.passed += PLACE - task.passed % PLACE
+            result = original(*args)
+            if call is not None:
+                self._note(call)
+            return result
+
+        return passing
+
+    def _quietly(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        def quietly(*args: Any) -> Any:
+            task = self._kernel.current
+            self._quiet[task] = self._quiet.get(task, 0) + 1
+            try:
+                return original(*args)
+            finally:
+                self._quiet[task] -= 1
+
+        return quietly
+
+    def _woken(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        def enqueue(task: Task, value: Any) -> None:
+            step = self._step()
+            if step is None:
+                self._ready[task] = 0, TIMER
+            else:
+                step[2][f"wakes {task.path}", READS] = None  # no conflict by itself
+                self._ready[task] = len(self._log), len(self._log) - 1
+                self._kernel.current.passed += 1
+            original(task, value)
+
+        return enqueue
+
+    def _timed_out(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        def time_out(task: Task) -> None:
+            self._ready[task] = len(self._log), TIMER
+            original(task)
+
+        return time_out
+
+    def _waiting(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        def wait_on(*args: Any) -> Any:
+            task = self._kernel.current
+            self._step()
+            task.passed += 1
+            result = original(*args)
+            if task in self._calls:
+                self._calls[task].is_noted = False
+            return result
+
+        return wait_on
