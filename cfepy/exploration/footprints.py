@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any, cast
 
 from cfepy.attachment import Attachment
-from cfepy.exploration.steps import GIVES, READS, TAKES, WRITES, Step, StepLog, Touched
+from cfepy.exploration.steps import GIVES, READS, TAKES, WRITES, StepLog, TaskStep, Touched
 from cfepy.mission import Mission, MissionSpec, Processor, find_compiled
 from cfepy.nodes import WHOLE, Touch
 from cfepy.ports import PEND_FOREVER
@@ -70,7 +70,7 @@ class Footprints(Attachment):
         self._pipes = _Pipes(self.touch)
 
     @property
-    def steps(self) -> tuple[Step, ...]:
+    def steps(self) -> tuple[TaskStep, ...]:
         """In the order in which they were made."""
         return () if self._log is None else self._log.steps
 

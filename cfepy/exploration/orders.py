@@ -15,7 +15,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from hashlib import blake2b
 
-from cfepy.exploration.steps import GIVES, TAKES, TIMER, WRITES, Step
+from cfepy.exploration.steps import GIVES, TAKES, TIMER, WRITES, TaskStep
 from cfepy.exploration.verdict import Verdict
 from cfepy.rtos import PLACE, Schedule
 
@@ -55,7 +55,7 @@ class Order:
         places: numbers of these steps.
     """
 
-    def __init__(self, steps: Sequence[Step]) -> None:
+    def __init__(self, steps: Sequence[TaskStep]) -> None:
         self.steps = steps
         self._direct: list[_Dependences] = []
         self._past: list[int] = []  # of each step as bits: all on which it depends, and itself
@@ -127,7 +127,7 @@ class Order:
         told = repr((*self._keys[at], sorted(before)))
         return frozenset([int.from_bytes(blake2b(told.encode(), digest_size=8).digest())])
 
-    def _key(self, step: Step, before: int | None) -> Key:
+    def _key(self, step: TaskStep, before: int | None) -> Key:
         place = step.number // PLACE
         if before is None or self._keys[before][1] != place:
             return step.task, place, 0
@@ -188,7 +188,7 @@ class _Dependences:
         return {*self.conflicts, *self.gives, *self.ordered}
 
 
-def _runs(steps: Iterable[Step]) -> tuple[tuple[str, int], ...]:
+def _runs(steps: Iterable[TaskStep]) -> tuple[tuple[str, int], ...]:
     """Who runs until when for steps to come in this order: a step is over when the next place is passed."""
     found: list[tuple[str, int]] = []
     for step in steps:

@@ -25,7 +25,7 @@ Touched = tuple[str, str]
 """The name of a thing, and what becomes of it: READS and WRITES of data, TAKES and GIVES of locks."""
 
 
-class Step(NamedTuple):
+class TaskStep(NamedTuple):
     """A step, or several of one task in a row of which only the last one touches anything.
 
     Attributes:
@@ -45,7 +45,7 @@ class Step(NamedTuple):
     app: str = ""
 
     @classmethod
-    def of(cls, plain: Sequence[Any]) -> Step:
+    def of(cls, plain: Sequence[Any]) -> TaskStep:
         """A step from plain data."""
         task, number, touched, ready, waker, app = plain
         pairs = tuple((str(thing), str(how)) for thing, how in touched)
@@ -87,10 +87,10 @@ class StepLog:
             setattr(kernel, name, hook(getattr(kernel, name)))
 
     @property
-    def steps(self) -> tuple[Step, ...]:
+    def steps(self) -> tuple[TaskStep, ...]:
         """In the order in which they were made."""
         return tuple(
-            Step(task.path, number, tuple(sorted(touched)), ready, waker, getattr(task.owner, "name", ""))
+            TaskStep(task.path, number, tuple(sorted(touched)), ready, waker, getattr(task.owner, "name", ""))
             for task, number, touched, ready, waker in self._log
         )
 

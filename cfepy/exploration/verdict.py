@@ -13,7 +13,7 @@ from itertools import pairwise
 from statistics import median
 from typing import Any
 
-from cfepy.exploration.steps import Step
+from cfepy.exploration.steps import TaskStep
 from cfepy.rtos import Schedule
 from cfepy.status import UsageError
 
@@ -106,7 +106,7 @@ class Verdict:
     deviations: tuple[tuple[int, int], ...] = ()
     preemptions: int = 0
     widths: tuple[int, ...] = ()
-    steps: tuple[Step, ...] = ()
+    steps: tuple[TaskStep, ...] = ()
     end_ns: int = 0
     trouble: str = ""
     missed: tuple[str, ...] = ()
@@ -150,7 +150,7 @@ class Verdict:
         failures = tuple(Failure(**each) for each in plain["failures"])
         deviations = tuple((int(at), int(candidate)) for at, candidate in plain["deviations"])
         missed = tuple(plain.get("missed", ()))
-        steps = tuple(Step.of(each) for each in plain.get("steps", ()))
+        steps = tuple(TaskStep.of(each) for each in plain.get("steps", ()))
         own = {"schedule": schedule, "failures": failures, "deviations": deviations, "missed": missed, "steps": steps}
         found = cls(**{**plain, **own, "widths": tuple(map(int, plain["widths"]))})
         texts = [found.results, found.trace, found.trouble, *found.missed]

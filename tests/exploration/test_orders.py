@@ -10,7 +10,7 @@ import pytest
 
 from cfepy.exploration.orders import Order, OrderSearch
 from cfepy.exploration.search import DepthFirst
-from cfepy.exploration.steps import GIVES, READS, TAKES, WRITES, Step, StepLog
+from cfepy.exploration.steps import GIVES, READS, TAKES, WRITES, StepLog, TaskStep
 from cfepy.exploration.verdict import Verdict
 from cfepy.rtos import ExploringKernel, Kernel, Mutex, NotingPolicy, Queue, Schedule, Semaphore, make_kernel
 
@@ -25,7 +25,7 @@ class Flown(NamedTuple):
 
     outcome: object
     recorded: NotingPolicy
-    steps: tuple[Step, ...]
+    steps: tuple[TaskStep, ...]
 
 
 class World:
