@@ -16,10 +16,7 @@ from _pytest.runner import runtestprotocol
 from cfepy.exploration import Failure, MadeMove, Shrinker, Shrunk, Story, TaskLook, Tried, Verdict, budget_of, important
 from cfepy.rtos import DEPTH, STEPS, Points, Policy, Schedule
 from cfepy.status import UsageError
-from cfepy.testing.missions import SECTION, UNDER_TEST, Conditions, Missions
-
-EXPLORE_MARK = "cfepy_explore"
-"""The mark of an explored test; the plugin looks for it before this module is loaded."""
+from cfepy.testing.missions import EXPLORE_MARK, SECTION, UNDER_TEST, Conditions, Missions
 
 POLICIES = ("random", "pct")
 FAILED = "test failed"
@@ -32,6 +29,7 @@ class Exploration:
     seeds: int
     kinds: tuple[Schedule, ...]
     shrink: int | None
+    races: bool = False
 
     def schedules(self, count: int | None = None) -> Iterator[Schedule]:
         """So many schedules; fifo comes first, then the kinds take turns, each with a seed of its own."""
@@ -50,6 +48,7 @@ def explore(
     hold: str = "",
     connect: str = "",
     points: str = "",
+    races: bool = False,
     start: str = "",
     shrink: int | None = None,
 ) -> pytest.MarkDecorator:
@@ -69,6 +68,7 @@ def explore(
         connect: how long a connection between two ROS nodes may take, such as "50ms"; empty for what the mission has.
         points: where others may get in besides calls: "lines", "attributes" or "calls", in some modules alone as
             "lines:arm,util"; empty for nowhere.
+        races: accesses of Python code that nothing orders let it fail, too.
         start: virtual time from the boot until which all is as with fifo, such as "600ms"; empty for none.
         shrink: how many runs it may take to shrink a schedule; None for as many as there were until then, 100 to 800; 0
             leaves it as it is.
@@ -91,7 +91,7 @@ def explore(
     numbers = {"random": "", "pct": f":{depth}:{steps}"}
     kinds = [Schedule.parse(f"{each}:{seed}{numbers[each]}{options}") for seed, each in enumerate(policies, 1)]
     mark: pytest.MarkDecorator = getattr(pytest.mark, EXPLORE_MARK)
-    return mark(Exploration(seeds, tuple(kinds), shrink))
+    return mark(Exploration(seeds, tuple(kinds), shrink, races))
 
 
 @dataclass(frozen=True, slots=True)

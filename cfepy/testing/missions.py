@@ -32,6 +32,7 @@ SECTION = "cfepy"
 _BELOW_TESTS = (Path(__file__).parents[1], Path(os.__file__).parent)  # cfepy, and the library that it calls
 FIFO = Schedule().text()
 BETWEEN = ";"  # schedules of several missions in one test
+EXPLORE_MARK = "cfepy_explore"  # as in `cfepy.testing.exploration`, which is loaded for tests that have it
 UNDER_TEST = pytest.StashKey["Conditions"]()
 """In the stash of the configuration: what the missions of an explored test are flown under."""
 BELOW = 'the command in the section "cfepy" below'
@@ -105,6 +106,7 @@ class Missions:
         tasks: str | None = None,
         faults: Faults | None = None,
         args: Mapping[str, object] | None = None,
+        races: bool | None = None,
         attachments: Sequence[Attachment] = (),
     ) -> Flight:
         """Boot a mission: it stands at virtual time 0, and runs when the test says so.
@@ -118,6 +120,7 @@ class Missions:
             tasks: "thread" or "greenlet"; None takes --cfepy-tasks.
             faults: what goes wrong: a plan's path, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
             args: of a launch file.
+            races: accesses of Python code that nothing orders let the test fail; None is as @explore says.
             attachments: what else watches the run or changes it (`cfepy.attachment.Attachment`).
 
         Raises:
@@ -132,6 +135,7 @@ class Missions:
             schedule=self._schedule(schedule),
             faults=self._fault_text(faults),
             stall=self._stall(),
+            races=self._wants_races if races is None else races,
         )
         return self._fly(plan, fault_attachments(faults), attachments)
 
@@ -176,6 +180,12 @@ class Missions:
     def _is_wide(self) -> bool:
         """Whether a fixture of a wider scope than a test's is being set up."""
         return bool(self._fixtures) and self._fixtures[-1].scope != "function"
+
+    @property
+    def _wants_races(self) -> bool:
+        """Whether the test is one that @explore looks for races in."""
+        mark = None if self._item is None or self._is_wide else self._item.get_closest_marker(EXPLORE_MARK)
+        return mark is not None and mark.args[0].races
 
     def _place(self, name: str | os.PathLike[str]) -> str:
         """A path as the command line would have it, or a name as it is."""
@@ -265,9 +275,13 @@ class Missions:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_call(self, item: pytest.Item) -> Generator[None, Any, Any]:
-        """Look after the examples of Hypothesis."""
+        """Look after the examples of Hypothesis; a test that went well fails if there were races in its missions."""
         self._examples.prepare(item)
-        return (yield)
+        result = yield
+        races = [race for flight in self.flown if flight.plan.races for race in flight.mission.record.data_races]
+        if races:
+            pytest.fail("\n".join(f"data race: {race.text}\n{race.detail}" for race in races), pytrace=False)
+        return result
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_makereport(

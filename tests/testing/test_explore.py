@@ -63,6 +63,15 @@ def test_pct_finds_it_too_and_need_not_be_shrunk(suite: Suite) -> None:
     result.stdout.no_fnmatch_line("*the shortest schedule*")
 
 
+@pytest.mark.slow
+def test_races_let_a_test_fail_that_went_well(suite: Suite) -> None:
+    test = RACE.format(policy="random", shrink=10).replace("explore(", "explore(races=True, ")
+    result = suite(test, "--cfepy-schedules", "1")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*data race: *: nothing orders them", "*came first, then *"])
+    assert told_command(result)
+
+
 def test_fifo_is_the_first_schedule_and_finds_nothing(suite: Suite) -> None:
     suite(RACE.format(policy="random", shrink=10), "--cfepy-schedules", "1").assert_outcomes(passed=1)
     suite(RACE.format(policy="random", shrink=10), "--cfepy-schedule", "fifo").assert_outcomes(passed=1)
