@@ -95,8 +95,8 @@ def boot(mission: MissionWords, *, attachments: Sequence[Attachment] = (), **opt
     Args:
         mission: as of `run`.
         attachments: what else watches the run or changes it.
-        options: `seed`, `board`, `tasks`, `schedule`, `faults`, `play`, `args`, `stall`, `guard`, `races` and `cpp_nodes`, see
-            `MissionOptions`.
+        options: `seed`, `board`, `tasks`, `schedule`, `faults`, `play`, `args`, `stall`, `guard`, `races` and
+            `cpp_nodes`, see `MissionOptions`.
 
     Returns:
         The flight, to be closed: use it as a context manager.
