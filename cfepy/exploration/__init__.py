@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from cfepy.exploration.timeline import WIDTH, Story, important, story_of_run
     from cfepy.exploration.trial import Trial, Tried
     from cfepy.exploration.verdict import Failure, Finding, Verdict
+    from cfepy.exploration.worst import Worst
 
 __all__ = [
     "DEFAULT_SEEDS",
@@ -47,6 +48,7 @@ __all__ = [
     "Trial",
     "Tried",
     "Verdict",
+    "Worst",
     "budget_of",
     "important",
     "replay_all",
@@ -88,5 +90,6 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Finding",
                 "Verdict",
             ),
+            ".worst": ("Worst",),
         },
     )

@@ -16,14 +16,15 @@ from dataclasses import dataclass, field, replace
 from typing import Any, TextIO
 
 from cfepy.exploration.breadth import Breadth, PointCounter
-from cfepy.exploration.campaign import Campaign, Crew, Tally
+from cfepy.exploration.campaign import Campaign, Crew, Search, Tally
 from cfepy.exploration.crews import make_crew
 from cfepy.exploration.footprints import check_visible
 from cfepy.exploration.gaps import gaps_of
+from cfepy.exploration.inverted import inversions_before
 from cfepy.exploration.orders import OrderSearch
 from cfepy.exploration.progress import make_progress
 from cfepy.exploration.results_file import ResultsFile, keep_failure
-from cfepy.exploration.search import AnySearch, make_search
+from cfepy.exploration.search import SeededSearch, make_search
 from cfepy.exploration.shipment import files_read, identity_of, ship
 from cfepy.exploration.shrink import Shrinker, Shrunk, budget_of
 from cfepy.exploration.stuck import waits_of
@@ -31,7 +32,8 @@ from cfepy.exploration.timeline import Story, story_of
 from cfepy.exploration.trial import Trial, Tried
 from cfepy.exploration.verdict import RACE, STALLED, Failure, Finding, Findings, Verdict
 from cfepy.exploration.workers import LONGEST_S, PROCESS_DIED
-from cfepy.monitors import InversionWatch
+from cfepy.exploration.worst import Distribution, MeasuredTrial, Worst, WorstSearch, worst_of
+from cfepy.monitors import Measure
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Points, Policy, Schedule, Stopwatch
 from cfepy.status import UsageError
@@ -40,7 +42,6 @@ from cfepy.units import NS_PER_S
 FROM_OPERATIONAL = 0.0
 BASE = "at"  # fifo as a policy, which is asked, so that decisions can be counted and options count
 DEFAULT_SEEDS = 100
-MOST_INVERSIONS = 3  # that are told of one failure
 _NO_WAY = (PROCESS_DIED, STALLED)  # a run that was broken off has no trace to compare
 EVENTS = ("error", "critical", "none")
 
@@ -86,6 +87,7 @@ class Report:
         notes: what its user should know.
         is_steady: whether two runs under the default schedule went the same way. If not, no others were made.
         breadth: how far it looked.
+        worst: the longest that was measured; None when nothing was to be.
     """
 
     trial: Trial
@@ -96,6 +98,7 @@ class Report:
     notes: tuple[str, ...] = ()
     is_steady: bool = True
     breadth: Breadth = field(default_factory=Breadth)
+    worst: Worst | None = None
 
     @property
     def unsteady(self) -> Schedule | None:
@@ -128,6 +131,7 @@ class Report:
             "interrupted": self.tally.interrupted,
             "failures": found,
             "breadth": self.breadth.to_dict(),
+            "worst": None if self.worst is None else self.worst.to_dict(),
             "troubles": [{"schedule": each.schedule.text(), "text": each.trouble} for each in self.troubles],
         }
 
@@ -167,6 +171,7 @@ class Expedition:
         from_s: virtual time until which all is fifo's; 0 for that at which the mission becomes OPERATIONAL.
         until_failure: whether the first failure ends it.
         events: which events are failures: "error", "critical" or "none".
+        worst: what is to take as long as it can, such as "response:ARM" (`cfepy.monitors.measures`); None for nothing.
         stuck: whether a task that waits for ever, and does not by default, is a failure.
         jobs: processes on this computer; None for one on each CPU.
         cluster: address of a dask scheduler, or local:N.
@@ -190,6 +195,7 @@ class Expedition:
     from_s: float | None = None
     until_failure: bool = False
     events: str = "error"
+    worst: str | None = None
     stuck: bool = True
     jobs: int | None = None
     cluster: str | None = None
@@ -210,7 +216,10 @@ class Expedition:
         watch, options = Stopwatch(), self._options()
         if self.policy == "orders":
             check_visible(self.plan.spec())
+        measure = None if self.worst is None else Measure.parse(self.worst)
         bare = Trial(self.plan, self.events, keep_widths=self.policy == "dfs")
+        if measure is not None:
+            bare = MeasuredTrial(self.plan, self.events, keep_widths=True, measure=measure)
         counter = PointCounter(options.policy() or Policy())
         first = bare.fly(options, policy=counter)
         breadth = Breadth(dict(counter.kinds), first.tasks)
@@ -220,10 +229,17 @@ class Expedition:
             options = self._from_operational(options, first.booted_ns)
         trial = beside_fifo(bare, first, options if self.stuck else None)
         findings = Findings(reference)
-        search = make_search(self.policy, self.depth, reference.decisions, options, self.first_seed, first.tick_ns)
+        search = self._search(reference.decisions, options, first.tick_ns)
         if self.policy == "orders":
             trial = replace(trial, steps_from_ns=options.from_ns)
-        tally = self._fly(trial, search, findings, reference, watch, breadth)
+        distribution = None if measure is None else Distribution.of(measure, reference)
+
+        def see(number: int, verdict: Verdict) -> None:
+            breadth.take(verdict)
+            if distribution is not None:
+                distribution.take(number, verdict)
+
+        tally = self._fly(trial, search, findings, reference, watch, see)
         if tally is None:
             return Report(trial, reference, Tally(), [], notes=notes, is_steady=False)
         if isinstance(search, OrderSearch):
@@ -235,7 +251,18 @@ class Expedition:
         self._keep(report)
         if not report.findings and not tally.interrupted and not self.points:
             breadth.gaps = gaps_of(bare, options)
+        if distribution is not None and isinstance(trial, MeasuredTrial):
+            budget = budget_of(tally.done) if self.shrink is None else self.shrink
+            report.worst = worst_of(trial, distribution, 0 if tally.interrupted else budget)
         return report
+
+    def _search(self, steps: int, options: Schedule, tick_ns: int) -> Search:
+        """The schedules, as `make_search` gives them, or from where it begins to look for the longest run."""
+        holds = self.worst is None  # a task that is held up is late by that time, which says nothing about the mission
+        found = make_search(self.policy, self.depth, steps, options, self.first_seed, tick_ns, holds=holds)
+        if holds or not isinstance(found, SeededSearch):
+            return found
+        return WorstSearch(found, self.first_seed)
 
     def _options(self) -> Schedule:
         """What the schedules have in common, as a schedule.
@@ -264,11 +291,11 @@ class Expedition:
     def _fly(
         self,
         trial: Trial,
-        search: AnySearch,
+        search: Search,
         findings: Findings,
         reference: Verdict,
         watch: Stopwatch,
-        breadth: Breadth,
+        see: Callable[[int, Verdict], object],
     ) -> Tally | None:
         """Run all schedules, or until the first failure; none, when another process goes another way under fifo."""
         if self.until_failure and reference.failed:
@@ -284,7 +311,7 @@ class Expedition:
         progress = make_progress(self.progress, self.seeds, 0 if file is None else len(file))
 
         def take(number: int, verdict: Verdict) -> bool:
-            breadth.take(verdict)
+            see(number, verdict)
             is_over = self.budget_s is not None and watch.elapsed_ns() > self.budget_s * NS_PER_S
             return (findings.take(number, verdict) and self.until_failure) or is_over
 
@@ -325,6 +352,7 @@ class Expedition:
         search = {name: getattr(self, name) for name in ("policy", "depth", "first_seed", "any_priority", "events")}
         search |= {"hold": self.hold_s, "connect": self.connect_s, "from": self.from_s, "no_stuck": not self.stuck}
         search |= {"points": self.points} if self.points else {}
+        search |= {"worst": self.worst} if self.worst is not None else {}
         return identity_of(trial.plan, files, search)
 
     def _told(self, trial: Trial, finding: Finding, tally: Tally) -> Told:
@@ -333,7 +361,9 @@ class Expedition:
         try:
             if not tally.interrupted:
                 self._fly_again(trial, told)
-                told.inversions = _inversions(trial, finding)
+                if finding.failure.kind not in _NO_WAY:
+                    failure, schedule = finding.failure, finding.verdict.schedule
+                    told.inversions = inversions_before(trial, schedule, failure.at_ns, failure.task)
                 told.shrunk = self._shrunk(trial, finding, tally.done) if told.repeats else None
             if told.shrunk is not None:
                 told.story = _story(told.shrunk, finding)
@@ -371,18 +401,6 @@ def beside_fifo(bare: Trial, first: Tried, options: Schedule | None) -> Trial:
     if options is None or not end_ns:
         return trial
     return replace(trial, waits=waits_of(bare.plan, end_ns, options.policy()))
-
-
-def _inversions(trial: Trial, finding: Finding) -> list[str]:
-    """The priority inversions of the run that showed a failure, which is flown once more."""
-    if finding.failure.kind in _NO_WAY:
-        return []
-    watch, failure = InversionWatch(), finding.failure
-    trial.fly(finding.verdict.schedule, [watch])
-    before = [each for each in watch.found if failure.at_ns is None or each.at_ns <= failure.at_ns]
-    longest = {each.group: each for each in sorted(before, key=lambda each: each.lost_ns)}
-    told = [each for each in longest.values() if each.victim == failure.task] or list(longest.values())
-    return [each.text for each in reversed(told)][:MOST_INVERSIONS]
 
 
 def _story(shrunk: Shrunk[Trial], finding: Finding) -> Story:

@@ -15,13 +15,16 @@ import os
 import pickle
 import warnings
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from typing import Any
 
+from cfepy.attachment import Attachment
 from cfepy.exploration.campaign import Experiment, judge
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import Verdict
-from cfepy.rtos import Decision, Policy, Schedule
+from cfepy.mission import Mission
+from cfepy.rtos import Decision, From, Policy, Schedule
 
 LENGTH_BYTES = 8
 
@@ -45,6 +48,10 @@ class LateSchedule:
         """See `Schedule.policy`."""
         return self._gate
 
+    def watched(self) -> Attachment:
+        """Of a mission that is flown: while the template waits for schedules, no task of it is watched for a stall."""
+        return _Pause(self._gate)
+
 
 class _Gate(Policy):
     """Goes on as fifo until schedules part; then this process waits for schedules, and its children follow them."""
@@ -53,17 +60,29 @@ class _Gate(Policy):
         super().__init__(*server.options.settings)
         self._server = server
         self._from_ns = server.options.from_ns
+        self._early = From(Policy(), server.options.from_ns)
         self._inner: Policy | None = None
         self.schedule = Schedule()
+        self.paused: Callable[[], AbstractContextManager[None]] = nullcontext
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
         if self._inner is None:
             if decision.now < self._from_ns:
-                return 0
-            self.schedule = self._server.wait_for_schedule()
+                return self._early.choose(decision)
+            with self.paused():
+                self.schedule = self._server.wait_for_schedule()
             self._inner = self.schedule.policy() or Policy()
         return self._inner.choose(decision)
+
+
+class _Pause(Attachment):
+    def __init__(self, gate: _Gate) -> None:
+        self._gate = gate
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._gate.paused = mission.stall_watch.paused
 
 
 class ForkServer:
@@ -227,7 +246,7 @@ class ForkingJudge:
         options = schedule.at({})
 
         def body(late: LateSchedule) -> Verdict:
-            return trial.fly(options, policy=late.policy()).verdict
+            return trial.fly(options, [late.watched()], late.policy()).verdict
 
         if options not in self._servers:
             self._servers[options] = ForkServer(body, options)

@@ -89,7 +89,14 @@ AnySearch = SeededSearch | SystematicSearch | OrderSearch
 
 
 def make_search(
-    policy: str, depth: int | None, steps: int, options: Schedule, first_seed: int = 0, tick_ns: int = 0
+    policy: str,
+    depth: int | None,
+    steps: int,
+    options: Schedule,
+    first_seed: int = 0,
+    tick_ns: int = 0,
+    *,
+    holds: bool = True,
 ) -> AnySearch:
     """The search that a command asks for.
 
@@ -101,6 +108,7 @@ def make_search(
         options: a schedule whose options all have.
         first_seed: of the first schedule.
         tick_ns: of the board's clock; 0 for none.
+        holds: in `all`, running tasks may also be held up in some schedules if `options` have nothing of it.
     """
     steps = max(steps, 1)
     if policy == "dfs":
@@ -114,6 +122,8 @@ def make_search(
         return SeededSearch((random,), first_seed)
     if policy == "pct":
         return SeededSearch(tuple(pct), first_seed)
+    if not holds and not options.hold_ns:
+        return SeededSearch((random, *pct), first_seed)
     held = replace(random, hold_ns=options.hold_ns or max(PORTFOLIO_HOLD_NS, tick_ns))
     return SeededSearch((random, pct[0], held, *pct[1:]), first_seed)
 
@@ -164,6 +174,8 @@ class DepthFirst:
             running: as `NotingPolicy` keeps it.
         """
         del self._away[schedule]
+        if schedule.deviations and schedule.deviations[-1][0] >= len(widths):
+            return  # the run was broken off, or its process died, before it came to that
         preemptions = sum(running[decision] for decision, _ in schedule.deviations)
         reorderings = len(schedule.deviations) - preemptions
         may_preempt = preemptions < self._preemptions

@@ -17,7 +17,7 @@ from cfepy.exploration.failures import FailureWatch
 from cfepy.exploration.moves import MadeMove, MoveNotingPolicy
 from cfepy.exploration.task_look import ANSWERS, AT, DOES, ORDERED, PREEMPTED, SENDS, TOUCHES, WAITS, Row, TaskLook
 from cfepy.exploration.trial import Trial
-from cfepy.exploration.verdict import INVARIANT, Failure, Verdict
+from cfepy.exploration.verdict import INVARIANT, LONGEST, Failure, Verdict
 from cfepy.pilot import RunPlan
 from cfepy.rtos import HOLD, Policy
 from cfepy.units import NS_PER_S
@@ -31,7 +31,7 @@ AROUND = 5  # rows that are shown before and after each move
 LAST = 10  # rows that are shown before the failure
 BEFORE = 50  # decisions before the first move, from which on rows are kept
 GAP = 2
-LONGEST = 16  # rows of a group
+MOST_ROWS = 16  # rows of a group
 FEW = 2  # rows: a group of so few is folded only when it comes three times
 BETWEEN = " ... "  # stands between the first and the last message of those that are told once
 CAUSE = "cause: "
@@ -124,7 +124,8 @@ def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[M
     cause = "" if known is not None else cause_of(evidence)
     rows = tuple(_without_touches(rows, {deed.thing for deed in look.deeds if deed.ident and deed.thing in cause}))
     title, text = (_named(each, look.names) for each in (failure.title, failure.text))
-    end = f"FAILURE{f' in {culprit}:' if culprit else ''} {title}"
+    what, title = ("LONGEST", f"{failure.who} {text}") if failure.kind == LONGEST else ("FAILURE", title)
+    end = f"{what}{f' in {culprit}:' if culprit else ''} {title}"
     return Story(rows, important(rows, moves, culprit, f"{cause} {text}"), cause, end, failure.at_ns)
 
 
@@ -318,7 +319,7 @@ def _folded(rows: Sequence[Row]) -> list[_Group]:
     kinds = [_kind(row) for row in rows]
     at = 0
     while at < len(rows):
-        length, times = max(((each, _times(kinds, at, each)) for each in range(1, LONGEST + 1)), key=_saved)
+        length, times = max(((each, _times(kinds, at, each)) for each in range(1, MOST_ROWS + 1)), key=_saved)
         if _saved((length, times)) == 0:
             length, times = 1, 1
         end = at + length * times

@@ -8,7 +8,7 @@ from __future__ import annotations
 import traceback
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from cfepy.attachment import Attachment
 from cfepy.exploration import verdict
@@ -144,7 +144,7 @@ class Trial:
         limit = self.plan.stall
         return replace(self, plan=replace(self.plan, stall=min(limit, max(PROBE_S, limit / 10))))
 
-    def until(self, end_ns: int) -> Trial | None:
+    def until(self, end_ns: int) -> Self | None:
         """The same trial in a run that ends at this virtual time; None for a run that ends with its script."""
         if self.plan.script is not None:
             return None

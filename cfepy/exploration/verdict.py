@@ -32,6 +32,7 @@ INVARIANT = "invariant"
 EVENT = "event"
 PROBLEM = "problem"
 RESULTS = "results differ"
+LONGEST = "longest"
 SIMPLEST = 3  # runs that are kept of each finding, to be shrunk
 LEAVES_OTHERS_WAITING = frozenset([DIED, RAISED, ENDED, RESET, DEADLOCK, STALLED])
 """What takes a task away, for which others may wait then."""
@@ -94,6 +95,8 @@ class Verdict:
             systematic search.
         steps: what the tasks did, and what they touched; kept only for a search of orders.
         end_ns: virtual time at the end of the run, before the nodes were asked to shut down.
+        longest: of a run in which something was measured: how long it took at most, when that ended, in virtual ns, and
+            how many decisions there had been by then; empty when nothing was.
         trouble: traceback of an error of cfepy itself, which says nothing about the mission; empty otherwise.
         missed: the moves of the schedule that were not possible, as text.
     """
@@ -108,6 +111,7 @@ class Verdict:
     widths: tuple[int, ...] = ()
     steps: tuple[TaskStep, ...] = ()
     end_ns: int = 0
+    longest: tuple[int, ...] = ()
     trouble: str = ""
     missed: tuple[str, ...] = ()
 
@@ -152,7 +156,8 @@ class Verdict:
         missed = tuple(plain.get("missed", ()))
         steps = tuple(TaskStep.of(each) for each in plain.get("steps", ()))
         own = {"schedule": schedule, "failures": failures, "deviations": deviations, "missed": missed, "steps": steps}
-        found = cls(**{**plain, **own, "widths": tuple(map(int, plain["widths"]))})
+        longest = tuple(map(int, plain.get("longest", ())))
+        found = cls(**{**plain, **own, "widths": tuple(map(int, plain["widths"])), "longest": longest})
         texts = [found.results, found.trace, found.trouble, *found.missed]
         for each in failures:
             texts += [each.kind, each.who, each.text, each.detail, each.task, each.cause]

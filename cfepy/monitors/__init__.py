@@ -16,6 +16,7 @@ from cfepy.monitors.deadlines import Check, DeadlineResult, Overrun, time_text
 if TYPE_CHECKING:
     from cfepy.monitors.demands import Demands, demands_of, judges_of, read_demands
     from cfepy.monitors.inversions import InversionWatch
+    from cfepy.monitors.measures import LongestWatch, Measure
     from cfepy.monitors.messages import Heard, MessageWatch
     from cfepy.monitors.observer import Observer, Sent, app_of
     from cfepy.monitors.predicate import Predicate, short, shortened
@@ -27,6 +28,8 @@ __all__ = [
     "Demands",
     "Heard",
     "InversionWatch",
+    "LongestWatch",
+    "Measure",
     "MessageWatch",
     "Observer",
     "Overrun",
@@ -53,6 +56,10 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "read_demands",
             ),
             ".inversions": ("InversionWatch",),
+            ".measures": (
+                "LongestWatch",
+                "Measure",
+            ),
             ".race_watch": ("RaceWatch",),
             ".messages": (
                 "Heard",

@@ -8,7 +8,8 @@ from cfepy.msg import Layout, Telemetry
 ASI_MET_DATA_MID = 0x0891
 WORKING_US = 20_000
 
-ASI_MET_HK = Telemetry("ASI_MET_HK", 0x0892, Layout("asi_met_hk", [("Samples", "u32")]))
+ASI_MET_HK_MID = 0x0892
+ASI_MET_HK = Telemetry("ASI_MET_HK", ASI_MET_HK_MID, Layout("asi_met_hk", [("Samples", "u32")]))
 TELEMETRY = [ASI_MET_HK]
 
 

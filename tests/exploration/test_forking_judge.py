@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from cfepy.exploration.verdict import Verdict
 from cfepy.exploration.workers import PROCESS_DIED, Processes
 from cfepy.pilot.plan import RunPlan
 from cfepy.rtos import Schedule
+from cfepy.rtos.watchdog import Expenses, Spent
 from tests.exploration.fake_trials import Seeds
 
 CRASH = """
@@ -74,3 +76,25 @@ def test_a_crash_in_a_forked_flight(crash: Trial) -> None:
         failure = verdict.failures[0]
         assert (failure.kind, failure.text) == (PROCESS_DIED, "the process died: killed by SIGSEGV")
         assert "crash.py" in failure.detail
+
+
+class _Busy(Expenses):
+    """Says that the process had the computer for all of the time."""
+
+    def __call__(self) -> Spent:
+        wall_s = super().__call__().wall_s
+        return Spent(wall_s, wall_s, 0.0)
+
+
+@pytest.mark.slow
+def test_a_process_that_waits_for_schedules_is_not_taken_for_a_task_that_spins(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("cfepy.rtos.watchdog.Expenses", _Busy)
+    trial = Trial(RunPlan(("capture",), seconds=0.605, tasks="greenlet", stall=0.2))
+    schedule = Schedule.parse("random:1:from=600ms")
+    with closing(ForkingJudge(trial)) as pilot:
+        first = pilot.judge(schedule)
+        time.sleep(1)  # the limit, several times
+        assert pilot.judge(schedule) == first
+    assert not first.failures

@@ -105,6 +105,12 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
         help="begin at this virtual time, such as 600ms, or, without one, when the mission is OPERATIONAL; what comes "
         "before is fifo's",
     )
+    explore.add_argument(
+        "--worst",
+        metavar="MEASURE",
+        help="look for the schedule under which something takes longest: latency:/topic, latency:/cause->/effect, "
+        "response:APP, age:/topic or wait:TASK",
+    )
     explore.add_argument("--until-failure", action="store_true", help="stop with the first failure")
 
 

@@ -11,14 +11,15 @@ import sys
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TextIO
+from typing import Any, TextIO
 
 from cfepy.cli.explore import DEFAULT_SEEDS, MOST_SEEDS
 from cfepy.cli.failures import tell
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of
-from cfepy.exploration import WIDTH, Expedition, Finding, Report, Shrunk, Told, Trial
+from cfepy.exploration import WIDTH, Expedition, Finding, Report, Shrunk, Told, Worst
+from cfepy.monitors import time_text
 from cfepy.pilot import NODE, RunPlan
 from cfepy.rtos import Schedule
 from cfepy.status import UsageError
@@ -35,6 +36,10 @@ def show(report: Report, stream: TextIO) -> None:
         print(f"{seen} {number}: {told.finding.failure.title}", file=stream)
         for line in _about(report, told, _width_of(stream)):
             print(f"{' ' * INDENT}{line}".rstrip(), file=stream)
+        print(file=stream)
+    if report.worst is not None:
+        for line in _longest(report, report.worst, _width_of(stream)):
+            print(line.rstrip(), file=stream)
         print(file=stream)
     for trouble in report.troubles[:1]:
         print(f"an error in cfepy itself, under {trouble.schedule}; please report it:", file=stream)
@@ -91,6 +96,32 @@ def _about(report: Report, told: Told, width: int) -> Iterator[str]:
         yield from lines
 
 
+def _longest(report: Report, worst: Worst, width: int) -> Iterator[str]:
+    """What took longest, how long it took otherwise, and the command that shows it."""
+    found, longest = worst.distribution, worst.distribution.longest
+    if longest is None or worst.schedule is None:
+        yield f"worst {found.measure.text}: nothing was measured; is the name right?"
+        return
+    fifo = "not measured" if found.under_fifo is None else time_text(found.under_fifo)
+    yield f"worst {found.measure.text}: {time_text(longest.longest[0])}, under fifo {fifo}"
+    yield f"  ends at {longest.longest[1] / NS_PER_S:.6f} s"
+    for inversion in worst.inversions:
+        yield f"  priority inversion before that: {inversion}"
+    if found.times:
+        names = {"min": "shortest", "median": "median", "p99": "99 %", "max": "longest"}
+        listed = ", ".join(f"{names[name]} {time_text(each)}" for name, each in found.quantiles().items())
+        yield f"  {len(found.times)} schedules: {listed}"
+    if found.number is not None:
+        yield f"  number {found.number}: {report.trial.command(longest.schedule)}"
+    if worst.shrunk is not None:
+        yield f"  shrunk: {worst.shrunk.trial.command(worst.shrunk.verdict.schedule)}"
+        yield f"          {_moves_text(worst.shrunk)}, found in {worst.shrunk.probes} runs"
+    lines = worst.story.lines(width)
+    if lines:
+        yield ""
+        yield from (f"  {line}" for line in lines)
+
+
 def _how_often(report: Report, finding: Finding) -> Iterator[str]:
     if finding.in_reference:
         yield "under the default schedule, fifo, already"
@@ -100,7 +131,7 @@ def _how_often(report: Report, finding: Finding) -> Iterator[str]:
         yield f"{count}, first number {finding.numbers[0]}; one in {median:g} in the median"
 
 
-def _moves_text(shrunk: Shrunk[Trial]) -> str:
+def _moves_text(shrunk: Shrunk[Any]) -> str:
     preemptions = shrunk.verdict.preemptions
     answers = Counter(move.question for move in shrunk.moves if move.question)
     others = len(shrunk.verdict.deviations) - preemptions - answers.total()
@@ -150,7 +181,7 @@ def _show_leak(plan: RunPlan, schedule: Schedule) -> None:
 
 def _expedition(arguments: argparse.Namespace) -> Expedition:
     """What the command line asks for."""
-    names = ("policy", "depth", "first_seed", "any_priority", "until_failure", "events", "jobs", "cluster")
+    names = ("policy", "depth", "first_seed", "any_priority", "until_failure", "events", "jobs", "cluster", "worst")
     return Expedition(
         _plan(arguments),
         seeds=arguments.seeds or (DEFAULT_SEEDS if arguments.budget is None else MOST_SEEDS),
