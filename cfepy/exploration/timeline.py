@@ -121,7 +121,7 @@ def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[M
     sender = rows[-1].task if rows and failure.kind == INVARIANT and rows[-1].kind == SENDS else ""
     culprit = failure.task or sender
     evidence = Evidence(failure, moves, rows, look.deeds, usual.deeds, look.names)
-    cause = "" if known is not None else cause_of(evidence)
+    cause = "" if known is not None or failure.kind == LONGEST else cause_of(evidence)
     rows = tuple(_without_touches(rows, {deed.thing for deed in look.deeds if deed.ident and deed.thing in cause}))
     title, text = (_named(each, look.names) for each in (failure.title, failure.text))
     what, title = ("LONGEST", f"{failure.who} {text}") if failure.kind == LONGEST else ("FAILURE", title)

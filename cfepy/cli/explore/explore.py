@@ -104,7 +104,8 @@ def _longest(report: Report, worst: Worst, width: int) -> Iterator[str]:
         return
     fifo = "not measured" if found.under_fifo is None else time_text(found.under_fifo)
     yield f"worst {found.measure.text}: {time_text(longest.longest[0])}, under fifo {fifo}"
-    yield f"  ends at {longest.longest[1] / NS_PER_S:.6f} s"
+    shown = longest if worst.shrunk is None else worst.shrunk.verdict
+    yield f"  ends at {shown.longest[1] / NS_PER_S:.6f} s"
     for inversion in worst.inversions:
         yield f"  priority inversion before that: {inversion}"
     if found.times:
