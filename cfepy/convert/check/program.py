@@ -23,7 +23,8 @@ from cfepy.convert.check.headers import (
     is_standard,
     refusal,
 )
-from cfepy.convert.check.source import Include, SourceFile, read_source, type_of
+from cfepy.convert.check.source import read_source, type_of
+from cfepy.convert.check.source_file import Include, SourceFile
 from cfepy.convert.configurations import configuration_headers
 from cfepy.convert.entry import LONGEST_QUEUE
 from cfepy.convert.messages import Profile
