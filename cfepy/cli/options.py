@@ -206,6 +206,21 @@ def plan_of(arguments: argparse.Namespace, words: Sequence[str], command: str | 
     return RunPlan(tuple(words), command, **said)
 
 
+def plan_of_mission(arguments: argparse.Namespace) -> RunPlan:
+    """The run of a command with `add_mission_or_node`.
+
+    Raises:
+        UsageError: as of `plan_of`; words behind what is no node's .py.
+    """
+    from cfepy.pilot import NODE
+    from cfepy.status import UsageError
+
+    plan = plan_of(arguments, [arguments.mission, *arguments.node_args])
+    if len(plan.words) > 1 and plan.command != NODE:
+        raise UsageError(f"one mission at a time; {plan.words[1]!r} is one too many", field="MISSION")
+    return plan
+
+
 def launch_words(arguments: argparse.Namespace) -> list[str]:
     """The words of a command that takes a launch file and its arguments as roslaunch does, or with `--arg`."""
     return [*arguments.words, *(f"{name}:={value}" for name, value in arguments.launch_args)]
@@ -258,6 +273,18 @@ def add_mission(parser: argparse.ArgumentParser, name: str = "mission", **said: 
         said: what the command says in another way, as for `ArgumentParser.add_argument`.
     """
     parser.add_argument(name, action=MissionAction, **{"metavar": "MISSION", "help": MISSION_HELP, **said})
+
+
+def add_mission_or_node(parser: argparse.ArgumentParser, **said: Any) -> None:
+    """A mission, or a node's .py with its own arguments, as `plan_of_mission` takes them.
+
+    Args:
+        parser: of the command.
+        said: see `add_mission`.
+    """
+    add_mission(parser, **said)
+    parser.add_argument("node_args", metavar="ARG", nargs="*", help="what a node's .py gets")
+    parser.set_defaults(hint="; what a node itself is to get comes after --")
 
 
 LOOKED_AT_HELP = f"a journal that `cfepy run --record FILE` wrote, or what is flown: {MISSION_HELP}"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from cfepy.exploration.expedition import DEFAULT_SEEDS, Expedition, Report, Told
     from cfepy.exploration.failures import TracebackReader
     from cfepy.exploration.moves import MadeMove
-    from cfepy.exploration.replays import GONE, NOT_POSSIBLE, STILL_THERE, Replayed, replay_all
+    from cfepy.exploration.replays import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFailure, replay_all
     from cfepy.exploration.shrink import Shrinkable, Shrinker, Shrunk, budget_of
     from cfepy.exploration.task_look import TaskLook
     from cfepy.exploration.timeline import WIDTH, Story, important, story_of_run
@@ -36,7 +36,7 @@ __all__ = [
     "Failure",
     "Finding",
     "MadeMove",
-    "Replayed",
+    "ReplayedFailure",
     "Report",
     "Shrinkable",
     "Shrinker",
@@ -67,7 +67,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ),
             ".failures": ("TracebackReader",),
             ".moves": ("MadeMove",),
-            ".replays": ("GONE", "NOT_POSSIBLE", "STILL_THERE", "Replayed", "replay_all"),
+            ".replays": ("GONE", "NOT_POSSIBLE", "STILL_THERE", "ReplayedFailure", "replay_all"),
             ".shrink": (
                 "Shrinkable",
                 "Shrinker",

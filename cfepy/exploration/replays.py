@@ -28,7 +28,7 @@ _DIGITS = re.compile(r"\d+")
 
 
 @dataclass(frozen=True, slots=True)
-class Replayed:
+class ReplayedFailure:
     """A failure that was looked for again.
 
     Attributes:
@@ -68,7 +68,7 @@ class Replayed:
 
 def replay_all(
     path: str, word: str | None = None, jobs: int | None = None, longest_s: float = LONGEST_S
-) -> Iterator[Replayed]:
+) -> Iterator[ReplayedFailure]:
     """Fly each distinct failure of a results file again, in the order in which they were found.
 
     Args:
@@ -101,7 +101,7 @@ def replay_all(
     with contextlib.closing(crew), contextlib.closing(crew.run(trial, take)) as verdicts:
         found = dict(verdicts)
     for number, (group, (title, _)) in enumerate(failures):
-        yield Replayed(title, found[number], _same(found[number], group), trial)
+        yield ReplayedFailure(title, found[number], _same(found[number], group), trial)
 
 
 def _campaign(path: str) -> tuple[RunPlan, dict[str, Any]]:

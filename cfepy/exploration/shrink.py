@@ -26,7 +26,7 @@ LEAST_PROBES, MOST_PROBES = 100, 800
 STARTS = 3  # failing schedules that are shrunk, the shortest ones
 SUBSETS_OF = 6  # moves of which all subsets are flown
 REACH = 64  # how many decisions a move is tried later
-SINGLES = 200  # how many single moves are tried
+FEW, SINGLES = 10, 200  # how many single moves are tried, at first and in the end
 MERGED = (2, 3)  # how many moves are replaced by one
 AROUND = 30  # how many decisions before and after them that is looked for
 CANDIDATES = 25  # how many such moves are tried
@@ -127,14 +127,14 @@ class Shrinker(Generic[T]):
             return None
         first = self._cut(first)
         self._limit = self._most // 2
-        best = self._with_less(self._without_tail(first))
+        best = self._with_one(self._with_less(self._without_tail(first)), FEW)
         for schedule in self._schedules[1:STARTS]:
             if len(best.made) > 1 and self.probes < self._limit:
                 other = self._fly(schedule)
                 if other.fails:
                     best = min(best, self._with_less(self._without_tail(other)), key=lambda flight: flight.cost)
         self._limit = self._most
-        best = self._with_one(self._merged(self._redirected(best)))
+        best = self._with_one(self._merged(self._redirected(best)), SINGLES)
         best = self._sooner(self._later(best))
         return self._finish(self._fewest(best))
 
@@ -183,13 +183,13 @@ class Shrinker(Generic[T]):
                 size //= 2
         return best
 
-    def _with_one(self, best: _Flight) -> _Flight:
-        """One move in the place of all, tried in the run of fifo, where it stands closest to the failure first."""
+    def _with_one(self, best: _Flight, count: int) -> _Flight:
+        """One move in the place of all, tried in the run of fifo: at like places, closest to the failure first."""
         if len(best.made) < 2 or self.probes >= self._limit:
             return best
         fifo = self._flight((), best.options)
         at_ns = best.verdict.end_ns if (failure := best.verdict.failure(self._group)) is None else failure.at_ns
-        ones = islice(_single_moves(fifo, at_ns, _names(best)), SINGLES)
+        ones = islice(_single_moves(best, fifo, at_ns), count)
         return next(self._tries(((move,) for move in ones), best), best)
 
     def _merged(self, best: _Flight) -> _Flight:
@@ -313,11 +313,12 @@ def _without_pieces(moves: Moves, size: int) -> Iterator[Moves]:
         yield (*moves[:start], *moves[start + size :])
 
 
-def _single_moves(fifo: _Flight, at_ns: int | None, names: set[str]) -> Iterator[Move]:
-    """All that there are between the tasks that matter, before the failure, the last ones first."""
-    for choice in reversed(fifo.choices):
-        if at_ns is None or choice.now <= at_ns:
-            yield from _among(choice, names)
+def _single_moves(best: _Flight, fifo: _Flight, at_ns: int | None) -> list[Move]:
+    """All that there are between the tasks that matter, before the failure: those at like places and the last first."""
+    like = _places(best)
+    choices = [choice for choice in reversed(fifo.choices) if at_ns is None or choice.now <= at_ns]
+    moves = [move for choice in choices for move in _among(choice, _names(best))]
+    return sorted(moves, key=lambda move: (move.subject, move.place) not in like)
 
 
 def _between(best: _Flight, without: _Flight, at: int, size: int) -> list[Move]:
@@ -326,7 +327,7 @@ def _between(best: _Flight, without: _Flight, at: int, size: int) -> list[Move]:
     replaced = [made.decision for made in best.made[at : at + size]]
     places = range(max(least, replaced[0] - AROUND), min(replaced[-1] + AROUND, len(without.choices)))
     moves = [(move, place) for place in places for move in _among(without.choices[place], _names(best))]
-    like = {(move.subject, move.place) for move in best.moves}
+    like = _places(best)
 
     def rank(found: tuple[Move, int]) -> tuple[bool, int]:
         move, place = found
@@ -360,6 +361,11 @@ def _same_later(best: _Flight, made: MadeMove) -> Iterator[Move]:
                 made.move.chosen,
             ) and choice.preempts == made.preempts:
                 yield move
+
+
+def _places(best: _Flight) -> set[tuple[str, str]]:
+    """Where the moves are made."""
+    return {(move.subject, move.place) for move in best.moves}
 
 
 def _names(best: _Flight) -> set[str]:

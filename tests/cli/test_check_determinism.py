@@ -193,3 +193,37 @@ def test_what_goes_past_the_simulated_computer_is_named(tmp_path: Path, capsys: 
         f"  talker.py:6: numpy.memmap({path!r}, mode='w+', shape=3): writes {path} on this computer",
         '  talker.py:7: with open("/proc/uptime") as file:: reads /proc/uptime, which is another each time',
     ]
+
+
+NODE = """
+import sys
+import rospy
+rospy.init_node("node")
+print("got", sys.argv[1:], rospy.get_param("~rate", None))
+"""
+LAUNCH = """
+<launch>
+  <arg name="n"/>
+  <node pkg="pk" type="node.py" name="n" output="screen"><param name="rate" value="$(arg n)"/></node>
+</launch>
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "words", [["node.py", "--", "a", "b"], ["n.launch", "--arg", "n:=3"], ["pk", "n.launch", "--arg", "n:=3"]]
+)
+def test_nodes_and_launch_files_are_checked_like_missions(
+    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "package.xml").write_text("<package><name>pk</name><version>1.0.0</version></package>")
+    (tmp_path / "node.py").write_text(f"#!/usr/bin/env python3{NODE}")
+    (tmp_path / "node.py").chmod(0o755)
+    (tmp_path / "n.launch").write_text(LAUNCH)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    assert main(["run", "--for", "1", "--check-determinism", "2", *words]) == 0
+    assert "all made the same" in capsys.readouterr().out
+    assert main(["run", "--for", "1", *words]) == 0
+    (said,) = (line for line in capsys.readouterr().out.splitlines() if "got" in line)
+    assert "['a', 'b'] None" in said if "a" in words else said.endswith(" 3")

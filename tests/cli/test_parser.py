@@ -102,7 +102,8 @@ def test_launch_files_are_known_by_the_same_names() -> None:
     ("words", "expected"),
     [
         ("run demo robot.launch", {"mission": "demo robot.launch"}),
-        ("run --for 2 demo --seed 3 robot.launch", None),  # not side by side
+        ("run --for 2 demo --seed 3 robot.launch", {"mission": "demo", "node_args": ["robot.launch"]}),
+        ("check demo --board b robot.launch", None),  # not side by side
         ("run --board demo robot.launch", {"board": "demo", "mission": "robot.launch"}),
         ("run --quiet demo robot.launch", {"quiet": True, "mission": "demo robot.launch"}),
         ("topic echo demo robot.launch /odom -n 1", {"source": "demo robot.launch", "topic": "/odom"}),

@@ -8,7 +8,15 @@ from __future__ import annotations
 
 import argparse
 
-from cfepy.cli.options import POINTS_HELP, RUN_OPTIONS, add_json, add_mission, add_run_options, seconds_of
+from cfepy.cli.options import (
+    POINTS_HELP,
+    RUN_OPTIONS,
+    add_json,
+    add_mission,
+    add_mission_or_node,
+    add_run_options,
+    seconds_of,
+)
 
 INTENSITIES = ("low", "medium", "high")
 DEFAULT_SEEDS = 100
@@ -34,14 +42,13 @@ def _add_explore(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "failure once, with the command that replays it and the fewest preemptions that still fail.",
         epilog=STATUS_HELP,
     )
-    add_mission(explore, nargs="?")
-    explore.add_argument("node_args", metavar="ARG", nargs="*", help="what a node's .py gets")
+    add_mission_or_node(explore, nargs="?")
     add_run_options(explore, without=["schedule"])  # it is what explore chooses
     _add_search(explore)
     _add_failures(explore)
     _add_crew(explore)
     _add_outputs(explore)
-    explore.set_defaults(module="explore.explore", hint="; what a node itself is to get comes after --")
+    explore.set_defaults(module="explore.explore")
 
 
 def _add_search(explore: argparse.ArgumentParser) -> None:

@@ -17,10 +17,10 @@ from cfepy.cli.explore import DEFAULT_SEEDS, MOST_SEEDS
 from cfepy.cli.failures import tell
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
-from cfepy.cli.options import plan_of
+from cfepy.cli.options import plan_of_mission
 from cfepy.exploration import WIDTH, Expedition, Finding, Report, Shrunk, Told, Worst
 from cfepy.monitors import time_text
-from cfepy.pilot import NODE, RunPlan
+from cfepy.pilot import RunPlan
 from cfepy.rtos import Schedule
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -184,7 +184,7 @@ def _expedition(arguments: argparse.Namespace) -> Expedition:
     """What the command line asks for."""
     names = ("policy", "depth", "first_seed", "any_priority", "until_failure", "events", "jobs", "cluster", "worst")
     return Expedition(
-        _plan(arguments),
+        plan_of_mission(arguments),
         seeds=arguments.seeds or (DEFAULT_SEEDS if arguments.budget is None else MOST_SEEDS),
         budget_s=arguments.budget,
         **{name: getattr(arguments, name) for name in (*names, "results", "shrink", "points")},
@@ -195,11 +195,3 @@ def _expedition(arguments: argparse.Namespace) -> Expedition:
         longest_s=arguments.longest,
         progress=None if arguments.quiet else sys.stderr,
     )
-
-
-def _plan(arguments: argparse.Namespace) -> RunPlan:
-    """The run; a Python file is a node, and gets the words behind it."""
-    plan = plan_of(arguments, [arguments.mission, *arguments.node_args])
-    if len(plan.words) > 1 and plan.command != NODE:
-        raise UsageError(f"one mission at a time; {plan.words[1]!r} is one too many", field="MISSION")
-    return plan

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import refuse_run_options
-from cfepy.exploration import GONE, NOT_POSSIBLE, STILL_THERE, Replayed, replay_all
+from cfepy.exploration import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFailure, replay_all
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     return FOUND_PROBLEMS if is_wrong else ENDED_WELL
 
 
-def _lines(each: Replayed) -> Iterator[str]:
+def _lines(each: ReplayedFailure) -> Iterator[str]:
     yield f"{each.state}: {each.title if each.same is None else each.same.title}"
     if each.verdict.trouble:
         yield f"  an error in cfepy itself; please report it: {each.verdict.trouble.splitlines()[-1]}"
@@ -47,7 +47,7 @@ def _lines(each: Replayed) -> Iterator[str]:
         yield f"  replay: {each.command}"
 
 
-def _summary(found: list[Replayed]) -> str:
+def _summary(found: list[ReplayedFailure]) -> str:
     counts = Counter(each.state for each in found)
     told = [
         f"{counts[state]} {text}"

@@ -13,6 +13,7 @@ from cfepy.cli.options import (
     STATUS_HELP,
     add_json,
     add_mission,
+    add_mission_or_node,
     add_outputs,
     add_pace,
     add_recording,
@@ -38,7 +39,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         description="Run a mission in virtual time, and report what happened.",
         epilog=STATUS_HELP,
     )
-    add_mission(run)
+    add_mission_or_node(run)
     add_run_options(run)
     add_pace(run)
     add_outputs(run)

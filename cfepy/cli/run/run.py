@@ -10,7 +10,7 @@ from cfepy.cli.display import Display, make_display
 from cfepy.cli.failures import tell
 from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
-from cfepy.cli.options import plan_of
+from cfepy.cli.options import plan_of_mission
 from cfepy.cli.run import report
 from cfepy.cli.run.outputs import Outputs, recording
 from cfepy.pilot import Flown, RunPlan, fly
@@ -70,7 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: it cannot run like this.
     """
-    plan = plan_of(arguments, [arguments.mission])
+    plan = plan_of_mission(arguments)
     if arguments.check_determinism is not None:
         from cfepy.cli.run.check_determinism import check
 
