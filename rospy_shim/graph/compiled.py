@@ -17,6 +17,7 @@ from cfepy.sb import ONESUB_TLM, UNSUBSCRIPTION
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_MS
 from rospy_shim.client.exceptions import ServiceException
+from rospy_shim.client.names import ANYTYPE
 from rospy_shim.client.service import REQUEST_LEAD, Pieces, answer_packets, call_of_request, room_of
 from rospy_shim.client.transport import HEADER_BYTES, addressed, segments, whole_header
 from rospy_shim.graph.compiled_params import CompiledParams
@@ -39,6 +40,7 @@ class Concern(IntEnum):
     GONE = 4  # added to the others: no longer
     SUBSCRIBED = 8  # a subscriber's pipe is on the bus now: it wants the latched messages
     ENDED = 32  # the node ends by itself; 16 to 31 are about parameters
+    TYPE = 33  # what the messages of a topic are
 
 
 class Enrolled(NamedTuple):
@@ -189,12 +191,21 @@ class CompiledNodes:
             return self._params.answer(kind, who, name, rest[0])
         if kind == Concern.ENDED:
             return self._end(name, rest[0])
+        if kind == Concern.TYPE:
+            return self._type_of(name)
         return self._enter(pipe, kind, who, name, DeclaredType(*rest)).packed()
 
     def _end(self, app: str, status: str) -> bytes:
         """Whether an application that ends is to start again, and after how many ms."""
         again = self._ended(app, int(status))
         return struct.pack("<BI", again is not None, (again or 0) // NS_PER_MS)
+
+    def _type_of(self, name: str) -> bytes:
+        """Type, md5sum and definition of a topic's messages, and whether a publisher latches: four texts."""
+        topic = self._graph.topic(name)
+        latching = "1" if any(link.is_latch for link in topic.links) else "0"
+        texts = (topic.type or ANYTYPE, topic.md5sum or ANYTYPE, topic.definition, latching)
+        return b"".join(struct.pack("<I", len(each.encode())) + each.encode() for each in texts)
 
     def _enter(self, pipe: int, kind: int, who: str, name: str, declared: DeclaredType) -> Enrolled:
         self.forget_ended()

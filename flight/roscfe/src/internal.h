@@ -173,6 +173,7 @@ struct Registration
 };
 Registration enroll(Kind kind, const std::string &name, const char *type, const char *md5, const char *definition);
 void         ask_for_latched(const std::string &topic, std::uint8_t number);
+constexpr std::uint8_t kTypeOfTopic = 33; // what connection_header asks
 
 // Parameters of cfepy's ROS application, where all nodes of a mission have theirs (parameter_server.cpp). Values and names
 // are as in ros/param.h.

@@ -133,6 +133,45 @@ void withdraw_name(Kind kind, const std::string &name)
     }
 }
 
+ros::M_stringPtr connection_header(const std::string &topic)
+{
+    static std::map<std::string, ros::M_stringPtr> known;
+    ros::M_stringPtr &                             header = known[topic];
+    if (header)
+    {
+        return header;
+    }
+    // Without cfepy's ROS application nobody knows: it is any type.
+    header = boost::make_shared<ros::M_string>(ros::M_string{{"topic", topic}, {"callerid", "unknown_publisher"},
+                                                             {"type", "*"}, {"md5sum", "*"}, {"message_definition", ""},
+                                                             {"latching", "0"}});
+    std::vector<std::uint8_t> answer;
+    if (!g_node.has_master || !call_master(kTypeOfTopic, topic, "", "", "", answer))
+    {
+        return header;
+    }
+    std::size_t at = 0;
+    for (const char *name : {"type", "md5sum", "message_definition", "latching"})
+    {
+        std::uint32_t size = 0;
+        if (at + 4 > answer.size())
+        {
+            break;
+        }
+        for (int byte = 0; byte < 4; ++byte)
+        {
+            size |= static_cast<std::uint32_t>(answer[at++]) << (8 * byte);
+        }
+        if (size > answer.size() - at)
+        {
+            break;
+        }
+        (*header)[name].assign(reinterpret_cast<const char *>(answer.data()) + at, size);
+        at += size;
+    }
+    return header;
+}
+
 void ask_for_latched(const std::string &topic, std::uint8_t number)
 {
     Registration place;

@@ -13,6 +13,14 @@ namespace ros
 struct AdvertiseOptions
 {
     AdvertiseOptions() = default;
+    AdvertiseOptions(const std::string &_topic, std::uint32_t _queue_size, const std::string &_md5sum,
+                     const std::string &_datatype, const std::string &_message_definition,
+                     const SubscriberStatusCallback &_connect_cb    = SubscriberStatusCallback(),
+                     const SubscriberStatusCallback &_disconnect_cb = SubscriberStatusCallback())
+        : topic(_topic), queue_size(_queue_size), md5sum(_md5sum), datatype(_datatype),
+          message_definition(_message_definition), connect_cb(_connect_cb), disconnect_cb(_disconnect_cb)
+    {
+    }
 
     template <class M>
     void init(const std::string &_topic, std::uint32_t _queue_size,

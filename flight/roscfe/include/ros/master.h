@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "XmlRpcValue.h"
 #include "ros/forwards.h"
 #include "ros/time.h"
 
@@ -26,6 +27,12 @@ inline const std::string &getURI()
     return uri;
 }
 inline void setRetryTimeout(WallDuration) {}
+
+// False: nobody answers.
+inline bool execute(const std::string &, const XmlRpc::XmlRpcValue &, XmlRpc::XmlRpcValue &, XmlRpc::XmlRpcValue &, bool)
+{
+    return false;
+}
 
 } // namespace master
 } // namespace ros

@@ -11,7 +11,8 @@
 namespace ros
 {
 
-// A packet does not say who sent it: the publisher's name is "unknown_publisher" and the connection header is empty.
+// A packet does not say who sent it: the publisher's name is "unknown_publisher", and the connection header has the type
+// alone, and only of messages that a node reads by itself, such as topic_tools::ShapeShifter.
 template <class M>
 class MessageEvent
 {
@@ -24,12 +25,18 @@ class MessageEvent
     MessageEvent() = default;
     MessageEvent(const ConstMessagePtr &message) : message_(message), receipt_time_(Time::now()) {}
     MessageEvent(const ConstMessagePtr &message, Time receipt_time) : message_(message), receipt_time_(receipt_time) {}
+    MessageEvent(const ConstMessagePtr &message, const M_stringPtr &connection_header, Time receipt_time)
+        : message_(message), receipt_time_(receipt_time), connection_header_(connection_header)
+    {
+    }
     MessageEvent(const MessageEvent<Message> &other)
-        : message_(other.getConstMessage()), receipt_time_(other.getReceiptTime())
+        : message_(other.getConstMessage()), receipt_time_(other.getReceiptTime()),
+          connection_header_(other.getConnectionHeaderPtr())
     {
     }
     MessageEvent(const MessageEvent<ConstMessage> &other)
-        : message_(other.getConstMessage()), receipt_time_(other.getReceiptTime())
+        : message_(other.getConstMessage()), receipt_time_(other.getReceiptTime()),
+          connection_header_(other.getConnectionHeaderPtr())
     {
     }
     MessageEvent &operator=(const MessageEvent &) = default;
@@ -45,9 +52,9 @@ class MessageEvent
     M_string &getConnectionHeader() const
     {
         static M_string empty;
-        return empty;
+        return connection_header_ ? *connection_header_ : empty;
     }
-    M_stringPtr getConnectionHeaderPtr() const { return M_stringPtr(); }
+    const M_stringPtr &getConnectionHeaderPtr() const { return connection_header_; }
 
     bool operator<(const MessageEvent &other) const
     {
@@ -62,6 +69,7 @@ class MessageEvent
   private:
     ConstMessagePtr message_;
     Time            receipt_time_;
+    M_stringPtr     connection_header_;
 };
 
 } // namespace ros

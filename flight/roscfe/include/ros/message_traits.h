@@ -253,6 +253,18 @@ namespace roscfe
 namespace wire
 {
 
+// A type that is of any type by itself, such as a ShapeShifter, has a definition of each message only.
+template <class M, class = void>
+struct DefinitionOf
+{
+    static const char *value() { return ""; }
+};
+template <class M>
+struct DefinitionOf<M, std::void_t<decltype(ros::message_traits::Definition<M>::value())>>
+{
+    static const char *value() { return ros::message_traits::Definition<M>::value(); }
+};
+
 template <class M>
 struct Traits
 {
@@ -261,7 +273,7 @@ struct Traits
 
     static const char *md5() { return ros::message_traits::MD5Sum<M>::value(); }
     static const char *type() { return ros::message_traits::DataType<M>::value(); }
-    static const char *definition() { return ros::message_traits::Definition<M>::value(); }
+    static const char *definition() { return DefinitionOf<M>::value(); }
 };
 
 } // namespace wire

@@ -8,6 +8,7 @@
 
 #include "ros/callback_queue_interface.h"
 #include "ros/message_event.h"
+#include "ros/serialization.h"
 #include "roscfe/slots.h"
 #include "roscfe/wire.h"
 
@@ -45,6 +46,10 @@ void unsubscribe(const boost::shared_ptr<Subscription> &subscription);
 
 // How many messages a subscription keeps when the node asks for so many; 0 asks for all.
 std::uint32_t queue_size(std::uint32_t asked);
+
+// What is known of the messages of a topic, with the names that roscpp's connections have for it: type, md5sum,
+// message_definition, latching, topic, callerid. It is asked for once.
+ros::M_stringPtr connection_header(const std::string &topic);
 
 template <class M>
 class TypedSubscription final : public Subscription
@@ -99,6 +104,10 @@ class TypedSubscription final : public Subscription
         ros::VoidConstPtr held = tracked_.lock();
         if (alive_ && (!has_tracked_ || held))
         {
+            if constexpr (!wire::HasFields<M>::value)
+            {
+                event = with_header(event);
+            }
             callback_(event);
         }
         return Success;
@@ -106,6 +115,16 @@ class TypedSubscription final : public Subscription
 
   private:
     static constexpr std::uint32_t kKept = 4; // messages that the node may hold beside those that wait
+
+    // A type that reads by itself is told what the message is.
+    Event with_header(const Event &event) const
+    {
+        ros::serialization::PreDeserializeParams<M> params;
+        params.message           = boost::const_pointer_cast<M>(event.getConstMessage());
+        params.connection_header = connection_header(topic_);
+        ros::serialization::PreDeserialize<M>::notify(params);
+        return Event(event.getConstMessage(), params.connection_header, event.getReceiptTime());
+    }
 
     void drop_oldest()
     {

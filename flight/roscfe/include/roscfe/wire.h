@@ -503,7 +503,7 @@ bool read(Message &message, const std::uint8_t *from, std::size_t size)
         {
             return false;
         }
-        return stream.good() && stream.at_end();
+        return stream.good() && (stream.at_end() || stream.getData() == from); // it may have copied them as they are
     }
 #endif
     detail::item(stream, message);
