@@ -44,7 +44,10 @@ LIBRARIES = (
     *("-lroscpp", "-lrosconsole", "-lrostime", "-lroscpp_serialization", "-lxmlrpcpp"),
     *("-lactionlib", "-lboost_thread"),
 )
-MORE_LIBRARIES = {"clouds": ("-linteractive_markers", "-llaser_geometry", "-ltf", "-ltf2"), "shapes": ("-ltopic_tools",)}
+MORE_LIBRARIES = {
+    "clouds": ("-linteractive_markers", "-llaser_geometry", "-ltf", "-ltf2"),
+    "shapes": ("-ltopic_tools",),
+}
 """Of probes that need more of ROS than others."""
 MANIFEST = """<package format="2"><name>probes</name><version>1.0.0</version><description>probes</description>
 <maintainer email="a@b.c">a</maintainer><license>Apache-2.0</license><depend>roscpp</depend></package>
