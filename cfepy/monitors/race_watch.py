@@ -148,7 +148,7 @@ class RaceWatch(Attachment):
         if call in _LOCKS_TAKEN:
             if result is not False:
                 self._clocks.take(self._task, self._lock(subject))
-        elif call in _TAKES:
+        elif call in _TAKES and result is not False and (call != "queue_get" or result is not None):
             self._clocks.take(self._task, _TAKES[call](args))
 
     def _lock(self, lock: Any) -> Hashable:

@@ -567,3 +567,119 @@ print(box.n)
 """,
 }
 """Name of the program, and the program behind the prelude."""
+
+APP_PRELUDE = """
+from cfepy.msg import header
+MID = 0x0A01
+class Box:
+    def __init__(self): self.n = 0
+box = Box()
+def main(cfe):
+    body(cfe)
+    while cfe.es.run_loop(): cfe.os.task_delay(100)
+def child(cfe, function):
+    cfe.es.create_child_task("CHILD", lambda: function(cfe), 8192, 100)
+def add(cfe): box.n += 1
+def wait(cfe): cfe.os.task_delay(200)
+"""
+APPS_RACY = {
+    "child": """
+def body(cfe): child(cfe, add); wait(cfe); add(cfe)
+""",
+    "mutex on one side": """
+def body(cfe):
+    mutex = cfe.os.mut_sem_create("M")
+    def guarded(cfe): cfe.os.mut_sem_take(mutex); add(cfe); cfe.os.mut_sem_give(mutex)
+    child(cfe, guarded); wait(cfe); add(cfe)
+""",
+    "semaphore that was not given": """
+def body(cfe):
+    sem = cfe.os.bin_sem_create("S", 0)
+    child(cfe, add)
+    cfe.os.bin_sem_timed_wait(sem, 200)
+    add(cfe)
+""",
+    "sent before the write": """
+def body(cfe):
+    pipe = cfe.sb.create_pipe(4, "P")
+    cfe.sb.subscribe(MID, pipe)
+    def send(cfe): cfe.sb.transmit_msg(header.init(MID, 16)); add(cfe)
+    child(cfe, send)
+    cfe.sb.receive_buffer(pipe)
+    wait(cfe)
+    add(cfe)
+""",
+    "timer": """
+def body(cfe):
+    timer = cfe.os.timer_create("T", lambda timer_id: add(cfe))
+    cfe.os.timer_set(timer, 100_000, 0)
+    wait(cfe)
+    add(cfe)
+""",
+}
+"""Applications whose tasks race for `Box.n`, behind their prelude."""
+APPS_CLEAN = {
+    "started": """
+def body(cfe): add(cfe); child(cfe, add)
+""",
+    "mutex": """
+def body(cfe):
+    mutex = cfe.os.mut_sem_create("M")
+    def guarded(cfe): cfe.os.mut_sem_take(mutex); add(cfe); cfe.os.mut_sem_give(mutex)
+    child(cfe, guarded); wait(cfe); guarded(cfe)
+""",
+    "counting semaphore": """
+def body(cfe):
+    sem = cfe.os.count_sem_create("S", 0)
+    def work(cfe): add(cfe); cfe.os.count_sem_give(sem)
+    child(cfe, work)
+    cfe.os.count_sem_take(sem)
+    add(cfe)
+""",
+    "queue": """
+def body(cfe):
+    queue = cfe.os.queue_create("Q", 4, 8)
+    def work(cfe): add(cfe); cfe.os.queue_put(queue, b"12345678")
+    child(cfe, work)
+    wait(cfe)
+    cfe.os.queue_get(queue)
+    add(cfe)
+""",
+    "message": """
+def body(cfe):
+    pipe = cfe.sb.create_pipe(4, "P")
+    cfe.sb.subscribe(MID, pipe)
+    def send(cfe): add(cfe); cfe.sb.transmit_msg(header.init(MID, 16))
+    child(cfe, send)
+    wait(cfe)
+    cfe.sb.receive_buffer(pipe)
+    add(cfe)
+""",
+    "readers and writers": """
+def body(cfe):
+    lock = cfe.os.rw_lock_create("L")
+    def work(cfe): cfe.os.rw_lock_write_take(lock); add(cfe); cfe.os.rw_lock_write_give(lock)
+    child(cfe, work); wait(cfe)
+    cfe.os.rw_lock_read_take(lock); print(box.n); cfe.os.rw_lock_read_give(lock)
+""",
+    "condition": """
+def body(cfe):
+    var = cfe.os.cond_var_create("C")
+    def work(cfe): cfe.os.cond_var_lock(var); add(cfe); cfe.os.cond_var_signal(var); cfe.os.cond_var_unlock(var)
+    child(cfe, work)
+    cfe.os.cond_var_lock(var)
+    while not box.n: cfe.os.cond_var_wait(var)
+    cfe.os.cond_var_unlock(var)
+""",
+    "timer": """
+def body(cfe):
+    sem = cfe.os.bin_sem_create("S", 0)
+    def tick(timer_id): add(cfe); cfe.os.bin_sem_give(sem)
+    timer = cfe.os.timer_create("T", tick)
+    add(cfe)
+    cfe.os.timer_set(timer, 100_000, 0)
+    cfe.os.bin_sem_take(sem)
+    add(cfe)
+""",
+}
+"""Applications without a race."""

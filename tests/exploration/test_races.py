@@ -10,11 +10,11 @@ import pytest
 from cfepy.exploration import Expedition, Trial
 from cfepy.pilot import RunPlan, fly
 from cfepy.rtos import Schedule
-from tests.exploration.race_programs import CLEAN, PRELUDE, RACY
+from tests.exploration.race_programs import APP_PRELUDE, APPS_CLEAN, APPS_RACY, CLEAN, PRELUDE, RACY
 
 SCRIPT = "CFE_APP, main.py, __main__, MAIN, 100, 16384, 0x0, 1;\n!\n"
 QUICK_RACY, QUICK_CLEAN = ("two topics", "variable of a function"), ("queue", "condition")
-Races = Callable[[str, str], dict[str, str]]
+Races = Callable[..., dict[str, str]]
 
 
 @pytest.fixture
@@ -22,8 +22,10 @@ def races_of(tmp_path: Path) -> Races:
     """Flies a program under a schedule: what it races for, and the details."""
     (tmp_path / "startup.scr").write_text(SCRIPT)
 
-    def fly(source: str, schedule: str = "at") -> dict[str, str]:
-        (tmp_path / "main.py").write_text(PRELUDE + source)
+    def fly(source: str, schedule: str = "at", prelude: str = PRELUDE) -> dict[str, str]:
+        (tmp_path / "main.py").write_text(prelude + source)
+        if prelude == APP_PRELUDE:
+            (tmp_path / "startup.scr").write_text(SCRIPT.replace("__main__", "main"))
         plan = RunPlan((str(tmp_path),), seconds=1.5, races=True)
         verdict = Trial(plan).run(Schedule.parse(schedule))
         others = [failure for failure in verdict.failures if failure.kind != "data race"]
@@ -46,6 +48,16 @@ def test_a_race_is_found(races_of: Races, name: str) -> None:
 @pytest.mark.parametrize("name", slow(list(CLEAN), QUICK_CLEAN))
 def test_what_is_ordered_is_no_race(races_of: Races, name: str) -> None:
     assert races_of(CLEAN[name]) == {}
+
+
+@pytest.mark.parametrize("name", slow(list(APPS_RACY), ("child",)))
+def test_a_race_of_an_app_is_found(races_of: Races, name: str) -> None:
+    assert list(races_of(APPS_RACY[name], prelude=APP_PRELUDE)) == ["Box.n"]
+
+
+@pytest.mark.parametrize("name", slow(list(APPS_CLEAN), ("timer",)))
+def test_what_is_ordered_in_an_app_is_no_race(races_of: Races, name: str) -> None:
+    assert races_of(APPS_CLEAN[name], prelude=APP_PRELUDE) == {}
 
 
 def test_a_race_tells_both_sides(races_of: Races) -> None:
