@@ -48,9 +48,12 @@ _LETS_GO: dict[str, Key] = {
         _first,
     ),
     **dict.fromkeys(_TABLES, _always("tables")),
+    **dict.fromkeys(("setParam", "deleteParam"), _always("parameters")),
     **dict.fromkeys(("run_loop", "wait_for_startup_sync", "wait_for_system_state"), _always("startup")),
 }
-"""What calls of services hand on: whoever takes it later knows what the caller did before."""
+"""What calls of services, and of nodes to the parameter server, hand on: who takes it later knows what the caller did
+before."""
+_ASKING = ("getParam", "hasParam", "searchParam", "getParamNames")
 _TAKES: dict[str, Key] = {
     **dict.fromkeys(
         (
@@ -138,8 +141,10 @@ class RaceWatch(Attachment):
             self._made(subject)
         elif call in _LOCKS_GIVEN:
             self._clocks.let_go(self._task, self._lock(subject))
-        elif call == "began":
+        elif call == "add_callback":
             self._clocks.let_go(self._task, ("began", self._task.owner))
+        elif call in _ASKING:
+            self._clocks.take(self._task, "parameters")
         elif call in _LETS_GO:
             self._clocks.let_go(self._task, _LETS_GO[call](args))
 

@@ -111,10 +111,10 @@ class ExploringKernel(Kernel):
         """Have an observer told of calls, besides those that are."""
         self.observer = observer if self.observer is None else _Both(self.observer, observer)
 
-    def began(self, subject: object) -> None:
-        """See `Scheduler.began`; observers are told of it as of a call."""
+    def tell(self, subject: object, call: str, args: tuple[object, ...] = ()) -> None:
+        """See `Scheduler.tell`; observers are told of it as of a call that begins."""
         if self.observer is not None:
-            self.observer.called(subject, "began", ())
+            self.observer.called(subject, call, args)
 
     # -- scheduling points -----------------------------------------------------------------------------------------
 

@@ -85,11 +85,13 @@ class Scheduler:
     def has_started(self) -> None:
         """That delay of the current task is over."""
 
-    def began(self, subject: object) -> None:
-        """Something that the current task has made may run in others from now on, such as a callback.
+    def tell(self, subject: object, call: str, args: tuple[object, ...] = ()) -> None:
+        """The current task does something that may matter to others, and is no call of a service or of a lock.
 
         Args:
-            subject: what calls it.
+            subject: what it is done with.
+            call: what is done.
+            args: with what else.
         """
 
     def connection_delay(self, publisher: str, subscriber: str, topic: str, usual_ns: int) -> int:

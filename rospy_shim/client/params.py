@@ -125,6 +125,7 @@ class Params:
         Raises:
             xmlrpc.client.Fault: of the node's own `xmlrpc.client`; XML has no such character.
         """
+        self._node.kernel.tell(self, method, arguments)
         try:
             return through_xml(method, self._node.names.get_name(), *arguments)
         except ExpatError as error:

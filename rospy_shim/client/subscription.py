@@ -137,7 +137,7 @@ class Subscription(TopicSide):
             raise ROSException(f"subscriber [{self.name}] has been closed")
         self.callbacks = [*self.callbacks, (callback, argument)]
         self._calls = [*self._calls, (callback, argument)]
-        self.node.kernel.began(self)
+        self.node.kernel.tell(self, "add_callback")
         if self.latest is not None:
             self._call(callback, argument, self.latest)
 

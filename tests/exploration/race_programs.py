@@ -1,4 +1,4 @@
-"""Small programs for the race detector: 30 with a race, and of which thing it is, and 30 without one.
+"""Small programs for the race detector: some race, and it is said for what; the others do not.
 
 All of them come to the right result under the default schedule. `both` runs functions in threads of their own.
 """
@@ -338,13 +338,6 @@ def add():
     with lock: box.n += 1
 both(add, add)
 """,
-    "lock, acquire and release": """
-def add():
-    lock.acquire()
-    try: box.n += 1
-    finally: lock.release()
-both(add, add)
-""",
     "reentrant lock": """
 lock = threading.RLock()
 def add():
@@ -555,6 +548,17 @@ box.n = 2
 print(call().message)
 box.n += 1
 print(call().message)
+""",
+    "parameter": """
+node()
+def work():
+    while not rospy.get_param("/go", False): time.sleep(0.01)
+    print(box.n)
+thread = threading.Thread(target=work)
+thread.start()
+box.n = 3
+rospy.set_param("/go", True)
+thread.join()
 """,
     "rospy.Timer, once": """
 node()
