@@ -8,7 +8,10 @@ from typing import Any
 
 import pytest
 
+from cfepy.exploration import Shrinker, Trial, budget_of
 from cfepy.journal import read_journal, replay
+from cfepy.pilot import RunPlan
+from cfepy.rtos import Schedule
 from cfepy.status import UsageError
 from cfepy.testing import explore
 from tests.testing.conftest import Suite, given_verbatim, told_command
@@ -209,3 +212,24 @@ def test_options_of_schedules() -> None:
         f"pct:2:2:{options}",
         f"random:3:{options}",
     ]
+
+
+@pytest.mark.slow
+def test_explore_of_the_command_line_shrinks_to_the_same(suite: Suite, missions: Path) -> None:
+    """The same function with the same budget: what `cfepy explore` makes of the schedule that the test failed under."""
+    result = suite(RACE.format(policy="random", shrink=None))
+    result.assert_outcomes(failed=1)
+    text = result.stdout.str()
+    failed = re.search(r"failed under the (\d+)\. of 60 schedules, (random:\d+)", text)
+    told = re.search(r"in this way, after (\d+) runs: (moves:\S+)", text)
+    assert failed is not None
+    assert told is not None
+    expected = 'invariants: {all: {topic: /total, holds: "msg.data == 6"}}\n'
+    (missions / "race" / "mission.yaml").write_text(expected)
+    trial = Trial(RunPlan((str(missions / "race"),), seconds=0.9, tasks="greenlet"))
+    schedule = Schedule.parse(failed[2])
+    group = trial.run(schedule).groups[0]
+    shrunk = Shrinker(trial, [schedule], group, budget_of(int(failed[1]))).run()
+    assert shrunk is not None
+    assert shrunk.verdict.schedule.text() == told[2]
+    assert int(told[1]) <= budget_of(int(failed[1])) + 1
