@@ -227,42 +227,40 @@ class RaceWatch(Attachment):
         assert self._mission is not None
         task, kernel = touch.task, self._mission.kernel
         known = self._clocks.of(task)
-        places = self._things.setdefault(touch.thing, {})
-        place = places.setdefault(touch.key, _Place())
+        places = self._things.get(touch.thing)
+        if places is None:
+            places = self._things[touch.thing] = {}
+        place = places.get(touch.key)
+        if place is None:
+            place = places[touch.key] = _Place()
         mine = (place.writes if touch.is_write else place.reads).get(task)
         if mine is not None and mine.clock == known[task]:
             return  # nothing that another did since then was missed: it looked at this one
         seen = _Seen(known[task], touch, self._frames(), kernel.now)
-        for each in self._others(places, touch):
-            self._compare(each, known, seen)
+        self._compare(place, known, seen)
+        key = touch.key
+        other = places.get(_ANY_ITEM if key == WHOLE else WHOLE) if key[0] in "*[" else None
+        if other is not None:
+            self._compare(other, known, seen)
         self._keep(place, seen)
-        if touch.key.startswith("["):
+        if key[0] == "[":
             self._keep(places.setdefault(_ANY_ITEM, _Place()), seen)
 
     @staticmethod
     def _keep(place: _Place, seen: _Seen) -> None:
         (place.writes if seen.touch.is_write else place.reads)[seen.touch.task] = seen
 
-    @staticmethod
-    def _others(places: dict[str, _Place], touch: Touch) -> list[_Place]:
-        """What an access may race with: of an item also what was done to the whole, and the other way round."""
-        keys = [touch.key]
-        if touch.key == WHOLE:
-            keys.append(_ANY_ITEM)
-        elif touch.key.startswith("["):
-            keys.append(WHOLE)
-        return [places[key] for key in keys if key in places]
-
     def _compare(self, place: _Place, known: dict[Task, int], now: _Seen) -> None:
-        kinds = (place.writes, place.reads) if now.touch.is_write else (place.writes,)
-        for seen in kinds:
+        """Whether another task has done something there that nothing orders before this."""
+        mine = now.touch.task
+        for seen in (place.writes, place.reads) if now.touch.is_write else (place.writes,):
             for task, before in seen.items():
-                if task is not now.touch.task and known.get(task, 0) < before.clock:
+                if task is not mine and known.get(task, 0) < before.clock:
                     self._found(before, now)
                     return
 
     def _frames(self) -> Frames:
-        """The lines of mission code that the running task is in, innermost first."""
+        """The lines of mission code that the running task is in, innermost first, up to what called it."""
         assert self._mission is not None
         files = self._mission.accesses.files
         found = []
@@ -270,6 +268,8 @@ class RaceWatch(Attachment):
         while frame is not None:
             if frame.f_code.co_filename in files:
                 found.append((frame.f_code, frame.f_lineno))
+            elif found:
+                break  # what lies below costs time, and is seldom more of the mission
             frame = frame.f_back
         return tuple(found)
 

@@ -123,6 +123,7 @@ class Accesses:
         self._kernel = kernel
         self._points = Points.parse("" if kernel.policy is None else kernel.policy.points)
         self._point = kernel.point if isinstance(kernel, ExploringKernel) else None
+        self._has_points = self._points.kind == ATTRIBUTES
         self._loading: dict[Task, int] = {}  # tasks that execute the body of a module
         self._covered: dict[str, bool] = {}
         self._local: dict[type, bool] = {}
@@ -186,8 +187,8 @@ class Accesses:
     def _let_in(self, frame: FrameType) -> None:
         """Others may run before an access."""
         if (
-            self._point is not None
-            and self._points.kind == ATTRIBUTES
+            self._has_points
+            and self._point is not None
             and self._covers(frame.f_code.co_filename)
             and self._kernel.current not in self._loading
         ):
@@ -201,7 +202,8 @@ class Accesses:
 
     def _tell(self, frame: FrameType, thing: int, key: str, is_write: bool, name: str) -> None:
         """Let others run, then tell of an access."""
-        self._let_in(frame)
+        if self._has_points:
+            self._let_in(frame)
         self._tell_now(frame, thing, key, is_write, name)
 
     def _tell_now(self, frame: FrameType, thing: int, key: str, is_write: bool, name: str) -> None:
@@ -280,10 +282,12 @@ class Accesses:
             return self._numbers.of(owner), name
         if self._is_local(kind):
             return None
-        owner = _class_with(kind, name)
-        if owner is None:
+        for owner in kind.__mro__:
+            if name in owner.__dict__:
+                break
+        else:
             return self._numbers.of(thing), name
-        value = vars(owner)[name]
+        value = owner.__dict__[name]
         if isinstance(value, MemberDescriptorType):
             return self._numbers.of(thing), name
         if hasattr(type(value), "__set__"):
