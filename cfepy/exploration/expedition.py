@@ -33,7 +33,7 @@ from cfepy.exploration.trial import Trial, Tried
 from cfepy.exploration.verdict import RACE, STALLED, Failure, Finding, Findings, Verdict
 from cfepy.exploration.workers import LONGEST_S, PROCESS_DIED
 from cfepy.exploration.worst import Distribution, MeasuredTrial, Worst, WorstSearch, worst_of
-from cfepy.monitors import Measure
+from cfepy.monitors import Limits, Measure
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Points, Policy, Schedule, Stopwatch
 from cfepy.status import UsageError
@@ -171,6 +171,9 @@ class Expedition:
         from_s: virtual time until which all is fifo's; 0 for that at which the mission becomes OPERATIONAL.
         until_failure: whether the first failure ends it.
         events: which events are failures: "error", "critical" or "none".
+        starved_s, livelock_s: virtual time for which a task may be ready without running, and for which an application
+            may run on without a message; None for any time.
+        fair: decisions in which a task may be passed over; None for any number.
         worst: what is to take as long as it can, such as "response:ARM" (`cfepy.monitors.measures`); None for nothing.
         stuck: whether a task that waits for ever, and does not by default, is a failure.
         jobs: processes on this computer; None for one on each CPU.
@@ -195,6 +198,9 @@ class Expedition:
     from_s: float | None = None
     until_failure: bool = False
     events: str = "error"
+    starved_s: float | None = None
+    livelock_s: float | None = None
+    fair: int | None = None
     worst: str | None = None
     stuck: bool = True
     jobs: int | None = None
@@ -220,6 +226,7 @@ class Expedition:
         bare = Trial(self.plan, self.events, keep_widths=self.policy == "dfs")
         if measure is not None:
             bare = MeasuredTrial(self.plan, self.events, keep_widths=True, measure=measure)
+        bare = replace(bare, liveness=self._liveness)
         counter = PointCounter(options.policy() or Policy())
         first = bare.fly(options, policy=counter)
         breadth = Breadth(dict(counter.kinds), first.tasks)
@@ -264,6 +271,10 @@ class Expedition:
             return found
         return WorstSearch(found, self.first_seed)
 
+    @property
+    def _liveness(self) -> Limits:
+        return Limits(*(round((each or 0.0) * NS_PER_S) for each in (self.starved_s, self.livelock_s)))
+
     def _options(self) -> Schedule:
         """What the schedules have in common, as a schedule.
 
@@ -272,6 +283,7 @@ class Expedition:
         """
         words = [BASE]
         words += ["any"] if self.any_priority else []
+        words += [f"fair={self.fair}"] if self.fair is not None else []
         for option, time_s in (("hold", self.hold_s), ("connect", self.connect_s), ("from", self.from_s)):
             if time_s is None or (option, time_s) == ("from", FROM_OPERATIONAL):
                 continue
@@ -353,6 +365,8 @@ class Expedition:
         search |= {"hold": self.hold_s, "connect": self.connect_s, "from": self.from_s, "no_stuck": not self.stuck}
         search |= {"points": self.points} if self.points else {}
         search |= {"worst": self.worst} if self.worst is not None else {}
+        search |= {"liveness": list(self._liveness)} if any(self._liveness) else {}
+        search |= {"fair": self.fair} if self.fair is not None else {}
         return identity_of(trial.plan, files, search)
 
     def _told(self, trial: Trial, finding: Finding, tally: Tally) -> Told:

@@ -17,12 +17,16 @@ from cfepy.exploration.footprints import Footprints
 from cfepy.exploration.result_watch import Result, ResultWatch, differences, digest_of
 from cfepy.exploration.stuck import Waits, WaitWatch, stuck_for_good
 from cfepy.exploration.verdict import Failure, Verdict
+from cfepy.monitors import Lack, Limits, LivenessWatch
 from cfepy.pilot import BootError, RunPlan, fly
 from cfepy.rtos import ORDER, NotingPolicy, Policy, Schedule
 from cfepy.status import StallError, UsageError
 from cfepy.units import NS_PER_S
 
 PROBE_S = 1.0  # wall time that a task gets at least, which is known to spin
+
+
+FOR_EVER = Limits()
 
 
 class Tried(NamedTuple):
@@ -58,6 +62,7 @@ class Trial:
             keeps none.
         waits: of the default schedule (`cfepy.exploration.stuck`), against which tasks that wait for ever are found;
             None lets them wait.
+        liveness: how long a task may be ready without running, and an application run without a message.
     """
 
     plan: RunPlan
@@ -66,6 +71,7 @@ class Trial:
     keep_widths: bool = False
     steps_from_ns: int | None = None
     waits: Waits | None = None
+    liveness: Limits = FOR_EVER
 
     def run(self, schedule: Schedule, attachments: Sequence[Attachment] = ()) -> Verdict:
         """Fly the mission in this process.
@@ -97,11 +103,11 @@ class Trial:
         results = ResultWatch(spec)
         waits = [WaitWatch()] if self.waits is not None else []
         steps = [Footprints(self.steps_from_ns)] if self.steps_from_ns is not None else []
+        alive = [LivenessWatch(self.liveness)] if any(self.liveness) else []
+        watching = [*attachments, watch, results, *waits, *steps, *alive]
         failed: tuple[Failure, ...]
         try:
-            flown = fly(
-                self.plan, spec=spec, attachments=[*attachments, watch, results, *waits, *steps], policy=recorded
-            )
+            flown = fly(self.plan, spec=spec, attachments=watching, policy=recorded)
         except BootError as error:
             return Tried(self._verdict(schedule, recorded, (Failure(verdict.PROBLEM, "", error.text),)))
         except (UsageError, KeyboardInterrupt):
@@ -112,6 +118,7 @@ class Trial:
             return Tried(self._stalled(schedule, recorded, watch, flown.stall), (), flown.notes)
         found = results.results()
         failed = (*watch.failures(flown.outcome), *self._differences(found))
+        failed += tuple(_lack(each) for watched in alive for each in watched.found)
         if waits and not any(failure.kind in verdict.LEAVES_OTHERS_WAITING for failure in failed):
             lost = {failure.task for failure in failed if failure.kind == verdict.STUCK}
             found_stuck = self._stuck(waits[0].waits, schedule, recorded, watch.end_ns)
@@ -175,3 +182,9 @@ class Trial:
         return tuple(
             Failure(verdict.RESULTS, name, text, cause=name) for name, text in differences(self.reference, found)
         )
+
+
+def _lack(found: Lack) -> Failure:
+    """A task that starved, or an application that got nowhere."""
+    kind = verdict.LIVELOCK if found.is_livelock else verdict.STARVED
+    return Failure(kind, found.app, found.text, found.at_ns, task=found.task, cause=found.task)

@@ -33,6 +33,8 @@ EVENT = "event"
 PROBLEM = "problem"
 RESULTS = "results differ"
 LONGEST = "longest"
+STARVED = "starved"
+LIVELOCK = "livelock"
 SIMPLEST = 3  # runs that are kept of each finding, to be shrunk
 LEAVES_OTHERS_WAITING = frozenset([DIED, RAISED, ENDED, RESET, DEADLOCK, STALLED])
 """What takes a task away, for which others may wait then."""

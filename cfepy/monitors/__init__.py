@@ -16,6 +16,7 @@ from cfepy.monitors.deadlines import Check, DeadlineResult, Overrun, time_text
 if TYPE_CHECKING:
     from cfepy.monitors.demands import Demands, demands_of, judges_of, read_demands
     from cfepy.monitors.inversions import InversionWatch
+    from cfepy.monitors.liveness import Lack, Limits, LivenessWatch
     from cfepy.monitors.measures import LongestWatch, Measure
     from cfepy.monitors.messages import Heard, MessageWatch
     from cfepy.monitors.observer import Observer, Sent, app_of
@@ -28,6 +29,9 @@ __all__ = [
     "Demands",
     "Heard",
     "InversionWatch",
+    "Lack",
+    "Limits",
+    "LivenessWatch",
     "LongestWatch",
     "Measure",
     "MessageWatch",
@@ -56,6 +60,11 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "read_demands",
             ),
             ".inversions": ("InversionWatch",),
+            ".liveness": (
+                "Lack",
+                "Limits",
+                "LivenessWatch",
+            ),
             ".measures": (
                 "LongestWatch",
                 "Measure",

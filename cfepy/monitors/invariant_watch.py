@@ -161,6 +161,55 @@ class AnswerJudge(Judge):
             self.report(text, cause.at_ns + within_ns, cause.sender, f"{cause.topic}: {short(cause.msg)}")
 
 
+class AgainJudge(Judge):
+    """Reports when no message that it is about has come for too long, since it was to begin, or since the last one."""
+
+    def __init__(self, invariant: Invariant, latest: Latest, report: Report, now_ns: int) -> None:
+        super().__init__(invariant, latest, report)
+        assert invariant.again_ns is not None
+        self._again_ns: int = invariant.again_ns
+        self._since_ns = max(now_ns, invariant.after_ns)
+
+    def take(self, heard: Heard) -> bool:
+        """See `Judge.take`."""
+        is_one = super().take(heard)
+        if is_one:
+            self._expire(heard.at_ns)
+            self._since_ns = heard.at_ns
+        return is_one
+
+    def _judge(self, heard: Heard, names: dict[str, Any]) -> None:
+        """That it came is all that is asked of it."""
+
+    def end(self, now_ns: int) -> None:
+        """See `Judge.end`."""
+        self._expire(now_ns)
+
+    def _expire(self, now_ns: int) -> None:
+        due_ns = self._since_ns + self._again_ns
+        if now_ns > due_ns:
+            what = self.invariant.selection if self.invariant.when is None else self.invariant.when.source
+            self.report(f"nothing within {self._again_ns / NS_PER_S:g} s again ({what})", due_ns, "", "")
+
+
+class EventuallyJudge(Judge):
+    """Reports at the end of the run when something never held."""
+
+    _has_held = False
+
+    def _judge(self, heard: Heard, names: dict[str, Any]) -> None:
+        holds = self.invariant.eventually
+        assert holds is not None
+        self._has_held = self._has_held or bool(holds.holds(names))
+
+    def end(self, now_ns: int) -> None:
+        """See `Judge.end`."""
+        assert self.invariant.eventually is not None
+        if not self._has_held and now_ns >= self.invariant.after_ns:
+            text = f"{self.invariant.eventually.source} did not hold of any message until the end of the run"
+            self.report(text, now_ns, "", "")
+
+
 class InvariantWatch(Attachment):
     """Watches over all invariants of a mission.
 
@@ -186,6 +235,7 @@ class InvariantWatch(Attachment):
         except UsageError as error:
             raise UsageError(error.text, file=spec.mission_file, field="invariants") from None
         self._mission: Mission | None = None
+        self._now_ns = 0  # when the processor was made
         self._records = InvariantRecords()
         self._make_judges()
 
@@ -206,6 +256,7 @@ class InvariantWatch(Attachment):
         if self._mission.record.resets:
             self._latest.clear()
             self._wanting.clear()
+            self._now_ns = self._mission.kernel.now
             self._make_judges()
 
     def conclude(self) -> None:
@@ -218,11 +269,18 @@ class InvariantWatch(Attachment):
         self._judges = [self._judge_of(invariant) for invariant in self._invariants]
 
     def _judge_of(self, invariant: Invariant) -> Judge:
-        kind = FunctionJudge if invariant.function else AnswerJudge if invariant.answer is not None else Judge
+        kinds: list[tuple[object, type[Judge]]] = [
+            (invariant.function or None, FunctionJudge),
+            (invariant.answer, AnswerJudge),
+            (invariant.eventually, EventuallyJudge),
+        ]
+        kind = next((each for said, each in kinds if said is not None), Judge)
 
         def report(text: str, at_ns: int, sender: str, detail: str) -> None:
             self._report(invariant, Violation(text, at_ns, sender, detail))
 
+        if invariant.again_ns is not None:
+            return AgainJudge(invariant, self._latest, report, self._now_ns)
         return kind(invariant, self._latest, report)
 
     def _take(self, heard: Heard) -> None:

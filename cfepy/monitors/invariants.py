@@ -22,7 +22,8 @@ from cfepy.status import UsageError
 NAMES = ("msg", "last", LATEST, "topic", "sender", "t", "count")
 CAUSE = "cause"
 SOURCE_FIELDS = ("topic", "packet")
-FIELDS = (*SOURCE_FIELDS, "holds", "when", "within", "then", "file", "function", "after")
+KINDS = ("holds", "function", "within", "again", "eventually")
+FIELDS = (*SOURCE_FIELDS, "holds", "when", "within", "then", "again", "eventually", "file", "function", "after")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +57,8 @@ class Invariant:
         when: it is about those for which this holds only.
         holds: what must hold of each of them.
         answer: what has to come after each of them.
+        again_ns: such a message has to come within this time of virtual time, and again and again; None for no time.
+        eventually: of one message at least this must hold by the end of the run.
         file, function: the mission's own code that judges them.
         after_ns: virtual time from which on it has to hold.
     """
@@ -66,6 +69,8 @@ class Invariant:
     when: Predicate | None = None
     holds: Predicate | None = None
     answer: Answer | None = None
+    again_ns: int | None = None
+    eventually: Predicate | None = None
     file: Path | None = None
     function: str = ""
     after_ns: int = 0
@@ -74,7 +79,7 @@ class Invariant:
     def predicates(self) -> tuple[Predicate, ...]:
         """All its expressions."""
         of_answer = None if self.answer is None else self.answer.holds
-        return tuple(each for each in (self.when, self.holds, of_answer) if each is not None)
+        return tuple(each for each in (self.when, self.holds, self.eventually, of_answer) if each is not None)
 
     @property
     def packets(self) -> tuple[str, ...]:
@@ -96,10 +101,10 @@ def read_invariants(section: Marked, mistakes: Mistakes) -> tuple[Invariant, ...
 
 def _invariant(name: str, entry: Marked) -> Invariant:
     fields = entry.mapping(FIELDS)
-    kinds = [each for each in ("holds", "function", "within") if each in fields]
+    kinds = [each for each in KINDS if each in fields]
     if len(kinds) != 1:
         said = f"has {' and '.join(kinds)}; write one of them" if kinds else "says nothing"
-        text = 'give `holds: "msg.data < 3"`, or `file` and `function`, or `within` and `then`'
+        text = 'give `holds: "msg.data < 3"`, `file` and `function`, `within` and `then`, `again`, or `eventually`'
         raise entry.fail(f"{said}; {text}")
     selection = read_selection(fields)
     if selection == Selection() and "function" not in fields:
@@ -112,6 +117,8 @@ def _invariant(name: str, entry: Marked) -> Invariant:
         when=Predicate.read(fields["when"], NAMES) if "when" in fields else None,
         holds=Predicate.read(fields["holds"], NAMES) if "holds" in fields else None,
         answer=_answer(entry, fields),
+        again_ns=_again(fields["again"]) if "again" in fields else None,
+        eventually=Predicate.read(fields["eventually"], NAMES) if "eventually" in fields else None,
         file=file,
         function=function,
         after_ns=fields["after"].time() if "after" in fields else 0,
@@ -160,6 +167,13 @@ def _answer(entry: Marked, fields: Mapping[str, Marked]) -> Answer | None:
         raise fields["then"].fail("names no message that has to come; add `topic: /name` or `packet: NAME`")
     holds = Predicate.read(then["holds"], (*NAMES, CAUSE)) if "holds" in then else None
     return Answer(selection, holds, fields["within"].time())
+
+
+def _again(entry: Marked) -> int:
+    time_ns = entry.time()
+    if not time_ns:
+        raise entry.fail("is 0; write how long it may take until such a message comes again, such as 0.5 s")
+    return time_ns
 
 
 def _function(entry: Marked, fields: Mapping[str, Marked]) -> tuple[Path | None, str]:

@@ -343,6 +343,34 @@ class From(AskingPolicy):
         return 0
 
 
+class Fair(AskingPolicy):
+    """Another policy, but nobody is passed over for ever.
+
+    Args:
+        inner: the other one.
+        most: decisions in which a task may be among the candidates and not run, one after the other; then it runs, of
+            several the one that was passed over most often.
+    """
+
+    def __init__(self, inner: Policy, most: int) -> None:
+        super().__init__(inner)
+        self._most = most
+        self._passed: dict[Task, int] = {}
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`."""
+        choice = self._inner.choose(decision)
+        if decision.question is not None:
+            return choice
+        passed, tasks = self._passed, decision.tasks
+        longest = max(range(len(tasks)), key=lambda index: passed.get(tasks[index], 0))
+        if passed.get(tasks[longest], 0) >= self._most:
+            choice = longest
+        for index, task in enumerate(tasks):
+            passed[task] = 0 if index == choice else passed.get(task, 0) + 1
+        return choice
+
+
 class Moment(NamedTuple):
     """A decision that was not fifo's.
 

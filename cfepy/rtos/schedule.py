@@ -10,10 +10,11 @@
                             (`cfepy.rtos.moves`)
 
 Every kind but fifo takes options at its end: `any` (tasks of less urgent priority may run before more urgent ones),
-`hold=500us` (the running task may be held up until the next timer is due, if that is within 500 us), `connect=50ms`
-(a connection between two ROS nodes may take up to 50 ms), `points=attributes` or `points=lines,arm` (tasks may be
-interrupted between the calls of their code as well: `cfepy.rtos.points`), and `from=600ms` (fifo up to 600 ms after the
-start of the run; what comes before still counts as decisions).
+`fair=50` (a task that could run is passed over in at most 50 decisions), `hold=500us` (the running task may be held up
+until the next timer is due, if that is within 500 us), `connect=50ms` (a connection between two ROS nodes may take up
+to 50 ms), `points=attributes` or `points=lines,arm` (tasks may be interrupted between the calls of their code as well:
+`cfepy.rtos.points`), and `from=600ms` (fifo up to 600 ms after the start of the run; what comes before still counts as
+decisions).
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from typing import Any
 
 from cfepy.rtos.moves import Move, MovePolicy
 from cfepy.rtos.points import Points
-from cfepy.rtos.policy import PCT, Deviations, From, InOrder, Policy, SeededRandom, Settings
+from cfepy.rtos.policy import PCT, Deviations, Fair, From, InOrder, Policy, SeededRandom, Settings
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS, time_word
 
@@ -35,7 +36,7 @@ STEPS = 1000
 _TIME = re.compile(r"(\d+)(ns|us|ms|s)")
 _FORMS = (
     "fifo, random:SEED, pct:SEED:DEPTH[:STEPS], moves:TASK@MS/FUNCTION.CALL=TASK,... or at:DECISION=CHOICE,..., all "
-    "but fifo with :any, :hold=500us, :connect=50ms, :points=attributes or :from=600ms"
+    "but fifo with :any, :fair=50, :hold=500us, :connect=50ms, :points=attributes or :from=600ms"
 )
 
 
@@ -57,6 +58,7 @@ class Schedule:
         connect_ns: see `Policy`.
         points: see `Policy`.
         from_ns: virtual ns up to which it is fifo.
+        fair: decisions in which a task may be passed over (`Fair`); 0 for any number.
     """
 
     kind: str = "fifo"
@@ -71,6 +73,7 @@ class Schedule:
     points: str = ""
     from_ns: int = 0
     moves: tuple[Move, ...] = ()
+    fair: int = 0
 
     @classmethod
     def parse(cls, text: str, seed: int = 0) -> Schedule:
@@ -115,6 +118,7 @@ class Schedule:
         if self.runs:
             words.append(",".join(f"{path}={number}" for path, number in self.runs))
         words += ["any"] if self.any_priority else []
+        words += [f"fair={self.fair}"] if self.fair else []
         words += [f"hold={time_word(self.hold_ns)}"] if self.hold_ns else []
         words += [f"connect={time_word(self.connect_ns)}"] if self.connect_ns else []
         words += [f"points={self.points}"] if self.points else []
@@ -128,7 +132,7 @@ class Schedule:
         """A policy for one run; None for fifo."""
         if self.kind == "fifo":
             return None
-        policy = self._policy()
+        policy = Fair(self._policy(), self.fair) if self.fair else self._policy()
         return From(policy, self.from_ns) if self.from_ns else policy
 
     def _policy(self) -> Policy:
@@ -189,6 +193,12 @@ def _option(field: str) -> dict[str, Any] | None:
     if field == "any":
         return {"any_priority": True}
     name, _, time = field.partition("=")
+    if name == "fair":
+        if re.fullmatch(r"\d+", time, re.ASCII) is None or not int(time):
+            raise UsageError(
+                f"{field!r} wants a number of decisions of at least 1, such as fair=50", field="--schedule"
+            )
+        return {"fair": int(time)}
     if name == "points":
         return {"points": Points.parse(time, "--schedule").text()}
     if name not in ("hold", "connect", "from"):

@@ -113,6 +113,12 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
         "before is fifo's",
     )
     explore.add_argument(
+        "--fair",
+        type=_count_of,
+        metavar="N",
+        help="a task that could run is passed over in at most so many decisions",
+    )
+    explore.add_argument(
         "--worst",
         metavar="MEASURE",
         help="look for the schedule under which something takes longest: latency:/topic, latency:/cause->/effect, "
@@ -128,6 +134,19 @@ def _add_failures(explore: argparse.ArgumentParser) -> None:
         choices=("error", "critical", "none"),
         default="error",
         help="events of the mission's applications that are failures: ERROR and CRITICAL (default), CRITICAL, or none",
+    )
+    explore.add_argument(
+        "--starved",
+        type=seconds_of,
+        metavar="SECONDS",
+        help="a task that is ready for longer than this virtual time and does not run is a failure",
+    )
+    explore.add_argument(
+        "--livelock",
+        type=seconds_of,
+        metavar="SECONDS",
+        help="an application whose tasks run on for longer than this virtual time, and neither send nor take a "
+        "message, is a failure",
     )
     explore.add_argument(
         "--no-stuck", action="store_true", help="a task that waits for ever, and does not by default, is no failure"

@@ -182,13 +182,15 @@ def _show_leak(plan: RunPlan, schedule: Schedule) -> None:
 
 def _expedition(arguments: argparse.Namespace) -> Expedition:
     """What the command line asks for."""
-    names = ("policy", "depth", "first_seed", "any_priority", "until_failure", "events", "jobs", "cluster", "worst")
+    names = ("policy", "depth", "first_seed", "any_priority", "fair", "until_failure", "events", "jobs", "cluster")
     return Expedition(
         plan_of_mission(arguments),
         seeds=arguments.seeds or (DEFAULT_SEEDS if arguments.budget is None else MOST_SEEDS),
         budget_s=arguments.budget,
-        **{name: getattr(arguments, name) for name in (*names, "results", "shrink", "points")},
+        **{name: getattr(arguments, name) for name in (*names, "worst", "results", "shrink", "points")},
         hold_s=arguments.hold,
+        starved_s=arguments.starved,
+        livelock_s=arguments.livelock,
         connect_s=arguments.connect,
         from_s=getattr(arguments, "from"),
         stuck=not arguments.no_stuck,

@@ -1,0 +1,166 @@
+"""Liveness: tasks that are ready and do not run, and applications that run and get nowhere.
+
+A task *starves* when it is ready for longer than a time and others have the processor. An application is in a
+*livelock* when its tasks run again and again for longer than a time, and none of them sends a message or takes one.
+Both times are virtual, from when the mission is OPERATIONAL. Who runs on without virtual time going by is told by the
+stall watch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from cfepy.mission import CORE_APPS, Processor
+from cfepy.monitors.deadlines import time_text
+from cfepy.monitors.observer import Observer, Sent
+from cfepy.rtos import Task
+from cfepy.sb import Pipe
+from cfepy.units import NS_PER_S
+
+RUNS = 100  # of an application's tasks without a message, from which on it is no idling
+
+
+class Limits(NamedTuple):
+    """How long a task may be ready, and how long an application may run without a message, in ns; 0 for ever."""
+
+    starved_ns: int = 0
+    livelock_ns: int = 0
+
+
+class Lack(NamedTuple):
+    """A task that starved, or an application in a livelock; `at_ns` is when its time was over."""
+
+    is_livelock: bool
+    app: str
+    task: str
+    at_ns: int
+    text: str
+
+
+@dataclass(slots=True)
+class _Quiet:
+    """An application since its last message: since when, and how often its tasks ran."""
+
+    since_ns: int
+    runs: int = 0
+
+
+class LivenessWatch(Observer):
+    """Looks for both in a run.
+
+    Args:
+        limits: how long is too long.
+
+    Attributes:
+        found: of each task and each application the first.
+    """
+
+    def __init__(self, limits: Limits) -> None:
+        super().__init__()
+        self.found: list[Lack] = []
+        self._limits = limits
+        self._ready: dict[Task, int] = {}
+        self._due: dict[Task, int] = {}  # tasks that wait with a limit in time, and when that is over
+        self._quiet: dict[str, _Quiet] = {}
+        self._told: set[tuple[bool, str]] = set()
+        self._before: Task | None = None  # the task that ran last
+        self._processor: Processor
+
+    def power_up(self, processor: Processor) -> None:
+        """See `Observer.power_up`: what was ready is gone."""
+        super().power_up(processor)
+        self._processor = processor
+        self._ready.clear()
+        self._due.clear()
+        self._quiet.clear()
+
+    def conclude(self) -> None:
+        """Who could run still, and could for too long, has starved as well."""
+        now_ns = self._kernel.now
+        for task, due_ns in self._due.items():
+            if due_ns < now_ns and not task.timer:
+                self._ready.setdefault(task, due_ns)
+        for task in list(self._ready):
+            self._runs(task, now_ns)
+
+    # -- starving ----------------------------------------------------------------------------------------------------
+
+    def on_ready(self, task: Task, at_ns: int) -> None:
+        """See `Observer.on_ready`."""
+        if _is_own(task):
+            self._ready[task] = at_ns
+
+    def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
+        """See `Observer.on_leave`."""
+        self._before = task
+        if not _is_own(task):
+            return
+        if not waits:
+            self._ready[task] = at_ns
+        elif task.timer:
+            timers = self._kernel.timers
+            self._due[task] = next(when for when, number, each in timers if each is task and number == task.timer)
+
+    def on_run(self, task: Task, at_ns: int) -> None:
+        """See `Observer.on_run`."""
+        if not _is_own(task):
+            return
+        due_ns = self._due.pop(task, None)
+        if due_ns is not None:
+            self._ready.setdefault(task, min(due_ns, at_ns))
+        self._runs(task, at_ns)
+        if self._limits.livelock_ns:
+            self._goes_on(task, at_ns)
+
+    def _runs(self, task: Task, at_ns: int) -> None:
+        since_ns, booted = self._ready.pop(task, None), self._processor.booted
+        limit_ns = self._limits.starved_ns
+        if since_ns is None or booted is None or not limit_ns or at_ns - max(since_ns, booted) <= limit_ns:
+            return
+        since_ns = max(since_ns, booted)
+        other = "" if self._before in (None, task) else f"; {_told(self._before)} ran last"
+        waited = f"ready for {time_text(at_ns - since_ns)} from {since_ns / NS_PER_S:.6f} s on, and did not run"
+        self._tell(Lack(False, task.owner.name, task.name, since_ns + limit_ns, f"{_told(task)} was {waited}{other}"))
+
+    # -- livelocks ---------------------------------------------------------------------------------------------------
+
+    def _goes_on(self, task: Task, at_ns: int) -> None:
+        app, booted = task.owner.name, self._processor.booted
+        if booted is None:
+            return
+        quiet = self._quiet.setdefault(app, _Quiet(booted))
+        quiet.runs += 1
+        if quiet.runs >= RUNS and at_ns - quiet.since_ns > self._limits.livelock_ns:
+            text = (
+                f"ran {quiet.runs} times from {quiet.since_ns / NS_PER_S:.6f} s on, and neither sent nor took a message"
+            )
+            self._tell(Lack(True, app, task.name, at_ns, text))
+
+    def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
+        """See `Observer.on_send`."""
+        self._moves(sent.task, sent.at_ns)
+
+    def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
+        """See `Observer.on_receive`."""
+        self._moves(task, at_ns)
+
+    def _moves(self, task: Task, at_ns: int) -> None:
+        if task.owner is not None:
+            self._quiet[task.owner.name] = _Quiet(at_ns)
+
+    def _tell(self, lack: Lack) -> None:
+        key = lack.is_livelock, lack.app if lack.is_livelock else lack.task
+        if key not in self._told:
+            self._told.add(key)
+            self.found.append(lack)
+
+
+def _is_own(task: Task) -> bool:
+    """Whether it is one of the mission's applications."""
+    return task.owner is not None and task.owner.name not in CORE_APPS
+
+
+def _told(task: Task | None) -> str:
+    assert task is not None
+    return f"{task.name} (priority {task.priority})"
