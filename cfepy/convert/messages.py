@@ -145,42 +145,31 @@ class _Maker:
             *_operators(name, spec.fields),
             f"}} // namespace {package}",
             "",
-            "namespace roscfe",
-            "{",
-            "namespace wire",
-            "{",
-            "",
-            "template <>",
-            f"struct Fields<{cpp}>",
-            "{",
-            f"    static constexpr std::size_t kLeast = {least};",
-            f"    static constexpr bool        kFixed = {_bool(fixed)};",
-            "",
-            *_visitor("visit", "Stream", "stream", (f"next(message.{_cpp_name(f.name)})" for f in spec.fields)),
-            "",
-            *_visitor(
-                "print", "Printer", "out", (f'field("{f.name}", message.{_cpp_name(f.name)})' for f in spec.fields)
+            *_known_to_wire(
+                f"Fields<{cpp}>",
+                f"    static constexpr std::size_t kLeast = {least};",
+                f"    static constexpr bool        kFixed = {_bool(fixed)};",
+                "",
+                *_visitor("visit", "Stream", "stream", (f"next(message.{_cpp_name(f.name)})" for f in spec.fields)),
+                "",
+                *_visitor(
+                    "print", "Printer", "out", (f'field("{f.name}", message.{_cpp_name(f.name)})' for f in spec.fields)
+                ),
+                "};",
+                "",
+                "template <>",
+                f"struct Traits<{cpp}>",
+                "{",
+                f"    static constexpr bool has_header = {_bool(spec.has_header)};",
+                f"    static constexpr bool is_fixed_size = {_bool(fixed)};",
+                "",
+                *_names(self._library.md5sum(spec.full_name), spec.full_name),
+                "    static const char *definition()",
+                "    {",
+                *_literal(self._library.full_text(spec.full_name)),
+                "    }",
+                *self._service_traits(spec.full_name),
             ),
-            "};",
-            "",
-            "template <>",
-            f"struct Traits<{cpp}>",
-            "{",
-            f"    static constexpr bool has_header = {_bool(spec.has_header)};",
-            f"    static constexpr bool is_fixed_size = {_bool(fixed)};",
-            "",
-            f'    static const char *md5() {{ return "{self._library.md5sum(spec.full_name)}"; }}',
-            f'    static const char *type() {{ return "{spec.full_name}"; }}',
-            "    static const char *definition()",
-            "    {",
-            *_literal(self._library.full_text(spec.full_name)),
-            "    }",
-            *self._service_traits(spec.full_name),
-            "};",
-            "",
-            "} // namespace wire",
-            "} // namespace roscfe",
-            "",
             *_without_macros(macros, "pop"),
             "#endif",
             "",
@@ -213,21 +202,7 @@ class _Maker:
             "",
             f"}} // namespace {package}",
             "",
-            "namespace roscfe",
-            "{",
-            "namespace wire",
-            "{",
-            "",
-            "template <>",
-            f"struct Traits<{package}::{name}>",
-            "{",
-            f'    static const char *md5() {{ return "{md5}"; }}',
-            f'    static const char *type() {{ return "{full_name}"; }}',
-            "};",
-            "",
-            "} // namespace wire",
-            "} // namespace roscfe",
-            "",
+            *_known_to_wire(f"Traits<{package}::{name}>", *_names(md5, full_name)),
             "#endif",
             "",
         ]
@@ -239,8 +214,7 @@ class _Maker:
             service = full_name.removesuffix(part)
             if full_name.endswith(part) and not self._library.has(full_name) and self._library.has(service, "srv"):
                 md5 = self._library.service_class(service)._md5sum
-                yield f'    static const char *service_md5() {{ return "{md5}"; }}'
-                yield f'    static const char *service_type() {{ return "{service}"; }}'
+                yield from _names(md5, service, "service_")
 
     def _fields(self, spec: Spec) -> Iterator[str]:
         for each in spec.fields:
@@ -313,6 +287,19 @@ def _check_name(spec: Spec) -> None:
     for word in (package, name):
         if not re.fullmatch(r"[A-Za-z]\w*", word, re.ASCII) or word in _KEYWORDS:
             raise UsageError(f"{spec.full_name} cannot be a name in C++", file=spec.file)
+
+
+def _known_to_wire(first: str, *lines: str) -> Iterator[str]:
+    """What roscfe/wire.h knows of a type: specialisations of its templates, of which the first is named."""
+    yield from ("namespace roscfe", "{", "namespace wire", "{", "", "template <>", f"struct {first}", "{")
+    yield from lines
+    yield from ("};", "", "} // namespace wire", "} // namespace roscfe", "")
+
+
+def _names(md5: str, full_name: str, which: str = "") -> Iterator[str]:
+    """A type's sum and its name."""
+    yield f'    static const char *{which}md5() {{ return "{md5}"; }}'
+    yield f'    static const char *{which}type() {{ return "{full_name}"; }}'
 
 
 def _cpp_name(name: str) -> str:

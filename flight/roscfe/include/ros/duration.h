@@ -19,6 +19,27 @@ namespace detail
 
 constexpr int64_t kNanoseconds = 1000000000; // in a second
 
+// What times and spans have in common: their order, and the number of seconds.
+template <class T>
+class Moment
+{
+  public:
+    constexpr bool operator==(const T &other) const { return own().sec == other.sec && own().nsec == other.nsec; }
+    constexpr bool operator!=(const T &other) const { return !(*this == other); }
+    constexpr bool operator<(const T &other) const
+    {
+        return own().sec != other.sec ? own().sec < other.sec : own().nsec < other.nsec;
+    }
+    constexpr bool operator>(const T &other) const { return other < own(); }
+    constexpr bool operator<=(const T &other) const { return !(*this > other); }
+    constexpr bool operator>=(const T &other) const { return !(*this < other); }
+
+    double toSec() const { return static_cast<double>(own().sec) + 1e-9 * static_cast<double>(own().nsec); }
+
+  private:
+    constexpr const T &own() const { return *static_cast<const T *>(this); }
+};
+
 // Print a sign, seconds, a point and nine digits. As in ROS the stream's width is for what comes first, and is there
 // again afterwards.
 template <class Seconds>
@@ -66,7 +87,7 @@ constexpr void normalizeSecNSecSigned(int32_t &sec, int32_t &nsec)
 }
 
 template <class T>
-class DurationBase
+class DurationBase : public roscfe::detail::Moment<T>
 {
   public:
     int32_t sec, nsec;
@@ -81,26 +102,11 @@ class DurationBase
     T operator+(const T &other) const { return from(toNSec() + other.toNSec()); }
     T operator-(const T &other) const { return from(toNSec() - other.toNSec()); }
     T operator-() const { return from(-toNSec()); }
-    T operator*(double scale) const { return T(toSec() * scale); }
+    T operator*(double scale) const { return T(this->toSec() * scale); }
 
     T &operator+=(const T &other) { return fromNSec(toNSec() + other.toNSec()); }
     T &operator-=(const T &other) { return *this += -other; }
-    T &operator*=(double scale) { return fromSec(toSec() * scale); }
-
-    constexpr bool operator==(const T &other) const { return sec == other.sec && nsec == other.nsec; }
-    constexpr bool operator!=(const T &other) const { return !(*this == other); }
-    constexpr bool operator<(const T &other) const
-    {
-        return sec != other.sec ? sec < other.sec : nsec < other.nsec;
-    }
-    constexpr bool operator>(const T &other) const
-    {
-        return sec != other.sec ? sec > other.sec : nsec > other.nsec;
-    }
-    constexpr bool operator<=(const T &other) const { return !(*this > other); }
-    constexpr bool operator>=(const T &other) const { return !(*this < other); }
-
-    double toSec() const { return static_cast<double>(sec) + 1e-9 * static_cast<double>(nsec); }
+    T &operator*=(double scale) { return fromSec(this->toSec() * scale); }
 
     constexpr int64_t toNSec() const
     {

@@ -57,7 +57,7 @@ constexpr void normalizeSecNSecUnsigned(int64_t &sec, int64_t &nsec)
 }
 
 template <class T, class D>
-class TimeBase
+class TimeBase : public roscfe::detail::Moment<T>
 {
   public:
     uint32_t sec, nsec;
@@ -87,21 +87,6 @@ class TimeBase
 
     T &operator+=(const D &span) { return assign(*this + span); }
     T &operator-=(const D &span) { return assign(*this + (-span)); }
-
-    constexpr bool operator==(const T &other) const { return sec == other.sec && nsec == other.nsec; }
-    constexpr bool operator!=(const T &other) const { return !(*this == other); }
-    constexpr bool operator<(const T &other) const
-    {
-        return sec != other.sec ? sec < other.sec : nsec < other.nsec;
-    }
-    constexpr bool operator>(const T &other) const
-    {
-        return sec != other.sec ? sec > other.sec : nsec > other.nsec;
-    }
-    constexpr bool operator<=(const T &other) const { return !(*this > other); }
-    constexpr bool operator>=(const T &other) const { return !(*this < other); }
-
-    double toSec() const { return static_cast<double>(sec) + 1e-9 * static_cast<double>(nsec); }
 
     constexpr uint64_t toNSec() const { return static_cast<uint64_t>(sec) * 1000000000u + nsec; }
 
