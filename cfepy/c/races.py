@@ -9,6 +9,7 @@ An access to memory that several tasks may use is a scheduling point as well.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Hashable
 from typing import Any
 
@@ -29,7 +30,7 @@ def _first(arguments: tuple[Any, ...]) -> Hashable:
 
 
 def _message(arguments: tuple[Any, ...]) -> Hashable:
-    return "message", arguments[0][:2]
+    return "message", bytes(arguments[0][:2])
 
 
 def _always(what: str) -> Key:
@@ -95,6 +96,18 @@ TAKES: dict[str, Key] = {
 """What a call that went well has taken."""
 
 
+def _in_python(name: str) -> str:
+    """What a function of OSAL or of SB is called in Python: `mut_sem_give`."""
+    return _CAPITAL.sub("_", name.removeprefix("OS_").removeprefix("CFE_SB_")).lower()
+
+
+_CAPITAL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_LETS_GO_IN_PYTHON = {
+    _in_python(name): key for name, key in LETS_GO.items() if key in (_first, _message) and name[0].isupper()
+}
+_TAKES_IN_PYTHON = {_in_python(name): key for name, key in TAKES.items() if key is _first and name[0].isupper()}
+
+
 class CompiledRaceWatch:
     """Knows what orders the tasks of a processor, and takes the races that the engine finds.
 
@@ -136,6 +149,27 @@ class CompiledRaceWatch:
             self._watch(declared, name, LETS_GO.get(name), TAKES.get(name))
         self._watch_messages(declared)
         self._watch_accesses(declared)
+        kernel.watch(self)
+
+    def close(self) -> None:
+        """The processor has come to its end."""
+        self._kernel.unwatch(self)
+
+    # -- what tasks in Python do between those of C: see `cfepy.rtos.CallObserver` -------------------------------------
+
+    def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
+        """A call of a service, of C or of Python, hands on the same."""
+        key = _LETS_GO_IN_PYTHON.get(call)
+        if key is not None and args:
+            self._let_go(key(args))
+
+    def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
+        """It takes the same."""
+        key = _TAKES_IN_PYTHON.get(call)
+        if call == "receive_buffer" and result is not None:
+            self._take(_message((result,)))
+        elif key is not None and args and result is not False and (call != "queue_get" or result is not None):
+            self._take(key(args))
 
     # -- what orders -------------------------------------------------------------------------------------------------
 

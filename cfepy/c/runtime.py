@@ -378,6 +378,8 @@ class CRuntime:
 
     def close(self) -> None:
         """The processor is at its end: give all memory back."""
+        if self._races is not None:
+            self._races.close()
         for function in self.at_close:
             function()
         for image in self._images[::-1]:

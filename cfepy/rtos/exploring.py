@@ -7,7 +7,7 @@ of `Kernel`, which pays nothing for this module.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from heapq import heappop, heappush
 from typing import Any, Protocol
 
@@ -57,19 +57,19 @@ class CallObserver(Protocol):
         """It has come to its end, with this result."""
 
 
-class _Both:
-    """Two observers, one after the other."""
+class _All:
+    """Several observers, one after the other."""
 
-    def __init__(self, first: CallObserver, second: CallObserver) -> None:
-        self._first, self._second = first, second
+    def __init__(self, observers: Sequence[CallObserver]) -> None:
+        self._observers = observers
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
-        self._first.called(subject, call, args)
-        self._second.called(subject, call, args)
+        for each in self._observers:
+            each.called(subject, call, args)
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
-        self._first.returned(subject, call, args, result)
-        self._second.returned(subject, call, args, result)
+        for each in self._observers:
+            each.returned(subject, call, args, result)
 
 
 class ExploringKernel(Kernel):
@@ -96,6 +96,7 @@ class ExploringKernel(Kernel):
         super().__init__(context, trace, tick_ns, switch_cost_ns, seed)
         self.policy = policy
         self.observer: CallObserver | None = None
+        self._watching: tuple[CallObserver, ...] = ()
         self.on_wake: Callable[[Task], object] | None = None
         self.frames_wanted = True
         self._any = policy.any_priority
@@ -109,7 +110,15 @@ class ExploringKernel(Kernel):
 
     def watch(self, observer: CallObserver) -> None:
         """Have an observer told of calls, besides those that are."""
-        self.observer = observer if self.observer is None else _Both(self.observer, observer)
+        self._look((*self._watching, observer))
+
+    def unwatch(self, observer: CallObserver) -> None:
+        """Tell an observer of no more calls."""
+        self._look(tuple(each for each in self._watching if each is not observer))
+
+    def _look(self, watching: tuple[CallObserver, ...]) -> None:
+        self._watching = watching
+        self.observer = None if not watching else watching[0] if len(watching) == 1 else _All(watching)
 
     def tell(self, subject: object, call: str, args: tuple[object, ...] = ()) -> None:
         """See `Scheduler.tell`; observers are told of it as of a call that begins."""

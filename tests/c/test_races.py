@@ -261,6 +261,52 @@ def test_accesses_that_are_ordered_are_not(tmp_path: Path, how: str) -> None:
     assert explore(tmp_path, ORDERED[how]) == []
 
 
+RELAYED = """
+    static int counter;
+    static unsigned char message[16];
+    static void other(void)
+    {
+        counter = 1;
+        CFE_MSG_Init(message, 0x0A01, sizeof message);
+        CFE_SB_TransmitMsg(message, 1);
+    }
+    void TEST_Main(void)
+    {
+        uint32_t id, pipe, run = RUN;
+        void *got;
+        CFE_SB_CreatePipe(&pipe, 5, "PIPE");
+        CFE_SB_Subscribe(0x0A02, pipe);
+        CFE_ES_CreateChildTask(&id, "CHILD", other, NULL, 16384, 50, 0);
+        CFE_ES_RunLoop(&run);
+        CFE_SB_ReceiveBuffer(&got, pipe, -1);
+        counter++;
+        OS_TaskDelay(100);
+    }
+"""
+RELAY = """
+from cfepy.msg import header
+
+def RELAY_Main(cfe):
+    pipe = cfe.sb.create_pipe(5, "RELAY")
+    cfe.sb.subscribe(0x0A01, pipe)
+    cfe.sb.receive_buffer(pipe)
+    @
+    while cfe.es.run_loop():
+        cfe.os.task_delay(100)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("relays", "races"), [("pass", 1), ("cfe.sb.transmit_msg(header.init(0x0A02, 16))", 0)])
+def test_a_python_application_between_two_tasks_orders_them(tmp_path: Path, relays: str, races: int) -> None:
+    code = RELAYED if not races else RELAYED.replace("pipe, -1)", "pipe, 500)")
+    compile_c(tmp_path, "TEST", code, "-fsanitize=thread", "-O0", "-w")
+    (tmp_path / "RELAY.py").write_text(RELAY.replace("@", relays))
+    flown = fly(RunPlan((write_mission(tmp_path, "TEST", "RELAY"),), seconds=2, schedule=Schedule.parse("at")))
+    assert len(flown.mission.record.data_races) == races
+    assert flown.mission.record.deaths() == []
+
+
 def test_the_start_of_a_task_orders(tmp_path: Path) -> None:
     assert explore(tmp_path, 'if (who) SAY("%u", (unsigned)lock);') == []
 
