@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from types import MethodType
 from typing import Any
 
 from cfepy.faults.calls import QUEUE_GET, call_name, status_of
@@ -62,10 +63,11 @@ class CallFault:
         """Stand before the function of a new processor."""
         service_name, _, method = self._call.partition(".")
         service = getattr(processor.cfe, service_name)
-        setattr(service, method, self._wrapped(getattr(service, method), processor))
+        call = self._wrapped(getattr(service, method), processor)
+        setattr(service, method, MethodType(call, service))  # a method, before which others get in as before all others
 
     def _wrapped(self, original: Callable[..., Any], processor: Processor) -> Callable[..., Any]:
-        def call(*args: Any, **named: Any) -> Any:
+        def call(_: object, *args: Any, **named: Any) -> Any:
             caller = caller_of(self._kernel.current)
             if self._is_meant(caller, args, processor) and self._gate.opens(self._kernel.now):
                 error = self._error()

@@ -14,6 +14,7 @@ from cfepy.faults import FaultPlan
 from cfepy.pilot import RunPlan, fly
 from cfepy.rtos import Decision, Policy, Question, Schedule
 from cfepy.status import UsageError
+from tests.faults import worlds
 from tests.mission.flights import write_mission
 
 STARTUP = """
@@ -165,3 +166,12 @@ def test_early_and_late_occasions_have_their_chance() -> None:
 def test_what_cannot_be_explored(fault: str, text: str) -> None:
     with pytest.raises(UsageError, match=text):
         FaultPlan.from_dict(yaml.safe_load(f"faults: [{fault}]"))
+
+
+def test_a_call_that_may_fail_is_a_place_where_others_get_in_all_the_same(tmp_path: Path) -> None:
+    mission = str(write_mission(tmp_path, worlds.STARTUP, source=worlds.SOURCE, taker=worlds.TAKER, other=worlds.TAKER))
+    never = tmp_path / "never.yaml"
+    never.write_text("faults: [{fail: OS_TaskDelay, after: 1000}, {fail: CFE_SB_ReceiveBuffer, after: 1000}]\n")
+    schedule = Schedule.parse("random:1:any")
+    plain, faulty = (Trial(RunPlan((mission,), seconds=2, faults=f)).run(schedule) for f in (None, str(never)))
+    assert faulty.decisions == plain.decisions > 0
