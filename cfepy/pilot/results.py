@@ -359,6 +359,8 @@ def _script_problems(mission: Mission, apps: list[AppResult]) -> list[str]:
     script = mission.spec.script
     bad = (line for line in parse(mission.spec.startup_script) if isinstance(line, BadLine))
     loaded = {library.name for library in mission.cfe.es.libs}
+    if mission.processor.booted is None:  # it was reset, and has not come to them again
+        loaded.update(each.name for each in _libraries(mission))
     return [
         *(f"{script}:{line.line}: {line.explanation}" for line in bad),
         *(f"library {each.name} could not be loaded" for each in _libraries(mission) if each.name not in loaded),

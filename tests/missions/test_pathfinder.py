@@ -41,6 +41,12 @@ def test_more_data_than_was_tested_do_so_without_any_schedule() -> None:
     assert results.inversions[0].holder == "ASI_MET"
 
 
+def test_a_run_that_ends_while_it_boots_again_has_lost_no_library() -> None:
+    results = fly(RunPlan(("pathfinder",), seconds=5.4, faults=MORE_DATA)).results
+    assert [reset.at_s for reset in results.resets] == [5.31]
+    assert results.script_problems == []
+
+
 @pytest.mark.parametrize(("schedule", "faults"), [(LATE, None), (None, MORE_DATA)])
 def test_mended_it_survives_both(schedule: Schedule | None, faults: str | None) -> None:
     results = results_of("pathfinder/mended.scr", schedule, faults)
