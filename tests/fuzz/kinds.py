@@ -16,7 +16,7 @@ from cfepy.c.engine import compiler
 from cfepy.cli.ros.rostest import read_results as read_test_results
 from cfepy.debugger.breakpoints import breakpoints
 from cfepy.es.startup_script import check, entries
-from cfepy.exploration.results_file import read_results
+from cfepy.exploration.results_file import read_failures, read_results
 from cfepy.exploration.verdict import Failure, Verdict
 from cfepy.faults.plan import read_plan
 from cfepy.ground.bag import BagReader
@@ -232,6 +232,7 @@ def results(data: bytes, path: Path) -> None:
     """The results file of an exploration."""
     for _, verdict in read_results(path)[1]:
         Verdict.from_dict(verdict)
+    read_failures(path)
 
 
 def schedule(data: bytes, path: Path) -> None:
@@ -438,10 +439,12 @@ FAULTS = """faults:
 - {drop: HK_SEND_COMBINED_PKT, name: drop-4, after: 1.1, number: 1}
 - {duplicate: /joint_states_throttle, name: duplicate-5, after: 5.28, until: 9.826, probability: 0.01}
 """
-SCHEDULES = ("fifo", "random:3", "at:56=1", "pct:3:100:7", "at:1=1,2=2", "random:1:any")
+MOVES = "moves:A@650/add.publish/3=B,C-2@7/next=hold"
+SCHEDULES = ("fifo", "random:3", "at:56=1", MOVES, "pct:3:100:7", "at:1=1,2=2", "random:1:any")
 RESULTS = (
     '{"format": "cfepy exploration 1", "campaign": {"plan": {"words": ["m"]}, "files": {}}}\n'
     '{"number": 0, "verdict": VERDICT}\n'
+    '{"failure": {"group": "died|HK|x", "title": "died: HK: x", "schedule": "moves:A=B"}}\n'
 )
 VERDICT = Verdict(Schedule.parse("random:3"), (Failure("died", "HK", "at hk.py:3", 5),), deviations=((1, 2),))
 JUNIT = """<testsuites><testsuite name="s" tests="2" errors="0" failures="1">
