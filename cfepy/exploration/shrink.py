@@ -27,9 +27,9 @@ STARTS = 3  # failing schedules that are shrunk, the shortest ones
 SUBSETS_OF = 6  # moves of which all subsets are flown
 REACH = 64  # how many decisions a move is tried later
 FEW, SINGLES = 10, 200  # how many single moves are tried, at first and in the end
-MERGED = (2, 3)  # how many moves are replaced by one
+MERGED = (3, 2)  # how many moves are replaced by one
 AROUND = 30  # how many decisions before and after them that is looked for
-CANDIDATES = 25  # how many such moves are tried
+CANDIDATES = 15  # how many such moves are tried
 TENTH_NS = NS_PER_S // 10
 
 Moves = tuple[Move, ...]
@@ -193,7 +193,7 @@ class Shrinker(Generic[T]):
         return next(self._tries(((move,) for move in ones), best), best)
 
     def _merged(self, best: _Flight) -> _Flight:
-        """One move in the place of two or three that follow each other."""
+        """One move in the place of three or two that follow each other."""
         pieces = [(at, size) for size in MERGED for at in range(len(best.made) - size + 1)]
         for at, size in pieces:
             kept = (*best.moves[:at], *best.moves[at + size :])
