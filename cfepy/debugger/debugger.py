@@ -8,21 +8,18 @@ other tasks do happens within the line that waits for them.
 
 from __future__ import annotations
 
-import linecache
-import pdb
 import sys
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
 from functools import partial
-from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, TextIO
 
+from cfepy.debugger.app_debugger import AppDebugger, look_at_end, look_into, own_frame
 from cfepy.debugger.breakpoints import Breakpoint, VariableCondition, breakpoints, finders
 from cfepy.debugger.journey import NOTHING_BEFORE, Journey, LineWay, RunMoment
+from cfepy.debugger.keepers import Keepers
 from cfepy.ground import LiveNames
 from cfepy.mission import Mission, MissionSpec
 from cfepy.monitors import Observer, Sent, app_of
-from cfepy.own_code import is_own_code, is_shown
 from cfepy.pilot.determinism_look import stack_of
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -63,6 +60,7 @@ class Debugger(Observer):
         commands, stream: where the user writes and reads; None for this process's own.
         root: folder that the mission's files lie below, and that their paths are shown without.
         journey: lets the user go back, by other flights of the same run; None for no way back.
+        keepers: processes that shorten the way back; None for none.
 
     Raises:
         UsageError: a breakpoint that cannot be.
@@ -85,11 +83,13 @@ class Debugger(Observer):
         stream: TextIO | None = None,
         root: str = "",
         journey: Journey | None = None,
+        keepers: Keepers | None = None,
     ) -> None:
         super().__init__()
         self._root = root
         self.count = 0
         self._journey = journey
+        self._keepers = keepers
         self._spec = spec
         self._moment = RunMoment(0)
         self._breakpoints = breakpoints(stops, spec, self._hit)
@@ -161,11 +161,19 @@ class Debugger(Observer):
         if journey is None or self._is_over:
             return
         self._moment = self._after()
-        if journey.search is not None and journey.search.limit is None and not journey.ends_search():
+        was_search = journey.search is not None
+        is_vain = journey.search is not None and journey.search.limit is None and not journey.ends_search()
+        is_here = journey.arrives(self._moment)
+        if journey.flies_again:
+            self._on_quit = _nothing
+            self._break_off()
+            return
+        if is_vain or journey.was_in_vain or (is_here and was_search):
             self._say(NOTHING_BEFORE)
-        if journey.arrives(self._moment) or (journey.asks_at_end and not journey.is_silent):
+        journey.was_in_vain = False
+        if is_here or (journey.asks_at_end and not journey.is_silent):
             self._looks = False
-            self._on_quit = lambda: None  # it is the end anyway
+            self._on_quit = _nothing  # it is the end anyway
             self._say(f"{self._kernel.now / NS_PER_S:.9f} the end of the run")
             with self._mission.stall_watch.paused():
                 self._ask()
@@ -223,6 +231,8 @@ class Debugger(Observer):
         if self._is_over or kernel.current is kernel.host:
             return
         self._moment = self._after()
+        if self._keepers is not None and self._journey is not None:
+            self._keepers.keep(self._journey, self._moment.happened, self._mission.stall_watch.paused)
         if self._journey is not None and self._journey.is_silent:
             self._pass_by(self._journey, what)
             return
@@ -243,6 +253,7 @@ class Debugger(Observer):
     def _looked_for(self, spec: MissionSpec) -> tuple[list[Breakpoint], dict[str, VariableCondition]]:
         """What finds the moments that were looked for: messages and events, or what holds of variables."""
         found: list[Breakpoint] = []
+        self._found_by: set[str] = set()  # the texts that messages and events are found by
         conditions: dict[str, VariableCondition] = {}
         for text in () if self._journey is None else self._journey.texts:
             means = finders(text, spec, partial(self._find, text))
@@ -250,6 +261,7 @@ class Debugger(Observer):
                 conditions[text] = means
             else:
                 found += means
+                self._found_by.add(text)
         return found, conditions
 
     def _find(self, text: str, what: str) -> None:
@@ -264,25 +276,43 @@ class Debugger(Observer):
 
     def _pass_by(self, journey: Journey, what: str) -> None:
         """Something happens that the user has seen before, or that is only looked at in search of another."""
-        moment = self._moment
-        for text, condition in self._conditions.items():
-            if journey.search is not None and journey.search.text == text and condition.holds(own_frame()):
-                journey.finds(moment, text)
+        moment, search = self._moment, journey.search
+        if search is not None and search.text:
+            condition = self._condition(search.text)
+            if condition is not None and condition.holds(own_frame()):
+                journey.finds(moment, search.text)
         self._arrive(journey, moment, what)
+
+    def _condition(self, text: str) -> VariableCondition | None:
+        """What a text says of variables; None when it is about messages and events."""
+        if text not in self._conditions and text not in self._found_by:
+            means = finders(text, self._spec, lambda what: None)
+            if isinstance(means, VariableCondition):
+                self._conditions[text] = means
+        return self._conditions.get(text)
 
     def _arrive(self, journey: Journey, moment: RunMoment, what: str) -> None:
         was_search = journey.search is not None
         if journey.arrives(moment):
             self._looks = self._stepping = False
             self._steps_from = None
-            if was_search:
+            if was_search or journey.was_in_vain:
                 self._say(NOTHING_BEFORE)
+            journey.was_in_vain = False
             self._stop(what)
         elif journey.flies_again:
             self._break_off()
 
     def _break_off(self) -> None:
-        """This flight is over, and another one goes where the user wants to be."""
+        """This flight is over, and another one goes where the user wants to be, here or from where a keeper is."""
+        keepers, journey = self._keepers, self._journey
+        if keepers is not None and journey is not None:
+            search = journey.search
+            is_known = search is None or not search.text or search.text in self._found_by
+            if (is_known or (search and self._condition(search.text))) and keepers.serves(journey):
+                self._mission.forget_files()
+                keepers.hand_over(journey)
+            keepers.dismiss()
         self._is_over = True
         self._on_quit()
 
@@ -438,151 +468,5 @@ class Debugger(Observer):
         print(text, file=self._stream, flush=True)
 
 
-class AppDebugger(pdb.Pdb):
-    """One for each task that is looked into.
-
-    Args:
-        on_quit: ends the run; the application itself is not disturbed.
-        waiting: a context around each time that it waits for its user.
-        commands, stream: where the user writes and reads.
-        root: folder that source files lie below, and that their paths are shown without.
-    """
-
-    def __init__(
-        self,
-        on_quit: Callable[[], object],
-        waiting: Callable[[], AbstractContextManager[None]],
-        commands: TextIO,
-        stream: TextIO,
-        root: str = "",
-    ) -> None:
-        self._root = root
-        if commands.isatty():
-            super().__init__(nosigint=True, readrc=False)  # with the line editing of a terminal
-        else:
-            super().__init__(stdin=commands, stdout=stream, nosigint=True, readrc=False)
-        self._on_quit = on_quit
-        self._waiting = waiting
-        self._has_quit = False
-        self.way_back: LineWay | None = None
-
-    def count_lines(self) -> None:
-        """The task begins: from now on its own lines are counted, so that they are found again."""
-        here = sys._getframe()
-        self.reset()
-        self.botframe = here  # not a frame that is ever executed again: nothing stops
-        self._runs_on()
-        sys.settrace(self.trace_dispatch)
-
-    def trace_dispatch(self, frame: FrameType, event: str, arg: Any) -> Any:
-        """As of `bdb.Bdb`; each line of the task's own code counts."""
-        if self._has_quit:
-            return None
-        way = self.way_back
-        if way is not None and event == "line" and is_own(frame):
-            if way.passes(self._has_break(frame)):
-                self.set_step()
-            elif way.is_silent:
-                return self.trace_dispatch
-        traced = super().trace_dispatch(frame, event, arg)
-        return self.trace_dispatch if traced is None and way is not None and is_own(frame) else traced
-
-    def _has_break(self, frame: FrameType) -> bool:
-        return frame.f_lineno in self.breaks.get(self.canonic(frame.f_code.co_filename), ())
-
-    def set_continue(self) -> None:
-        """As of `bdb.Bdb`, which would not look at lines any more where there is no breakpoint."""
-        if self.way_back is None:
-            super().set_continue()
-        else:
-            self._runs_on()
-
-    def _runs_on(self) -> None:
-        """Stop at breakpoints alone; lines are looked at nevertheless."""
-        base: Any = super()
-        base._set_stopinfo(self.botframe, None, -1)
-
-    def do_rstep(self, arg: str) -> bool:
-        """rstep: back to the line of this task that was executed before."""
-        return self._goes(LineWay.step_back)
-
-    def do_rcontinue(self, arg: str) -> bool:
-        """rcontinue: back to the last line of this task that has a breakpoint."""
-        return self._goes(LineWay.to_break)
-
-    do_rs, do_rc = do_rstep, do_rcontinue
-
-    def _goes(self, way: Callable[[LineWay], bool]) -> bool:
-        if self.way_back is None:
-            self.message("there is no way back without cfepy replay --back")
-            return False
-        return way(self.way_back) and bool(self.do_continue(""))
-
-    def canonic(self, filename: str) -> str:
-        """As of `bdb.Bdb`: by this path a file is shown, and has its breakpoints."""
-        return super().canonic(filename).removeprefix(self._root)
-
-    def lookupmodule(self, filename: str) -> str | None:
-        """As of `pdb.Pdb`; a file whose lines are known need not be on this computer."""
-        return filename if filename in linecache.cache else super().lookupmodule(filename)
-
-    def cmdloop(self, intro: Any = None) -> None:
-        """See `cmd.Cmd.cmdloop`."""
-        with self._waiting():
-            super().cmdloop(intro)
-
-    def stop_here(self, frame: FrameType) -> bool:
-        """As of `bdb.Bdb`, in code of the mission only."""
-        return is_own(frame) and bool(super().stop_here(frame))
-
-    def get_stack(self, f: FrameType | None, t: TracebackType | None) -> tuple[list[tuple[FrameType, int]], int]:
-        """As of `bdb.Bdb`, without the frames of cfepy."""
-        stack, at = super().get_stack(f, t)
-        shown = [entry for entry in stack if is_shown(entry[0].f_code.co_filename)]
-        current = stack[at] if stack else None
-        return (shown, shown.index(current)) if current in shown else (stack, at)
-
-    def do_quit(self, arg: str) -> bool:
-        """End the run here."""
-        self._has_quit = True
-        self._on_quit()
-        return bool(self.do_continue(arg))
-
-    do_q = do_exit = do_quit
-
-    def do_EOF(self, arg: str) -> bool:
-        """The input has ended: go on."""
-        return bool(self.do_continue(arg))
-
-
-def is_own(frame: FrameType) -> bool:
-    """Whether a frame is code of this mission, not of a library or of cfepy."""
-    return is_own_code(frame.f_code.co_filename)
-
-
-def own_frame() -> FrameType | None:
-    """The innermost frame of the mission's own code in the task that runs; None when there is none."""
-    frame: FrameType | None = sys._getframe(1)
-    while frame is not None and not is_own(frame):
-        frame = frame.f_back
-    return frame
-
-
-def look_into(debugger: AppDebugger, frame: FrameType | None) -> None:
-    """Open the debugger at the next line of the application that the current task executes.
-
-    Args:
-        debugger: for this task.
-        frame: where the application is; None when it has not begun.
-    """
-    debugger.set_trace(sys._getframe() if frame is None else frame)
-
-
-def look_at_end(debugger: AppDebugger, error: BaseException) -> None:
-    """Open the debugger where an uncaught exception came from."""
-    trace: TracebackType | None = error.__traceback__
-    while trace is not None and not is_own(trace.tb_frame):
-        trace = trace.tb_next  # the kernel's frames, above the application's
-    debugger.reset()
-    interaction: Any = debugger.interaction
-    interaction(None, error if sys.version_info >= (3, 13) else trace or error.__traceback__)
+def _nothing() -> None:
+    """What ends a run that is over."""

@@ -51,11 +51,15 @@ class BackSearch:
         text: as for `--back-to`; empty for breakpoints.
         limit: the moment; None for the end of the run.
         found: the last one until now.
+        begins_at: how many things have happened where it begins; what was before is looked through after that.
+        origin: where the user was; None for the limit.
     """
 
     text: str
     limit: AnyMoment | None
     found: AnyMoment | None = None
+    begins_at: int = 0
+    origin: AnyMoment | None = None
 
 
 class Journey:
@@ -70,6 +74,7 @@ class Journey:
         search: what is looked for.
         texts: all that was looked for.
         flies_again: this flight is broken off, for another one.
+        was_in_vain: a search has found nothing, and its user is not told yet.
     """
 
     def __init__(self, asks_at_end: bool = False, back_to: str | None = None) -> None:
@@ -77,7 +82,7 @@ class Journey:
         self.target: AnyMoment | None = None
         self.search = None if back_to is None else BackSearch(back_to, None)
         self.texts = [] if back_to is None else [back_to]
-        self.flies_again = False
+        self.flies_again = self.was_in_vain = False
 
     @property
     def is_silent(self) -> bool:
@@ -106,10 +111,16 @@ class Journey:
     def ends_search(self) -> bool:
         """The search is over: go to what it has found, if it has."""
         assert self.search is not None
-        found, self.search = self.search.found, None
-        if found is not None:
-            self.go_to(found)
-        return found is not None
+        search, self.search = self.search, None
+        if search.found is not None:
+            self.go_to(search.found)
+        elif search.begins_at > 1:
+            self.flies_again = True
+            self.search = BackSearch(search.text, RunMoment(search.begins_at), None, 0, search.origin or search.limit)
+        elif search.origin is not None:
+            self.go_to(search.origin)
+            self.was_in_vain = True
+        return self.flies_again
 
     def finds(self, moment: AnyMoment, text: str = "") -> None:
         """Something was found, in the search for it."""

@@ -136,6 +136,7 @@ class Replay:
         self.journal = journal
         self.stage = stage
         self._given = (tasks, until_ns, describe)
+        self._is_cut_off = False
         self.plan = stage.plan if tasks is None else replace(stage.plan, tasks=tasks)
         self.until_ns = until_ns
         self.policy = self._policy()
@@ -202,7 +203,7 @@ class Replay:
     def end_here(self) -> None:
         """End the run as soon as the task that runs waits."""
         kernel = self._course.mission.kernel
-        self.until_ns = kernel.now
+        self.until_ns, self._is_cut_off = kernel.now, True
         self.checker.end_early()
         self._course.end_here()
         kernel.stop()
@@ -224,7 +225,7 @@ class Replay:
     def is_whole(self) -> bool:
         """Whether it goes to the end of the run, and that is known."""
         end = self.journal.end
-        if end is None or end.reason in SUDDEN:
+        if end is None or end.reason in SUDDEN or self._is_cut_off:
             return False
         return self.until_ns is None or self.until_ns >= end.until_ns
 

@@ -137,6 +137,10 @@ class Mission:
         for each in self._attachments:
             each.power_up(self.processor)
 
+    def forget_files(self) -> None:
+        """What the run wrote is gone; for a process that leaves it in the middle."""
+        self._machine.run_files.close()
+
     def _make_machine(self) -> Machine:
         bus = SoftwareBus
         for each in self._attachments:

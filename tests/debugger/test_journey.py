@@ -13,8 +13,9 @@ from typing import Any
 
 import pytest
 
+from cfepy.debugger.app_debugger import own_frame
 from cfepy.debugger.breakpoints import VariableCondition, finders
-from cfepy.debugger.debugger import Debugger, own_frame
+from cfepy.debugger.debugger import Debugger
 from cfepy.debugger.journey import Journey, LineMoment, RunMoment
 from cfepy.pilot import Course
 from cfepy.pilot.pilot import Flown, fly

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import io
+import os
+import pickle
+import signal
 import sys
-from collections.abc import Sequence
-from typing import TextIO
+from collections.abc import Callable, Sequence
+from typing import Any, TextIO, cast
 
 from cfepy.attachment import Attachment
 from cfepy.cli.display import Display, PlainDisplay, SilentDisplay
@@ -13,7 +17,7 @@ from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL
 from cfepy.cli.run.outputs import Outputs
 from cfepy.cli.run.run import View, fly_again
-from cfepy.debugger import Debugger, GdbSession, Journey
+from cfepy.debugger import Debugger, GdbSession, Journey, Keepers
 from cfepy.journal import Replay
 from cfepy.mission import CORE_APPS, MissionSpec
 from cfepy.pilot import Flown
@@ -38,11 +42,24 @@ def fly_with_debugger(
     """
     if arguments.gdb is not None and (arguments.back or arguments.back_to is not None):
         raise UsageError("gdb stays in one flight, and there is no way back from it", field="--back")
+    if _may_fork(arguments, replay):
+        return _in_other_processes(replay, lambda keepers: _fly_all(arguments, replay, view, looking_on, keepers))
+    return _fly_all(arguments, replay, view, looking_on, None)
+
+
+def _fly_all(
+    arguments: argparse.Namespace,
+    replay: Replay,
+    view: View,
+    looking_on: Sequence[Attachment],
+    keepers: Keepers | None,
+) -> tuple[int, Replay]:
+    """All flights in this process; with keepers, it may be another one that comes back."""
     journey = None if arguments.gdb is not None else Journey(arguments.back, arguments.back_to)
     while True:
-        debugger, shown = debugger_of(arguments, replay, journey), DebugView(view, journey)
+        debugger = debugger_of(arguments, replay, journey, keepers)
         replay.attachments.append(debugger)
-        status = fly_again(arguments, replay, shown)
+        status = fly_again(arguments, replay, DebugView(view, journey))
         if journey is None or not journey.flies_again:
             break
         journey.flies_again = False
@@ -54,13 +71,68 @@ def fly_with_debugger(
     return status, replay
 
 
-def debugger_of(arguments: argparse.Namespace, replay: Replay, journey: Journey | None) -> Debugger:
+def _may_fork(arguments: argparse.Namespace, replay: Replay) -> bool:
+    """Whether processes may be forked on the way, so that the way back is short."""
+    wanted = arguments.back or arguments.back_to is not None
+    writes = arguments.bag is not None or arguments.trace is not None  # while the run goes on
+    is_alone = replay.plan.tasks == "greenlet" and arguments.pdb is None and hasattr(os, "fork")
+    return wanted and is_alone and not writes and sys.stdin is sys.__stdin__
+
+
+def _in_other_processes(replay: Replay, flights: Callable[[Keepers], tuple[int, Replay]]) -> tuple[int, Replay]:
+    """Fly in a child of this process, or in what that forks; what came of it is told here.
+
+    Raises:
+        UsageError: what the flights raise, or the process of the run ended.
+    """
+    reader, writer = os.pipe()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    child = os.fork()
+    if not child:
+        os.close(reader)
+        _tell_parent(writer, flights)
+    os.close(writer)
+    usual = signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that flies
+    with open(reader, "rb") as told:
+        answer = told.read()
+    signal.signal(signal.SIGINT, usual)
+    os.waitpid(child, 0)
+    if not answer:
+        raise UsageError("the process of the run ended by itself", field="--back")
+    status, verdict, stall, error = pickle.loads(answer)
+    if error is not None:
+        raise UsageError(error)
+    replay.verdict, replay.stall = verdict, stall
+    return status, replay
+
+
+def _tell_parent(writer: int, flights: Callable[[Keepers], tuple[int, Replay]]) -> None:
+    """Fly, tell the process that waits what came of it, and end."""
+    keepers = Keepers()
+    try:
+        status, last = flights(keepers)
+        answer: tuple[Any, ...] = (status, last.verdict, last.stall, None)
+    except UsageError as error:
+        answer = (0, None, None, str(error))
+    keepers.dismiss()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    with open(writer, "wb") as told:
+        told.write(pickle.dumps(answer))
+    os._exit(0)
+
+
+def debugger_of(
+    arguments: argparse.Namespace, replay: Replay, journey: Journey | None, keepers: Keepers | None
+) -> Debugger:
     """The debugger for a replay.
 
     Args:
         arguments: of `cfepy replay`; with --step, --pdb or --gdb, --until is where the first stop is, not the end.
         replay: the replay.
         journey: what its flights have in common; None for no way back.
+        keepers: processes that shorten the way back; None for none.
 
     Raises:
         UsageError: a breakpoint that cannot be, or an application that there is not.
@@ -84,6 +156,8 @@ def debugger_of(arguments: argparse.Namespace, replay: Replay, journey: Journey 
         on_quit=replay.end_here,
         root=replay.stage.root,
         journey=journey,
+        keepers=keepers,
+        commands=None if keepers is None else cast("TextIO", _Typed()),
     )
 
 
@@ -144,3 +218,18 @@ class _LateDisplay(PlainDisplay):
         """See `Display.line`."""
         if self._journey is None or not self._journey.is_silent:
             super().line(text)
+
+
+class _Typed(io.TextIOBase):
+    """What is typed, read line by line: what one process read ahead, another one would not see."""
+
+    def readline(self, size: int = -1, /) -> str:  # type: ignore[override]  # only whole lines are asked for
+        """The next line; empty at the end."""
+        line = b""
+        while not line.endswith(b"\n") and (more := os.read(0, 1)):
+            line += more
+        return line.decode(errors="replace")
+
+    def isatty(self) -> bool:
+        """See `io.IOBase.isatty`."""
+        return os.isatty(0)

@@ -1,0 +1,71 @@
+"""Going back with processes that were forked on the way shows what going back without them shows."""
+
+from __future__ import annotations
+
+import os
+import random
+import subprocess
+import sys
+
+import pytest
+
+from cfepy.cli.main import main
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system that can fork a process"),
+]
+STEPS = 30
+
+
+@pytest.fixture(scope="module")
+def journal(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The journal of a run in which more happens than between two keepers."""
+    file = tmp_path_factory.mktemp("capture") / "run.cfepy"
+    assert main(["run", "capture", "--for", "1", "--quiet", "--record", str(file)]) == 0
+    return str(file)
+
+
+def replayed(journal: str, typed: str, *options: str) -> tuple[int, str, str]:
+    """Status, output and what is said of a replay in a process of its own."""
+    command = [sys.executable, "-m", "cfepy", "replay", journal, "--quiet", *options]
+    done = subprocess.run(command, input=typed, capture_output=True, text=True, timeout=300, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+def both_ways(journal: str, typed: str, *options: str) -> list[str]:
+    """What is shown, the same on greenlets, with keepers, and on threads, without them."""
+    quick, plain = (replayed(journal, typed, "--tasks", tasks, *options) for tasks in ("greenlet", "thread"))
+    lines, others = ([line for line in each[1].splitlines() if " x real time" not in line] for each in (quick, plain))
+    assert lines == others
+    assert quick[0] == plain[0] == 0
+    assert "cfepy: the same run as" in quick[2]
+    return [line for line in lines if line[:1].isdigit()]
+
+
+def test_steps_at_random_are_the_same_with_and_without_keepers(journal: str) -> None:
+    choose = random.Random(3).choice
+    typed = "".join(f"{choose(['b', 'b', 's', 's', 'rc', 'bt /joint_states'])}\n" for _ in range(STEPS))
+    shown = both_ways(journal, f"{typed}q\n", "--back", "--break", "/phase", "--until", "0.9")
+    assert len(shown) > STEPS / 2
+
+
+def test_a_search_goes_through_all_that_was_before(journal: str) -> None:
+    shown = both_ways(
+        journal, "bt self.no_such_thing == 1\nbt len(self.joints) == 7\nb\nq\n", "--back", "--until", "0.9"
+    )
+    assert "the end of the run" in shown[0]
+    assert shown[1] == shown[2] == shown[0]
+
+
+def test_a_run_that_was_gone_back_in_ends_as_it_did(journal: str) -> None:
+    typed = "b\nb\nb\nrc\nc\nc\nc\nc\n"
+    status, _, said = replayed(journal, typed, "--back", "--break", "/phase", "--tasks", "greenlet")
+    assert status == 0
+    assert f"the same run as {journal}\n" in said
+
+
+def test_ends_that_nobody_asked_for_leave_no_process_behind(journal: str) -> None:
+    status, shown, _ = replayed(journal, "b\nb\n", "--back", "--tasks", "greenlet")  # and the input ends
+    assert status == 0
+    assert shown
