@@ -128,7 +128,7 @@ class _Hooking(ast.NodeTransformer):
         node.body = self._body(node.body)
         return node
 
-    def _function(self, node: ast.FunctionDef) -> ast.AST:
+    def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.AST:
         node.decorator_list = self._each(node.decorator_list)
         self._defaults(node.args)
         scope, is_on = self._scope, self._is_on
@@ -141,7 +141,7 @@ class _Hooking(ast.NodeTransformer):
         return self._function(node)
 
     def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> ast.AST:
-        return node
+        return self._function(node)
 
     def visit_Lambda(self, node: ast.Lambda) -> ast.AST:
         self._defaults(node.args)

@@ -358,6 +358,27 @@ def g():
 g()
 out.append("after")
 """,
+    "coroutines": """
+import asyncio
+class Box:
+    def __init__(self): self.n, self.l = 0, [1, 2]
+    async def each(self):
+        for n in self.l:
+            await asyncio.sleep(0)
+            yield n
+    async def __aenter__(self): self.n += 1; return self
+    async def __aexit__(self, *what): self.n += 10
+    async def add(self, by=1):
+        self.n += await self.later(by)
+        async for n in self.each(): self.l[0] += n
+        async with self as same: out.append(same.n)
+        return self.n, [n async for n in self.each()], self.l
+    async def later(self, value): return value
+box = Box()
+async def main(): out.append(await asyncio.gather(box.add(2), box.later(3)))
+asyncio.run(main())
+out.append((box.n, box.l))
+""",
     "imports": """
 from __future__ import annotations
 import math, os.path as path
