@@ -54,6 +54,7 @@ _LETS_GO: dict[str, Key] = {
 """What calls of services, and of nodes to the parameter server, hand on: who takes it later knows what the caller did
 before."""
 _ASKING = ("getParam", "hasParam", "searchParam", "getParamNames")
+_ENDING = ("delete_child_task", "task_delete")
 _TAKES: dict[str, Key] = {
     **dict.fromkeys(
         (
@@ -141,6 +142,8 @@ class RaceWatch(Attachment):
             self._made(subject)
         elif call in _LOCKS_GIVEN:
             self._clocks.let_go(self._task, self._lock(subject))
+        elif call == "is_done":
+            self._clocks.take(self._task, self._lock(subject))
         elif call == "add_callback":
             self._clocks.let_go(self._task, ("began", self._task.owner))
         elif call in _ASKING:
@@ -153,6 +156,8 @@ class RaceWatch(Attachment):
         if call in _LOCKS_TAKEN:
             if result is not False:
                 self._clocks.take(self._task, self._lock(subject))
+        elif call in _ENDING:
+            self._clocks.take_ended(self._task)
         elif call in _TAKES and result is not False and (call != "queue_get" or result is not None):
             self._clocks.take(self._task, _TAKES[call](args))
 

@@ -104,6 +104,12 @@ class VectorClocks:
         """A task knows what another has sent."""
         _join(self.of(task), sent)
 
+    def take_ended(self, task: Task) -> None:
+        """A task knows what all have done that have ended by now."""
+        for other, known in list(self._known.items()):
+            if other.done:
+                _join(self.of(task), known)
+
     def forget(self, key: Hashable) -> None:
         """Nobody will take this key any more."""
         self._left.pop(key, None)

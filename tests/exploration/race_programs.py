@@ -623,6 +623,16 @@ def body(cfe):
 }
 """Applications whose tasks race for `Box.n`, behind their prelude."""
 APPS_CLEAN = {
+    "ended": """
+def body(cfe):
+    def work(cfe):
+        add(cfe)
+        while True: cfe.os.task_delay(10)
+    task = cfe.es.create_child_task("CHILD", lambda: work(cfe), 8192, 100)
+    wait(cfe)
+    cfe.es.delete_child_task(task)
+    add(cfe)
+""",
     "started": """
 def body(cfe): add(cfe); child(cfe, add)
 """,

@@ -24,7 +24,7 @@ from cfepy.rtos import ExploringKernel, TaskExit
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
-    from cfepy.rtos import Task
+    from cfepy.rtos import Kernel, Task
 
 
 def make_local(universe: Universe) -> type:
@@ -92,9 +92,11 @@ class ThreadHandle:
     Args:
         gate: a fresh lock of the universe; it is held until the thread is done.
         ident: of a thread that runs already.
+        kernel: is told who has seen the end.
     """
 
-    def __init__(self, gate: Any, ident: int | None = None) -> None:
+    def __init__(self, gate: Any, ident: int | None = None, kernel: Kernel | None = None) -> None:
+        self._kernel = kernel
         self.ident = ident
         self._done = False
         self._gate = gate
@@ -103,6 +105,8 @@ class ThreadHandle:
 
     def is_done(self) -> bool:
         """Whether the thread has ended."""
+        if self._done and self._kernel is not None:
+            self._kernel.tell(self._gate, "is_done")
         return self._done
 
     def held_by(self, task: Task | None) -> None:
@@ -116,7 +120,7 @@ class ThreadHandle:
 
     def join(self, timeout: float | None = None) -> None:
         """Wait for the end, at most `timeout` seconds."""
-        if not self._done and self._gate.acquire(True, -1 if timeout is None or timeout < 0 else timeout):
+        if not self.is_done() and self._gate.acquire(True, -1 if timeout is None or timeout < 0 else timeout):
             self._gate.release()
 
 
@@ -125,7 +129,7 @@ def handle_names(universe: Universe, start: Callable[..., int], lock: Callable[[
     waited_for: list[ThreadHandle] = []
 
     def new_handle() -> ThreadHandle:
-        return ThreadHandle(lock())
+        return ThreadHandle(lock(), kernel=universe.kernel)
 
     def start_joinable(
         function: Callable[[], object], handle: ThreadHandle | None = None, daemon: bool = True
@@ -153,7 +157,7 @@ def handle_names(universe: Universe, start: Callable[..., int], lock: Callable[[
     return {
         "_ThreadHandle": new_handle,
         "_get_main_thread_ident": lambda: universe.main_ident,
-        "_make_thread_handle": lambda ident: ThreadHandle(lock(), ident),
+        "_make_thread_handle": lambda ident: ThreadHandle(lock(), ident, universe.kernel),
         "_shutdown": shutdown,
         "start_joinable_thread": start_joinable,
     }
