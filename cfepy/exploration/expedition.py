@@ -257,7 +257,10 @@ class Expedition:
             report.findings.append(self._told(trial, finding, tally))
         self._keep(report)
         if not report.findings and not tally.interrupted and not self.points:
-            breadth.gaps = gaps_of(bare, options)
+            try:
+                breadth.gaps = gaps_of(bare, options)
+            except KeyboardInterrupt:  # what was found must not be lost with it
+                tally.interrupted = True
         if distribution is not None and isinstance(trial, MeasuredTrial):
             budget = budget_of(tally.done) if self.shrink is None else self.shrink
             report.worst = worst_of(trial, distribution, 0 if tally.interrupted else budget)
