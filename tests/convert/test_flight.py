@@ -55,6 +55,23 @@ def test_what_a_node_prints_by_itself_is_shown_with_its_name(package: Path, capf
     assert capfd.readouterr().out.splitlines() == said[:-1]  # the run ends with the node, before its code is unloaded
 
 
+def test_the_clocks_of_cpp_are_the_mission_s(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    source = package / "src/sender.cpp"
+    own = """
+  const auto steady = std::chrono::steady_clock::now();
+  const auto system = std::chrono::system_clock::now();
+  ros::Duration(0.5).sleep();
+  const std::chrono::duration<double> one = std::chrono::steady_clock::now() - steady;
+  const std::chrono::duration<double> other = std::chrono::system_clock::now() - system;
+  std::printf("after %.3f s, %.3f s\\n", one.count(), other.count());
+  return 0;
+  ros::Rate rate(hz);"""
+    text = source.read_text().replace("  ros::Rate rate(hz);", own)
+    source.write_text("#include <chrono>\n#include <cstdio>\n" + text)
+    assert main(["node", "ping", "sender", "--for", "2"]) == 0
+    assert capfd.readouterr().out == "after 0.500 s, 0.500 s\n"
+
+
 def test_both_kinds_of_nodes_hear_each_other(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", str(package / "launch/both.launch"), "--for", "1"]) == 0
     shown = capfd.readouterr().out
