@@ -33,7 +33,7 @@ def read() -> dict[str, Story]:
     lines = [line for line in STORIES.read_text().splitlines() if line]
     found = {}
     for head, cause in zip(lines[::2], lines[1::2], strict=True):
-        name, schedule = head.split()
+        name, schedule = head.split(maxsplit=1)
         found[name] = Story(schedule, "" if cause.strip() == NOTHING else cause.strip())
     return found
 
@@ -47,6 +47,14 @@ def told(bug: Bug, schedule: str) -> Told | None:
     return None if failure is None else story_of(trial, verdict, failure, policy.made)
 
 
+def by_moves(bug: Bug, schedule: str) -> str:
+    """The same schedule with its moves by name, which other versions of Python make as well."""
+    parsed = Schedule.parse(schedule)
+    policy = MoveNotingPolicy(parsed.policy() or Policy())
+    reference_trial(bug.folder).fly(parsed, policy=policy)
+    return parsed.by_moves(made.move for made in policy.made).text()
+
+
 def write(names: list[str]) -> None:
     """Tell the stories of these bugs, or of all, under the schedules that the file has, while they show the bugs."""
     stories = read() if STORIES.is_file() else {}
@@ -58,7 +66,9 @@ def write(names: list[str]) -> None:
             assert verdicts
             schedule = shrunk(bug, verdicts).schedule
             story = told(bug, schedule)
-        assert story is not None
+        schedule = by_moves(bug, schedule)
+        story = told(bug, schedule)
+        assert story is not None, f"{schedule} does not show {bug.name}"
         stories[bug.name] = Story(schedule, story.cause)
     blocks = (f"{bug.name} {stories[bug.name].schedule}\n    {stories[bug.name].cause or NOTHING}\n" for bug in BUGS)
     STORIES.write_text("\n".join(blocks))
