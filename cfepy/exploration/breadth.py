@@ -91,7 +91,7 @@ class Breadth:
         pct: by depth, how many schedules of PCT there were for bugs of that depth.
         gaps: functions that touch what others touch, too, with no point between, a line each.
         classes: how many orders differ in something that tasks touch; None where that was not looked for.
-        is_complete: whether there are no others, as far as time and priorities let them be.
+        is_complete: whether there are no others.
         astray: how many schedules could not go as that search wanted.
         steps: the most decisions that a run of PCT's had, or was drawn for.
     """

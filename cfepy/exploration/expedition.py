@@ -250,7 +250,11 @@ class Expedition:
         if tally is None:
             return Report(trial, reference, Tally(), [], notes=notes, is_steady=False)
         if isinstance(search, OrderSearch):
-            breadth.classes, breadth.is_complete, breadth.astray = search.orders, search.exhausted, search.astray
+            breadth.classes, breadth.is_complete, breadth.astray = (
+                search.orders,
+                search.exhausted and not search.astray,
+                search.astray,
+            )
             trial = replace(trial, steps_from_ns=None)
         report = Report(trial, reference, tally, findings.troubles, notes=notes, breadth=breadth)
         for finding in findings.all():

@@ -29,7 +29,7 @@ _OWN = frozenset(
     }
 )
 """Calls that concern the caller alone, or that are seen where they wait or send."""
-_TAKING = frozenset({"acquire", "acquire_lock", "__enter__", "mut_sem_take"})
+_TAKING = frozenset({"acquire", "acquire_lock", "__enter__", "_acquire_restore", "mut_sem_take"})
 _GIVING = frozenset({"release", "release_lock", "__exit__", "_release_save", "mut_sem_give"})
 _SERVICES = frozenset(
     {
@@ -85,7 +85,7 @@ class Footprints(Attachment):
         self._log = StepLog(kernel, self._from_ns)
         self._pipes.kernel = kernel
         mission.accesses.observers.append(self._take)
-        kernel.observer = self
+        kernel.watch(self)
         _also(kernel, "charge", self._calls)
         for name in ("wait_on", "wake_first", "wake_all"):
             _also(kernel, name, self._waits)
@@ -113,26 +113,35 @@ class Footprints(Attachment):
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
         """See `CallObserver.called`: a service of cFE, or a lock of a node."""
-        if self._log is not None:
-            self._log.end()  # of a call before it that has raised something
-            self._log.begin(self._things(subject, call, args))
+        if self._log is not None and _is_of_calls(subject):
+            wanted = self._name(subject, args) if call in _TAKING else ""
+            self._log.begin(self._things(subject, call, args), wanted)
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
         """See `CallObserver.returned`: a lock is taken when a call comes back with it."""
-        if self._log is not None:
-            self._log.end()
+        if call == "is_set" or not _is_of_calls(subject):  # told of without a call
+            return
+        if self._log is None or not self._log.end():
+            return
         if call in _TAKING:
             name = self._name(subject, args)
             self.touch(f"state of {name}", READS)
             if result is not False:
                 self.touch(name, TAKES)
+        else:
+            self._log.part()
+
+    def failed(self, subject: Any, call: str) -> None:
+        """See `CallObserver.failed`."""
+        if self._log is not None:
+            self._log.fail()
 
     def _things(self, subject: Any, call: str, args: tuple[Any, ...]) -> list[Touched]:
         if isinstance(subject, SoftwareBus) or call in _OWN:
             return []
         name = self._name(subject, args)
         if call in _TAKING:  # one that need not wait finds out whether somebody has the lock
-            has_limit = bool(args) and type(subject).__name__ not in _SERVICES
+            has_limit = bool(args) and call.startswith("acquire") and type(subject).__name__ not in _SERVICES
             return [(f"state of {name}", WRITES)] if has_limit else []
         if call in _GIVING:
             return [(name, GIVES), (f"state of {name}", READS)]
@@ -163,6 +172,13 @@ class Footprints(Attachment):
         """Waits within calls are those of what these are about."""
         if self._log is not None and not self._pipes.waits() and not self._log.is_in_a_call:
             self.touch(f"wait for {waits.what}")
+
+
+def _is_of_calls(subject: Any) -> bool:
+    """Whether calls of its methods are told of with their ends: it is a service, or a lock of Python's."""
+    return (
+        type(subject).__name__ in _SERVICES or isinstance(subject, SoftwareBus) or hasattr(subject, "_at_fork_reinit")
+    )
 
 
 class _Pipes:

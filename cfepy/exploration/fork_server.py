@@ -21,7 +21,7 @@ from typing import Any
 
 from cfepy.attachment import Attachment
 from cfepy.exploration.campaign import Experiment, judge
-from cfepy.exploration.trial import Trial
+from cfepy.exploration.trial import Trial, told_as
 from cfepy.exploration.verdict import Verdict
 from cfepy.mission import Mission
 from cfepy.rtos import Decision, From, Policy, Schedule
@@ -254,4 +254,4 @@ class ForkingJudge:
             verdict: Verdict = self._servers[options].run(schedule)
         except ChildProcessError:
             return judge(trial, schedule)  # whatever ended that process does it here, where it is looked at
-        return replace(verdict, schedule=schedule)
+        return replace(verdict, schedule=told_as(schedule, dict(verdict.deviations)))

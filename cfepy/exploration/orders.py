@@ -11,11 +11,11 @@ that of looking for beginnings among the orders seen, instead of keeping a stack
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import blake2b
 
-from cfepy.exploration.steps import GIVES, TAKES, TIMER, WRITES, TaskStep
+from cfepy.exploration.steps import GIVES, HANDED, READS, TAKES, TIMER, TRIES, WRITES, TaskStep
 from cfepy.exploration.verdict import Verdict
 from cfepy.rtos import PLACE, Schedule
 
@@ -89,11 +89,13 @@ class Order:
         step = self.steps[at]
         conflicts: defaultdict[int, set[str]] = defaultdict(set)
         gives: dict[int, str] = {}
+        sections: dict[int, frozenset[int]] = {}
         for thing, how in step.touched:
             before = reversed(self._touches[thing])
-            if how == TAKES:
+            if how in (TAKES, TRIES):
                 self._after_lock(thing, before, conflicts, gives)
-            elif how != GIVES:
+                sections |= self._section(at, thing, conflicts, gives)
+            elif how in (READS, WRITES):
                 for other, other_how in before:
                     if WRITES in (how, other_how):
                         conflicts[other].add(thing)
@@ -101,11 +103,12 @@ class Order:
                         break
         ordered = {each for each in (self._before[at],) if each is not None}
         if step.waker != TIMER:
-            taken = {thing for thing, how in step.touched if how == TAKES}
-            given = {thing for thing, how in self.steps[step.waker].touched if how == GIVES}
-            if not taken & given:  # a lock that was handed over might have been taken before, without a wait
+            handed = [thing for thing, how in step.touched if how == HANDED]
+            if handed:  # it might have been taken before, without a wait
+                gives[step.waker] = handed[0]
+            else:
                 ordered.add(step.waker)
-        return _Dependences(dict(conflicts), gives, ordered)
+        return _Dependences(dict(conflicts), gives, ordered, sections)
 
     @staticmethod
     def _after_lock(
@@ -118,6 +121,17 @@ class Order:
                 return
             if how == GIVES and thing not in gives.values():
                 gives[other] = thing
+
+    def _section(
+        self, at: int, thing: str, conflicts: Mapping[int, set[str]], gives: Mapping[int, str]
+    ) -> dict[int, frozenset[int]]:
+        """By the step that took a lock last: those that its task made since, until it gave it back."""
+        taken = next((each for each, things in conflicts.items() if thing in things), None)
+        if taken is None:
+            return {}
+        given = max((each for each, given in gives.items() if given == thing), default=at)
+        task = self.steps[taken].task
+        return {taken: frozenset(at for at in range(taken + 1, given + 1) if self.steps[at].task == task)}
 
     def _named(self, at: int, direct: _Dependences) -> frozenset[int]:
         step = self.steps[at]
@@ -132,6 +146,14 @@ class Order:
         if before is None or self._keys[before][1] != place:
             return step.task, place, 0
         return step.task, place, self._keys[before][2] + bool(self.steps[before].touched)
+
+    def without(self, apps: Collection[str]) -> frozenset[tuple[Key, frozenset[Key]]]:
+        """The order of the other applications: which of their steps come before which."""
+        others = [at for at in self.places.values() if self.steps[at].app not in apps]
+        return frozenset(
+            (self._keys[at], frozenset(self._keys[each] for each in others if self._past[at] >> each & 1))
+            for at in others
+        )
 
     def begins(self, beginning: Beginning) -> bool:
         """Whether it has all steps of a beginning, and all that comes before the last one there is among them."""
@@ -155,8 +177,10 @@ class Order:
             return False
         if step.waker == TIMER and step.ready > earlier:
             return False
+        if any(earlier in section for section in direct.sections.values()):
+            return False  # its task had the lock then
         locks = direct.conflicts[earlier]
-        others = {*direct.conflicts, *direct.ordered} - {earlier}
+        others = {*direct.conflicts, *direct.ordered} - {earlier} - direct.sections.get(earlier, frozenset())
         others |= {each for each, thing in direct.gives.items() if thing not in locks}
         return not any(self._past[each] >> earlier & 1 or self._floor[each] > earlier for each in others)
 
@@ -176,11 +200,13 @@ class _Dependences:
         conflicts: those that touched what it touches, with these things.
         gives: those that gave back a lock that it takes, with the lock.
         ordered: the one before of its task, and the one that woke it.
+        sections: by the step that took a lock last which it takes, those that the other task made with it.
     """
 
     conflicts: dict[int, set[str]]
     gives: dict[int, str]
     ordered: set[int]
+    sections: dict[int, frozenset[int]]
 
     @property
     def all(self) -> set[int]:

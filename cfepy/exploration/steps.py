@@ -20,9 +20,13 @@ from cfepy.rtos import PLACE, ExploringKernel, Task
 PLACES = ("point", "charge", "delay", "yield_cpu")
 QUIET = ("make_ready", "preempt", "wake_all")
 TIMER = -1
-READS, WRITES, TAKES, GIVES = "reads", "writes", "takes", "gives"
+READS, WRITES, TAKES, GIVES, TRIES = "reads", "writes", "takes", "gives", "tries"
+HANDED = "handed"
 Touched = tuple[str, str]
-"""The name of a thing, and what becomes of it: READS and WRITES of data, TAKES and GIVES of locks."""
+"""The name of a thing, and what becomes of it: READS and WRITES of data, TAKES and GIVES of locks, TRIES in vain.
+
+Of a lock that the step was HANDED by who woke it, it is who had taken it last that counts.
+"""
 
 
 class TaskStep(NamedTuple):
@@ -54,10 +58,25 @@ class TaskStep(NamedTuple):
 
 @dataclass(slots=True)
 class _Call:
-    """What a task is in the middle of: what it touches, and whether its steps since have touched that."""
+    """What a task is in the middle of.
+
+    Attributes:
+        things: what it touches.
+        wanted: a lock that it is to get; empty for none.
+        began: what the step in which it began has touched.
+        has_waited: whether it had to wait.
+        is_noted: whether its steps since have touched the things.
+        noted: what the last step has touched that did.
+        depth: how many calls it is, each within the one before.
+    """
 
     things: list[Touched]
+    wanted: str = ""
+    began: dict[Touched, None] | None = None
+    has_waited: bool = False
     is_noted: bool = True
+    noted: dict[Touched, None] | None = None
+    depth: int = 1
 
 
 class StepLog:
@@ -89,6 +108,8 @@ class StepLog:
     @property
     def steps(self) -> tuple[TaskStep, ...]:
         """In the order in which they were made."""
+        for call in self._calls.values():
+            _has_tried(call)
         return tuple(
             TaskStep(task.path, number, tuple(sorted(touched)), ready, waker, getattr(task.owner, "name", ""))
             for task, number, touched, ready, waker in self._log
@@ -105,17 +126,48 @@ class StepLog:
         if step is not None:
             step[2][thing, how] = None
 
-    def begin(self, things: Iterable[Touched]) -> None:
-        """The current task begins something that touches these things, in this step and in those after other places."""
-        call = _Call(list(things))
-        self._calls[self._kernel.current] = call
+    def begin(self, things: Iterable[Touched], wanted: str = "") -> None:
+        """The current task begins something that touches these things, in this step and in those after other places.
+
+        Args:
+            things: what it touches.
+            wanted: a lock that it takes, if it comes to its end; empty for none.
+        """
+        task = self._kernel.current
+        outer = self._calls.get(task)
+        if outer is not None:  # a call within a call is a part of that
+            outer.depth += 1
+            outer.things += [each for each in things if each not in outer.things]
+            self._note(outer)
+            return
+        step = self._step() if wanted else None
+        call = self._calls[task] = _Call(list(things), wanted, None if step is None else step[2])
         self._note(call)
 
-    def end(self) -> None:
-        """The current task is in the middle of nothing any more."""
-        call = self._calls.pop(self._kernel.current, None)
-        if call is not None and not call.is_noted:
+    def end(self) -> bool:
+        """The current task has come to the end of it; whether it is not in the middle of another one now."""
+        call = self._calls.get(self._kernel.current)
+        if call is None:
+            return True
+        call.depth -= 1
+        if call.depth:
+            return False
+        del self._calls[self._kernel.current]
+        if not call.is_noted:
             self._note(call)
+        if call.wanted and call.has_waited:
+            self.touch(call.wanted, HANDED)
+        return True
+
+    def part(self) -> None:
+        """The current task begins another step, also where nobody was woken in the one before."""
+        self._kernel.current.passed += 1
+
+    def fail(self) -> None:
+        """As `end`, without what it wanted."""
+        call = self._calls.get(self._kernel.current)
+        if self.end() and call is not None:
+            _has_tried(call)
 
     @property
     def is_in_a_call(self) -> bool:
@@ -123,9 +175,17 @@ class StepLog:
         return self._kernel.current in self._calls
 
     def _note(self, call: _Call) -> None:
+        """Its step touches the things; a lock is given back in the last one, whatever comes between."""
         call.is_noted = True
-        for thing, how in call.things:
-            self.touch(thing, how)
+        step = self._step()
+        if step is None:
+            return
+        is_given = any(how == GIVES for _, how in call.things)
+        for touched in call.things:
+            if is_given and call.noted is not None:
+                call.noted.pop(touched, None)
+            step[2][touched] = None
+        call.noted = step[2]
 
     def _step(self) -> tuple[Task, int, dict[Touched, None], int, int] | None:
         """The step that the current task makes; None where none are kept."""
@@ -198,7 +258,13 @@ class StepLog:
             task.passed += 1
             result = original(*args)
             if task in self._calls:
-                self._calls[task].is_noted = False
+                self._calls[task].is_noted, self._calls[task].has_waited = False, True
             return result
 
         return wait_on
+
+
+def _has_tried(call: _Call) -> None:
+    """It never came to its end: what it wanted somebody else had, and might have had later."""
+    if call.wanted and call.began is not None:
+        call.began[call.wanted, TRIES] = None

@@ -213,6 +213,9 @@ class TaskLook(Attachment):
         elif call in _TAKING and hasattr(subject, "_at_fork_reinit"):
             self._lock_taken(task, use_of(subject, call, frame), result)
 
+    def failed(self, subject: Any, call: str) -> None:
+        """See `CallObserver.failed`: nothing was done."""
+
     def _call_of_app(
         self, task: Task, service: Any, call: str, args: tuple[Any, ...], frame: FrameType | None, ended: bool
     ) -> None:

@@ -6,7 +6,7 @@ A trial is plain data, so it goes to other processes; a verdict comes back.
 from __future__ import annotations
 
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
@@ -27,6 +27,11 @@ PROBE_S = 1.0  # wall time that a task gets at least, which is known to spin
 
 
 FOR_EVER = Limits()
+
+
+def told_as(schedule: Schedule, deviations: Mapping[int, int]) -> Schedule:
+    """A schedule that a command can be given: for one that is made as a run goes on, what that run did."""
+    return schedule.at(deviations) if schedule.kind == ORDER else schedule
 
 
 class Tried(NamedTuple):
@@ -162,9 +167,9 @@ class Trial:
         return self.plan.command_line(schedule=schedule)
 
     def _verdict(self, schedule: Schedule, policy: NotingPolicy, failed: tuple[Failure, ...]) -> Verdict:
-        deviations = tuple(sorted(policy.deviations.items())) if failed else ()
-        if schedule.kind == ORDER:  # a text that means the same
-            schedule = schedule.at(policy.deviations)
+        is_kept = failed or self.steps_from_ns is not None
+        deviations = tuple(sorted(policy.deviations.items())) if is_kept else ()
+        schedule = told_as(schedule, policy.deviations)
         pairs = zip(policy.widths, policy.running, strict=True)
         return Verdict(
             schedule,

@@ -91,7 +91,8 @@ class Verdict:
         results: digest of the results that must not depend on the schedule; empty when none are selected.
         trace: digest of the whole run.
         decisions: how often the policy was asked.
-        deviations: (decision, candidate) where it did not choose as fifo would; kept for runs with failures only.
+        deviations: (decision, candidate) where it did not choose as fifo would; kept for runs with failures, and where
+            steps are.
         preemptions: how many of them took the processor from a task that could have gone on.
         widths: how many answers each decision had, negative where the running task could have gone on; kept only for a
             systematic search.

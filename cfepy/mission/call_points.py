@@ -67,7 +67,11 @@ def _pointed(service: Any, name: str, kernel: ExploringKernel) -> Callable[..., 
         if observer is None:
             return getattr(service, name)(*args, **options)
         observer.called(service, name, args)
-        result = getattr(service, name)(*args, **options)
+        try:
+            result = getattr(service, name)(*args, **options)
+        except BaseException:
+            observer.failed(service, name)
+            raise
         observer.returned(service, name, args, result)
         return result
 

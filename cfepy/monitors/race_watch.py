@@ -161,6 +161,9 @@ class RaceWatch(Attachment):
         elif call in _TAKES and result is not False and (call != "queue_get" or result is not None):
             self._clocks.take(self._task, _TAKES[call](args))
 
+    def failed(self, subject: Any, call: str) -> None:
+        """See `CallObserver`: it has taken nothing, so it orders nothing."""
+
     def _lock(self, lock: Any) -> Hashable:
         assert self._mission is not None
         number = self._mission.accesses.number(lock)

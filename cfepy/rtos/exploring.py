@@ -39,10 +39,7 @@ def make_kernel(
 
 
 class CallObserver(Protocol):
-    """Is told of the calls that are scheduling points, in the task that makes them; it must not wait, nor call back.
-
-    A call that raises something never returns.
-    """
+    """Is told of the calls that are scheduling points, in the task that makes them; it must not wait, nor call back."""
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
         """Others have had their chance, and the call begins now.
@@ -55,6 +52,9 @@ class CallObserver(Protocol):
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
         """It has come to its end, with this result."""
+
+    def failed(self, subject: Any, call: str) -> None:
+        """It has raised something instead."""
 
 
 class _All:
@@ -70,6 +70,10 @@ class _All:
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
         for each in self._observers:
             each.returned(subject, call, args, result)
+
+    def failed(self, subject: Any, call: str) -> None:
+        self._first.failed(subject, call)
+        self._second.failed(subject, call)
 
 
 class ExploringKernel(Kernel):

@@ -82,7 +82,12 @@ def _explore(lock: type, kernel: ExploringKernel) -> None:
             observer = kernel.observer
             if observer is not None:
                 observer.called(self, name, (*args, *options.values()))
-            result = method(self, *args, **options)
+            try:
+                result = method(self, *args, **options)
+            except BaseException:
+                if observer is not None:
+                    observer.failed(self, name)
+                raise
             if takes and result and self.holder is not _ANY_TASK:
                 self.holder = kernel.current
             if observer is not None:
