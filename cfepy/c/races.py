@@ -171,6 +171,9 @@ class CompiledRaceWatch:
         elif key is not None and args and result is not False and (call != "queue_get" or result is not None):
             self._take(key(args))
 
+    def failed(self, subject: Any, call: str) -> None:
+        """It takes nothing."""
+
     # -- what orders -------------------------------------------------------------------------------------------------
 
     def begin(self, code: Hashable) -> int:

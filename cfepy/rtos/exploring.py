@@ -72,8 +72,8 @@ class _All:
             each.returned(subject, call, args, result)
 
     def failed(self, subject: Any, call: str) -> None:
-        self._first.failed(subject, call)
-        self._second.failed(subject, call)
+        for each in self._observers:
+            each.failed(subject, call)
 
 
 class ExploringKernel(Kernel):
