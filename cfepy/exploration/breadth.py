@@ -129,7 +129,7 @@ class Breadth:
         if self.classes is not None:
             found = [f"{found[0]}, {self.classes} of them in what tasks touch"]
             if self.is_complete:
-                found[0] += "; there are no others"
+                found[0] += "; no others were found"
             if self.astray:
                 found.append(f"{self.astray} schedules could not go as they were to: time or a priority is against it")
         kinds = sorted(self.points.items(), key=lambda each: -each[1])

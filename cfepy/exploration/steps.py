@@ -101,7 +101,7 @@ class StepLog:
         for name in PLACES:
             setattr(kernel, name, self._passing(getattr(kernel, name)))
         for name in QUIET:
-            setattr(kernel, name, self._quietly(getattr(kernel, name)))
+            setattr(kernel, name, self._quietly(getattr(kernel, name), parts=name != "make_ready"))
         for name, hook in (("enqueue", self._woken), ("_time_out", self._timed_out), ("wait_on", self._waiting)):
             setattr(kernel, name, hook(getattr(kernel, name)))
 
@@ -220,7 +220,7 @@ class StepLog:
 
         return passing
 
-    def _quietly(self, original: Callable[..., Any]) -> Callable[..., Any]:
+    def _quietly(self, original: Callable[..., Any], parts: bool) -> Callable[..., Any]:
         def quietly(*args: Any) -> Any:
             task = self._kernel.current
             self._quiet[task] = self._quiet.get(task, 0) + 1
@@ -228,6 +228,7 @@ class StepLog:
                 return original(*args)
             finally:
                 self._quiet[task] -= 1
+                task.passed += parts  # whether somebody waited or not
 
         return quietly
 
