@@ -1,5 +1,7 @@
 """`python -m tests.quality report`: measure how soon the planted bugs are found, and write docs/planted_bugs.md.
 
+`python -m tests.quality programs` does the same with the programs that others try (docs/benchmarks_exploration.md).
+
 `python -m tests.quality stories` writes down the cause that is told of each of them (`stories.txt`).
 """
 
@@ -9,6 +11,8 @@ import argparse
 
 from tests.quality.bugs import BUGS
 from tests.quality.measure import MOST
+from tests.quality.program_report import measure as measure_programs
+from tests.quality.programs import PROGRAMS
 from tests.quality.report import measure
 from tests.quality.stories import write
 
@@ -23,9 +27,13 @@ def main() -> None:
     report.add_argument("--most", type=int, default=MOST, help=f"schedules for one cell of the table ({MOST})")
     stories = commands.add_parser("stories", help="tell the cause of each bug anew")
     stories.add_argument("bugs", nargs="*", choices=[[], *(bug.name for bug in BUGS)], help="only these")
+    programs = commands.add_parser("programs", help="measure what is missing of the programs, and write their page")
+    programs.add_argument("programs", nargs="*", choices=[[], *(each.name for each in PROGRAMS)], help="only these")
     given = parser.parse_args()
     if given.command == "report":
         measure(given.bugs, given.jobs, given.most)
+    elif given.command == "programs":
+        measure_programs(given.programs)
     else:
         write(given.bugs)
 

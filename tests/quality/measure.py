@@ -7,7 +7,7 @@ the median is larger than what each trial has tried.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from cfepy.exploration.search import SeededSearch, SystematicSearch, make_search
@@ -93,12 +93,12 @@ def hunts(trial: Trial, policy: str, count: int) -> list[Hunt]:
     """Trials of a policy whose seeds have nothing in common.
 
     Args:
-        trial: of the bug's mission.
+        trial: of the bug's mission; the options of its schedule are those of all.
         policy: one of POLICIES.
         count: how many.
     """
     name, depth, hold_ns = POLICIES[policy]
-    options = Schedule("at", hold_ns=hold_ns)
+    options = replace(trial.plan.schedule, kind="at", hold_ns=hold_ns)
     steps = trial.run(options).decisions
     return [
         Hunt(trial, make_search(name, depth, steps, options, first_seed))

@@ -16,6 +16,7 @@ from cfepy.rtos import Schedule
 from cfepy.units import NS_PER_S
 from tests.quality.bugs import BUGS, MISSIONS, SECONDS, Bug, by_name, reference_trial
 from tests.quality.measure import as_deviations, find, simplest
+from tests.quality.programs import PROGRAMS
 from tests.quality.report import best, load, shown_by
 from tests.quality.shrinking import shrunk
 
@@ -35,7 +36,9 @@ def found_by(bug: Bug, policy: str) -> Verdict:
 
 
 def test_every_mission_is_listed() -> None:
-    assert sorted(bug.name for bug in BUGS) == sorted(path.parent.name for path in MISSIONS.glob("*/startup.scr"))
+    assert sorted(bug.name for bug in (*BUGS, *PROGRAMS)) == sorted(
+        path.parent.name for path in MISSIONS.glob("*/startup.scr")
+    )
 
 
 @EACH

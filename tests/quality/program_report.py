@@ -1,0 +1,175 @@
+"""The table of further programs: what was measured of each, kept in a file, and the page made of it."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from cfepy.exploration import verdict
+from cfepy.rtos import Schedule
+from tests.quality.measure import hunts
+from tests.quality.programs import PROGRAMS, Program, program_trial
+
+MEASURED = Path(__file__).parent / "measured_programs.json"
+PAGE = Path(__file__).parents[2] / "docs" / "benchmarks_exploration.md"
+DEFAULT = "all"
+SCHEDULES = 200
+MENDED_SCHEDULES = 100
+FOUND, MENDED, RACES = "found", "mended", "races"
+
+Measured = dict[str, dict[str, Any]]
+"""By program: the first schedule that fails, or None, whether a race is told, how many of the mended form fail."""
+
+
+def load() -> Measured:
+    """What has been measured so far."""
+    measured: Measured = json.loads(MEASURED.read_text()) if MEASURED.is_file() else {}
+    return measured
+
+
+def measure(names: list[str]) -> None:
+    """Measure what is missing, one after the other, then write the page.
+
+    Args:
+        names: of the programs; all of them when empty.
+    """
+    measured = load()
+    wanted = [program for program in PROGRAMS if not names or program.name in names]
+    for column in (FOUND, RACES, MENDED):
+        for program in wanted:
+            if column not in measured.get(program.name, {}):
+                value = _measured(column, program)
+                measured.setdefault(program.name, {})[column] = value
+                ordered = {each.name: measured[each.name] for each in PROGRAMS if each.name in measured}
+                MEASURED.write_text(json.dumps(ordered, indent=1) + "\n")
+                print(f"{program.name}: {column}: {value}", flush=True)
+    if complete(measured):
+        PAGE.write_text(page(measured))
+
+
+def _measured(column: str, program: Program) -> Any:
+    """One cell."""
+    if column == FOUND:
+        return first_failing(program, SCHEDULES)
+    if column == RACES:
+        return tells_race(program)
+    with tempfile.TemporaryDirectory() as folder:
+        return failures_of_mended(program, Path(folder), MENDED_SCHEDULES)
+
+
+def first_failing(program: Program, most: int) -> int | None:
+    """Which schedule of the default policy, counted from 1, is the first that shows the mistake; None for none.
+
+    Args:
+        program: it.
+        most: schedules.
+    """
+    (hunt,) = hunts(program_trial(program), DEFAULT, 1)
+    for number in range(1, most + 1):
+        found = hunt.step()
+        assert found is not None
+        if found.failed:
+            assert found.failures[0].kind in program.kinds, found.failures
+            return number
+    return None
+
+
+def tells_race(program: Program) -> bool:
+    """Whether one run under fifo with `--races` tells of a data race."""
+    trial = program_trial(program)
+    failures = replace(trial, plan=replace(trial.plan, races=True)).run(Schedule()).failures
+    return any(failure.kind == verdict.RACE for failure in failures)
+
+
+def failures_of_mended(program: Program, folder: Path, schedules: int) -> int:
+    """How many of so many schedules of the default policy fail in the mended form.
+
+    Args:
+        program: it.
+        folder: in which the mended form is made.
+        schedules: how many.
+    """
+    (hunt,) = hunts(program_trial(program, program.write_fixed(folder)), DEFAULT, 1)
+    verdicts = [hunt.step() for _ in range(schedules)]
+    return sum(each is not None and each.failed for each in verdicts)
+
+
+# -- what it comes to ------------------------------------------------------------------------------------------------
+
+
+def complete(measured: Measured) -> bool:
+    """Whether every cell has been measured."""
+    return all(set(measured.get(program.name, {})) == {FOUND, MENDED, RACES} for program in PROGRAMS)
+
+
+def missed(measured: Measured) -> list[Program]:
+    """Programs whose mistake none of so many schedules shows."""
+    return [program for program in PROGRAMS if measured[program.name][FOUND] is None]
+
+
+def page(measured: Measured) -> str:
+    """The page of documentation."""
+    heads = ["program", "in", "written after", "shows as", "needs", "schedules", "`--races`", "published"]
+    lines = ["|".join(["", *heads, ""]), "|".join(["", *["---"] * len(heads), ""])]
+    lines += [_row(measured[program.name], program) for program in PROGRAMS]
+    not_found = missed(measured)
+    return _PAGE.format(
+        count=len(PROGRAMS),
+        others=sum(bool(program.origin) for program in PROGRAMS),
+        schedules=SCHEDULES,
+        found=len(PROGRAMS) - len(not_found),
+        missed=", ".join(f"`{program.name}`" for program in not_found) or "none",
+        alarms=sum(each[MENDED] for each in measured.values()),
+        flown=len(PROGRAMS) * MENDED_SCHEDULES,
+        table="\n".join(lines),
+    )
+
+
+def _row(known: dict[str, Any], program: Program) -> str:
+    asked = f"`{program.asked()}`" if program.asked() else ""
+    shows = " or ".join(program.kinds)
+    cells = [f"`{program.name}`: {program.text}", program.world, program.origin, shows, asked]
+    return "|".join(["", *cells, _number(known[FOUND]), "yes" if known[RACES] else "", program.published, ""])
+
+
+def _number(found: int | None) -> str:
+    return f"> {SCHEDULES}" if found is None else str(found)
+
+
+_PAGE = """# Programs that others try
+
+<!-- made by `python -m tests.quality programs`; change the code in tests/quality instead -->
+
+Tools that search schedules are compared by programs with one known mistake each: SCTBench has the most, CHESS, Coyote
+and shuttle have some in their papers and documents, and there are the protocols that every course on TLA+ begins with.
+`tests/quality/missions` has {others} of that kind, written anew as ROS nodes and cFE applications, with threads, locks
+and messages as they are there, and further races of such software: {count} in all, besides the
+[planted bugs](planted_bugs.md). Each has a mended form.
+
+"schedules" is how many `cfepy explore` flies, without `--policy` and with its own seeds, until the mistake shows: one
+search, which anyone can repeat, not a median. `> {schedules}` says that so many showed nothing. "needs" is what the
+command is given besides: points between calls, less urgent tasks first, or a fault whose instant is explored.
+"`--races`" says whether a single run under `fifo` tells of a data race in it. "published" has what is known of the
+original from the paper that is named; it is empty where nothing comparable is at hand.
+
+{found} of {count} are found. Not found: {missed}. Of {flown} schedules of the mended forms {alarms} fail.
+
+{table}
+
+What keeps some away: their threads are short, and Python's own `threading` starts and joins one with a dozen calls
+between which others may run. Of the 40 decisions of `bank_account` under `fifo`, 24 or more are there, and the first
+thread has often ended when the second one begins.
+
+SCTBench is that of Thomson, Donaldson and Betts: Concurrency Testing Using Schedule Bounding: an Empirical Study (PPoPP
+2014); with 49 of its programs they found that PCT of depth 3 misses only one bug (Concurrency Testing Using Controlled
+Schedulers: An Empirical Study, ACM TOPC 2016).
+
+To look for one of them as a user would:
+
+```
+cfepy explore tests/quality/missions/reorder_three --for 1.3 --points attributes
+```
+"""

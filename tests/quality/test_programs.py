@@ -1,0 +1,62 @@
+"""The programs that others try: the default schedule shows none that does not hang, mended ones never fail."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.rtos import Schedule
+from tests.quality.measure import as_deviations, find
+from tests.quality.program_report import PAGE, failures_of_mended, load, missed, page
+from tests.quality.programs import PROGRAMS, Program, program_trial
+
+EACH = pytest.mark.parametrize("program", PROGRAMS, ids=[program.name for program in PROGRAMS])
+FOUND = pytest.mark.parametrize(
+    "program", [pytest.param(each, id=each.name) for each in PROGRAMS if each not in missed(load())]
+)
+"""Those that were found when it was measured."""
+
+
+def test_the_page_is_what_was_measured() -> None:
+    assert PAGE.read_text() == page(load()), "run python -m tests.quality programs"
+
+
+def test_most_are_found_and_no_mended_form_fails() -> None:
+    measured = load()
+    assert set(measured) == {program.name for program in PROGRAMS}
+    assert len(missed(measured)) <= len(PROGRAMS) // 4
+    assert not [name for name, each in measured.items() if each["mended"]]
+
+
+def test_there_are_many_of_others() -> None:
+    assert sum(bool(program.origin) for program in PROGRAMS) >= 25
+
+
+@pytest.mark.slow
+@EACH
+def test_first_come_first_served_shows_nothing_but_what_hangs(program: Program) -> None:
+    trial = program_trial(program)
+    plain, asked = trial.run(Schedule()), trial.run(Schedule("at"))
+    assert bool(plain.failures) == program.hangs
+    assert not plain.trouble
+    assert asked.trace == plain.trace
+
+
+@pytest.mark.slow
+@FOUND
+def test_the_default_policy_finds_it_and_the_schedule_shows_it_again_on_threads(program: Program) -> None:
+    found = find(program_trial(program), "all")
+    assert found is not None
+    assert found.failures[0].kind in program.kinds
+    schedule = as_deviations(found)
+    for tasks in ("greenlet", "thread"):
+        again = program_trial(program, tasks=tasks).run(schedule)
+        assert again.failures == found.failures
+        assert again.trace == found.trace
+
+
+@pytest.mark.slow
+@EACH
+def test_mended_it_never_fails(program: Program, tmp_path: Path) -> None:
+    assert failures_of_mended(program, tmp_path, 25) == 0
