@@ -21,11 +21,15 @@ from tests.quality.report import best, load, shown_by
 from tests.quality.shrinking import shrunk
 
 EACH = pytest.mark.parametrize("bug", BUGS, ids=[bug.name for bug in BUGS])
+LONG = ("changed_while_iterated", "lost_wakeup", "packet_burst", "preempt_race")
 HALF_LATER = pytest.mark.parametrize(
     "bug",
-    [pytest.param(bug, marks=[pytest.mark.slow] * (number % 2), id=bug.name) for number, bug in enumerate(BUGS)],
+    [
+        pytest.param(bug, marks=[pytest.mark.slow] * (number % 2 or bug.name in LONG), id=bug.name)
+        for number, bug in enumerate(BUGS)
+    ],
 )
-"""Each bug; every other one is left to the slow tests."""
+"""Each bug; every other one, and those that take long, are left to the slow tests."""
 SHRUNK_HERE = ("frame_counter", "late_subscription")
 
 
