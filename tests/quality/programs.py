@@ -95,7 +95,8 @@ PROGRAMS = (
         "safe_stack",
         ROS,
         "a stack without locks, of depth 5",
-        RAISED,
+        RAISED
+        + STUCK,  # a cell that has two owners, or a chain that leads nowhere, at which those who pop try for ever
         origin="SCTBench: safestack",
         options=POINTS,
         published="5 preemptions (PPoPP 2014)",
