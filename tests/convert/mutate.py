@@ -275,11 +275,13 @@ class Damaging:
         return Outcome(kind, of_folder, not clean, "clean, but it does not compile" if wrong else "")
 
     def _headers(self, profile: Profile) -> Path:
-        """The headers of all messages that the nodes of the folder include, as far as cfepy has their definitions."""
+        """The headers of all messages that the nodes of the folder and the library include, as far as they are known."""
         if profile not in self._messages:
             made = self._messages[profile] = self._folder / f"messages_{profile.name}"
             made.mkdir()
-            for name in sorted({name.decode() for each in self._others for name in _HEADER.findall(each)}):
+            library = [each.read_bytes() for folder in library_includes() for each in sorted(folder.rglob("*.h"))]
+            named = {name.decode() for each in (*self._others, *library) for name in _HEADER.findall(each)}
+            for name in sorted(named):
                 with suppress(UsageError):
                     write_headers([name], made, profile, shipped())
         return self._messages[profile]

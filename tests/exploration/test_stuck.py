@@ -148,7 +148,7 @@ def test_a_forked_flight_finds_it_as_well(tmp_path: Path) -> None:
 def test_it_shrinks_to_one_preemption(tmp_path: Path) -> None:
     found = trial(tmp_path, missions.LOST_WAKE_UP)
     failure = found.run(Schedule("random", 0)).failures[0]
-    shrunk = Shrinker(found, Schedule("random", 0), failure.group, 80).run()
+    shrunk = Shrinker(found, (Schedule("random", 0),), failure.group, 80).run()
     assert shrunk is not None
     assert [move.chosen for move in shrunk.moves] == ["PAIR.pair.2.2"]
     assert shrunk.verdict.failures[0].kind == failure.kind == STUCK
