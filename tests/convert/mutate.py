@@ -275,7 +275,7 @@ class Damaging:
         return Outcome(kind, of_folder, not clean, "clean, but it does not compile" if wrong else "")
 
     def _headers(self, profile: Profile) -> Path:
-        """The headers of all messages that the nodes of the folder and the library include, as far as they are known."""
+        """The headers of all messages that the nodes of the folder and the library include, as far as known."""
         if profile not in self._messages:
             made = self._messages[profile] = self._folder / f"messages_{profile.name}"
             made.mkdir()
