@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.es import StartParams
-from cfepy.nodes import NodeConfig, RosConfig, Universe
+from cfepy.nodes import NodeConfig, ProcessNumbers, RosConfig, Universe
 from cfepy.rtos import InjectedCrash
 from cfepy.units import NS_PER_S
 from rospy_shim.client.modules import RosModules
@@ -22,7 +22,6 @@ from rospy_shim.client.node import Node
 from rospy_shim.client.tasks import NodeTasks
 from rospy_shim.graph.compiled import CompiledNodes
 from rospy_shim.graph.graph import Graph, TopicEntry, TopicRow
-from rospy_shim.graph.process_numbers import ProcessNumbers
 from rospy_shim.library_parts import FOLDER, STAND_INS, ConfigModules, library_names, library_parts
 from rospy_shim.master import MASTER_PORT, Switchboard, xmlrpc_client
 from rospy_shim.msgs import make_module

@@ -20,7 +20,6 @@ from cfepy.exploration.campaign import Campaign, Crew, Search, Tally
 from cfepy.exploration.crews import make_crew
 from cfepy.exploration.footprints import check_visible
 from cfepy.exploration.gaps import gaps_of
-from cfepy.exploration.inverted import inversions_before
 from cfepy.exploration.orders import OrderSearch
 from cfepy.exploration.progress import make_progress
 from cfepy.exploration.results_file import ResultsFile, keep_failure
@@ -384,7 +383,7 @@ class Expedition:
                 self._fly_again(trial, told)
                 if finding.failure.kind not in _NO_WAY:
                     failure, schedule = finding.failure, finding.verdict.schedule
-                    told.inversions = inversions_before(trial, schedule, failure.at_ns, failure.task)
+                    told.inversions = trial.inversions_before(schedule, failure.at_ns, failure.task)
                 told.shrunk = self._shrunk(trial, finding, tally.done) if told.repeats else None
             if told.shrunk is not None:
                 told.story = _story(told.shrunk, finding)

@@ -9,6 +9,7 @@ one order to the next, and files.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from typing import Any, cast
 
 from cfepy.attachment import Attachment
@@ -17,7 +18,7 @@ from cfepy.mission import Mission, MissionSpec, Processor, find_compiled
 from cfepy.nodes import WHOLE, Touch
 from cfepy.ports import PEND_FOREVER
 from cfepy.rtos import ExploringKernel, Kernel, Task, WaitList
-from cfepy.sb import Destination, Pipe, SoftwareBus
+from cfepy.sb import Destination, Pipe, SoftwareBus, asked_before_puts
 from cfepy.status import UsageError
 
 GRAPH, PARAMETERS, ROUTES = "ROS graph", "ROS parameters", "routes"
@@ -31,16 +32,9 @@ _OWN = frozenset(
 """Calls that concern the caller alone, or that are seen where they wait or send."""
 _TAKING = frozenset({"acquire", "acquire_lock", "__enter__", "_acquire_restore", "mut_sem_take"})
 _GIVING = frozenset({"release", "release_lock", "__exit__", "_release_save", "mut_sem_give"})
-_SERVICES = frozenset(
-    {
-        *("ConfigServices", "EventServices", "ExecutiveServices", "FileServices", "Osal", "Psp", "TableServices"),
-        "TimeServices",
-    }
-)
 _GRAPH_CHANGES = ("topic", "register_node", "forget_node", "register_service", "forget_service", "caller")
 _TREE_CHANGES = ("give", "offer", "on_change", "set", "delete")
 _TREE_LOOKS = ("find", "search", "names")
-_limit: Any = Destination.__dict__["limit"]
 
 
 def check_visible(spec: MissionSpec) -> None:
@@ -66,6 +60,7 @@ class Footprints(Attachment):
     def __init__(self, from_ns: int = 0) -> None:
         self._from_ns = from_ns
         self._log: StepLog | None = None
+        self._services: dict[int, Any] = {}  # of the processor, by identity
         self._numbers: dict[int, tuple[int, Any]] = {}  # by identity: of locks, which are kept for that
         self._pipes = _Pipes(self.touch)
 
@@ -92,6 +87,8 @@ class Footprints(Attachment):
 
     def power_up(self, processor: Processor) -> None:
         """See `Attachment.power_up`."""
+        services = (getattr(processor.cfe, field.name) for field in fields(processor.cfe))
+        self._services = {id(each): each for each in services}
         if processor.ros is not None:
             graph = processor.ros.graph
             for name in _GRAPH_CHANGES:
@@ -113,13 +110,13 @@ class Footprints(Attachment):
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
         """See `CallObserver.called`: a service of cFE, or a lock of a node."""
-        if self._log is not None and _is_of_calls(subject):
+        if self._log is not None and self._is_of_calls(subject):
             wanted = self._name(subject, args) if call in _TAKING else ""
             self._log.begin(self._things(subject, call, args), wanted)
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
         """See `CallObserver.returned`: a lock is taken when a call comes back with it."""
-        if call == "is_set" or not _is_of_calls(subject):  # told of without a call
+        if call == "is_set" or not self._is_of_calls(subject):  # told of without a call
             return
         if self._log is None or not self._log.end():
             return
@@ -136,12 +133,16 @@ class Footprints(Attachment):
         if self._log is not None:
             self._log.fail()
 
+    def _is_of_calls(self, subject: Any) -> bool:
+        """Whether calls of its methods are told of with their ends: it is a service, or a lock of Python's."""
+        return id(subject) in self._services or hasattr(subject, "_at_fork_reinit")
+
     def _things(self, subject: Any, call: str, args: tuple[Any, ...]) -> list[Touched]:
         if isinstance(subject, SoftwareBus) or call in _OWN:
             return []
         name = self._name(subject, args)
         if call in _TAKING:  # one that need not wait finds out whether somebody has the lock
-            has_limit = bool(args) and call.startswith("acquire") and type(subject).__name__ not in _SERVICES
+            has_limit = bool(args) and call.startswith("acquire") and id(subject) not in self._services
             return [(f"state of {name}", WRITES)] if has_limit else []
         if call in _GIVING:
             return [(name, GIVES), (f"state of {name}", READS)]
@@ -149,10 +150,10 @@ class Footprints(Attachment):
 
     def _name(self, subject: Any, args: tuple[Any, ...]) -> str:
         """A lock by its number; what a service has by its id; else all of the service."""
-        service = type(subject).__name__
-        if service not in _SERVICES:
-            return f"{service} {self._numbers.setdefault(id(subject), (len(self._numbers), subject))[0]}"
-        return f"{service} {args[0]}" if args and isinstance(args[0], int) else service
+        kind = type(subject).__name__
+        if id(subject) not in self._services:
+            return f"{kind} {self._numbers.setdefault(id(subject), (len(self._numbers), subject))[0]}"
+        return f"{kind} {args[0]}" if args and isinstance(args[0], int) else kind
 
     def _take(self, touch: Touch) -> None:
         """Code of the mission is about to touch something; all of a container is whatever is in it, too."""
@@ -174,13 +175,6 @@ class Footprints(Attachment):
             self.touch(f"wait for {waits.what}")
 
 
-def _is_of_calls(subject: Any) -> bool:
-    """Whether calls of its methods are told of with their ends: it is a service, or a lock of Python's."""
-    return (
-        type(subject).__name__ in _SERVICES or isinstance(subject, SoftwareBus) or hasattr(subject, "_at_fork_reinit")
-    )
-
-
 class _Pipes:
     """What becomes of pipes. Where one is neither empty nor full, whoever puts and whoever gets are in no one's way."""
 
@@ -190,15 +184,15 @@ class _Pipes:
         self.touch = touch
         self._getting: dict[Task, tuple[Pipe, bool]] = {}  # who gets from which, and whether it had to wait
 
-    def puts(self, destination: Destination) -> None:
-        """The current task puts a message into a pipe, in this instant."""
+    def puts(self, destination: Destination, limit: int) -> int:
+        """The current task puts a message into a pipe, in this instant; the message limit, as it is."""
         pipe, waiting = destination.pipe, len(destination.pipe.items)
         self.touch(f"tail of {pipe.name}")
         if not waiting:
             self.touch(f"emptiness of {pipe.name}")
-        left = min(pipe.depth - waiting, _limit.__get__(destination) - (destination.puts - destination.gets))
-        if left <= 1:
+        if min(pipe.depth - waiting, limit - (destination.puts - destination.gets)) <= 1:
             self.touch(f"room of {pipe.name}")
+        return limit
 
     def gets(self, pipe: Pipe) -> None:
         """The current task is about to get one."""
@@ -257,7 +251,7 @@ def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
 
         def __init__(self, kernel: Kernel, *args: Any) -> None:
             super().__init__(kernel, *args)
-            self.destination_type = _touchable(self.destination_type, pipes)
+            self.destination_type = asked_before_puts(self.destination_type, pipes.puts)
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
             """See `SoftwareBus.transmit_msg`."""
@@ -298,24 +292,3 @@ def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
             super().delete_pipe(pipe_id)
 
     return TouchingBus
-
-
-def _touchable(base: type[Destination], pipes: _Pipes) -> type[Destination]:
-    """A kind of destination that tells of each put."""
-
-    class TouchableDestination(base):  # type: ignore[misc, valid-type]
-        """One whose message limit is asked for right before each put."""
-
-        __slots__ = ()
-
-        @property
-        def limit(self) -> int:
-            """The message limit."""
-            pipes.puts(self)
-            return int(_limit.__get__(self))
-
-        @limit.setter
-        def limit(self, limit: int) -> None:
-            _limit.__set__(self, limit)
-
-    return TouchableDestination

@@ -110,7 +110,7 @@ class TaskLook(Attachment):
         """See `Attachment.begin`; every wait goes through the kernel's `block`, which is looked up anew each time."""
         self._mission = mission
         self._messages.begin(mission)
-        mission.kernel.block = self._blocking(mission.kernel.block)  # type: ignore[method-assign]
+        mission.kernel.block = self._blocking(mission.kernel.block)  # type: ignore[method-assign]  # of this kernel only
         if isinstance(mission.kernel, ExploringKernel):
             mission.kernel.watch(self)
             mission.accesses.observers.append(self._take_touch)

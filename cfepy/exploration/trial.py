@@ -17,12 +17,13 @@ from cfepy.exploration.footprints import Footprints
 from cfepy.exploration.result_watch import Result, ResultWatch, differences, digest_of
 from cfepy.exploration.stuck import Waits, WaitWatch, stuck_for_good
 from cfepy.exploration.verdict import Failure, Verdict
-from cfepy.monitors import Lack, Limits, LivenessWatch
+from cfepy.monitors import InversionWatch, Lack, Limits, LivenessWatch
 from cfepy.pilot import BootError, RunPlan, fly
 from cfepy.rtos import ORDER, NotingPolicy, Policy, Schedule
 from cfepy.status import StallError, UsageError
 from cfepy.units import NS_PER_S
 
+MOST_INVERSIONS = 3  # that are told of one failure
 PROBE_S = 1.0  # wall time that a task gets at least, which is known to spin
 
 
@@ -155,6 +156,24 @@ class Trial:
         """The same trial for a stall that is known: a task that spins there again is not watched for as long."""
         limit = self.plan.stall
         return replace(self, plan=replace(self.plan, stall=min(limit, max(PROBE_S, limit / 10))))
+
+    def inversions_before(self, schedule: Schedule, at_ns: int | None, task: str = "") -> list[str]:
+        """The priority inversions that came before something went wrong: its run is flown once more.
+
+        Args:
+            schedule: under which it went wrong.
+            at_ns: when, in virtual ns; None is the end.
+            task: in which task; if that was held up like this itself, only its own are told.
+
+        Returns:
+            A sentence for each, the longest first; of each victim and lock only the longest.
+        """
+        watch = InversionWatch()
+        self.fly(schedule, [watch])
+        before = [each for each in watch.found if at_ns is None or each.at_ns <= at_ns]
+        longest = {each.group: each for each in sorted(before, key=lambda each: each.lost_ns)}
+        told = [each for each in longest.values() if each.victim == task] or list(longest.values())
+        return [each.text for each in reversed(told)][:MOST_INVERSIONS]
 
     def until(self, end_ns: int) -> Self | None:
         """The same trial in a run that ends at this virtual time; None for a run that ends with its script."""

@@ -19,7 +19,6 @@ from statistics import median_low
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.exploration.inverted import inversions_before
 from cfepy.exploration.search import SeededSearch
 from cfepy.exploration.shrink import Shrinker, Shrunk
 from cfepy.exploration.timeline import Story, story_of
@@ -274,5 +273,5 @@ def worst_of(trial: MeasuredTrial, distribution: Distribution, most_probes: int)
             failure = worst.shrunk.verdict.failure(group)
             if failure is not None:
                 worst.story = story_of(worst.shrunk.trial, worst.shrunk.verdict, failure, worst.shrunk.moves)
-    worst.inversions = inversions_before(trial, worst.schedule or Schedule(), longest.longest[1])
+    worst.inversions = trial.inversions_before(worst.schedule or Schedule(), longest.longest[1])
     return worst

@@ -20,11 +20,9 @@ from cfepy.faults.timing import Agenda, Gate
 from cfepy.ids import OS_STREAM_BASE
 from cfepy.mission import Processor
 from cfepy.rtos import Kernel, Task, WaitList
-from cfepy.sb import Destination, Pipe, SoftwareBus
+from cfepy.sb import Destination, Pipe, SoftwareBus, asked_before_puts
 from cfepy.sb import events as ev
 from cfepy.status import OS_QUEUE_FULL, CfeError, OsalError
-
-_limit: Any = Destination.__dict__["limit"]
 
 
 def why_not_called(fault: Fault) -> str:
@@ -181,12 +179,17 @@ def refusing(base: type[SoftwareBus], puts: Puts) -> type[SoftwareBus]:
 
         def __init__(self, kernel: Kernel, *args: Any) -> None:
             super().__init__(kernel, *args)
-            self.destination_type = _refusable(kernel, puts, self.destination_type)
+            self.destination_type = asked_before_puts(self.destination_type, self._limit_of)
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
             """See `SoftwareBus.transmit_msg`."""
             with puts.transmitting(self.kernel.current):
                 super().transmit_msg(packet, is_origination)
+
+        def _limit_of(self, destination: Destination, limit: int) -> int:
+            """The message limit; as if it were reached when the put fails."""
+            waiting = destination.puts - destination.gets
+            return waiting if waiting < limit and puts.refuses(self.kernel.current, destination.pipe) else limit
 
         def _report_failures(self, msg_id: int, failures: list[tuple[int, Destination]]) -> None:
             super()._report_failures(msg_id, [self._as_it_is(*failure) for failure in failures])
@@ -208,28 +211,6 @@ def refusing(base: type[SoftwareBus], puts: Puts) -> type[SoftwareBus]:
             self._report_write_error(msg_id, pipe, puts.status(self.kernel.current, pipe))
 
     return RefusingBus
-
-
-def _refusable(kernel: Kernel, puts: Puts, base: type[Destination]) -> type[Destination]:
-    """A kind of destination that takes no message while a put into its pipe fails."""
-
-    class RefusableDestination(base):  # type: ignore[misc, valid-type]
-        """One whose message limit is asked for right before each put."""
-
-        __slots__ = ()
-
-        @property
-        def limit(self) -> int:
-            """The message limit; as if it were reached when the put fails."""
-            limit: int = _limit.__get__(self)
-            waiting: int = self.puts - self.gets
-            return waiting if waiting < limit and puts.refuses(kernel.current, self.pipe) else limit
-
-        @limit.setter
-        def limit(self, limit: int) -> None:
-            _limit.__set__(self, limit)
-
-    return RefusableDestination
 
 
 class ShutWaitList(WaitList):

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
     from cfepy.nodes.reach import held_by, is_private, reaches
     from cfepy.nodes.refused import RefusedError
-    from cfepy.nodes.universe import Factory, StartThread, Universe, process_number
+    from cfepy.nodes.universe import Factory, ProcessNumbers, StartThread, Universe, process_number
 
 __all__ = [
     "ASKED",
@@ -40,6 +40,7 @@ __all__ = [
     "NodeConfig",
     "Observer",
     "Overlay",
+    "ProcessNumbers",
     "RefusedError",
     "RosConfig",
     "StartThread",
@@ -67,6 +68,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Factory",
                 "StartThread",
                 "Universe",
+                "ProcessNumbers",
                 "process_number",
             ),
         },

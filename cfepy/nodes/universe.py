@@ -13,7 +13,7 @@ import os
 import random
 import sys
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from importlib.machinery import SourceFileLoader
@@ -388,6 +388,32 @@ def process_number(name: str) -> int:
         name: of the node.
     """
     return 1000 + zlib.crc32(name.encode()) % 30000
+
+
+class ProcessNumbers:
+    """The numbers of processes that are taken: each node of a mission has one of its own, also the port in its URIs.
+
+    Args:
+        taken: ports that are no node's.
+    """
+
+    def __init__(self, taken: Collection[int] = ()) -> None:
+        self._taken = set(taken)
+
+    def take(self, wanted: int) -> int:
+        """The next number from one on that no other node has.
+
+        Args:
+            wanted: see `process_number`.
+        """
+        while wanted in self._taken:
+            wanted += 1
+        self._taken.add(wanted)
+        return wanted
+
+    def give(self, number: int) -> None:
+        """A node has ended: another may have its number."""
+        self._taken.remove(number)
 
 
 def _free() -> None:

@@ -338,16 +338,8 @@ class CallPointKernel(ExploringKernel):
         passed: how many calls there were.
     """
 
-    def __init__(
-        self,
-        context: str,
-        trace: tr.Trace | None,
-        policy: Policy,
-        tick_ns: int = 0,
-        switch_cost_ns: int = 0,
-        seed: int = 0,
-    ) -> None:
-        super().__init__(context, trace, policy, tick_ns, switch_cost_ns, seed)
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
         self.entered: dict[Task, bool] = {}
         self.passed = 0
 

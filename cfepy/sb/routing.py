@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Any
 
 from cfepy.msg import MAX_SEQUENCE_COUNT
 from cfepy.ports import Block
@@ -52,6 +53,34 @@ class Destination:
         if self.kin is None:
             return self
         return next((each for each in reversed(self.kin) if each.puts > each.gets), self)
+
+
+_limit: Any = Destination.__dict__["limit"]
+
+
+def asked_before_puts(base: type[Destination], limit_of: Callable[[Destination, int], int]) -> type[Destination]:
+    """A kind of destination whose message limit is another's to say, right before each put into its pipe.
+
+    Args:
+        base: the kind to start from.
+        limit_of: gets the destination and its own limit, and gives the one that counts for this put.
+    """
+
+    class AskedDestination(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
+        """One whose message limit is asked for right before each put."""
+
+        __slots__ = ()
+
+        @property
+        def limit(self) -> int:
+            """The message limit for the put that comes."""
+            return limit_of(self, int(_limit.__get__(self)))
+
+        @limit.setter
+        def limit(self, limit: int) -> None:
+            _limit.__set__(self, limit)
+
+    return AskedDestination
 
 
 class Route:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.nodes import process_number
+from cfepy.nodes import ProcessNumbers, process_number
 from cfepy.sb import ONESUB_TLM, UNSUBSCRIPTION
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_MS
@@ -21,7 +21,6 @@ from rospy_shim.client.names import ANYTYPE
 from rospy_shim.client.service import REQUEST_LEAD, Pieces, answer_packets, call_of_request, room_of
 from rospy_shim.client.transport import HEADER_BYTES, addressed, segments, whole_header
 from rospy_shim.graph.compiled_params import CompiledParams
-from rospy_shim.graph.process_numbers import ProcessNumbers
 from rospy_shim.parameters.table import MASTER_TLM_MID
 
 if TYPE_CHECKING:

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 from rospy_shim.master import calls
 from rospy_shim.master.calls import Answer, answers
 from rospy_shim.master.registrations import uri_of
-from rospy_shim.master.slave_api import TRANSPORT, service_header
+from rospy_shim.master.slave_api import TRANSPORT, NodeApi, service_header
 
 if TYPE_CHECKING:
     from rospy_shim.graph.compiled import CompiledNode
     from rospy_shim.graph.graph import Graph
 
 
-class CompiledApi:
-    """What others ask a compiled node; each method takes the caller's name first and gives code, text and value.
+class CompiledApi(NodeApi):
+    """What others ask a compiled node. Its process number is one that no other node has; all of them are one process.
 
     Args:
         node: the node.
@@ -29,24 +29,10 @@ class CompiledApi:
     """
 
     def __init__(self, node: CompiledNode, graph: Graph, master_uri: str) -> None:
+        super().__init__(node, node.pid)
         self._node = node
         self._graph = graph
         self._master_uri = master_uri
-
-    @answers("")
-    def getUri(self, caller: str) -> Answer:
-        """Where the node answers."""
-        return 1, "", uri_of(self._node)
-
-    @answers("")
-    def getName(self, caller: str) -> Answer:
-        """The node's name."""
-        return 1, "", self._node.names.name
-
-    @answers(-1)
-    def getPid(self, caller: str) -> Answer:
-        """A number that no other node has; all of them are one process."""
-        return 1, "", self._node.pid
 
     @answers("")
     def getMasterUri(self, caller: str) -> Answer:
@@ -62,11 +48,6 @@ class CompiledApi:
     def getPublications(self, caller: str) -> Answer:
         """[topic, type] of what the node publishes."""
         return 1, "publications", [list(each) for each in self._node.published.items()]
-
-    @answers([])
-    def getBusInfo(self, caller: str) -> Answer:
-        """[number, other side, direction, transport, topic, connected, text] for each connection."""
-        return 1, "bus info", [[number, *each] for number, each in enumerate(self._connections(), 1)]
 
     def _connections(self) -> Iterator[tuple[str, str, str, str, bool, str]]:
         for name in self._node.published:

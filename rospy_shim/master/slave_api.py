@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
@@ -13,6 +14,7 @@ from rospy_shim.master.registrations import uri_of
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
     from rospy_shim.client.topic_side import TopicSide
+    from rospy_shim.graph.compiled import CompiledNode
     from rospy_shim.master.master_api import MasterApi
 
 TRANSPORT = "cFE SB"  # in place of TCPROS
@@ -37,8 +39,45 @@ def _uris(value: Any, caller: str) -> Any:
     return value
 
 
-class SlaveApi:
-    """What others ask a node; each method takes the caller's name first and gives code, text and value.
+class NodeApi(ABC):
+    """What others ask any node; each method takes the caller's name first and gives code, text and value.
+
+    Args:
+        asked: the node.
+        pid: its process number.
+    """
+
+    def __init__(self, asked: Node | CompiledNode, pid: int) -> None:
+        self._asked = asked
+        self._pid = pid
+
+    @answers("")
+    def getUri(self, caller: str) -> Answer:
+        """Where the node answers."""
+        return 1, "", uri_of(self._asked)
+
+    @answers("")
+    def getName(self, caller: str) -> Answer:
+        """The node's name."""
+        return 1, "", self._asked.names.name
+
+    @answers(-1)
+    def getPid(self, caller: str) -> Answer:
+        """The node's process number; of one in Python as its os.getpid() gives it."""
+        return 1, "", self._pid
+
+    @answers([])
+    def getBusInfo(self, caller: str) -> Answer:
+        """[number, other side, direction, transport, topic, connected, text] for each connection."""
+        return 1, "bus info", [[number, *each] for number, each in enumerate(self._connections(), 1)]
+
+    @abstractmethod
+    def _connections(self) -> Iterable[tuple[str, str, str, str, bool, str]]:
+        """What `getBusInfo` tells of each, but its number."""
+
+
+class SlaveApi(NodeApi):
+    """What others ask a node in Python.
 
     Args:
         node: the node.
@@ -46,23 +85,9 @@ class SlaveApi:
     """
 
     def __init__(self, node: Node, master: MasterApi) -> None:
+        super().__init__(node, node.universe.pid)
         self._node = node
         self._master = master
-
-    @answers("")
-    def getUri(self, caller: str) -> Answer:
-        """Where the node answers."""
-        return 1, "", uri_of(self._node)
-
-    @answers("")
-    def getName(self, caller: str) -> Answer:
-        """The node's name."""
-        return 1, "", self._node.names.name
-
-    @answers(-1)
-    def getPid(self, caller: str) -> Answer:
-        """The node's process number, as its os.getpid() gives it."""
-        return 1, "", self._node.universe.pid
 
     @answers("")
     def getMasterUri(self, caller: str) -> Answer:
@@ -91,11 +116,6 @@ class SlaveApi:
     def getPublications(self, caller: str) -> Answer:
         """[topic, type] of what the node publishes."""
         return 1, "publications", _types(self._node.links.items())
-
-    @answers([])
-    def getBusInfo(self, caller: str) -> Answer:
-        """[number, other side, direction, transport, topic, connected, text] for each connection."""
-        return 1, "bus info", [[number, *each] for number, each in enumerate(self._connections(), 1)]
 
     def _connections(self) -> Iterable[tuple[str, str, str, str, bool, str]]:
         for name, link in self._node.links.items():
