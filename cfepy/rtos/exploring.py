@@ -108,6 +108,8 @@ class ExploringKernel(Kernel):
         self._decisions = 0
         self._going_on: Task | None = None  # the task that was put in front just now: it could go on
         self._left: Task | None = None  # the task that gave up its turn, or ought to, just now
+        self._hushed: dict[Task, None] = {}  # tasks that make others ready and go on, and those that owe a point
+        self._owing: dict[Task, None] = {}
         self._early: dict[str, None] = {}  # names of tasks that may start before their time
         self._busy: Task | None = None  # the task that used the CPU last, and how much it may use in one go
         self._busy_until = 0
@@ -134,6 +136,9 @@ class ExploringKernel(Kernel):
     def point(self) -> None:
         """The current task calls something: others may get in before that."""
         task = self.current
+        if self._hushed and self._is_quiet(task):
+            self._owing[task] = None
+            return
         if self._hold_ns or self._early:
             if task is self.host or task.dying or not self._has_choice(task):
                 return
@@ -149,6 +154,35 @@ class ExploringKernel(Kernel):
     def preempt(self) -> None:
         """Others may run now, more urgent ones as always."""
         self.point()
+
+    def hush(self, call: Callable[..., Any], *args: Any, **options: Any) -> Any:
+        """Make a call that others get in after, by `settle`, and not within, unless they are more urgent.
+
+        Args:
+            call: makes tasks ready, and does not wait.
+            args: of the call.
+            options: of the call.
+        """
+        task = self.current
+        self._hushed[task] = None
+        try:
+            return call(*args, **options)
+        finally:
+            self._hushed.pop(task, None)
+
+    def _is_quiet(self, task: Task) -> bool:
+        """Whether nobody is to get in now: the running task is in a hushed call, and nobody more urgent is ready."""
+        return task in self._hushed and not (self.ready and self.ready[0][0] < task.priority)
+
+    def settle(self) -> None:
+        """The current task has made others ready in hushed calls: they get their chance now."""
+        if self.current in self._owing:
+            del self._owing[self.current]
+            self.point()
+
+    def forgive(self) -> None:
+        """The current task is going to wait, or to end: others get their chance by that."""
+        self._owing.pop(self.current, None)
 
     def enqueue(self, task: Task, value: Any) -> None:
         """See `Scheduler.enqueue`."""
@@ -194,7 +228,10 @@ class ExploringKernel(Kernel):
         paused = self.now > self._until
         if task.dying or not (paused or self._has_choice(task)):
             return
-        if self._slice_is_used_up(task, duration_ns):
+        is_over = self._slice_is_used_up(task, duration_ns)
+        if not (paused or is_over) and self._is_quiet(task):
+            return
+        if is_over:
             self._push_back(task)
         else:
             self._push_front(task)

@@ -66,7 +66,7 @@ def test_another_failure_that_is_always_there_does_not_end_it_early(tmp_path: Pa
 
 def test_it_keeps_to_its_number_of_runs(bank: Path) -> None:
     trial = Trial(RunPlan((str(bank),), seconds=0.7))
-    schedule = Schedule.parse("at:5=1,16=1,24=2")
+    schedule = Schedule.parse("at:1=1,4=1,7=1")
     (group,) = trial.run(schedule).groups
     shrunk = Shrinker(trial, [schedule], group, most_probes=10).run()
     assert shrunk is not None
@@ -75,7 +75,7 @@ def test_it_keeps_to_its_number_of_runs(bank: Path) -> None:
 
 def test_the_timeline_shows_both_tasks_up_to_the_failure(bank: Path) -> None:
     trial = Trial(RunPlan((str(bank),), seconds=0.7))
-    schedule = Schedule.parse("at:16=1,25=2")
+    schedule = Schedule.parse("at:4=1,7=1")
     (group,) = trial.run(schedule).groups
     shrunk = Shrinker(trial, [schedule], group, most_probes=0).run()
     assert shrunk is not None

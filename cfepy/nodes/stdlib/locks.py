@@ -10,13 +10,15 @@ lock-and-release near the price of a native one.
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cfepy.own_code import called_as
+from cfepy.own_code import called_as, is_shown, is_standard
 from cfepy.rtos import FOREVER, TIMEOUT, ExploringKernel, WaitList
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from types import FrameType
 
     from cfepy.nodes.universe import Universe
     from cfepy.rtos import Task
@@ -64,8 +66,57 @@ def make_lock_types(universe: Universe) -> LockTypes:
     return types
 
 
+class LockPoints(NamedTuple):
+    """Where others may get in when a lock is used.
+
+    The locks that the standard library has for itself guard what it keeps; who takes one first makes no difference to
+    the mission. So what it does with them is a part of its caller's step, unless it has to wait.
+
+    Attributes:
+        taking: before it is taken.
+        giving: before it is given back.
+        given: after that, if it, or what was done with it in hand, has made a task ready.
+    """
+
+    taking: bool
+    giving: bool
+    given: bool
+
+
+OWN = LockPoints(taking=True, giving=True, given=True)
+"""Of a lock that the mission made, also within a condition."""
+STEP = LockPoints(taking=True, giving=False, given=True)
+"""Of a lock in an event, a semaphore, a queue, a future: each call of their methods is one step."""
+INNER = LockPoints(taking=False, giving=False, given=True)
+"""Of one that guards what the standard library keeps for itself."""
+WAITER = LockPoints(taking=False, giving=False, given=False)
+"""Of one that a condition makes for each that waits: those that are woken have to wait for its own lock first."""
+END = LockPoints(taking=True, giving=False, given=False)
+"""Of one that a thread gives back when it has ended."""
+
+
+def _points_of(frame: FrameType | None) -> LockPoints:
+    """Where others may get in when a lock is used that is made here: whose lock it is.
+
+    Args:
+        frame: of the function that makes it.
+    """
+    outermost = ""
+    while frame is not None and (is_standard(file := frame.f_code.co_filename) or not is_shown(file)):
+        outermost = frame.f_code.co_qualname
+        module = frame.f_globals.get("__name__", "")
+        if outermost in _INNER_MAKERS or module.partition(".")[0] == "logging":
+            return INNER
+        frame = frame.f_back
+    return OWN if outermost in _MAKERS_OF_OWN else STEP
+
+
+_INNER_MAKERS = ("<module>", "Thread.__init__")
+_MAKERS_OF_OWN = ("", "RLock", "Condition.__init__")
+
+
 def _explore(lock: type, kernel: ExploringKernel) -> None:
-    """Make each call that takes or gives back a lock a scheduling point, and note the holder of a plain one.
+    """Make calls that take or give back a lock scheduling points (`LockPoints`), and note the holder of a plain one.
 
     The kernel's observer is told of these calls, of the making of a lock, and when a condition looks whose it is.
     """
@@ -75,15 +126,20 @@ def _explore(lock: type, kernel: ExploringKernel) -> None:
     def observed(name: str, has_point: bool = True) -> Callable[..., Any]:
         method = methods[name]
         takes = plain and name in _TAKING
+        gives = name in _GIVING
 
         def call(self: Any, *args: Any, **options: Any) -> Any:
-            if has_point:
+            points = self.points
+            if has_point and (points.giving if gives else points.taking):
                 kernel.point()
+            if takes and points is WAITER:
+                kernel.forgive()
             observer = kernel.observer
             if observer is not None:
                 observer.called(self, name, (*args, *options.values()))
             try:
-                result = method(self, *args, **options)
+                hushed = gives and not points.giving
+                result = kernel.hush(method, self, *args, **options) if hushed else method(self, *args, **options)
             except BaseException:
                 if observer is not None:
                     observer.failed(self, name)
@@ -92,21 +148,32 @@ def _explore(lock: type, kernel: ExploringKernel) -> None:
                 self.holder = kernel.current
             if observer is not None:
                 observer.returned(self, name, args, result)
+            if gives and points.given:
+                kernel.settle()
+            elif points is END:
+                kernel.forgive()
             return result
 
         return called_as(call, name)
+
+    def made(self: Any) -> None:
+        self.points = _points_of(sys._getframe(1))
+        init(self)
 
     changed = {name: observed(name) for name in (*_TAKING, *_GIVING) if name in methods}
     changed |= {name: observed(name, has_point=False) for name in ("__init__", "_is_owned")}
     if "_acquire_restore" in methods:  # by which a condition takes its lock again
         changed["_acquire_restore"] = observed("_acquire_restore", has_point=False)
+    init = changed["__init__"]
+    changed["__init__"] = called_as(made, "__init__")
     for name, call in changed.items():
         setattr(lock, name, call)
 
 
-def without_holder(lock: Any) -> Any:
+def as_waiter(lock: Any) -> Any:
     """A plain lock that is a signal: the task that took it does not stand in the way of those that wait for it."""
     lock.holder = _ANY_TASK
+    lock.points = WAITER
     return lock
 
 
@@ -132,7 +199,7 @@ def _make_lock(universe: Universe) -> type:
     class lock:
         """A lock that any task may release."""
 
-        __slots__ = ("__weakref__", "_locked", "_polls", "_serial", "_waits", "holder")
+        __slots__ = ("__weakref__", "_locked", "_polls", "_serial", "_waits", "holder", "points")
 
         def __init__(self) -> None:
             self._locked = False
@@ -215,7 +282,7 @@ def _make_rlock(universe: Universe) -> type:
     class RLock:
         """A lock that its owner may take again."""
 
-        __slots__ = ("__weakref__", "_count", "_owner", "_polls", "_serial", "_waits")
+        __slots__ = ("__weakref__", "_count", "_owner", "_polls", "_serial", "_waits", "points")
 
         def __init__(self) -> None:
             self._owner: Task | None = None

@@ -17,9 +17,10 @@ from weakref import ref
 
 from cfepy.nodes.report import traceback_text
 from cfepy.nodes.stdlib.futures import hash_by_serial
-from cfepy.nodes.stdlib.locks import MAX_WAIT_S, without_holder
+from cfepy.nodes.stdlib.locks import END, INNER, MAX_WAIT_S, as_waiter
 from cfepy.nodes.stdlib.signal_module import NodeInterrupt
 from cfepy.nodes.synth import made
+from cfepy.own_code import called_as
 from cfepy.rtos import ExploringKernel, TaskExit
 
 if TYPE_CHECKING:
@@ -101,6 +102,7 @@ class ThreadHandle:
         self._done = False
         self._gate = gate
         gate.acquire()
+        gate.points = END
         self.held_by(None)
 
     def is_done(self) -> bool:
@@ -177,6 +179,7 @@ def thread_module(universe: Universe) -> ModuleType:
         ident = kernel.current.ident
         sentinel = sentinels[ident] = lock()
         sentinel.holder = kernel.current
+        sentinel.points = END
         universe.at_thread_end(ident, lambda: _release(sentinels.pop(ident, None)))
         return sentinel
 
@@ -257,20 +260,50 @@ def fix_threading(universe: Universe, module: Any) -> None:
         return lambda thread: None if isinstance(sys.exc_info()[1], TaskExit) else invoke(thread)
 
     def charged_is_set(event: Any) -> bool:
-        universe.charge()
-        result = bool(is_set(event))
         kernel = universe.kernel
+        if isinstance(kernel, ExploringKernel) and event._cond._lock.points is INNER:
+            kernel.hush(universe.charge)
+        else:
+            universe.charge()
+        result = bool(is_set(event))
         if result and isinstance(kernel, ExploringKernel) and kernel.observer is not None:
             kernel.observer.returned(event._cond._lock, "is_set", (), result)  # who set it held that lock
         return result
 
     if isinstance(universe.kernel, ExploringKernel):
         allocate_lock = module._allocate_lock  # which makes the locks by which `Condition` wakes its waiters
-        module._allocate_lock = lambda: without_holder(allocate_lock())
+        module._allocate_lock = lambda: as_waiter(allocate_lock())
+        for name in ("active_count", "enumerate"):  # whose lock is one of threading's own
+            setattr(module, name, _after_point(universe.kernel, getattr(module, name)))
+        for name in ("_start_new_thread", "_start_joinable_thread"):  # whichever this version of Python has
+            if hasattr(module, name):
+                setattr(module, name, _in_one_step(universe.kernel, getattr(module, name)))
     module._make_invoke_excepthook = make_quiet_invoke
     hash_by_serial(universe, module.Thread)
     module.Event.is_set = charged_is_set
     module.Event.isSet = charged_is_set
+
+
+def _after_point(kernel: ExploringKernel, look: Callable[..., Any]) -> Callable[..., Any]:
+    """A function before which others may get in."""
+
+    def looked() -> Any:
+        kernel.point()
+        return look()
+
+    return called_as(looked, look.__name__)
+
+
+def _in_one_step(kernel: ExploringKernel, start: Callable[..., Any]) -> Callable[..., Any]:
+    """How `Thread.start` starts a thread: it waits until that has begun, so others need no chance in between."""
+
+    def start_thread(*args: Any, **options: Any) -> Any:
+        kernel.point()
+        started = kernel.hush(start, *args, **options)
+        kernel.forgive()
+        return started
+
+    return called_as(start_thread, "start_new_thread")
 
 
 def _release(sentinel: Any) -> None:
