@@ -13,7 +13,7 @@ import sys
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from functools import lru_cache
+from functools import _lru_cache_wrapper, lru_cache
 from types import (
     CodeType,
     CoroutineType,
@@ -85,6 +85,8 @@ def _next(here: object) -> Iterator[object]:
     elif issubclass(kind, (GeneratorType, CoroutineType)):
         yield from gc.get_referents(here)
         yield from held_by(getattr(here, "gi_frame" if issubclass(kind, GeneratorType) else "cr_frame"))
+    elif issubclass(kind, _lru_cache_wrapper):  # those of `typing` lead to all classes of the process
+        yield from () if _is_opaque(getattr(here, "__module__", "")) else gc.get_referents(here)
     elif issubclass(kind, ReferenceType):
         yield here()  # type: ignore[operator]
     elif issubclass(kind, ModuleType):

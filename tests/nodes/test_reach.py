@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import _thread
+import enum
 import functools
 import operator
 import sys
@@ -11,7 +12,7 @@ import weakref
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from types import FrameType
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 
@@ -45,8 +46,29 @@ class Namer:
         return THING
 
 
+class Flag(enum.Enum):
+    """Its method names the variable, and `typing` remembers each flag that a type was made of."""
+
+    UP = 1
+
+    def look(self) -> Thing:
+        """By a global variable."""
+        return THING
+
+
+UP = Literal[Flag.UP]
+
+
 def by_name() -> Thing:
     return THING
+
+
+@functools.lru_cache
+def remembering(thing: Thing) -> Thing:
+    return thing
+
+
+remembering(THING)
 
 
 def by_inner_function() -> Callable[[], Thing]:
@@ -84,6 +106,9 @@ def begun(generator: Iterator[Thing]) -> Iterator[Thing]:
 
 LEADING = [
     by_name,
+    functools.cache(by_name),
+    remembering,
+    UP,
     by_inner_function,
     by_anything,
     by_default,
@@ -101,7 +126,7 @@ LEADING = [
     threading.Thread(target=by_name),
 ]
 
-NOT_LEADING = [not_at_all, Thing, threading, threading.Thread(), "THING", weakref.ref(Thing()), len]
+NOT_LEADING = [not_at_all, Thing, threading, threading.Thread(), "THING", weakref.ref(Thing()), len, Literal["up"]]
 
 
 @pytest.mark.parametrize("root", LEADING, ids=range(len(LEADING)))
