@@ -20,16 +20,21 @@ SECONDS = 0.65  # capture's nodes have begun
 PARTS = (Mission, Kernel, Universe)
 
 
-@pytest.fixture(autouse=True)
-def nothing_else() -> Iterator[None]:
-    """What other tests left is not looked at, and garbage is not found by chance."""
-    gc.collect()
-    gc.freeze()
+@pytest.fixture(scope="module", autouse=True)
+def no_collector() -> Iterator[None]:
+    """Garbage is not found by chance."""
     before = gc.get_threshold()
     gc.set_threshold(0)
     yield
     gc.set_threshold(*before)
     gc.unfreeze()
+
+
+@pytest.fixture(autouse=True)
+def nothing_else() -> None:
+    """What other tests left is not looked at."""
+    gc.collect()
+    gc.freeze()
 
 
 def parts() -> Counter[str]:
