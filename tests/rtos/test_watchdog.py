@@ -168,6 +168,14 @@ def test_a_task_that_does_not_end_is_made_to(kernel: Kernel) -> None:
     assert "spin" in kernel.broken.lines[0]
 
 
+@pytest.fixture
+def soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A wish is given less time than it is for a user."""
+    for name, value in (("LOOK_S", 0.05), ("SOON_S", 0.01), ("GRACE_S", 0.12), ("SPUN_S", 0.06)):
+        monkeypatch.setattr(watchdog, name, value)
+
+
+@pytest.mark.usefixtures("soon")
 def test_a_wish_ends_what_makes_no_calls_and_what_makes_some(make_kernel: Callable[[], Kernel]) -> None:
     def poll(kernel: Kernel) -> None:
         while True:
@@ -185,12 +193,9 @@ def test_a_wish_ends_what_makes_no_calls_and_what_makes_some(make_kernel: Callab
             watch.end()
 
 
-def test_a_wish_is_given_its_time_from_when_it_is_seen(
-    make_kernel: Callable[[], Kernel], monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.usefixtures("soon")
+def test_a_wish_is_given_its_time_from_when_it_is_seen(make_kernel: Callable[[], Kernel]) -> None:
     """What was computed before the wish does not count: then one that spins is told as one that spins."""
-    for name, value in (("LOOK_S", 0.05), ("SOON_S", 0.01), ("GRACE_S", 0.12), ("SPUN_S", 0.06)):
-        monkeypatch.setattr(watchdog, name, value)
     spins = threading.Event()
     clock, seen = [0.0], [False]
 
@@ -216,6 +221,7 @@ def test_a_wish_is_given_its_time_from_when_it_is_seen(
         watch.end()
 
 
+@pytest.mark.usefixtures("soon")
 def test_a_wish_waits_while_other_programs_have_the_cpu(
     make_kernel: Callable[[], Kernel], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -252,6 +258,7 @@ def test_who_waits_for_something_outside_is_told_once_and_left_alone(make_kernel
     assert told[0].startswith("cfepy: task asking has waited for something outside of the simulation since 0.0000")
 
 
+@pytest.mark.usefixtures("soon")
 def test_what_cannot_be_struck_is_left_behind() -> None:
     reader, writer = os.pipe()
     watch_limit_s = 0
