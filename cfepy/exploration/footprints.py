@@ -21,7 +21,7 @@ from cfepy.rtos import ExploringKernel, Kernel, Task, WaitList
 from cfepy.sb import Destination, Pipe, SoftwareBus, asked_before_puts
 from cfepy.status import UsageError
 
-GRAPH, PARAMETERS, ROUTES = "ROS graph", "ROS parameters", "routes"
+GRAPH, PARAMETERS, PIPES = "ROS graph", "ROS parameters", "pipes"
 _LOOKING = ("find", "get", "has", "is_", "locked", "_is_owned", "names", "published", "search")
 _OWN = frozenset(
     {
@@ -62,7 +62,7 @@ class Footprints(Attachment):
         self._log: StepLog | None = None
         self._services: dict[int, Any] = {}  # of the processor, by identity
         self._numbers: dict[int, tuple[int, Any]] = {}  # by identity: of locks, which are kept for that
-        self._pipes = _Pipes(self.touch)
+        self._pipes = _Pipes(self)
 
     @property
     def steps(self) -> tuple[TaskStep, ...]:
@@ -101,12 +101,17 @@ class Footprints(Attachment):
     def conclude(self) -> None:
         """See `Attachment.conclude`: what nodes do when they are ended is no part of it."""
         if self._log is not None:
-            self._log.is_open = False
+            self._log.close()
 
     def touch(self, thing: str, how: str = WRITES) -> None:
         """The current task touches something; see `StepLog.touch`."""
         if self._log is not None:
             self._log.touch(thing, how)
+
+    def leave(self, task: Task) -> None:
+        """What a task does from now on is no part of it; see `StepLog.leave`."""
+        if self._log is not None:
+            self._log.leave(task)
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
         """See `CallObserver.called`: a service of cFE, or a lock of a node."""
@@ -138,7 +143,9 @@ class Footprints(Attachment):
         return id(subject) in self._services or hasattr(subject, "_at_fork_reinit")
 
     def _things(self, subject: Any, call: str, args: tuple[Any, ...]) -> list[Touched]:
-        if isinstance(subject, SoftwareBus) or call in _OWN:
+        if isinstance(subject, SoftwareBus):
+            return _things_of_bus(call, args)
+        if call in _OWN:
             return []
         name = self._name(subject, args)
         if call in _TAKING:  # one that need not wait finds out whether somebody has the lock
@@ -167,10 +174,12 @@ class Footprints(Attachment):
 
     def _calls(self, duration_ns: int) -> None:
         """A node calls something of ROS or Python, which may look at the ROS graph."""
-        self.touch(GRAPH, READS)
+        if self._log is not None and not self._log.is_in_a_call:
+            self.touch(GRAPH, READS)
 
     def _waits(self, waits: WaitList, *others: Any) -> None:
         """Waits within calls are those of what these are about."""
+        self._pipes.wakes(waits)
         if self._log is not None and not self._pipes.waits() and not self._log.is_in_a_call:
             self.touch(f"wait for {waits.what}")
 
@@ -179,14 +188,17 @@ class _Pipes:
     """What becomes of pipes. Where one is neither empty nor full, whoever puts and whoever gets are in no one's way."""
 
     kernel: Kernel
+    bus: SoftwareBus
 
-    def __init__(self, touch: Callable[..., None]) -> None:
-        self.touch = touch
+    def __init__(self, footprints: Footprints) -> None:
+        self.touch = footprints.touch
+        self._leave = footprints.leave
         self._getting: dict[Task, tuple[Pipe, bool]] = {}  # who gets from which, and whether it had to wait
 
     def puts(self, destination: Destination, limit: int) -> int:
         """The current task puts a message into a pipe, in this instant; the message limit, as it is."""
         pipe, waiting = destination.pipe, len(destination.pipe.items)
+        self.touch(f"pipe {pipe.pipe_id}", READS)
         self.touch(f"tail of {pipe.name}")
         if not waiting:
             self.touch(f"emptiness of {pipe.name}")
@@ -195,8 +207,20 @@ class _Pipes:
         return limit
 
     def gets(self, pipe: Pipe) -> None:
-        """The current task is about to get one."""
+        """The current task is about to get one; its subscription may have been told to end before that."""
+        self.touch(f"wait for {pipe.waits.what}", READS)
         self._getting[self.kernel.current] = pipe, False
+
+    def wakes(self, waits: WaitList) -> None:
+        """Tasks are woken, or one waits; those of subscriptions that are no more have only to clear up."""
+        for task in waits:
+            pipe = self._getting.get(task, (None, False))[0]
+            if pipe is not None and pipe.waits is waits and not self.routes_to(pipe):
+                self._leave(task)
+
+    def routes_to(self, pipe: Pipe) -> list[int]:
+        """The MsgIds that are let into a pipe."""
+        return [msg_id for msg_id, route in self.bus.routes.items() if route.find(pipe) is not None]
 
     def waits(self) -> bool:
         """Whether the current task waits for one."""
@@ -225,6 +249,13 @@ class _Pipes:
 _SMALL_LIMIT = 4  # messages of one kind that a pipe takes by default
 
 
+def _things_of_bus(call: str, args: tuple[Any, ...]) -> list[Touched]:
+    """What a call of Software Bus touches, besides what is seen as it happens."""
+    if call == "set_pipe_opts":
+        return [(f"pipe {args[0]}", WRITES)]
+    return [(PIPES, READS)] if call == "get_pipe_id_by_name" else []
+
+
 def _also(subject: Any, name: str, before: Callable[..., object]) -> None:
     """Have something called before a method of an object."""
     original = getattr(subject, name)
@@ -251,19 +282,20 @@ def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
 
         def __init__(self, kernel: Kernel, *args: Any) -> None:
             super().__init__(kernel, *args)
+            pipes.bus = self
             self.destination_type = asked_before_puts(self.destination_type, pipes.puts)
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
             """See `SoftwareBus.transmit_msg`."""
-            pipes.touch(ROUTES, READS)
+            pipes.touch(f"route {packet[0] << 8 | packet[1]}", READS)
             pipes.touch(f"message {packet[0] << 8 | packet[1]}")
             super().transmit_msg(packet, is_origination)
 
         def receive_buffer(self, pipe_id: int, timeout_ms: int = PEND_FOREVER) -> bytes | None:
             """See `SoftwareBus.receive_buffer`."""
+            pipes.touch(f"pipe {pipe_id}", READS)
             pipe = self.find_pipe(pipe_id)
             if pipe is None:
-                pipes.touch(ROUTES, READS)
                 return cast("bytes | None", super().receive_buffer(pipe_id, timeout_ms))
             pipes.gets(pipe)
             packet: bytes | None = None
@@ -273,22 +305,32 @@ def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
                 pipes.got(packet)
             return packet
 
-        def _subscribe(self, *args: Any) -> None:
-            pipes.touch(ROUTES)
-            super()._subscribe(*args)
+        def _subscribe(self, msg_id: int, pipe_id: int, *args: Any) -> None:
+            self._touch_route(msg_id, pipe_id)
+            super()._subscribe(msg_id, pipe_id, *args)
 
-        def _unsubscribe(self, *args: Any) -> None:
-            pipes.touch(ROUTES)
-            super()._unsubscribe(*args)
+        def _unsubscribe(self, msg_id: int, pipe_id: int, *args: Any) -> None:
+            self._touch_route(msg_id, pipe_id)
+            super()._unsubscribe(msg_id, pipe_id, *args)
+
+        def _touch_route(self, msg_id: int, pipe_id: int) -> None:
+            pipes.touch(f"route {msg_id}")
+            pipes.touch(f"pipe {pipe_id}", READS)
 
         def create_pipe(self, *args: Any) -> int:
             """See `SoftwareBus.create_pipe`."""
-            pipes.touch(ROUTES)
-            return cast(int, super().create_pipe(*args))
+            pipes.touch(PIPES)
+            pipe_id = cast(int, super().create_pipe(*args))
+            pipes.touch(f"pipe {pipe_id}")
+            return pipe_id
 
         def delete_pipe(self, pipe_id: int) -> None:
             """See `SoftwareBus.delete_pipe`."""
-            pipes.touch(ROUTES)
+            pipes.touch(PIPES, READS)
+            pipes.touch(f"pipe {pipe_id}")
+            pipe = self.find_pipe(pipe_id)
+            for msg_id in [] if pipe is None else pipes.routes_to(pipe):
+                pipes.touch(f"route {msg_id}")
             super().delete_pipe(pipe_id)
 
     return TouchingBus

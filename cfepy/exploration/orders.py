@@ -15,7 +15,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import blake2b
 
-from cfepy.exploration.steps import GIVES, HANDED, READS, TAKES, TIMER, TRIES, WRITES, TaskStep
+from cfepy.exploration.steps import ENDS, GIVES, HANDED, PENDS, READS, TAKES, TIMER, TRIES, WRITES, TaskStep
 from cfepy.exploration.verdict import Verdict
 from cfepy.rtos import PLACE, Schedule
 
@@ -35,11 +35,13 @@ class Beginning:
         names: of its steps but the last one.
         last: the last step, which goes earlier here than in the order that this was made from: its task and place. What
             it does there, such as to wait, and so its name, is not known.
+        is_pending: the last step is any that its task makes from there on.
     """
 
     runs: tuple[tuple[str, int], ...]
     names: frozenset[int]
     last: Key
+    is_pending: bool = False
 
 
 class Order:
@@ -63,14 +65,16 @@ class Order:
         self._names: list[frozenset[int]] = []  # its own; of one that touches nothing, those of the ones before it
         self._touches: defaultdict[str, list[tuple[int, str]]] = defaultdict(list)  # by thing: who, and how
         self._before: list[int | None] = []  # the step before of the same task
+        self._head: list[int] = []  # the first of those between which nobody could get in
         self._keys: list[Key] = []
-        latest: dict[str, int] = {}
+        self._latest: dict[str, int] = {}  # step of each task
         for at, step in enumerate(steps):
-            before = latest.get(step.task)
+            before = self._latest.get(step.task)
             self._before.append(before)
+            self._head.append(at if before is None or not step.joined else self._head[before])
             self._keys.append(self._key(step, before))
-            latest[step.task] = at
             direct = self._dependences(at)
+            self._latest[step.task] = at
             self._direct.append(direct)
             self._past.append(1 << at)
             for each in direct.all:
@@ -80,28 +84,32 @@ class Order:
             self._names.append(self._named(at, direct))
             for thing, how in step.touched:
                 self._touches[thing].append((at, how))
-        touching = [at for at, step in enumerate(steps) if step.touched]
+        touching = [at for at, step in enumerate(steps) if _matters(step)]
         self.names = frozenset(name for at in touching for name in self._names[at])
         self.places = {self._keys[at]: at for at in touching}
 
     def _dependences(self, at: int) -> _Dependences:
         """On which steps one depends directly."""
-        step = self.steps[at]
+        step, before = self.steps[at], self._before[at]
         conflicts: defaultdict[int, set[str]] = defaultdict(set)
         gives: dict[int, str] = {}
         sections: dict[int, frozenset[int]] = {}
         for thing, how in step.touched:
-            before = reversed(self._touches[thing])
+            earlier = reversed(self._touches[thing])
             if how in (TAKES, TRIES):
-                self._after_lock(thing, before, conflicts, gives)
+                self._after_lock(thing, earlier, conflicts, gives)
                 sections |= self._section(at, thing, conflicts, gives)
             elif how in (READS, WRITES):
-                for other, other_how in before:
+                for other, other_how in earlier:
                     if WRITES in (how, other_how):
                         conflicts[other].add(thing)
                     if other_how == WRITES:
                         break
-        ordered = {each for each in (self._before[at],) if each is not None}
+            elif how == PENDS:
+                conflicts[self._touches[thing][-1][0]].add(thing)
+            elif how == ENDS and thing in self._latest:  # it might have been ended earlier
+                conflicts[self._latest[thing]].add(thing)
+        ordered = set() if before is None else {before}
         if step.waker != TIMER:
             handed = [thing for thing, how in step.touched if how == HANDED]
             if handed:  # it might have been taken before, without a wait
@@ -130,13 +138,15 @@ class Order:
         if taken is None:
             return {}
         given = max((each for each, given in gives.items() if given == thing), default=at)
+        while given + 1 < at and self.steps[given + 1].joined:
+            given += 1
         task = self.steps[taken].task
         return {taken: frozenset(at for at in range(taken + 1, given + 1) if self.steps[at].task == task)}
 
     def _named(self, at: int, direct: _Dependences) -> frozenset[int]:
         step = self.steps[at]
         before = frozenset(name for each in direct.all for name in self._names[each])
-        if not step.touched:
+        if not _matters(step):
             return before
         told = repr((*self._keys[at], sorted(before)))
         return frozenset([int.from_bytes(blake2b(told.encode(), digest_size=8).digest())])
@@ -145,7 +155,7 @@ class Order:
         place = step.number // PLACE
         if before is None or self._keys[before][1] != place:
             return step.task, place, 0
-        return step.task, place, self._keys[before][2] + bool(self.steps[before].touched)
+        return step.task, place, self._keys[before][2] + _matters(self.steps[before])
 
     def without(self, apps: Collection[str]) -> frozenset[tuple[Key, frozenset[Key]]]:
         """The order of the other applications: which of their steps come before which."""
@@ -157,39 +167,127 @@ class Order:
 
     def begins(self, beginning: Beginning) -> bool:
         """Whether it has all steps of a beginning, and all that comes before the last one there is among them."""
-        at = self.places.get(beginning.last)
+        at = self._place_of(beginning)
         if at is None or not beginning.names <= self.names:
             return False
         past = self._past[at] & ~(1 << at)
         return all(
-            self._names[each] <= beginning.names for each in range(at) if past >> each & 1 and self.steps[each].touched
+            self._names[each] <= beginning.names
+            for each in range(at)
+            if past >> each & 1 and _matters(self.steps[each])
         )
 
-    def races(self) -> Iterator[tuple[int, int]]:
-        """Pairs of steps that may go the other way round, the earlier one first."""
+    def _place_of(self, beginning: Beginning) -> int | None:
+        """The number of the last step of a beginning."""
+        if not beginning.is_pending:
+            return self.places.get(beginning.last)
+        task, place, number = beginning.last
+        return next(
+            (
+                at
+                for at, step in enumerate(self.steps)
+                if step.task == task and self._keys[at][1:] >= (place, number) and not _is_pending(step)
+            ),
+            None,
+        )
+
+    def neighbours(self, left: Collection[str] = ()) -> Iterator[Beginning]:
+        """How runs begin in which two steps go the other way round.
+
+        Args:
+            left: applications whose tasks keep the order among themselves that they have.
+        """
         for later, direct in enumerate(self._direct):
-            yield from ((earlier, later) for earlier in direct.conflicts if self._is_open(earlier, later))
+            whole: set[int] = set()
+            for earlier in sorted(direct.conflicts):
+                if self.steps[earlier].app in left and self.steps[later].app in left:
+                    continue
+                found = self._reversed(earlier, later) if self._is_open({earlier}, later) else None
+                if found is not None:
+                    yield found
+                elif self._head[earlier] != earlier or self._is_head(earlier):
+                    whole.add(self._head[earlier])
+            for head in sorted(whole):
+                if self._is_open(self._block(head), later):
+                    found = self._reversed(head, later)
+                    if found is not None:
+                        yield found
 
-    def _is_open(self, earlier: int, later: int) -> bool:
-        """Whether nothing else has the one come before the other: no task, no wake-up, no time."""
-        step, direct = self.steps[later], self._direct[later]
-        if self.steps[earlier].task == step.task or earlier in direct.ordered or earlier in direct.gives:
+    def _is_head(self, at: int) -> bool:
+        """Whether another step follows with nobody in between."""
+        return at + 1 < len(self.steps) and self.steps[at + 1].joined
+
+    def _block(self, head: int) -> set[int]:
+        """A step, and those of its task that follow it with nobody in between."""
+        end = head + 1
+        while end < len(self.steps) and self._head[end] == head:
+            end += 1
+        return set(range(head, end))
+
+    def _is_open(self, earlier: set[int], later: int) -> bool:
+        """Whether nothing else has steps come before another: no task, no wake-up, no time.
+
+        Args:
+            earlier: one step, or several between which nobody can get in.
+            later: the other one.
+        """
+        step, direct, first = self.steps[later], self._direct[later], min(earlier)
+        if self.steps[first].task == step.task or earlier & direct.ordered:
             return False
-        if step.waker == TIMER and step.ready > earlier:
+        if len(earlier) == 1 and first in direct.gives:
             return False
-        if any(earlier in section for section in direct.sections.values()):
+        if step.waker == TIMER and step.ready > first:
+            return False
+        if any(first in section for section in direct.sections.values()):
             return False  # its task had the lock then
-        locks = direct.conflicts[earlier]
-        others = {*direct.conflicts, *direct.ordered} - {earlier} - direct.sections.get(earlier, frozenset())
-        others |= {each for each, thing in direct.gives.items() if thing not in locks}
-        return not any(self._past[each] >> earlier & 1 or self._floor[each] > earlier for each in others)
+        locks = {lock for each in earlier for lock in direct.conflicts.get(each, ())}
+        sections = {at for each in earlier for at in direct.sections.get(each, ())}
+        others = {*direct.conflicts, *direct.ordered} - earlier - sections
+        others |= {each for each, thing in direct.gives.items() if thing not in locks} - earlier
+        return not any(self._past[each] >> first & 1 or self._floor[each] > first for each in others)
 
-    def reversed(self, earlier: int, later: int) -> Beginning:
-        """The beginning in which the later of two steps goes first; what depends on the earlier one is left out."""
+    def _reversed(self, earlier: int, later: int) -> Beginning | None:
+        """The beginning in which the later of two steps goes first; what depends on the earlier one is left out.
+
+        None when nobody can get in there.
+        """
         bit = 1 << earlier
         kept = [at for at in range(later) if not self._past[at] & bit]
-        names = frozenset(name for at in kept if self.steps[at].touched for name in self._names[at])
-        return Beginning(_runs(self.steps[at] for at in (*kept, later)), names, self._keys[later])
+        names = frozenset(name for at in kept if _matters(self.steps[at]) for name in self._names[at])
+        turns = self._turns(kept, earlier, later)
+        return (
+            None if turns is None else Beginning(_runs(turns), names, self._keys[later], _is_pending(self.steps[later]))
+        )
+
+    def _turns(self, kept: list[int], earlier: int, later: int) -> list[tuple[str, int]] | None:
+        """Who runs until when, for the steps to be kept, and then the later one.
+
+        Where a step is kept and the one after it is not, with nobody in between, the other tasks go first, those that
+        wait for a lock that is given back there, too: then somebody may get in after all.
+        """
+        stays = set(kept)
+        cut = {
+            self._head[at - 1]
+            for at in range(1, later)
+            if self.steps[at].joined and at - 1 in stays and at not in stays
+        }
+        mask = sum(1 << head for head in cut)
+        after = {at for at in kept if self._past[at] & mask}
+        needed = 0
+        for each in self._direct[later].all:
+            needed |= self._past[each] if each in stays else 0
+        now = [at for at in kept if at in after and needed >> at & 1]
+        then = [at for at in kept if at in after and not needed >> at & 1]
+        begun = [at for at in (*now, later) if any(self._head[each] in cut for each in self._direct[at].gives)]
+        if self._head[earlier] in cut and needed >> self._head[earlier] & 1 and not begun:
+            return None
+        turns = [self._turn(at) for at in kept if at not in after]
+        turns += [(task, number + 1) for task, number in map(self._turn, begun)]
+        return turns + [self._turn(at) for at in (*now, later, *then)]
+
+    def _turn(self, at: int) -> tuple[str, int]:
+        """Whose turn a step is, and until when: it is over when the next place is passed."""
+        return self.steps[at].task, self.steps[at].number + 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,13 +312,23 @@ class _Dependences:
         return {*self.conflicts, *self.gives, *self.ordered}
 
 
-def _runs(steps: Iterable[TaskStep]) -> tuple[tuple[str, int], ...]:
-    """Who runs until when for steps to come in this order: a step is over when the next place is passed."""
+def _is_pending(step: TaskStep) -> bool:
+    """Whether a step was not made, since its task was ended before."""
+    return any(how == PENDS for _, how in step.touched)
+
+
+def _matters(step: TaskStep) -> bool:
+    """Whether a step touches anything."""
+    return bool(step.touched) and not _is_pending(step)
+
+
+def _runs(turns: Iterable[tuple[str, int]]) -> tuple[tuple[str, int], ...]:
+    """Turns, with those of one task in a row as one."""
     found: list[tuple[str, int]] = []
-    for step in steps:
-        if found and found[-1][0] == step.task:
+    for turn in turns:
+        if found and found[-1][0] == turn[0]:
             found.pop()
-        found.append((step.task, step.number + 1))
+        found.append(turn)
     return tuple(found)
 
 
@@ -284,10 +392,7 @@ class OrderSearch:
         if order.names in self._seen:
             return
         self._seen[order.names] = order
-        for pair in order.races():
-            if all(order.steps[at].app in self._left for at in pair):
-                continue
-            beginning = order.reversed(*pair)
+        for beginning in order.neighbours(self._left):
             key = beginning.last, hash(beginning.names)
             if key not in self._known:
                 self._known.add(key)

@@ -21,11 +21,12 @@ PLACES = ("point", "charge", "delay", "yield_cpu")
 QUIET = ("make_ready", "preempt", "wake_all")
 TIMER = -1
 READS, WRITES, TAKES, GIVES, TRIES = "reads", "writes", "takes", "gives", "tries"
-HANDED = "handed"
+HANDED, ENDS, PENDS = "handed", "ends", "pends"
 Touched = tuple[str, str]
 """The name of a thing, and what becomes of it: READS and WRITES of data, TAKES and GIVES of locks, TRIES in vain.
 
-Of a lock that the step was HANDED by who woke it, it is who had taken it last that counts.
+Of a lock that the step was HANDED by who woke it, it is who had taken it last that counts. The thing that a step ENDS
+is a task, by its path; a last step of that task, which it might have made before, PENDS.
 """
 
 
@@ -39,6 +40,7 @@ class TaskStep(NamedTuple):
         ready: how many steps of the run were over when its task became ready; 0 where it never waited.
         waker: number of the step in the run that woke the task, TIMER for none.
         app: whose task it is.
+        joined: whether nobody could get in between the step before it and this one.
     """
 
     task: str
@@ -47,13 +49,14 @@ class TaskStep(NamedTuple):
     ready: int = 0
     waker: int = TIMER
     app: str = ""
+    joined: bool = False
 
     @classmethod
     def of(cls, plain: Sequence[Any]) -> TaskStep:
         """A step from plain data."""
-        task, number, touched, ready, waker, app = plain
+        task, number, touched, ready, waker, app, joined = plain
         pairs = tuple((str(thing), str(how)) for thing, how in touched)
-        return cls(str(task), int(number), pairs, int(ready), int(waker), str(app))
+        return cls(str(task), int(number), pairs, int(ready), int(waker), str(app), bool(joined))
 
 
 @dataclass(slots=True)
@@ -79,40 +82,43 @@ class _Call:
     depth: int = 1
 
 
+_Entry = tuple[Task, int, dict[Touched, None], int, int, bool]
+"""A step as it is being made; see `TaskStep`."""
+
+
 class StepLog:
     """Keeps the steps of a run.
 
     Args:
         kernel: whose methods are wrapped; nothing of it has run.
         from_ns: virtual time from which on steps are kept; before it places are only counted.
-
-    Attributes:
-        is_open: whether steps are kept.
     """
 
     def __init__(self, kernel: ExploringKernel, from_ns: int = 0) -> None:
-        self.is_open = True
+        self._is_open = True
         self._kernel = kernel
         self._from_ns = from_ns
-        self._log: list[tuple[Task, int, dict[Touched, None], int, int]] = []
+        self._log: list[_Entry] = []
+        self._gone: set[Task] = set()
+        self._shut: Task | None = None  # the one that made the last step, if nobody could get in since
         self._ready: dict[Task, tuple[int, int]] = {}  # when and by which step it was woken, until its next step
         self._calls: dict[Task, _Call] = {}
         self._quiet: dict[Task, int] = {}  # in the middle of what makes others ready, if somebody waits
         for name in PLACES:
             setattr(kernel, name, self._passing(getattr(kernel, name)))
         for name in QUIET:
-            setattr(kernel, name, self._quietly(getattr(kernel, name), parts=name != "make_ready"))
-        for name, hook in (("enqueue", self._woken), ("_time_out", self._timed_out), ("wait_on", self._waiting)):
+            setattr(kernel, name, self._quietly(getattr(kernel, name), parts=name == "preempt"))
+        hooks = {"enqueue": self._woken, "_time_out": self._timed_out, "wait_on": self._waiting, "kill": self._ending}
+        for name, hook in hooks.items():
             setattr(kernel, name, hook(getattr(kernel, name)))
 
     @property
     def steps(self) -> tuple[TaskStep, ...]:
         """In the order in which they were made."""
-        for call in self._calls.values():
-            _has_tried(call)
+        self._try()
         return tuple(
-            TaskStep(task.path, number, tuple(sorted(touched)), ready, waker, getattr(task.owner, "name", ""))
-            for task, number, touched, ready, waker in self._log
+            TaskStep(task.path, number, tuple(sorted(touched)), ready, waker, getattr(task.owner, "name", ""), joined)
+            for task, number, touched, ready, waker, joined in self._log
         )
 
     def touch(self, thing: str, how: str = WRITES) -> None:
@@ -163,6 +169,20 @@ class StepLog:
         """The current task begins another step, also where nobody was woken in the one before."""
         self._kernel.current.passed += 1
 
+    def close(self) -> None:
+        """What comes from now on is no part of it."""
+        self._try()
+        self._is_open = False
+
+    def _try(self) -> None:
+        """Calls that are not over have tried what they were to get."""
+        for call in self._calls.values():
+            _has_tried(call)
+
+    def leave(self, task: Task) -> None:
+        """What a task does from now on matters to nobody."""
+        self._gone.add(task)
+
     def fail(self) -> None:
         """As `end`, without what it wanted."""
         call = self._calls.get(self._kernel.current)
@@ -187,19 +207,28 @@ class StepLog:
             step[2][touched] = None
         call.noted = step[2]
 
-    def _step(self) -> tuple[Task, int, dict[Touched, None], int, int] | None:
+    @property
+    def _runner(self) -> Task:
+        """The current task; the one that ends it, if it is being ended: nobody gets in until it has."""
+        task = self._kernel.current
+        while task.dying and task.killer is not None:
+            task = task.killer
+        return task
+
+    def _step(self) -> _Entry | None:
         """The step that the current task makes; None where none are kept."""
         kernel, log = self._kernel, self._log
-        task = kernel.current
-        if kernel.now < self._from_ns or task is kernel.host or not self.is_open:
+        task = self._runner
+        if kernel.now < self._from_ns or task is kernel.host or kernel.current in self._gone or not self._is_open:
             return None
+        is_shut, self._shut = self._shut is task, task
         if log and log[-1][0] is task:
             if log[-1][1] == task.passed:
                 return log[-1]
             if not log[-1][2]:  # it touched nothing: this one goes on where that began
-                log[-1] = (task, task.passed, *log[-1][2:])
+                log[-1] = (task, task.passed, *log[-1][2:5], log[-1][5] and is_shut)
                 return log[-1]
-        log.append((task, task.passed, {}, *self._ready.pop(task, (0, TIMER))))
+        log.append((task, task.passed, {}, *self._ready.pop(task, (0, TIMER)), is_shut))
         return log[-1]
 
     # -- what the kernel does ------------------------------------------------------------------------------------------
@@ -208,11 +237,12 @@ class StepLog:
         def passing(*args: Any) -> Any:
             task = self._kernel.current
             if self._quiet.get(task):
+                self._shut = None
                 return original(*args)
             call = self._calls.get(task)
             self._step()
-            if call is None:
-                task.passed += PLACE - task.passed % PLACE
+            self._shut = None
+            task.passed += 1 if call is not None else PLACE - task.passed % PLACE
             result = original(*args)
             if call is not None:
                 self._note(call)
@@ -224,11 +254,11 @@ class StepLog:
         def quietly(*args: Any) -> Any:
             task = self._kernel.current
             self._quiet[task] = self._quiet.get(task, 0) + 1
+            task.passed += parts  # whether somebody waited or not
             try:
                 return original(*args)
             finally:
                 self._quiet[task] -= 1
-                task.passed += parts  # whether somebody waited or not
 
         return quietly
 
@@ -245,6 +275,18 @@ class StepLog:
 
         return enqueue
 
+    def _ending(self, original: Callable[[Task], None]) -> Callable[[Task], None]:
+        def kill(task: Task) -> None:
+            step = None if task is self._kernel.current or task.done or task in self._gone else self._step()
+            if step is not None:
+                step[2][task.path, ENDS] = None
+                if not self._kernel.is_waiting(task):
+                    self._log.append((task, task.passed, {(task.path, PENDS): None}, 0, TIMER, False))
+                    self._kernel.current.passed += 1
+            original(task)
+
+        return kill
+
     def _timed_out(self, original: Callable[..., Any]) -> Callable[..., Any]:
         def time_out(task: Task) -> None:
             self._ready[task] = len(self._log), TIMER
@@ -257,6 +299,7 @@ class StepLog:
             task = self._kernel.current
             self._step()
             task.passed += 1
+            self._shut = None
             result = original(*args)
             if task in self._calls:
                 self._calls[task].is_noted, self._calls[task].has_waited = False, True
