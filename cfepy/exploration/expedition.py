@@ -19,6 +19,7 @@ from cfepy.exploration.breadth import Breadth, PointCounter
 from cfepy.exploration.campaign import Campaign, Crew, Search, Tally
 from cfepy.exploration.crews import make_crew
 from cfepy.exploration.footprints import check_visible
+from cfepy.exploration.fork_server import ForkingNotes
 from cfepy.exploration.gaps import gaps_of
 from cfepy.exploration.orders import OrderSearch
 from cfepy.exploration.progress import make_progress
@@ -400,7 +401,8 @@ class Expedition:
         probed = trial.probe() if finding.failure.kind == STALLED else trial
         schedules = [verdict.schedule for verdict in finding.simplest]
         budget = budget_of(flown) if self.shrink is None else self.shrink
-        shrunk = Shrinker(probed, schedules, finding.failure.group, budget).run()
+        with contextlib.closing(ForkingNotes()) as forks:
+            shrunk = Shrinker(probed, schedules, finding.failure.group, budget, forks.fly).run()
         if shrunk is None:
             return None
         plan = replace(shrunk.trial.plan, stall=trial.plan.stall)

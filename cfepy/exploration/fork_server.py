@@ -5,7 +5,7 @@
 
 Only tasks on greenlets can be forked, since a fork takes one thread along; and only a system that has fork. A
 `ForkingJudge` flies the schedules of a trial this way when they differ from an instant on (`from=600ms`), and each by
-itself otherwise; the verdicts are those of whole flights.
+itself otherwise; `ForkingNotes` does so for what is shrunk. What comes out is that of whole flights.
 """
 
 from __future__ import annotations
@@ -14,13 +14,15 @@ import gc
 import os
 import pickle
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from cfepy.attachment import Attachment
 from cfepy.exploration.campaign import Experiment, judge
+from cfepy.exploration.moves import MoveNotingPolicy
+from cfepy.exploration.shrink import NotedFlight, fly_noting
 from cfepy.exploration.trial import Trial, told_as
 from cfepy.exploration.verdict import Verdict
 from cfepy.mission import Mission
@@ -218,6 +220,51 @@ def _fork() -> int:
         return os.fork()
 
 
+T = TypeVar("T")
+
+Fly = Callable[[Trial, Schedule, Policy | None, Sequence[Attachment]], T]
+"""Flies a trial under a schedule, with a policy that decides in its place (None for its own) and what else watches."""
+
+
+class Forks(Generic[T]):
+    """Flies trials under schedules, in forked processes where that can be; `close` ends those that wait.
+
+    Args:
+        fly: a flight, whose value can be pickled.
+    """
+
+    def __init__(self, fly: Fly[T]) -> None:
+        self._fly = fly
+        self._servers: dict[tuple[int, Schedule], ForkServer] = {}
+
+    def fly(self, trial: Trial, schedule: Schedule) -> T:
+        """What the flight gives; errors as of `ForkServer.run` when it was forked."""
+        if not self.can_fork(trial, schedule):
+            return self._fly(trial, schedule, None, ())
+        options = schedule.at({})
+
+        def body(late: LateSchedule) -> T:
+            return self._fly(trial, options, late.policy(), [late.watched()])
+
+        key = id(trial), options  # which lives as long as its server
+        if key not in self._servers:
+            self._servers[key] = ForkServer(body, options)
+        found: T = self._servers[key].run(schedule)
+        return found
+
+    @staticmethod
+    def can_fork(trial: object, schedule: Schedule) -> bool:
+        """Whether it goes on from an instant, on greenlets, on a system that can fork."""
+        has_instant = schedule.from_ns and isinstance(trial, Trial) and trial.plan.tasks == "greenlet"
+        return bool(has_instant and hasattr(os, "fork"))
+
+    def close(self) -> None:
+        """End the processes that wait for schedules, the last one first: it has copies of the pipes of the others."""
+        for server in reversed(self._servers.values()):
+            server.close()
+        self._servers.clear()
+
+
 class ForkingJudge:
     """Gives verdicts; `close` ends the processes that it has.
 
@@ -227,31 +274,47 @@ class ForkingJudge:
 
     def __init__(self, trial: Experiment) -> None:
         self._trial = trial
-        self._servers: dict[Schedule, ForkServer] = {}
+        self._forks = Forks(_verdict)
 
     def judge(self, schedule: Schedule) -> Verdict:
         """The verdict on a schedule; see `cfepy.exploration.campaign.judge`."""
         trial = self._trial
-        if schedule.from_ns and isinstance(trial, Trial) and trial.plan.tasks == "greenlet" and hasattr(os, "fork"):
-            return self._forked(trial, schedule)
-        return judge(trial, schedule)
-
-    def close(self) -> None:
-        """End the processes that wait for schedules, the last one first: it has copies of the pipes of the others."""
-        for server in reversed(self._servers.values()):
-            server.close()
-        self._servers.clear()
-
-    def _forked(self, trial: Trial, schedule: Schedule) -> Verdict:
-        options = schedule.at({})
-
-        def body(late: LateSchedule) -> Verdict:
-            return trial.fly(options, [late.watched()], late.policy()).verdict
-
-        if options not in self._servers:
-            self._servers[options] = ForkServer(body, options)
+        if not isinstance(trial, Trial) or not Forks.can_fork(trial, schedule):
+            return judge(trial, schedule)
         try:
-            verdict: Verdict = self._servers[options].run(schedule)
+            verdict = self._forks.fly(trial, schedule)
         except ChildProcessError:
             return judge(trial, schedule)  # whatever ended that process does it here, where it is looked at
         return replace(verdict, schedule=told_as(schedule, dict(verdict.deviations)))
+
+    def close(self) -> None:
+        """End the processes that wait for schedules."""
+        self._forks.close()
+
+
+class ForkingNotes:
+    """Flies what is shrunk (`cfepy.exploration.shrink.fly_noting`); `close` ends the processes that it has."""
+
+    def __init__(self) -> None:
+        self._forks = Forks(_noted)
+
+    def fly(self, trial: Trial, schedule: Schedule) -> NotedFlight:
+        """A flight with its moves."""
+        try:
+            noted = self._forks.fly(trial, schedule)
+        except ChildProcessError:
+            return fly_noting(trial, schedule)
+        return noted._replace(verdict=replace(noted.verdict, schedule=schedule))
+
+    def close(self) -> None:
+        """End the processes that wait for schedules."""
+        self._forks.close()
+
+
+def _noted(trial: Trial, schedule: Schedule, policy: Policy | None, attachments: Sequence[Attachment]) -> NotedFlight:
+    recorder = MoveNotingPolicy(policy or schedule.policy() or Policy())
+    return NotedFlight.of(trial.fly(schedule, attachments, recorder).verdict, recorder)
+
+
+def _verdict(trial: Trial, schedule: Schedule, policy: Policy | None, attachments: Sequence[Attachment]) -> Verdict:
+    return trial.fly(schedule, attachments, policy).verdict

@@ -11,10 +11,10 @@ failure.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, islice
-from typing import Generic, Protocol, Self, TypeVar
+from typing import Generic, NamedTuple, Protocol, Self, TypeVar
 
 from cfepy.exploration.moves import Choice, KnownRuns, MadeMove, MoveNotingPolicy
 from cfepy.exploration.trial import Tried
@@ -60,6 +60,31 @@ class Shrinkable(Protocol):
 
 
 T = TypeVar("T", bound=Shrinkable)
+
+
+class NotedFlight(NamedTuple):
+    """A flight with its moves.
+
+    Attributes:
+        verdict: what became of it.
+        made: the moves that it made.
+        choices: all its decisions.
+    """
+
+    verdict: Verdict
+    made: tuple[MadeMove, ...]
+    choices: tuple[Choice, ...]
+
+    @classmethod
+    def of(cls, verdict: Verdict, recorder: MoveNotingPolicy) -> Self:
+        """What a policy has noted of a flight."""
+        return cls(verdict, recorder.made, tuple(recorder.choices))
+
+
+def fly_noting(trial: Shrinkable, schedule: Schedule) -> NotedFlight:
+    """Fly something in this process, and note its moves."""
+    recorder = MoveNotingPolicy(schedule.policy() or Policy())
+    return NotedFlight.of(trial.fly(schedule, policy=recorder).verdict, recorder)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,10 +134,19 @@ class Shrinker(Generic[T]):
         schedules: under which it fails, the shortest first.
         group: of the failure.
         most_probes: how many runs it may take; that none of what is left can be left out is looked at in any case.
+        fly: how; `fly_noting` gives the same.
     """
 
-    def __init__(self, trial: T, schedules: Sequence[Schedule], group: str, most_probes: int = MOST_PROBES) -> None:
+    def __init__(
+        self,
+        trial: T,
+        schedules: Sequence[Schedule],
+        group: str,
+        most_probes: int = MOST_PROBES,
+        fly: Callable[[T, Schedule], NotedFlight] = fly_noting,
+    ) -> None:
         self._trial = trial
+        self._fly_noting = fly
         self._schedules = schedules
         self._group = group
         self._most = most_probes
@@ -299,10 +333,9 @@ class Shrinker(Generic[T]):
 
     def _fly(self, schedule: Schedule) -> _Flight:
         self.probes += 1
-        recorder = MoveNotingPolicy(schedule.policy() or Policy())
-        verdict = self._trial.fly(schedule, policy=recorder).verdict
-        fails = verdict.failure(self._group) is not None
-        flight = _Flight(schedule.by_moves(()), fails, verdict, recorder.made, tuple(recorder.choices))
+        noted = self._fly_noting(self._trial, schedule)
+        fails = noted.verdict.failure(self._group) is not None
+        flight = _Flight(schedule.by_moves(()), fails, *noted)
         self._runs(flight.options).add(flight)
         return flight
 

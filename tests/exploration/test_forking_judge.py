@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.exploration.campaign import Campaign
-from cfepy.exploration.fork_server import ForkingJudge
+from cfepy.exploration.fork_server import ForkingJudge, ForkingNotes
+from cfepy.exploration.shrink import Shrinker, fly_noting
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import Verdict
 from cfepy.exploration.workers import PROCESS_DIED, Processes
@@ -28,6 +29,7 @@ def Main(cfe):
 """
 STARTUP = "CFE_APP, crash.py, Main, CRASH, 100, 16384, 0x0, 0;\n!\n"
 
+MISSIONS = Path(__file__).parents[1] / "quality" / "missions"
 BOOTED_NS = 600_000_000  # when the mission is up
 
 
@@ -65,6 +67,26 @@ def test_schedules_that_would_part_after_the_end() -> None:
         schedules = [Schedule("random", seed, from_ns=BOOTED_NS) for seed in range(2)]
         verdicts = [pilot.judge(schedule) for schedule in schedules]
     assert verdicts == [trial.run(schedule) for schedule in schedules]
+
+
+def test_forked_flights_have_the_moves_of_whole_ones() -> None:
+    trial = Trial(RunPlan(("capture",), seconds=0.605, tasks="greenlet"))
+    schedule = Schedule.parse("random:1:from=600ms")
+    with closing(ForkingNotes()) as forks:
+        noted = forks.fly(trial, schedule)
+        assert noted == fly_noting(trial, schedule)
+        assert forks.fly(trial, schedule.by_moves([each.move for each in noted.made])).made == noted.made
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["lost_update", "lock_order"])
+def test_what_is_shrunk_by_forked_flights_is_the_same(name: str) -> None:
+    trial = Trial(RunPlan((str(MISSIONS / name),), seconds=1.3, tasks="greenlet"))
+    schedules = (Schedule("random", seed, from_ns=BOOTED_NS) for seed in range(100))
+    failing = next(verdict for verdict in map(trial.run, schedules) if verdict.failures)
+    with closing(ForkingNotes()) as forks:
+        shrunk = Shrinker(trial, [failing.schedule], failing.groups[0], fly=forks.fly).run()
+    assert shrunk == Shrinker(trial, [failing.schedule], failing.groups[0]).run()
 
 
 @pytest.mark.slow
