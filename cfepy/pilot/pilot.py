@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict, Unpack
 
@@ -22,7 +23,7 @@ from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
 from cfepy.pilot.course import BROKEN_OFF, INTERRUPTED, OVER, STALLED, Course
 from cfepy.pilot.plan import RunPlan
-from cfepy.pilot.results import Results
+from cfepy.pilot.results import Mark, Results, never_happened
 from cfepy.rtos import LastResort, Policy
 from cfepy.status import CfeError, StallError, UsageError
 from cfepy.trace import Trace
@@ -79,28 +80,35 @@ class Host:
         """The run is over; its mission has not been closed yet."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Flown:
     """A run that is over.
 
     Attributes:
         mission: closed; what it left behind can be looked at.
-        results: its numbers.
+        at: its state when its time was over.
+        trace: the digest of the run; empty when it was broken off.
         outcome: of its script, None without one.
         reason: how it ended (`cfepy.pilot.course`).
-        notes: what its user should know: what was known before the run, and what of its plan never happened in it.
+        known: what its user should know, and was known before the run.
     """
 
     mission: Mission
-    results: Results
+    at: Mark
+    trace: str
     outcome: Outcome | None
     reason: str = OVER
-    notes: tuple[str, ...] = ()
+    known: tuple[str, ...] = ()
+
+    @cached_property
+    def results(self) -> Results:
+        """Its numbers: a search that flies thousands of times does not want them of each run."""
+        return Results.of(self.mission, self.at, self.trace)
 
     @property
-    def trace(self) -> str:
-        """The digest of the run; empty when it was broken off."""
-        return self.results.trace
+    def notes(self) -> tuple[str, ...]:
+        """What its user should know: what was known before the run, and what of its plan never happened in it."""
+        return (*self.known, *never_happened(self.mission))
 
     @property
     def stall(self) -> StallError | None:
@@ -217,9 +225,7 @@ class LiveRun:
     def flown(self) -> Flown:
         """What it came to, when the mission has been closed."""
         assert self._digest is not None
-        results = Results.of(self.mission, self.course.at, self._digest)
-        notes = (*self.notes, *results.never_happened)
-        return Flown(self.mission, results, self.course.outcome, self.reason, notes)
+        return Flown(self.mission, self.course.at, self._digest, self.course.outcome, self.reason, self.notes)
 
 
 class TakeoffOptions(TypedDict, total=False):

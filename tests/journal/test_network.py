@@ -19,7 +19,6 @@ from cfepy.mission import Mission, outside
 from cfepy.pilot.course import BROKEN_OFF, INTERRUPTED, Course
 from cfepy.pilot.pilot import Flown
 from cfepy.pilot.plan import RunPlan
-from cfepy.pilot.results import Results
 from cfepy.units import NS_PER_S
 from tests.io.echo import ECHO, FAST, LOOPBACK, PATIENCE_NS, pacer
 from tests.journal.replays import assert_same_again, plan_for
@@ -86,7 +85,7 @@ def session(folder: Path, schedule: str = "fifo", board: str = "linux", port: in
             course.end()
             mission.shut_down_nodes()
             digest = mission.finish()
-        recorder.end(Flown(mission, Results.of(mission, course.at, digest), None, INTERRUPTED))
+        recorder.end(Flown(mission, course.at, digest, None, INTERRUPTED))
 
 
 @pytest.mark.parametrize(("schedule", "board"), [("fifo", "linux"), ("random:3", "rx64m"), ("pct:1:3:500", "linux")])
@@ -193,7 +192,7 @@ def broken_off(folder: Path, plan: RunPlan, at_ns: int, paced: float | None = No
             mission.run_until(at_ns)
             course.end()
             digest = mission.finish()
-        recorder.end(Flown(mission, Results.of(mission, course.at, digest), None, BROKEN_OFF))
+        recorder.end(Flown(mission, course.at, digest, None, BROKEN_OFF))
     return read_journal(path)
 
 
