@@ -18,7 +18,8 @@ from cfepy.exploration.verdict import Verdict
 from cfepy.mission import CORE_APPS
 from cfepy.rtos import Schedule
 
-POLICIES = ("all", "random", "pct", "dfs", "orders")
+GREYBOX = "greybox"
+POLICIES = ("all", "random", "pct", "dfs", "orders", GREYBOX)
 PCT_DEPTH, DFS_DEPTH = 3, 2
 PORTFOLIO_DEPTHS = (2, 3, 1)
 """Of PCT in the policy `all`: most races need two ordered events, some three, and starvation one."""
@@ -101,7 +102,7 @@ def make_search(
     """The search that a command asks for.
 
     Args:
-        policy: one of POLICIES.
+        policy: one of POLICIES; of greybox what it takes from seeds.
         depth: of the bugs that PCT looks for, and the most preemptions of a systematic search; None takes 3 and 2,
             and for `all` PCT of depths 1 to 3. Of a search of orders it is how many steps may come in another order.
         steps: decisions of a run, at least, as the reference run had them.
@@ -116,7 +117,9 @@ def make_search(
     if policy == "orders":
         return OrderSearch(options, CORE_APPS, depth)
     random = replace(options, kind="random")
-    depths = PORTFOLIO_DEPTHS if depth is None and policy == "all" else (PCT_DEPTH if depth is None else depth,)
+    depths = (
+        PORTFOLIO_DEPTHS if depth is None and policy in ("all", GREYBOX) else (PCT_DEPTH if depth is None else depth,)
+    )
     pct = [replace(options, kind="pct", depth=each, steps=steps) for each in depths]
     if policy == "random":
         return SeededSearch((random,), first_seed)

@@ -3,15 +3,13 @@
     search = WorstSearch(make_search(...))
     campaign = Campaign(MeasuredTrial(plan, measure=Measure.parse("response:ARM")), search, 200, crew)
 
-It begins with schedules from seeds. Then come generations, each made from the verdicts on all schedules before it: the
-neighbours of the longest run, which answer one decision otherwise; changed ones of the longest runs; and a few more
-from seeds, so that it does not stay where it began. What comes after the longest does not matter to it, so all changes
+It is a search in generations. Each has the neighbours of the longest run, which answer one decision otherwise; changed
+ones of the longest runs; and a few more from seeds. What comes after the longest does not matter to it, so all changes
 are before that.
 """
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from random import Random
@@ -19,6 +17,7 @@ from statistics import median_low
 from typing import Any
 
 from cfepy.attachment import Attachment
+from cfepy.exploration.generations import Generations, changed
 from cfepy.exploration.search import SeededSearch
 from cfepy.exploration.shrink import Shrinker, Shrunk
 from cfepy.exploration.timeline import Story, story_of
@@ -32,8 +31,6 @@ NEIGHBOURS, CHANGED, FRESH = 6, 10, 4
 """A generation: how many schedules of each kind. It does not depend on how many processes there are."""
 PARENTS = 8
 NOTHING = Measure("", "")
-MOST_CHANGES = 4
-WINDOW = 12  # decisions before the end of the longest, which matter more often than others
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +65,7 @@ class MeasuredTrial(Trial):
         return tried._replace(verdict=verdict)
 
 
-class WorstSearch:
+class WorstSearch(Generations):
     """Schedules with ever longer runs; see the module.
 
     Args:
@@ -77,55 +74,23 @@ class WorstSearch:
     """
 
     def __init__(self, seeded: SeededSearch, seed: int = 0) -> None:
-        self._seeded = seeded
-        self._random = Random(f"worst {seed}")
-        self._given = self._told = 0
-        self._waiting: deque[Schedule] = deque()
-        self._fresh = FROM_SEEDS
+        super().__init__(seeded, Random(f"worst {seed}"), FROM_SEEDS, FRESH)
         self._parents: list[tuple[int, Verdict]] = []  # the longest first; of equals the first one found
-        self._tried: set[Schedule] = set()
 
-    def next(self) -> Schedule | None:
-        """See `cfepy.exploration.campaign.Search`: a generation waits for the verdicts on all schedules before it."""
-        if not self._waiting and not self._fresh:
-            if self._told < self._given:
-                return None
-            self._waiting.extend(self._generation())
-            self._fresh = FRESH
-        if self._waiting:
-            self._given += 1
-            return self._waiting.popleft()
-        found = self._seeded.next()
-        if found is not None:
-            self._given += 1
-            self._fresh -= 1
-        return found
-
-    def tell(self, number: int, verdict: Verdict) -> None:
-        """See `cfepy.exploration.campaign.Search`."""
-        self._told += 1
-        self._seeded.tell(number, verdict)
+    def learn(self, number: int, verdict: Verdict) -> None:
+        """See `Generations.learn`."""
         known = (_with(parent, _before_the_end(parent)) for _, parent in self._parents)
         if verdict.longest and _with(verdict, _before_the_end(verdict)) not in known:
             self._parents.append((number, verdict))
             self._parents.sort(key=lambda each: (-each[1].longest[0], each[0]))
             del self._parents[PARENTS:]
 
-    def _generation(self) -> list[Schedule]:
+    def generation(self) -> list[Schedule]:
+        """See `Generations.generation`."""
         if not self._parents:
             return []
-        made = [*self._some(self._neighbours(), NEIGHBOURS)]
-        return [*made, *self._some((self._changed() for _ in range(CHANGED * 4)), CHANGED)]
-
-    def _some(self, candidates: Iterator[Schedule], count: int) -> Iterator[Schedule]:
-        """The first ones that were not tried yet."""
-        for each in candidates:
-            if not count:
-                return
-            if each not in self._tried:
-                self._tried.add(each)
-                count -= 1
-                yield each
+        made = [*self.untried(self._neighbours(), NEIGHBOURS)]
+        return [*made, *self.untried((self._changed() for _ in range(CHANGED * 4)), CHANGED)]
 
     def _neighbours(self) -> Iterator[Schedule]:
         """Of the longest run, and then of the others: one decision otherwise, the last ones before the end first."""
@@ -137,24 +102,14 @@ class WorstSearch:
                         yield _with(parent, {**answers, decision: answer})
 
     def _changed(self) -> Schedule:
-        """One of the longest runs with some decisions otherwise, and perhaps with the beginning of another one."""
-        random = self._random
+        """One of the longest runs, changed."""
+        random = self.random
         parent = self._parents[int(len(self._parents) * random.random() ** 2)][1]
-        end, answers = _end(parent), _before_the_end(parent)
-        if not end:
-            return _with(parent, {})
-        how = random.random()
-        if how < 0.25:
-            first, last = sorted((random.randrange(end), random.randrange(end)))
-            answers = {at: answer for at, answer in answers.items() if not first <= at <= last}
-        elif how < 0.4:
-            other, cut = random.choice(self._parents)[1], random.randrange(end)
-            early = {at: answer for at, answer in _before_the_end(other).items() if at < cut}
-            answers = early | {at: answer for at, answer in answers.items() if at >= cut}
-        for _ in range(random.randint(1, MOST_CHANGES)):
-            decision = random.randrange(max(0, end - WINDOW) if random.random() < 0.5 else 0, end)
-            answers[decision] = random.randrange(abs(parent.widths[decision]))
-        return _with(parent, answers)
+        widths = parent.widths[: _end(parent)]
+        return _with(parent, changed(random, _before_the_end(parent), widths, self._answers_of_any))
+
+    def _answers_of_any(self) -> dict[int, int]:
+        return _before_the_end(self.random.choice(self._parents)[1])
 
 
 def _end(verdict: Verdict) -> int:

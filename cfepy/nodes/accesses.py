@@ -114,12 +114,15 @@ class Accesses:
 
     Attributes:
         observers: get each access; set before the mission boots.
-        files: the source files whose code tells of accesses.
+        files: the source files whose code has hooks, and whether each is a node's script.
+        reached: takes the lines that are executed, by `instrument.line_name`; None for nobody. Set before the mission
+            boots.
     """
 
     def __init__(self, kernel: Kernel) -> None:
         self.observers: list[Observer] = []
-        self.files: set[str] = set()
+        self.files: dict[str, bool] = {}
+        self.reached: set[str] | None = None
         self._kernel = kernel
         self._points = Points.parse("" if kernel.policy is None else kernel.policy.points)
         self._point = kernel.point if isinstance(kernel, ExploringKernel) else None
@@ -134,7 +137,7 @@ class Accesses:
     @property
     def is_on(self) -> bool:
         """Whether code has to be compiled with hooks."""
-        return bool(self.observers or self._points.kind)
+        return bool(self.observers or self._points.kind or self.reached is not None)
 
     def kinds(self, file: str, is_main: bool) -> Kinds | None:
         """What the code of a file has hooks at; None for nothing.
@@ -144,12 +147,14 @@ class Accesses:
             is_main: it is a node's script.
         """
         kind = self._points.kind if self._points.cover(file) else ""
-        if not (self.observers or kind):
+        tells_lines = self.reached is not None
+        if not (self.observers or kind or tells_lines):
             return None
         from cfepy.nodes.instrument import Kinds
 
-        self.files.add(file)
-        return Kinds(bool(self.observers) or kind == ATTRIBUTES, kind == LINES, kind == CALLS, is_main)
+        self.files[file] = is_main
+        has_accesses = bool(self.observers) or kind == ATTRIBUTES
+        return Kinds(has_accesses, kind == LINES, kind == CALLS, is_main, tells_lines)
 
     def number(self, thing: object) -> int:
         """The number of an object, from 1."""
@@ -161,7 +166,8 @@ class Accesses:
 
     def hooks(self) -> dict[str, Callable[..., Any]]:
         """What code with hooks needs among its builtins."""
-        return {f"__{name}__": getattr(self, name) for name in _HOOKS}
+        found = {f"__{name}__": getattr(self, name) for name in _HOOKS}
+        return found if self.reached is None else found | {"__reached__": self.reached.add}
 
     def adopt(self, variables: dict[str, Any]) -> None:
         """The variables of a module of the mission, which is about to be executed."""

@@ -7,6 +7,7 @@ queues and mutexes do not: OSAL builds them on the names below. The host's threa
 
 from __future__ import annotations
 
+from cfepy.rtos.aims import Aim
 from cfepy.rtos.costs import CpuCosts
 from cfepy.rtos.cpus import allowed_cpus
 from cfepy.rtos.errors import DeadlockError, InjectedCrash
@@ -52,6 +53,7 @@ __all__ = [
     "STALL_S",
     "STEPS",
     "TIMEOUT",
+    "Aim",
     "AskingPolicy",
     "CallObserver",
     "CallPointKernel",

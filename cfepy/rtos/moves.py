@@ -63,11 +63,11 @@ class Move(NamedTuple):
 
     def text(self) -> str:
         """As it stands in a schedule; `Move.parse` gives it again."""
-        place = [] if not self.place else [NEXT if self.place == NEXT else _escaped(self.place)]
+        place = [] if not self.place else [NEXT if self.place == NEXT else escaped(self.place)]
         number = [str(self.number)] if self.number > 1 else []
         is_anytime = not (self.from_ms or place or number)
         when = "" if is_anytime else "/".join([f"@{self.from_ms}", *place, *number])
-        return f"{_escaped(self.subject)}{when}={_escaped(self.chosen)}"
+        return f"{escaped(self.subject)}{when}={escaped(self.chosen)}"
 
     @classmethod
     def parse(cls, text: str) -> Move:
@@ -81,10 +81,10 @@ class Move(NamedTuple):
             raise ValueError(f"{text!r} is no move")
         place = match["place"] or ""
         return cls(
-            _unescaped(match["subject"]),
-            _unescaped(match["chosen"]),
+            unescaped(match["subject"]),
+            unescaped(match["chosen"]),
             int(match["ms"] or 0),
-            _unescaped(place),
+            unescaped(place),
             int(match["number"] or 1),
         )
 
@@ -97,11 +97,13 @@ _MOVE = re.compile(
 )
 
 
-def _escaped(text: str) -> str:
+def escaped(text: str) -> str:
+    """A name as it stands in a schedule."""
     return quote(text, safe="/ ").replace("~", "%7E").replace(" ", "+")
 
 
-def _unescaped(text: str) -> str:
+def unescaped(text: str) -> str:
+    """The name that `escaped` gives a text for."""
     return unquote(text.replace("+", " "))
 
 

@@ -48,6 +48,9 @@ def show(report: Report, stream: TextIO) -> None:
     if not report.findings and report.is_steady:
         for line in report.breadth.lines():
             print(f"  {line}", file=stream)
+    if report.coverage is not None and report.is_steady:
+        for line in report.coverage.lines():
+            print(f"  {line}", file=stream)
 
 
 def summary(report: Report) -> str:
@@ -183,11 +186,12 @@ def _show_leak(plan: RunPlan, schedule: Schedule) -> None:
 def _expedition(arguments: argparse.Namespace) -> Expedition:
     """What the command line asks for."""
     names = ("policy", "depth", "first_seed", "any_priority", "fair", "until_failure", "events", "jobs", "cluster")
+    more = ("worst", "coverage", "corpus", "results", "shrink", "points")
     return Expedition(
         plan_of_mission(arguments),
         seeds=arguments.seeds or (DEFAULT_SEEDS if arguments.budget is None else MOST_SEEDS),
         budget_s=arguments.budget,
-        **{name: getattr(arguments, name) for name in (*names, "worst", "results", "shrink", "points")},
+        **{name: getattr(arguments, name) for name in (*names, *more)},
         hold_s=arguments.hold,
         starved_s=arguments.starved,
         livelock_s=arguments.livelock,
