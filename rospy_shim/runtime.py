@@ -13,6 +13,7 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from cfepy.cached import CachedProperty
 from cfepy.es import StartParams
 from cfepy.nodes import NodeConfig, ProcessNumbers, RosConfig, Universe
 from cfepy.rtos import InjectedCrash
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from cfepy.nodes import Accesses, Factory, Overlay
     from cfepy.osal import Network
     from cfepy.rtos import Kernel
+    from rospy_shim.graph.outside import OutsideGraph
 
 CRASHED = 139  # 128 + SIGSEGV, as a shell tells it
 APP_ERROR = 3  # CFE_ES_RunStatus_APP_ERROR
@@ -146,6 +148,8 @@ class RosRuntime:
         accesses: what their code tells of what it touches; None for nothing.
 
     Attributes:
+        graph: who publishes, subscribes and offers what.
+        switchboard: finds who answers at a URI.
         parameters: the application ROS, which starts before the first node.
         ended: how the programs have ended that did, by cFE application; of several starts, the last one.
     """
@@ -166,7 +170,7 @@ class RosRuntime:
         accesses: Accesses | None = None,
     ) -> None:
         self.graph = Graph(config)
-        self._switchboard = Switchboard(self.graph)
+        self.switchboard = Switchboard(self.graph)
         self._cfe = cfe
         self._kernel = kernel
         self._config = config
@@ -198,6 +202,13 @@ class RosRuntime:
             return max(config.respawn_delay_ns, SHORTEST_RESPAWN_NS)
         self.ended[app] = NodeEnd(config.name or app, status)
         return None
+
+    @CachedProperty
+    def outside(self) -> OutsideGraph:
+        """What nodes outside of the mission have in its graph; only a run that is joined to some imports it."""
+        from rospy_shim.graph.outside import OutsideGraph
+
+        return OutsideGraph(self.graph, self.switchboard, self._cfe, self._kernel)
 
     def run_node(self, script: Path, app_name: str) -> None:
         """Run a node's script to its end, in the main task of its cFE application.
@@ -273,7 +284,7 @@ class RosRuntime:
         universe.importer.path[1:1] = [*_python_path(universe), *map(str, node.packages.code_folders())]
         find = _finder(
             node,
-            {"xmlrpc.client": xmlrpc_client(node, self._switchboard), **library_parts(node), **self._starter(node)},
+            {"xmlrpc.client": xmlrpc_client(node, self.switchboard), **library_parts(node), **self._starter(node)},
         )
         return node
 

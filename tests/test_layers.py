@@ -24,6 +24,7 @@ ABOUT_IMPORTS = 8  # docstrings that say what a module imports, which this test 
 
 TYPES_IN_CIRCLES = {
     "cfepy.c": "the functions of the API are declared for the C side of a processor, which has them declared",
+    "cfepy.ros_host": "what stands for a node, and the master, know the host that they belong to",
     "cfepy.nodes": "a universe is made of modules that know their universe",
     "cfepy.rtos": "a kernel and its tasks know each other",
     "rospy_shim": "a node of rospy and what belongs to it know each other",
@@ -43,6 +44,7 @@ MAY_TOUCH_THE_HOST = {
     "garbage": "counts the threads that hold up the collection of garbage",
     "rtos": "task contexts, pacing and the stall watch are made of the host's threads and clock",
     "io": "joins the virtual network of a paced run to real sockets on the loopback interface",
+    "ros_host": "speaks ROS's protocols on real sockets, and does in threads of the host what must wait for others",
     "exploration": "spreads trials over processes and computers, sees when one of them ends, tells how far it has come",
     "faults": "draws from random streams that follow from the seed of the run",
     "nodes": "puts virtual modules in the place of these, and takes constants and types from the real ones",

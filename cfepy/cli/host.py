@@ -49,6 +49,8 @@ class WatchedHost(Host):
         realtime: pace it to the wall clock, so many times as fast, with the mission's ports open; None runs as fast as
             it goes.
         ports: ports of this computer by those of the mission.
+        ros_master: a paced run joins the ROS master at this URI, or serves one: "serve" or "serve:PORT"; None for
+            neither.
         pause: called between the pieces.
         note: gets what the user should know before anything runs.
 
@@ -65,6 +67,7 @@ class WatchedHost(Host):
         *,
         realtime: float | None = None,
         ports: Mapping[int, int] | None = None,
+        ros_master: str | None = None,
         pause: Callable[[], object] = lambda: None,
         note: Callable[[str], object] = _to_stderr,
     ) -> None:
@@ -75,6 +78,7 @@ class WatchedHost(Host):
         self._display: Display = SilentDisplay()
         self._realtime = realtime
         self._ports = ports or {}
+        self._ros_master = ros_master
         self._pause = pause
         self._note = note
         self._piece = PieceLength()
@@ -156,6 +160,11 @@ class WatchedHost(Host):
         from cfepy.io import HostNetwork
 
         self._network = self._bridge.enter_context(HostNetwork(self._mission, dict(self._ports), self._line))
+        if self._ros_master is not None:
+            from cfepy.ros_host import RosHost, world_at
+
+            ros = RosHost(self._mission, world_at(self._ros_master), tell=self._line)
+            self._network.join(self._bridge.enter_context(ros))
 
     def _run_until(self, until_ns: int) -> None:
         """A piece of the run; its length goes after what takes some 80 to 250 ms of wall time."""

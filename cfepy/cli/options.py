@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from cfepy.cli.parser import MissionAction
+from cfepy.status import UsageError
 
 if TYPE_CHECKING:
     from cfepy.pilot import RunPlan
@@ -434,6 +435,27 @@ def add_pace(parser: argparse.ArgumentParser) -> None:
         metavar="PORT=HERE",
         help="open the mission's port PORT, or send to it, as port HERE of this computer; 0 takes any free one",
     )
+    pace.add_argument(
+        "--ros-master",
+        type=ros_master_of,
+        metavar="URI",
+        help="with --realtime: be one graph with ROS on this computer. URI is that of a running roscore, such as "
+        "http://localhost:11311; serve or serve:PORT serves a ROS master for others",
+    )
+
+
+def check_pace(arguments: argparse.Namespace) -> None:
+    """Check what `add_pace` has added.
+
+    Raises:
+        UsageError: something in it is for a run in real time, and this one is none.
+    """
+    if arguments.realtime is not None:
+        return
+    if arguments.port:
+        raise UsageError("without --realtime no port is opened on this computer", field="--port")
+    if arguments.ros_master:
+        raise UsageError("without --realtime no ROS node of this computer can keep pace; add it", field="--ros-master")
 
 
 # -- types of arguments ------------------------------------------------------------------------------------------------
@@ -484,6 +506,15 @@ def factor_of(text: str) -> float:
     if not SLOWEST <= factor <= FASTEST:
         raise argparse.ArgumentTypeError(f"{text!r} is not a factor; give {SLOWEST:g} to {FASTEST:g}")
     return factor
+
+
+def ros_master_of(text: str) -> str:
+    """The URI of a ROS master, or `serve` with or without a port, for argparse."""
+    word, mark, port = text.partition(":")
+    serves = word == "serve" and (not mark or (port.isdecimal() and int(port) <= HIGHEST_PORT))
+    if serves or (word == "http" and text.count(":") > 1 and text.rstrip("/").rpartition(":")[2].isdecimal()):
+        return text
+    raise argparse.ArgumentTypeError(f"{text!r} is not like http://localhost:11311, serve or serve:11312")
 
 
 def ports_of(text: str) -> tuple[int, int]:

@@ -13,6 +13,7 @@ import socket
 import time
 from collections.abc import Callable, Mapping
 from types import TracebackType
+from typing import Any, Protocol
 
 from cfepy.ground import GroundLink
 from cfepy.mission import Mission, OutsideStream
@@ -24,6 +25,16 @@ DIAL_S = 1.0  # wall time; a program on the same computer answers at once
 MOST_AT_ONCE = 256  # datagrams of a port that are brought in between two pieces of a run
 UDP, TCP = "UDP", "TCP"
 CHUNK = 65_536
+
+
+class Guest(Protocol):
+    """What else brings something into a run from outside, at the same occasions."""
+
+    def fileno(self) -> int:
+        """What can be read when there is something to bring in."""
+
+    def exchange(self) -> None:
+        """Bring it in."""
 
 
 class HostNetwork:
@@ -53,6 +64,7 @@ class HostNetwork:
         self._anonymous.setblocking(False)
         self._foreign: list[str] = []
         self._replies: dict[int, socket.socket] = {}
+        self._guests: list[Guest] = []
         self._link = GroundLink(mission, self._outbox.append)
         mission.network.dial = self._dial
 
@@ -69,11 +81,18 @@ class HostNetwork:
         opened = self._open.get((protocol, port))
         return None if opened is None else int(opened.getsockname()[1])
 
+    def join(self, guest: Guest) -> None:
+        """Let something else bring in what it has, too."""
+        self._guests.append(guest)
+
     def wait(self, seconds: float) -> None:
         """Sleep, at most until there is something to bring in or to send on."""
-        readers = [opened for (protocol, port), opened in self._open.items() if protocol == UDP or self._has_room(port)]
+        readers: list[Any] = [
+            opened for (protocol, port), opened in self._open.items() if protocol == UDP or self._has_room(port)
+        ]
         readers += [connection.host for connection in self._connections if connection.wants_to_read]
         readers += self._replies.values()
+        readers += self._guests
         writers = [connection.host for connection in self._connections if connection.wants_to_write]
         if readers or writers:
             select.select(readers, writers, [], seconds)
@@ -99,6 +118,8 @@ class HostNetwork:
         self._connections = [connection for connection in self._connections if connection.move()]
         while self._outbox:
             self._send_out(self._outbox.pop(0))
+        for guest in self._guests:
+            guest.exchange()
 
     def close(self) -> None:
         """Send out what is left, and close everything."""

@@ -15,7 +15,7 @@ from cfepy.osal import FileSystem
 if TYPE_CHECKING:
     from rospy_shim.runtime import RosRuntime
 
-PACKET, PUBLISH, PARAM, CALL, FILE = "packet", "publish", "param", "call", "file"
+PACKET, PUBLISH, PARAM, CALL, FILE, ROS = "packet", "publish", "param", "call", "file", "ros"
 
 
 class ActedOn(Protocol):
@@ -30,6 +30,9 @@ class ActedOn(Protocol):
     @property
     def ros(self) -> RosRuntime | None:
         """The ROS side; None before the first node started."""
+
+    def begin_ros(self) -> RosRuntime:
+        """The ROS side, made if there was no node yet."""
 
 
 class HostCall:
@@ -72,15 +75,17 @@ class HostActs:
             PARAM: self._param,
             CALL: self._call,
             FILE: mission.files.write_file,
+            ROS: self._outside_nodes,
         }
 
     def do(self, name: str, *values: Any) -> Any:
         """Do one.
 
         Args:
-            name: PACKET puts one on the bus as it is (data); PUBLISH a message on a ROS topic (topic, data); PARAM
-                sets a ROS parameter (name, value); CALL begins to call a ROS service (name, request), which the run
-                goes on with; FILE writes one (path, data).
+            name: ROS is what a ROS node outside of the mission does (name, values, as `OutsideGraph.do`; without any
+                the ROS side begins); PACKET puts one on the bus as it is (data); PUBLISH a message on a ROS topic
+                (topic, data); PARAM sets a ROS parameter (name, value); CALL begins to call a ROS service (name,
+                request), which the run goes on with; FILE writes one (path, data).
             values: plain, as above; messages as ROS serialises them.
 
         Raises:
@@ -101,6 +106,10 @@ class HostActs:
         if ros is None:
             raise KeyError("no ROS node has started")
         return ros
+
+    def _outside_nodes(self, *values: Any) -> Any:
+        outside = self._mission.begin_ros().outside
+        return outside.do(*values) if values else None
 
     def _packet(self, data: bytes) -> None:
         self._mission.cfe.sb.transmit_msg(data, is_origination=False)

@@ -195,6 +195,10 @@ class Mission:
         """The ROS side; None before the first node started."""
         return self.processor.ros
 
+    def begin_ros(self) -> RosRuntime:
+        """The ROS side, made if there was no node yet."""
+        return self.processor.begin_ros()
+
     @property
     def run_files(self) -> Overlay | None:
         """What apps and nodes see of files, and wrote, until the mission is closed; None before it was needed."""

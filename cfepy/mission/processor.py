@@ -276,11 +276,16 @@ class Processor:
         ros = self._start_ros()
         return lambda: ros.run_node(script, app_name)
 
-    def _start_ros(self) -> RosRuntime:
-        """ROS, which starts before the first node, compiled or not."""
+    def begin_ros(self) -> RosRuntime:
+        """The ROS side, made if there was no node yet; its application starts with the first one."""
         ros = self.ros
         if ros is None:
             ros = self.ros = self._make_ros()
+        return ros
+
+    def _start_ros(self) -> RosRuntime:
+        """ROS, which starts before the first node, compiled or not."""
+        ros = self.begin_ros()
         ros.parameters.ensure()
         return ros
 

@@ -242,6 +242,11 @@ def _observed(observer: Observer, base: type[SoftwareBus]) -> type[SoftwareBus]:
                 observer._receives(self, pipe, packet)
             return packet
 
+        def hand_on(self, packet: bytes, destination: Any) -> None:
+            """See `SoftwareBus.hand_on`."""
+            super().hand_on(packet, destination)
+            observer._receives(self, destination.pipe, packet)
+
         def _report_failures(self, msg_id: int, failures: list[tuple[int, Any]]) -> None:
             for event_id, destination in failures:
                 observer._refused(self, msg_id, event_id, destination.pipe)

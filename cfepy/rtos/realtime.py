@@ -68,7 +68,9 @@ class Pacer:
         latest = self._due(elapsed + PATIENCE_NS)
         upcoming = self._kernel.next_event()
         idle_until = latest if upcoming is None else min(upcoming, latest)
-        target = min(max(idle_until, self._due(elapsed + STEP_NS)), until_ns)
+        now = self._due(elapsed)
+        is_due = upcoming is not None and upcoming <= now  # such as a task that input has made ready
+        target = min(now if is_due else max(idle_until, self._due(elapsed + STEP_NS)), until_ns)
         ahead = self._wall_of(target) - self._elapsed_ns()
         if ahead > 0:
             self._wait(ahead / NS_PER_S)

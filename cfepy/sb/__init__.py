@@ -10,6 +10,7 @@ from __future__ import annotations
 from cfepy.ports import PEND_FOREVER
 from cfepy.sb.buffers import BUFFER_BYTES, MessageBuffer
 from cfepy.sb.bus import POLL, SoftwareBus
+from cfepy.sb.outlet import Outlet
 from cfepy.sb.packet_listener import listened
 from cfepy.sb.packets import COMMANDS, ONESUB_TLM, TELEMETRY, UNSUBSCRIPTION
 from cfepy.sb.pipe import Pipe
@@ -28,6 +29,7 @@ __all__ = [
     "UNSUBSCRIPTION",
     "Destination",
     "MessageBuffer",
+    "Outlet",
     "Pipe",
     "Route",
     "SbTask",

@@ -162,6 +162,11 @@ class BufferServices(BusCore):
         self.subscriptions -= 1
         self.give_block(destination.block, DESTINATION_BYTES)
 
+    def hand_on(self, packet: bytes, destination: Destination) -> None:
+        """A packet that was put into an outlet has left it."""
+        self._queued_bytes -= len(packet) + BUFFER_BYTES
+        destination.gets += 1
+
     # -- the pool --------------------------------------------------------------------------------------------------
 
     def take_block(self, size: int) -> Block | None:

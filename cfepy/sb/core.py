@@ -78,6 +78,7 @@ class BusCore:
     Attributes:
         routing: the routing table; `routes` is its dictionary.
         subscriptions: pairs of MsgId and pipe.
+        outlets: how many there ever were (`cfepy.sb.outlet`).
         reporting: whether each subscription is told to other processors.
     """
 
@@ -100,6 +101,7 @@ class BusCore:
         self.routing = RoutingTable(config.sb_max_msg_ids, config.sb_highest_valid_msg_id)
         self.routes: dict[int, Route] = self.routing.routes
         self.subscriptions = 0
+        self.outlets = 0
         self.reporting = False
         self.unrouted = Unrouted()
         self.app_id = 0  # of the SB application itself, in whose name events are sent

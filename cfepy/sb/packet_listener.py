@@ -118,6 +118,11 @@ def listened(base: type[SoftwareBus], listener: PacketListener) -> type[Software
                 listener.taken(packet, pipe)
             return packet
 
+        def hand_on(self, packet: bytes, destination: Destination) -> None:
+            """See `SoftwareBus.hand_on`."""
+            super().hand_on(packet, destination)
+            listener.taken(packet, destination.pipe)
+
         def remove_pipe(self, pipe: Pipe) -> None:
             """See `SoftwareBus.remove_pipe`."""
             packets = [item[0] for item in pipe.items]

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 
 def delay_of(link: Link, subscription: Subscription) -> int:
-    """How long it takes until these two are connected, in virtual ns."""
+    """How long it takes until these two are connected, in virtual ns; with a node outside the network says it."""
+    if link.is_outside or subscription.is_outside:
+        return 0
     node = link.node
     publisher, subscriber = node.names.name, subscription.node.names.name
     return node.kernel.connection_delay(publisher, subscriber, link.name, node.graph.connection_delay_ns)
@@ -32,6 +34,9 @@ def begin(link: Link, subscription: Subscription, delay_ns: int, *, late: bool) 
         delay_ns: virtual ns until they are connected; 0 connects them at once.
         late: the publisher was there before, and may have a latched message.
     """
+    if subscription.is_outside and not late:
+        link.expect_peer(subscription)  # until its connection is there
+        return
     if not delay_ns:
         link.peer_joined(subscription, late=late)
         return

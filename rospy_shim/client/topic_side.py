@@ -42,7 +42,12 @@ class TopicSide:
         node: the node.
         name: resolved name of the topic.
         data_class: message class.
+
+    Attributes:
+        is_outside: the node is outside of the mission.
     """
+
+    is_outside = False
 
     def __init__(self, node: Node, name: str, data_class: MessageClass) -> None:
         self.node = node

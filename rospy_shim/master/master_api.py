@@ -26,11 +26,14 @@ class MasterApi:
     Args:
         graph: the mission's ROS graph.
         uri: where the master answers.
+
+    Attributes:
+        registry: who publishes, subscribes and offers what.
     """
 
     def __init__(self, graph: Graph, uri: str) -> None:
         self._params: ParameterTree = graph.params
-        self._registry = Registrations(graph)
+        self.registry = Registrations(graph)
         self._uri = uri
 
     @answers("")
@@ -107,7 +110,7 @@ class MasterApi:
     def subscribeParam(self, caller: str, uri: str, key: str) -> Answer:
         """The value of a parameter. A node sees its changes in any case, since the tree is where it looks."""
         key = calls.resolve(key, caller)
-        self._registry.register_param_subscriber(key, caller, uri)
+        self.registry.register_param_subscriber(key, caller, uri)
         value = self._params.find(key)
         return 1, f"Subscribed to parameter [{key}]", {} if value is ParameterTree.MISSING else value
 
@@ -115,47 +118,47 @@ class MasterApi:
     def unsubscribeParam(self, caller: str, uri: str, key: str) -> Answer:
         """Want no changes of a parameter any more."""
         key = calls.resolve(key, caller)
-        self._registry.unregister_param_subscriber(key, caller, uri)
+        self.registry.unregister_param_subscriber(key, caller, uri)
         return 1, f"Unsubscribe to parameter [{key}]", 1
 
     def subscribes_to_param(self, uri: str, key: str) -> bool:
         """Whether a node at a URI has subscribed to a parameter."""
-        return uri in self._registry.param_subscribers.get(key, {}).values()
+        return uri in self.registry.param_subscribers.get(key, {}).values()
 
     # -- the graph ---------------------------------------------------------------------------------------------------
 
     @answers("", calls.name("node"))
     def lookupNode(self, caller: str, name: str) -> Answer:
         """Where a node answers."""
-        uri = self._registry.node_uri(name)
+        uri = self.registry.node_uri(name)
         return (-1, f"unknown node [{name}]", "") if uri is None else (1, "node api", uri)
 
     @answers("", calls.name_of_thing("service"))
     def lookupService(self, caller: str, service: str) -> Answer:
         """Where a service is called."""
-        uri = self._registry.service_uri(service)
+        uri = self.registry.service_uri(service)
         return (-1, "no provider", "") if uri is None else (1, f"rosrpc URI: [{uri}]", uri)
 
     @answers(0, calls.name_or_nothing("subgraph"))
     def getPublishedTopics(self, caller: str, subgraph: str) -> Answer:
         """[topic, type] of all topics below a namespace that a node publishes."""
         prefix = subgraph.rstrip(SEP) + SEP if subgraph else ""
-        types = self._registry.topic_types()
+        types = self.registry.topic_types()
         return (
             1,
             "current topics",
-            [[each, types[each]] for each in self._registry.publishers() if each.startswith(prefix)],
+            [[each, types[each]] for each in self.registry.publishers() if each.startswith(prefix)],
         )
 
     @answers([])
     def getTopicTypes(self, caller: str) -> Answer:
         """[topic, type] of all topics that there ever were."""
-        return 1, "current system state", [list(each) for each in self._registry.topic_types().items()]
+        return 1, "current system state", [list(each) for each in self.registry.topic_types().items()]
 
     @answers([[], [], []])
     def getSystemState(self, caller: str) -> Answer:
         """Publishers, subscribers and providers of services: three lists of [name, [node, ...]]."""
-        known = self._registry
+        known = self.registry
         entries = (known.publishers(), known.subscribers(), known.providers())
         return 1, "current system state", [[[name, list(who)] for name, who in each.items()] for each in entries]
 
@@ -164,46 +167,46 @@ class MasterApi:
     @answers([], calls.name_of_thing("topic"), calls.type_name("topic_type"), calls.address("caller_api"))
     def registerPublisher(self, caller: str, topic: str, kind: str, uri: str) -> Answer:
         """Note a publisher; the value is where the subscribers answer."""
-        self._registry.register_publisher(topic, kind, caller, uri)
-        return 1, f"Registered [{caller}] as publisher of [{topic}]", _uris(self._registry.subscribers(), topic)
+        self.registry.register_publisher(topic, kind, caller, uri)
+        return 1, f"Registered [{caller}] as publisher of [{topic}]", _uris(self.registry.subscribers(), topic)
 
     @answers([], calls.name_of_thing("topic"), calls.type_name("topic_type"), calls.address("caller_api"))
     def registerSubscriber(self, caller: str, topic: str, kind: str, uri: str) -> Answer:
         """Note a subscriber; the value is where the publishers answer."""
-        self._registry.register_subscriber(topic, kind, caller, uri)
-        return 1, f"Subscribed to [{topic}]", _uris(self._registry.publishers(), topic)
+        self.registry.register_subscriber(topic, kind, caller, uri)
+        return 1, f"Subscribed to [{topic}]", _uris(self.registry.publishers(), topic)
 
     @answers(0, calls.name_of_thing("service"), calls.address("service_api"), calls.address("caller_api"))
     def registerService(self, caller: str, service: str, service_uri: str, uri: str) -> Answer:
         """Note the provider of a service."""
-        self._registry.register_service(service, service_uri, caller, uri)
+        self.registry.register_service(service, service_uri, caller, uri)
         return 1, f"Registered [{caller}] as provider of [{service}]", 1
 
     @answers(0, calls.name_of_thing("topic"), calls.address("caller_api"))
     def unregisterPublisher(self, caller: str, topic: str, uri: str) -> Answer:
         """Forget a publisher; the node's own messages are not heard any more."""
         known = self._is_known(caller)
-        return _unregistered(known, self._registry.unregister_publisher(topic, caller, uri), caller, topic)
+        return _unregistered(known, self.registry.unregister_publisher(topic, caller, uri), caller, topic)
 
     @answers(0, calls.name_of_thing("topic"), calls.address("caller_api"))
     def unregisterSubscriber(self, caller: str, topic: str, uri: str) -> Answer:
         """Forget a subscriber; the node gets no more messages of the topic."""
         known = self._is_known(caller)
-        return _unregistered(known, self._registry.unregister_subscriber(topic, caller, uri), caller, topic)
+        return _unregistered(known, self.registry.unregister_subscriber(topic, caller, uri), caller, topic)
 
     @answers(0, calls.name_of_thing("service"), calls.address("service_api"))
     def unregisterService(self, caller: str, service: str, service_uri: str) -> Answer:
         """Forget the provider of a service, which cannot be called any more."""
         if not self._is_known(caller):
             return 1, f"[{caller}] is not a registered node", 0
-        providers = self._registry.providers().get(service, {})
-        if caller not in providers or self._registry.service_uri(service) != service_uri:
+        providers = self.registry.providers().get(service, {})
+        if caller not in providers or self.registry.service_uri(service) != service_uri:
             return 1, f"[{service_uri}] is no longer the current service api handle for [{service}]", 0
-        self._registry.unregister_service(service, caller)
+        self.registry.unregister_service(service, caller)
         return 1, f"Unregistered [{caller}] as provider of [{service}]", 1
 
     def _is_known(self, caller: str) -> bool:
-        return self._registry.node_uri(caller) is not None
+        return self.registry.node_uri(caller) is not None
 
 
 def _uris(entries: Entries, name: str) -> list[str]:

@@ -1,7 +1,8 @@
 """The registrations of the master: the mission's nodes as they are, and entries that programs made themselves.
 
 A program may tell the master of publishers, subscribers and services of any URI (registerPublisher and its kin). The
-master keeps such an entry, as ROS's does, but it brings no messages: no node answers at that URI.
+master keeps such an entry, as ROS's does. It brings messages only where the mission is joined to ROS on the computer
+that it runs on, and a node answers at that URI.
 """
 
 from __future__ import annotations
@@ -79,6 +80,10 @@ class Registrations:
         """Where a service is called; None for one that is unknown."""
         entry = self._graph.services.get(name)
         return self._service_uris.get(name) if entry is None else entry.service.uri
+
+    def service_uri_by_hand(self, name: str) -> str | None:
+        """Where a service is called whose provider has registered it; None for one that is unknown."""
+        return self._service_uris.get(name)
 
     def _nodes(self) -> Iterator[Node]:
         yield from self._graph.nodes.values()

@@ -18,6 +18,12 @@ if TYPE_CHECKING:
     from rospy_shim.master.master_api import MasterApi
 
 TRANSPORT = "cFE SB"  # in place of TCPROS
+TCPROS = "TCPROS"  # with nodes outside of the mission
+
+
+def transport_of(side: TopicSide) -> str:
+    """By what messages go to, or come from, the other side of a connection."""
+    return TCPROS if side.is_outside else TRANSPORT
 
 
 def _global_name(value: Any, caller: str) -> Any:
@@ -120,12 +126,14 @@ class SlaveApi(NodeApi):
     def _connections(self) -> Iterable[tuple[str, str, str, str, bool, str]]:
         for name, link in self._node.links.items():
             for each in link.peers:
-                text = f"{TRANSPORT} connection on MsgId 0x{link.msg_id:04X} to [{each.node.names.name}]"
-                yield each.node.names.name, "o", TRANSPORT, name, True, text
+                by = transport_of(each)
+                text = f"{by} connection on MsgId 0x{link.msg_id:04X} to [{each.node.names.name}]"
+                yield each.node.names.name, "o", by, name, True, text
         for name, subscription in self._node.subscriptions.items():
             for publisher in subscription.peers:
-                text = f"{TRANSPORT} connection on MsgId 0x{publisher.msg_id:04X} to [{uri_of(publisher.node)}]"
-                yield uri_of(publisher.node), "i", TRANSPORT, name, True, text
+                by = transport_of(publisher)
+                text = f"{by} connection on MsgId 0x{publisher.msg_id:04X} to [{uri_of(publisher.node)}]"
+                yield uri_of(publisher.node), "i", by, name, True, text
 
     @answers([])
     def getBusStats(self, caller: str) -> Answer:

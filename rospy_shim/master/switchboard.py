@@ -40,11 +40,14 @@ class Switchboard:
 
     Args:
         graph: the mission's ROS graph.
+
+    Attributes:
+        master: answers for the master.
     """
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
-        self._master = MasterApi(graph, MASTER_URI)
+        self.master = MasterApi(graph, MASTER_URI)
 
     def find(self, asker: Node, address: str) -> MasterApi | SlaveApi | CompiledApi | None:
         """The object that answers, or None.
@@ -55,14 +58,21 @@ class Switchboard:
         """
         place = _place(address)
         if place in (_place(f"cfepy:{MASTER_PORT}"), _place(_host(asker.universe.environ.get("ROS_MASTER_URI", "")))):
-            return self._master
+            return self.master
         for node in self._graph.nodes.values():
             if place == _place(_host(uri_of(node))):
-                return SlaveApi(node, self._master)
+                return SlaveApi(node, self.master)
         for compiled in self._graph.compiled.values():
             if place == _place(_host(uri_of(compiled))):
                 return CompiledApi(compiled, self._graph, MASTER_URI)
         return None
+
+    def api_of(self, name: str) -> SlaveApi | CompiledApi | None:
+        """The object that answers for a node of the mission, by its name; None when there is no such node."""
+        node, compiled = self._graph.nodes.get(name), self._graph.compiled.get(name)
+        if node is not None:
+            return SlaveApi(node, self.master)
+        return None if compiled is None else CompiledApi(compiled, self._graph, MASTER_URI)
 
 
 def _host(uri: str) -> str:

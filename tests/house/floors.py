@@ -31,7 +31,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("script", "faults"),
     ("pilot",),
     ("journal",),
-    ("io", "exploration", "reports", "debugger"),
+    ("io", "ros_host", "exploration", "reports", "debugger"),
     ("flight",),
     ("testing",),
     ("cli", "__main__"),

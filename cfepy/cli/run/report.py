@@ -16,6 +16,7 @@ def show(results: Results, stream: TextIO) -> None:
     more = [
         *_resets(results),
         *faults(results),
+        *_ros_peers(results),
         *_pipes(results),
         *_deadlines(results),
         *_inversions(results),
@@ -85,6 +86,20 @@ def faults(results: Results) -> list[Table]:
         times = [f"{row[key]:.3f}" for key in ("first_at_s", "last_at_s")] if row["times"] else ["", ""]
         said = row["details"][0] if row["times"] else f"never happened: {row['never']}"
         table.add(row["name"], row["what"], row["times"], *times, said)
+    return [table] if table.rows else []
+
+
+def _ros_peers(results: Results) -> list[Table]:
+    """The ROS nodes outside that the run was joined to, topic by topic, and what was lost on the way."""
+    table = Table(
+        "ROS outside",
+        ("name", "peer", "way", "messages", "dropped", "connected", "ended", "refused", "why"),
+        right=(3, 4, 5, 6, 7),
+        least=(8, 1),
+    )
+    for row in results.ros_peers:
+        counts = [row[key] for key in ("messages", "dropped", "connections", "ended", "refused")]
+        table.add(row["name"], row["peer"], row["direction"], *counts, row["why"])
     return [table] if table.rows else []
 
 

@@ -10,11 +10,10 @@ from cfepy.cli.display import Display, make_display
 from cfepy.cli.failures import tell
 from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
-from cfepy.cli.options import plan_of_mission
+from cfepy.cli.options import check_pace, plan_of_mission
 from cfepy.cli.run import report
 from cfepy.cli.run.outputs import Outputs, recording
 from cfepy.pilot import Flown, RunPlan, fly
-from cfepy.status import UsageError
 from cfepy.trace import TimedRecords, Trace
 
 if TYPE_CHECKING:
@@ -92,8 +91,7 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
     Raises:
         UsageError: it cannot run like this.
     """
-    if arguments.port and arguments.realtime is None:
-        raise UsageError("without --realtime no port is opened on this computer", field="--port")
+    check_pace(arguments)
     with recording(arguments, plan) as journal, Interrupts() as interrupts, Outputs(arguments) as outputs:
         spec = plan.spec()  # a journal has the files that are read for it
         with WatchedHost(
@@ -101,6 +99,7 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
             view.display,
             realtime=arguments.realtime,
             ports=dict(arguments.port),
+            ros_master=arguments.ros_master,
             pause=_nothing if journal is None else journal.mark,
         ) as host:
             flown = fly(

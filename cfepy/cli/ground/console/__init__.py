@@ -21,7 +21,7 @@ from cfepy.cli.ground.console.session import REPLY, ConsoleSession
 from cfepy.cli.ground.target import RemoteHost, host_of
 from cfepy.cli.host import Interrupts
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
-from cfepy.cli.options import plan_of, refuse_run_options
+from cfepy.cli.options import check_pace, plan_of, refuse_run_options
 from cfepy.ground import CI_PORT, TO_PORT, dictionary_of, packet_of
 from cfepy.io import TypedLines, own_address, send
 from cfepy.mission import MissionSpec, read_mission
@@ -95,6 +95,7 @@ class Opening:
                 self._interrupts,
                 realtime=arguments.realtime,
                 ports=dict(arguments.port),
+                ros_master=arguments.ros_master,
                 journal=journal,
                 note=note,
             ) as craft:
@@ -218,13 +219,21 @@ def is_terminal() -> bool:
     return sys.stdin.isatty() and sys.stdout.isatty()
 
 
+_NOT_OF_A_COMPUTER = (
+    ("realtime", "--realtime"),
+    ("record", "--record"),
+    ("port", "--port"),
+    ("ros_master", "--ros-master"),
+)
+
+
 def _check(arguments: argparse.Namespace) -> None:
     if (arguments.mission is None) == (arguments.udp is None):
         raise UsageError("say what it is for: cfepy console MISSION, or cfepy console --udp HOST:PORT")
     if arguments.udp is not None:
         why = f"{arguments.udp} is a computer, which is not flown; leave it out"
         refuse_run_options(arguments, why, but=["script", "stop_on_failure"])
-        for name, option in (("realtime", "--realtime"), ("record", "--record"), ("port", "--port")):
+        for name, option in _NOT_OF_A_COMPUTER:
             if getattr(arguments, name):
                 raise UsageError(why, field=option)
         return
@@ -233,8 +242,7 @@ def _check(arguments: argparse.Namespace) -> None:
             raise UsageError("is for a computer elsewhere, with --udp; leave it out", field=f"--{name}")
     if arguments.names is not None:
         raise UsageError("a mission has names of its own; leave it out, or say --udp", field="--mission")
-    if arguments.port and arguments.realtime is None:
-        raise UsageError("without --realtime no port is opened on this computer", field="--port")
+    check_pace(arguments)
 
 
 def _plain(opening: Opening) -> None:

@@ -75,7 +75,7 @@ class FlownCraft:
         saved: gets what is sent.
         interrupts: whether Ctrl-C was pressed.
         realtime: as of `WatchedHost`.
-        ports: as of `WatchedHost`.
+        ports, ros_master: as of `WatchedHost`.
         journal: records the run; None for nobody.
         note: gets what the user should know.
 
@@ -93,6 +93,7 @@ class FlownCraft:
         *,
         realtime: float | None = None,
         ports: Mapping[int, int] | None = None,
+        ros_master: str | None = None,
         journal: JournalRecorder | None = None,
         note: Callable[[str], object] = print,
     ) -> None:
@@ -112,6 +113,7 @@ class FlownCraft:
             lambda seconds: self._news,
             realtime=realtime,
             ports=ports,
+            ros_master=ros_master,
             pause=(lambda: None) if journal is None else journal.mark,
             note=note,
         )

@@ -1,0 +1,215 @@
+"""A TCP connection with a program on this computer that neither waits nor makes anybody wait.
+
+What is to go out and finds no room waits in a queue with a bound; beyond it the oldest message is dropped and counted,
+as ROS's publishers do it. What came in is handed on when the host looks.
+"""
+
+from __future__ import annotations
+
+import socket
+from collections import deque
+from collections.abc import Callable
+from selectors import EVENT_READ, EVENT_WRITE, BaseSelector
+from typing import Any
+
+CHUNK = 1 << 16
+MOST_AT_ONCE = 1 << 20  # bytes that are taken between two pieces of a run; the rest waits in the other program
+MOST_WAITING = 1000  # messages
+ENDED = "the other side has closed the connection"
+MOST_BYTES = 1 << 26  # that wait; one message may be longer
+
+
+class PeerSocket:
+    """A connection.
+
+    Args:
+        selector: of the host; its entries' data are functions that take the events.
+        connected: the socket.
+        take: gets bytes that came; may close the channel.
+        lost: called once, when the other side is gone or what it sent could not be read; takes why.
+    """
+
+    def __init__(
+        self,
+        selector: BaseSelector,
+        connected: socket.socket,
+        take: Callable[[bytes], object],
+        lost: Callable[[str], object],
+    ) -> None:
+        self.socket = connected
+        self.dropped = 0
+        self.is_open = True
+        self._selector = selector
+        self._take = take
+        self._lost = lost
+        self._waiting: deque[bytes] = deque()
+        self._size = 0
+        self._under_way = b""  # the rest of a message whose beginning is out
+        self._ends_when_sent = self._is_paused = False
+        connected.setblocking(False)
+        connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        selector.register(connected, EVENT_READ, self.handle)
+
+    def send(self, data: bytes) -> None:
+        """Send a message, now or as soon as there is room."""
+        if not self.is_open:
+            return
+        if self._under_way or self._waiting:
+            self._queue(data)
+            return
+        try:
+            sent = self.socket.send(data)
+        except BlockingIOError:
+            sent = 0
+        except OSError:
+            return  # the other side is gone, which reading tells
+        if sent < len(data):
+            self._under_way = data[sent:]
+            self._watch()
+
+    def _queue(self, data: bytes) -> None:
+        waiting = self._waiting
+        waiting.append(data)
+        self._size += len(data)
+        while len(waiting) > MOST_WAITING or (self._size > MOST_BYTES and len(waiting) > 1):
+            self._size -= len(waiting.popleft())
+            self.dropped += 1
+
+    def pause(self) -> None:
+        """Leave what comes in the other program, for now."""
+        if self.is_open and not self._is_paused:
+            self._is_paused = True
+            self._selector.unregister(self.socket)
+
+    def resume(self) -> None:
+        """Take it again."""
+        if self.is_open and self._is_paused:
+            self._is_paused = False
+            self._selector.register(self.socket, EVENT_READ, self.handle)
+
+    def finish(self) -> None:
+        """Close it as soon as everything is out."""
+        if self._under_way or self._waiting:
+            self._ends_when_sent = True
+        else:
+            self.close()
+
+    def close(self) -> None:
+        """Close it; `lost` is not called."""
+        if self.is_open:
+            self.is_open = False
+            if not self._is_paused:
+                self._selector.unregister(self.socket)
+            self.socket.close()
+            self._waiting.clear()
+
+    def handle(self, events: int) -> None:
+        """The socket can be read or written."""
+        if events & EVENT_WRITE:
+            self._flush()
+        if events & EVENT_READ and self.is_open:
+            self._read()
+
+    def _read(self) -> None:
+        left = MOST_AT_ONCE
+        while self.is_open and left > 0 and not self._is_paused:
+            try:
+                data = self.socket.recv(CHUNK)
+            except BlockingIOError:
+                return
+            except OSError as error:
+                self.fail(error.strerror or str(error))
+                return
+            if not data:
+                self.fail(ENDED)
+                return
+            left -= len(data)
+            try:
+                self._take(data)
+            except Exception as error:  # whatever a stranger's bytes lead to ends this connection alone
+                self.fail(f"{error}")
+                return
+            if len(data) < CHUNK:
+                return
+
+    def fail(self, why: str) -> None:
+        """It is of no use any more."""
+        if self.is_open:
+            self.close()
+            self._lost(why)
+
+    def _flush(self) -> None:
+        while self._under_way or self._waiting:
+            if not self._under_way:
+                self._under_way = self._waiting.popleft()
+                self._size -= len(self._under_way)
+            try:
+                sent = self.socket.send(self._under_way)
+            except BlockingIOError:
+                return
+            except OSError:
+                self._under_way = b""
+                self._waiting.clear()
+                break
+            self._under_way = self._under_way[sent:]
+        if self._ends_when_sent:
+            self.close()
+        else:
+            self._watch()
+
+    def _watch(self) -> None:
+        writes = EVENT_WRITE if self._under_way or self._waiting else 0
+        self._selector.modify(self.socket, EVENT_READ | writes, self.handle)
+
+
+class Listening:
+    """A socket that takes connections.
+
+    Args:
+        selector: of the host.
+        opened: the socket, bound and listening.
+        accept: takes each connected socket.
+    """
+
+    def __init__(
+        self, selector: BaseSelector, opened: socket.socket, accept: Callable[[socket.socket], object]
+    ) -> None:
+        self._selector = selector
+        self._socket = opened
+        self._accept = accept
+        self.port = int(opened.getsockname()[1])
+        opened.setblocking(False)
+        selector.register(opened, EVENT_READ, self._handle)
+
+    def _handle(self, events: Any) -> None:
+        try:
+            connected, _ = self._socket.accept()
+        except OSError:  # it is gone again, or this process has no more files to open
+            return
+        self._accept(connected)
+
+    def close(self) -> None:
+        """Take no more."""
+        self._selector.unregister(self._socket)
+        self._socket.close()
+
+
+def listening_socket(address: str, port: int = 0) -> socket.socket:
+    """A socket that listens.
+
+    Args:
+        address: of this computer's interface; "" for all.
+        port: 0 takes any free one.
+
+    Raises:
+        OSError: the port is taken.
+    """
+    opened = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    try:
+        opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        opened.bind((address, port))
+        opened.listen(128)
+    except OSError:
+        opened.close()
+        raise
+    return opened

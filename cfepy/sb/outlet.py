@@ -1,0 +1,67 @@
+"""`Outlet`: a subscriber that is no task. Each packet is handed on at once, so none waits and none is lost.
+
+It is for what stands for a receiver outside of the simulated computer. What takes the packets may keep them or pass
+them to the host; it must not wait, nor use the bus. An outlet is in no table of pipes: it has no depth that the board
+could be short of, and no id that an application could name.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from cfepy.sb.bus import SoftwareBus
+from cfepy.sb.pipe import Pipe
+from cfepy.sb.routing import LOCAL
+from cfepy.status import CFE_SB_MAX_MSGS_MET, CfeError
+
+NO_LIMIT = 0xFFFF
+
+
+class Outlet(Pipe):
+    """Hands on the packets of one MsgId, until it is closed.
+
+    Args:
+        bus: the bus.
+        msg_id: the packets.
+        name: for reports.
+        take: gets each packet.
+
+    Raises:
+        CfeError: CFE_SB_MAX_MSGS_MET: the bus has no room for another MsgId.
+    """
+
+    __slots__ = ("_route",)
+
+    def __init__(self, bus: SoftwareBus, msg_id: int, name: str, take: Callable[[bytes], object]) -> None:
+        super().__init__(bus.kernel, NO_LIMIT, name, None)
+        if msg_id not in bus.routes and not bus.routing.add_route(msg_id):
+            raise CfeError(CFE_SB_MAX_MSGS_MET, f"no room for MsgId 0x{msg_id:04X} on the bus")
+        self.items = _Passage(bus, take)
+        self._route = bus.routes[msg_id]
+        bus.outlets += 1
+        self.pipe_id = -bus.outlets
+        self._route.add(bus.destination_type(self, NO_LIMIT, LOCAL, None))
+
+    def close(self, value: object = None) -> None:
+        """No more packets."""
+        destination = self._route.find(self)
+        if destination is not None:
+            self._route.remove(destination)
+        self.depth = 0
+
+
+class _Passage(deque[Any]):
+    """The queue of an outlet: always empty."""
+
+    def __init__(self, bus: SoftwareBus, take: Callable[[bytes], object]) -> None:
+        super().__init__()
+        self._bus = bus
+        self._take = take
+
+    def append(self, item: Any) -> None:
+        """A packet comes in, and goes out."""
+        packet, destination = item
+        self._bus.hand_on(packet, destination)
+        self._take(packet)

@@ -1,0 +1,1 @@
+"""ROS on this computer and a paced mission as one graph."""
