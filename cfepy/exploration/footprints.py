@@ -13,7 +13,7 @@ from dataclasses import fields
 from typing import Any, cast
 
 from cfepy.attachment import Attachment
-from cfepy.exploration.steps import GIVES, READS, TAKES, WRITES, StepLog, TaskStep, Touched
+from cfepy.exploration.steps import GIVES, READS, TAKES, WRITES, StepLog, TaskStep, Touched, state_of
 from cfepy.mission import Mission, MissionSpec, Processor, find_compiled
 from cfepy.nodes import WHOLE, Touch
 from cfepy.ports import PEND_FOREVER
@@ -127,7 +127,7 @@ class Footprints(Attachment):
             return
         if call in _TAKING:
             name = self._name(subject, args)
-            self.touch(f"state of {name}", READS)
+            self.touch(state_of(name), READS)
             if result is not False:
                 self.touch(name, TAKES)
         else:
@@ -149,10 +149,10 @@ class Footprints(Attachment):
             return []
         name = self._name(subject, args)
         if call in _TAKING:  # one that need not wait finds out whether somebody has the lock
-            has_limit = bool(args) and call.startswith("acquire") and id(subject) not in self._services
-            return [(f"state of {name}", WRITES)] if has_limit else []
+            may_wait = id(subject) in self._services or all(each is True or each == -1 for each in args)
+            return [] if may_wait or not call.startswith("acquire") else [(state_of(name), WRITES)]
         if call in _GIVING:
-            return [(name, GIVES), (f"state of {name}", READS)]
+            return [(name, GIVES), (state_of(name), READS)]
         return [(name, READS if call.startswith(_LOOKING) else WRITES)]
 
     def _name(self, subject: Any, args: tuple[Any, ...]) -> str:

@@ -15,7 +15,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import blake2b
 
-from cfepy.exploration.steps import ENDS, GIVES, HANDED, PENDS, READS, TAKES, TIMER, TRIES, WRITES, TaskStep
+from cfepy.exploration.steps import ENDS, GIVES, HANDED, PENDS, READS, TAKES, TIMER, TRIES, WRITES, TaskStep, state_of
 from cfepy.exploration.verdict import Verdict
 from cfepy.rtos import PLACE, Schedule
 
@@ -109,6 +109,7 @@ class Order:
                 conflicts[self._touches[thing][-1][0]].add(thing)
             elif how == ENDS and thing in self._latest:  # it might have been ended earlier
                 conflicts[self._latest[thing]].add(thing)
+        gives = {each: lock for each, lock in gives.items() if (state_of(lock), WRITES) not in step.touched}
         ordered = set() if before is None else {before}
         if step.waker != TIMER:
             handed = [thing for thing, how in step.touched if how == HANDED]
@@ -126,6 +127,8 @@ class Order:
         for other, how in before:
             if how == TAKES:
                 conflicts[other].add(thing)
+                if gives.get(other) == thing:  # taken and given back with nobody in between
+                    del gives[other]
                 return
             if how == GIVES and thing not in gives.values():
                 gives[other] = thing
@@ -137,7 +140,8 @@ class Order:
         taken = next((each for each, things in conflicts.items() if thing in things), None)
         if taken is None:
             return {}
-        given = max((each for each, given in gives.items() if given == thing), default=at)
+        is_over = (thing, GIVES) in self.steps[taken].touched[self.steps[taken].touched.index((thing, TAKES)) :]
+        given = max((each for each, given in gives.items() if given == thing), default=taken if is_over else at)
         while given + 1 < at and self.steps[given + 1].joined:
             given += 1
         task = self.steps[taken].task
@@ -243,7 +247,7 @@ class Order:
         locks = {lock for each in earlier for lock in direct.conflicts.get(each, ())}
         sections = {at for each in earlier for at in direct.sections.get(each, ())}
         others = {*direct.conflicts, *direct.ordered} - earlier - sections
-        others |= {each for each, thing in direct.gives.items() if thing not in locks} - earlier
+        others |= {each for each, thing in direct.gives.items() if thing not in locks}
         return not any(self._past[each] >> first & 1 or self._floor[each] > first for each in others)
 
     def _reversed(self, earlier: int, later: int) -> Beginning | None:
@@ -278,12 +282,18 @@ class Order:
             needed |= self._past[each] if each in stays else 0
         now = [at for at in kept if at in after and needed >> at & 1]
         then = [at for at in kept if at in after and not needed >> at & 1]
-        begun = [at for at in (*now, later) if any(self._head[each] in cut for each in self._direct[at].gives)]
+        begun = [at for at in (*now, later) if self._may_wait(at, cut, after)]
         if self._head[earlier] in cut and needed >> self._head[earlier] & 1 and not begun:
             return None
         turns = [self._turn(at) for at in kept if at not in after]
         turns += [(task, number + 1) for task, number in map(self._turn, begun)]
         return turns + [self._turn(at) for at in (*now, later, *then)]
+
+    def _may_wait(self, at: int, cut: set[int], after: set[int]) -> bool:
+        """Whether a step may wait already for a lock that is given back in what is cut."""
+        direct = self._direct[at]
+        is_given = any(self._head[each] in cut for each in direct.gives)
+        return is_given and not after & (direct.ordered | set(direct.conflicts))
 
     def _turn(self, at: int) -> tuple[str, int]:
         """Whose turn a step is, and until when: it is over when the next place is passed."""

@@ -30,6 +30,11 @@ is a task, by its path; a last step of that task, which it might have made befor
 """
 
 
+def state_of(lock: str) -> str:
+    """The thing that is whether somebody has a lock; whoever need not wait for the lock finds that out, and WRITES it."""
+    return f"state of {lock}"
+
+
 class TaskStep(NamedTuple):
     """A step, or several of one task in a row of which only the last one touches anything.
 
@@ -117,7 +122,7 @@ class StepLog:
         """In the order in which they were made."""
         self._try()
         return tuple(
-            TaskStep(task.path, number, tuple(sorted(touched)), ready, waker, getattr(task.owner, "name", ""), joined)
+            TaskStep(task.path, number, tuple(touched), ready, waker, getattr(task.owner, "name", ""), joined)
             for task, number, touched, ready, waker, joined in self._log
         )
 
@@ -130,6 +135,8 @@ class StepLog:
         """
         step = self._step()
         if step is not None:
+            if how in (TAKES, GIVES):  # of several in one step it is the last one that counts
+                step[2].pop((thing, how), None)
             step[2][thing, how] = None
 
     def begin(self, things: Iterable[Touched], wanted: str = "") -> None:
@@ -204,6 +211,8 @@ class StepLog:
         for touched in call.things:
             if is_given and call.noted is not None:
                 call.noted.pop(touched, None)
+            if is_given:
+                step[2].pop(touched, None)
             step[2][touched] = None
         call.noted = step[2]
 
@@ -236,12 +245,14 @@ class StepLog:
     def _passing(self, original: Callable[..., Any]) -> Callable[..., Any]:
         def passing(*args: Any) -> Any:
             task = self._kernel.current
-            if self._quiet.get(task):
+            is_quiet = self._quiet.get(task)
+            if not is_quiet:
+                self._step()
+            if not self._kernel.is_hushed:
                 self._shut = None
+            if is_quiet:
                 return original(*args)
             call = self._calls.get(task)
-            self._step()
-            self._shut = None
             task.passed += 1 if call is not None else PLACE - task.passed % PLACE
             result = original(*args)
             if call is not None:

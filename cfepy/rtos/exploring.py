@@ -170,6 +170,11 @@ class ExploringKernel(Kernel):
         finally:
             self._hushed.pop(task, None)
 
+    @property
+    def is_hushed(self) -> bool:
+        """Whether nobody gets in at a point of the current task."""
+        return bool(self._hushed) and self._is_quiet(self.current)
+
     def _is_quiet(self, task: Task) -> bool:
         """Whether nobody is to get in now: the running task is in a hushed call, and nobody more urgent is ready."""
         return task in self._hushed and not (self.ready and self.ready[0][0] < task.priority)
