@@ -20,8 +20,9 @@ from cfepy.ports import PEND_FOREVER
 from cfepy.rtos import ExploringKernel, Kernel, Task, WaitList
 from cfepy.sb import Destination, Pipe, SoftwareBus, asked_before_puts
 from cfepy.status import UsageError
+from cfepy.tbl import TableServices
 
-GRAPH, PARAMETERS, PIPES = "ROS graph", "ROS parameters", "pipes"
+GRAPH, PARAMETERS, PIPES, TABLES = "ROS graph", "ROS parameters", "pipes", "TableServices"
 _LOOKING = ("find", "get", "has", "is_", "locked", "_is_owned", "names", "published", "search")
 _OWN = frozenset(
     {
@@ -33,6 +34,8 @@ _OWN = frozenset(
 _TAKING = frozenset({"acquire", "acquire_lock", "__enter__", "_acquire_restore", "mut_sem_take"})
 _GIVING = frozenset({"release", "release_lock", "__exit__", "_release_save", "mut_sem_give"})
 _GRAPH_CHANGES = ("topic", "register_node", "forget_node", "register_service", "forget_service", "caller")
+_TABLE_CHANGES = ("working_buffer", "exclusive_buffer", "discard_load")
+_ADDRESSES = ("get_address", "get_addresses")
 _TREE_CHANGES = ("give", "offer", "on_change", "set", "delete")
 _TREE_LOOKS = ("find", "search", "names")
 
@@ -89,6 +92,9 @@ class Footprints(Attachment):
         """See `Attachment.power_up`."""
         services = (getattr(processor.cfe, field.name) for field in fields(processor.cfe))
         self._services = {id(each): each for each in services}
+        registry = processor.cfe.tbl.registry
+        for name in _TABLE_CHANGES:
+            _also(registry, name, lambda table: self._change(table))
         if processor.ros is not None:
             graph = processor.ros.graph
             for name in _GRAPH_CHANGES:
@@ -125,6 +131,9 @@ class Footprints(Attachment):
             return
         if self._log is None or not self._log.end():
             return
+        if call in _ADDRESSES and isinstance(subject, TableServices):
+            for handle in args if call == "get_address" else args[0]:
+                self._log.touch_from_now_on(f"memory of {self._table(subject, handle)}")
         if call in _TAKING:
             name = self._name(subject, args)
             self.touch(state_of(name), READS)
@@ -132,6 +141,15 @@ class Footprints(Attachment):
                 self.touch(name, TAKES)
         else:
             self._log.part()
+
+    def _change(self, table: Any) -> None:
+        """The memory of a table is about to change, or that to which the next load goes."""
+        self.touch(f"table {table.name}")
+        self.touch(f"memory of table {table.name}")
+
+    def _table(self, tbl: TableServices, handle: int) -> str:
+        access = tbl.registry.accesses.find(handle)
+        return "no table" if access is None else f"table {access.table.name}"
 
     def failed(self, subject: Any, call: str) -> None:
         """See `CallObserver.failed`."""
@@ -147,6 +165,9 @@ class Footprints(Attachment):
             return _things_of_bus(call, args)
         if call in _OWN:
             return []
+        if isinstance(subject, TableServices) and args and isinstance(args[0], int):
+            how = READS if call.startswith(_LOOKING) and call not in _ADDRESSES else WRITES
+            return [(self._table(subject, args[0]), how), (TABLES, READS)]
         name = self._name(subject, args)
         if call in _TAKING:  # one that need not wait finds out whether somebody has the lock
             may_wait = id(subject) in self._services or all(each is True or each == -1 for each in args)

@@ -31,7 +31,7 @@ is a task, by its path; a last step of that task, which it might have made befor
 
 
 def state_of(lock: str) -> str:
-    """The thing that is whether somebody has a lock; whoever need not wait for the lock finds that out, and WRITES it."""
+    """The thing that is whether somebody has a lock; whoever need not wait for it finds that out, and WRITES it."""
     return f"state of {lock}"
 
 
@@ -105,6 +105,7 @@ class StepLog:
         self._from_ns = from_ns
         self._log: list[_Entry] = []
         self._gone: set[Task] = set()
+        self._lasting: dict[Task, dict[Touched, None]] = {}  # what a task touches in each step
         self._shut: Task | None = None  # the one that made the last step, if nobody could get in since
         self._ready: dict[Task, tuple[int, int]] = {}  # when and by which step it was woken, until its next step
         self._calls: dict[Task, _Call] = {}
@@ -138,6 +139,11 @@ class StepLog:
             if how in (TAKES, GIVES):  # of several in one step it is the last one that counts
                 step[2].pop((thing, how), None)
             step[2][thing, how] = None
+
+    def touch_from_now_on(self, thing: str) -> None:
+        """The current task may read something in any step from now on."""
+        self._lasting.setdefault(self._kernel.current, {})[thing, READS] = None
+        self.touch(thing, READS)
 
     def begin(self, things: Iterable[Touched], wanted: str = "") -> None:
         """The current task begins something that touches these things, in this step and in those after other places.
@@ -237,7 +243,8 @@ class StepLog:
             if not log[-1][2]:  # it touched nothing: this one goes on where that began
                 log[-1] = (task, task.passed, *log[-1][2:5], log[-1][5] and is_shut)
                 return log[-1]
-        log.append((task, task.passed, {}, *self._ready.pop(task, (0, TIMER)), is_shut))
+        touched = dict(self._lasting.get(task, ()))
+        log.append((task, task.passed, touched, *self._ready.pop(task, (0, TIMER)), is_shut))
         return log[-1]
 
     # -- what the kernel does ------------------------------------------------------------------------------------------

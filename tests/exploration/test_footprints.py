@@ -9,7 +9,7 @@ import pytest
 
 from cfepy.exploration import Expedition, Report, Trial
 from cfepy.exploration.orders import Order, OrderSearch
-from cfepy.exploration.verdict import DEADLOCK
+from cfepy.exploration.verdict import DEADLOCK, EVENT
 from cfepy.mission import CORE_APPS
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Schedule
@@ -35,6 +35,13 @@ def test_all_orders_of_two_locks(name: str, orders: int) -> None:
     assert any("no others were found" in line for line in report.breadth.lines())
 
 
+@pytest.mark.slow
+def test_the_memory_of_a_table_is_read_by_who_has_its_address() -> None:
+    report = explored("table_kept")
+    assert report.breadth.is_complete
+    assert [told.finding.failure.kind for told in report.findings] == [EVENT]
+
+
 def test_the_schedule_of_a_failure_can_be_given() -> None:
     (told,) = explored("lock_order").findings
     schedule = told.finding.verdict.schedule
@@ -44,7 +51,7 @@ def test_the_schedule_of_a_failure_can_be_given() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["lock_order, mended", "mutex_order, mended", "check_then_act"])
+@pytest.mark.parametrize("name", ["lock_order, mended", "mutex_order, mended", "check_then_act", "table_kept"])
 def test_random_schedules_have_no_other_order(tmp_path: Path, name: str) -> None:
     bug = by_name(name.removesuffix(", mended"))
     folder = bug.folder if name == bug.name else bug.write_fixed(tmp_path)
