@@ -243,7 +243,7 @@ class StepLog:
             if not log[-1][2]:  # it touched nothing: this one goes on where that began
                 log[-1] = (task, task.passed, *log[-1][2:5], log[-1][5] and is_shut)
                 return log[-1]
-        touched = dict(self._lasting.get(task, ()))
+        touched = dict(self._lasting.get(task, {}))
         log.append((task, task.passed, touched, *self._ready.pop(task, (0, TIMER)), is_shut))
         return log[-1]
 
