@@ -26,6 +26,22 @@ _SET_MAKERS = frozenset({"set", "frozenset"})
 _SET_METHODS = frozenset({"union", "intersection", "difference", "symmetric_difference"})
 _IN_ORDER = frozenset({"list", "tuple", "enumerate", "iter", "map", "filter", "zip", "fromkeys", "join", "next"})
 _OF_THE_PROCESS = {"id": "an address", "hash": "the hash of a text, which follows PYTHONHASHSEED"}
+_PAST_THE_SIMULATION = {
+    "sqlite3.connect": "asks a library in C, whose clock and random numbers are this computer's",
+    "sys.getrefcount": "counts what else Python keeps",
+    "gc.get_count": "counts what else Python keeps",
+    "gc.get_objects": "has what else Python keeps",
+    "gc.get_stats": "counts what else Python keeps",
+    "ctypes.addressof": "uses an address",
+    "crypt.mksalt": "draws random numbers of this computer's",
+    "numpy.empty": "has what lay in memory before",
+    "numpy.empty_like": "has what lay in memory before",
+    "weakref.WeakSet": "is a set in the order of addresses",
+}
+"""Functions that answer something else in each run, by their whole names."""
+_CLOCKS = {"numpy.datetime64": ("now", "today")}
+_CLOCK = "asks the clock of this computer"
+_OUTSIDE = frozenset([_PAST_THE_SIMULATION[name] for name in ("sqlite3.connect", "crypt.mksalt")] + [_CLOCK])
 _OPERATORS = (ast.BitOr, ast.BitAnd, ast.Sub, ast.BitXor)
 
 
@@ -195,6 +211,12 @@ def suspects(file: str) -> list[Suspect]:
     return [Suspect(file, number, why, lines[number - 1].strip()) for number, why in found]
 
 
+def outside_lines() -> list[str]:
+    """Lines of the nodes' own files that ask this computer, whether they were executed or not; each as text."""
+    found = [each for file in own_files() for each in suspects(file) if each.why in _OUTSIDE]
+    return [f"{Path(each.file).name}:{each.line}: {each.source}: {each.why}" for each in found]
+
+
 class _Reader:
     """Looks through a module; a name counts as a set when one is assigned to it anywhere.
 
@@ -211,6 +233,7 @@ class _Reader:
             elif isinstance(node, ast.AnnAssign) and self._is_set(node.value):
                 self._sets.add(_name(node.target))
         self._sets.discard("")
+        self._imported = dict(_imports(tree))
 
     def found(self) -> Iterator[tuple[int, str]]:
         """Number of each suspicious line, and why it is one."""
@@ -228,6 +251,13 @@ class _Reader:
             yield node.lineno, "goes through a set"
         if name == "pop" and isinstance(node.func, ast.Attribute) and self._is_set(node.func.value):
             yield node.lineno, "takes any element of a set"
+        first, dot, rest = _name(node.func).partition(".")
+        whole = self._imported.get(first, "") + dot + rest
+        if whole in _PAST_THE_SIMULATION:
+            yield node.lineno, _PAST_THE_SIMULATION[whole]
+        words = [each.value for each in node.args if isinstance(each, ast.Constant)]
+        if words[:1] and words[0] in _CLOCKS.get(whole, ()):
+            yield node.lineno, _CLOCK
 
     def _is_set(self, node: ast.expr | None) -> bool:
         if isinstance(node, (ast.Set, ast.SetComp)):
@@ -239,6 +269,17 @@ class _Reader:
         if isinstance(node, ast.BinOp):
             return isinstance(node.op, _OPERATORS) and (self._is_set(node.left) or self._is_set(node.right))
         return node is not None and _name(node) in self._sets
+
+
+def _imports(tree: ast.Module) -> Iterator[tuple[str, str]]:
+    """Names that imports give, and what they stand for: `np` and `numpy`, `connect` and `sqlite3.connect`."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            for each in node.names:
+                first = each.name.partition(".")[0]
+                yield (each.asname, each.name) if each.asname else (first, first)
+        elif isinstance(node, ast.ImportFrom):
+            yield from ((each.asname or each.name, f"{node.module}.{each.name}") for each in node.names)
 
 
 def _name(node: ast.AST) -> str:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import pytest
 
 from cfepy.cli.main import main
+from cfepy.cli.run.compared_runs import FirstDifference, show_sides
+from cfepy.pilot.determinism_look import Look
 from tests.mission.flights import write_mission
 
 STARTUP = """
@@ -127,6 +130,18 @@ def test_an_application(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert f"made at {tmp_path / 'app.py'}:5 in Main" in capsys.readouterr().out
 
 
+def test_the_text_of_an_object_has_its_address() -> None:
+    def shown(*records: bytes) -> str:
+        stream = io.StringIO()
+        one, other = (Look(record, "", ("publish",), (), ()) for record in records)
+        show_sides(FirstDifference(("one", "other"), 0, (one, other)), stream)
+        return stream.getvalue()
+
+    text = shown(b"\x05<arm.Joint object at 0x7f0012345678>", b"\x05<arm.Joint object at 0x7f0012999678>")
+    assert "an address in a text, <arm.Joint object at 0x7f0012345678>: give the object a __repr__" in text
+    assert "address" not in shown(b"1 <arm.Joint object at 0x7f0012345678>", b"2 <arm.Joint object at 0x7f0012345678>")
+
+
 def test_with_a_script_a_board_and_a_schedule(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     script = tmp_path / "flight.txt"
     script.write_text("at 3 end\n")
@@ -180,6 +195,7 @@ numpy.save("kept", numpy.zeros(3))
 numpy.memmap({path!r}, mode='w+', shape=3)
 with open("/proc/uptime") as file:
     file.read()
+today = numpy.datetime64("today")
 """
 
 
@@ -192,6 +208,7 @@ def test_what_goes_past_the_simulated_computer_is_named(tmp_path: Path, capsys: 
         "past the simulated computer, where cfepy cannot answer for it:",
         f"  talker.py:6: numpy.memmap({path!r}, mode='w+', shape=3): writes {path} on this computer",
         '  talker.py:7: with open("/proc/uptime") as file:: reads /proc/uptime, which is another each time',
+        '  talker.py:9: today = numpy.datetime64("today"): asks the clock of this computer',
     ]
 
 

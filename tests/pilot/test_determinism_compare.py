@@ -93,5 +93,21 @@ def test_suspicious_lines(tmp_path: Path) -> None:
         (10, "uses an address"),
         (10, "uses the hash of a text, which follows PYTHONHASHSEED"),
     ]
+    file.write_text(
+        "import gc, numpy as np, sqlite3\n"
+        "from numpy import datetime64 as date\n"
+        "from weakref import WeakSet\n"
+        "import os.path\n"
+        "kept = WeakSet()\n"
+        "base = sqlite3.connect('x'); here = np.empty(3), date('now'), date('2026-01-01'), gc.get_count()\n"
+        "there = np.zeros(3), os.path.empty(3), kept.connect('x')\n"
+    )
+    assert [(each.line, each.why) for each in suspects(str(file))] == [
+        (5, "is a set in the order of addresses"),
+        (6, "asks a library in C, whose clock and random numbers are this computer's"),
+        (6, "asks the clock of this computer"),
+        (6, "counts what else Python keeps"),
+        (6, "has what lay in memory before"),
+    ]
     file.write_text("this is = no program")
     assert suspects(str(file)) == suspects(str(tmp_path / "none.py")) == []

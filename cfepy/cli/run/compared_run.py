@@ -23,7 +23,7 @@ from cfepy.journal import Replay, read_journal, staged
 from cfepy.mission import Mission, MissionSpec
 from cfepy.pilot import RunPlan, fly
 from cfepy.pilot.determinism import ComparedTrace, RecordWriter, comparing, hear_calls
-from cfepy.pilot.determinism_look import Look, LookingTrace
+from cfepy.pilot.determinism_look import Look, LookingTrace, outside_lines
 from cfepy.pilot.open_world import OpenWorld
 from cfepy.sb import SoftwareBus
 from cfepy.status import CfeError, UsageError
@@ -109,7 +109,8 @@ class RecordPipe(Recorder):
 
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         if kind is None:
-            self._writer.end({"digest": self.trace.digest(), "contacts": list(self._world.contacts)})
+            contacts = [*self._world.contacts, *outside_lines()]
+            self._writer.end({"digest": self.trace.digest(), "contacts": contacts})
 
     def begin(self, mission: Mission) -> None:
         """Hear the calls of compiled applications as well."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import os
+import re
 import subprocess
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -20,6 +21,8 @@ from cfepy.status import UsageError
 
 MOST_SUSPECTS = 8
 MOST_BYTES = 16
+_ADDRESS = re.compile(rb"[\w.<]* [\w. ]*at 0x[0-9a-f]{6,16}>?")
+"""What the text of an object without one of its own ends with."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +139,12 @@ def _bytes(one: bytes, other: bytes, stream: TextIO) -> None:
     at = next(place for place, (a, b) in enumerate(zip_longest(one, other)) if a != b)
     parts = " and ".join(record[at : at + MOST_BYTES].hex(" ") or "nothing" for record in (one, other))
     print(f"\nthe two records ({len(one)} and {len(other)} bytes) differ from byte {at} on: {parts}", file=stream)
+    address = next((found for found in _ADDRESS.finditer(one) if found.start() < at < found.end()), None)
+    if address is not None:
+        print(
+            f"there is an address in a text, {address[0].decode()}: give the object a __repr__ or __str__ of its own",
+            file=stream,
+        )
 
 
 def _suspects(found: FirstDifference, stream: TextIO) -> None:
