@@ -150,7 +150,7 @@ def test_it_shrinks_to_one_preemption(tmp_path: Path) -> None:
     failure = found.run(Schedule("random", 0)).failures[0]
     shrunk = Shrinker(found, (Schedule("random", 0),), failure.group, 80).run()
     assert shrunk is not None
-    assert [move.chosen for move in shrunk.moves] == ["PAIR.pair.2.2"]
+    assert [move.preempts for move in shrunk.moves] == [True]
     assert shrunk.verdict.failures[0].kind == failure.kind == STUCK
     assert shrunk.trial.plan == found.plan
 
