@@ -48,7 +48,7 @@ class ThingUse(NamedTuple):
     Attributes:
         kind: of the pairs that it belongs to.
         thing: what the thing is called, in all runs.
-        task: by its name in moves.
+        task: by its name in aims (`cfepy.rtos.child_name`).
         verb: what it did.
         file: name of the source file, without its folder; empty where it is not the mission's own code.
         line: of that.

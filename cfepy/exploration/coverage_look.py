@@ -16,7 +16,7 @@ from cfepy.mission import CORE_APPS, Mission, MissionSpec
 from cfepy.monitors import Heard
 from cfepy.nodes import WHOLE, Touch
 from cfepy.own_code import is_own_code
-from cfepy.rtos import Task
+from cfepy.rtos import Task, child_name
 
 LOCKS, MESSAGES, VARIABLES = "locks", "messages", "variables"
 _LOGS = ("/rosout", "/rosout_agg", EVENT)
@@ -44,7 +44,9 @@ class _Seen(NamedTuple):
     is_read: bool = False
 
     def told(self, kind: str, thing: str) -> ThingUse:
-        return ThingUse(kind, thing, self.task.alias, self.verb, self.file.rpartition("/")[2], self.line, self.is_read)
+        return ThingUse(
+            kind, thing, child_name(self.task), self.verb, self.file.rpartition("/")[2], self.line, self.is_read
+        )
 
 
 class CoverageLook(TaskLook):

@@ -7,8 +7,8 @@ It is a search in generations. Runs that covered something new (`cfepy.explorati
 generation there are
 
 - schedules with aims (`cfepy.rtos.aims`). Two uses of one thing by different tasks have been seen, and never directly
-  one after the other: so that is aimed at. Those that were tried least come first; then there are two aims in one
-  schedule, and aims that are added to those of the corpus;
+  one after the other: so that is aimed at, those first that were tried least. Then any uses may be aimed at, after some
+  more steps, one or two pairs in a schedule, also behind the aims of one of the corpus;
 - changed members of the corpus, those with rare things before others, with changes around the decisions of these;
 - a few more from seeds.
 
@@ -29,10 +29,12 @@ from cfepy.exploration.verdict import Verdict
 from cfepy.rtos import Aim, Schedule
 
 FROM_SEEDS = 5  # schedules before the first generation
-AIMED, CHANGED, FRESH = 10, 4, 6
+AIMED, CHANGED, FRESH = 9, 4, 7
 """A generation: how many schedules of each kind. It does not depend on how many processes there are."""
+NEW = 6  # of those with aims: at most so many that aim at what was not seen
+MOST_TRIES = 3  # that what was not seen is aimed at, each with one step more from the first line
 MOST_AIMS = 4
-STEPS = (1, 2, 1, 3, 1, 4)  # from the first line, by how often an aim has been tried
+STEPS = (1, 1, 2, 2, 3, 4, 6)  # from the first line, where it was seen
 
 
 @dataclass(slots=True)
@@ -106,9 +108,7 @@ class GreyboxSearch(Generations):
         """See `Generations.generation`."""
         self._open = {pair: tries for pair, tries in self._open.items() if not self._is_covered(pair)}
         made = [*self.untried(self._aimed(), AIMED)]
-        if self.corpus:
-            made += self.untried((self._changed() for _ in range(CHANGED * 4)), CHANGED)
-        return made
+        return [*made, *self.untried((self._changed() for _ in range(CHANGED * 4 if self.corpus else 0)), CHANGED)]
 
     def _is_covered(self, pair: tuple[ThingUse, ThingUse]) -> bool:
         return self._coverage.has(pair[0].before(pair[1]))
@@ -119,27 +119,26 @@ class GreyboxSearch(Generations):
         """Schedules with aims, as many as are wanted."""
         random = self.random
         least = sorted(self._open.items(), key=lambda each: (each[1], random.random()))
-        for pair, tries in least[: 4 * AIMED]:
-            self._open[pair] = tries + 1
-            aims = [_aim(pair, STEPS[tries % len(STEPS)])]
-            if random.random() < 0.5 and tries:
-                aims = self._more(aims)
-            yield self._options.with_aims(aims, self._seed(tries))
-        for _ in range(4 * AIMED):
-            pairs = self._seen_pairs()
-            if len(pairs) < 2:
-                return
-            aims = [_aim(pair, random.choice(STEPS)) for pair in random.sample(pairs, 2)]
-            yield self._options.with_aims(self._more(aims) if random.random() < 0.3 else aims, self._seed(1))
+        for pair, tries in least[:NEW]:
+            if tries < MOST_TRIES:
+                self._open[pair] = tries + 1
+                yield self._with([_aim(pair, tries + 1)], is_random=bool(tries))
+        pairs = self._pairs()
+        for _ in range(4 * AIMED if pairs else 0):
+            aims = [_aim(random.choice(pairs), random.choice(STEPS))]
+            if random.random() < 0.5:
+                aims.append(_aim(random.choice(pairs), random.choice(STEPS)))
+            yield self._with(aims, is_random=random.random() < 0.5)
 
-    def _more(self, aims: list[Aim]) -> list[Aim]:
-        """Aims behind those of a member of the corpus, or another one."""
+    def _with(self, aims: list[Aim], is_random: bool) -> Schedule:
+        """A schedule with aims, some of them behind those of a member of the corpus, for what comes of both."""
+        random = self.random
         parents = [member.verdict.schedule.aims for member in self.corpus if member.verdict.schedule.aims]
-        if parents:
-            return [*self.random.choice(parents), *aims][-MOST_AIMS:]
-        return aims
+        if is_random and parents and random.random() < 0.3:
+            aims = [*random.choice(parents), *aims][-MOST_AIMS:]
+        return self._options.with_aims(aims, random.randrange(1, 1 << 31) if is_random else 0)
 
-    def _seen_pairs(self) -> list[tuple[ThingUse, ThingUse]]:
+    def _pairs(self) -> list[tuple[ThingUse, ThingUse]]:
         """All that could be aimed at."""
         return [
             (one, other)
@@ -148,10 +147,6 @@ class GreyboxSearch(Generations):
             for other in uses
             if one.task != other.task and not (one.is_read and other.is_read) and _is_aim((one, other))
         ]
-
-    def _seed(self, tries: int) -> int:
-        """Of what an aim leaves open: nothing is random at first."""
-        return self.random.randrange(1, 1 << 31) if tries and self.random.random() < 0.5 else 0
 
     # -- changes -------------------------------------------------------------------------------------------------------
 

@@ -7,7 +7,7 @@ queues and mutexes do not: OSAL builds them on the names below. The host's threa
 
 from __future__ import annotations
 
-from cfepy.rtos.aims import Aim
+from cfepy.rtos.aims import Aim, child_name
 from cfepy.rtos.costs import CpuCosts
 from cfepy.rtos.cpus import allowed_cpus
 from cfepy.rtos.errors import DeadlockError, InjectedCrash
@@ -93,6 +93,7 @@ __all__ = [
     "Wait",
     "WaitList",
     "allowed_cpus",
+    "child_name",
     "circles",
     "endless",
     "make_kernel",

@@ -1,15 +1,16 @@
 """Aims: what is to come directly before what, as a search that is guided by coverage wants it of a run.
 
-    BANK.one@bank.py/14=BANK.two@bank.py/20
+    BANK.1@bank.py/14=BANK.2@bank.py/20
 
 An aim names a task in a line of the mission's own code, and another task in a line. The other one does not go on from
 its line before the first one has gone on from its own, and the first one waits then until the other one has left its
 line. So the one comes after the other, however many calls there are between, in which they would miss each other. Where
 nobody else can run an aim is given up.
 
-In full it is FIRST@FILE/LINE[/N]=THEN@FILE/LINE: tasks by their names in moves, files without their folders, and N
-says how many steps the first task makes from that line; a line in which others can get in has several. Signs are
-escaped as in moves.
+In full it is FIRST@FILE/LINE[/N]=THEN@FILE/LINE. BANK is the first task of an application or node, BANK.1 the first one
+that this started, BANK.1.2 the second one that that did: so names do not depend on who runs when. Files stand without
+their folders. N says how many steps the first task makes from its line before it waits; a line in which others can get
+in has several. Signs are escaped as in moves.
 """
 
 from __future__ import annotations
@@ -23,10 +24,12 @@ from typing import NamedTuple
 from cfepy.own_code import is_own_code
 from cfepy.rtos.moves import escaped, unescaped
 from cfepy.rtos.policy import AskingPolicy, Decision, Policy
+from cfepy.rtos.task import Task
 
 Line = tuple[str, int]
 """Name of a source file without its folder, and a line of it."""
 _NOWHERE = ("", 0)
+_MAIN_TASK = 2  # numbers in the path of the first task of an application
 _SIDE = r"(?P<{0}>[\w./+%-]+)@(?P<{0}_file>[\w.+%-]+)/(?P<{0}_line>\d+)"
 _AIM = re.compile(rf"{_SIDE.format('first')}(?:/(?P<number>0*[1-9]\d*))?={_SIDE.format('then')}", re.ASCII)
 
@@ -35,7 +38,7 @@ class Aim(NamedTuple):
     """Who is to be where directly before whom.
 
     Attributes:
-        first: the task that is to go first, by its name in moves.
+        first: the task that is to go first (`child_name`).
         first_line: where.
         then: the task that is to come next.
         then_line: where.
@@ -71,6 +74,11 @@ class Aim(NamedTuple):
             for side in ("first", "then")
         )
         return cls(*first, *then, int(match["number"] or 1))
+
+
+def child_name(task: Task) -> str:
+    """What a task is called in aims: its application, and which child of which of its tasks it is."""
+    return ".".join([getattr(task.owner, "name", ""), *task.path.split(".")[_MAIN_TASK:]])
 
 
 class _Pending:
@@ -109,6 +117,7 @@ class AimPolicy(AskingPolicy):
         super().__init__(inner)
         self._pending = [_Pending(aim) for aim in aims]
         self._where: dict[str, Line] = {}
+        self._names: dict[Task, str] = {}
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
@@ -116,8 +125,8 @@ class AimPolicy(AskingPolicy):
         if decision.question is not None or not self._pending:
             return choice
         if decision.running:
-            self._look(decision.alias, sys._getframe(1))
-        names = [task.alias for task in decision.tasks]
+            self._look(self._name(decision.tasks[0]), sys._getframe(1))
+        names = [self._name(task) for task in decision.tasks]
         if choice >= len(names) or not self._holders(names[choice]):
             return choice
         free = [index for index, name in enumerate(names) if not self._holders(name)]
@@ -137,6 +146,12 @@ class AimPolicy(AskingPolicy):
             for each in self._pending:
                 each.moved(task, before, line)
             self._pending = [each for each in self._pending if not each.is_over]
+
+    def _name(self, task: Task) -> str:
+        found = self._names.get(task)
+        if found is None:
+            found = self._names[task] = child_name(task)
+        return found
 
     def _holders(self, task: str) -> list[_Pending]:
         """The aims that hold a task up."""

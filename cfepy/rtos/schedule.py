@@ -8,9 +8,9 @@
     moves:A@650/add.publish=B
                             fifo, but where A, from 650 ms on, calls publish in its function add, B runs
                             (`cfepy.rtos.moves`)
-    aims:7:A@bank.py/14=B@bank.py/20
-                            random by seed 7, or fifo by 0, but A in line 14 goes directly before B in line 20
-                            (`cfepy.rtos.aims`)
+    aims:7:A.1@bank.py/14=A.2@bank.py/20
+                            random by seed 7, or fifo by 0, but task A.1 in line 14 goes directly before A.2 in
+                            line 20 (`cfepy.rtos.aims`)
 
 Every kind but fifo takes options at its end: `any` (tasks of less urgent priority may run before more urgent ones),
 `fair=50` (a task that could run is passed over in at most 50 decisions), `hold=500us` (the running task may be held up
@@ -109,7 +109,9 @@ class Schedule:
         if kind == "moves" and len(fields) <= 1:
             return replace(found, seed=0, moves=_parts(text, fields[0] if fields else "", Move.parse, _MOVES))
         if kind == "aims" and 1 <= len(fields) <= 2:
-            aims = _parts(text, fields[1] if len(fields) == 2 else "", Aim.parse, "aims:0:A@bank.py/14=B@bank.py/20")
+            aims = _parts(
+                text, fields[1] if len(fields) == 2 else "", Aim.parse, "aims:0:A.1@bank.py/14=A.2@bank.py/20"
+            )
             return replace(found, **_numbers(text, fields[:1]), aims=aims)
         raise _wrong(text)
 
@@ -260,6 +262,7 @@ def _deviations(text: str, field: str) -> tuple[tuple[int, int], ...]:
 
 
 T = TypeVar("T")
+_AIMS = "aims:0:A.1@bank.py/14=A.2@bank.py/20"
 _MOVES = "moves:ARM@650/add.publish=ARM.commands"
 
 

@@ -2,6 +2,8 @@
 
 `python -m tests.quality programs` does the same with the programs that others try (docs/benchmarks_exploration.md).
 
+`python -m tests.quality coverage` measures what guidance by coverage is worth (docs/benchmarks_coverage.md).
+
 `python -m tests.quality stories` writes down the cause that is told of each of them (`stories.txt`).
 """
 
@@ -10,6 +12,7 @@ from __future__ import annotations
 import argparse
 
 from tests.quality.bugs import BUGS
+from tests.quality.coverage_report import measure as measure_coverage
 from tests.quality.measure import MOST
 from tests.quality.program_report import measure as measure_programs
 from tests.quality.programs import PROGRAMS
@@ -29,11 +32,18 @@ def main() -> None:
     stories.add_argument("bugs", nargs="*", choices=[[], *(bug.name for bug in BUGS)], help="only these")
     programs = commands.add_parser("programs", help="measure what is missing of the programs, and write their page")
     programs.add_argument("programs", nargs="*", choices=[[], *(each.name for each in PROGRAMS)], help="only these")
+    coverage = commands.add_parser(
+        "coverage", help="measure what is missing of guidance by coverage, and write its page"
+    )
+    missions = [each.name for each in (*BUGS, *PROGRAMS)]
+    coverage.add_argument("missions", nargs="*", choices=[[], *missions], help="only these")
     given = parser.parse_args()
     if given.command == "report":
         measure(given.bugs, given.jobs, given.most)
     elif given.command == "programs":
         measure_programs(given.programs)
+    elif given.command == "coverage":
+        measure_coverage(given.missions)
     else:
         write(given.bugs)
 

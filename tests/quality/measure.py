@@ -10,7 +10,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from cfepy.exploration.search import SeededSearch, SystematicSearch, make_search
+from cfepy.exploration.campaign import Search
+from cfepy.exploration.search import make_search
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import Findings, Verdict
 from cfepy.rtos.schedule import Schedule
@@ -68,7 +69,7 @@ def longest(most: int, trials: int) -> int:
 class Hunt:
     """One trial: a search, until it has found the bug."""
 
-    def __init__(self, trial: Trial, search: SeededSearch | SystematicSearch) -> None:
+    def __init__(self, trial: Trial, search: Search) -> None:
         self._trial = trial
         self._search = search
         self._count = 0
