@@ -46,6 +46,7 @@ from cfepy.units import NS_PER_S
 FROM_OPERATIONAL = 0.0
 BASE = "at"  # fifo as a policy, which is asked, so that decisions can be counted and options count
 DEFAULT_SEEDS = 100
+MOST_SCHEDULES = 100_000_000
 _NO_WAY = (PROCESS_DIED, STALLED)  # a run that was broken off has no trace to compare
 EVENTS = ("error", "critical", "none")
 
@@ -164,7 +165,7 @@ class Expedition:
 
     Attributes:
         plan: what is flown; its own schedule does not matter.
-        seeds: how many schedules.
+        seeds: how many schedules; None for any number within the budget.
         budget_s: wall time after which no further schedule is begun; None for no limit.
         policy: where they come from: "random", "pct", "dfs" (every one with few preemptions), "orders" (all orders that
             differ, each once), "greybox" (guided by what they cover), or "all".
@@ -195,7 +196,7 @@ class Expedition:
     """
 
     plan: RunPlan
-    seeds: int = DEFAULT_SEEDS
+    seeds: int | None = DEFAULT_SEEDS
     budget_s: float | None = None
     policy: str = "all"
     depth: int | None = None
@@ -359,20 +360,21 @@ class Expedition:
             return Tally()
         files = files_read(trial.plan) if self.results is not None or self.cluster is not None else []
         file = None if self.results is None else ResultsFile(self.results, self._identity(trial, files))
-        crew = make_crew(self.seeds, self.jobs, self.cluster, lambda: ship(trial.plan, files), self.longest_s)
+        most = MOST_SCHEDULES if self.seeds is None else self.seeds
+        crew = make_crew(most, self.jobs, self.cluster, lambda: ship(trial.plan, files), self.longest_s)
         with contextlib.ExitStack() as stack:
             stack.callback(crew.close)
             if not self._is_steady(trial, crew, reference):
                 return None
             stack.pop_all()  # the campaign closes it
-        progress = make_progress(self.progress, self.seeds, 0 if file is None else len(file))
+        progress = make_progress(self.progress, self.seeds, 0 if file is None else len(file), self.budget_s)
 
         def take(number: int, verdict: Verdict) -> bool:
             see(number, verdict)
             is_over = self.budget_s is not None and watch.elapsed_ns() > self.budget_s * NS_PER_S
             return (findings.take(number, verdict) and self.until_failure) or is_over
 
-        return Campaign(trial, search, self.seeds, crew, file, progress).run(take)
+        return Campaign(trial, search, most, crew, file, progress).run(take)
 
     def _keep(self, report: Report) -> None:
         """Write the shortest schedule of each failure to the results file, for `cfepy explore --replay-all`."""

@@ -36,18 +36,26 @@ class CampaignMeter:
     """Counts verdicts against the wall clock.
 
     Args:
-        total: schedules that there are, at most.
+        total: schedules that there are, at most; None for any number.
         resumed: how many of them an earlier run has done; these do not count for the rate.
         elapsed_ns: wall time since the start, in ns.
+        budget_s: wall time after which no further one begins; None for no limit.
 
     Attributes:
         done, failed: so far.
     """
 
-    def __init__(self, total: int, resumed: int = 0, elapsed_ns: Callable[[], int] | None = None) -> None:
+    def __init__(
+        self,
+        total: int | None,
+        resumed: int = 0,
+        elapsed_ns: Callable[[], int] | None = None,
+        budget_s: float | None = None,
+    ) -> None:
         self.total = total
         self.done = self.failed = 0
-        self._resumed = min(resumed, total)
+        self._budget_s = budget_s
+        self._resumed = resumed if total is None else min(resumed, total)
         self.elapsed_ns = Stopwatch().elapsed_ns if elapsed_ns is None else elapsed_ns
 
     def arrived(self, failed: bool) -> None:
@@ -63,15 +71,25 @@ class CampaignMeter:
 
     @property
     def left_s(self) -> float | None:
-        """Seconds of wall time until all schedules are done; None as long as that cannot be told."""
-        return (self.total - self.done) / self.rate if self.rate else None
+        """Seconds of wall time until all schedules are done, or no more begin; None as long as that cannot be told."""
+        budget_s = None if self._budget_s is None else max(0.0, self._budget_s - self.elapsed_ns() / NS_PER_S)
+        by_rate_s = (self.total - self.done) / self.rate if self.rate and self.total is not None else None
+        return min((each for each in (budget_s, by_rate_s) if each is not None), default=None)
+
+    @property
+    def share(self) -> float:
+        """How much of it is done, of 1: of the schedules or of the wall time, whichever is nearer to its end."""
+        by_count = 0.0 if not self.total else self.done / self.total
+        by_time = 0.0 if not self._budget_s else self.elapsed_ns() / NS_PER_S / self._budget_s
+        return min(1.0, max(by_count, by_time))
 
     def text(self) -> str:
         """All of it in a line: `1200 of 5000 schedules, 3 failed, 85.0/s, 0:00:44 left`."""
-        parts = [f"{self.done} of {self.total} schedules", f"{self.failed} failed"]
+        count = f"{self.done}" if self.total is None else f"{self.done} of {self.total}"
+        parts = [f"{count} schedules", f"{self.failed} failed"]
         if self.rate:
             parts.append(f"{self.rate:.1f}/s")
-        if self.left_s is not None and self.done < self.total:
+        if self.left_s is not None and self.done != self.total:
             parts.append(f"{duration(self.left_s)} left")
         return ", ".join(parts)
 
@@ -122,28 +140,31 @@ class BarProgress:
         self._meter = meter
         columns: tuple[Any, ...] = (BarColumn(), TextColumn("{task.description}"))
         self._bar = RichProgress(*columns, console=Console(file=stream), transient=True)
-        self._task = self._bar.add_task(meter.text(), total=meter.total)
+        self._task = self._bar.add_task(meter.text(), total=1.0)
         self._bar.start()
 
     def arrived(self, failed: bool) -> None:
         """See `Progress.arrived`."""
         self._meter.arrived(failed)
-        self._bar.update(self._task, completed=self._meter.done, description=self._meter.text())
+        self._bar.update(self._task, completed=self._meter.share, description=self._meter.text())
 
     def close(self) -> None:
         """See `Progress.close`."""
         self._bar.stop()
 
 
-def make_progress(stream: TextIO | None, total: int, resumed: int = 0) -> Progress:
+def make_progress(
+    stream: TextIO | None, total: int | None, resumed: int = 0, budget_s: float | None = None
+) -> Progress:
     """A bar where there is a terminal, lines elsewhere.
 
     Args:
         stream: where it is shown; None shows nothing.
-        total: schedules that there are, at most.
+        total: schedules that there are, at most; None for any number.
         resumed: how many of them an earlier run has done.
+        budget_s: wall time after which no further one begins.
     """
     if stream is None:
         return NoProgress()
-    meter = CampaignMeter(total, resumed)
+    meter = CampaignMeter(total, resumed, budget_s=budget_s)
     return BarProgress(meter, stream) if stream.isatty() else PlainProgress(meter, stream)

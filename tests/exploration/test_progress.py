@@ -52,6 +52,18 @@ def test_what_an_earlier_run_did_is_not_this_ones_rate(wall: Wall) -> None:
     assert (meter.rate, meter.left_s) == (50.0, 10.0)
 
 
+def test_a_budget_ends_it_as_well(wall: Wall) -> None:
+    meter = CampaignMeter(None, elapsed_ns=wall.elapsed_ns, budget_s=60)
+    wall.seconds = 2.0
+    count(meter, 100)
+    assert meter.text() == "100 schedules, 0 failed, 50.0/s, 0:00:58 left"
+    assert meter.share == pytest.approx(2 / 60)
+    meter = CampaignMeter(1000, elapsed_ns=wall.elapsed_ns, budget_s=60)
+    count(meter, 100)
+    assert meter.text() == "100 of 1000 schedules, 0 failed, 50.0/s, 0:00:18 left"
+    assert meter.share == pytest.approx(0.1)
+
+
 def test_durations() -> None:
     assert [duration(seconds) for seconds in (0.4, 59.6, 3599, 90061)] == ["0:00:00", "0:01:00", "0:59:59", "25:01:01"]
 

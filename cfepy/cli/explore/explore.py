@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, TextIO
 
-from cfepy.cli.explore import DEFAULT_SEEDS, MOST_SEEDS
+from cfepy.cli.explore import DEFAULT_SEEDS
 from cfepy.cli.failures import tell
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
@@ -189,7 +189,7 @@ def _expedition(arguments: argparse.Namespace) -> Expedition:
     more = ("worst", "coverage", "corpus", "results", "shrink", "points")
     return Expedition(
         plan_of_mission(arguments),
-        seeds=arguments.seeds or (DEFAULT_SEEDS if arguments.budget is None else MOST_SEEDS),
+        seeds=arguments.seeds or (DEFAULT_SEEDS if arguments.budget is None else None),
         budget_s=arguments.budget,
         **{name: getattr(arguments, name) for name in (*names, *more)},
         hold_s=arguments.hold,
