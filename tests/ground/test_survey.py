@@ -64,9 +64,10 @@ def test_names_of_a_mission() -> None:
 
 def test_who_sends_and_who_subscribes() -> None:
     rows = rows_of("rx64m_pubsub")
-    counter = rows[0x0901]
-    assert (counter.name, counter.type) == ("/counter", "std_msgs/UInt32")
-    assert (counter.senders, counter.subscribers) == (["/talker"], ["/listener"])
+    there, back = rows[0x0901], rows[0x0902]
+    assert (there.name, there.type) == ("/left_to_right", "std_msgs/UInt32")
+    assert (there.senders, there.subscribers) == (["/left"], ["/right"])
+    assert (back.senders, back.subscribers) == (["/right"], ["/left"])
     assert rows[0x1811].senders == ["CFE_TIME"]
     assert rows[0x1801].subscribers == ["CFE_EVS"]
     assert list(rows) == sorted(rows)

@@ -98,8 +98,11 @@ def test_table_files_are_what_their_definitions_say(table: str) -> None:
 # -- the small board -----------------------------------------------------------------------------------------------
 
 
+BOTH_WAYS = ("/left_to_right", "/right_to_left")
+
+
 def with_rate(folder: Path, rate: int) -> str:
-    """The rx64m mission with a talker of another rate."""
+    """The rx64m mission with nodes of another rate."""
     copy = folder / f"rate{rate}"
     shutil.copytree(MISSIONS / "rx64m_pubsub", copy)
     text = (copy / "mission.yaml").read_text()
@@ -110,27 +113,32 @@ def with_rate(folder: Path, rate: int) -> str:
 def test_100_hz_on_the_rx64m_lose_nothing() -> None:
     flight, lines = fly("rx64m_pubsub", 10)
     assert flight.board.name == "rx64m"
-    sent, delivered, dropped = topic(flight, "/counter")
-    assert (sent - delivered, dropped) == (0, 0)
-    assert sent == pytest.approx(100 * 9.3, abs=15)
-    assert any("0 lost, 0 out of order" in line for line in lines)
+    for name in BOTH_WAYS:
+        sent, delivered, dropped = topic(flight, name)
+        assert (sent - delivered, dropped) == (0, 0)
+        assert sent == pytest.approx(100 * 9.3, abs=15)
+    rows = [row for row in flight.ros.topics() if row.name in BOTH_WAYS]
+    assert [row.held_back for row in rows] == [0, 0]
+    assert [line for line in lines if " lost, " in line]
+    assert all("0 lost, 0 out of order" in line for line in lines if " lost, " in line)
 
 
 @pytest.mark.parametrize("rate", [150, 200, 1000])
 def test_more_than_100_hz_is_held_back_and_reported(tmp_path: Path, rate: int) -> None:
     flight, lines = fly(with_rate(tmp_path, rate), 10)
-    sent, delivered, dropped = topic(flight, "/counter")
-    assert dropped == 0
-    assert sent - delivered <= 1
-    assert sent == pytest.approx(100 * 9.3, abs=15)
-    row = next(row for row in flight.ros.topics() if row.name == "/counter")
-    assert row.held_back > 400
+    for name in BOTH_WAYS:
+        sent, delivered, dropped = topic(flight, name)
+        assert dropped == 0
+        assert sent - delivered <= 1
+        assert sent == pytest.approx(100 * 9.3, abs=15)
+        row = next(row for row in flight.ros.topics() if row.name == name)
+        assert row.held_back > 400
     assert any("0 lost, 0 out of order" in line for line in lines)
 
 
 def test_the_same_on_linux_is_not_held_back(tmp_path: Path) -> None:
     flight, _ = fly(with_rate(tmp_path, 200), 5, board="linux")
-    assert topic(flight, "/counter")[0] == pytest.approx(200 * 4.4, abs=20)
+    assert topic(flight, "/left_to_right")[0] == pytest.approx(200 * 4.4, abs=20)
 
 
 def test_everything_on_the_rx64m_happens_at_ticks() -> None:
@@ -142,31 +150,31 @@ def test_everything_on_the_rx64m_happens_at_ticks() -> None:
 def test_over_the_boards_memory_the_report_says_who_uses_what(tmp_path: Path) -> None:
     folder = Path(with_rate(tmp_path, 100))
     script = (folder / "startup.scr").read_text()
-    (folder / "startup.scr").write_text(script.replace("LISTENER, 90,  8192", "LISTENER, 90,  500000"))
+    (folder / "startup.scr").write_text(script.replace("RIGHT, 100, 8192", "RIGHT, 100, 500000"))
     flight, lines = fly(str(folder), 3)
     text = "\n".join(lines)
-    assert "CFE_ES_StartAppTask: AppCreate Error: TaskCreate LISTENER Failed." in text
-    assert "LISTENER asks for 500256 bytes (stack)" in text
+    assert "CFE_ES_StartAppTask: AppCreate Error: TaskCreate RIGHT Failed." in text
+    assert "RIGHT asks for 500256 bytes (stack)" in text
     assert "RAM of rx64m" in text
     assert "CFE_TBL" in text
-    assert flight.cfe.es.app_named("LISTENER") is None
-    assert flight.cfe.es.app_named("TALKER") is not None
+    assert flight.cfe.es.app_named("RIGHT") is None
+    assert flight.cfe.es.app_named("LEFT") is not None
 
 
 def test_work_costs_virtual_time_on_the_board() -> None:
     flight, _ = fly("rx64m_pubsub", 5)
-    for name in ("TALKER", "LISTENER"):
+    for name in ("LEFT", "RIGHT"):
         assert 0 < flight.cfe.es.history[name].cpu_ns / flight.kernel.now < 0.05
 
 
 def test_an_application_that_does_not_fit_fails_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = Path(with_rate(tmp_path, 100))
     script = (folder / "startup.scr").read_text()
-    (folder / "startup.scr").write_text(script.replace("LISTENER, 90,  8192", "LISTENER, 90,  500000"))
+    (folder / "startup.scr").write_text(script.replace("RIGHT, 100, 8192", "RIGHT, 100, 500000"))
     assert main(["run", str(folder), "--for", "1", "--quiet"]) == 1
     captured = capsys.readouterr()
     assert "NOT STARTED" in captured.out
-    assert "LISTENER could not be started" in captured.err
+    assert "RIGHT could not be started" in captured.err
 
 
 def test_lab_is_nasas_sample_mission() -> None:
