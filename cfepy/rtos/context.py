@@ -29,6 +29,7 @@ FIRST_PATIENCE_S = 0.2  # how long a computing task may take to reach its next k
 UNWIND_S = 0.1  # how long what a struck task does at its end may take: a second blow must not hit that
 BLOWS_S = 0.5  # how long it is struck in quick succession, when it swallows the first blows
 BLOW_S = 1e-5
+STAY_NS = 100_000_000  # wall time for which a run stays on a CPU
 LOOK_UP_S = 0.25  # how long a signal may wait for the host in the worst case
 EACH_STEP_S = 1e-6  # for `sys.setswitchinterval`: another thread may get in after each step of a loop
 _HAS_BATCH = hasattr(os, "SCHED_BATCH")
@@ -187,6 +188,7 @@ class ThreadContext:
     def __init__(self) -> None:
         self._cpu = -1
         self._seat: Seat | None = None
+        self._chosen_ns = 0
         self._process = os.getpid()
 
     def bind_host(self, host: Task) -> None:
@@ -209,9 +211,16 @@ class ThreadContext:
         task.resume, task.park = carrier.lock.release, carrier.lock.acquire
 
     def prepare_run(self, tasks: list[Task]) -> None:
-        """Move the run to the CPU of its process, which follows the host's where it can."""
+        """Move the run to the CPU of its process, which follows the host's where it can, now and then.
+
+        A paced run comes here a thousand times a second, and looking for a CPU takes as long as a message.
+        """
+        now_ns = time.monotonic_ns()
         if self._seat is None:
             self._seat = process_seat()
+        elif now_ns - self._chosen_ns < STAY_NS:
+            return
+        self._chosen_ns = now_ns
         self._cpu = cpu = self._seat.choose(current_cpu())
         for task in tasks:
             carrier = task.carrier

@@ -252,6 +252,10 @@ class Kernel(Scheduler):
         if self.broken is not None:
             raise self.broken
         end = ENDLESS if until_ns is None else until_ns
+        if self._is_idle_until(end):
+            self._stopped = False
+            self.now = max(self.now, end)
+            return
         self._stopped = self._exhausted = False
         if not self._begun:
             self._begun = True
@@ -268,6 +272,13 @@ class Kernel(Scheduler):
             self.now = max(self.now, until_ns)
         if until_ns is None and self._exhausted and self.tasks:
             raise DeadlockError(self.waiting())
+
+    def _is_idle_until(self, end: int) -> bool:
+        """Whether nothing happens up to a virtual time; a run that waits for the wall clock mostly finds it so."""
+        if not self._begun or self.ready or self._failed or self._interrupted is not None or end >= self._collect_at:
+            return False
+        upcoming = self.next_event()
+        return upcoming is not None and upcoming > end
 
     def _run_until(self, end: int) -> None:
         """Run piece by piece: between the pieces, at fixed virtual times, garbage is collected."""

@@ -44,6 +44,18 @@ def test_the_trace_is_that_of_a_free_run() -> None:
     assert digests[0] == digests[1]
 
 
+def test_what_input_has_made_ready_does_not_wait() -> None:
+    """It would for a millisecond, as what comes by itself does, so that it runs in one go."""
+    waits: list[float] = []
+    with Kernel("thread", Trace()) as kernel:
+        pacer = Pacer(kernel, kernel.run, wait=waits.append, elapsed_ns=lambda: 5_000_000)
+        kernel.run(5_000_000)
+        kernel.spawn("woken", lambda: None)
+        pacer.step(NS_PER_S)
+        assert waits == []
+        assert not kernel.tasks
+
+
 @pytest.mark.parametrize("factor", [0, -1, float("nan")])
 def test_a_factor_that_makes_no_sense(factor: float) -> None:
     with Kernel("thread") as kernel, pytest.raises(ValueError, match="more than 0"):
