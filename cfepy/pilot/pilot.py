@@ -14,11 +14,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict, Unpack
 
 from cfepy.attachment import Attachment
+from cfepy.cached import CachedProperty
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
 from cfepy.pilot.course import BROKEN_OFF, INTERRUPTED, OVER, STALLED, Course
@@ -100,7 +100,7 @@ class Flown:
     reason: str = OVER
     known: tuple[str, ...] = ()
 
-    @cached_property
+    @CachedProperty
     def results(self) -> Results:
         """Its numbers: a search that flies thousands of times does not want them of each run."""
         return Results.of(self.mission, self.at, self.trace)
