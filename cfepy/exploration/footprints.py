@@ -162,7 +162,7 @@ class Footprints(Attachment):
 
     def _things(self, subject: Any, call: str, args: tuple[Any, ...]) -> list[Touched]:
         if isinstance(subject, SoftwareBus):
-            return _things_of_bus(call, args)
+            return _things_of_bus(subject, call, args)
         if call in _OWN:
             return []
         if isinstance(subject, TableServices) and args and isinstance(args[0], int):
@@ -270,10 +270,16 @@ class _Pipes:
 _SMALL_LIMIT = 4  # messages of one kind that a pipe takes by default
 
 
-def _things_of_bus(call: str, args: tuple[Any, ...]) -> list[Touched]:
-    """What a call of Software Bus touches, besides what is seen as it happens."""
+def _things_of_bus(bus: SoftwareBus, call: str, args: tuple[Any, ...]) -> list[Touched]:
+    """What a call of Software Bus touches, besides what is seen as it happens.
+
+    The task of a subscription looks for its pipe when it has been told to end, and did not wait.
+    """
     if call == "set_pipe_opts":
         return [(f"pipe {args[0]}", WRITES)]
+    if call == "find_pipe":
+        pipe = bus.find_pipe(*args)
+        return [] if pipe is None else [(f"wait for {pipe.waits.what}", READS)]
     return [(PIPES, READS)] if call == "get_pipe_id_by_name" else []
 
 
