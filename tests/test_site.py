@@ -1,0 +1,44 @@
+"""The documentation as a site: links fit where pages are there, and mkdocs has nothing to complain of."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.site_pages import ROOT, linked, pages, slug
+
+
+@pytest.mark.parametrize(
+    ("source", "text", "on_the_site"),
+    [
+        ("docs/faults.md", "[a](../README.md#set-up)", "[a](project/README.md#set-up)"),
+        ("docs/faults.md", "[a](exploration.md) [b](#here)", "[a](exploration.md) [b](#here)"),
+        ("README.md", "[a](docs/faults.md)", "[a](../faults.md)"),
+        ("README.md", "![a](docs/house.svg)", "![a](../house.svg)"),
+        ("README.md", "[a](missions/capture/README.md)", "[a](../missions/capture/README.md)"),
+        ("README.md", "[the licence](LICENSE), [a](https://ros.org)", "the licence, [a](https://ros.org)"),
+        ("missions/capture/README.md", "[a](../../docs/replay.md#x)", "[a](../../replay.md#x)"),
+        ("missions/capture/README.md", "```\n[a](startup.scr)\n```\n[a](startup.scr)", "```\n[a](startup.scr)\n```\na"),
+    ],
+)
+def test_links_fit_where_a_page_is(source: str, text: str, on_the_site: str) -> None:
+    assert linked(text, source) == on_the_site
+
+
+def test_pages_are_files_and_anchors_githubs() -> None:
+    assert [path for path in pages() if not (ROOT / path).is_file()] == []
+    assert slug("Bags, topics & `rosbag`: 2 -- or 3?") == "bags-topics--rosbag-2----or-3"
+
+
+@pytest.mark.slow
+def test_the_site_is_built_without_a_warning(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path)]
+    environ = {**os.environ, "NO_MKDOCS_2_WARNING": "1"}
+    built = subprocess.run(command, cwd=ROOT, env=environ, capture_output=True, text=True, check=False)
+    assert built.returncode == 0, built.stderr
+    for page in ("index.html", "exploration/index.html", "project/index.html", "missions/capture/index.html"):
+        assert "cfepy" in (tmp_path / page).read_text()
