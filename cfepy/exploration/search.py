@@ -19,12 +19,12 @@ from cfepy.mission import CORE_APPS
 from cfepy.rtos import Schedule
 
 GREYBOX = "greybox"
-POLICIES = ("all", "random", "pct", "dfs", "orders", GREYBOX)
+POLICIES = ("all", "random", "pct", "abreast", "dfs", "orders", GREYBOX)
 PCT_DEPTH, DFS_DEPTH = 3, 2
 PORTFOLIO_DEPTHS = (2, 3, 1)
 """Of PCT in the policy `all`: most races need two ordered events, some three, and starvation one."""
 PORTFOLIO_HOLD_NS = 1_000_000
-"""In the policy `all`, for one schedule in five, unless the board's tick is longer: a race with a timer, or with a more
+"""In the policy `all`, for one schedule in six, unless the board's tick is longer: a race with a timer, or with a more
 urgent task that waits for one, is seen only when code takes time. More would break what a mission rightly expects of
 its own sleeps; less than a tick would reach no timer."""
 
@@ -125,10 +125,13 @@ def make_search(
         return SeededSearch((random,), first_seed)
     if policy == "pct":
         return SeededSearch(tuple(pct), first_seed)
+    abreast = replace(options, kind="abreast")
+    if policy == "abreast":
+        return SeededSearch((abreast,), first_seed)
     if not holds and not options.hold_ns:
-        return SeededSearch((random, *pct), first_seed)
+        return SeededSearch((random, pct[0], abreast, *pct[1:]), first_seed)
     held = replace(random, hold_ns=options.hold_ns or max(PORTFOLIO_HOLD_NS, tick_ns))
-    return SeededSearch((random, pct[0], held, *pct[1:]), first_seed)
+    return SeededSearch((random, pct[0], abreast, held, *pct[1:]), first_seed)
 
 
 class DepthFirst:

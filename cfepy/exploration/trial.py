@@ -214,7 +214,7 @@ class Trial:
         return Verdict(
             schedule,
             failed,
-            decisions=len(policy.choices),
+            decisions=sum(width > 1 for width in policy.widths),
             deviations=deviations,
             preemptions=policy.preemptions,
             missed=policy.missed,

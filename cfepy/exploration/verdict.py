@@ -91,7 +91,7 @@ class Verdict:
         failures: in the order of their times; none for a run that went well.
         results: digest of the results that must not depend on the schedule; empty when none are selected.
         trace: digest of the whole run.
-        decisions: how often the policy was asked.
+        decisions: how often the policy had a choice: those that `from` leaves to fifo are none.
         deviations: (decision, candidate) where it did not choose as fifo would; kept for runs with failures, and where
             steps or what they cover are.
         preemptions: how many of them took the processor from a task that could have gone on.

@@ -109,7 +109,8 @@ class ImportLocks:
             yield
         finally:
             del self._loading[name]
-            self._kernel.wake_all(waits)
+            if waits:
+                self._kernel.wake_all(waits)
 
     def wait_for(self, name: str) -> None:
         """Wait until no other task is executing the module `name`."""

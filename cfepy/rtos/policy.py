@@ -163,7 +163,7 @@ class SeededRandom(Policy):
     ) -> None:
         super().__init__(any_priority, hold_ns, connect_ns, points)
         self._random = Random(seed).random
-        self._seldom = _Seldom(self._random)
+        self._seldom = Seldom(self._random)
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
@@ -175,7 +175,7 @@ class SeededRandom(Policy):
         return int(self._random() * width)
 
 
-class _Seldom:
+class Seldom:
     """Draws when a question that is asked again and again has its second answer.
 
     How often it will be asked is not known. So the number is drawn from 1 to `MOST`, any power of two being as likely
@@ -237,7 +237,7 @@ class PCT(Policy):
         self._ranks: dict[Task, float] = {}
         self._lowest = 0
         self._count = -1
-        self._seldom = _Seldom(random.random)
+        self._seldom = Seldom(random.random)
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""

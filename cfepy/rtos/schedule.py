@@ -4,6 +4,7 @@
     random:7                any of the candidates, by seed 7
     pct:7:3                 PCT, seed 7, for bugs of depth 3 (`cfepy.rtos.policy.PCT`)
     pct:7:3:5000            the same for runs of about 5000 decisions
+    abreast:7               side by side, by seed 7 (`cfepy.rtos.abreast.Abreast`)
     at:42=1,97=2            fifo, but at decision 42 candidate 1, and at decision 97 candidate 2
     moves:A@650/add.publish=B
                             fifo, but where A, from 650 ms on, calls publish in its function add, B runs
@@ -27,6 +28,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
+from cfepy.rtos.abreast import Abreast
 from cfepy.rtos.aims import Aim, AimPolicy
 from cfepy.rtos.moves import Move, MovePolicy
 from cfepy.rtos.points import Points
@@ -35,11 +37,12 @@ from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS, time_word
 
 ORDER, AIMS = "order", "aims"
+SEEDED = ("random", "pct", "abreast")
 DEPTH = 3  # of PCT, where the text gives none
 STEPS = 1000
 _TIME = re.compile(r"(\d+)(ns|us|ms|s)")
 _FORMS = (
-    "fifo, random:SEED, pct:SEED:DEPTH[:STEPS], moves:TASK@MS/FUNCTION.CALL=TASK,..., "
+    "fifo, random:SEED, pct:SEED:DEPTH[:STEPS], abreast:SEED, moves:TASK@MS/FUNCTION.CALL=TASK,..., "
     "aims:SEED:TASK@FILE/LINE=TASK@FILE/LINE,... or at:DECISION=CHOICE,..., all but fifo with :any, :fair=50, "
     ":hold=500us, :connect=50ms, :points=attributes or :from=600ms"
 )
@@ -50,7 +53,7 @@ class Schedule:
     """Who runs next, where there is a choice.
 
     Args:
-        kind: "fifo", "random", "pct", "at", "moves", "aims" or "order".
+        kind: "fifo", "random", "pct", "abreast", "at", "moves", "aims" or "order".
         seed: of random and pct, and of what is random in aims, where 0 is for nothing.
         depth: of the bugs pct looks for, at least 1.
         steps: how many decisions pct expects of the run, at least 1.
@@ -88,7 +91,7 @@ class Schedule:
 
         Args:
             text: see the module's.
-            seed: for `random` and `pct` without one.
+            seed: for `random`, `pct` and `abreast` without one.
 
         Raises:
             UsageError: it means none.
@@ -102,7 +105,7 @@ class Schedule:
             fields.pop()
         if kind == "fifo" and found == cls(kind, seed) and not fields:
             return cls()
-        if kind in ("random", "pct") and len(fields) <= (1 if kind == "random" else 3):
+        if kind in SEEDED and len(fields) <= (3 if kind == "pct" else 1):
             return replace(found, **_numbers(text, fields))
         if kind == "at" and len(fields) <= 1:
             return replace(found, seed=0, deviations=_deviations(text, fields[0] if fields else ""))
@@ -118,7 +121,7 @@ class Schedule:
     def text(self) -> str:
         """The shortest text that `parse` gives this schedule for."""
         words = [self.kind]
-        if self.kind in ("random", "pct", AIMS):
+        if self.kind in (*SEEDED, AIMS):
             words.append(str(self.seed))
         if self.kind == "pct":
             words.append(str(self.depth))
@@ -152,6 +155,8 @@ class Schedule:
     def _policy(self) -> Policy:
         if self.kind == "random":
             return SeededRandom(self.seed, *self.settings)
+        if self.kind == "abreast":
+            return Abreast(self.seed, *self.settings)
         if self.kind == "pct":
             return PCT(self.seed, self.depth, self.steps, *self.settings)
         if self.kind == "moves":

@@ -18,7 +18,7 @@ from cfepy.rtos import DEPTH, STEPS, Points, Policy, Schedule
 from cfepy.status import UsageError
 from cfepy.testing.missions import EXPLORE_MARK, SECTION, UNDER_TEST, Conditions, Missions
 
-POLICIES = ("random", "pct")
+POLICIES = ("random", "pct", "abreast")
 FAILED = "test failed"
 
 
@@ -60,7 +60,7 @@ def explore(
 
     Args:
         seeds: how many schedules; --cfepy-schedules overrules it.
-        policy: "random", "pct", or several of them, which take turns.
+        policy: "random", "pct", "abreast", or several of them, which take turns.
         depth: of the bugs that pct looks for.
         steps: how many decisions pct expects of a run.
         any_priority: tasks of less urgent priority may go before more urgent ones.
@@ -88,8 +88,8 @@ def explore(
     options += f":connect={connect}" if connect else ""
     options += f":points={Points.parse(points, 'points').text()}" if points else ""
     options += f":from={start}" if start else ""
-    numbers = {"random": "", "pct": f":{depth}:{steps}"}
-    kinds = [Schedule.parse(f"{each}:{seed}{numbers[each]}{options}") for seed, each in enumerate(policies, 1)]
+    numbers = {"pct": f":{depth}:{steps}"}
+    kinds = [Schedule.parse(f"{each}:{seed}{numbers.get(each, '')}{options}") for seed, each in enumerate(policies, 1)]
     mark: pytest.MarkDecorator = getattr(pytest.mark, EXPLORE_MARK)
     return mark(Exploration(seeds, tuple(kinds), shrink, races))
 

@@ -35,7 +35,7 @@ def test_seeds_of_one_policy() -> None:
 def test_all_is_a_mixture_without_doubles() -> None:
     found = first("all", 40)
     assert len(set(found)) == 40
-    assert {text.split(":")[0] for text in found} == {"random", "pct"}
+    assert {text.split(":")[0] for text in found} == {"random", "pct", "abreast"}
     assert {text.split(":")[2] for text in found if text.startswith("pct")} >= {"1", "2", "3"}
 
 
@@ -53,7 +53,7 @@ def test_pct_reckons_with_the_decisions_that_the_first_schedule_had() -> None:
 
 
 def test_each_schedule_is_the_one_that_its_text_means() -> None:
-    for policy in ("all", "random", "pct"):
+    for policy in ("all", "random", "pct", "abreast"):
         search = make_search(policy, None, 50, Schedule.parse("at:any"))
         for number in range(12):
             schedule = search.next()

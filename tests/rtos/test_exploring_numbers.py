@@ -8,6 +8,7 @@ from __future__ import annotations
 import gc
 from collections import Counter
 from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import combinations, groupby, permutations
 from math import sqrt
 
@@ -304,3 +305,59 @@ def test_a_choice_that_is_not_there_becomes_the_last_that_is() -> None:
     recorded = fly(walkers(1, 1, 1), Deviations({0: 9}))[1]
     assert recorded.choices[0] == 2
     assert recorded.deviations == {0: 2}
+
+
+def crowd(count: int) -> Program:
+    """A starter, and so many that each do two things; digits say how many have done the first when one does the second.
+
+    Those it starts begin while it starts others, if they may.
+    """
+
+    def program(kernel: Kernel, written: list[str]) -> None:
+        arrived = [0]
+
+        def come() -> None:
+            kernel.point()
+            arrived[0] += 1
+            kernel.point()
+            written.append(str(arrived[0]))
+
+        def start() -> None:
+            for number in range(count):
+                kernel.spawn(f"{number}", come, 100)
+                kernel.point()
+
+        kernel.spawn("starter", start, 100)
+
+    return program
+
+
+def test_abreast_lets_equals_collide() -> None:
+    found = Counter(fly(crowd(6), Schedule.parse(f"abreast:{seed}").policy())[0] for seed in range(100))
+    assert found["666666"] > 10  # all are there before the first one goes on
+    assert sum(word.startswith("1") for word in found) > 5
+    by_chance = Counter(fly(crowd(6), Schedule.parse(f"random:{seed}").policy())[0] for seed in range(100))
+    assert by_chance["666666"] < 3
+
+
+def test_abreast_reaches_every_order_of_two() -> None:
+    words = {fly(walkers(2, 2), Schedule.parse(f"abreast:{seed}").policy())[0] for seed in range(200)}
+    assert words == {"aabb", "abab", "abba", "baab", "baba", "bbaa"}
+
+
+def test_who_polls_does_not_keep_others_away_for_ever() -> None:
+    def program(kernel: Kernel, written: list[str]) -> None:
+        def poll() -> None:
+            for name in "ab":
+                kernel.spawn(name, partial(written.append, name), 100)
+            while len(written) < 2:
+                kernel.charge(1000)
+
+        kernel.spawn("poller", poll, 100)
+
+    for seed in range(20):
+        with make_kernel("greenlet", Trace(), Schedule.parse(f"abreast:{seed}").policy()) as kernel:
+            written = list[str]()
+            program(kernel, written)
+            kernel.run(1_000_000_000)
+        assert sorted(written) == ["a", "b"]

@@ -18,6 +18,7 @@ SCHEDULES = st.one_of(
     st.just(Schedule()),
     st.builds(Schedule, st.just("random"), seed=NUMBERS, **OPTIONS),
     st.builds(Schedule, st.just("pct"), seed=NUMBERS, depth=st.integers(1, 9), steps=st.integers(1, 10**6), **OPTIONS),
+    st.builds(Schedule, st.just("abreast"), seed=NUMBERS, **OPTIONS),
     st.builds(Schedule().at, st.dictionaries(NUMBERS, st.integers(1, 9), max_size=5)),
 )
 
@@ -34,6 +35,8 @@ def test_the_text_of_a_schedule_means_it(schedule: Schedule) -> None:
         ("random", Schedule("random", 5)),
         ("random:7", Schedule("random", 7)),
         ("random:any", Schedule("random", 5, any_priority=True)),
+        ("abreast:any", Schedule("abreast", 5, any_priority=True)),
+        ("abreast:7", Schedule("abreast", 7)),
         ("pct:7", Schedule("pct", 7)),
         ("pct:7:2", Schedule("pct", 7, depth=2)),
         ("pct:7:2:500:hold=2ms:any", Schedule("pct", 7, depth=2, steps=500, any_priority=True, hold_ns=2_000_000)),

@@ -67,11 +67,11 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
     )
     explore.add_argument(
         "--policy",
-        choices=("all", "random", "pct", "dfs", "orders", "greybox"),
+        choices=("all", "random", "pct", "abreast", "dfs", "orders", "greybox"),
         default="all",
         help="where they come from: random, PCT, every one with few preemptions (dfs), every order of what depends on "
-        "each other, once (orders), from what schedules before them covered (greybox), or random and PCT of depths 1 "
-        "to 3 by turns (all, the default)",
+        "each other, once (orders), from what schedules before them covered (greybox), tasks side by side "
+        "(abreast), or random, PCT of depths 1 to 3 and abreast by turns (all, the default)",
     )
     explore.add_argument(
         "--depth",

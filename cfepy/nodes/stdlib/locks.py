@@ -92,7 +92,7 @@ INNER = LockPoints(taking=False, giving=False, given=True)
 WAITER = LockPoints(taking=False, giving=False, given=False)
 """Of one that a condition makes for each that waits: those that are woken have to wait for its own lock first."""
 END = LockPoints(taking=True, giving=False, given=False)
-"""Of one that a thread gives back when it has ended."""
+"""Of one that a thread holds until it ends, and others take to wait for that."""
 
 
 def _points_of(frame: FrameType | None) -> LockPoints:
@@ -123,6 +123,10 @@ def _explore(lock: type, kernel: ExploringKernel) -> None:
     methods = vars(lock)
     plain = "holder" in methods
 
+    def may_wait(self: Any, points: LockPoints) -> bool:
+        """A thread takes the lock that it holds until its end at once."""
+        return points.taking and not (points is END and self.holder is kernel.current)
+
     def observed(name: str, has_point: bool = True) -> Callable[..., Any]:
         method = methods[name]
         takes = plain and name in _TAKING
@@ -130,7 +134,7 @@ def _explore(lock: type, kernel: ExploringKernel) -> None:
 
         def call(self: Any, *args: Any, **options: Any) -> Any:
             points = self.points
-            if has_point and (points.giving if gives else points.taking):
+            if has_point and (points.giving if gives else may_wait(self, points)):
                 kernel.point()
             if takes and points is WAITER:
                 kernel.forgive()

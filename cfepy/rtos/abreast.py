@@ -1,0 +1,100 @@
+"""A policy under which tasks go on side by side, all of them or a few: what equals do at the same time collides.
+
+Random choices let each of many tasks come somewhere else, and PCT lets one run until a change; that six tasks have each
+done one thing, and none of them two, or that of twenty tasks the first and the last overlap and no others, is rare
+under both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from random import Random
+
+from cfepy.rtos.policy import HOLD_ODDS, Decision, Policy, Seldom
+from cfepy.rtos.task import Task
+
+STARTERS_ODDS = 3 / 4  # of schedules in which who starts a task goes on before that
+GROUPS = (2, 2, 3, 0, 0, 0)  # how many tasks take part; 0 for all
+STRAY_ODDS = 2 / 3  # of groups whose tasks take their turns at random, not one after the other
+SPREADS = (0, 0, 2, 6)  # turns by which a task may come later than the others
+
+
+class Abreast(Policy):
+    """Lets tasks take turns, the one that has had the fewest first; of several the seed chooses.
+
+    The seed also draws whether a task that starts others goes on before they do, until it waits; whether all candidates
+    take part or only the first two or three of an order, in which the others come when these wait, and whether those
+    few take turns or go at random; by how many turns tasks come later than their equals. A task that uses the CPU for
+    a whole time slice, as one that polls does, goes to the end of the order.
+
+    Args:
+        seed: of all that is drawn.
+        any_priority: see `Policy`.
+        hold_ns: see `Policy`.
+        connect_ns: see `Policy`.
+        points: see `Policy`.
+    """
+
+    def __init__(
+        self, seed: int, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0, points: str = ""
+    ) -> None:
+        super().__init__(any_priority, hold_ns, connect_ns, points)
+        self._random = random = Random(seed)
+        self._seldom = Seldom(random.random)
+        self._starters_first = random.random() < STARTERS_ODDS
+        self._group = random.choice(GROUPS)
+        self._strays = bool(self._group) and random.random() < STRAY_ODDS
+        self._spread = random.choice(SPREADS)
+        self._turns: dict[Task, int] = {}
+        self._ranks: dict[Task, float] = {}
+        self._before: Sequence[Task] = ()
+        self._lowest = 0
+
+    def choose(self, decision: Decision) -> int:
+        """See `Policy.choose`."""
+        random = self._random.random
+        if decision.question is not None:
+            if decision.question.is_rare:
+                return self._seldom.choose(decision.question)
+            return int(random() * decision.width)
+        if decision.hold and random() * HOLD_ODDS < 1:
+            return len(decision.tasks)
+        if decision.left is not None:
+            self._lowest -= 1
+            self._ranks[decision.left] = self._lowest
+        self._meet(decision.tasks)
+        tasks = self._of_group(self._free(decision.tasks))
+        if not self._strays:
+            least = min(self._turns[task] for task in tasks)
+            tasks = [task for task in tasks if self._turns[task] == least]
+        chosen = tasks[int(random() * len(tasks))]
+        self._turns[chosen] += chosen.started  # to begin is no turn
+        return decision.tasks.index(chosen)
+
+    def _meet(self, tasks: Sequence[Task]) -> None:
+        """Who is new, or has waited, has had as many turns as the others at least."""
+        turns = self._turns
+        known = [turns[task] for task in tasks if task in self._before] or [
+            turns[task] for task in tasks if task in turns
+        ]
+        least = min(known, default=0)
+        for task in tasks:
+            if task not in turns:
+                turns[task] = least + int(self._random.random() * (self._spread + 1))
+                self._ranks.setdefault(task, self._random.random())
+            elif task not in self._before:
+                turns[task] = max(turns[task], least)
+        self._before = tasks
+
+    def _free(self, tasks: Sequence[Task]) -> Sequence[Task]:
+        """Those whose starters do not come before them. A starter waits until a new thread has begun."""
+        if not self._starters_first:
+            return tasks
+        starters = tuple(f"{task.path}." for task in tasks if self._ranks[task] >= 0)
+        free = [task for task in tasks if not any(task.path.startswith(path) for path in starters)]
+        return [task for task in free if not task.started] or free
+
+    def _of_group(self, tasks: Sequence[Task]) -> Sequence[Task]:
+        if not self._group or self._group >= len(tasks):
+            return tasks
+        return sorted(tasks, key=lambda task: -self._ranks[task])[: self._group]
