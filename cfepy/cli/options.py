@@ -76,8 +76,8 @@ def _add_schedule(parser: Options) -> None:
         default=DEFAULT_SCHEDULE,
         metavar="TEXT",
         help="who runs next where there is a choice: fifo (default), random[:SEED], pct:SEED:DEPTH[:STEPS], "
-        "abreast[:SEED] or at:42=1 (at decision 42 candidate 1), these with :any (of any priority), :hold=500us (tasks may "
-        "be held up) or :connect=50ms (connections of nodes may take as long)",
+        "abreast[:SEED] or at:42=1 (at decision 42 candidate 1), these with :any (of any priority), :hold=500us (tasks "
+        "may be held up) or :connect=50ms (connections of nodes may take as long)",
     )
     parser.add_argument(
         "--points",

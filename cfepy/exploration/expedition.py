@@ -168,7 +168,8 @@ class Expedition:
         seeds: how many schedules; None for any number within the budget.
         budget_s: wall time after which no further schedule is begun; None for no limit.
         policy: where they come from: "random", "pct", "abreast" (tasks side by side), "dfs" (every one with
-            few preemptions), "orders" (all orders that differ, each once), "greybox" (guided by what they cover), or "all".
+            few preemptions), "orders" (all orders that differ, each once), "greybox" (guided by what they
+            cover), or "all".
         depth: of the bugs that pct looks for; most preemptions of dfs; how many steps of a run the orders
             may differ in.
         first_seed: seed of the first schedule.

@@ -7,6 +7,7 @@ queues and mutexes do not: OSAL builds them on the names below. The host's threa
 
 from __future__ import annotations
 
+from cfepy.rtos.abreast import Abreast
 from cfepy.rtos.aims import Aim, child_name
 from cfepy.rtos.costs import CpuCosts
 from cfepy.rtos.cpus import allowed_cpus
@@ -53,6 +54,7 @@ __all__ = [
     "STALL_S",
     "STEPS",
     "TIMEOUT",
+    "Abreast",
     "Aim",
     "AskingPolicy",
     "CallObserver",
