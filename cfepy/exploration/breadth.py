@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from math import expm1, log1p
 from types import FrameType
 
+from cfepy.exploration.orders import OrdersSeen
 from cfepy.exploration.verdict import Verdict
 from cfepy.rtos import AskingPolicy, Decision, Policy
 
@@ -90,9 +91,7 @@ class Breadth:
         orders: digests of the runs that differ from each other.
         pct: by depth, how many schedules of PCT there were for bugs of that depth.
         gaps: functions that touch what others touch, too, with no point between, a line each.
-        classes: how many orders differ in something that tasks touch; None where that was not looked for.
-        is_complete: whether there are no others.
-        astray: how many schedules could not go as that search wanted.
+        seen: of a search of orders: how far it came.
         steps: the most decisions that a run of PCT's had, or was drawn for.
     """
 
@@ -102,9 +101,7 @@ class Breadth:
     pct: Counter[int] = field(default_factory=Counter)
     steps: int = 1
     gaps: list[str] = field(default_factory=list)
-    classes: int | None = None
-    is_complete: bool = False
-    astray: int = 0
+    seen: OrdersSeen | None = None
 
     def take(self, verdict: Verdict) -> None:
         """Another schedule was flown."""
@@ -126,12 +123,9 @@ class Breadth:
     def lines(self) -> list[str]:
         """A few lines for a person."""
         found = ["1 order" if len(self.orders) == 1 else f"{len(self.orders)} different orders"]
-        if self.classes is not None:
-            found = [f"{found[0]}, {self.classes} of them in what tasks touch"]
-            if self.is_complete:
-                found[0] += "; no others were found"
-            if self.astray:
-                found.append(f"{self.astray} schedules could not go as they were to: time or a priority is against it")
+        if self.seen is not None:
+            first, *others = self.seen.lines()
+            found = [f"{found[0]}, {first}", *others]
         kinds = sorted(self.points.items(), key=lambda each: -each[1])
         if kinds:
             listed = ", ".join(f"{count} at {kind}" for kind, count in kinds)
@@ -151,9 +145,9 @@ class Breadth:
         """Plain data."""
         return {
             "orders": len(self.orders),
-            "classes": self.classes,
-            "complete": self.is_complete,
-            "astray": self.astray,
+            "classes": None if self.seen is None else self.seen.orders,
+            "complete": self.seen is not None and self.seen.is_complete,
+            "astray": 0 if self.seen is None else self.seen.astray,
             "points": self.points,
             "tasks": self.tasks,
             "steps": self.steps,

@@ -271,11 +271,7 @@ class Expedition:
         if tally is None:
             return Report(trial, reference, Tally(), [], notes=notes, is_steady=False)
         if isinstance(search, OrderSearch):
-            breadth.classes, breadth.is_complete, breadth.astray = (
-                search.orders,
-                search.exhausted and not search.astray,
-                search.astray,
-            )
+            breadth.seen = search.seen
             trial = replace(trial, steps_from_ns=None)
         trial = replace(trial, usual=None)
         report = Report(trial, reference, tally, findings.troubles, notes=notes, breadth=breadth, coverage=coverage)

@@ -14,8 +14,21 @@ from collections import defaultdict, deque
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import blake2b
+from typing import NamedTuple
 
-from cfepy.exploration.steps import ENDS, GIVES, HANDED, PENDS, READS, TAKES, TIMER, TRIES, WRITES, TaskStep, state_of
+from cfepy.exploration.steps import (
+    ENDS,
+    GIVES,
+    HANDED,
+    OVERTAKING,
+    PENDS,
+    READS,
+    TAKES,
+    TRIES,
+    WRITES,
+    TaskStep,
+    state_of,
+)
 from cfepy.exploration.verdict import Verdict
 from cfepy.rtos import PLACE, Schedule
 
@@ -55,6 +68,8 @@ class Order:
         names: of the steps that touch something, each with all that it depends on; two runs with the same names are
             of one order.
         places: numbers of these steps.
+        timed: how many pairs have their order by the time alone that others used, as far as `neighbours` has come.
+        has_ends: whether a task has ended another one.
     """
 
     def __init__(self, steps: Sequence[TaskStep]) -> None:
@@ -67,6 +82,8 @@ class Order:
         self._before: list[int | None] = []  # the step before of the same task
         self._head: list[int] = []  # the first of those between which nobody could get in
         self._keys: list[Key] = []
+        self._hasty = {step.ready for step in steps if step.waker == OVERTAKING}
+        self.timed = 0
         self._latest: dict[str, int] = {}  # step of each task
         for at, step in enumerate(steps):
             before = self._latest.get(step.task)
@@ -79,12 +96,13 @@ class Order:
             self._past.append(1 << at)
             for each in direct.all:
                 self._past[at] |= self._past[each]
-            own = step.ready if step.waker == TIMER else 0
+            own = step.ready if step.waker < 0 else 0
             self._floor.append(max([own, *(self._floor[each] for each in direct.all)]))
             self._names.append(self._named(at, direct))
             for thing, how in step.touched:
                 self._touches[thing].append((at, how))
         touching = [at for at, step in enumerate(steps) if _matters(step)]
+        self.has_ends = any(how == ENDS for step in steps for _, how in step.touched)
         self.names = frozenset(name for at in touching for name in self._names[at])
         self.places = {self._keys[at]: at for at in touching}
 
@@ -111,7 +129,7 @@ class Order:
                 conflicts[self._latest[thing]].add(thing)
         gives = {each: lock for each, lock in gives.items() if (state_of(lock), WRITES) not in step.touched}
         ordered = set() if before is None else {before}
-        if step.waker != TIMER:
+        if step.waker >= 0:
             handed = [thing for thing, how in step.touched if how == HANDED]
             if handed:  # it might have been taken before, without a wait
                 gives[step.waker] = handed[0]
@@ -240,15 +258,18 @@ class Order:
             return False
         if len(earlier) == 1 and first in direct.gives:
             return False
-        if step.waker == TIMER and step.ready > first:
-            return False
         if any(first in section for section in direct.sections.values()):
             return False  # its task had the lock then
         locks = {lock for each in earlier for lock in direct.conflicts.get(each, ())}
         sections = {at for each in earlier for at in direct.sections.get(each, ())}
         others = {*direct.conflicts, *direct.ordered} - earlier - sections
         others |= {each for each, thing in direct.gives.items() if thing not in locks}
-        return not any(self._past[each] >> first & 1 or self._floor[each] > first for each in others)
+        if any(self._past[each] >> first & 1 for each in others):
+            return False
+        times = [self._floor[each] for each in others] + [step.ready if step.waker < 0 else 0]
+        hard = [each for each in times if each > first]
+        self.timed += bool(hard) and self._hasty.issuperset(hard)
+        return not hard
 
     def _reversed(self, earlier: int, later: int) -> Beginning | None:
         """The beginning in which the later of two steps goes first; what depends on the earlier one is left out.
@@ -342,6 +363,42 @@ def _runs(turns: Iterable[tuple[str, int]]) -> tuple[tuple[str, int], ...]:
     return tuple(found)
 
 
+class OrdersSeen(NamedTuple):
+    """How far a search of orders came.
+
+    Attributes:
+        orders: how many different ones were seen.
+        is_complete: whether it found no others.
+        depth: how many steps of a run might come in another order; None for all of them.
+        astray: see `OrderSearch`.
+        timed: see `OrderSearch`.
+        has_ends: see `OrderSearch`.
+    """
+
+    orders: int
+    is_complete: bool
+    depth: int | None = None
+    astray: int = 0
+    timed: int = 0
+    has_ends: bool = False
+
+    def lines(self) -> list[str]:
+        """A few lines for a person, the first one as a part of a sentence."""
+        told = f"{self.orders} of them in what tasks touch"
+        if self.is_complete:
+            told += (
+                "; no others were found" if self.depth is None else f"; all orders up to {self.depth} steps were seen"
+            )
+        found = [told]
+        if self.astray:
+            found.append(f"{self.astray} schedules could not go as they were to: time or a priority is against it")
+        if self.timed:
+            found.append(f"{self.timed} pairs of steps came in the order of the time that others used; it was left so")
+        if self.has_ends:
+            found.append("how the subscriptions of a node end that is ended was not tried in all orders")
+        return found
+
+
 class OrderSearch:
     """Schedules of orders that differ, those that are closer to fifo first.
 
@@ -353,6 +410,8 @@ class OrderSearch:
 
     Attributes:
         astray: how many schedules did not go as they were to begin, since time or a priority was against it.
+        timed: how many pairs of steps have their order by the time alone that others used.
+        has_ends: whether tasks were ended by others.
     """
 
     def __init__(self, options: Schedule, left: Collection[str] = (), depth: int | None = None) -> None:
@@ -366,6 +425,8 @@ class OrderSearch:
         self._known: set[tuple[Key, int]] = set()
         self._seen: dict[frozenset[int], Order] = {}
         self.astray = 0
+        self.timed = 0
+        self.has_ends = False
 
     @property
     def orders(self) -> int:
@@ -376,6 +437,12 @@ class OrderSearch:
     def exhausted(self) -> bool:
         """Whether there are no others."""
         return not (self._ready or self._open or self._away)
+
+    @property
+    def seen(self) -> OrdersSeen:
+        """How far it came."""
+        is_complete = self.exhausted and not self.astray
+        return OrdersSeen(self.orders, is_complete, self._depth, self.astray, self.timed, self.has_ends)
 
     def next(self) -> Schedule | None:
         """See `cfepy.exploration.campaign.Search`."""
@@ -407,6 +474,8 @@ class OrderSearch:
             if key not in self._known:
                 self._known.add(key)
                 self._open.append(beginning)
+        self.timed += order.timed
+        self.has_ends |= order.has_ends
 
     def _fill(self) -> None:
         """The next ones to fly: beginnings that no order seen has."""

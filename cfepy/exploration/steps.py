@@ -19,7 +19,7 @@ from cfepy.rtos import PLACE, ExploringKernel, Task
 
 PLACES = ("point", "charge", "delay", "yield_cpu")
 QUIET = ("make_ready", "preempt", "wake_all")
-TIMER = -1
+TIMER, OVERTAKING = -1, -2
 READS, WRITES, TAKES, GIVES, TRIES = "reads", "writes", "takes", "gives", "tries"
 HANDED, ENDS, PENDS = "handed", "ends", "pends"
 Touched = tuple[str, str]
@@ -43,7 +43,8 @@ class TaskStep(NamedTuple):
         number: what the task had passed (`cfepy.rtos.Task`).
         touched: in order.
         ready: how many steps of the run were over when its task became ready; 0 where it never waited.
-        waker: number of the step in the run that woke the task, TIMER for none.
+        waker: number of the step in the run that woke the task; TIMER for none, OVERTAKING where its time came while
+            others had something to do: then it is the time that they use which decides who comes first.
         app: whose task it is.
         joined: whether nobody could get in between the step before it and this one.
     """
@@ -104,6 +105,7 @@ class StepLog:
         self._kernel = kernel
         self._from_ns = from_ns
         self._log: list[_Entry] = []
+        self._idle = 0  # how many steps were over when nobody had anything to do the last time
         self._gone: set[Task] = set()
         self._lasting: dict[Task, dict[Touched, None]] = {}  # what a task touches in each step
         self._shut: Task | None = None  # the one that made the last step, if nobody could get in since
@@ -114,7 +116,8 @@ class StepLog:
             setattr(kernel, name, self._passing(getattr(kernel, name)))
         for name in QUIET:
             setattr(kernel, name, self._quietly(getattr(kernel, name), parts=name == "preempt"))
-        hooks = {"enqueue": self._woken, "_time_out": self._timed_out, "wait_on": self._waiting, "kill": self._ending}
+        hooks: dict[str, Callable[..., Any]] = {"enqueue": self._woken, "wait_on": self._waiting, "kill": self._ending}
+        hooks |= {"_time_out": self._timed_out, "_advance": self._idling}
         for name, hook in hooks.items():
             setattr(kernel, name, hook(getattr(kernel, name)))
 
@@ -307,10 +310,17 @@ class StepLog:
 
     def _timed_out(self, original: Callable[..., Any]) -> Callable[..., Any]:
         def time_out(task: Task) -> None:
-            self._ready[task] = len(self._log), TIMER
+            self._ready[task] = len(self._log), OVERTAKING if self._idle < len(self._log) else TIMER
             original(task)
 
         return time_out
+
+    def _idling(self, original: Callable[[], Task]) -> Callable[[], Task]:
+        def advance() -> Task:
+            self._idle = len(self._log)
+            return original()
+
+        return advance
 
     def _waiting(self, original: Callable[..., Any]) -> Callable[..., Any]:
         def wait_on(*args: Any) -> Any:

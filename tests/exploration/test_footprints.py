@@ -20,16 +20,25 @@ from tests.quality.bugs import MISSIONS, SECONDS, by_name
 FROM = "600ms"
 
 
-def explored(name: str) -> Report:
+def explored(name: str, depth: int | None = None) -> Report:
     plan = RunPlan((str(MISSIONS / name),), seconds=SECONDS, tasks="greenlet")
-    return Expedition(plan, seeds=60, policy="orders", from_s=0.6, jobs=1, shrink=100).run()
+    return Expedition(plan, seeds=60, policy="orders", depth=depth, from_s=0.6, jobs=1, shrink=100).run()
+
+
+@pytest.mark.slow
+def test_a_search_to_a_depth_says_so() -> None:
+    report = explored("lock_order", 16)
+    assert any("all orders up to 16 steps were seen" in line for line in report.breadth.lines())
+    assert not any("no others" in line for line in report.breadth.lines())
 
 
 @pytest.mark.parametrize(("name", "orders"), [("lock_order", 7), ("mutex_order", 6)])
 def test_all_orders_of_two_locks(name: str, orders: int) -> None:
     report = explored(name)
-    assert report.breadth.is_complete
-    assert (report.breadth.classes, report.tally.done, report.breadth.astray) == (orders, orders, 0)
+    seen = report.breadth.seen
+    assert seen is not None
+    assert seen.is_complete
+    assert (seen.orders, report.tally.done, seen.astray) == (orders, orders, 0)
     assert [told.finding.failure.kind for told in report.findings] == [DEADLOCK]
     assert report.findings[0].repeats
     assert any("no others were found" in line for line in report.breadth.lines())
@@ -38,7 +47,8 @@ def test_all_orders_of_two_locks(name: str, orders: int) -> None:
 @pytest.mark.slow
 def test_the_memory_of_a_table_is_read_by_who_has_its_address() -> None:
     report = explored("table_kept")
-    assert report.breadth.is_complete
+    assert report.breadth.seen is not None
+    assert report.breadth.seen.is_complete
     assert [told.finding.failure.kind for told in report.findings] == [EVENT]
 
 

@@ -112,12 +112,12 @@ class World:
         return sorted(self.values.items()), sorted((name, tuple(seen)) for name, seen in self.seen.items())
 
 
-def fly(program: Program, schedule: Schedule, context: str = "greenlet") -> Flown:
+def fly(program: Program, schedule: Schedule, context: str = "greenlet", world: type[World] = World) -> Flown:
     recorded = NotingPolicy(schedule.policy())
     with make_kernel(context, None, recorded) as kernel:
-        world = World(kernel, program)
+        flown = world(kernel, program)
         kernel.run(1000 * US)
-        return Flown(repr(world.outcome), recorded, world.log.steps)
+        return Flown(repr(flown.outcome), recorded, flown.log.steps)
 
 
 def random_program(seed: int, kinds: tuple[str, ...], tasks: int, most: int) -> Program:
@@ -229,6 +229,27 @@ def test_a_depth_leaves_later_steps_as_they_are() -> None:
         search.tell(count, Verdict(schedule, steps=fly(program, schedule).steps))
         count += 1
     assert 1 < count < len(all_orders(program)[0].orders)
+
+
+def test_it_tells_where_time_alone_decides() -> None:
+    """A timer comes while another task computes: that one's deed may come after it only if it takes longer."""
+
+    class Computing(World):
+        def write(self, name: str, which: str) -> None:
+            self.kernel.charge(2 * US if name == "task 1" else 0)
+            super().write(name, which)
+
+    def timed(kind: type[World], *programs: Program) -> int:
+        search = OrderSearch(Schedule())
+        for number, program in enumerate(programs):
+            schedule = search.next()
+            assert schedule is not None
+            search.tell(number, Verdict(schedule, steps=fly(program, schedule, world=kind).steps))
+        return search.seen.timed
+
+    program: Program = [[("sleep", "x"), ("write", "x")], [("write", "y"), ("write", "x")]]
+    assert timed(World, program) == 0
+    assert timed(Computing, [[("sleep", "x"), ("write", "x")], [("write", "x"), ("write", "y")]]) == 1
 
 
 def test_schedules_do_not_depend_on_when_verdicts_come() -> None:
