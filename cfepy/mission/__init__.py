@@ -54,7 +54,7 @@ from cfepy.mission.mission_file import MissionSections, read_mission_file
 from cfepy.mission.outside import Arrival, OutsideStream
 from cfepy.mission.packet_watch import HOST, PacketWatch, Seen, hearing, receivers
 from cfepy.mission.pieces import FIRST_PIECE_NS, PieceLength
-from cfepy.mission.processor import CORE_APPS, Processor
+from cfepy.mission.processor import CORE_APPS, UNIX_AT_CFE_EPOCH, Processor
 from cfepy.mission.python_code import find_code, find_node
 from cfepy.mission.record import DataRace, Reset, Traffic
 from cfepy.mission.spec import BuiltProgram, MissionSpec
@@ -81,6 +81,7 @@ __all__ = [
     "PUBLISH",
     "STARTUP_SCRIPT",
     "TEXT",
+    "UNIX_AT_CFE_EPOCH",
     "Arrival",
     "BuiltProgram",
     "CppNodesConfig",

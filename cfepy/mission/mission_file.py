@@ -20,7 +20,7 @@ from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import merged, read_files, read_tree
 from cfepy.mission.spec import CompiledConfig
 from cfepy.msg import HIGHEST_VALID_MSG_ID
-from cfepy.nodes import NodeConfig, RosConfig, TopicConfig
+from cfepy.nodes import BridgedPacket, NodeConfig, RosBridge, RosConfig, TopicConfig
 from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 DEMANDS = ("invariants", "results", "deadlines", "inversions")
@@ -36,8 +36,8 @@ class MissionSections:
 
     Attributes:
         name, board, cfe_version, compiled, cpp_nodes, limits, nodes, topics, params, params_from, ordered_sets,
-        connection_delay, launch: the sections of these names, as their readers give them; `name` and `board` are None
-            when nothing is said.
+        connection_delay, ros_bridge, launch: the sections of these names, as their readers give them; `name` and
+            `board` are None when nothing is said.
         demands: the sections of `DEMANDS`, as they stand there.
         places: all sections that are there and known, as they stand there.
     """
@@ -54,6 +54,7 @@ class MissionSections:
     params_from: dict[str, Any] = field(default_factory=dict)
     ordered_sets: bool = False
     connection_delay: int = 0
+    ros_bridge: RosBridge = field(default_factory=RosBridge)
     launch: tuple[LaunchFile, ...] = ()
     demands: Mapping[str, Marked] = field(default_factory=dict)
     places: Mapping[str, Marked] = field(default_factory=dict)
@@ -68,6 +69,7 @@ class MissionSections:
             params=params,
             ordered_sets=self.ordered_sets,
             connection_delay_ns=self.connection_delay,
+            bridge=self.ros_bridge,
         )
 
     def board_in(self, folder: Path) -> str:
@@ -188,6 +190,45 @@ def _topic(name: str, entry: Marked) -> TopicConfig:
     return TopicConfig(name, msg_id, _truth(fields["raw"]) if "raw" in fields else False)
 
 
+def read_bridge(section: Marked, mistakes: Mistakes) -> RosBridge:
+    """The section `ros_bridge:`, without what is wrong in it.
+
+    Args:
+        section: its value.
+        mistakes: takes an unknown key, and a topic's name without "/".
+    """
+    publish: dict[str, BridgedPacket] = {}
+    subscribe: list[str] = []
+    for name, part in mistakes.fields(section, ("publish", "subscribe")):
+        if name == "publish":
+            for topic, entry in mistakes.mapping(part).items():
+                packet = mistakes.attempt(partial(_bridged, topic, entry))
+                if packet is not None:
+                    publish[topic] = packet
+        else:
+            heard = [mistakes.attempt(partial(_global_topic, item)) for item in mistakes.attempt(part.items) or ()]
+            subscribe = [each for each in heard if each is not None]
+    return RosBridge(publish, tuple(subscribe))
+
+
+def _bridged(topic: str, entry: Marked) -> BridgedPacket:
+    if not topic.startswith("/"):
+        raise entry.fail(f'is the topic {topic!r}; a topic name here begins with "/"')
+    if not isinstance(entry.value, dict):
+        return BridgedPacket(str(entry.value))
+    fields = entry.mapping(("packet", "raw"))
+    if "packet" not in fields:
+        raise entry.fail("needs a packet, such as `packet: CFE_ES_HK_TLM`")
+    return BridgedPacket(str(fields["packet"].value), _truth(fields["raw"]) if "raw" in fields else False)
+
+
+def _global_topic(entry: Marked) -> str:
+    topic = entry.text()
+    if not topic.startswith("/"):
+        raise entry.fail(f'is the topic {topic!r}; a topic name here begins with "/"')
+    return topic
+
+
 def _namespace(entry: Marked) -> str:
     namespace = entry.text()
     if not namespace.startswith("/"):
@@ -263,6 +304,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "params_from": _single(read_files),
     "ordered_sets": _single(_truth),
     "connection_delay": _single(Marked.time),
+    "ros_bridge": read_bridge,
     "launch": read_launches,
 }
 """What reads each section; the results are the attributes of `MissionSections`. None stands for nothing good."""

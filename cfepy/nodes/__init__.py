@@ -15,7 +15,7 @@ import threading  # noqa: F401  # first imported by a task, the host's would tak
 from typing import TYPE_CHECKING
 
 from cfepy.faces import face
-from cfepy.nodes.config import ROSCORE_PARAMS, CppNode, NodeConfig, RosConfig, TopicConfig
+from cfepy.nodes.config import ROSCORE_PARAMS, BridgedPacket, CppNode, NodeConfig, RosBridge, RosConfig, TopicConfig
 
 if TYPE_CHECKING:
     from cfepy.nodes.accesses import WHOLE, Accesses, Observer, Touch
@@ -36,6 +36,7 @@ __all__ = [
     "WHOLE",
     "Accesses",
     "AppModules",
+    "BridgedPacket",
     "CppNode",
     "Factory",
     "NodeConfig",
@@ -43,6 +44,7 @@ __all__ = [
     "Overlay",
     "ProcessNumbers",
     "RefusedError",
+    "RosBridge",
     "RosConfig",
     "StartThread",
     "TopicConfig",

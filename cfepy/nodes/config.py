@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 ROSCORE_PARAMS: Mapping[str, Any] = {
     "rosdistro": "noetic\n",
@@ -111,6 +111,26 @@ class TopicConfig:
     raw: bool = False
 
 
+class BridgedPacket(NamedTuple):
+    """A packet that ROS outside sees as a topic: its name or MsgId; raw is as it is, though its fields are known."""
+
+    packet: str
+    raw: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class RosBridge:
+    """What passes between cFE applications and ROS nodes outside of the mission (`cfepy.ros_host`).
+
+    Attributes:
+        publish: packets, by the topic as which they are seen.
+        subscribe: topics that are heard for applications; `topics` of the mission file has their MsgIds.
+    """
+
+    publish: Mapping[str, BridgedPacket] = field(default_factory=dict)
+    subscribe: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, slots=True)
 class RosConfig:
     """Everything about ROS in a mission file; `nodes` by cFE application name, `topics` by resolved topic name.
@@ -122,7 +142,8 @@ class RosConfig:
     next run. `ends_with_nodes`: the run is over when all its nodes have ended. `root` is a folder that stands for the
     computer's root, for a mission that was brought from elsewhere (`Universe`), `absent` are paths at which there was
     nothing. `connection_delay_ns` is how long
-    it takes until a publisher and a subscriber are connected, in virtual ns.
+    it takes until a publisher and a subscriber are connected, in virtual ns. `bridge` is what a run that is joined to
+    ROS shows there.
     """
 
     nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
@@ -137,3 +158,4 @@ class RosConfig:
     absent: Collection[str] = frozenset()
     connection_delay_ns: int = 0
     compiled: Mapping[str, NodeConfig] = field(default_factory=dict)
+    bridge: RosBridge = field(default_factory=RosBridge)

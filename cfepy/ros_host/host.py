@@ -13,12 +13,14 @@ import time
 from collections.abc import Callable, Mapping
 from selectors import EVENT_READ, DefaultSelector
 from typing import TYPE_CHECKING, Any, NamedTuple
+from xmlrpc.client import dumps
 
 from cfepy.mission import Mission
 from cfepy.ros_host.counts import OUT_OF, PeerCounts
 from cfepy.ros_host.errands import Errands
 from cfepy.ros_host.mission_node import ANY, MissionNode, OutsideClient
 from cfepy.ros_host.peers import OutsideCall, OutsidePublisher
+from cfepy.ros_host.shown import APPLICATIONS, ShownPackets
 from cfepy.ros_host.tcpros import frame
 from cfepy.status import CfeError
 from rospy_shim.master.calls import Answer
@@ -106,6 +108,8 @@ class RosHost:
         self._look_at_s = 0.0
         self._is_over = False
         self.selector.register(self.errands, EVENT_READ, lambda events: self.errands.deliver())
+        self.shown = ShownPackets(mission.spec)
+        self._ears: dict[str, list[OutsideClient]] = {}  # by topic, of shown packets
         mission.record.tables[TABLE] = self.counts.rows
         self.world = make_world(self)
         self.world.begin()
@@ -180,13 +184,24 @@ class RosHost:
         ros.graph.params.on_change(self._params.append)
         self._close_all()
         self.world.enter()
+        if self.shown:
+            self._register_applications()
+
+    def _register_applications(self) -> None:
+        """One node stands for the cFE applications outside; the mission's own graph knows it by name alone."""
+        node = self._nodes[APPLICATIONS] = MissionNode(self, APPLICATIONS, "")
+        node.inner = node.uri
+        for topic, shown in self.shown.packets.items():
+            self.ask_inside("", dumps((APPLICATIONS, topic, shown.type.name, node.uri), "registerPublisher").encode())
+        for topic in self.shown.heard:
+            self.ask_inside("", dumps((APPLICATIONS, topic, ANY, node.uri), "registerSubscriber").encode())
 
     def _close_all(self) -> None:
         for publisher in self._publishers.values():
             publisher.close()
         for node in self._nodes.values():
             node.close()
-        for each in (self._publishers, self._nodes, self._clients, self._calls, self._offered):
+        for each in (self._publishers, self._nodes, self._clients, self._ears, self._calls, self._offered):
             each.clear()
 
     def see(self) -> OwnGraph:
@@ -194,6 +209,8 @@ class RosHost:
         assert self.ros is not None
         graph, registry = self.ros.graph, self.ros.switchboard.master.registry
         nodes = {name: registry.node_uri(name) or "" for name in (*graph.nodes, *graph.compiled)}
+        if self.shown:
+            nodes[APPLICATIONS] = self._nodes[APPLICATIONS].inner
         publishers = _own(registry.publishers(), nodes)
         subscribers = _own(registry.subscribers(), nodes)
         services = _own(registry.providers(), nodes)
@@ -294,6 +311,8 @@ class RosHost:
         """The connection header of a publisher of the mission; None when there is none."""
         assert self.ros is not None
         graph = self.ros.graph
+        if name == APPLICATIONS:
+            return self.shown.header(topic)
         node, compiled = graph.nodes.get(name), graph.compiled.get(name)
         link = None if node is None else node.links.get(topic)
         if link is not None and link.topic is not None:
@@ -337,6 +356,8 @@ class RosHost:
     def add_client(self, topic: str, publisher: str, subscriber: str, client: OutsideClient) -> None:
         """A subscriber has connected."""
         self._clients.setdefault((topic, subscriber), {}).setdefault(publisher, []).append(client)
+        if publisher == APPLICATIONS:
+            self._ears.setdefault(topic, []).append(client)
 
     def remove_client(self, topic: str, publisher: str, subscriber: str, client: OutsideClient) -> None:
         """It is gone."""
@@ -344,6 +365,8 @@ class RosHost:
         clients = by_publisher.get(publisher, [])
         if client in clients:
             clients.remove(client)
+        if client in self._ears.get(topic, ()):
+            self._ears[topic].remove(client)
         if not clients:
             by_publisher.pop(publisher, None)
         if not by_publisher:
@@ -351,11 +374,18 @@ class RosHost:
 
     def subscribe(self, topic: str, name: str, kind: str, md5sum: str, publisher: str) -> str:
         """Put an outside subscriber on the graph; what is wrong with it."""
+        if publisher == APPLICATIONS:
+            self.act("show", topic, self.shown.packets[topic].msg_id)
+            return ""
         wrong: str = self.act("subscribe", topic, name, self.world.uri_of(name), kind, md5sum, publisher)
         return wrong
 
     def unsubscribe(self, topic: str, name: str, publisher: str) -> None:
         """One of its connections is gone."""
+        if publisher == APPLICATIONS:
+            if not self._ears.get(topic):
+                self.act("show no more", topic)
+            return
         self.act("subscribe no more", topic, name, publisher)
 
     def message(self, topic: str, publisher: str, subscriber: str, payload: bytes) -> None:
@@ -374,6 +404,19 @@ class RosHost:
         count = self.counts.of(topic, subscriber, OUT_OF)
         count.messages += 1
         count.size += len(payload)
+
+    def packet(self, topic: str, packet: bytes) -> None:
+        """See `WayOut.packet`."""
+        payload = self.shown.packets[topic].serialize(packet)
+        for client in self._ears.get(topic, ()):
+            count = self.counts.of(topic, client.caller, OUT_OF)
+            if payload is None:
+                count.dropped += 1
+                count.why = "a packet is shorter than its layout"
+                continue
+            client.send(frame(payload))
+            count.messages += 1
+            count.size += len(payload)
 
     # -- calls -------------------------------------------------------------------------------------------------------
 

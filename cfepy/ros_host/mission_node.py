@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.ros_host.counts import INTO, OUT_OF
 from cfepy.ros_host.peer_socket import ENDED, Listening, PeerSocket, listening_socket
+from cfepy.ros_host.shown import APPLICATIONS
 from cfepy.ros_host.tcpros import LONGEST_FRAME, TcprosFrames, frame, pack_header, parse_header
 from cfepy.ros_host.xmlrpc_server import XmlRpcServer
 from rospy_shim.master.calls import Answer, call
@@ -77,7 +78,12 @@ class MissionNode:
         return host.outer_answer(call(api, method, arguments))
 
     def _of_applications(self, method: str) -> Answer:
-        """The node that stands for the cFE applications is none of the graph's."""
+        """The node that stands for the cFE applications is none of the graph's, nor is the host's own."""
+        shown = self._host.shown
+        if method == "getPublications" and self.name == APPLICATIONS:
+            return 1, "publications", [[topic, each.type.name] for topic, each in shown.packets.items()]
+        if method == "getSubscriptions" and self.name == APPLICATIONS:
+            return 1, "subscriptions", [[topic, ANY] for topic in shown.heard]
         values: dict[str, Any] = {"getUri": self.uri, "getName": self.name, "getPid": self._host.pid}
         return 1, "", values.get(method, [])
 

@@ -57,6 +57,9 @@ class WayOut(Protocol):
     def message(self, topic: str, publisher: str, subscriber: str, payload: bytes) -> None:
         """A message for an outside subscriber. `publisher` is "" for one that no ROS node has sent."""
 
+    def packet(self, topic: str, packet: bytes) -> None:
+        """A packet of cFE applications that is shown as a topic."""
+
     def request(self, service: str, number: int, header: Header, body: bytes) -> None:
         """A request for an outside service; `number` is that of the call."""
 
@@ -145,7 +148,10 @@ class OutsideLink(Link):
         if self.topic is None or route is None or not route.active:
             return True
         try:
-            for index, packet in enumerate(self._packets(payload)):
+            packets = self._packets(payload)
+            if self.raw and int.from_bytes(packets[0][:2], "big") != self.msg_id:
+                return False
+            for index, packet in enumerate(packets):
                 self._note(index)
                 self._bus.transmit_msg(packet)
         except CfeError:
@@ -313,6 +319,7 @@ class OutsideGraph:
         self._pieces: dict[str, Pieces] = {}  # of long requests, by service
         self._calls: dict[str, dict[int, int]] = {}  # by service: the caller's number of a call by the service's
         self._outlets: dict[str, Outlet] = {}  # by service
+        self._shown: dict[str, Outlet] = {}  # by topic
         self._acts: dict[str, Callable[..., Any]] = {
             "ask": self._ask,
             "publish": self._publish,
@@ -320,6 +327,8 @@ class OutsideGraph:
             "message": self._message,
             "subscribe": self._subscribe,
             "subscribe no more": self._subscribe_no_more,
+            "show": self._show,
+            "show no more": self._show_no_more,
             "call": self._call,
             "forget call": self._forget_call,
             "serve": self._serve,
@@ -423,6 +432,21 @@ class OutsideGraph:
         if not subscription.publishers:
             del self.subscriptions[topic, name]
             subscription.close()
+
+    def _show(self, topic: str, msg_id: int) -> None:
+        """Somebody outside hears packets of cFE applications."""
+        if topic not in self._shown:
+
+            def take(packet: bytes) -> None:
+                if self.way_out is not None:
+                    self.way_out.packet(topic, packet)
+
+            self._shown[topic] = Outlet(self._cfe.sb, msg_id, topic, take)
+
+    def _show_no_more(self, topic: str) -> None:
+        outlet = self._shown.pop(topic, None)
+        if outlet is not None:
+            outlet.close()
 
     # -- services of the mission -------------------------------------------------------------------------------------
 

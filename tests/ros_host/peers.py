@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 from xmlrpc.client import ServerProxy, Transport
 
-from cfepy.attachment import Attachment
 from cfepy.console import Console
 from cfepy.io.host_network import HostNetwork
 from cfepy.mission import Mission
@@ -155,9 +154,10 @@ class Wire:
 class OutsideSpeaker:
     """A publisher outside, with a slave API that the test serves."""
 
-    def __init__(self, run: Joined, topic: str) -> None:
+    def __init__(self, run: Joined, topic: str, kind: Mapping[str, str] = STRING) -> None:
         self._run = run
         self._topic = topic
+        self._kind = kind
         self._accepted: list[Wire] = []
         selector = run.host.selector
         self._opened = Listening(
@@ -166,14 +166,16 @@ class OutsideSpeaker:
         self._server = XmlRpcServer(
             selector, "127.0.0.1", lambda *_: (1, "", ["TCPROS", "127.0.0.1", self._opened.port])
         )
-        run.master("registerPublisher", topic, STRING["type"], f"http://127.0.0.1:{self._server.port}/")
+        run.master("registerPublisher", topic, kind["type"], f"http://127.0.0.1:{self._server.port}/")
 
     def connect(self) -> dict[str, str]:
         """Wait for the mission to connect; the header that it sends."""
         self._run.run_while(lambda: not self._accepted)
         self._wire = self._accepted.pop()
         header = self._wire.header()
-        self._wire.socket.sendall(pack_header({"callerid": CALLER, "topic": self._topic, "latching": "0", **STRING}))
+        self._wire.socket.sendall(
+            pack_header({"callerid": CALLER, "topic": self._topic, "latching": "0", **self._kind})
+        )
         return header
 
     def send(self, payload: bytes) -> None:
@@ -190,15 +192,16 @@ class OutsideSpeaker:
 
 
 @contextmanager
-def joined(folder: Path, nodes: Mapping[str, str], *attachments: Attachment) -> Iterator[Joined]:
-    """A mission of nodes, by their application's name, with a master on a free port."""
+def joined(folder: Path, nodes: Mapping[str, str], more: str = "", mission_file: str = "") -> Iterator[Joined]:
+    """A mission of nodes, by their application's name, with a master on a free port; more lines of its script."""
+    (folder / "mission.yaml").write_text(mission_file or "name: joined\n")
     lines = [f"CFE_APP, {app.lower()}.py, __main__, {app}, 100, 16384, 0x0, 0;\n" for app in nodes]
-    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    (folder / "startup.scr").write_text("".join(lines) + more + "!\n")
     for app, source in nodes.items():
         (folder / f"{app.lower()}.py").write_text(source)
     told: list[str] = []
     with (
-        Mission(str(folder), console=Console(quiet=True), attachments=attachments) as mission,
+        Mission(str(folder), console=Console(quiet=True)) as mission,
         HostNetwork(mission, tell=told.append) as bridge,
         RosHost(mission, lambda host: ServedMaster(host, 0), {}, told.append) as host,
     ):

@@ -29,6 +29,7 @@ from cfepy.monitors import read_demands
 from cfepy.pilot.check.cfe_names import wrong_names
 from cfepy.pilot.check.mission_sections import (
     check_board,
+    check_bridge,
     check_cpp_nodes,
     check_deadlines,
     check_lock,
@@ -112,6 +113,7 @@ def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None
     found += check_deadlines(said, started)
     if not mistakes.errors:  # what the mission has is known when its file is right
         found += check_packets(said, demands, script)
+        found += check_bridge(said, script)
     found += check_cpp_nodes(said)
     found += check_lock(script.parent, said)
     found += check_board(script, started, said, board, script.parent)

@@ -105,6 +105,31 @@ def check_packets(said: MissionSections, demands: Demands, script: Path) -> Iter
             yield MissionProblem(place.file, place.line, f"{place.field}: {error.text}")
 
 
+def check_bridge(said: MissionSections, script: Path) -> Iterator[MissionProblem]:
+    """Packets that ROS outside is to see and that the mission does not have, and heard topics without a MsgId."""
+    section = said.places.get("ros_bridge")
+    if section is None:
+        return
+    parts = Mistakes(keep=True).mapping(section)
+    for place in Mistakes(keep=True).attempt(parts["subscribe"].items) or () if "subscribe" in parts else ():
+        if place.value in said.ros_bridge.subscribe and place.value not in said.topics:
+            text = f"{place.value} has no MsgId that an application can know; give it one under topics:"
+            yield MissionProblem(place.file, place.line, f"{place.field}: {text}")
+    if not said.ros_bridge.publish:
+        return
+    try:
+        dictionary = dictionary_of(read_mission(str(script)))
+    except UsageError:  # of something else, and told there
+        return
+    places = Mistakes(keep=True).mapping(parts["publish"])
+    for topic, bridged in said.ros_bridge.publish.items():
+        try:
+            dictionary.telemetry_of(bridged.packet)
+        except UsageError as error:
+            place = places[topic]
+            yield MissionProblem(place.file, place.line, f"{place.field}: {error.text}")
+
+
 def _unknown_app(field: str, app: str, place: Marked, apps: Collection[str]) -> MissionProblem:
     hint = did_you_mean(app, apps, f"the startup script has {', '.join(apps) or 'none'}")
     return MissionProblem(place.file, place.line, f"{field}: no application is called {app}; {hint}")

@@ -1,0 +1,216 @@
+"""What cFE applications have for ROS outside: packets that are shown as topics, and topics that are heard for them.
+
+The mission file says which (`ros_bridge:`). Outside, one node stands for all applications.
+
+Telemetry whose layout is known has a message type made of it. A number, text, struct or array of a C struct becomes the
+like of it in ROS; an array of arrays is one array. In front stands a header (std_msgs/Header) with sequence count and
+time of the packet. The bytes need no values in between: ROS serialises numbers as they are, without the padding of C,
+and a text behind its length (wiki.ros.org/msg).
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+from collections.abc import Callable
+from typing import NamedTuple
+
+from cfepy.ground import dictionary_of
+from cfepy.mission import UNIX_AT_CFE_EPOCH, MissionSpec
+from cfepy.msg import TLM_HEADER_SIZE, Cell, Layout, Telemetry
+from cfepy.status import UsageError
+from rospy_shim.msgs import from_full_text, message_class
+
+APPLICATIONS = "/cfe"  # the node's name
+RAW = "std_msgs/UInt8MultiArray"
+PACKAGE = "cfe_tlm"
+RULE = "=" * 80
+_ROS = {
+    **{"u8": "uint8", "i8": "int8", "u16": "uint16", "i16": "int16", "u32": "uint32", "i32": "int32"},
+    **{"u64": "uint64", "i64": "int64", "f32": "float32", "f64": "float64", "bool": "bool"},
+}
+_PART = re.compile(r"(\w+)((?:\[\d+\])*)")
+_time = struct.Struct(">IH").unpack_from
+_header = struct.Struct("<IIII").pack
+
+
+class PacketType(NamedTuple):
+    """A message type.
+
+    Attributes:
+        name: "package/Name".
+        md5sum: of its definition.
+        definition: its full text, those of the types in it too.
+    """
+
+    name: str
+    md5sum: str
+    definition: str
+
+
+class _Struct:
+    """Fields of a message in order: a number's or text's type, or another struct; and the indices of arrays."""
+
+    def __init__(self) -> None:
+        self.fields: dict[str, str | _Struct] = {}
+        self.indices: dict[str, set[str]] = {}
+
+    def add(self, parts: list[tuple[str, str]], kind: str) -> None:
+        """A number or text, by the parts of its path; an array has the shape of its first item."""
+        (name, index), *rest = parts
+        indices = self.indices.setdefault(name, set())
+        if index:
+            indices.add(index)
+        if not rest:
+            self.fields[name] = kind
+        elif len(indices) <= 1:
+            inner = self.fields.setdefault(name, _Struct())
+            assert isinstance(inner, _Struct)
+            inner.add(rest, kind)
+
+
+def type_of(name: str, layout: Layout) -> PacketType:
+    """The message type of a telemetry packet.
+
+    Args:
+        name: of the packet.
+        layout: of its payload.
+    """
+    main = re.sub(r"\W", "_", name)
+    main = main if main[:1].isalpha() else f"P{main}"
+    root = _Struct()
+    for cell in layout.cells():
+        parts = [(part[1], part[2]) for part in map(_PART.fullmatch, cell.path.split(".")) if part is not None]
+        root.add(parts, "string" if cell.type.startswith("char") else _ROS[cell.type])
+    texts: dict[str, str] = {}
+    _write(main, root, texts, "std_msgs/Header header\n")
+    header = f"{RULE}\nMSG: std_msgs/Header\n{message_class('std_msgs/Header')._full_text}"
+    first, *others = texts.items()
+    definition = first[1] + "".join(f"{RULE}\nMSG: {PACKAGE}/{each}\n{text}" for each, text in others) + header
+    full_name = f"{PACKAGE}/{main}"
+    made = from_full_text(full_name, definition).message_class(full_name)
+    return PacketType(full_name, made._md5sum, definition)
+
+
+def _write(name: str, shape: _Struct, texts: dict[str, str], lines: str = "") -> None:
+    texts[name] = ""
+    for field, kind in shape.fields.items():
+        if isinstance(kind, _Struct):
+            inner = f"{name}_{field}"
+            _write(inner, kind, texts)
+            kind = f"{PACKAGE}/{inner}"
+        count = len(shape.indices[field])
+        lines += f"{kind}{f'[{count}]' if count else ''} {field}\n"
+    texts[name] = lines
+
+
+class PacketSerializer:
+    """Makes messages of packets.
+
+    Args:
+        layout: of the payload.
+    """
+
+    def __init__(self, layout: Layout) -> None:
+        self._size = TLM_HEADER_SIZE + layout.size
+        self._pieces = list(_pieces(list(layout.cells())))
+
+    def message(self, packet: bytes) -> bytes | None:
+        """The serialised message; None for a packet that is too short."""
+        if len(packet) < self._size:
+            return None
+        seconds, subseconds = _time(packet, 6)
+        count = (packet[2] << 8 | packet[3]) & 0x3FFF
+        parts = [_header(count, seconds + UNIX_AT_CFE_EPOCH & 0xFFFFFFFF, subseconds * 1_000_000_000 >> 16, 0)]
+        for start, end, is_text in self._pieces:
+            data = packet[start:end]
+            if is_text:
+                data = data.partition(b"\0")[0]
+                parts.append(len(data).to_bytes(4, "little"))
+            parts.append(data)
+        return b"".join(parts)
+
+
+def _pieces(cells: list[Cell]) -> list[tuple[int, int, bool]]:
+    """Begin, end and whether it is a text, of what stands together in a packet."""
+    found: list[tuple[int, int, bool]] = []
+    for cell in cells:
+        start, end, is_text = (
+            TLM_HEADER_SIZE + cell.offset,
+            TLM_HEADER_SIZE + cell.offset + cell.size,
+            "char" in cell.type,
+        )
+        if found and not is_text and not found[-1][2] and found[-1][1] == start:
+            found[-1] = (found[-1][0], end, False)
+        else:
+            found.append((start, end, is_text))
+    return found
+
+
+class ShownPacket(NamedTuple):
+    """A packet that is shown.
+
+    Attributes:
+        msg_id: of the packet.
+        type: of the messages.
+        serialize: makes a message of a packet; None of one that is too short.
+    """
+
+    msg_id: int
+    type: PacketType
+    serialize: Callable[[bytes], bytes | None]
+
+
+class ShownPackets:
+    """What a mission file says.
+
+    Args:
+        spec: the mission.
+
+    Attributes:
+        packets: those that are shown, by topic.
+        heard: topics that are heard for the applications.
+
+    Raises:
+        UsageError: there is no such packet.
+    """
+
+    def __init__(self, spec: MissionSpec) -> None:
+        bridge = spec.ros.bridge
+        self.heard = bridge.subscribe
+        self.packets: dict[str, ShownPacket] = {}
+        if not bridge.publish:
+            return
+        dictionary = dictionary_of(spec)
+        for topic, (packet, is_raw) in bridge.publish.items():
+            try:
+                found = dictionary.telemetry_of(packet)
+            except UsageError as error:
+                raise UsageError(error.text, file=spec.script, field=f"ros_bridge.publish.{topic}") from None
+            if isinstance(found, Telemetry) and found.payload.size and not is_raw:
+                serialize = PacketSerializer(found.payload).message
+                self.packets[topic] = ShownPacket(found.msg_id, type_of(found.name, found.payload), serialize)
+            else:
+                self.packets[topic] = ShownPacket(found.msg_id, _raw_type(), _whole)
+
+    def __bool__(self) -> bool:
+        return bool(self.packets or self.heard)
+
+    def header(self, topic: str) -> dict[str, str] | None:
+        """The connection header of a topic; None when no packet is shown there."""
+        shown = self.packets.get(topic)
+        if shown is None:
+            return None
+        kind = shown.type
+        fields = {"callerid": APPLICATIONS, "latching": "0", "md5sum": kind.md5sum, "topic": topic}
+        return {**fields, "type": kind.name, "message_definition": kind.definition}
+
+
+def _raw_type() -> PacketType:
+    kind = message_class(RAW)
+    return PacketType(RAW, kind._md5sum, kind._full_text)
+
+
+def _whole(packet: bytes) -> bytes:
+    """A message of the packet's bytes: an empty layout, and the data behind their length."""
+    return bytes(8) + len(packet).to_bytes(4, "little") + packet
