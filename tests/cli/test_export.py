@@ -29,7 +29,7 @@ def test_xtce_to_a_file_and_to_standard_output(
 
 def test_topics_are_found_by_flying(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["export", "xtce", "rx64m_pubsub"]) == 0
-    assert 'SequenceContainer name="counter"' in capsys.readouterr().out
+    assert 'SequenceContainer name="left_to_right"' in capsys.readouterr().out
 
 
 def test_bad_usage_of_xtce(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
