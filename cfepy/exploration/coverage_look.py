@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterator
 from types import FrameType
-from typing import NamedTuple
 
 from cfepy.exploration import deeds as do
 from cfepy.exploration.coverage import LINES, OUTCOMES, USES, Covered, ThingUse, number_of, number_of_line
@@ -33,20 +33,24 @@ _STAMPS = ("header.stamp", "header.seq")
 _CORE_PACKETS = "CFE_"  # their names begin like this
 
 
-class _Seen(NamedTuple):
-    """A use of a thing, as it is seen: who does what, in which line of which file."""
+_Seen = tuple[int, Task, str, str, int, bool]
+"""A use of a thing, as it is seen: number of the use, who does what, file, line, whether it changes nothing."""
 
-    order: int
-    task: Task
-    verb: str
-    file: str
-    line: int
-    is_read: bool = False
 
-    def told(self, kind: str, thing: str) -> ThingUse:
-        return ThingUse(
-            kind, thing, child_name(self.task), self.verb, self.file.rpartition("/")[2], self.line, self.is_read
-        )
+class _Thing:
+    """A thing in a run: its last use, the last one that changed it, and the uses that were told."""
+
+    __slots__ = ("changed", "last", "told")
+
+    def __init__(self) -> None:
+        self.last: _Seen | None = None
+        self.changed: _Seen | None = None
+        self.told: set[tuple[object, ...]] = set()
+
+
+def _use_of(kind: str, thing: str, seen: _Seen) -> ThingUse:
+    _, task, verb, file, line, is_read = seen
+    return ThingUse(kind, thing, child_name(task), verb, file.rpartition("/")[2], line, is_read)
 
 
 class CoverageLook(TaskLook):
@@ -62,10 +66,10 @@ class CoverageLook(TaskLook):
         self._decided = decided
         self._reached: set[str] = set()
         self._order = 0
-        self._latest: dict[object, _Seen] = {}
-        self._changes: dict[object, _Seen] = {}
+        self._own: dict[Task, bool] = {}
+        self._used: defaultdict[object, _Thing] = defaultdict(_Thing)
         self._pairs: dict[tuple[object, ...], Covered] = {}
-        self._told: dict[tuple[object, ...], tuple[ThingUse, int]] = {}
+        self._told: dict[ThingUse, int] = {}
         self._last: dict[str, Heard] = {}
         self._end: list[object] = []
         self.files: dict[str, bool] = {}
@@ -94,7 +98,7 @@ class CoverageLook(TaskLook):
         decided = self._decided()
         yield Covered(OUTCOMES, number_of(ended, *self._end), decided)
         yield from self._pairs.values()
-        yield from (Covered(USES, use.number, decision) for use, decision in self._told.values())
+        yield from (Covered(USES, use.number, decision) for use, decision in self._told.items())
         for name in self._reached:
             file, _, line = name.rpartition(":")
             yield Covered(LINES, number_of_line(file, line), decided)
@@ -102,7 +106,7 @@ class CoverageLook(TaskLook):
     @property
     def uses(self) -> tuple[ThingUse, ...]:
         """The uses of things, each once."""
-        return tuple(dict.fromkeys(use for use, _ in self._told.values()))
+        return tuple(self._told)
 
     # -- in place of what a timeline is made of ------------------------------------------------------------------------
 
@@ -113,26 +117,42 @@ class CoverageLook(TaskLook):
             return deed
         kind = _KINDS.get(verb) or f"{thing.partition(' ')[0]}s"
         said = f"{verb} {note}" if kind == LOCKS and note else verb
-        use = self._use(task, said, *_place_of(frame), verb == do.READS)
-        self._follow(kind, thing, use, [thing], [thing])
+        file, line = _place_of(frame)
+        self._follow(kind, thing, (self._next(), task, said, file, line, verb == do.READS), thing, (thing,))
         if verb == do.GETS:  # in which order messages of several kinds come out of one pipe
             pipe = f"{_PIPE}{note}"
-            self._follow(kind, pipe, use._replace(verb=thing), [pipe], [pipe])
+            self._follow(kind, pipe, (self._next(), task, thing, file, line, False), pipe, (pipe,))
         return deed
 
     def _take_touch(self, touch: Touch) -> None:
-        task = self._watched()
-        if task is None or not self._goes_on():
+        """A variable is accessed: there are many of these, so most of what is done here is done at once."""
+        task, is_read, key = touch.task, not touch.is_write, touch.key
+        is_own = self._own.get(task)
+        if is_own is None:
+            is_own = self._own[task] = task.owner is not None and task.owner.name not in CORE_APPS
+        if not is_own or self._closed:
             return
-        use = self._use(task, do.WRITES if touch.is_write else do.READS, touch.file, touch.line, not touch.is_write)
-        key: object = (touch.thing, touch.key)
-        all_of_it, any_of_it = (touch.thing, WHOLE), (touch.thing, _ANY_KEY)
-        if touch.key == WHOLE:
-            self._follow(VARIABLES, touch.name, use, [any_of_it], [all_of_it, any_of_it])
-        elif touch.key.startswith("["):  # an item
-            self._follow(VARIABLES, touch.name, use, [key, all_of_it], [key, any_of_it])
+        self._order = order = self._order + 1
+        seen = (order, task, do.READS if is_read else do.WRITES, touch.code.co_filename, touch.line, is_read)
+        if key == WHOLE:  # it is whatever is in it, too
+            any_of_it = touch.thing, _ANY_KEY
+            self._follow(VARIABLES, touch.name, seen, any_of_it, (any_of_it, (touch.thing, WHOLE)))
+        elif key[0] == "[":  # an item
+            own = touch.thing, key
+            last = max(own, (touch.thing, WHOLE), key=lambda each: self._number(each, is_read))
+            self._follow(VARIABLES, touch.name, seen, last, (own, (touch.thing, _ANY_KEY)))
         else:
-            self._follow(VARIABLES, touch.name, use, [key], [key])
+            thing = self._used[touch.thing, key]
+            before = thing.changed if is_read else thing.last
+            thing.last = seen
+            if not is_read:
+                thing.changed = seen
+            use = task, touch.line, is_read
+            if use not in thing.told:
+                thing.told.add(use)
+                self._tell(VARIABLES, touch.name, seen)
+            if before is not None and before[1] is not task:
+                self._pair(VARIABLES, touch.name, before, seen)
 
     def _take_message(self, heard: Heard) -> None:
         task = self._watched()
@@ -144,33 +164,45 @@ class CoverageLook(TaskLook):
 
     # -- pairs ---------------------------------------------------------------------------------------------------------
 
-    def _use(self, task: Task, verb: str, file: str, line: int, is_read: bool) -> _Seen:
+    def _next(self) -> int:
         self._order += 1
-        return _Seen(self._order, task, verb, file, line, is_read)
+        return self._order
 
-    def _follow(self, kind: str, name: str, use: _Seen, looked: Sequence[object], kept: Sequence[object]) -> None:
+    def _number(self, key: object, is_read: bool) -> int:
+        """That of the use which another use follows."""
+        thing = self._used[key]
+        before = thing.changed if is_read else thing.last
+        return -1 if before is None else before[0]
+
+    def _follow(self, kind: str, name: str, seen: _Seen, looked: object, kept: tuple[object, ...]) -> None:
         """A use of a thing makes a pair with the one before, a mere look with the last change.
 
         Args:
             kind: of pairs.
             name: what the thing is called, in all runs.
-            use: what was done.
-            looked: what it is in this run, of which one is to be found out who used it last.
+            seen: what was done.
+            looked: what it is in this run, by which it is found out who used it last.
             kept: what it is in this run, by which it is found later.
         """
-        if (kind, name, *use[1:]) not in self._told:
-            self._told[kind, name, *use[1:]] = use.told(kind, name), self._decided()
-        uses = self._changes if use.is_read else self._latest
-        before = max((uses[each] for each in looked if each in uses), default=None)
+        thing = self._used[looked]
+        before = thing.changed if seen[5] else thing.last
         for each in kept:
-            self._latest[each] = use
-            if not use.is_read:
-                self._changes[each] = use
-        if before is None or (before.task is use.task and not name.startswith(_PIPE)):
-            return
-        pair = (kind, name, before[1:], use[1:])
+            self._used[each].last = seen
+            if not seen[5]:
+                self._used[each].changed = seen
+        if (name, *seen[1:]) not in thing.told:
+            thing.told.add((name, *seen[1:]))
+            self._tell(kind, name, seen)
+        if before is not None and (before[1] is not seen[1] or name.startswith(_PIPE)):
+            self._pair(kind, name, before, seen)
+
+    def _tell(self, kind: str, name: str, seen: _Seen) -> None:
+        self._told.setdefault(_use_of(kind, name, seen), self._decided())
+
+    def _pair(self, kind: str, name: str, before: _Seen, seen: _Seen) -> None:
+        pair = (kind, name, before[1:], seen[1:])
         if pair not in self._pairs:
-            _, number = before.told(kind, name).before(use.told(kind, name))
+            _, number = _use_of(kind, name, before).before(_use_of(kind, name, seen))
             self._pairs[pair] = Covered(kind, number, self._decided())
 
 

@@ -29,9 +29,9 @@ from cfepy.exploration.verdict import Verdict
 from cfepy.rtos import Aim, Schedule
 
 FROM_SEEDS = 5  # schedules before the first generation
-AIMED, CHANGED, FRESH = 9, 4, 7
+AIMED, CHANGED, FRESH = 7, 3, 10
 """A generation: how many schedules of each kind. It does not depend on how many processes there are."""
-NEW = 6  # of those with aims: at most so many that aim at what was not seen
+NEW = 5  # of those with aims: at most so many that aim at what was not seen
 MOST_TRIES = 3  # that what was not seen is aimed at, each with one step more from the first line
 MOST_AIMS = 4
 STEPS = (1, 1, 2, 2, 3, 4, 6)  # from the first line, where it was seen

@@ -261,4 +261,5 @@ def _of_app(
     except BaseException as error:  # also sys.exit(): the code is the mission's, and may do anything
         problems.append(f"{source} could not be read: {described(error)}")
         return []
-    return [item for name in attributes for item in getattr(module, name, ())]
+    values = (getattr(module, name, ()) for name in attributes)
+    return [item for value in values if isinstance(value, tuple | list) for item in value]  # others mean something else

@@ -95,9 +95,9 @@ def test_what_was_not_seen_is_aimed_at_and_then_not_again() -> None:
         found.tell(number, Verdict(schedule))
     aimed = [schedule for schedule in iter(found.next, None) if schedule.aims]
     pairs = {(aim.first, aim.first_line, aim.then, aim.then_line) for each in aimed for aim in each.aims}
-    assert len(aimed) == 9
+    assert len(aimed) == 7
     assert all(first != then for first, _, then, _ in pairs)
-    assert sum(each.seed == 0 for each in aimed) >= 6
+    assert sum(each.seed == 0 for each in aimed) >= 5
 
 
 def test_few_schedules_that_cover_all_are_left_of_a_corpus() -> None:

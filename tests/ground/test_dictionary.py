@@ -97,6 +97,12 @@ def test_an_app_that_declares_nothing_is_not_executed(tmp_path: Path) -> None:
     assert dictionary_of(read_mission(write_mission(tmp_path, startup, own=source))).problems == []
 
 
+def test_a_number_of_that_name_declares_nothing(tmp_path: Path) -> None:
+    startup = "CFE_APP, own, Main, OWN, 50, 8192, 0, 0;\n!\n"
+    source = "COMMANDS = 6\ndef Main(cfe):\n    pass\n"
+    assert dictionary_of(read_mission(write_mission(tmp_path, startup, own=source))).problems == []
+
+
 def test_an_app_that_cannot_be_executed_is_a_problem_that_unknown_names_tell_of(tmp_path: Path) -> None:
     startup = "CFE_APP, own, Main, OWN, 50, 8192, 0, 0;\n!\n"
     source = "COMMANDS = (undefined,)\ndef Main(cfe):\n    pass\n"

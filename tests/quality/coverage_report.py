@@ -26,11 +26,12 @@ MEASURED = Path(__file__).parent / "measured_coverage.json"
 PAGE = Path(__file__).parents[2] / "docs" / "benchmarks_coverage.md"
 POLICIES = ("all", "random", "pct", GREYBOX)
 HEADS = {"all": "default", "pct": "PCT 3"}
-SEARCHES = 3
-SCHEDULES, MORE = 200, 1000
+SEARCHES = {"all": 3, "random": 1, "pct": 1, GREYBOX: 3}
+SCHEDULES = 200
 COVERED = ("work_stealing", "bank_account", "philosophers_six", "leader_election", "lost_update")
 AFTER = (100, 300, 1000)
-FOUND, FURTHER, SEEN = "found", "further", "seen"
+FOUND, SEEN = "found", "seen"
+WIDE = ("random", "pct", GREYBOX)
 
 Measured = dict[str, dict[str, Any]]
 """By what was measured and mission, by policy: the first schedules that fail, or outcomes and pairs."""
@@ -43,39 +44,29 @@ def measure(names: Sequence[str]) -> None:
         names: of the missions; all of them when empty.
     """
     measured: Measured = json.loads(MEASURED.read_text()) if MEASURED.is_file() else {}
-    for kind, mission, policy in _cells(measured):
+    for kind, mission, policy in _cells():
         cells = measured.setdefault(f"{kind} {mission.name}", {})
         if policy not in cells and (not names or mission.name in names):
             cells[policy] = _cell(kind, mission, policy)
             MEASURED.write_text(json.dumps(measured, indent=1) + "\n")
             print(kind, mission.name, policy, cells[policy], flush=True)
-    if all(policy in measured.get(f"{kind} {mission.name}", {}) for kind, mission, policy in _cells(measured)):
+    if all(policy in measured.get(f"{kind} {mission.name}", {}) for kind, mission, policy in _cells()):
         PAGE.write_text(page(measured))
 
 
-def _cells(measured: Measured) -> list[tuple[str, Bug, str]]:
+def _cells() -> list[tuple[str, Bug, str]]:
+    """What is measured: of which mission, with which policy."""
     missions = (*BUGS, *PROGRAMS)
-    found = [(FOUND, mission, policy) for mission in missions for policy in POLICIES]
-    found += [(SEEN, mission, policy) for mission in missions if mission.name in COVERED for policy in _WIDE]
-    unfound = [each for each in missions if _is_hard(measured.get(f"{FOUND} {each.name}", {}))]
-    return [*found, *((FURTHER, mission, policy) for mission in unfound for policy in ("all", GREYBOX))]
-
-
-_WIDE = ("random", "pct", GREYBOX)
-
-
-def _is_hard(firsts: dict[str, list[int | None]]) -> bool:
-    """Whether neither the default nor guidance finds it in the median."""
-    return all(median(firsts.get(policy, [])) is None for policy in ("all", GREYBOX)) and len(firsts) == len(POLICIES)
+    found = [(FOUND, mission, GREYBOX) for mission in missions]
+    found += [(SEEN, mission, policy) for mission in missions if mission.name in COVERED for policy in WIDE]
+    return found + [(FOUND, mission, policy) for policy in ("all", "random", "pct") for mission in missions]
 
 
 def _cell(kind: str, mission: Bug, policy: str) -> Any:
     trial = program_trial(mission) if isinstance(mission, Program) else reference_trial(mission.folder)
     if kind == SEEN:
         return seen(trial, policy)
-    if kind == FURTHER:
-        return [first(trial, policy, 0, MORE)]
-    return [first(trial, policy, seed * LONGEST, SCHEDULES) for seed in range(SEARCHES)]
+    return [first(trial, policy, seed * LONGEST, SCHEDULES) for seed in range(SEARCHES[policy])]
 
 
 def search_of(trial: Trial, policy: str, first_seed: int) -> tuple[Trial, Search, Coverage]:
@@ -142,23 +133,17 @@ def page(measured: Measured) -> str:
     missions = (*BUGS, *PROGRAMS)
     firsts = {each.name: measured[f"{FOUND} {each.name}"] for each in missions}
     rows = [f"|`{name}`|{'|'.join(_cells_of(cells))}|" for name, cells in firsts.items()]
-    further = {name.split()[1]: cells for name, cells in measured.items() if name.startswith(f"{FURTHER} ")}
     return _PAGE.format(
         count=len(missions),
-        searches=SEARCHES,
+        searches=max(SEARCHES.values()),
         schedules=SCHEDULES,
-        more=MORE,
         heads="|".join(HEADS.get(each, each) for each in POLICIES),
         lines="|".join("---" for _ in POLICIES),
         table="\n".join(rows),
         sums="\n".join(_sum(policy, firsts) for policy in POLICIES),
-        further="\n".join(
-            f"|`{name}`|{'|'.join(_text(cells[policy][0], MORE) for policy in ('all', GREYBOX))}|"
-            for name, cells in further.items()
-        ),
         covered="\n".join(_covered(measured, name) for name in COVERED),
-        after="|".join(f"{HEADS.get(policy, policy)}, {count}" for policy in _WIDE for count in AFTER),
-        after_lines="|".join("---" for _ in range(len(_WIDE) * len(AFTER))),
+        after="|".join(f"{HEADS.get(policy, policy)}, {count}" for policy in WIDE for count in AFTER),
+        after_lines="|".join("---" for _ in range(len(WIDE) * len(AFTER))),
     )
 
 
@@ -178,13 +163,13 @@ def _sum(policy: str, firsts: dict[str, dict[str, list[int | None]]]) -> str:
     medians = [median(cells[policy]) for cells in firsts.values()]
     found = sum(each is not None for each in medians)
     every = sum(each is not None for cells in firsts.values() for each in cells[policy])
-    middle = statistics.median(MORE if each is None else each for each in medians)
-    return f"|{HEADS.get(policy, policy)}|{found}|{every} of {len(firsts) * SEARCHES}|{middle:g}|"
+    middle = statistics.median(SCHEDULES + 1 if each is None else each for each in medians)
+    return f"|{HEADS.get(policy, policy)}|{found}|{every} of {len(firsts) * SEARCHES[policy]}|{middle:g}|"
 
 
 def _covered(measured: Measured, name: str) -> str:
     cells = measured[f"{SEEN} {name}"]
-    return f"|`{name}`|{'|'.join(f'{out}, {pairs}' for policy in _WIDE for out, pairs in cells[policy])}|"
+    return f"|`{name}`|{'|'.join(f'{out}, {pairs}' for policy in WIDE for out, pairs in cells[policy])}|"
 
 
 _PAGE = """# What guidance by coverage is worth
@@ -193,9 +178,9 @@ _PAGE = """# What guidance by coverage is worth
 
 `cfepy explore --policy greybox` ([exploration.md](exploration.md#coverage)) beside other policies, on the {count}
 missions of [planted_bugs.md](planted_bugs.md) and [benchmarks_exploration.md](benchmarks_exploration.md). The numbers
-are the first schedule that shows the mistake: the median of {searches} searches with seeds of their own, of {schedules}
-schedules each; `> {schedules}` where half of them or more found nothing. The best of each row is bold. All else is as
-in those two pages.
+are the first schedule that shows the mistake: of the default and greybox the median of {searches} searches with seeds
+of their own, of random and PCT what one search found; `> {schedules}` where half of them or more had found
+nothing in {schedules} schedules. The best of each row is bold. All else is as in those two pages.
 
 |policy|missions found in the median|searches that found|median of the medians|
 |---|---|---|---|
@@ -206,12 +191,6 @@ in those two pages.
 |mission|{heads}|
 |---|{lines}|
 {table}
-
-Those that neither the default nor greybox finds there, in one search of {more} schedules:
-
-|mission|default|greybox|
-|---|---|---|
-{further}
 
 ## How much is covered
 
