@@ -16,7 +16,7 @@ from typing import Any, Literal, TextIO
 from cfepy.cli.failures import check_writable, writing
 
 STDOUT = "-"
-_MAY_BE_STDOUT = ("json", "sarif", "yaml", "output", "dot", "svg")
+_MAY_BE_STDOUT = ("json", "csv", "sarif", "yaml", "output", "dot", "svg")
 
 
 @contextlib.contextmanager

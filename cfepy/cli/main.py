@@ -33,7 +33,7 @@ ROOMS = {
     "run": ("run", "check", "new", "boards"),
     "ros": ("launch", "node", "rostest", "topic", "service", "param"),
     "ros_tools": ("rosbag", "rosmsg", "rossrv", "rosnode", "tf"),
-    "explore": ("explore", "faults"),
+    "explore": ("explore", "faults", "sweep"),
     "journal": ("replay", "diff"),
     "look": ("trace", "report", "plot"),
     "ground": ("cmd", "tlm", "console", "mids", "graph", "export"),

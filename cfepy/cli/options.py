@@ -146,6 +146,18 @@ def _add_races(parser: Options) -> None:
     )
 
 
+def _add_settings(parser: Options) -> None:
+    parser.add_argument(
+        "--set",
+        dest="settings",
+        action="append",
+        type=setting_of,
+        default=[],
+        metavar="/PARAM=VALUE",
+        help="give a ROS parameter, such as /arm/rate, another value than the mission does (in YAML)",
+    )
+
+
 RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "launch_args": _add_launch_args,
     "seconds": _add_seconds,
@@ -161,6 +173,7 @@ RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "guard": _add_guard,
     "races": _add_races,
     "cpp_nodes": _add_cpp_nodes,
+    "settings": _add_settings,
 }
 """What adds the option for each attribute of `RunPlan`, but for the words and the command, which are what is run."""
 
@@ -196,10 +209,12 @@ def plan_of(arguments: argparse.Namespace, words: Sequence[str], command: str | 
     said = {name: getattr(arguments, name) for name in RUN_OPTIONS if hasattr(arguments, name)}
     if "schedule" in said:
         points = Points.parse(getattr(arguments, "points", None) or "").text()
-        schedule = Schedule.parse(said["schedule"], said["seed"])
+        schedule = Schedule.parse(said["schedule"], said.get("seed", DEFAULT_SEED))
         said["schedule"] = schedule.with_points(points) if points else schedule
     if "launch_args" in said:
         said["launch_args"] = () if command == LAUNCH else tuple(said["launch_args"])
+    if "settings" in said:
+        said["settings"] = tuple(said["settings"])
     if said.get("cpp_nodes") is not None:
         said["cpp_nodes"] = cpp_nodes_source(said["cpp_nodes"])
     if command is None:
@@ -261,6 +276,7 @@ _USUAL: Mapping[str, tuple[str, object]] = {
     "guard": ("--guard", False),
     "races": ("--races", False),
     "cpp_nodes": ("--cpp-nodes", None),
+    "settings": ("--set", None),
 }
 """The option for each attribute, and its value when nothing is said."""
 
@@ -494,6 +510,14 @@ def launch_argument_of(text: str) -> tuple[str, str]:
     name, mark, value = text.partition(":=")
     if not mark or not name:
         raise argparse.ArgumentTypeError(f"{text!r} is not like rate:=20")
+    return name, value
+
+
+def setting_of(text: str) -> tuple[str, str]:
+    """A parameter and its value, for argparse."""
+    name, mark, value = text.partition("=")
+    if not mark or not name.startswith("/"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not like /arm/rate=20")
     return name, value
 
 

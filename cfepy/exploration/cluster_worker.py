@@ -17,6 +17,7 @@ from typing import Any
 from distributed import WorkerPlugin, get_worker
 
 from cfepy.exploration.campaign import Experiment, Job, NumberedVerdict
+from cfepy.exploration.lot import Lot
 from cfepy.exploration.shipment import Shipment, Unpacked, comparable_versions
 from cfepy.exploration.workers import Processes
 from cfepy.status import UsageError
@@ -72,7 +73,9 @@ class Desk(WorkerPlugin):
         finally:
             self._idle.put(crew)
         inside = self._inside
-        return results if inside is None else [(number, inside.told(verdict)) for number, verdict in results]
+        if inside is None or isinstance(self._moved, Lot):
+            return results
+        return [(number, inside.told(verdict)) for number, verdict in results]
 
     def _idle_crew(self) -> Processes | None:
         try:

@@ -18,6 +18,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from cfepy.exploration.campaign import Crew, Experiment, Job, NumberedVerdict, Take
+from cfepy.exploration.lot import Lot
 from cfepy.exploration.shipment import Shipment
 from cfepy.exploration.workers import LONGEST_S, Processes, died, usable_cpus
 from cfepy.rtos import Stopwatch
@@ -103,12 +104,14 @@ class Cluster:
         self._batch = 1
         self._given: dict[Any, tuple[list[Job], Stopwatch]] = {}  # by future
         self._again: list[Job] = []
+        self._died: Callable[[Any, str, str], Any] = died
         self._done: SimpleQueue[Any] = SimpleQueue()
 
     def run(self, trial: Experiment, take: Take) -> Generator[NumberedVerdict, None, None]:
         """See `Crew.run`."""
         if not self._name:
             self._set_up(trial)
+        self._died = trial.died if isinstance(trial, Lot) else died
         try:
             while True:
                 self._hand_out(take)
@@ -216,7 +219,8 @@ class Cluster:
         if len(jobs) > 1:
             self._again += jobs
             return []
-        return [(number, died(schedule, "with it the workers of the cluster", str(error))) for number, schedule in jobs]
+        fate = "with it the workers of the cluster"
+        return [(number, self._died(schedule, fate, str(error))) for number, schedule in jobs]
 
     def _give_up(self) -> None:
         """Cancel the batches that are still out."""

@@ -20,6 +20,7 @@ from queue import SimpleQueue
 from typing import Any
 
 from cfepy.exploration.fork_server import ForkingJudge
+from cfepy.exploration.lot import Lot
 from cfepy.status import UsageError
 
 READY = "ready"
@@ -41,13 +42,14 @@ def main() -> None:
 def _serve(connection: Connection[Any, Any], inbox: SimpleQueue[bytes]) -> None:
     import pickle
 
-    pilot = ForkingJudge(pickle.loads(inbox.get()))
+    trial = pickle.loads(inbox.get())
+    judge = trial.judge if isinstance(trial, Lot) else ForkingJudge(trial).judge
     gc.freeze()
     connection.send(READY)
     while True:
         jobs = pickle.loads(inbox.get())
         try:
-            connection.send([(number, pilot.judge(schedule)) for number, schedule in jobs])
+            connection.send([(number, judge(schedule)) for number, schedule in jobs])
         except UsageError as error:
             connection.send(error)
 

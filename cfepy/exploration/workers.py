@@ -15,12 +15,14 @@ import signal
 import subprocess
 import tempfile
 from collections import Counter, deque
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from multiprocessing import Pipe
 from multiprocessing.connection import wait
 from pathlib import Path
+from typing import Any
 
 from cfepy.exploration.campaign import Experiment, Job, NumberedVerdict, Take
+from cfepy.exploration.lot import Lot
 from cfepy.exploration.verdict import Failure, Verdict
 from cfepy.exploration.worker import READY
 from cfepy.resources import import_path, python_command
@@ -182,6 +184,7 @@ class Processes:
         environ: Mapping[str, str] | None = None,
     ) -> None:
         self._count = usable_cpus() if count is None else count
+        self._died: Callable[[Any, str, str], Any] = died
         self._longest_ns = round(longest_s * NS_PER_S)
         self._folder = folder
         self._environ = environ
@@ -194,6 +197,7 @@ class Processes:
     def run(self, trial: Experiment, take: Take) -> Generator[NumberedVerdict, None, None]:
         """See `Crew.run`."""
         pickled = pickle.dumps(trial)
+        self._died = trial.died if isinstance(trial, Lot) else died
         try:
             while True:
                 self._hand_out(pickled, take)
@@ -271,7 +275,7 @@ class Processes:
             self._deaths[jobs[0][0]] += 1
         blamed = [job for job in jobs if self._deaths[job[0]] >= TRIES]
         self._alone.extend(job for job in jobs if job not in blamed)
-        return [(number, died(schedule, fate, words)) for number, schedule in blamed]
+        return [(number, self._died(schedule, fate, words)) for number, schedule in blamed]
 
 
 def died(schedule: Schedule, fate: str, words: str) -> Verdict:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypedDict
@@ -40,6 +41,7 @@ class MissionOptions(TypedDict, total=False):
         guard: compiled applications fault where they write past a buffer, or use one that was freed.
         cpp_nodes: how nodes in C++ of launch files are built: "host", "pool", "strict", or a mission whose
             file has the section `cpp_nodes:`, or that file.
+        settings: ROS parameters by their full names, in place of what the mission says of them.
     """
 
     seed: int
@@ -53,6 +55,7 @@ class MissionOptions(TypedDict, total=False):
     guard: bool
     races: bool
     cpp_nodes: str | os.PathLike[str] | None
+    settings: Mapping[str, object] | None
 
 
 class RunOptions(MissionOptions, total=False):
@@ -96,6 +99,7 @@ def plan_of(mission: MissionWords, options: Mapping[str, Any], known: Iterable[s
         said["cpp_nodes"] = cpp_nodes_source(os.fspath(said["cpp_nodes"]))
     if "faults" in said:
         said["faults"] = fault_text(said["faults"])
+    said["settings"] = tuple((name, json.dumps(value)) for name, value in said.pop("settings", {}).items())
     said["launch_args"] = tuple((name, str(value)) for name, value in said.pop("args", {}).items())
     return RunPlan(words, NODE if words[0].endswith(_NODE_FILE) else RUN, **said)
 

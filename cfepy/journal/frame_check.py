@@ -140,8 +140,9 @@ PLAN: dict[str, Check] = {
     "guard": _flag,
     "races": _flag,
     "cpp_nodes": _perhaps(_text),
+    "settings": _list(lambda value: _named(value) and _text(value[0]) and _text(value[1])),
 }
-_LATER = {"outcome", "mode", "cpp_nodes", "races"}  # may be missing
+_LATER = {"outcome", "mode", "cpp_nodes", "races", "settings"}  # may be missing
 
 
 def problem_of(kind: str, body: Any) -> str | None:

@@ -57,7 +57,9 @@ from cfepy.mission.pieces import FIRST_PIECE_NS, PieceLength
 from cfepy.mission.processor import CORE_APPS, UNIX_AT_CFE_EPOCH, Processor
 from cfepy.mission.python_code import find_code, find_node
 from cfepy.mission.record import DataRace, Reset, Traffic
+from cfepy.mission.settings import with_settings
 from cfepy.mission.spec import BuiltProgram, MissionSpec
+from cfepy.mission.sweep_section import SweepConfig
 from cfepy.mission.topic_watch import TopicMessage, TopicWatch, matches
 from cfepy.mission.tracebacks import app_traceback, described, reason
 
@@ -100,6 +102,7 @@ __all__ = [
     "Processor",
     "Reset",
     "Seen",
+    "SweepConfig",
     "TopicMessage",
     "TopicWatch",
     "Traffic",
@@ -133,4 +136,5 @@ __all__ = [
     "spec_of",
     "spec_of_node",
     "spec_of_script",
+    "with_settings",
 ]

@@ -141,6 +141,7 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None, build: Nod
         compiled=said.compiled,
         cpp_nodes=said.cpp_nodes,
         demands=said.demands,
+        sweep=said.sweep,
     )
     if said.launch:
         spec = with_launch_files(spec, said.launch, build)

@@ -19,6 +19,7 @@ from cfepy.mission.cpp_nodes import CppNodesConfig, read_cpp_nodes
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import merged, read_files, read_tree
 from cfepy.mission.spec import CompiledConfig
+from cfepy.mission.sweep_section import SweepConfig, read_sweep
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import BridgedPacket, NodeConfig, RosBridge, RosConfig, TopicConfig
 from cfepy.versions import DEFAULT_RELEASE, RELEASES
@@ -36,8 +37,8 @@ class MissionSections:
 
     Attributes:
         name, board, cfe_version, compiled, cpp_nodes, limits, nodes, topics, params, params_from, ordered_sets,
-        connection_delay, ros_bridge, launch: the sections of these names, as their readers give them; `name` and
-            `board` are None when nothing is said.
+        connection_delay, ros_bridge, launch, sweep: the sections of these names, as their readers give them; `name`
+            and `board` are None when nothing is said.
         demands: the sections of `DEMANDS`, as they stand there.
         places: all sections that are there and known, as they stand there.
     """
@@ -56,6 +57,7 @@ class MissionSections:
     connection_delay: int = 0
     ros_bridge: RosBridge = field(default_factory=RosBridge)
     launch: tuple[LaunchFile, ...] = ()
+    sweep: SweepConfig = field(default_factory=SweepConfig)
     demands: Mapping[str, Marked] = field(default_factory=dict)
     places: Mapping[str, Marked] = field(default_factory=dict)
 
@@ -306,6 +308,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "connection_delay": _single(Marked.time),
     "ros_bridge": read_bridge,
     "launch": read_launches,
+    "sweep": read_sweep,
 }
 """What reads each section; the results are the attributes of `MissionSections`. None stands for nothing good."""
 

@@ -14,6 +14,7 @@ from cfepy.marked_yaml import Marked
 from cfepy.mission.cpp_nodes import CppNodesConfig
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.loader import NODE_SYMBOL
+from cfepy.mission.sweep_section import SweepConfig
 from cfepy.nodes import CppNode, NodeConfig, RosConfig
 from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
@@ -78,6 +79,7 @@ class MissionSpec:
         built: nodes in C++ that were built for it, by cFE name.
         demands: sections of the mission file that say what must hold of a run, as they stand there;
             `cfepy.monitors.demands` reads them.
+        sweep: what a rate means in it, for `cfepy sweep`.
     """
 
     name: str
@@ -94,6 +96,7 @@ class MissionSpec:
     notes: tuple[str, ...] = ()
     built: Mapping[str, BuiltProgram] = field(default_factory=dict)
     demands: Mapping[str, Marked] = field(default_factory=dict)
+    sweep: SweepConfig = field(default_factory=SweepConfig)
 
     @property
     def startup_script(self) -> bytes:

@@ -22,8 +22,10 @@ if TYPE_CHECKING:
     from cfepy.monitors.observer import Observer, Sent, app_of
     from cfepy.monitors.predicate import Predicate, short, shortened
     from cfepy.monitors.race_watch import RaceWatch
+    from cfepy.monitors.traffic_watch import Arrivals, TrafficWatch
 
 __all__ = [
+    "Arrivals",
     "Check",
     "DeadlineResult",
     "Demands",
@@ -40,6 +42,7 @@ __all__ = [
     "Predicate",
     "RaceWatch",
     "Sent",
+    "TrafficWatch",
     "app_of",
     "demands_of",
     "judges_of",
@@ -84,5 +87,6 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "short",
                 "shortened",
             ),
+            ".traffic_watch": ("Arrivals", "TrafficWatch"),
         },
     )

@@ -23,6 +23,7 @@ from cfepy.mission import (
     read_launch,
     read_mission,
     spec_of_node,
+    with_settings,
 )
 from cfepy.nodes import CppNode
 from cfepy.pilot.course import BOOT_S, DEFAULT_S, NODE_S
@@ -81,6 +82,7 @@ class RunPlan:
         guard: compiled applications get memory that nothing can be written past, and that is not zero.
         cpp_nodes: how nodes in C++ are built: a profile, or a YAML file with a section `cpp_nodes:` in place of the
             mission's own; None leaves it to the mission.
+        settings: ROS parameters in place of those that the mission says: full name, and value in YAML.
     """
 
     words: tuple[str, ...]
@@ -99,6 +101,7 @@ class RunPlan:
     guard: bool = False
     races: bool = False
     cpp_nodes: str | None = None
+    settings: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         if not isinstance(self.schedule, Schedule):
@@ -113,6 +116,8 @@ class RunPlan:
         spec = self._spec()
         if self.guard:
             spec = replace(spec, compiled=replace(spec.compiled, guard=True))
+        if self.settings:
+            spec = with_settings(spec, self.settings)
         return self.with_played_bag(spec)
 
     def _spec(self) -> MissionSpec:
@@ -159,6 +164,8 @@ class RunPlan:
         options: list[str] = []
         for name, value in plan.launch_args:
             options += ["--arg", f"{name}:={value}"]
+        for name, value in plan.settings:
+            options += ["--set", f"{name}={value}"]
         if plan.seconds is not None:
             options += ["--for", f"{plan.seconds:.12g}"]
         for each in ("seed", "board", "tasks", "schedule", "script", "play", "faults", "cpp_nodes"):
@@ -191,10 +198,15 @@ class RunPlan:
             **{
                 **plain,
                 "words": tuple(plain["words"]),
-                "launch_args": tuple((str(name), str(value)) for name, value in plain.get("launch_args", ())),
+                "launch_args": _pairs(plain.get("launch_args", ())),
+                "settings": _pairs(plain.get("settings", ())),
                 "schedule": Schedule.parse(plain.get("schedule", Schedule().text())),
             }
         )
+
+
+def _pairs(plain: Any) -> tuple[tuple[str, str], ...]:
+    return tuple((str(name), str(value)) for name, value in plain)
 
 
 _USUAL = RunPlan(())

@@ -15,10 +15,11 @@ from cfepy.faces import face
 
 if TYPE_CHECKING:
     from cfepy.reports.collector import Collector
-    from cfepy.reports.curves import Change, Curve, Curves, curves_of, picture_of, save, thinned
+    from cfepy.reports.curves import Change, Curve, Curves, curves_of, figure_of_matplotlib, picture_of, save, thinned
     from cfepy.reports.page import About, page_of
     from cfepy.reports.page_story import PageStory, StoryRow
     from cfepy.reports.perfetto import PerfettoTrace
+    from cfepy.reports.sweep_picture import SweepLine, picture_of_sweep
     from cfepy.reports.trace_events import write_perf_log
 
 __all__ = [
@@ -30,9 +31,12 @@ __all__ = [
     "PageStory",
     "PerfettoTrace",
     "StoryRow",
+    "SweepLine",
     "curves_of",
+    "figure_of_matplotlib",
     "page_of",
     "picture_of",
+    "picture_of_sweep",
     "save",
     "thinned",
     "write_perf_log",
@@ -48,6 +52,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Curve",
                 "Curves",
                 "curves_of",
+                "figure_of_matplotlib",
                 "picture_of",
                 "save",
                 "thinned",
@@ -61,6 +66,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "StoryRow",
             ),
             ".perfetto": ("PerfettoTrace",),
+            ".sweep_picture": ("SweepLine", "picture_of_sweep"),
             ".trace_events": ("write_perf_log",),
         },
     )

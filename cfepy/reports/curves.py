@@ -165,15 +165,11 @@ def picture_of(axes: Sequence[Sequence[Curves]], *, title: str = "", size: tuple
     Raises:
         UsageError: matplotlib is not installed.
     """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise UsageError("pictures need the library matplotlib: pip install 'cfepy[plot]'") from None
-
+    figure_of_matplotlib()
     drawn = [curves for curves in axes if any(each.lines for each in curves)] or list(axes)[:1]
     changes = [change for curves in axes for each in curves for change in each.changes]
     height = SIZE[1] + EXTRA_HEIGHT * (len(drawn) - 1)
-    figure = Figure(figsize=size or (SIZE[0], height), dpi=DPI, layout="constrained")
+    figure = figure_of_matplotlib(figsize=size or (SIZE[0], height), dpi=DPI, layout="constrained")
     places = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
     for number, (place, curves) in enumerate(zip(places, drawn, strict=True)):
         _draw(place, curves)
@@ -182,6 +178,22 @@ def picture_of(axes: Sequence[Sequence[Curves]], *, title: str = "", size: tuple
     if title:
         figure.suptitle(title, x=0.01, horizontalalignment="left", fontweight="bold")
     return figure
+
+
+def figure_of_matplotlib(**settings: Any) -> Figure:
+    """An empty picture; matplotlib is imported for it.
+
+    Args:
+        settings: of `matplotlib.figure.Figure`.
+
+    Raises:
+        UsageError: matplotlib is not installed.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise UsageError("pictures need the library matplotlib: pip install 'cfepy[plot]'") from None
+    return Figure(**settings)
 
 
 def save(picture: Figure, file: Path) -> None:

@@ -93,6 +93,7 @@ OPTIONS: dict[str, tuple[list[str], Any]] = {
     "guard": (["--guard"], True),
     "races": (["--races"], True),
     "cpp_nodes": (["--cpp-nodes", "pool"], "pool"),
+    "settings": (["--set", "/arm/rate=20"], (("/arm/rate", "20"),)),
 }
 SAID_OTHERWISE = {
     ("launch", "launch_args"): "its words have them, as for roslaunch",

@@ -1,4 +1,4 @@
-"""The commands explore and faults, which find out what may go wrong in a mission; here are their options.
+"""The commands explore, faults and sweep, which find out what may go wrong in a mission; here are their options.
 
 A command belongs here when it flies a mission many times, or makes faults happen in it, to find what fails. This
 module imports argparse only, for a quick start.
@@ -32,6 +32,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add these commands to the parser of `cfepy`."""
     _add_explore(commands)
     _add_faults(commands)
+    _add_sweep(commands)
 
 
 def _add_explore(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -46,7 +47,7 @@ def _add_explore(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_run_options(explore, without=["schedule"])  # it is what explore chooses
     _add_search(explore)
     _add_failures(explore)
-    _add_crew(explore)
+    _add_crew(explore, "schedule")
     _add_outputs(explore)
     explore.set_defaults(module="explore.explore")
 
@@ -160,8 +161,8 @@ def _add_failures(explore: argparse.ArgumentParser) -> None:
     )
 
 
-def _add_crew(explore: argparse.ArgumentParser) -> None:
-    """The options for the processes that run them."""
+def _add_crew(explore: argparse.ArgumentParser, what: str) -> None:
+    """The options for the processes that run them, each one at a time."""
     explore.add_argument(
         "--jobs", type=_count_of, metavar="N", help="processes on this computer (default: one on each CPU)"
     )
@@ -173,7 +174,7 @@ def _add_crew(explore: argparse.ArgumentParser) -> None:
         type=seconds_of,
         default=120.0,
         metavar="SECONDS",
-        help="wall time that one schedule may take (default: 120)",
+        help=f"wall time that one {what} may take (default: 120)",
     )
 
 
@@ -226,6 +227,55 @@ def _add_faults(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         "--intensity", choices=INTENSITIES, default="medium", help="how much goes wrong in it (default: medium)"
     )
     faults.set_defaults(module="explore.faults")
+
+
+def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    sweep = commands.add_parser(
+        "sweep",
+        help="fly a mission at many rates, on many boards, and tell up to where it is carried",
+        description="Fly a mission at every combination of boards, rates, values and seeds. VALUES are values and "
+        "ranges with commas between: 10..1000 are the preferred numbers from 10 to 1000, ten to the decade, 10..50:10 "
+        "are 10, 20, 30, 40 and 50.",
+        epilog="exit status: 0 well, whatever was found, 1 an error in cfepy itself, 2 bad usage, or a mission that "
+        "cannot be read, 130 ended by Ctrl-C (what was flown is told)",
+    )
+    add_mission_or_node(sweep)
+    sweep.add_argument("--rate", metavar="VALUES", help="rates in Hz; what they set, the mission file says (`sweep:`)")
+    sweep.add_argument(
+        "--board",
+        dest="boards",
+        action="append",
+        default=[],
+        metavar="NAME|FILE,...",
+        help="boards instead of the mission's own (several with commas, or the option several times)",
+    )
+    sweep.add_argument("--seed", dest="seeds", default="0", metavar="VALUES", help="seeds, such as 0..9 (default: 0)")
+    sweep.add_argument(
+        "--set",
+        dest="varied",
+        action="append",
+        type=_varied_of,
+        default=[],
+        metavar="NAME=VALUES",
+        help="values of a ROS parameter (/arm/rate=20,50) or of an argument of the launch file (rate=20,50)",
+    )
+    sweep.add_argument(
+        "--topic", action="append", default=[], metavar="TOPIC", help="measure this one (default: as the mission says)"
+    )
+    add_run_options(sweep, without=["board", "seed", "settings"])
+    _add_crew(sweep, "run")
+    sweep.add_argument("--csv", metavar="FILE|-", help="write a row for each topic of each run")
+    sweep.add_argument("--plot", metavar="FILE", help="draw a picture: .png, .svg or .pdf")
+    add_json(sweep, "what was found")
+    sweep.add_argument("--quiet", action="store_true", help="show no progress")
+    sweep.set_defaults(module="explore.sweep")
+
+
+def _varied_of(text: str) -> tuple[str, str]:
+    name, mark, values = text.partition("=")
+    if not mark or not name or not values:
+        raise argparse.ArgumentTypeError(f"{text!r} is not like /arm/rate=20,50")
+    return name, values
 
 
 def _count_of(text: str) -> int:

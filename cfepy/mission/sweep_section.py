@@ -1,0 +1,43 @@
+"""The section `sweep:` of a mission file: what a rate means in the mission, for `cfepy sweep --rate`.
+
+sweep:
+  rate: [/left/rate, /right/rate]   # parameters, or arguments of the launch file, that are rates in Hz
+  topics: [/left_to_right]          # what is to come at that rate
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cfepy.marked_yaml import Marked, Mistakes
+
+
+@dataclass(frozen=True, slots=True)
+class SweepConfig:
+    """What a sweep varies and measures.
+
+    Attributes:
+        rate: full names of parameters (with a slash) and names of launch arguments that a rate in Hz sets.
+        topics: that have this rate then; none for all topics of the mission.
+    """
+
+    rate: tuple[str, ...] = ()
+    topics: tuple[str, ...] = ()
+
+
+def read_sweep(section: Marked, mistakes: Mistakes) -> SweepConfig:
+    """The section `sweep:`.
+
+    Args:
+        section: its value.
+        mistakes: takes an unknown key, and what is no list of names.
+    """
+    said: dict[str, tuple[str, ...]] = {}
+    for name, entry in mistakes.fields(section, ("rate", "topics")):
+        items = mistakes.attempt(entry.items) or []
+        texts = [mistakes.attempt(item.text) for item in items]
+        said[name] = tuple(text for text in texts if text)
+        for item, text in zip(items, texts, strict=True):
+            if name == "topics" and text and not text.startswith("/"):
+                mistakes.add(item.fail(f'is the topic {text!r}; a topic name here begins with "/"'))
+    return SweepConfig(**said)

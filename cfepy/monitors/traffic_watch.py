@@ -1,0 +1,85 @@
+"""What the bus carries in a run, pipe by pipe: how often each message came, from when to when, and how long it took.
+
+The first half second in operation does not count: nodes find each other then, and what waited for that comes at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cfepy.mission import Mission, Processor
+from cfepy.monitors.observer import Observer, Sent
+from cfepy.rtos import Task
+from cfepy.sb import Pipe
+from cfepy.units import NS_PER_S
+
+SETTLE_NS = NS_PER_S // 2
+SILENCE = 2.0  # periods of the rate seen that may pass until the end without a message
+
+
+@dataclass(slots=True)
+class Arrivals:
+    """Messages of one MsgId that were taken out of one pipe; times in virtual ns."""
+
+    count: int = 0
+    first_ns: int = 0
+    last_ns: int = 0
+    latency_ns: int = 0
+    longest_ns: int = 0
+
+    def add(self, sent_ns: int, at_ns: int) -> None:
+        """One more."""
+        if not self.count:
+            self.first_ns = at_ns
+        self.count += 1
+        self.last_ns = at_ns
+        self.latency_ns += at_ns - sent_ns
+        self.longest_ns = max(self.longest_ns, at_ns - sent_ns)
+
+    def rate_hz(self, end_ns: int) -> float:
+        """Messages a second, from the first to the last; to the end of the run, if they stopped before it."""
+        if self.count < 2:
+            return 0.0
+        span_ns = self.last_ns - self.first_ns
+        period_ns = span_ns / (self.count - 1)
+        if end_ns - self.last_ns > SILENCE * period_ns:
+            span_ns = end_ns - self.first_ns
+        return (self.count - 1) * NS_PER_S / span_ns if span_ns else 0.0
+
+
+class TrafficWatch(Observer):
+    """Counts and times what is sent when the mission is OPERATIONAL and has settled, until the time of the run is over.
+
+    Attributes:
+        arrivals: by MsgId and the name of a pipe.
+        end_ns: virtual time at which the run was over.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.arrivals: dict[int, dict[str, Arrivals]] = {}
+        self.end_ns = 0
+        self._is_over = False
+        self._processor: Processor
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        super().begin(mission)
+        self.arrivals.clear()
+
+    def power_up(self, processor: Processor) -> None:
+        """See `Attachment.power_up`."""
+        super().power_up(processor)
+        self._processor = processor
+
+    def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
+        """See `Observer.on_receive`."""
+        booted_ns = self._processor.booted
+        if sent is None or self._is_over or booted_ns is None or sent.at_ns < booted_ns + SETTLE_NS:
+            return
+        self.arrivals.setdefault(sent.msg_id, {}).setdefault(pipe.name, Arrivals()).add(sent.at_ns, at_ns)
+
+    def conclude(self) -> None:
+        """See `Attachment.conclude`."""
+        self._is_over = True
+        self.end_ns = self._kernel.now

@@ -1,0 +1,56 @@
+"""`cfepy sweep`: its tables, its files, and what is wrong with a command line."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+
+WORDS = ["sweep", "rx64m_pubsub", "--for", "2", "--quiet"]
+
+
+@pytest.mark.slow
+def test_a_sweep_writes_what_it_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table, numbers, picture = tmp_path / "a.csv", tmp_path / "a.json", tmp_path / "a.png"
+    files = ["--csv", str(table), "--json", str(numbers), "--plot", str(picture)]
+    assert main([*WORDS, "--rate", "100,160", "--set", "/left/report_period=1", *files, "--jobs", "2"]) == 0
+    out = capsys.readouterr().out
+    assert "/left/report_period" in out
+    assert "rx64m, /left/report_period=1: clean up to 100 Hz; at 160 Hz /left_to_right came at 100.0 Hz" in out
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    assert [(each["rate_hz"], each["topic"], each["lost"], each["clean"]) for each in rows] == [
+        ("100", "/left_to_right", "0", "yes"),
+        ("100", "/right_to_left", "0", "yes"),
+        ("160", "/left_to_right", "0", "no"),
+        ("160", "/right_to_left", "0", "no"),
+    ]
+    assert json.loads(numbers.read_text())["knees"][0]["clean_hz"] == 100
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    again = tmp_path / "b.csv"
+    assert (
+        main([*WORDS, "--rate", "100,160", "--set", "/left/report_period=1", "--csv", str(again), "--jobs", "1"]) == 0
+    )
+    assert again.read_bytes() == table.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--rate", "0..10"], "--rate: '0..10' does not go up from more than 0"),
+        (["--set", "rate"], "'rate' is not like /arm/rate=20,50"),
+        (["--set", "/left/rate=1..2:0"], "--set: '1..2:0' does not go up in steps"),
+        (["--plot", "a.txt"], "--plot: is no picture"),
+        (["--jobs", "1", "--cluster", "local:1"], "--jobs: says how many processes run here"),
+    ],
+)
+def test_what_cannot_be_swept(words: list[str], told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    try:
+        status: object = main([*WORDS, *words])
+    except SystemExit as ended:
+        status = ended.code
+    assert status == 2
+    assert told in capsys.readouterr().err

@@ -1,0 +1,14 @@
+"""Rates and latencies of what the bus carries."""
+
+from __future__ import annotations
+
+from cfepy.monitors.traffic_watch import Arrivals
+from cfepy.units import NS_PER_S
+
+
+def test_messages_that_stop_before_the_end_have_a_lower_rate() -> None:
+    found = Arrivals()
+    for each in range(11):
+        found.add(0, each * NS_PER_S // 10)
+    assert found.rate_hz(NS_PER_S) == 10.0
+    assert found.rate_hz(4 * NS_PER_S) == 2.5
