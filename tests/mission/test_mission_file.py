@@ -51,7 +51,7 @@ def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
     fields += "topics./c params.x params_from ordered_sets cfe_version compiled.omit_deprecated compiled.strip "
     fields += "cpp_nodes.profile cpp_nodes.arena_bytes "
     fields += "connection_delay ros_bridge.publish.a ros_bridge.publish./b ros_bridge.subscribe[0] ros_bridge.hear "
-    fields += "sweep.points sweep.rate sweep.topics[0] launch[0] launch[1]"
+    fields += "sweep.rate sweep.topics[0] sweep.points launch[0] launch[1]"
     assert [error.field for error in mistakes.errors] == fields.split()
     assert (said.name, said.board, said.ordered_sets, said.launch) == (None, None, False, ())
     assert (dict(said.limits.values), list(said.nodes), list(said.topics)) == (
