@@ -84,7 +84,7 @@ class Footprints(Attachment):
         self._pipes.kernel = kernel
         mission.accesses.observers.append(self._take)
         kernel.watch(self)
-        _also(kernel, "charge", self._calls)
+        _also(kernel, "charge", self._calls, self._calls)
         for name in ("wait_on", "wake_first", "wake_all"):
             _also(kernel, name, self._waits)
 
@@ -194,7 +194,7 @@ class Footprints(Attachment):
         self.touch(f"{touch.key} of {touch.thing}", how)
 
     def _calls(self, duration_ns: int) -> None:
-        """A node calls something of ROS or Python, which may look at the ROS graph."""
+        """A node calls something of ROS or Python, which may look at the ROS graph before and after others got in."""
         if self._log is not None and not self._log.is_in_a_call:
             self.touch(GRAPH, READS)
 
@@ -283,13 +283,16 @@ def _things_of_bus(bus: SoftwareBus, call: str, args: tuple[Any, ...]) -> list[T
     return [(PIPES, READS)] if call == "get_pipe_id_by_name" else []
 
 
-def _also(subject: Any, name: str, before: Callable[..., object]) -> None:
-    """Have something called before a method of an object."""
+def _also(subject: Any, name: str, before: Callable[..., object], after: Callable[..., object] | None = None) -> None:
+    """Have something called before a method of an object, and after it."""
     original = getattr(subject, name)
 
     def both(*args: Any, **options: Any) -> Any:
         before(*args, **options)
-        return original(*args, **options)
+        result = original(*args, **options)
+        if after is not None:
+            after(*args, **options)
+        return result
 
     setattr(subject, name, both)
 
@@ -343,6 +346,7 @@ def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
         def _touch_route(self, msg_id: int, pipe_id: int) -> None:
             pipes.touch(f"route {msg_id}")
             pipes.touch(f"pipe {pipe_id}", READS)
+            pipes.touch(GRAPH)  # a node publishes nothing where nobody listens
 
         def create_pipe(self, *args: Any) -> int:
             """See `SoftwareBus.create_pipe`."""

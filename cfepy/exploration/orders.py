@@ -304,6 +304,9 @@ class Order:
         now = [at for at in kept if at in after and needed >> at & 1]
         then = [at for at in kept if at in after and not needed >> at & 1]
         begun = [at for at in (*now, later) if self._may_wait(at, cut, after)]
+        rest = {each for at in self._block(self._head[later]) if at > later for each in self._direct[at].all}
+        if any(self._head[each] == self._head[earlier] and each < earlier for each in rest):
+            return None  # what follows the later one with nobody in between
         if self._head[earlier] in cut and needed >> self._head[earlier] & 1 and not begun:
             return None
         turns = [self._turn(at) for at in kept if at not in after]

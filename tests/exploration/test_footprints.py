@@ -9,7 +9,7 @@ import pytest
 
 from cfepy.exploration import Expedition, Report, Trial
 from cfepy.exploration.orders import Order, OrderSearch
-from cfepy.exploration.verdict import DEADLOCK, EVENT
+from cfepy.exploration.verdict import DEADLOCK, EVENT, RAISED
 from cfepy.mission import CORE_APPS
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Schedule
@@ -23,6 +23,14 @@ FROM = "600ms"
 def explored(name: str, depth: int | None = None) -> Report:
     plan = RunPlan((str(MISSIONS / name),), seconds=SECONDS, tasks="greenlet")
     return Expedition(plan, seeds=60, policy="orders", depth=depth, from_s=0.6, jobs=1, shrink=100).run()
+
+
+@pytest.mark.slow
+def test_a_node_that_ends_is_told() -> None:
+    """Its subscriptions end with it, in orders that are not all tried."""
+    report = explored("check_then_act")
+    assert [told.finding.failure.kind for told in report.findings] == [RAISED]
+    assert any("how the subscriptions of a node end" in line for line in report.breadth.lines())
 
 
 @pytest.mark.slow
@@ -61,7 +69,9 @@ def test_the_schedule_of_a_failure_can_be_given() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["lock_order, mended", "mutex_order, mended", "check_then_act", "table_kept"])
+@pytest.mark.parametrize(
+    "name", ["lock_order, mended", "mutex_order, mended", "check_then_act", "table_kept", "late_subscription"]
+)
 def test_random_schedules_have_no_other_order(tmp_path: Path, name: str) -> None:
     bug = by_name(name.removesuffix(", mended"))
     folder = bug.folder if name == bug.name else bug.write_fixed(tmp_path)
