@@ -22,7 +22,7 @@ from cfepy.exploration.verdict import RESULTS, Verdict
 from cfepy.rtos import Move, Policy, Schedule
 from cfepy.units import NS_PER_MS, NS_PER_S
 
-LEAST_PROBES, MOST_PROBES = 100, 800
+LEAST_PROBES, MOST_PROBES = 300, 800
 STARTS = 3  # failing schedules that are shrunk, the shortest ones
 SUBSETS_OF = 6  # moves of which all subsets are flown
 REACH = 64  # how many decisions a move is tried later

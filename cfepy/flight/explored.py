@@ -150,7 +150,7 @@ def explore(
         events: which events of the mission's applications are failures: "error", "critical" or "none".
         jobs: processes; None is one on each CPU.
         results: file that keeps the verdicts, and that it goes on from.
-        shrink: how many runs it may take to shrink a failure; None for as many as there were schedules, 100 to 800; 0
+        shrink: how many runs it may take to shrink a failure; None for as many as there were schedules, 300 to 800; 0
             leaves it as it is.
         options: `seconds`, `seed`, `board`, `script`, `faults` and so on, see `RunOptions`. A schedule is none of them.
 

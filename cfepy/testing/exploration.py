@@ -70,7 +70,7 @@ def explore(
             "lines:arm,util"; empty for nowhere.
         races: accesses of Python code that nothing orders let it fail, too.
         start: virtual time from the boot until which all is as with fifo, such as "600ms"; empty for none.
-        shrink: how many runs it may take to shrink a schedule; None for as many as there were until then, 100 to 800; 0
+        shrink: how many runs it may take to shrink a schedule; None for as many as there were until then, 300 to 800; 0
             leaves it as it is.
 
     Raises:

@@ -119,7 +119,7 @@ PROGRAMS = (
         "readers_writer",
         ROS,
         "readers count without a lock",
-        RAISED,
+        RAISED + STUCK,  # a lost count leaves the pen taken
         origin="TLA+: readers and writers",
         options=POINTS,
     ),

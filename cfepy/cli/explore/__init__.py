@@ -202,7 +202,7 @@ def _add_outputs(explore: argparse.ArgumentParser) -> None:
         type=_number_of,
         metavar="N",
         help="how many runs shrinking a failure may take; 0 leaves it as it is (default: as many as there "
-        "were schedules, 100 to 800)",
+        "were schedules, 300 to 800)",
     )
     explore.add_argument("--quiet", action="store_true", help="show no progress")
 
