@@ -165,7 +165,8 @@ class JoinedMaster:
 
     def _enter(self, found: MasterState) -> None:
         """Have the mission's graph know what the master knows of others."""
-        seen, host = self._host.seen, self._host
+        host = self._host
+        seen = host.see()  # a node that has started meanwhile must not give way to what is left of a former one
         others = {each: found.nodes[each.node] for each in found.entries if each.node in found.nodes}
         for entry in [each for each, uri in self._others.items() if others.get(each) != uri]:
             uri = self._others.pop(entry)
