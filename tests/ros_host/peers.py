@@ -16,6 +16,7 @@ from cfepy.mission import Mission
 from cfepy.ros_host import RosHost, ServedMaster
 from cfepy.ros_host.peer_socket import Listening, listening_socket
 from cfepy.ros_host.tcpros import TcprosFrames, frame, pack_header, parse_header
+from cfepy.ros_host.world import RosWorld
 from cfepy.ros_host.xmlrpc_server import XmlRpcServer
 from tests.io.echo import PATIENCE_NS, pacer
 
@@ -192,7 +193,13 @@ class OutsideSpeaker:
 
 
 @contextmanager
-def joined(folder: Path, nodes: Mapping[str, str], more: str = "", mission_file: str = "") -> Iterator[Joined]:
+def joined(
+    folder: Path,
+    nodes: Mapping[str, str],
+    more: str = "",
+    mission_file: str = "",
+    world: Callable[[RosHost], RosWorld] = lambda host: ServedMaster(host, 0),
+) -> Iterator[Joined]:
     """A mission of nodes, by their application's name, with a master on a free port; more lines of its script."""
     (folder / "mission.yaml").write_text(mission_file or "name: joined\n")
     lines = [f"CFE_APP, {app.lower()}.py, __main__, {app}, 100, 16384, 0x0, 0;\n" for app in nodes]
@@ -203,7 +210,7 @@ def joined(folder: Path, nodes: Mapping[str, str], more: str = "", mission_file:
     with (
         Mission(str(folder), console=Console(quiet=True)) as mission,
         HostNetwork(mission, tell=told.append) as bridge,
-        RosHost(mission, lambda host: ServedMaster(host, 0), {}, told.append) as host,
+        RosHost(mission, world, {}, told.append) as host,
     ):
         bridge.join(host)
         run = Joined(mission, bridge, host, told)
