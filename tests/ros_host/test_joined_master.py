@@ -62,8 +62,13 @@ def master(monkeypatch: pytest.MonkeyPatch) -> Iterator[RosMaster]:
 @contextmanager
 def joining(folder: Path, master: RosMaster) -> Iterator[Joined]:
     with joined(folder, {"TALKER": TALKER}, world=lambda host: JoinedMaster(host, master.uri)) as run:
-        run.run_while(lambda: ["/orders", ["/talker"]] not in state(master)[1])
+        run.run_while(lambda: not is_registered(master))
         yield run
+
+
+def is_registered(master: RosMaster) -> bool:
+    """Whether the master knows all of the mission; its services come last."""
+    return ["/talker/set_logger_level", ["/talker"]] in state(master)[2]
 
 
 def state(master: RosMaster) -> Any:
@@ -96,7 +101,7 @@ def test_a_master_that_was_started_again_learns_all_of_it(tmp_path: Path, master
         run.mission.ros.graph.params.set("/ours", 5)
         run.run_while(lambda: master.api.getParam(CALLER, "/ours")[2] != 5)
         master.restart(2)
-        run.run_while(lambda: ["/orders", ["/talker"]] not in state(master)[1])
+        run.run_while(lambda: not is_registered(master))
         run.run_while(lambda: master.api.getParam(CALLER, "/ours")[2] != 5)
         assert any("is back" in line for line in run.told)
 
@@ -119,7 +124,7 @@ def test_a_node_does_not_give_way_to_what_a_former_one_has_left(tmp_path: Path, 
         run.host.seen = OwnGraph({}, [], [], [], {}, {})
         left = MasterState(1, [RosEntry(PUBLISHER, "/chatter", "/talker")], {}, {"/talker": NOBODY}, {})
         run.host.world._found(left, None)
-        run.run_while(lambda: ["/orders", ["/talker"]] not in state(master)[1])
+        run.run_while(lambda: not is_registered(master))
         assert not run.heard("shutdown request")
 
 
