@@ -317,15 +317,15 @@ def crowd(count: int) -> Program:
         arrived = [0]
 
         def come() -> None:
-            kernel.point()
+            kernel.preempt()
             arrived[0] += 1
-            kernel.point()
+            kernel.preempt()
             written.append(str(arrived[0]))
 
         def start() -> None:
             for number in range(count):
                 kernel.spawn(f"{number}", come, 100)
-                kernel.point()
+                kernel.preempt()
 
         kernel.spawn("starter", start, 100)
 
