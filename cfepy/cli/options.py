@@ -107,7 +107,16 @@ def _add_faults(parser: Options) -> None:
 
 
 def _add_play(parser: Options) -> None:
-    parser.add_argument("--play", metavar="BAG", help="play a bag's topics into the mission, as rosbag play does")
+    text = "play the topics of a bag or an MCAP file into the mission, as rosbag play does"
+    parser.add_argument("--play", metavar="BAG", help=text)
+
+
+def _add_play_options(parser: Options) -> None:
+    parser.add_argument(
+        "--play-options",
+        metavar="TEXT",
+        help="how: options and remappings of rosbag play, as in --play-options='--rate 2 --start 5 --topics /a /a:=/b'",
+    )
 
 
 def _add_stall(parser: Options) -> None:
@@ -169,6 +178,7 @@ RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "stop_on_failure": _add_stop_on_failure,
     "faults": _add_faults,
     "play": _add_play,
+    "play_options": _add_play_options,
     "stall": _add_stall,
     "guard": _add_guard,
     "races": _add_races,
@@ -272,6 +282,7 @@ _USUAL: Mapping[str, tuple[str, object]] = {
     "stop_on_failure": ("--stop-on-failure", False),
     "faults": ("--faults", None),
     "play": ("--play", None),
+    "play_options": ("--play-options", None),
     "stall": ("--stall", DEFAULT_STALL_S),
     "guard": ("--guard", False),
     "races": ("--races", False),

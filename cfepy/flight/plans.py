@@ -34,7 +34,8 @@ class MissionOptions(TypedDict, total=False):
         tasks: "thread" or "greenlet".
         schedule: which task goes first, such as "random:7".
         faults: what goes wrong: a plan's file, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
-        play: a bag that is played into the mission.
+        play: a bag or an MCAP file that is played into the mission.
+        play_options: how, as `rosbag play` is told, such as "--rate 2 --topics /a /a:=/b".
         args: of a launch file.
         stall: seconds of wall time after which a task that does not give up the CPU ends the run; 0 waits for ever.
         races: accesses of Python code that nothing orders are looked for, and told with what went wrong.
@@ -50,6 +51,7 @@ class MissionOptions(TypedDict, total=False):
     schedule: str | Schedule
     faults: Faults | None
     play: str | os.PathLike[str] | None
+    play_options: str | None
     args: Mapping[str, object] | None
     stall: float
     guard: bool

@@ -14,7 +14,7 @@ from cfepy.faces import face
 from cfepy.ground.names import ROS, LiveNames, kind_of, names_in, names_of
 
 if TYPE_CHECKING:
-    from cfepy.ground.bag import BagReader, BagRecorder, header_of, is_bag
+    from cfepy.ground.bag import BagReader, header_of, is_bag
     from cfepy.ground.command_trial import CommandTrial
     from cfepy.ground.dictionary import Decoded, Dictionary, dictionary_of, table_type, table_types
     from cfepy.ground.events import EVENT_IDS, EVENT_TYPES, DecodedEvent
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from cfepy.ground.graph.model import MissionGraph, graph_of
     from cfepy.ground.graph.texts import graph_dot, graph_text
     from cfepy.ground.link import CI_PORT, TO_PORT, GroundLink
+    from cfepy.ground.mcap_recorder import recorder_of
     from cfepy.ground.node import GroundConsole, empty_mission, ground_node_ended, with_ground_node, with_player
     from cfepy.ground.series import Samples, Series, SeriesRecorder, SeriesSet, bag_series, candidates, packet_series
     from cfepy.ground.survey import LOOK_S, MidRow, Survey, lock_path, lock_text, locked, spread_out, surveyed_topics
@@ -37,7 +38,6 @@ __all__ = [
     "ROS",
     "TO_PORT",
     "BagReader",
-    "BagRecorder",
     "CommandTrial",
     "Decoded",
     "DecodedEvent",
@@ -79,6 +79,7 @@ __all__ = [
     "packet_of",
     "packet_series",
     "plain",
+    "recorder_of",
     "spread_out",
     "steps_of",
     "surveyed_topics",
@@ -99,7 +100,6 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         {
             ".bag": (
                 "BagReader",
-                "BagRecorder",
                 "header_of",
                 "is_bag",
             ),
@@ -135,6 +135,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "TO_PORT",
                 "GroundLink",
             ),
+            ".mcap_recorder": ("recorder_of",),
             ".node": (
                 "GroundConsole",
                 "empty_mission",

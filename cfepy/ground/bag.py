@@ -1,4 +1,4 @@
-"""Bags on the host's side: a run's ROS topics recorded as `rosbag record -a` would, and bags read.
+"""Bags on the host's side: a run's ROS topics recorded as `rosbag record -a` would, and bags and MCAP files read.
 
 Recording watches the bus (`cfepy.mission.topic_watch`), so it changes nothing in the run.
 """
@@ -43,7 +43,7 @@ class BagRecorder(TopicWatch):
         try:
             self._file = Path(file).open("w+b")  # noqa: SIM115  # closed by `__exit__`
         except OSError as error:
-            raise _unwritable(file, error) from None
+            raise unwritable(file, error) from None
         self._bag: BagFile = storage().BagFile(self._file)
         self._bag.create()
 
@@ -64,7 +64,7 @@ class BagRecorder(TopicWatch):
         except OSError as failed:
             self._failed = failed
         if self._failed is not None:
-            raise _unwritable(self._file.name, self._failed) from None
+            raise unwritable(self._file.name, self._failed) from None
 
     def _write(self, message: TopicMessage) -> None:
         if message.stamp_ns is None or self._failed is not None:
@@ -81,12 +81,13 @@ class BagRecorder(TopicWatch):
             self._failed = error
 
 
-def _unwritable(file: str, error: OSError) -> UsageError:
+def unwritable(file: str, error: OSError) -> UsageError:
+    """The error of a recording that cannot be written."""
     return UsageError(f"could not be written: {error.strerror}", file=file, field="--bag")
 
 
 class BagReader:
-    """A bag to look into; use as a context manager.
+    """A bag to look into, or the topics of ROS 1 of an MCAP file; use as a context manager.
 
     Args:
         file: the bag.
@@ -100,14 +101,16 @@ class BagReader:
             self._file = Path(file).open("rb")  # noqa: SIM115  # closed by `__exit__`
         except OSError as error:
             raise UsageError(f"could not be read: {error.strerror}", file=file) from None
-        self._bag: BagFile = storage().BagFile(self._file)
         try:
+            self._bag: BagFile = storage().opened(self._file)
             self._bag.read_version()
             self._bag.open()
         except _broken() as error:
             self._file.close()
-            hint = "; rosbag reindex makes an index" if isinstance(error, storage().ROSBagUnindexedException) else ""
-            raise UsageError(f"{error}{hint}", file=file) from None
+            raise UsageError(f"{error}{_hint(error, file)}", file=file) from None
+        except ImportError as error:  # of what its chunks are compressed by
+            self._file.close()
+            raise UsageError(str(error), file=file) from None
 
     @property
     def connections(self) -> list[Connection]:
@@ -154,11 +157,18 @@ def header_of(connection: Connection) -> dict[str, str]:
     return {name: value if isinstance(value, str) else value.decode(errors="replace") for name, value in header}
 
 
+def _hint(error: Exception, file: str) -> str:
+    """What to do about a file that cannot be read."""
+    if isinstance(error, storage().ROSBagUnindexedException):
+        return f"; rosbag reindex makes an index, cfepy bag recover {file} saves what is left"
+    return f"; cfepy bag recover {file} saves what is left" if is_bag(file) else ""
+
+
 def is_bag(file: str) -> bool:
-    """Whether a file is a bag, by its first bytes."""
+    """Whether a file is a bag or an MCAP file, by its first bytes."""
     try:
         with Path(file).open("rb") as found:
-            return found.read(7) == b"#ROSBAG"
+            return found.read(8).startswith((b"#ROSBAG", b"\x89MCAP0\r\n"))
     except OSError:
         return False
 

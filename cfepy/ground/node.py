@@ -6,8 +6,10 @@ of JSON.
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
+import shlex
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -16,11 +18,14 @@ from typing import Any
 from cfepy.ground.bag import BagReader
 from cfepy.mission import Mission, MissionSpec, lines_for, mission_environment, spec_of
 from cfepy.nodes import ROSCORE_PARAMS, NodeConfig
+from cfepy.status import UsageError
 from rospy_shim.library_parts import FOLDER
 from rospy_shim.msgs.packages import near
 
 SCRIPTS = "ground_nodes"
 """The library whose modules are the scripts."""
+PLAY_OPTIONS = "rospy_shim.libraries.rosbag_storage.play_options"
+"""What knows the options of `rosbag play`; nodes import it by another name."""
 APP, PLAYER = "GROUND_NODE", "ROSBAG_PLAY"
 _SPEAKERS = (f"[{APP}", "[rosservice_", "[rostopic_", "[tf_echo_", "[view_frames_")
 
@@ -71,18 +76,41 @@ def ground_node_ended(mission: Mission) -> bool:
     return mission.ros is not None and APP in mission.ros.monitor.statuses
 
 
-def with_player(spec: MissionSpec, bag: str) -> MissionSpec:
+def with_player(spec: MissionSpec, bag: str, options: str = "") -> MissionSpec:
     """A mission in which a bag is played, with its time on /clock if the mission's nodes use simulated time.
 
+    Args:
+        spec: the mission.
+        bag: the bag, or the MCAP file.
+        options: what else `rosbag play` is told, as on a command line, such as "--rate 2 --topics /a /a:=/b".
+
     Raises:
-        UsageError: there is no such bag, or it is broken.
+        UsageError: there is no such bag, it is broken, or an option is none.
     """
     with BagReader(bag):
         pass
-    has_clock = spec.ros.params.get("use_sim_time") is True
-    args = (*(["--clock"] if has_clock else []), str(Path(bag).resolve()))
+    words = play_words(options)
+    has_clock = spec.ros.params.get("use_sim_time") is True and "--clock" not in words
+    args = (*(["--clock"] if has_clock else []), str(Path(bag).resolve()), *words)
     script = FOLDER / SCRIPTS / "ground_play.py"
     return _with_node(spec, NodeConfig(PLAYER, args=args, script=script, cwd=spec.folder))
+
+
+def play_words(options: str) -> list[str]:
+    """The words of options of `rosbag play`.
+
+    Raises:
+        UsageError: it has no such option, or another bag is named, which has its own `--play`.
+    """
+    try:
+        words = shlex.split(options)
+        parser = importlib.import_module(PLAY_OPTIONS).CheckedPlayParser(add_help=False)
+        said = parser.parse_play([PLAYER, *(word for word in words if ":=" not in word)])
+    except ValueError as error:
+        raise UsageError(str(error), field="--play-options") from None
+    if len(said.bags) > 1:
+        raise UsageError(f"{said.bags[1]} is no option; --play names the bag", field="--play-options")
+    return words
 
 
 def _with_node(spec: MissionSpec, node: NodeConfig) -> MissionSpec:

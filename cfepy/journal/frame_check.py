@@ -136,13 +136,14 @@ PLAN: dict[str, Check] = {
     "stop_on_failure": _flag,
     "faults": _perhaps(_text),
     "play": _perhaps(_text),
+    "play_options": _perhaps(_text),
     "stall": _number,
     "guard": _flag,
     "races": _flag,
     "cpp_nodes": _perhaps(_text),
     "settings": _list(lambda value: _named(value) and _text(value[0]) and _text(value[1])),
 }
-_LATER = {"outcome", "mode", "cpp_nodes", "races", "settings"}  # may be missing
+_LATER = {"outcome", "mode", "cpp_nodes", "races", "settings", "play_options"}  # may be missing
 
 
 def problem_of(kind: str, body: Any) -> str | None:

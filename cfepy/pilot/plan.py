@@ -28,6 +28,7 @@ from cfepy.mission import (
 from cfepy.nodes import CppNode
 from cfepy.pilot.course import BOOT_S, DEFAULT_S, NODE_S
 from cfepy.rtos import STALL_S, Schedule
+from cfepy.status import UsageError
 
 RUN, LAUNCH, NODE = "run", "launch", "node"
 
@@ -74,7 +75,8 @@ class RunPlan:
         script: path of a mission script; None without one.
         stop_on_failure: the run ends with the first step of the script that fails.
         faults: what goes wrong: path of a fault plan, or seed:N; None for nothing.
-        play: path of a bag whose topics are played into the mission; None for nothing.
+        play: path of a bag or an MCAP file whose topics are played into the mission; None for nothing.
+        play_options: how, as `rosbag play` is told: "--rate 2 --start 5 --topics /a /a:=/b"; None as it was recorded.
         stall: seconds of wall time for which virtual time may stand still, because a task does not give up the CPU,
             until the run is ended for that; 0 for any time. It decides only whether a run comes to its end, and none of
             the trace of one that does.
@@ -97,6 +99,7 @@ class RunPlan:
     stop_on_failure: bool = False
     faults: str | None = None
     play: str | None = None
+    play_options: str | None = None
     stall: float = STALL_S
     guard: bool = False
     races: bool = False
@@ -132,13 +135,15 @@ class RunPlan:
         """A mission into which the bag of the plan is played, if it has one.
 
         Raises:
-            UsageError: there is no such bag, or it is broken.
+            UsageError: there is no such bag, it is broken, or cannot be played as the options say.
         """
         if self.play is None:
+            if self.play_options is not None:
+                raise UsageError("says how a bag is played; give the bag, too: --play FILE", field="--play-options")
             return spec
         from cfepy.ground import with_player
 
-        return with_player(spec, self.play)
+        return with_player(spec, self.play, self.play_options or "")
 
     def attachments(self) -> list[Attachment]:
         """What the plan itself brings to its run: nothing, but for a plan whose files lie elsewhere than they did."""
@@ -171,6 +176,8 @@ class RunPlan:
         for each in ("seed", "board", "tasks", "schedule", "script", "play", "faults", "cpp_nodes"):
             if getattr(plan, each) != getattr(_USUAL, each):
                 options += [f"--{each.replace('_', '-')}", str(getattr(plan, each))]
+        if plan.play_options is not None:
+            options.append(f"--play-options={plan.play_options}")  # it may begin with a hyphen
         if plan.stall != _USUAL.stall:
             options += ["--stall", f"{plan.stall:g}"]
         for each in ("stop_on_failure", "guard", "races"):

@@ -89,6 +89,7 @@ OPTIONS: dict[str, tuple[list[str], Any]] = {
     "stop_on_failure": (["--stop-on-failure"], True),
     "faults": (["--faults", "plan.yaml"], "plan.yaml"),
     "play": (["--play", "drive.bag"], "drive.bag"),
+    "play_options": (["--play-options=--rate 2"], "--rate 2"),
     "stall": (["--stall", "2.5"], 2.5),
     "guard": (["--guard"], True),
     "races": (["--races"], True),

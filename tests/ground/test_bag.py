@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from cfepy.console import Console
 from cfepy.ground.bag import BagReader, BagRecorder, is_bag
+from cfepy.ground.mcap_recorder import recorder_of
 from cfepy.mission import Mission, MissionSpec
 from cfepy.nodes.config import RosConfig, TopicConfig
 from cfepy.status import UsageError
@@ -104,7 +105,7 @@ def fly(
             mission.run_for(seconds)
             return mission.trace.digest()
     with (
-        BagRecorder(bag, patterns) as recorder,
+        recorder_of(bag, patterns) as recorder,
         Mission(spec, tasks=tasks, console=console, attachments=[recorder]) as mission,
     ):
         mission.run_for(seconds)

@@ -121,6 +121,7 @@ class Outputs:
 
     Args:
         arguments: of a command line with `add_outputs`.
+        plan: the run.
 
     Attributes:
         attachments: what takes it down during the run.
@@ -130,7 +131,7 @@ class Outputs:
         UsageError: something cannot be written, or does not go together.
     """
 
-    def __init__(self, arguments: argparse.Namespace) -> None:
+    def __init__(self, arguments: argparse.Namespace, plan: RunPlan) -> None:
         self.attachments: list[Attachment] = []
         self.trace: Trace | None = None
         self._open = contextlib.ExitStack()
@@ -141,6 +142,8 @@ class Outputs:
         self._trace_file = TraceFile(arguments.trace) if arguments.trace else None
         self._bag = arguments.bag
         self._bag_topics = arguments.bag_topics
+        usual = RunPlan(plan.words)  # what a run is on decides nothing of it
+        self._command = plan.command_line(tasks=usual.tasks, stall=usual.stall)
         if self._bag is None and self._bag_topics:
             raise UsageError("says what goes into a bag; give the bag, too: --bag FILE", field="--bag-topics")
 
@@ -150,9 +153,10 @@ class Outputs:
             self.trace = recorder.trace
             self._open.enter_context(recorder)
         if self._bag is not None:
-            from cfepy.ground import BagRecorder
+            from cfepy.ground import recorder_of
 
-            self.attachments.append(self._open.enter_context(BagRecorder(self._bag, self._bag_topics)))
+            recorder_of_bag = recorder_of(self._bag, self._bag_topics, self._command)
+            self.attachments.append(self._open.enter_context(recorder_of_bag))
         self.attachments += [each for each in (recorder, self._run_files) if each is not None]
         return self
 

@@ -92,7 +92,7 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
         UsageError: it cannot run like this.
     """
     check_pace(arguments)
-    with recording(arguments, plan) as journal, Interrupts() as interrupts, Outputs(arguments) as outputs:
+    with recording(arguments, plan) as journal, Interrupts() as interrupts, Outputs(arguments, plan) as outputs:
         spec = plan.spec()  # a journal has the files that are read for it
         with WatchedHost(
             interrupts,
@@ -130,7 +130,12 @@ def fly_again(arguments: argparse.Namespace, replay: Replay, view: View) -> int:
     Raises:
         UsageError: it cannot run.
     """
-    with Interrupts() as interrupts, Outputs(arguments) as outputs, WatchedHost(interrupts, view.display) as host:
+    plan = replay.journal.plan  # with the paths that the run had
+    with (
+        Interrupts() as interrupts,
+        Outputs(arguments, plan) as outputs,
+        WatchedHost(interrupts, view.display) as host,
+    ):
         trace = outputs.trace or Trace(records=TimedRecords())
         flown = replay.fly(outputs.attachments, console=host.console, trace=trace, host=host)
     return _tell(flown, outputs, view, replay.why_over)

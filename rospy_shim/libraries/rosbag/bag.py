@@ -21,6 +21,7 @@ from rosbag_storage import (
     ROSBagException,
     ROSBagFormatException,
     ROSBagUnindexedException,
+    opened,
     records,
 )
 
@@ -98,7 +99,7 @@ class Bag(Indexed):
         self._mode = mode
         self._filename = None if isinstance(f, io.IOBase) else f
         self._file: Any = self._open_file(f) if self._filename is not None else f
-        self._storage = BagFile(self._file)
+        self._storage = opened(self._file) if mode == "r" else BagFile(self._file)
         self._topic_connections: dict[str, Connection] = {}
         self._connection_indexes_read = True
         self._begin(allow_unindexed)

@@ -17,6 +17,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import rospy
+from rosbag_storage.play_options import PlayParser
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool, SetBoolResponse
 
@@ -30,7 +31,7 @@ class Player:
     """Plays bags.
 
     Args:
-        options: see `options_of`.
+        options: see `PlayParser`.
     """
 
     def __init__(self, options: argparse.Namespace) -> None:
@@ -153,36 +154,8 @@ class Player:
 
 def options_of(argv: Sequence[str]) -> argparse.Namespace:
     """The options of `rosbag play`."""
-    parser = argparse.ArgumentParser(prog=os.path.basename(argv[0]), description="Play bags back.")
-    parser.add_argument("given", nargs="*", metavar="BAG")
-    for flag, text in (
-        ("-q --quiet", "say nothing"),
-        ("-i --immediate", "do not wait between messages"),
-        ("--pause", "begin when the service ~pause_playback says so"),
-        ("--clock", "tell the bags' time on /clock"),
-        ("-l --loop", "begin again at the end"),
-        ("-k --keep-alive", "stay when all is played"),
-        ("--wait-for-subscribers", "begin when each topic has a subscriber"),
-        ("--try-future-version", "without effect"),
-    ):
-        parser.add_argument(*flag.split(), action="store_true", help=text)
-    parser.add_argument("-p", "--prefix", default="", help="put this before the names of topics")
-    parser.add_argument("--queue", type=int, default=100, help="length of the publishers' queues (default: 100)")
-    parser.add_argument("--hz", type=float, default=100.0, help="how often the clock is told (default: 100)")
-    parser.add_argument("-d", "--delay", type=float, default=0.2, help="s between advertising and playing")
-    parser.add_argument("-r", "--rate", type=float, default=1.0, help="so many times as fast")
-    parser.add_argument("-s", "--start", type=float, default=0.0, help="begin so many s into the bags")
-    parser.add_argument("-u", "--duration", type=float, help="play so many s only")
-    parser.add_argument("--skip-empty", type=float, metavar="S", help="leave out gaps of more than so many s")
-    parser.add_argument("--topics", nargs="+", default=[], help="play these only")
-    parser.add_argument("--bags", nargs="+", default=[], metavar="BAG", help="the bags, after --topics")
-    options = parser.parse_intermixed_args(rospy.myargv(argv)[1:])
-    options.bags = [*options.given, *options.bags]
-    if not options.bags:
-        parser.error("You must specify at least 1 bag file to play back.")
-    if options.rate <= 0 or options.hz <= 0:
-        parser.error("rate and frequency must be more than 0")
-    return options
+    parser = PlayParser(prog=os.path.basename(argv[0]), description="Play bags back.")
+    return parser.parse_play(rospy.myargv(argv)[1:])
 
 
 def main(argv: Sequence[str] | None = None) -> None:

@@ -2,7 +2,9 @@
 
 A bag is a header, chunks of messages each followed by its index, and at the end what there is to know of connections
 and chunks. `BagFile` reads and writes one; times are integers of ns. It stands for the C++ package of that name, and
-may import the standard library and lz4 only, so that tools outside of nodes can use it too.
+may import the standard library, lz4 and zstandard only, so that tools outside of nodes can use it too.
+
+`opened` reads MCAP files (mcap.dev/spec) as well, whose topics of ROS 1 are like those of a bag.
 """
 
 from __future__ import annotations
@@ -16,6 +18,8 @@ from .errors import (
     ROSBagFormatException,
     ROSBagUnindexedException,
 )
+from .mcap_file import McapFile, opened
+from .mcap_records import McapSchema, RecordedChannel, RecordedMessage, channel_of_connection
 
 __all__ = [
     "BagFile",
@@ -23,9 +27,15 @@ __all__ = [
     "Connection",
     "Contents",
     "Entry",
+    "McapFile",
+    "McapSchema",
     "ROSBagEncryptException",
     "ROSBagEncryptNotSupportedException",
     "ROSBagException",
     "ROSBagFormatException",
     "ROSBagUnindexedException",
+    "RecordedChannel",
+    "RecordedMessage",
+    "channel_of_connection",
+    "opened",
 ]

@@ -1,12 +1,18 @@
-"""How the data of a chunk are compressed: not at all, by bz2 or by LZ4. Imports `bz2` and LZ4 when needed."""
+"""How the data of a chunk are compressed: not at all, by bz2 or by LZ4, and in MCAP files by Zstandard.
+
+Imports what compresses when it is needed.
+"""
 
 from __future__ import annotations
+
+from typing import Any
 
 from .errors import ROSBagException, ROSBagFormatException
 
 NONE = "none"
 BZ2 = "bz2"
 LZ4 = "lz4"
+ZSTD = "zstd"  # of MCAP files only
 ALL = (NONE, BZ2, LZ4)
 LARGEST = 256 << 20  # bytes of a chunk: BAG_CHUNK_BYTES of `cfepy.input_limits`, which nodes cannot see
 
@@ -39,12 +45,12 @@ def decompress(kind: str, data: bytes) -> bytes:
     """What `compress` was given.
 
     Args:
-        kind: one of `ALL`.
+        kind: one of `ALL`, or `ZSTD`.
         data: the compressed chunk.
 
     Raises:
         ROSBagException: there is no such compression, the data are damaged, or they become too large.
-        ImportError: LZ4 is not installed.
+        ImportError: LZ4 or Zstandard is not installed.
     """
     if kind == NONE:
         return data
@@ -57,11 +63,42 @@ def decompress(kind: str, data: bytes) -> bytes:
             found = lz4_frames.decompress(data, LARGEST + 1)
         except RuntimeError as error:
             raise ROSBagFormatException(f"the data of a chunk are damaged: {error}") from None
+    elif kind == ZSTD:
+        found = _of_zstd(data)
     else:
         raise ROSBagException(f"unsupported compression type: {kind}")
     if len(found) > LARGEST:
         raise ROSBagFormatException(f"a chunk has more than {LARGEST:,} bytes when it is unpacked; record smaller ones")
     return found
+
+
+def _of_zstd(data: bytes) -> bytes:
+    """Not much more than `LARGEST` bytes of what is packed."""
+    zstandard = zstd()
+    found = bytearray()
+    try:
+        for piece in zstandard.ZstdDecompressor().read_to_iter(data):
+            found += piece
+            if len(found) > LARGEST:
+                break
+    except zstandard.ZstdError as error:
+        raise ROSBagFormatException(f"the data of a chunk are damaged: {error}") from None
+    return bytes(found)
+
+
+def zstd() -> Any:
+    """The package zstandard.
+
+    Raises:
+        ImportError: it is not installed.
+    """
+    try:
+        import zstandard
+    except ImportError as error:
+        raise ImportError(
+            "Zstandard needs the package zstandard: pip install 'cfepy[mcap]'", name="zstandard"
+        ) from error
+    return zstandard
 
 
 def _of_bz2(data: bytes) -> bytes:

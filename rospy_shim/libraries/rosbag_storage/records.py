@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Mapping
+from mmap import mmap
 from typing import BinaryIO
 
 from .errors import ROSBagException, ROSBagFormatException
@@ -37,6 +38,7 @@ PIECE = 1 << 24  # bytes that are read at once: a length that is a mistake must 
 NS_PER_S = 1_000_000_000
 
 Fields = Mapping[str, "bytes | str"]
+Buffer = bytes | memoryview | mmap
 
 pack_uint8 = struct.Struct("<B").pack
 pack_uint32 = struct.Struct("<L").pack

@@ -1,0 +1,93 @@
+"""MCAP files are written here, by the library mcap: the one place that needs it (`pip install 'cfepy[mcap]'`).
+
+What is written is the same for the same messages: no time and no name of the computer gets into a file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from rosbag_storage import McapSchema, RecordedChannel
+
+CHUNK_BYTES = 768 * 1024
+COMPRESSIONS = ("none", "lz4", "zstd")
+LIBRARY = "cfepy"
+
+
+class McapWriter:
+    """Writes one MCAP file.
+
+    Args:
+        file: opened for writing.
+        compression: of its chunks, one of `COMPRESSIONS`.
+
+    Raises:
+        UsageError: the library mcap is not installed, or not what compresses.
+        OSError: the file cannot be written.
+    """
+
+    def __init__(self, file: BinaryIO, compression: str = "none") -> None:
+        library = _library()
+        kind = library.CompressionType[compression.upper()]
+        try:
+            self._writer: Any = library.Writer(file, CHUNK_BYTES, kind)
+        except Exception as error:  # the library's own, of which only the text is of use
+            raise UsageError(f"{compression}: {error}", field="--compression") from None
+        self._schemas: dict[McapSchema, int] = {}
+        self._writer.start("ros1", LIBRARY)
+
+    def channel(self, channel: RecordedChannel) -> int:
+        """Begin a channel; returns the number under which its messages are written."""
+        schema = channel.schema
+        if schema not in self._schemas:
+            known = 0 if not schema.encoding else self._writer.register_schema(*schema)
+            self._schemas[schema] = known
+        return int(
+            self._writer.register_channel(
+                channel.topic, channel.encoding, self._schemas[schema], dict(channel.metadata)
+            )
+        )
+
+    def write(self, channel: int, time: int, data: bytes, publish_time: int | None = None, sequence: int = 0) -> None:
+        """Write a message.
+
+        Args:
+            channel: its number.
+            time: in ns.
+            data: the message.
+            publish_time: in ns; None for `time`.
+            sequence: number that its sender gave it; 0 for none.
+
+        Raises:
+            OSError: the file cannot be written.
+        """
+        self._writer.add_message(channel, time, data, time if publish_time is None else publish_time, sequence)
+
+    def metadata(self, name: str, values: Mapping[str, str]) -> None:
+        """Write what is known of the whole file."""
+        self._writer.add_metadata(name, dict(values))
+
+    def attachment(self, log_time: int, create_time: int, name: str, media_type: str, data: bytes) -> None:
+        """Write a file that goes with the messages; times in ns."""
+        self._writer.add_attachment(create_time, log_time, name, media_type, data)
+
+    def flush(self) -> None:
+        """End the chunk: what was written up to now can be read even if nothing more comes."""
+        self._writer.flush()
+
+    def finish(self) -> None:
+        """Write the index; the file is whole then."""
+        self._writer.finish()
+
+
+def _library() -> ModuleType:
+    try:
+        from mcap import writer
+    except ImportError:
+        raise UsageError("MCAP files are written by the library mcap: pip install 'cfepy[mcap]'") from None
+    return writer

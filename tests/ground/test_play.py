@@ -1,0 +1,117 @@
+"""A bag or an MCAP file played into a mission, as `rosbag play` is told, and the same run twice."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import parser_for
+from cfepy.cli.options import plan_of
+from cfepy.console import Console
+from cfepy.ground.bag import storage
+from cfepy.ground.mcap_writer import McapWriter
+from cfepy.pilot import NODE, RunPlan, fly
+from cfepy.status import UsageError
+from rospy_shim.msgs import message_class
+
+HEARS = """
+import rospy
+from std_msgs.msg import String
+
+rospy.init_node("hears")
+
+
+def take(message, topic):
+    print("heard %s %s at %.1f" % (topic, message.data, rospy.get_time() % 1000))
+
+
+for topic in ("/said", "/there", "/other"):
+    rospy.Subscriber(topic, String, take, topic)
+rospy.spin()
+"""
+SECOND = 1_000_000_000
+
+
+def recording(folder: Path, suffix: str) -> Path:
+    """Ten messages a second on /said for 2 s, and one a second on /other."""
+    file = folder / f"drive{suffix}"
+    kind = message_class("std_msgs/String")
+    about = {"type": "std_msgs/String", "md5sum": kind._md5sum, "message_definition": kind._full_text}
+    messages = [("/said", (100 + tenth / 10), b"%d" % tenth) for tenth in range(21)]
+    messages += [("/other", 100.05 + second, b"o%d" % second) for second in range(2)]
+    headers = {topic: {"callerid": "/robot", "latching": "0", "topic": topic, **about} for topic in ("/said", "/other")}
+    with file.open("w+b") as stream:
+        bag = storage().BagFile(stream)
+        connections = {topic: storage().Connection(0, topic, header) for topic, header in headers.items()}
+        if suffix == ".bag":
+            bag.create()
+            numbers = {topic: bag.connect(topic, header) for topic, header in headers.items()}
+            out = bag
+        else:
+            out = McapWriter(stream, "zstd")
+            numbers = {topic: out.channel(storage().channel_of_connection(each)) for topic, each in connections.items()}
+        for topic, at, text in sorted(messages, key=lambda message: message[1]):
+            out.write(numbers[topic], round(at * SECOND), len(text).to_bytes(4, "little") + text)
+        out.finish()
+    return file
+
+
+def heard(folder: Path, options: str | None, *, suffix: str = ".mcap", tasks: str = "thread") -> tuple[list[str], str]:
+    """What a node heard of a recording that is played, and the digest of the run."""
+    (folder / "hears.py").write_text(HEARS)
+    file = recording(folder, suffix)
+    lines: list[str] = []
+    plan = RunPlan((str(folder / "hears.py"),), NODE, seconds=4, tasks=tasks, play=str(file), play_options=options)
+    flown = fly(plan, console=Console(sink=lines.append))
+    return [line.split("heard ")[1].rstrip() for line in lines if "heard " in line], flown.mission.trace.digest()
+
+
+@pytest.mark.parametrize("suffix", [".bag", ".mcap"])
+def test_options_are_those_of_rosbag_play(suffix: str, tmp_path: Path) -> None:
+    found, _ = heard(tmp_path, "--rate 2 --start 0.5 --duration 1 --topics /said /said:=/there", suffix=suffix)
+    words = [line.split() for line in found]
+    assert [(topic, text) for topic, text, *_ in words] == [("/there", str(each)) for each in range(5, 16)]
+    times = [float(at) for *_, at in words]
+    assert 0.4 <= times[-1] - times[0] <= 0.6
+
+
+def test_without_options_all_is_played(tmp_path: Path) -> None:
+    found, _ = heard(tmp_path, None)
+    assert [line.split()[1] for line in found if line.startswith("/other")] == ["o0", "o1"]
+    assert len(found) == 23
+
+
+def test_the_run_is_the_same_on_threads_and_greenlets(tmp_path: Path) -> None:
+    runs = [heard(tmp_path, "--rate 3", tasks=tasks) for tasks in ("thread", "thread", "greenlet")]
+    assert runs[0] == runs[1] == runs[2]
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        ("--rate 0", "must be more than 0"),
+        ("--rate", "expected one argument"),
+        ("--no-such", "unrecognized arguments: --no-such"),
+        ("more.bag", "more.bag is no option; --play names the bag"),
+        ("--topics '/a", "No closing quotation"),
+    ],
+)
+def test_options_that_cannot_be(options: str, why: str, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=f"--play-options: .*{why}"):
+        heard(tmp_path, options)
+
+
+def test_options_need_a_bag(tmp_path: Path) -> None:
+    (tmp_path / "hears.py").write_text(HEARS)
+    with pytest.raises(UsageError, match="give the bag, too"):
+        RunPlan((str(tmp_path / "hears.py"),), NODE, play_options="--rate 2").spec()
+
+
+def test_the_command_that_does_it_again_says_them() -> None:
+    plan = RunPlan(("capture",), play="my drive.bag", play_options="--rate 2 /a:=/b")
+    words = shlex.split(plan.command_line())[1:]
+    said = parser_for(words).parse_args(words)
+    assert plan_of(said, ["capture"]) == plan
+    assert RunPlan.from_dict(plan.to_dict()) == plan
