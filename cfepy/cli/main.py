@@ -31,7 +31,7 @@ BAD_USAGE = 2
 INTERRUPTED = 130  # 128 + SIGINT, what shells expect
 ROOMS = {
     "run": ("run", "check", "new", "boards"),
-    "ros": ("launch", "node", "rostest", "topic", "service", "param"),
+    "ros": ("launch", "node", "rostest", "topic", "service", "param", "bag"),
     "ros_tools": ("rosbag", "rosmsg", "rossrv", "rosnode", "tf"),
     "explore": ("explore", "faults", "sweep"),
     "journal": ("replay", "diff"),

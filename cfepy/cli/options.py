@@ -107,7 +107,7 @@ def _add_faults(parser: Options) -> None:
 
 
 def _add_play(parser: Options) -> None:
-    text = "play the topics of a bag or an MCAP file into the mission, as rosbag play does"
+    text = "play a bag's topics into the mission, or those of an MCAP file, as rosbag play does"
     parser.add_argument("--play", metavar="BAG", help=text)
 
 

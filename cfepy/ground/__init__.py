@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from cfepy.ground.link import CI_PORT, TO_PORT, GroundLink
     from cfepy.ground.mcap_recorder import recorder_of
     from cfepy.ground.node import GroundConsole, empty_mission, ground_node_ended, with_ground_node, with_player
+    from cfepy.ground.recording import RecordingSummary, rewrite, survey
     from cfepy.ground.series import Samples, Series, SeriesRecorder, SeriesSet, bag_series, candidates, packet_series
     from cfepy.ground.survey import LOOK_S, MidRow, Survey, lock_path, lock_text, locked, spread_out, surveyed_topics
     from cfepy.ground.topics import Topic, library_of, plain, topic_id, topics_of
@@ -48,6 +49,7 @@ __all__ = [
     "MessageDecoder",
     "MidRow",
     "MissionGraph",
+    "RecordingSummary",
     "Samples",
     "Series",
     "SeriesRecorder",
@@ -80,8 +82,10 @@ __all__ = [
     "packet_series",
     "plain",
     "recorder_of",
+    "rewrite",
     "spread_out",
     "steps_of",
+    "survey",
     "surveyed_topics",
     "table_type",
     "table_types",
@@ -142,6 +146,11 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "ground_node_ended",
                 "with_ground_node",
                 "with_player",
+            ),
+            ".recording": (
+                "RecordingSummary",
+                "rewrite",
+                "survey",
             ),
             ".series": (
                 "Samples",

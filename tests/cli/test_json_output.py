@@ -24,6 +24,9 @@ COMMANDS: dict[str, list[str]] = {
     "tlm": ["tlm", *LAB],
     "log": ["log", "{data}/cfe_evs.log"],
     "tbl show": ["tbl", "show", "{data}/sample_app_tbl.tbl"],
+    "bag info": ["bag", "info", "{data}/bags/golden_api_bz2.bag"],
+    "bag recover": ["bag", "recover", "{data}/bags/golden_api_bz2.bag", "-o", "{made}.bag"],
+    "bag convert": ["bag", "convert", "{data}/bags/golden_api_bz2.bag", "-o", "{made}.mcap"],
     "topic list": ["topic", "list", *LAB],
     "service list": ["service", "list", *LAB],
 }

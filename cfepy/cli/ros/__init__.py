@@ -1,4 +1,4 @@
-"""The commands for ROS engineers: launch, node, rostest, topic, service, param; here are their options.
+"""The commands for ROS engineers: launch, node, rostest, topic, service, param, bag; here are their options.
 
 A command belongs here when it shows a mission as one of ROS's own tools shows a robot. This module imports argparse
 only, for a quick start.
@@ -34,6 +34,7 @@ _TOPIC_STATUS = "exit status: 0 well, 1 nothing was found or something failed, 2
 _PARAM_HELP = f"{MISSION_HELP}; or a file of a parameter table, or a folder with such files"
 _FILES_HELP = "such as a dump of ROS.Params01; or a folder with such files"
 _PARAM_STATUS = "exit status: 0 well, 1 there is no such parameter, 2 bad usage, or a mission that cannot boot"
+_BAG_STATUS = "exit status: 0 well, 1 the file is damaged or was not finished, 2 bad usage or nothing is left of it"
 _Actions = argparse._SubParsersAction
 
 
@@ -45,6 +46,7 @@ def add(commands: _Actions[argparse.ArgumentParser]) -> None:
     _add_topic(commands)
     _add_service(commands)
     _add_param(commands)
+    _add_bag(commands)
 
 
 def _add_launch(commands: _Actions[argparse.ArgumentParser]) -> None:
@@ -245,3 +247,27 @@ def _add_param_files(actions: _Actions[argparse.ArgumentParser]) -> None:
 
 def _add_param_action(actions: _Actions[argparse.ArgumentParser], name: str, text: str) -> argparse.ArgumentParser:
     return actions.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", epilog=_PARAM_STATUS)
+
+
+# -- recordings --------------------------------------------------------------------------------------------------------
+
+
+def _add_bag(commands: _Actions[argparse.ArgumentParser]) -> None:
+    text = "show, save and convert bags and MCAP files"
+    bag = commands.add_parser("bag", help=text, description=f"{text[0].upper()}{text[1:]}.", epilog=_BAG_STATUS)
+    bag.set_defaults(module="ros.bag")
+    actions = bag.add_subparsers(metavar="ACTION", dest="action", required=True)
+    for name, help_text in (
+        ("info", "show what is in a recording, and what is wrong with it"),
+        ("recover", "write what is left of a recording that is damaged, cut off or was not finished"),
+        ("convert", "make an MCAP file of a bag, a bag of an MCAP file, or the same with another compression"),
+    ):
+        description = f"{help_text[0].upper()}{help_text[1:]}."
+        action = actions.add_parser(name, help=help_text, description=description, epilog=_BAG_STATUS)
+        action.add_argument("file", metavar="FILE", help="a bag or an MCAP file")
+        add_json(action, "it")
+        if name != "info":
+            add_output(action, "beside FILE; its ending says the format")
+            kinds = ("none", "bz2", "lz4", "zstd")
+            help_text = "of the chunks (default: none); bz2 in bags alone, zstd in MCAP files alone"
+            action.add_argument("--compression", choices=kinds, help=help_text)

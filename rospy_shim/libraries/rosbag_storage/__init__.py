@@ -20,14 +20,20 @@ from .errors import (
 )
 from .mcap_file import McapFile, opened
 from .mcap_records import McapSchema, RecordedChannel, RecordedMessage, channel_of_connection
+from .mcap_salvage import McapSalvage
+from .salvage import BROKEN, BagSalvage, Loss, Salvage
 
 __all__ = [
+    "BROKEN",
     "BagFile",
+    "BagSalvage",
     "Chunk",
     "Connection",
     "Contents",
     "Entry",
+    "Loss",
     "McapFile",
+    "McapSalvage",
     "McapSchema",
     "ROSBagEncryptException",
     "ROSBagEncryptNotSupportedException",
@@ -36,6 +42,7 @@ __all__ = [
     "ROSBagUnindexedException",
     "RecordedChannel",
     "RecordedMessage",
+    "Salvage",
     "channel_of_connection",
     "opened",
 ]

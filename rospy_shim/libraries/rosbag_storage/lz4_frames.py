@@ -45,6 +45,11 @@ class LZ4Decompressor:
         """Take a piece; returns what is ready."""
         return bytes(self._frame.decompress(data))
 
+    @property
+    def eof(self) -> bool:
+        """Whether the frame has ended."""
+        return bool(self._frame.eof)
+
 
 def compress(data: bytes) -> bytes:
     """A frame with all the data."""

@@ -1,0 +1,315 @@
+"""A recording as a whole, a bag or an MCAP file, in whatever state it is: what is in it, and what is left written anew.
+
+survey("run.mcap").text()
+rewrite("cut.bag", "whole.bag")  # what is left of it
+rewrite("run.mcap", "run.bag", strict=True)  # a conversion: nothing may be lost
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from cfepy.ground.bag import CHUNK_BYTES, storage
+from cfepy.ground.mcap_writer import COMPRESSIONS, McapWriter
+from cfepy.mission import described
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from rosbag_storage import Connection, Loss, RecordedChannel, RecordedMessage, Salvage
+
+BAG, MCAP = ".bag", ".mcap"
+KINDS = {BAG: ("none", "bz2", "lz4"), MCAP: COMPRESSIONS}
+"""How the chunks of each format can be compressed."""
+_BEGINNINGS = {b"#ROSBAG": BAG, b"\x89MCAP0\r": MCAP}
+_ROS_TIME_NS = (1 << 32) * NS_PER_S
+
+
+@dataclass
+class TopicSummary:
+    """What a recording has of a topic.
+
+    Attributes:
+        topic: name.
+        type: of its messages.
+        encoding: "ros1", or what else an MCAP file says.
+        connections: publishers, or channels.
+        messages: how many can be read.
+        bytes: of these.
+        lost: messages that the file's index names, and that cannot be read; None without an index.
+        left_out: messages that the other format has no place for.
+    """
+
+    topic: str
+    type: str
+    encoding: str
+    connections: int = 0
+    messages: int = 0
+    bytes: int = 0
+    lost: int | None = None
+    left_out: int = 0
+
+
+@dataclass
+class RecordingSummary:
+    """What is in a recording.
+
+    Attributes:
+        file, format, size: name, ".bag" or ".mcap", and bytes.
+        finished: it has its end and its index.
+        start_ns, end_ns: times of the first and the last message; None without one.
+        chunks: how many, by compression.
+        topics: by name.
+        losses: what could not be read.
+        doubtful: messages of chunks with a wrong checksum.
+        metadata: what an MCAP file says of itself, by name.
+    """
+
+    file: str
+    format: str
+    size: int
+    finished: bool = False
+    start_ns: int | None = None
+    end_ns: int | None = None
+    chunks: dict[str, int] = field(default_factory=dict)
+    topics: list[TopicSummary] = field(default_factory=list)
+    losses: list[Loss] = field(default_factory=list)
+    doubtful: int = 0
+    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+
+    @property
+    def messages(self) -> int:
+        """How many can be read."""
+        return sum(each.messages for each in self.topics)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether nothing is wrong with the file."""
+        return self.finished and not self.losses and not any(each.lost for each in self.topics)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Itself as plain values."""
+        plain = {name: value for name, value in vars(self).items() if name not in ("topics", "losses")}
+        topics, losses = ([dict(vars(each)) for each in found] for found in (self.topics, self.losses))
+        return {**plain, "messages": self.messages, "topics": topics, "losses": losses}
+
+    def damage(self) -> Iterator[str]:
+        """What is wrong with the file, a line each."""
+        for loss in self.losses:
+            yield f"{loss.size:,} bytes at byte {loss.at:,}{_between(loss)}: {loss.why}"
+        if self.doubtful:
+            yield f"{self.doubtful:,} messages of chunks with a wrong checksum can be read, and may be altered"
+        for each in self.topics:
+            if each.lost:
+                yield f"{each.lost:,} messages of {each.topic} are lost"
+        if not self.finished:
+            unknown = "" if any(each.lost is not None for each in self.topics) else "; how much is missing is not known"
+            yield f"the recording was not finished, or its index is damaged{unknown}"
+
+
+def _between(loss: Loss) -> str:
+    """The messages around a loss, by their times in s."""
+    sides = (("after", loss.after), ("before", loss.before))
+    said = " and ".join(f"{side} {at / NS_PER_S:.6f}" for side, at in sides if at is not None)
+    return f", {said}" if said else ""
+
+
+class _Count:
+    """Counts the messages of a recording while they go by."""
+
+    def __init__(self, summary: RecordingSummary, salvage: Salvage) -> None:
+        self._summary, self._salvage = summary, salvage
+        self._bytes: dict[RecordedChannel, int] = {}
+
+    def messages(self) -> Iterator[RecordedMessage]:
+        """The messages that are left."""
+        summary = self._summary
+        for message in self._salvage.messages():
+            time = message.time
+            summary.start_ns = time if summary.start_ns is None else min(summary.start_ns, time)
+            summary.end_ns = time if summary.end_ns is None else max(summary.end_ns, time)
+            self._bytes[message.channel] = self._bytes.get(message.channel, 0) + len(message.data)
+            yield message
+        self._conclude()
+
+    def _conclude(self) -> None:
+        summary, salvage = self._summary, self._salvage
+        summary.finished, summary.losses, summary.doubtful = salvage.finished, salvage.losses, salvage.doubtful
+        summary.chunks, summary.metadata = dict(salvage.chunks), dict(salvage.metadata)
+        topics: dict[tuple[str, str, str], TopicSummary] = {}
+        for channel in salvage.channels.values():
+            key = (channel.topic, channel.schema.name, channel.encoding)
+            row = topics.setdefault(key, TopicSummary(*key))
+            row.connections += 1
+            row.messages += salvage.counts[channel]
+            row.bytes += self._bytes.get(channel, 0)
+            if salvage.expected is not None:
+                missing = salvage.expected.get(channel.id, 0) - salvage.counts[channel]
+                row.lost = (row.lost or 0) + max(0, missing)
+        summary.topics = [topics[key] for key in sorted(topics)]
+
+
+@contextmanager
+def _opened(file: str) -> Iterator[tuple[RecordingSummary, Salvage]]:
+    """A recording, with nothing in it believed yet."""
+    try:
+        with Path(file).open("rb") as stream:
+            size = os.fstat(stream.fileno()).st_size
+            data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) if size else None
+    except (OSError, ValueError) as error:
+        why = error.strerror if isinstance(error, OSError) else error
+        raise UsageError(f"could not be read: {why}", file=file) from None
+    if data is None:
+        raise UsageError("is empty", file=file)
+    with data:
+        kind = _BEGINNINGS.get(data[:7]) or Path(file).suffix
+        if kind not in KINDS:
+            raise UsageError("is neither a bag nor an MCAP file", file=file)
+        salvage = storage().BagSalvage(data) if kind == BAG else storage().McapSalvage(data)
+        try:
+            yield RecordingSummary(file, kind, size), salvage
+        except UsageError:  # which is a ValueError, too
+            raise
+        except ImportError as error:
+            raise UsageError(str(error), file=file) from None
+        except (*storage().BROKEN, struct.error, OverflowError) as error:
+            raise UsageError(f"is broken: {described(error)}", file=file) from None
+
+
+def survey(file: str) -> RecordingSummary:
+    """What is in a recording, and what is wrong with it.
+
+    Args:
+        file: a bag or an MCAP file, which may be damaged.
+
+    Raises:
+        UsageError: there is none, or what its chunks are compressed by is not installed.
+    """
+    with _opened(file) as (summary, salvage):
+        for _ in _Count(summary, salvage).messages():
+            pass
+    return summary
+
+
+def rewrite(file: str, output: str, compression: str | None = None, strict: bool = False) -> RecordingSummary:
+    """Write what is in a recording into another file, whose name says the format.
+
+    Messages keep their bytes, times, connections and order. What a bag has no place for is left out: channels of an
+    MCAP file that are no topics of ROS 1, its metadata and attachments.
+
+    Args:
+        file: a bag or an MCAP file.
+        output: the file to write, which is there when all is well; it may be the same one.
+        compression: one of `KINDS` of its format; None is none at all.
+        strict: nothing may be lost.
+
+    Returns:
+        What is in the recording.
+
+    Raises:
+        UsageError: there is no such recording, or nothing is left of it, or the file cannot be written; if nothing may
+            be lost, that something is.
+    """
+    kind = Path(output).suffix
+    if kind not in KINDS:
+        raise UsageError("ends neither with .bag nor with .mcap", file=output, field="--output")
+    chosen = compression or "none"
+    if chosen not in KINDS[kind]:
+        text = f"a file {kind} has no {chosen}; it has {', '.join(KINDS[kind])}"
+        raise UsageError(text, field="--compression")
+    part = f"{output}.part"
+    try:
+        with _opened(file) as (summary, salvage), _written(part, output, kind, chosen) as target:
+            _copy(summary, salvage, target, strict)
+        os.replace(part, output)
+    except OSError as error:
+        raise UsageError(f"could not be written: {error.strerror}", file=output, field="--output") from None
+    finally:
+        Path(part).unlink(missing_ok=True)
+    return summary
+
+
+def _copy(summary: RecordingSummary, salvage: Salvage, target: _BagTarget | _McapTarget, strict: bool) -> None:
+    left_out: dict[tuple[str, str, str], int] = {}
+    for message in _Count(summary, salvage).messages():
+        if not target.write(message):
+            key = (message.channel.topic, message.channel.schema.name, message.channel.encoding)
+            left_out[key] = left_out.get(key, 0) + 1
+        if strict and salvage.losses:
+            break
+    if strict and (salvage.losses or not summary.is_whole):
+        loss = next(iter(salvage.losses), None)
+        why = next(summary.damage()) if loss is None else f"{loss.why} (byte {loss.at:,})"
+        raise UsageError(f"is damaged: {why}; cfepy bag recover {summary.file} saves what is left", file=summary.file)
+    if not summary.messages and not strict:
+        why = next(iter(summary.damage()), "it has no messages")
+        raise UsageError(f"nothing is left of it: {why}", file=summary.file)
+    for row in summary.topics:
+        row.left_out = left_out.get((row.topic, row.type, row.encoding), 0)
+    target.finish(salvage)
+
+
+class _BagTarget:
+    """A bag that is written."""
+
+    def __init__(self, file: BinaryIO, compression: str) -> None:
+        self._bag = storage().BagFile(file)
+        self._bag.create()
+        self._kind = compression
+        self._connections: dict[RecordedChannel, Connection] = {}
+
+    def write(self, message: RecordedMessage) -> bool:
+        """Write a message; whether a bag has a place for it."""
+        source = message.channel.connection
+        if source is None or message.time >= _ROS_TIME_NS:
+            return False
+        known = self._connections.get(message.channel)
+        if known is None:
+            known = self._connections[message.channel] = self._bag.connect(source.topic, source.header, self._kind)
+        if self._bag.write(known, message.time, message.data, self._kind) > CHUNK_BYTES:
+            self._bag.flush()
+        return True
+
+    def finish(self, salvage: Salvage) -> None:
+        """Write the index."""
+        self._bag.finish()
+
+
+class _McapTarget:
+    """An MCAP file that is written."""
+
+    def __init__(self, file: BinaryIO, compression: str) -> None:
+        self._writer = McapWriter(file, compression)
+        self._channels: dict[RecordedChannel, int] = {}
+
+    def write(self, message: RecordedMessage) -> bool:
+        """Write a message; there is a place for each."""
+        channel = message.channel
+        if channel not in self._channels:
+            self._channels[channel] = self._writer.channel(channel)
+        self._writer.write(self._channels[channel], message.time, message.data, message.publish_time, message.sequence)
+        return True
+
+    def finish(self, salvage: Salvage) -> None:
+        """Write what goes with the messages, and the index."""
+        for name, values in salvage.metadata:
+            self._writer.metadata(name, values)
+        for attachment in salvage.attachments:
+            self._writer.attachment(*attachment)
+        self._writer.finish()
+
+
+@contextmanager
+def _written(part: str, output: str, kind: str, compression: str) -> Iterator[_BagTarget | _McapTarget]:
+    try:
+        with Path(part).open("w+b") as stream:
+            yield _BagTarget(stream, compression) if kind == BAG else _McapTarget(stream, compression)
+    except OSError as error:
+        raise UsageError(f"could not be written: {error.strerror}", file=output, field="--output") from None

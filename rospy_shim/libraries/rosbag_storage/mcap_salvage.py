@@ -1,0 +1,215 @@
+"""What is left of an MCAP file; see `Salvage`. Imports what the package has."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from collections.abc import Generator, Iterator
+
+from . import compression
+from . import mcap_records as mcap
+from .errors import ROSBagException, ROSBagFormatException
+from .salvage import BROKEN, Bytes, Loss, Salvage, beginning_of
+
+_FOOTER_BYTES = mcap.PREFIX.size + 20
+_CANDIDATE = re.compile(rb"(?=[\x01-\x0f].{5}\0\0\0)", re.DOTALL)
+"""What can be an opcode with a length of less than a terabyte."""
+_LONGEST = 1 << 40
+_IN_CHUNKS = frozenset((mcap.SCHEMA, mcap.CHANNEL, mcap.MESSAGE))
+_AT_THE_TOP = frozenset((*range(mcap.HEADER, mcap.DATA_END + 1), *range(0x80, 0x100)))  # the latter are private
+
+
+class McapSalvage(Salvage):
+    """What is left of an MCAP file; see `Salvage`."""
+
+    def __init__(self, data: Bytes) -> None:
+        super().__init__(data)
+        self._schemas: dict[int, mcap.McapSchema] = {}
+
+    def _messages(self) -> Iterator[mcap.RecordedMessage]:
+        data, end = self.data, len(self.data)
+        self._read_summary()
+        at = len(mcap.MAGIC)
+        if data[:at] != mcap.MAGIC:
+            at = self._resync(0, "the first bytes are not those of an MCAP file")
+        while at < end:
+            if end - at == len(mcap.MAGIC) and data[at:end] == mcap.MAGIC:
+                return
+            try:
+                op, size = self._prefix(data, at)
+                start = at + mcap.PREFIX.size
+                if op == mcap.CHUNK:
+                    at = yield from self._chunk(at, size)
+                    continue
+                if start + size > end or op not in _AT_THE_TOP:
+                    raise ROSBagFormatException(f"a record of the kind {op} does not fit, at byte {at:,}")
+                if not self._follows(data, start + size, end, _AT_THE_TOP):
+                    raise ROSBagFormatException(f"a record has another length than it says, at byte {at:,}")
+                if op == mcap.MESSAGE:
+                    yield self._message(data, at, size)
+                else:
+                    self._take(op, mcap.Body(data[start : start + size], start))
+                at = start + size
+            except ImportError:
+                raise
+            except BROKEN as error:
+                at = self._resync(at, error)
+
+    def _resync(self, at: int, why: object) -> int:
+        found = self._next(self.data, at + 1, len(self.data), _AT_THE_TOP)
+        self._lose(at, found, why)
+        return found
+
+    def _read_summary(self) -> None:
+        """Channels, and how many messages there are, as the end of the file says, if there is one."""
+        data = self.data
+        end = len(data) - len(mcap.MAGIC)
+        footer = end - _FOOTER_BYTES
+        try:
+            if data[end:] != mcap.MAGIC or self._prefix(data, footer) != (mcap.FOOTER, 20):
+                return
+            at = mcap.Body(data[footer + mcap.PREFIX.size : end], footer).uint64() or footer
+            while at < footer:
+                op, size = self._prefix(data, at)
+                body = mcap.Body(data[at + mcap.PREFIX.size : at + mcap.PREFIX.size + size], at)
+                if op == mcap.STATISTICS:
+                    self.expected = mcap.statistics_of(body)
+                elif op in (mcap.SCHEMA, mcap.CHANNEL):
+                    self._take(op, body)
+                at += mcap.PREFIX.size + size
+        except BROKEN:
+            return
+        self.finished = at == footer
+
+    def _prefix(self, data: Bytes, at: int) -> tuple[int, int]:
+        if at < 0 or len(data) - at < mcap.PREFIX.size:
+            raise ROSBagFormatException(f"the file ends in the middle of a record, at byte {at:,}")
+        op, size = mcap.PREFIX.unpack_from(data, at)
+        return int(op), int(size)
+
+    def _take(self, op: int, body: mcap.Body) -> None:
+        """Take in a record that is no message and no chunk."""
+        if op == mcap.SCHEMA:
+            number, schema = mcap.schema_of(body)
+            self._schemas.setdefault(number, schema)
+        elif op == mcap.CHANNEL:
+            channel = mcap.channel_of(body, self._schemas)
+            self.channels.setdefault(channel.id, channel)
+        elif op == mcap.METADATA:
+            self.metadata.append((body.text(), body.texts()))
+        elif op == mcap.ATTACHMENT:
+            times = body.uint64(), body.uint64()
+            self.attachments.append((*times, body.text(), body.text(), body.take(body.uint64())))
+
+    def _chunk(self, at: int, size: int) -> Generator[mcap.RecordedMessage, None, int]:
+        """The messages of a chunk; returns where the next record begins."""
+        data, end = self.data, len(self.data)
+        start = at + mcap.PREFIX.size
+        chunk = mcap.chunk_of(mcap.Body(data[start : start + 64], start))
+        first = start + chunk.data_at
+        said = (start + size, first + chunk.stored_size)
+        ends = [each for each in said if self._follows(data, each, end, _AT_THE_TOP)]
+        self.chunks[chunk.kind] += 1
+        lost = len(self.losses)
+        if chunk.kind == compression.NONE:
+            is_whole = bool(ends) and ends[0] - first == chunk.stored_size == chunk.size
+            stop = ends[0] if is_whole else -1
+            wrong = is_whole and chunk.crc and zlib.crc32(data[first:stop]) != chunk.crc
+            place = first
+            found = yield from self._walk(data, first, stop, True, bool(wrong))
+        else:
+            stored = data[first : ends[0] if ends else end]
+            unpacked, why = beginning_of(chunk.kind, stored)
+            wrong = chunk.crc and zlib.crc32(unpacked) != chunk.crc
+            yield from self._walk(unpacked, 0, len(unpacked), False, bool(wrong))
+            found, place = (ends[0] if ends else first), at
+            if why or len(self.losses) > lost or len(unpacked) != chunk.size:
+                why = why or f"a chunk of {chunk.size:,} bytes is damaged"
+                self.losses[lost:] = [Loss(at, len(stored), f"{why}, at byte {at:,}")]
+        if len(self.losses) == lost and (said[0] != said[1] or not ends):
+            self._lose(at, at, f"a chunk has another length than it says, at byte {at:,}")
+        if wrong and len(self.losses) == lost:
+            self.losses.append(Loss(place, 0, f"a chunk has another checksum than it says, at byte {at:,}"))
+        if not ends and chunk.kind != compression.NONE:
+            return self._resync(first, f"a chunk has another length than it says, at byte {at:,}")
+        return found
+
+    def _walk(
+        self, data: Bytes, at: int, stop: int, in_file: bool, is_doubtful: bool
+    ) -> Generator[mcap.RecordedMessage, None, int]:
+        """The messages in the records of a chunk; returns where they end.
+
+        Args:
+            data: where they are: the chunk, or the file if they are not packed.
+            at: where they begin.
+            stop: where they are said to end; negative when that is not known.
+            in_file: the data are the file.
+            is_doubtful: the checksum is wrong.
+        """
+        end = len(data) if stop < 0 else stop
+        kinds = _AT_THE_TOP if in_file and stop < 0 else _IN_CHUNKS
+        while at < end:
+            try:
+                op, size = self._prefix(data, at)
+                start = at + mcap.PREFIX.size
+                if op not in _IN_CHUNKS:
+                    if stop < 0 and in_file and self._follows(data, at, end, _AT_THE_TOP):
+                        break
+                    raise ROSBagFormatException(f"a record of the kind {op} in a chunk, at byte {at:,}")
+                if start + size > end:
+                    raise ROSBagFormatException(f"a message is cut off, at byte {at:,}")
+                if not self._follows(data, start + size, end, kinds):
+                    raise ROSBagFormatException(f"a message has another length than it says, at byte {at:,}")
+                if op == mcap.MESSAGE:
+                    message = self._message(data, at, size)
+                    self.doubtful += is_doubtful
+                    yield message
+                else:
+                    self._take(op, mcap.Body(data[start : start + size], start))
+                at = start + size
+            except BROKEN as error:
+                found = self._next(data, at + 1, end, kinds)
+                self._lose(at, found, error)
+                at = found
+        return at
+
+    def _message(self, data: Bytes, at: int, size: int) -> mcap.RecordedMessage:
+        start = at + mcap.PREFIX.size
+        if size < mcap.MESSAGE_HEAD.size:
+            raise ROSBagException(f"a message is cut off, at byte {at:,}")
+        number, sequence, time, publish_time = mcap.MESSAGE_HEAD.unpack_from(data, start)
+        if number not in self.channels:
+            raise ROSBagException(f"the channel {number} of a message is lost, at byte {at:,}")
+        content = bytes(data[start + mcap.MESSAGE_HEAD.size : start + size])
+        return mcap.RecordedMessage(self.channels[number], time, content, publish_time, sequence)
+
+    def _follows(self, data: Bytes, at: int, end: int, kinds: frozenset[int]) -> bool:
+        """Whether the file ends at a byte, or a record of some kinds begins there, which may be cut off or damaged."""
+        if at == end:
+            return True
+        if end - at == len(mcap.MAGIC) and data[at:end] == mcap.MAGIC:
+            return kinds is _AT_THE_TOP
+        if end - at < mcap.PREFIX.size:
+            return False
+        op, size = mcap.PREFIX.unpack_from(data, at)
+        if op not in kinds:
+            return False
+        if op == mcap.CHUNK:
+            try:
+                mcap.chunk_of(mcap.Body(data[at + mcap.PREFIX.size : at + mcap.PREFIX.size + 64], at))
+            except ROSBagException:
+                return False
+            return True
+        return bool(size < _LONGEST)
+
+    def _next(self, data: Bytes, at: int, end: int, kinds: frozenset[int]) -> int:
+        """Where the next record of some kinds begins that is followed by another; `end` when there is none."""
+        for match in _CANDIDATE.finditer(data, at, end):
+            found = match.start()
+            if not self._follows(data, found, end, kinds):
+                continue
+            op, size = mcap.PREFIX.unpack_from(data, found)
+            after = found + mcap.PREFIX.size + size
+            if op == mcap.CHUNK or (size >= 4 and after <= end and self._follows(data, after, end, kinds)):
+                return found
+        return end

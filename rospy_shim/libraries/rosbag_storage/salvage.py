@@ -1,0 +1,322 @@
+"""What is left of a recording: its messages in the order of the file, and what of it could not be read.
+
+Nothing that a file says is believed before it is seen to fit: after a record that is damaged or cut off, the next one
+is looked for byte by byte. `BagSalvage` does so for bags. Imports what the package has.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections import Counter
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+from mmap import mmap
+from typing import Any, NamedTuple
+
+from . import compression, index, records
+from .contents import Connection
+from .errors import ROSBagEncryptNotSupportedException, ROSBagException
+from .mcap_records import RecordedChannel, RecordedMessage, channel_of_connection
+
+Bytes = bytes | mmap
+BROKEN = (ROSBagException, ValueError, LookupError, OSError, EOFError)
+_PIECE = 1024  # bytes that are unpacked at once: what can become of them fits into memory
+_LONGEST_HEADER = 1 << 16
+_FARTHEST_OP = 128  # bytes of a header before its field `op`; writers have at most three short ones there
+
+
+@dataclass
+class Loss:
+    """Something of a file that could not be read.
+
+    Attributes:
+        at: the byte at which it begins.
+        size: in bytes; of a chunk that is packed, of what is packed.
+        why: what is wrong.
+        after, before: times in ns of the last message before it and of the first one behind it; None without one.
+    """
+
+    at: int
+    size: int
+    why: str
+    after: int | None = None
+    before: int | None = None
+
+
+class Salvage:
+    """Goes through a recording, whatever its state.
+
+    Args:
+        data: the whole file.
+
+    Attributes:
+        losses: what could not be read, so far.
+        counts: messages so far, by channel.
+        expected: messages that the file's own index says there are, by number of the channel; None without one.
+        doubtful: messages of chunks whose checksum is wrong: they can be read, and may be altered.
+        finished: the file has its end and its index.
+        chunks: how many there are, by compression.
+        metadata, attachments: what an MCAP file has beside messages.
+    """
+
+    def __init__(self, data: Bytes) -> None:
+        self.data = data
+        self.losses: list[Loss] = []
+        self.counts: Counter[RecordedChannel] = Counter()
+        self.channels: dict[int, RecordedChannel] = {}
+        self.expected: dict[int, int] | None = None
+        self.doubtful = 0
+        self.finished = False
+        self.chunks: Counter[str] = Counter()
+        self.metadata: list[tuple[str, dict[str, str]]] = []
+        self.attachments: list[tuple[int, int, str, str, bytes]] = []
+
+    def messages(self) -> Iterator[RecordedMessage]:
+        """The messages that are left, in the order of the file; what is counted is right when they have ended."""
+        last: int | None = None
+        told = 0
+        for message in self._messages():
+            for loss in self.losses[told:]:
+                loss.after, loss.before = last, message.time
+            told, last = len(self.losses), message.time
+            self.counts[message.channel] += 1
+            yield message
+        for loss in self.losses[told:]:
+            loss.after = last
+
+    def _messages(self) -> Iterator[RecordedMessage]:
+        raise NotImplementedError
+
+    def _lose(self, at: int, end: int, why: object) -> None:
+        """Note that bytes could not be read; those that follow each other are one loss."""
+        before = self.losses[-1] if self.losses else None
+        if before is not None and before.size and before.at + before.size == at:
+            before.size += end - at
+        else:
+            self.losses.append(Loss(at, end - at, str(why)))
+
+
+def beginning_of(kind: str, stored: bytes) -> tuple[bytes, str]:
+    """What can be unpacked of the data of a chunk, and why no more can be; "" when that is all.
+
+    Raises:
+        ImportError: what unpacks it is not installed.
+    """
+    if kind == compression.NONE:
+        return stored, ""
+    unpacker = _unpacker(kind)
+    found = bytearray()
+    try:
+        for at in range(0, len(stored), _PIECE):
+            found += unpacker.decompress(stored[at : at + _PIECE])
+            if len(found) > compression.LARGEST:
+                return bytes(found), "a chunk is too large"
+            if unpacker.eof:
+                return bytes(found), ""
+    except ImportError:
+        raise
+    except Exception as error:  # each of the libraries has its own
+        return bytes(found), f"the data of a chunk are damaged: {error}"
+    return bytes(found), "the data of a chunk are cut off"
+
+
+def _unpacker(kind: str) -> Any:
+    if kind == compression.BZ2:
+        import bz2
+
+        return bz2.BZ2Decompressor()
+    if kind == compression.ZSTD:
+        return compression.zstd().ZstdDecompressor().decompressobj()
+    if kind == compression.LZ4:
+        from .lz4_frames import LZ4Decompressor
+
+        return LZ4Decompressor()
+    raise ROSBagException(f"unsupported compression type: {kind}")
+
+
+# -- bags --------------------------------------------------------------------------------------------------------------
+
+
+class _Record(NamedTuple):
+    """A record of a bag: where it is, its header, where its data begin and end."""
+
+    at: int
+    op: int
+    fields: dict[str, bytes]
+    data_at: int
+    end: int
+
+
+def _record_at(data: Bytes, at: int) -> _Record:
+    """The record that begins at a byte; its data may be said to end behind what there is.
+
+    Raises:
+        ROSBagException: there is none.
+    """
+    head = int.from_bytes(data[at : at + 4], "little")
+    header_end = at + 4 + head
+    if head == 0 or head > _LONGEST_HEADER or header_end + 4 > len(data):
+        raise ROSBagException(f"no record at byte {at:,}")
+    fields = records.split_header(data[at + 4 : header_end])
+    size = int.from_bytes(data[header_end : header_end + 4], "little")
+    return _Record(at, records.uint8_field(fields, "op"), fields, header_end + 4, header_end + 4 + size)
+
+
+class BagSalvage(Salvage):
+    """What is left of a bag; see `Salvage`."""
+
+    def _messages(self) -> Iterator[RecordedMessage]:
+        data, end = self.data, len(self.data)
+        self._read_index()
+        at = len(records.VERSION)
+        if data[:at] != records.VERSION:
+            at = self._resync(0, "the first line is not that of a bag")
+        while at < end:
+            try:
+                record = _record_at(data, at)
+                if record.op == records.OP_CHUNK:
+                    at = yield from self._chunk(record)
+                    continue
+                if record.end > end:
+                    raise ROSBagException(f"a record ends behind the file, at byte {at:,}")
+                if record.op == records.OP_CONNECTION:
+                    self._connect(data, record)
+                elif record.op not in records.OP_CODES or record.op == records.OP_MSG_DATA:
+                    raise ROSBagException(f"a record of the kind {record.op} in between, at byte {at:,}")
+                at = record.end
+            except ImportError:
+                raise
+            except BROKEN as error:
+                at = self._resync(at, error)
+
+    def _resync(self, at: int, why: object) -> int:
+        """Where the next record begins that can be told from other bytes."""
+        ops = (records.OP_CHUNK, records.OP_INDEX_DATA, records.OP_CONNECTION, records.OP_CHUNK_INFO)
+        found = _next_record(self.data, at + 1, len(self.data), ops)
+        self._lose(at, found, why)
+        return found
+
+    def _read_index(self) -> None:
+        """Connections, and how many messages there are, as the end of the file says, if there is one."""
+        data = self.data
+        try:
+            head = _record_at(data, len(records.VERSION))
+            if head.fields.get("encryptor"):
+                raise ROSBagEncryptNotSupportedException("the bag is encrypted, which is not supported")
+            at = index.position(head.fields)
+            counts: Counter[int] = Counter()
+            for _ in range(records.uint32_field(head.fields, "conn_count")):
+                record = _record_at(data, at)
+                self._connect(data, record)
+                at = record.end
+            for _ in range(records.uint32_field(head.fields, "chunk_count")):
+                record = _record_at(data, at)
+                for number, count in records.pair.iter_unpack(data[record.data_at : record.end]):
+                    counts[number] += count
+                at = record.end
+        except ROSBagEncryptNotSupportedException:
+            raise
+        except (*BROKEN, struct.error):
+            return
+        self.expected = dict(counts)
+        self.finished = at == len(data)
+
+    def _connect(self, data: Bytes, record: _Record) -> None:
+        number, topic = records.uint32_field(record.fields, "conn"), records.text_field(record.fields, "topic")
+        header = records.split_header(data[record.data_at : record.end])
+        if number not in self.channels:
+            self.channels[number] = channel_of_connection(Connection(number, topic, header))
+
+    def _chunk(self, record: _Record) -> Generator[RecordedMessage, None, int]:
+        """The messages of a chunk; returns where the next record begins."""
+        data, end = self.data, len(self.data)
+        kind = records.text_field(record.fields, "compression")
+        size = records.uint32_field(record.fields, "size")
+        if kind not in compression.ALL:
+            raise ROSBagException(f"a chunk is compressed by {kind[:20]!r}, which is not known, at byte {record.at:,}")
+        self.chunks[kind] += 1
+        if kind == compression.NONE:
+            stop = record.end if record.end == record.data_at + size else -1
+            lost = len(self.losses)
+            found = yield from self._walk(data, record.data_at, stop, record.data_at)
+            if found != stop and len(self.losses) == lost:
+                self._lose(record.at, record.at, f"a chunk has another length than it says, at byte {record.at:,}")
+            return found
+        stored = data[record.data_at : min(record.end, end)]
+        unpacked, why = beginning_of(kind, stored)
+        lost = len(self.losses)
+        yield from self._walk(unpacked, 0, len(unpacked), None)
+        if why or len(unpacked) != size or len(self.losses) > lost:
+            why = why or f"a chunk of {size:,} bytes is damaged"
+            self.losses[lost:] = [Loss(record.at, min(record.end, end) - record.at, f"{why}, at byte {record.at:,}")]
+        if record.end == end or _is_record(data, record.end):
+            return record.end
+        return self._resync(record.data_at, "a chunk has another length than it says")
+
+    def _walk(self, data: Bytes, at: int, stop: int, place: int | None) -> Generator[RecordedMessage, None, int]:
+        """The messages in the records of a chunk; returns where they end.
+
+        Args:
+            data: where they are: the chunk, or the file if they are not packed.
+            at: where they begin.
+            stop: where they are said to end.
+            place: where they begin in the file; None for those that are packed.
+        """
+        end = len(data)
+        while at != stop and at < end:
+            try:
+                record = _record_at(data, at)
+                if record.op not in (records.OP_CONNECTION, records.OP_MSG_DATA):
+                    if place is not None and record.op in records.OP_CODES and record.end <= end:
+                        break  # the chunk is shorter than it says
+                    raise ROSBagException(f"a record of the kind {record.op} in a chunk, at byte {at:,}")
+                if record.end > end:
+                    raise ROSBagException(f"a message is cut off, at byte {at:,}")
+                if record.end not in (stop, end) and not _is_record(data, record.end):
+                    raise ROSBagException(f"a message has another length than it says, at byte {at:,}")
+                if record.op == records.OP_CONNECTION:
+                    self._connect(data, record)
+                else:
+                    yield self._message(data, record)
+                at = record.end
+            except BROKEN as error:
+                ops = [records.OP_CONNECTION, records.OP_MSG_DATA]
+                if place is not None:
+                    ops += [records.OP_CHUNK, records.OP_INDEX_DATA]
+                found = _next_record(data, at + 1, end, ops)
+                found = stop if at < stop < found else found
+                self._lose(at, found, error)
+                at = found
+        return at
+
+    def _message(self, data: Bytes, record: _Record) -> RecordedMessage:
+        number = records.uint32_field(record.fields, "conn")
+        if number not in self.channels:
+            raise ROSBagException(f"the connection {number} of a message is lost, at byte {record.at:,}")
+        time = records.time_field(record.fields, "time")
+        return RecordedMessage(self.channels[number], time, bytes(data[record.data_at : record.end]), time)
+
+
+def _is_record(data: Bytes, at: int) -> bool:
+    try:
+        return _record_at(data, at).op in records.OP_CODES
+    except BROKEN:
+        return False
+
+
+def _next_record(data: Bytes, at: int, end: int, ops: tuple[int, ...] | list[int]) -> int:
+    """Where the next record of some kinds begins; `end` when there is none."""
+    field = at
+    while (field := data.find(b"\x04\0\0\0op=", field, end)) >= 0:
+        for start in range(field - 4, max(at, field - _FARTHEST_OP) - 1, -1):
+            size = int.from_bytes(data[start : start + 4], "little")
+            if size < field + 8 - start - 4 or size > _LONGEST_HEADER or data[start + 3]:
+                continue
+            try:
+                record = _record_at(data, start)
+            except BROKEN:
+                continue
+            if record.op in ops and record.end <= end + (end if record.op == records.OP_CHUNK else 0):
+                return start
+        field += 1
+    return end

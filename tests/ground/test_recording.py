@@ -1,0 +1,315 @@
+"""Recordings as a whole: what is in one, what is left of a damaged one, and one format made of the other."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mcap.reader import make_reader
+from rosbags.rosbag1 import Reader
+
+from cfepy.ground.bag import BagReader, storage
+from cfepy.ground.mcap_writer import McapWriter
+from cfepy.ground.recording import KINDS, rewrite, survey
+from cfepy.status import UsageError
+from rospy_shim.msgs import message_class
+
+DATA = Path(__file__).parents[1] / "data" / "bags"
+SECOND = 1_000_000_000
+COUNT = 200
+FORMATS = [(suffix, kind) for suffix, kinds in KINDS.items() for kind in kinds]
+Message = tuple[str, bytes, int]
+
+
+@cache
+def written(folder: Path, suffix: str, kind: str) -> Path:
+    """A recording in five chunks or so: COUNT messages on each of two topics."""
+    bag = folder / "made.bag"
+    about = message_class("std_msgs/String")
+    header = {"type": "std_msgs/String", "md5sum": about._md5sum, "message_definition": about._full_text}
+    with bag.open("w+b") as stream:
+        out = storage().BagFile(stream)
+        out.create()
+        said = [out.connect(f"/{name}", {"callerid": f"/{name}er", "latching": "1", **header}) for name in "ab"]
+        for number in range(COUNT):
+            for each in said:
+                text = b"%s %d %s" % (each.topic.encode(), number, bytes([65 + number % 26]) * 20)
+                size = out.write(each, SECOND * (100 + number), len(text).to_bytes(4, "little") + text)
+            if size > 6000:
+                out.flush()
+        out.finish()
+    return converted(bag, folder / f"{kind}{suffix}", kind)
+
+
+def converted(source: Path, target: Path, kind: str) -> Path:
+    """Another recording of it, with small chunks, so that damage meets some of them and not all."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("cfepy.ground.recording.CHUNK_BYTES", 6000)
+        patch.setattr("cfepy.ground.mcap_writer.CHUNK_BYTES", 6000)
+        rewrite(str(source), str(target), kind, strict=True)
+    return target
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("recordings")
+
+
+def read(file: Path) -> list[Message]:
+    """The messages, by time."""
+    with BagReader(str(file)) as reader:
+        return [(each.topic, each.data, each.stamp_ns or 0) for each in reader.messages()]
+
+
+def headers(file: Path) -> list[tuple[str, dict[str, Any]]]:
+    with BagReader(str(file)) as reader:
+        return [(each.topic, dict(each.header)) for each in reader.connections]
+
+
+def as_bytes(found: list[tuple[str, dict[str, Any]]]) -> list[tuple[str, dict[str, bytes]]]:
+    def plain(value: Any) -> bytes:
+        return value.encode() if isinstance(value, str) else bytes(value)
+
+    return [
+        (topic, {name: plain(value) for name, value in sorted(header.items()) if name != "topic"})
+        for topic, header in found
+    ]
+
+
+# -- conversions -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("suffix", "kind"), FORMATS)
+def test_a_conversion_loses_nothing(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+    there = written(folder, suffix, kind)
+    back = converted(there, tmp_path / "back.bag", "none")
+    made = folder / "made.bag"
+    assert read(made) == read(there) == read(back)
+    assert as_bytes(headers(made)) == as_bytes(headers(there)) == as_bytes(headers(back))
+    found = survey(str(there))
+    assert found.is_whole
+    assert found.messages == 2 * COUNT
+    assert set(found.chunks) == {kind}
+    assert sum(found.chunks.values()) > 3
+
+
+@pytest.mark.parametrize("name", ["golden.bag", "golden_api_bz2.bag", "golden_api_lz4.bag", "golden_api_none.bag"])
+def test_bags_of_ros_come_back_as_they_were(name: str, tmp_path: Path) -> None:
+    rewrite(str(DATA / name), str(tmp_path / "there.mcap"), "zstd", strict=True)
+    rewrite(str(tmp_path / "there.mcap"), str(tmp_path / "back.bag"), strict=True)
+    assert read(tmp_path / "there.mcap") == read(tmp_path / "back.bag") == read(DATA / name)
+    heads = [as_bytes(headers(file)) for file in (DATA / name, tmp_path / "there.mcap", tmp_path / "back.bag")]
+    assert heads[0] == heads[1] == heads[2]
+
+
+@pytest.mark.parametrize("kind", KINDS[".mcap"])
+def test_the_library_mcap_reads_what_is_written(kind: str, folder: Path) -> None:
+    file = written(folder, ".mcap", kind)
+    with file.open("rb") as stream:
+        found = [
+            (channel.topic, message.data, message.log_time)
+            for _, channel, message in make_reader(stream, validate_crcs=True).iter_messages()
+        ]
+    assert found == read(file)
+
+
+def test_rosbags_reads_what_comes_back(folder: Path, tmp_path: Path) -> None:
+    back = converted(written(folder, ".mcap", "lz4"), tmp_path / "back.bag", "lz4")
+    with Reader(back) as reader:
+        found = [(connection.topic, bytes(data), time) for connection, time, data in reader.messages()]
+    assert found == read(folder / "made.bag")
+
+
+def test_what_is_no_topic_is_left_out_of_a_bag_and_kept_in_an_mcap_file(tmp_path: Path) -> None:
+    library = storage()
+    source = tmp_path / "run.mcap"
+    with source.open("wb") as stream:
+        out = McapWriter(stream)
+        out.metadata("cfepy", {"command": "cfepy run lab"})
+        out.attachment(7, 8, "notes.txt", "text/plain", b"hello")
+        schema = library.McapSchema("cfe.HK", "jsonschema", b"{}")
+        number = out.channel(library.RecordedChannel(0, "/cfe/HK", "json", schema, {"msg_id": "0x0883"}))
+        for at in range(3):
+            out.write(number, at, b'{"a":%d}' % at, at + 1, at + 2)
+        out.finish()
+    found = rewrite(str(source), str(tmp_path / "run.bag"), strict=True)
+    assert [(each.topic, each.left_out) for each in found.topics] == [("/cfe/HK", 3)]
+    assert read(tmp_path / "run.bag") == []
+    rewrite(str(source), str(tmp_path / "other.mcap"), "zstd", strict=True)
+    with (tmp_path / "other.mcap").open("rb") as stream:
+        reader = make_reader(stream)
+        assert [each.metadata for each in reader.iter_metadata()] == [{"command": "cfepy run lab"}]
+        assert [(each.name, each.data) for each in reader.iter_attachments()] == [("notes.txt", b"hello")]
+        messages = [(m.log_time, m.publish_time, m.sequence, m.data) for _, _, m in reader.iter_messages()]
+    assert messages == [(at, at + 1, at + 2, b'{"a":%d}' % at) for at in range(3)]
+
+
+def test_a_file_becomes_itself_again(folder: Path, tmp_path: Path) -> None:
+    file = tmp_path / "run.mcap"
+    file.write_bytes(written(folder, ".mcap", "zstd").read_bytes())
+    before = read(file)
+    rewrite(str(file), str(file), "none", strict=True)
+    assert read(file) == before
+    assert list(tmp_path.iterdir()) == [file]
+
+
+# -- damage ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("suffix", "kind"), FORMATS)
+def test_of_a_file_that_is_cut_off_all_before_is_left(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+    file = written(folder, suffix, kind)
+    whole, cut = file.read_bytes(), tmp_path / f"cut{suffix}"
+    before = 0
+    for share in (0.4, 0.6, 0.8, 0.95):
+        cut.write_bytes(whole[: int(len(whole) * share)])
+        with pytest.raises(UsageError):
+            rewrite(str(cut), str(tmp_path / "no.bag"), strict=True)
+        assert not (tmp_path / "no.bag").exists()
+        found = rewrite(str(cut), str(tmp_path / f"left{suffix}"))
+        assert not found.finished
+        left = read(tmp_path / f"left{suffix}")
+        assert left == read(file)[: len(left)]
+        assert len(left) == found.messages >= before
+        before = found.messages
+    assert before > COUNT
+
+
+@pytest.mark.parametrize("suffix", [".bag", ".mcap"])
+@pytest.mark.parametrize("part", ["a message", "its length", "the length of a chunk"])
+def test_what_is_damaged_is_lost_and_nothing_else(part: str, suffix: str, folder: Path, tmp_path: Path) -> None:
+    file = written(folder, suffix, "none")
+    data = bytearray(file.read_bytes())
+    text = data.index(b"/a 77 ")
+    if part == "a message":
+        data[text] ^= 0x20
+    elif part == "its length":
+        if suffix == ".bag":
+            data[text - 7] ^= 0x40
+        else:
+            data[text - 4 - 22 - 7] ^= 0x40
+    elif suffix == ".bag":
+        chunk = data.rindex(b"op=\x05", 0, text)
+        end = data.index(b"size=", chunk) + 9
+        data[end + 1] ^= 0x02
+    else:
+        chunk = max(each.chunk_start_offset for each in chunks_of(file) if each.chunk_start_offset < text)
+        data[chunk + 2] ^= 0x02
+    (tmp_path / f"bad{suffix}").write_bytes(data)
+    found = rewrite(str(tmp_path / f"bad{suffix}"), str(tmp_path / f"left{suffix}"))
+    left = read(tmp_path / f"left{suffix}")
+    missing = Counter(read(file)) - Counter(left)
+    assert sum(missing.values()) <= 1, part
+    assert sum(each.lost or 0 for each in found.topics) == 2 * COUNT - len(left)
+    if suffix == ".mcap" or part != "a message":  # a bag has no checksum
+        assert not found.is_whole
+        assert any("at byte " in line for line in found.damage())
+
+
+def chunks_of(file: Path) -> list[Any]:
+    """The chunks of an MCAP file, as the library mcap knows them."""
+    with file.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+        assert summary is not None
+        return list(summary.chunk_indexes)
+
+
+def damages(data: bytes, count: int, seed: int) -> Iterator[bytes]:
+    """Damaged copies of a file."""
+    draw = random.Random(seed)
+
+    def flip(found: bytearray) -> None:
+        for _ in range(draw.choice((1, 1, 2, 20))):
+            found[draw.randrange(len(found))] ^= 1 << draw.randrange(8)
+
+    def cut(found: bytearray) -> None:
+        del found[draw.randrange(len(found)) :]
+
+    def span(found: bytearray) -> slice:
+        at = draw.randrange(len(found))
+        return slice(at, at + draw.choice((1, 4, 8, 100, 5000)))
+
+    def drop(found: bytearray) -> None:
+        del found[span(found)]
+
+    def blank(found: bytearray) -> None:
+        where = span(found)
+        found[where] = bytes([draw.choice((0, 255))]) * len(found[where])
+
+    def twice(found: bytearray) -> None:
+        where = span(found)
+        found[where.stop : where.stop] = found[where]
+
+    def noise(found: bytearray) -> None:
+        where = span(found)
+        found[where] = draw.randbytes(len(found[where]))
+
+    kinds: tuple[Callable[[bytearray], None], ...] = (flip, flip, cut, drop, blank, twice, noise)
+    for _ in range(count):
+        found = bytearray(data)
+        for _ in range(draw.choice((1, 1, 1, 2, 4))):
+            if found:
+                draw.choice(kinds)(found)
+        yield bytes(found)
+
+
+def look_at_damage(file: Path, folder: Path, count: int, seed: int) -> list[int]:
+    """How many messages are left of each damaged copy of a file; only cfepy's own errors come of it."""
+    bad, out, left = folder / f"bad{file.suffix}", folder / f"left{file.suffix}", []
+    for number, data in enumerate(damages(file.read_bytes(), count, seed)):
+        bad.write_bytes(data)
+        errors: list[UsageError] = []
+        try:
+            read(bad)
+        except UsageError as error:
+            errors.append(error)
+        try:
+            found = rewrite(str(bad), str(out))
+        except UsageError as error:
+            errors.append(error)
+            left.append(0)
+            continue
+        finally:
+            assert all(str(bad) in str(each) for each in errors), (number, errors)
+        assert survey(str(bad)).to_dict()["messages"] == found.messages
+        assert list(found.damage()) or found.is_whole
+        again = survey(str(out))
+        assert again.is_whole, (number, list(again.damage()))
+        left.append(again.messages)
+        read(out)
+    return left
+
+
+@pytest.mark.parametrize(("suffix", "kind"), [(".bag", "none"), (".mcap", "zstd")])
+def test_damage_is_told_and_the_rest_is_read(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+    look_at_damage(written(folder, suffix, kind), tmp_path, 1, seed=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("suffix", "kind"), FORMATS)
+def test_much_damage_is_told_and_the_rest_is_read(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+    left = look_at_damage(written(folder, suffix, kind), tmp_path, 250, seed=7)
+    assert sum(left) > 0.5 * len(left) * 2 * COUNT
+
+
+def test_what_is_no_recording(tmp_path: Path) -> None:
+    (tmp_path / "text.txt").write_text("hello")
+    (tmp_path / "empty.bag").write_bytes(b"")
+    (tmp_path / "noise.mcap").write_bytes(b"\x06" * 500)
+    with pytest.raises(UsageError, match="is neither a bag nor an MCAP file"):
+        survey(str(tmp_path / "text.txt"))
+    with pytest.raises(UsageError, match="is empty"):
+        survey(str(tmp_path / "empty.bag"))
+    with pytest.raises(UsageError, match="could not be read"):
+        survey(str(tmp_path / "none.bag"))
+    with pytest.raises(UsageError, match="nothing is left of it"):
+        rewrite(str(tmp_path / "noise.mcap"), str(tmp_path / "out.mcap"))
+    with pytest.raises(UsageError, match="--output"):
+        rewrite(str(tmp_path / "noise.mcap"), str(tmp_path / "out.zip"))
+    with pytest.raises(UsageError, match="has no zstd; it has none, bz2, lz4"):
+        rewrite(str(tmp_path / "noise.mcap"), str(tmp_path / "out.bag"), "zstd")
