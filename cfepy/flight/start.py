@@ -53,8 +53,8 @@ def run(
         attachments: what else watches the run or changes it.
         journal: file into which the run is recorded; None records none.
         echo: whether the console's lines are printed.
-        options: `seconds`, `seed`, `board`, `tasks`, `schedule`, `script`, `stop_on_failure`, `faults`, `play`, `args`
-            `stall`, `guard`, `races`, `cpp_nodes` and `settings`, see `RunOptions`.
+        options: `seconds`, `seed`, `board`, `tasks`, `schedule`, `script`, `stop_on_failure`, `faults`, `play`,
+            `play_options`, `args`, `stall`, `guard`, `races`, `cpp_nodes` and `settings`, see `RunOptions`.
 
     Returns:
         The run, with everything that was sent in it.
@@ -95,8 +95,8 @@ def boot(mission: MissionWords, *, attachments: Sequence[Attachment] = (), **opt
     Args:
         mission: as of `run`.
         attachments: what else watches the run or changes it.
-        options: `seed`, `board`, `tasks`, `schedule`, `faults`, `play`, `args`, `stall`, `guard`, `races`,
-            `cpp_nodes` and `settings`, see `MissionOptions`.
+        options: `seed`, `board`, `tasks`, `schedule`, `faults`, `play`, `play_options`, `args`, `stall`, `guard`,
+            `races`, `cpp_nodes` and `settings`, see `MissionOptions`.
 
     Returns:
         The flight, to be closed: use it as a context manager.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from cfepy.ground.link import CI_PORT, TO_PORT, GroundLink
     from cfepy.ground.mcap_recorder import recorder_of
     from cfepy.ground.node import GroundConsole, empty_mission, ground_node_ended, with_ground_node, with_player
-    from cfepy.ground.recording import RecordingSummary, rewrite, survey
+    from cfepy.ground.recording import RecordingSummary, rewrite, summary_of
     from cfepy.ground.series import Samples, Series, SeriesRecorder, SeriesSet, bag_series, candidates, packet_series
     from cfepy.ground.survey import LOOK_S, MidRow, Survey, lock_path, lock_text, locked, spread_out, surveyed_topics
     from cfepy.ground.topics import Topic, library_of, plain, topic_id, topics_of
@@ -85,7 +85,7 @@ __all__ = [
     "rewrite",
     "spread_out",
     "steps_of",
-    "survey",
+    "summary_of",
     "surveyed_topics",
     "table_type",
     "table_types",
@@ -150,7 +150,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".recording": (
                 "RecordingSummary",
                 "rewrite",
-                "survey",
+                "summary_of",
             ),
             ".series": (
                 "Samples",

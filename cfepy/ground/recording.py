@@ -1,6 +1,6 @@
 """A recording as a whole, a bag or an MCAP file, in whatever state it is: what is in it, and what is left written anew.
 
-survey("run.mcap").text()
+summary_of("run.mcap").text()
 rewrite("cut.bag", "whole.bag")  # what is left of it
 rewrite("run.mcap", "run.bag", strict=True)  # a conversion: nothing may be lost
 """
@@ -183,7 +183,7 @@ def _opened(file: str) -> Iterator[tuple[RecordingSummary, Salvage]]:
             raise UsageError(f"is broken: {described(error)}", file=file) from None
 
 
-def survey(file: str) -> RecordingSummary:
+def summary_of(file: str) -> RecordingSummary:
     """What is in a recording, and what is wrong with it.
 
     Args:

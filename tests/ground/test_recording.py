@@ -15,7 +15,7 @@ from rosbags.rosbag1 import Reader
 
 from cfepy.ground.bag import BagReader, storage
 from cfepy.ground.mcap_writer import McapWriter
-from cfepy.ground.recording import KINDS, rewrite, survey
+from cfepy.ground.recording import KINDS, rewrite, summary_of
 from cfepy.status import UsageError
 from rospy_shim.msgs import message_class
 
@@ -91,7 +91,7 @@ def test_a_conversion_loses_nothing(suffix: str, kind: str, folder: Path, tmp_pa
     made = folder / "made.bag"
     assert read(made) == read(there) == read(back)
     assert as_bytes(headers(made)) == as_bytes(headers(there)) == as_bytes(headers(back))
-    found = survey(str(there))
+    found = summary_of(str(there))
     assert found.is_whole
     assert found.messages == 2 * COUNT
     assert set(found.chunks) == {kind}
@@ -276,9 +276,9 @@ def look_at_damage(file: Path, folder: Path, count: int, seed: int) -> list[int]
             continue
         finally:
             assert all(str(bad) in str(each) for each in errors), (number, errors)
-        assert survey(str(bad)).to_dict()["messages"] == found.messages
+        assert summary_of(str(bad)).to_dict()["messages"] == found.messages
         assert list(found.damage()) or found.is_whole
-        again = survey(str(out))
+        again = summary_of(str(out))
         assert again.is_whole, (number, list(again.damage()))
         left.append(again.messages)
         read(out)
@@ -302,11 +302,11 @@ def test_what_is_no_recording(tmp_path: Path) -> None:
     (tmp_path / "empty.bag").write_bytes(b"")
     (tmp_path / "noise.mcap").write_bytes(b"\x06" * 500)
     with pytest.raises(UsageError, match="is neither a bag nor an MCAP file"):
-        survey(str(tmp_path / "text.txt"))
+        summary_of(str(tmp_path / "text.txt"))
     with pytest.raises(UsageError, match="is empty"):
-        survey(str(tmp_path / "empty.bag"))
+        summary_of(str(tmp_path / "empty.bag"))
     with pytest.raises(UsageError, match="could not be read"):
-        survey(str(tmp_path / "none.bag"))
+        summary_of(str(tmp_path / "none.bag"))
     with pytest.raises(UsageError, match="nothing is left of it"):
         rewrite(str(tmp_path / "noise.mcap"), str(tmp_path / "out.mcap"))
     with pytest.raises(UsageError, match="--output"):

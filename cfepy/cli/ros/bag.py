@@ -10,7 +10,7 @@ from cfepy.cli.failures import tell
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.table import Table, show_tables
-from cfepy.ground import RecordingSummary, rewrite, survey
+from cfepy.ground import RecordingSummary, rewrite, summary_of
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     check_json(arguments)
     if arguments.action == "info":
-        found = survey(arguments.file)
+        found = summary_of(arguments.file)
         write_json(arguments, found.to_dict())
         _show(found)
         return _tell_damage(found)
