@@ -179,10 +179,11 @@ Of {flown} schedules of the mended forms {alarms} fail.
 
 {table}
 
-What keeps some away: of twenty threads, as `two_stages_many` has them, two have to overlap in one way while no other has
-come as far; `safe_stack` and `lock_free_stack` need five switches, each at one of a few places among 150. What helped the
-others: Python's own `threading` had a dozen points where a thread is started or joined, so there were 40 decisions in
-`bank_account` under `fifo` where there are 14 now, and `abreast` lets threads go on side by side once all are there.
+What keeps some away: of twenty threads, as `two_stages_many` has them, two have to overlap in one way while no other
+has come as far; `safe_stack` and `lock_free_stack` need five switches, each at one of a few places among 150. What
+helped the others: Python's own `threading` had a dozen points where a thread is started or joined, so there were 40
+decisions in `bank_account` under `fifo` where there are 14 now, and `abreast` lets threads go on side by side once all
+are there.
 
 SCTBench is that of Thomson, Donaldson and Betts: Concurrency Testing Using Schedule Bounding: an Empirical Study (PPoPP
 2014); with 49 of its programs they found that PCT of depth 3 misses only one bug (Concurrency Testing Using Controlled
