@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 LOOPBACK = "127.0.0.1"
 LOOK_S = 0.02  # wall time between two looks at who has come and gone
+PUT_OFF_S = 0.1  # for which one waits at most while something comes in
 ACT = "ros"
 TABLE = "ros_peers"
 
@@ -137,10 +138,11 @@ class RosHost:
             each()
         for publisher in list(self.stalled):
             publisher.enter()
-        for key, events in self.selector.select(0):
+        arrived = self.selector.select(0)
+        for key, events in arrived:
             key.data(events)
         now_s = self.now_s()
-        if now_s >= self._look_at_s:
+        if now_s >= self._look_at_s + (PUT_OFF_S if arrived else 0.0):  # what has come in goes first
             self._look_at_s = now_s + LOOK_S
             self._look(now_s)
 
