@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from cfepy.rtos import PLACE, ExploringKernel, Task
 
-PLACES = ("point", "charge", "delay", "yield_cpu")
+PLACES = ("point", "charge", "yield_cpu")
 QUIET = ("make_ready", "preempt", "wake_all")
 TIMER, OVERTAKING = -1, -2
 READS, WRITES, TAKES, GIVES, TRIES = "reads", "writes", "takes", "gives", "tries"
