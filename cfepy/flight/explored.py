@@ -139,7 +139,7 @@ def explore(
         mission: as of `run`.
         seeds: how many schedules.
         budget: wall time in s after which no further schedule is begun; None for no limit.
-        policy: where they come from: "random", "pct", "abreast", "dfs", or "all".
+        policy: where they come from: "random", "pct", "abreast", "dfs", "orders", "greybox", or "all".
         until_failure: whether the first failure ends it.
         any_priority: less urgent tasks may run before more urgent ones.
         hold: how long the running task may be held up, in virtual s.
