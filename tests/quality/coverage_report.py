@@ -30,7 +30,7 @@ HEADS = {"all": "default", "pct": "PCT 3"}
 SEARCHES = 3
 SCHEDULES = 200
 COVERED = ("work_stealing", "bank_account", "philosophers_six", "leader_election", "lost_update")
-AFTER = (100, 300)
+AFTER = (30, 100)
 FOUND, SEEN = "found", "seen"
 WIDE = ("random", "pct", GREYBOX)
 
