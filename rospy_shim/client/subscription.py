@@ -192,17 +192,18 @@ class Subscription(TopicSide):
         self._calls = [(count, None), *self._calls]
 
     def close(self) -> None:
-        """Leave the graph. The task that serves it ends when it is back from its callbacks."""
-        self.closed = True
+        """Leave the graph. The task that serves it ends when it is back from its callbacks, and this is done."""
+        topic, self.topic = self.topic, None
         if self.node.subscriptions.get(self.name) is self:
             del self.node.subscriptions[self.name]
-        if self.topic is not None:
-            self.topic.remove_subscription(self)
-            self.topic.leave()
-            if self._pipe != NO_PIPE:
-                self.node.cfe.sb.unsubscribe(self.topic.msg_id, self._pipe)
-                self.topic.tell_left(self.node.cfe.sb, self._pipe)
-            self.topic = None
+        if topic is not None:
+            topic.remove_subscription(self)
+            topic.leave()
+            pipe = self._pipe
+            if pipe != NO_PIPE:
+                self.node.cfe.sb.unsubscribe(topic.msg_id, pipe)
+                topic.tell_left(self.node.cfe.sb, pipe)
+        self.closed = True  # not before: the task gives the pipe back as soon as it sees that
         self._call_attention()
 
     @property
