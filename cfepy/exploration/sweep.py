@@ -60,8 +60,9 @@ class TopicNumbers:
 
     Attributes:
         name: of the topic or packet.
-        sent, lost, held_back: messages, as of `TopicResult`, over the whole run; `lost` were dropped.
-        received: messages that a subscriber took, from half a second after the mission was OPERATIONAL.
+        sent, lost, received: messages, from half a second after the mission was OPERATIONAL; `lost` did not get into a
+            pipe, or had to leave it for a newer one.
+        held_back: messages that a publisher could send only later, over the whole run.
         delivered_hz: at which rate it took those.
         latency_mean_us, latency_max_us: virtual time from the sending of a message to its taking.
     """
@@ -167,9 +168,9 @@ class Sweep(Lot[Point, PointNumbers]):
             count = sum(each.count for each in pipes)
             yield TopicNumbers(
                 name,
-                topic.sent,
+                watch.sent[topic.msg_id],
                 min(each.count for each in pipes),
-                topic.dropped,
+                watch.lost[topic.msg_id] + topic.dropped_segment,
                 topic.held_back,
                 round(min(each.rate_hz(watch.end_ns) for each in pipes), 3),
                 round(sum(each.latency_ns for each in pipes) / count / _US, 3) if count else 0.0,

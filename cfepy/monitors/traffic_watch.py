@@ -5,6 +5,7 @@ The first half second in operation does not count: nodes find each other then, a
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 
 from cfepy.mission import Mission, Processor
@@ -52,12 +53,15 @@ class TrafficWatch(Observer):
 
     Attributes:
         arrivals: by MsgId and the name of a pipe.
+        sent, lost: by MsgId, how many messages were sent, and how often one did not get into a pipe, or had to leave it.
         end_ns: virtual time at which the run was over.
     """
 
     def __init__(self) -> None:
         super().__init__()
         self.arrivals: dict[int, dict[str, Arrivals]] = {}
+        self.sent: Counter[int] = Counter()
+        self.lost: Counter[int] = Counter()
         self.end_ns = 0
         self._is_over = False
         self._processor: Processor
@@ -66,18 +70,30 @@ class TrafficWatch(Observer):
         """See `Attachment.begin`."""
         super().begin(mission)
         self.arrivals.clear()
+        self.sent.clear()
+        self.lost.clear()
 
     def power_up(self, processor: Processor) -> None:
         """See `Attachment.power_up`."""
         super().power_up(processor)
         self._processor = processor
 
+    def _counts(self, at_ns: int) -> bool:
+        booted_ns = self._processor.booted
+        return booted_ns is not None and at_ns >= booted_ns + SETTLE_NS and not self._is_over
+
+    def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
+        """See `Observer.on_send`."""
+        self.sent[sent.msg_id] += self._counts(sent.at_ns)
+
+    def on_drop(self, msg_id: int, pipe: Pipe, why: str, at_ns: int) -> None:
+        """See `Observer.on_drop`."""
+        self.lost[msg_id] += self._counts(at_ns)
+
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
         """See `Observer.on_receive`."""
-        booted_ns = self._processor.booted
-        if sent is None or self._is_over or booted_ns is None or sent.at_ns < booted_ns + SETTLE_NS:
-            return
-        self.arrivals.setdefault(sent.msg_id, {}).setdefault(pipe.name, Arrivals()).add(sent.at_ns, at_ns)
+        if sent is not None and self._counts(sent.at_ns):
+            self.arrivals.setdefault(sent.msg_id, {}).setdefault(pipe.name, Arrivals()).add(sent.at_ns, at_ns)
 
     def conclude(self) -> None:
         """See `Attachment.conclude`."""
