@@ -46,6 +46,7 @@ class CRuntime:
         guard: blocks of memory end where nobody may write, freed ones are gone, and fresh ones and stacks are not zero.
         on_race: gets the data races that are found while schedules are explored.
         on_overwrite: gets the application and a text for what was written past a block, where no call is at fault.
+        on_stack: gets application and task, how many bytes of its stack the task has used, and how many it has.
         nodes: names of ROS nodes by the names of their applications: what they print shows them.
 
     Attributes:
@@ -70,6 +71,7 @@ class CRuntime:
         guard: bool = False,
         on_race: Callable[[Race], object] = lambda race: None,
         on_overwrite: Callable[[str, str], object] = lambda app, text: None,
+        on_stack: Callable[[str, str, int, int], object] = lambda app, task, used, size: None,
         nodes: Mapping[str, str] | None = None,
     ) -> None:
         from cfepy.c.api import declare
@@ -90,6 +92,7 @@ class CRuntime:
         self.at_app_end: list[Callable[[], object]] = []
         self.at_close: list[Callable[[], object]] = []
         self._unwinder = Unwinder(self.image_at, self.memory)
+        self._on_stack = on_stack
         self._stacks = Stacks(self.arena, POISON if guard else b"")
         self._heap = made.Heap(self.arena.map(HEAP), HEAP, guarded=guard, page=PAGE)
         messages = made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK, guarded=guard, grain=4, page=PAGE)
@@ -277,14 +280,14 @@ class CRuntime:
 
     # -- running -----------------------------------------------------------------------------------------------------
 
-    def run(self, function: int, *args: int, stack: int = 0, size: int = CALLBACK_STACK) -> int:
+    def run(self, function: int, *args: int, stack: int = 0, size: int = 0) -> int:
         """Call a C function in the current task, on a stack of its own; what it returns, as a uint64.
 
         Args:
             function: its address.
             args: at most six numbers or pointers.
             stack: the lowest address of a stack that the application brings; 0 for one of the arena.
-            size: its bytes.
+            size: its bytes; 0 for a callback, whose stack is no task's.
 
         Raises:
             CFault: the code failed.
@@ -295,7 +298,7 @@ class CRuntime:
             self._owners[owner] = task.owner.name
         if self.kernel.frames_wanted and self.table.frames is None:
             self.table.frames = CallFrames(self._place, self.kernel.call_heard)
-        given, room = (stack, size) if stack else self._stacks.take(size)
+        given, room = (stack, size) if stack else self._stacks.take(size or CALLBACK_STACK)
         is_outermost = self.thread_locals.begin()
         number = self._races.begin(self.image_at(function)) if self._races is not None else 0
         try:
@@ -320,6 +323,9 @@ class CRuntime:
                 if self._races is not None:
                     self._races.leave(task)
             if not stack:
+                if size:
+                    app = getattr(task.owner, "name", "")
+                    self._on_stack(app, task.name, self._stacks.used(given, room), size)
                 self._stacks.give(given, room)
 
     def raise_through(self, error: CfeError) -> NoReturn:

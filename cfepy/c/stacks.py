@@ -36,6 +36,15 @@ class Stacks:
             engine().poke(stack, self._poison * room)
         return stack, room
 
+    def used(self, stack: int, size: int) -> int:
+        """How many bytes of a stack were written to, from its top down, as a painted stack shows on a board.
+
+        Args:
+            stack: its lowest address.
+            size: its bytes, as `take` gave them.
+        """
+        return len(engine().peek(stack, size).lstrip(self._poison or b"\0"))
+
     def give(self, stack: int, size: int) -> None:
         """Give one back."""
         engine().clear(stack, size)

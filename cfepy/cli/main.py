@@ -30,7 +30,7 @@ FOUND_PROBLEMS = 1
 BAD_USAGE = 2
 INTERRUPTED = 130  # 128 + SIGINT, what shells expect
 ROOMS = {
-    "run": ("run", "check", "new", "boards"),
+    "run": ("run", "check", "new", "boards", "board"),
     "ros": ("launch", "node", "rostest", "topic", "service", "param", "bag"),
     "ros_tools": ("rosbag", "rosmsg", "rossrv", "rosnode", "tf"),
     "explore": ("explore", "faults", "sweep"),

@@ -56,7 +56,7 @@ from cfepy.mission.packet_watch import HOST, PacketWatch, Seen, hearing, receive
 from cfepy.mission.pieces import FIRST_PIECE_NS, PieceLength
 from cfepy.mission.processor import CORE_APPS, UNIX_AT_CFE_EPOCH, Processor
 from cfepy.mission.python_code import find_code, find_node
-from cfepy.mission.record import DataRace, Reset, Traffic
+from cfepy.mission.record import DataRace, Reset, StackUse, Traffic
 from cfepy.mission.settings import with_settings
 from cfepy.mission.spec import BuiltProgram, MissionSpec
 from cfepy.mission.sweep_section import SweepConfig
@@ -102,6 +102,7 @@ __all__ = [
     "Processor",
     "Reset",
     "Seen",
+    "StackUse",
     "SweepConfig",
     "TopicMessage",
     "TopicWatch",

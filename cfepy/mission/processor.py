@@ -333,6 +333,7 @@ class Processor:
                 on_overwrite=lambda app, text: machine.record.overwrites.append(
                     Overwrite(machine.kernel.now, app, text)
                 ),
+                on_stack=machine.record.note_stack,
                 nodes={app: each.name for app, each in machine.spec.built.items()},
             )
         self.cfe.es.core_memory = runtime.core_memory

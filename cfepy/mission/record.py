@@ -77,6 +77,13 @@ class Overwrite(NamedTuple):
         return f"{self.app}: {self.text}" if self.app else self.text
 
 
+class StackUse(NamedTuple):
+    """How many bytes of its stack a compiled task has used at most, and how many it has."""
+
+    used: int
+    size: int
+
+
 @dataclass(slots=True)
 class RunRecord:
     """Everything that outlives a reset for the sake of the report.
@@ -85,7 +92,7 @@ class RunRecord:
     event type, `errors_by_app` counts ERROR and CRITICAL events: the services of each processor write into these three
     themselves. `topics` has rows of ROS topics by MsgId. `tables` gives further rows for the report, by their title
     there; an attachment that has some puts a function here. `data_races` are those that were found, `overwrites` what
-    the guard found in its memory.
+    the guard found in its memory. `stack_use` is by application and task, of tasks that have ended.
     """
 
     resets: list[Reset] = field(default_factory=list)
@@ -96,8 +103,14 @@ class RunRecord:
     tables: dict[str, Callable[[], list[dict[str, Any]]]] = field(default_factory=dict)
     data_races: list[DataRace] = field(default_factory=list)
     overwrites: list[Overwrite] = field(default_factory=list)
+    stack_use: dict[tuple[str, str], StackUse] = field(default_factory=dict)
     _parts: dict[type, object] = field(default_factory=dict)
     _traffic: dict[int, Traffic] = field(default_factory=dict)
+
+    def note_stack(self, app: str, task: str, used: int, size: int) -> None:
+        """A compiled task has ended; of several that had its name the deepest use stays."""
+        before = self.stack_use.get((app, task))
+        self.stack_use[app, task] = StackUse(max(used, before.used if before else 0), size)
 
     def part(self, kind: type[P]) -> P:
         """The part of a kind, made without arguments when it is first asked for."""

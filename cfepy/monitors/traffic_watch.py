@@ -53,7 +53,7 @@ class TrafficWatch(Observer):
 
     Attributes:
         arrivals: by MsgId and the name of a pipe.
-        sent, lost: by MsgId, how many messages were sent, and how often one did not get into a pipe, or had to leave it.
+        sent, lost: by MsgId, how many messages were sent, and how often a pipe did not take one or had to give it up.
         end_ns: virtual time at which the run was over.
     """
 

@@ -7,6 +7,7 @@ what outlives a reset, the watchdog, stored exceptions. How cFE answers a reset 
 from __future__ import annotations
 
 from cfepy.psp.exceptions import ExceptionSummary
+from cfepy.psp.measured import Measured
 from cfepy.psp.memory import MemoryBudget, OverBudget, object_sizes
 from cfepy.psp.profile import LIMIT_NAMES, BoardProfile, Limit, available_boards, load_profile, read_limit
 from cfepy.psp.psp import (
@@ -37,6 +38,7 @@ __all__ = [
     "BoardProfile",
     "ExceptionSummary",
     "Limit",
+    "Measured",
     "MemoryBudget",
     "OverBudget",
     "PanicError",

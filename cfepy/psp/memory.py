@@ -99,6 +99,13 @@ class MemoryBudget:
             sums[owner, kind] = sums.get((owner, kind), 0) + size
         return dict(sorted(sums.items(), key=lambda item: (-item[1], item[0])))
 
+    def sizes(self) -> dict[tuple[str, str], list[int]]:
+        """The bytes of each claim by (owner, kind)."""
+        found: dict[tuple[str, str], list[int]] = {}
+        for owner, kind, size in self._claims.values():
+            found.setdefault((owner, kind), []).append(size)
+        return found
+
     def by_owner(self) -> dict[str, int]:
         """Bytes by owner, largest first."""
         sums: dict[str, int] = {}

@@ -2,7 +2,8 @@
 
 What belongs here watches a run through `cfepy.monitors.observer` and draws it: `perfetto` writes while the mission
 runs, `collector` sums up (in `bins`) what `page` shows, `curves` draws what `cfepy.ground.series` has recorded. The
-numbers themselves come from `cfepy.pilot.results`; what judges a run belongs to `cfepy.monitors`.
+numbers themselves come from `cfepy.pilot.results`; `board_fit` has what a mission needs of a board. What judges a run
+belongs to `cfepy.monitors`.
 
 The names below are loaded when they are first used.
 """
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING
 from cfepy.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.reports.board_fit import BoardChange, BoardFit, StackRow, fit_of
     from cfepy.reports.collector import Collector
     from cfepy.reports.curves import Change, Curve, Curves, curves_of, figure_of_matplotlib, picture_of, save, thinned
     from cfepy.reports.page import About, page_of
@@ -24,16 +26,20 @@ if TYPE_CHECKING:
 
 __all__ = [
     "About",
+    "BoardChange",
+    "BoardFit",
     "Change",
     "Collector",
     "Curve",
     "Curves",
     "PageStory",
     "PerfettoTrace",
+    "StackRow",
     "StoryRow",
     "SweepLine",
     "curves_of",
     "figure_of_matplotlib",
+    "fit_of",
     "page_of",
     "picture_of",
     "picture_of_sweep",
@@ -46,6 +52,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".board_fit": ("BoardChange", "BoardFit", "StackRow", "fit_of"),
             ".collector": ("Collector",),
             ".curves": (
                 "Change",

@@ -95,6 +95,19 @@ def test_table_files_are_what_their_definitions_say(table: str) -> None:
     assert definition.with_suffix(".tbl").read_bytes() == build(module(definition).image())
 
 
+@pytest.mark.slow
+def test_capture_flies_on_the_small_board() -> None:
+    plan = RunPlan(("capture/rx64m.scr",), script=str(MISSIONS / "capture" / "checks.txt"))
+    flown = pilot.fly(plan)
+    assert flown.outcome is not None
+    assert flown.outcome.ok, flown.outcome.text()
+    assert (flown.results.board, flown.results.script_problems) == ("rx64m", [])
+    rows = {row.name: row for row in flown.results.topics}
+    assert rows["/joint_states"].rate_hz == pytest.approx(100, abs=1)
+    assert rows["/joint_states"].dropped < 6  # before a task takes from its queue of 1
+    assert rows["/motor_command"].dropped == 0
+
+
 # -- the small board -----------------------------------------------------------------------------------------------
 
 

@@ -1,0 +1,54 @@
+"""What a mission needs of a board, and the changes that make it fit."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from cfepy.pilot import pilot
+from cfepy.pilot.plan import RunPlan
+from cfepy.reports.board_fit import fit_of
+from cfepy.resources import shipped
+
+CAPTURE = shipped("missions") / "capture"
+
+
+def test_a_mission_that_fits() -> None:
+    fit = fit_of(RunPlan(("rx64m_pubsub",), seconds=1))
+    assert (fit.board, fit.missing, fit.changes) == ("rx64m", 0, ())
+    assert ("LEFT", "stack", 3 * (8192 + 256)) in fit.rows
+    assert [(row.app, row.tasks, row.size, row.used) for row in fit.stacks] == [
+        ("LEFT", 3, 8192, None),
+        ("RIGHT", 3, 8192, None),
+    ]
+    assert 0 < fit.cpu < 0.01
+    assert fit.to_dict()["missing"] == 0
+
+
+@pytest.mark.slow
+def test_the_changes_make_capture_fit(tmp_path: Path) -> None:
+    fit = fit_of(RunPlan(("capture",), seconds=2, board="rx64m"))
+    assert fit.missing == 328_704
+    assert fit.fits_changed
+    assert [(change.place, change.saves) for change in fit.changes] == [
+        ("startup.scr:6", 172_032),
+        ("startup.scr:4", 172_032),
+    ]
+    folder = shutil.copytree(CAPTURE, tmp_path / "capture")
+    script = (folder / "startup.scr").read_text()
+    for name in ("MAIN_CTRL", "HK_MONITOR"):
+        script = re.sub(rf"({name}, +\d+, )65536", r"\g<1>8192", script)
+    (folder / "startup.scr").write_text(script)
+    changed = RunPlan((str(folder),), seconds=2, board="rx64m")
+    assert fit_of(changed).missing == 0
+    assert all(app.state == "RUNNING" for app in pilot.fly(changed).results.apps)
+
+
+def test_fewest_changes_take_the_largest_first_and_no_more_than_is_missing() -> None:
+    fit = fit_of(RunPlan(("capture/rx64m.scr",), seconds=1, board="gr716"))
+    assert fit.changes[0].text.startswith("limits: {sb_buf_memory_bytes: 16384} in place of 49152; ")
+    assert fit.fits_changed
+    assert sum(change.saves for change in fit.changes[:-1]) < fit.missing
