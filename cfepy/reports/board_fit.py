@@ -11,12 +11,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, NamedTuple
 
+from cfepy.attachment import Attachment
 from cfepy.c import ElfError, read_shared_object
 from cfepy.es import CFE_APP
-from cfepy.mission import MissionSpec, StackUse
+from cfepy.mission import Mission, MissionSpec, Processor, StackUse
 from cfepy.pilot import Results, RunPlan, fly
 from cfepy.psp import BoardProfile, load_profile
-from cfepy.reports.ledger import Ledger
 
 STACK = "stack"
 POOL = "memory pool"
@@ -25,6 +25,44 @@ CALLS = 2048  # bytes of a stack that functions of cFE and OSAL take on top of w
 GRAIN = 1024  # to which sizes are rounded up
 SPARE = 2  # a pool is proposed with so many times what was in use at most
 SMALLEST_POOL = 16384
+
+
+class BoardLedger(Attachment):
+    """Lets a mission have as much RAM as it asks for, and takes down what that is.
+
+    Attributes:
+        claims: bytes by owner, what for and size of each, when most was in use.
+        peak: bytes that were in use then.
+        sb_pool: bytes of the Software Bus's pool that were in use at most.
+    """
+
+    def __init__(self) -> None:
+        self.claims: dict[tuple[str, str], list[int]] = {}
+        self.peak = 0
+        self.sb_pool = 0
+        self._mission: Mission
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        self._mission = mission
+
+    def power_up(self, processor: Processor) -> None:
+        """See `Attachment.power_up`: from now on nothing is refused."""
+        memory = processor.memory
+        claim = memory.claim
+        memory.limit = None
+
+        def noting(owner: str, kind: str, size: int) -> int:
+            token = claim(owner, kind, size)
+            if memory.used > self.peak:
+                self.peak, self.claims = memory.used, memory.sizes()
+            return token
+
+        memory.claim = noting  # type: ignore[method-assign]  # of this budget only
+
+    def conclude(self) -> None:
+        """See `Attachment.conclude`."""
+        self.sb_pool = max(self.sb_pool, self._mission.cfe.sb.peaks.memory)
 
 
 class BoardChange(NamedTuple):
@@ -103,7 +141,7 @@ def fit_of(plan: RunPlan) -> BoardFit:
         UsageError: it cannot be flown, or there is no such board.
     """
     spec = plan.spec()
-    ledger = Ledger()
+    ledger = BoardLedger()
     flown = fly(plan, spec=spec, attachments=[ledger])
     board = load_profile(plan.board or spec.board)
     config = flown.mission.config
@@ -125,7 +163,7 @@ def fit_of(plan: RunPlan) -> BoardFit:
 
 
 def _stacks(
-    spec: MissionSpec, board: BoardProfile, ledger: Ledger, uses: Mapping[tuple[str, str], StackUse]
+    spec: MissionSpec, board: BoardProfile, ledger: BoardLedger, uses: Mapping[tuple[str, str], StackUse]
 ) -> Iterator[StackRow]:
     block = board.memory_costs.task_control_block
     for entry in spec.entries:
