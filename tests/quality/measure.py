@@ -27,6 +27,7 @@ POLICIES = {
     "pct 1": ("pct", 1, 0),
     "pct 2": ("pct", 2, 0),
     "pct 3": ("pct", 3, 0),
+    "abreast": ("abreast", None, 0),
     "dfs 2": ("dfs", 2, 0),
     "all": ("all", None, 0),
 }

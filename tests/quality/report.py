@@ -177,8 +177,9 @@ The numbers are schedules until the bug shows: the median of {trials} trials wit
 half of the trials or more had found nothing after N schedules each, when the measurement of that policy ended (it goes
 on to {longest} if one lets it, see below). PCT and DFS stand with the depth they look for; DFS tries one and two
 preemptions systematically and has no seeds, so there is one trial. "hold" is random with tasks that are held up until
-the next timer, if that is due within 1 ms. "default" is `cfepy explore` without `--policy`: random, hold and PCT of the
-depths 1 to 3 take turns. Over all bugs its median is {median} schedules. The best of each row is bold.
+the next timer, if that is due within 1 ms. "default" is `cfepy explore` without `--policy`: random, hold, PCT of
+the depths 1 to 3 and abreast, under which tasks go on side by side, take turns. Over all bugs its median is {median}
+schedules. The best of each row is bold.
 
 "preemptions" is what shrinking leaves: how often a task that could have gone on loses the processor, and behind the
 plus sign how often another than the first of the waiting tasks goes on.
