@@ -26,6 +26,7 @@ from cfepy.ground.files import table_yaml
 from cfepy.ground.files.dump_files import read_dump
 from cfepy.ground.files.table_file import defects_of, document, take_apart
 from cfepy.ground.parameters import of_files
+from cfepy.ground.recording import summary_of
 from cfepy.ground.values import packet_of
 from cfepy.ground.xtce import xtce_of
 from cfepy.journal import read_journal
@@ -215,6 +216,12 @@ def bag(data: bytes, path: Path) -> None:
     with BagReader(str(path)) as found:
         for _ in found.messages():
             pass
+
+
+def recording(data: bytes, path: Path) -> None:
+    """An MCAP file with all its messages, and what is left of it."""
+    summary_of(str(path))
+    bag(data, path)
 
 
 def journal(data: bytes, path: Path) -> None:
@@ -483,6 +490,7 @@ KINDS = {
         Kind("table-yaml", lambda: table_texts(), table_text, "table.yaml"),
         Kind("dump", files("tests/data/*.log", "tests/data/*.dat"), dump, "dump.log"),
         Kind("bag", files("tests/data/bags/*.bag"), bag, "input.bag"),
+        Kind("mcap", files("tests/data/bags/*.mcap"), recording, "input.mcap"),
         Kind("journal", journals, journal, "run.cfepy"),
         Kind(
             "results",

@@ -158,6 +158,29 @@ def test_a_file_becomes_itself_again(folder: Path, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [file]
 
 
+def test_the_md5sum_that_a_recording_leaves_out_is_made_of_the_definition(tmp_path: Path) -> None:
+    library, file = storage(), tmp_path / "other.mcap"
+    names = (
+        "std_msgs/String",
+        "sensor_msgs/JointState",
+        "rosgraph_msgs/Log",
+        "nav_msgs/Odometry",
+        "tf2_msgs/TFMessage",
+    )
+    about = {name: message_class(name) for name in names}
+    with file.open("wb") as stream:
+        out = McapWriter(stream)
+        for at, (name, kind) in enumerate(about.items()):
+            schema = library.McapSchema(name, "ros1msg", kind._full_text.encode())
+            out.write(out.channel(library.RecordedChannel(0, f"/t{at}", "ros1", schema)), at, b"")
+        broken = library.McapSchema("a/B", "ros1msg", b"B b\nC c")
+        out.write(out.channel(library.RecordedChannel(0, "/broken", "ros1", broken)), 9, b"")
+        out.finish()
+    with BagReader(str(file)) as reader:
+        found = [each.md5sum for each in reader.connections]
+    assert found == [*(kind._md5sum for kind in about.values()), "*"]
+
+
 # -- damage ------------------------------------------------------------------------------------------------------------
 
 

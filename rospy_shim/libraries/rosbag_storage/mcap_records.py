@@ -15,6 +15,7 @@ from typing import NamedTuple
 from . import compression
 from .contents import Connection
 from .errors import ROSBagFormatException
+from .md5sums import md5sum_of
 from .records import Buffer
 
 MAGIC = b"\x89MCAP0\r\n"
@@ -183,7 +184,8 @@ def _header_of(channel: RecordedChannel) -> dict[str, bytes | str]:
     about |= {"type": channel.schema.name, "message_definition": channel.schema.data}
     if "latching" in channel.metadata:
         about["latching"] = _LATCHING_BACK.get(channel.metadata["latching"], channel.metadata["latching"])
-    about.setdefault("md5sum", "*")
+    if "md5sum" not in about:
+        about["md5sum"] = md5sum_of(channel.schema.name, channel.schema.data.decode(errors="replace"))
     return {name: about[name] for name in sorted(about)}
 
 
