@@ -16,6 +16,8 @@ LAB = ["lab", "--for", "0.7"]
 LINES = ("tlm", "topic echo")  # an object a line
 COMMANDS: dict[str, list[str]] = {
     "run": ["run", *LAB],
+    "sweep": ["sweep", *LAB, "--quiet", "--jobs", "1"],
+    "board report": ["board", "report", *LAB],
     "explore": ["explore", *LAB, "--seeds", "1", "--jobs", "1", "--no-stuck"],
     "mids": ["mids", *LAB],
     "check": ["check", "lab"],

@@ -16,7 +16,7 @@ WORDS = ["sweep", "rx64m_pubsub", "--for", "2", "--quiet"]
 @pytest.mark.slow
 def test_a_sweep_writes_what_it_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table, numbers, picture = tmp_path / "a.csv", tmp_path / "a.json", tmp_path / "a.png"
-    files = ["--csv", str(table), "--json", str(numbers), "--plot", str(picture)]
+    files = ["--csv", str(table), "--json", str(numbers), "--picture", str(picture)]
     assert main([*WORDS, "--rate", "100,160", "--set", "/left/report_period=1", *files, "--jobs", "2"]) == 0
     out = capsys.readouterr().out
     assert "/left/report_period" in out
@@ -43,7 +43,7 @@ def test_a_sweep_writes_what_it_found(tmp_path: Path, capsys: pytest.CaptureFixt
         (["--rate", "0..10"], "--rate: '0..10' does not go up from more than 0"),
         (["--set", "rate"], "'rate' is not like /arm/rate=20,50"),
         (["--set", "/left/rate=1..2:0"], "--set: '1..2:0' does not go up in steps"),
-        (["--plot", "a.txt"], "--plot: is no picture"),
+        (["--picture", "a.txt"], "--picture: is no picture"),
         (["--jobs", "1", "--cluster", "local:1"], "--jobs: says how many processes run here"),
     ],
 )

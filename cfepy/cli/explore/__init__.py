@@ -240,32 +240,44 @@ def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "cannot be read, 130 ended by Ctrl-C (what was flown is told)",
     )
     add_mission_or_node(sweep)
-    sweep.add_argument("--rate", metavar="VALUES", help="rates in Hz; what they set, the mission file says (`sweep:`)")
+    sweep.add_argument(
+        "-r", "--rate", metavar="HZ", help="how often: VALUES in Hz; what they set, the mission file says (`sweep:`)"
+    )
     sweep.add_argument(
         "--board",
         dest="boards",
         action="append",
         default=[],
-        metavar="NAME|FILE,...",
-        help="boards instead of the mission's own (several with commas, or the option several times)",
+        metavar="NAME|FILE",
+        help="run on this board instead of the mission's own; several with commas, or the option several times",
     )
-    sweep.add_argument("--seed", dest="seeds", default="0", metavar="VALUES", help="seeds, such as 0..9 (default: 0)")
+    sweep.add_argument(
+        "--seed",
+        dest="seeds",
+        default="0",
+        metavar="N",
+        help="of everything random in it; VALUES (default: 0)",
+    )
     sweep.add_argument(
         "--set",
         dest="varied",
         action="append",
         type=_varied_of,
         default=[],
-        metavar="NAME=VALUES",
-        help="values of a ROS parameter (/arm/rate=20,50) or of an argument of the launch file (rate=20,50)",
+        metavar="/PARAM=VALUE",
+        help="VALUES of a ROS parameter (/arm/rate=20,50) or of an argument of the launch file (rate=20,50)",
     )
     sweep.add_argument(
-        "--topic", action="append", default=[], metavar="TOPIC", help="measure this one (default: as the mission says)"
+        "--measure",
+        action="append",
+        default=[],
+        metavar="TOPIC",
+        help="measure this (default: as the mission says)",
     )
     add_run_options(sweep, without=["board", "seed", "settings"])
     _add_crew(sweep, "run")
     sweep.add_argument("--csv", metavar="FILE|-", help="write a row for each topic of each run")
-    sweep.add_argument("--plot", metavar="FILE", help="draw a picture: .png, .svg or .pdf")
+    sweep.add_argument("--picture", metavar="FILE", help="draw a picture: .png, .svg or .pdf")
     add_json(sweep, "what was found")
     sweep.add_argument("--quiet", action="store_true", help="show no progress")
     sweep.set_defaults(module="explore.sweep")

@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_json(arguments)
     if arguments.csv not in (None, STDOUT):
         check_writable(arguments.csv, "--csv")
-    _check_picture(arguments.plot)
+    _check_picture(arguments.picture)
     rows, is_over = _flown(arguments, plan)
     heads, cells = sweep_table(rows)
     if arguments.csv is not None:
@@ -81,7 +81,7 @@ def _flown(arguments: argparse.Namespace, plan: RunPlan) -> tuple[list[SweepRow]
     base = replace(plan, launch_args=(*plan.launch_args, *((name, values[0]) for name, values in _args(varied))))
     spec = base.spec()
     points = points_of(spec, boards, rates, varied, seeds_of(arguments.seeds, "--seed"))
-    lot = Sweep(plan, tuple(arguments.topic) or spec.sweep.topics)
+    lot = Sweep(plan, tuple(arguments.measure) or spec.sweep.topics)
     crew = make_crew(
         len(points),
         arguments.jobs,
@@ -158,13 +158,15 @@ def _check_picture(file: str | None) -> None:
     from cfepy.reports import figure_of_matplotlib
 
     if Path(file).suffix.lower() not in PICTURES:
-        raise UsageError(f"is no picture; give a name that ends with {', '.join(PICTURES)}", file=file, field="--plot")
+        raise UsageError(
+            f"is no picture; give a name that ends with {', '.join(PICTURES)}", file=file, field="--picture"
+        )
     figure_of_matplotlib()
-    check_writable(file, "--plot")
+    check_writable(file, "--picture")
 
 
 def _draw(arguments: argparse.Namespace, rows: Sequence[SweepRow], found: Sequence[Knee]) -> None:
-    if arguments.plot is None:
+    if arguments.picture is None:
         return
     from cfepy.reports import SweepLine, picture_of_sweep, save
 
@@ -182,8 +184,8 @@ def _draw(arguments: argparse.Namespace, rows: Sequence[SweepRow], found: Sequen
             row.numbers.cpu * 100,
         )
     if not lines:
-        raise UsageError("there is nothing to draw without --rate, or when no message came", field="--plot")
+        raise UsageError("there is nothing to draw without --rate, or when no message came", field="--picture")
     picture = picture_of_sweep(list(lines.values()), title=Path(arguments.mission).stem)
-    with writing(arguments.plot, "--plot"):
-        save(picture, Path(arguments.plot))
-    print(f"{arguments.plot}: {len(lines)} boards or values")
+    with writing(arguments.picture, "--picture"):
+        save(picture, Path(arguments.picture))
+    print(f"{arguments.picture}: {len(lines)} boards or values")
