@@ -402,6 +402,9 @@ class SoftwareBus(PipeServices, SubscriptionServices):
             self._queued_bytes -= len(packet) + BUFFER_BYTES
         elif timeout_ms == POLL:
             return None
+        elif pipe.is_called:
+            pipe.is_called = False
+            return None
         else:
             item = self.kernel.wait_on(pipe.waits, FOREVER if timeout_ms < 0 else timeout_ms * 1_000_000)
             if item is TIMEOUT:

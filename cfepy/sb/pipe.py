@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cfepy import trace
-from cfepy.rtos import Kernel, Queue
+from cfepy.rtos import TIMEOUT, Kernel, Queue
 
 
 class Pipe(Queue):
@@ -12,7 +12,7 @@ class Pipe(Queue):
     `send_errors` counts what a message limit kept out, as NASA's SendErrors does; `overflows` what did not fit in. One
     that `keeps_newest` makes room for a message by dropping the oldest one, as the queue of a ROS subscriber does.
     Messages of the applications in `unheard` do not come in: its own, by an option of the pipe, and those of ROS nodes
-    that are not connected with it yet.
+    that are not connected with it yet. One that `is_called` has its reader come back without a message.
 
     Args:
         kernel: where its readers wait.
@@ -26,6 +26,7 @@ class Pipe(Queue):
         "app_name",
         "claim",
         "drop_mark",
+        "is_called",
         "keeps_newest",
         "opts",
         "overflows",
@@ -44,10 +45,17 @@ class Pipe(Queue):
         self.app_name: str = getattr(owner, "name", "host")
         self.opts = 0
         self.unheard: tuple[object, ...] = ()
-        self.keeps_newest = False
+        self.keeps_newest = self.is_called = False
         self.send_errors = self.overflows = 0
         self.claim = 0
         self.identify(0)
+
+    def call_reader(self) -> None:
+        """Have the task that waits for a message, or is about to, come back without one."""
+        if self.waits:
+            self.kernel.wake_all(self.waits, TIMEOUT)
+        else:
+            self.is_called = True
 
     def ignore(self, sender: object) -> None:
         """Messages of this application do not come in from now on."""

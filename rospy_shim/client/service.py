@@ -247,8 +247,10 @@ class Service:
             self._node.services.remove(self)
         if not self._node.initialized or self._refused:
             return
-        callers = [call.pipe for call in self._entry.calls.values()]
-        for pipe in map(self._node.cfe.sb.find_pipe, [self._pipe, *callers]):
+        own = self._node.cfe.sb.find_pipe(self._pipe)
+        if own is not None:
+            own.call_reader()
+        for pipe in map(self._node.cfe.sb.find_pipe, [call.pipe for call in self._entry.calls.values()]):
             if pipe is not None:
                 self._node.kernel.wake_all(pipe.waits, TIMEOUT)
 

@@ -11,7 +11,6 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes.report import traceback_text
-from cfepy.rtos import TIMEOUT
 from cfepy.status import CfeError
 from rospy_shim.client import connecting
 from rospy_shim.client.exceptions import ROSException
@@ -258,7 +257,7 @@ class Subscription(TopicSide):
         self._attention = True
         pipe = self._find_pipe()
         if pipe is not None:
-            self.node.kernel.wake_all(pipe.waits, TIMEOUT)
+            pipe.call_reader()
 
     # -- in the task -------------------------------------------------------------------------------------------------
 
@@ -324,6 +323,9 @@ class Subscription(TopicSide):
     def _attend(self) -> bool:
         """Handle what came up between two messages; False when the task is to end."""
         self._attention = False
+        pipe = self._find_pipe()
+        if pipe is not None:
+            pipe.is_called = False
         while self._backlog and not self.closed:
             if self._has_earlier(self._backlog[0][0]):
                 self._attention = True

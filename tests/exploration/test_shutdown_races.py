@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.attachment import Attachment
 from cfepy.exploration.trial import Trial
+from cfepy.mission import Mission
 from cfepy.pilot.plan import RunPlan
 from cfepy.rtos import Schedule
 from tests.exploration import missions
@@ -39,3 +41,38 @@ def test_a_subscription_that_is_served_while_it_is_closed(tmp_path: Path) -> Non
     trial = Trial(RunPlan((str(folder),), seconds=1.0, tasks="greenlet"))
     verdicts = (trial.run(Schedule.parse(f"pct:{seed}:3:41:from=600ms")) for seed in range(300))
     assert [verdict.failures for verdict in verdicts if verdict.failures] == []
+
+
+UNREGISTERED = """
+    import rospy
+    from std_msgs.msg import Int32
+
+    rospy.init_node("probe")
+    numbers = rospy.Publisher("numbers", Int32, queue_size=5)
+    subscriber = rospy.Subscriber("numbers", Int32, lambda message: rospy.get_time())
+    rospy.sleep(0.1)
+    numbers.publish(1)
+    subscriber.unregister()
+    rospy.sleep(0.2)
+    rospy.spin()
+"""
+
+
+class Tasks(Attachment):
+    """Which tasks there are at the end."""
+
+    def begin(self, mission: Mission) -> None:
+        self._mission = mission
+
+    def conclude(self) -> None:
+        self.names = [task.name for task in self._mission.kernel.tasks]
+
+
+@pytest.mark.slow
+def test_a_subscription_that_ends_while_its_task_looks_away(tmp_path: Path) -> None:
+    """It is told to end after it has looked whether it is to, and before it waits for a message."""
+    trial = Trial(RunPlan((str(missions.write(tmp_path, {"PROBE": UNREGISTERED})),), seconds=1.0, tasks="greenlet"))
+    for seed in range(200):
+        tasks = Tasks()
+        assert trial.run(Schedule.parse(f"random:{seed}:from=600ms"), [tasks]).failures == ()
+        assert [name for name in tasks.names if name.startswith("PROBE.numbers")] == [], seed
