@@ -7,6 +7,7 @@ states what happened in the one and not in the other; where none of the patterns
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -14,12 +15,15 @@ from typing import NamedTuple
 from cfepy.exploration import deeds as do
 from cfepy.exploration.deeds import Deed, keys_of
 from cfepy.exploration.moves import MadeMove
+from cfepy.exploration.run_times import longest_more
 from cfepy.exploration.task_look import AT, ORDERED, PREEMPTED, Row
 from cfepy.exploration.things import is_made_of
 from cfepy.exploration.verdict import DEADLOCK, DIED, RAISED, Failure
+from cfepy.monitors import time_text
 from cfepy.rtos import HOLD, plain_name
 
 _PLACE = re.compile(r"\(([\w.-]+:\d+)\)$")  # of an exception, at the end of its text
+NOTHING: Counter[str] = Counter()
 NOBODY = "0"  # waits for what is notified
 _HELD = re.compile(r"(?P<task>\S+) waits for (?P<what>[^;]+), held by (?P<holder>[^;,]+)")
 
@@ -34,6 +38,8 @@ class Evidence:
         deeds: of the failing run, up to the failure.
         usual: those of the run under fifo.
         names: what locks are called that the failure tells by their numbers.
+        ran: by task, for how many ns it ran in the span of a deadline that was missed; empty for other failures.
+        usually_ran: the same under fifo.
     """
 
     def __init__(
@@ -44,6 +50,8 @@ class Evidence:
         deeds: Sequence[Deed],
         usual: Sequence[Deed],
         names: Mapping[str, str],
+        ran: Counter[str] = NOTHING,
+        usually_ran: Counter[str] = NOTHING,
     ) -> None:
         self.failure = failure
         self.moves = moves
@@ -51,6 +59,8 @@ class Evidence:
         self.deeds = deeds
         self.usual = usual
         self.names = names
+        self.ran = ran
+        self.usually_ran = usually_ran
         self._keys = list(keys_of(self.deeds))
         self._usual_at = {key: at for at, key in enumerate(keys_of(self.usual))}
 
@@ -64,6 +74,7 @@ def cause_of(evidence: Evidence) -> str:
     """The sentence; empty where there is none."""
     sentences: tuple[Callable[[Evidence], str], ...] = (
         _deadlock,
+        _late,
         _lost_update,
         _lost_wake_up,
         _overflow,
@@ -91,6 +102,19 @@ def _deadlock(evidence: Evidence) -> str:
     if len(waits) < 2 or wanted.keys() != held.keys():
         return ""
     return "; ".join(f"{task} has {held[task]} and wants {wanted[task]}" for task in wanted)
+
+
+# -- time ------------------------------------------------------------------------------------------------------------
+
+
+def _late(evidence: Evidence) -> str:
+    """Another task ran for longer than usual while something should have come."""
+    span_ns = evidence.failure.span_ns
+    task = "" if span_ns is None else longest_more(evidence.ran, evidence.usually_ran, span_ns)
+    if span_ns is None or not task:
+        return ""
+    ran, usual, span = (time_text(each) for each in (evidence.ran[task], evidence.usually_ran[task], span_ns))
+    return f"{task} ran for {ran} of the {span} before it, under fifo for {usual}"
 
 
 # -- accesses --------------------------------------------------------------------------------------------------------

@@ -218,9 +218,8 @@ def _overruns(mission: Mission) -> Iterator[Failure]:
         result = check.result()
         if result.first_at_s is not None:
             text = f"{result.kind} {result.limit_text} was missed"
-            yield Failure(
-                verdict.DEADLINE, result.owner, text, round(result.first_at_s * NS_PER_S), result.problem or ""
-            )
+            at_ns, detail = round(result.first_at_s * NS_PER_S), result.problem or ""
+            yield Failure(verdict.DEADLINE, result.owner, text, at_ns, detail, span_ns=check.limit_ns)
 
 
 def _bad_ends(mission: Mission, found: list[Failure], crashed: set[str]) -> Iterator[Failure]:

@@ -15,6 +15,7 @@ from textwrap import wrap
 from cfepy.exploration.cause import Evidence, cause_of
 from cfepy.exploration.failures import FailureWatch
 from cfepy.exploration.moves import MadeMove, MoveNotingPolicy
+from cfepy.exploration.run_times import RunTimes
 from cfepy.exploration.task_look import ANSWERS, AT, DOES, ORDERED, PREEMPTED, SENDS, TOUCHES, WAITS, Row, TaskLook
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import INVARIANT, LONGEST, Failure, Verdict
@@ -113,14 +114,18 @@ def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[M
     first = min((decision for decision, _ in verdict.deviations), default=0)
     watch = FailureWatch(trial.events)
     look = TaskLook(trial.plan.spec(), first - BEFORE, lambda: watch.saw(failure.group))
-    trial.fly(schedule, [watch, look], look.policy(schedule.policy() or Policy()))
+    times, usual_times = RunTimes(), RunTimes()
+    timed = failure.span_ns is not None
+    trial.fly(schedule, [watch, look, *([times] if timed else [])], look.policy(schedule.policy() or Policy()))
     fifo, usual = schedule.at({}), TaskLook(trial.plan.spec())
-    known = trial.fly(fifo, [usual], usual.policy(fifo.policy() or Policy())).verdict.failure(failure.group)
+    watching = [usual, *([usual_times] if timed else [])]
+    known = trial.fly(fifo, watching, usual.policy(fifo.policy() or Policy())).verdict.failure(failure.group)
     end_ns = verdict.end_ns if failure.at_ns is None else failure.at_ns
     rows = tuple(row for row in look.rows if row.at_ns <= end_ns)
     sender = rows[-1].task if rows and failure.kind == INVARIANT and rows[-1].kind == SENDS else ""
     culprit = failure.task or sender
-    evidence = Evidence(failure, moves, rows, look.deeds, usual.deeds, look.names)
+    ran, usually_ran = (each.between(end_ns - (failure.span_ns or 0), end_ns) for each in (times, usual_times))
+    evidence = Evidence(failure, moves, rows, look.deeds, usual.deeds, look.names, ran, usually_ran)
     cause = "" if known is not None or failure.kind == LONGEST else cause_of(evidence)
     rows = tuple(_without_touches(rows, {deed.thing for deed in look.deeds if deed.ident and deed.thing in cause}))
     title, text = (_named(each, look.names) for each in (failure.title, failure.text))

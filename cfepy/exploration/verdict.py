@@ -56,6 +56,7 @@ class Failure:
         detail: more lines, such as a traceback; may be empty.
         task: the task in which it showed; empty when that is not known.
         cause: what tells causes of this kind apart, such as the id of an event; empty where it is the text.
+        span_ns: of a deadline, how long before `at_ns` the time began in which it should have been; None of others.
     """
 
     kind: str
@@ -65,6 +66,7 @@ class Failure:
     detail: str = ""
     task: str = ""
     cause: str = ""
+    span_ns: int | None = None
 
     @property
     def group(self) -> str:

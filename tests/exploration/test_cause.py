@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import pytest
@@ -50,6 +51,23 @@ def told(
 
 def test_without_deeds_nothing_is_told() -> None:
     assert told([]) == ""
+
+
+MS = 1_000_000
+LATE = Failure("deadline", "/pose", "at_least_every 100 ms was missed", 500 * MS, span_ns=100 * MS)
+
+
+@pytest.mark.parametrize(
+    ("ran", "usual", "cause"),
+    [
+        ({"A": 40, "B": 60}, {"A": 40, "B": 5}, "B ran for 60 ms of the 100 ms before it, under fifo for 5 ms"),
+        ({"A": 40}, {"A": 31}, ""),
+        ({}, {}, ""),
+    ],
+)
+def test_what_is_late_has_waited_for_who_ran_longer(ran: dict[str, int], usual: dict[str, int], cause: str) -> None:
+    times = [Counter({task: ms * MS for task, ms in each.items()}) for each in (ran, usual)]
+    assert cause_of(Evidence(LATE, NO_MOVES, [], [], [], {}, *times)) == cause
 
 
 def accesses(text: str) -> list[str]:
