@@ -18,8 +18,8 @@ from cfepy.status import UsageError
 from tests.exploration import missions
 
 PAID = 'invariants: {all paid: {topic: /total, holds: "msg.data == 6"}}\n'
-RACE = "moves:BANK.bank.1@550/pay.get_time/2=BANK,BANK@550/module.start/2=BANK.bank.2"
-IMPOSSIBLE = "moves:BANK.bank.1@550/pay.get_time/2=BANK,NOBODY@550=BANK"
+RACE = "moves:BANK.bank.1@550/pay.get_time/3=BANK,BANK.bank.1@550/next=BANK.bank.2"
+IMPOSSIBLE = "moves:BANK.bank.1@550/pay.get_time/3=BANK,NOBODY@550=BANK"
 
 
 def bank(folder: Path) -> Path:
@@ -54,7 +54,7 @@ def test_what_is_gone_is_told_apart_from_what_is_still_there(
     assert main(["explore", "--replay-all", str(path), "--json", str(tmp_path / "f.json"), "--jobs", "1"]) == 0
     told = capsys.readouterr().out.splitlines()
     assert told[0] == "schedule no longer applies: too little"
-    assert told[1] == "  1 of its 2 moves were possible; not possible: BANK.bank.1@550/pay.get_time/2=BANK"
+    assert told[1] == "  1 of its 2 moves were possible; not possible: BANK.bank.1@550/pay.get_time/3=BANK"
     assert told[-1] == "3 failures: 3 whose schedule no longer applies"
     plain = json.loads((tmp_path / "f.json").read_text())["failures"]
     assert [each["state"] for each in plain] == [NOT_POSSIBLE] * 3
