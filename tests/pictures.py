@@ -15,6 +15,7 @@ from tests.reports.browser import Browser
 FOLDER = Path(__file__).parents[1] / "docs" / "pictures"
 CONSOLE_PX = (1200, 760)
 PAGE_PX = (1200, 900)
+SWITCH = "moves:ODOMETER.left_tic@670/on_ticks.publish/4=ODOMETER.right_ti"
 
 
 def curves() -> None:
@@ -31,7 +32,7 @@ def graph() -> None:
 def report(folder: Path, browser: Browser) -> None:
     """`cfepy report`: the top of the page of a run that fails."""
     page = folder / "report.html"
-    main(["report", "tests/quality/missions/lost_update", "--for", "1.3", "--schedule", "at:56=1", "-o", str(page)])
+    main(["report", "tests/quality/missions/lost_update", "--for", "1.3", "--schedule", SWITCH, "-o", str(page)])
     _look_at(browser, page, PAGE_PX, FOLDER / "report.png")
 
 

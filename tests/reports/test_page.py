@@ -234,9 +234,9 @@ def test_a_failure_is_told_as_a_story(tmp_path: Path) -> None:
     """Of a run under a shrunk schedule; the problem leads to it, and the switch is marked."""
     mission, page = str(Path(__file__).parents[1] / "quality" / "missions" / "lock_order"), tmp_path / "report.html"
     words = ["report", mission, "--for", "1.3", "--tasks", "greenlet", "-o", str(page)]
-    assert main([*words, "--schedule", "at:70=1"]) == 0
+    assert main([*words, "--schedule", "moves:MAPPER.scan@660/on_scan.__enter__/2=MAPPER.odom"]) == 0
     text = page.read_text()
     assert '<a href="#story">What happened</a>: MAPPER.scan.1 has self.map_lock (mapper.py:11) and wants' in text
     assert '<strong class="switch">=== PREEMPTED by MAPPER.odom.2 ===</strong>' in text
-    assert main([*words, "--schedule", "at:71=1"]) == 0  # which does not fail
+    assert main([*words, "--schedule", "moves:MAPPER.scan@660/on_scan.__enter__=MAPPER.odom"]) == 0  # does not fail
     assert "What happened" not in page.read_text()
