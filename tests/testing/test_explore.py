@@ -60,7 +60,7 @@ def check_journal(folder: Path, moves: str) -> None:
 
 @pytest.mark.slow
 def test_pct_finds_it_too_and_need_not_be_shrunk(suite: Suite) -> None:
-    result = suite(RACE.format(policy="pct", shrink=0))
+    result = suite(RACE.format(policy="pct", shrink=0).replace("explore(", "explore(steps=60, "))
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["failed under the *. of 60 schedules, pct:*", "*--cfepy-schedule pct:*"])
     result.stdout.no_fnmatch_line("*the shortest schedule*")
