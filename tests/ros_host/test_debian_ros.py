@@ -53,11 +53,8 @@ COMMANDS = (
     "rosservice args /things",
     "rosservice call /things",
     "rosparam get /talker/speed",
-    "rosparam set /outside 5",
-    "rosparam get /outside",
-    "rosparam delete /outside",
-    "rosparam get /outside",
 )
+PARAMETER = ("rosparam set /outside 5", "rosparam get /outside", "rosparam delete /outside", "rosparam get /outside")
 
 
 class RosGraph:
@@ -169,6 +166,12 @@ def mission(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_tool_says_the_same_of_both(real: RosGraph, mission: RosGraph, command: str) -> None:
     assert masked(mission.run(command)) == masked(real.run(command))
+
+
+def test_a_parameter_is_set_asked_for_and_deleted(real: RosGraph, mission: RosGraph) -> None:
+    """One after the other, in one test: others may run in another process, against another graph."""
+    for command in PARAMETER:
+        assert masked(mission.run(command)) == masked(real.run(command)), command
 
 
 def test_rates_and_bandwidths_are_measured(mission: RosGraph) -> None:
