@@ -6,6 +6,7 @@ schedules before it are known, and each with a few more from seeds, so that it d
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from random import Random
@@ -18,7 +19,7 @@ MOST_CHANGES = 4
 WINDOW = 12  # decisions before the one that matters, which matter more often than others
 
 
-class Generations:
+class Generations(ABC):
     """A search in generations; derived classes make them.
 
     Args:
@@ -63,13 +64,13 @@ class Generations:
             self._seeded.tell(number - self._before_seeds, verdict)
         self.learn(number, verdict)
 
+    @abstractmethod
     def learn(self, number: int, verdict: Verdict) -> None:
         """The verdict on the schedule of this number is known."""
-        raise NotImplementedError
 
+    @abstractmethod
     def generation(self) -> list[Schedule]:
         """The next one, without what comes from seeds."""
-        raise NotImplementedError
 
     def untried(self, candidates: Iterable[Schedule], count: int) -> Iterator[Schedule]:
         """The first ones that were not tried yet, so many at most."""

@@ -7,6 +7,7 @@ schedules flies the points of a sweep as well, on this computer or on a cluster.
 from __future__ import annotations
 
 import contextlib
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from typing import Generic, TypeVar, cast
 
@@ -16,17 +17,18 @@ S = TypeVar("S")
 A = TypeVar("A")
 
 
-class Lot(Generic[S, A]):
+class Lot(ABC, Generic[S, A]):
     """What is done with each subject; pickled for crews of other processes, as its subjects and answers are."""
 
+    @abstractmethod
     def judge(self, subject: S) -> A:
         """The answer for a subject. An error of cfepy itself is told in it, so that the others are flown.
 
         Raises:
             UsageError: none of them can fly.
         """
-        raise NotImplementedError
 
+    @abstractmethod
     def died(self, subject: S, fate: str, words: str) -> A:
         """The answer for a subject that ends the process in which it is flown.
 
@@ -35,7 +37,6 @@ class Lot(Generic[S, A]):
             fate: how the process ended.
             words: its last ones.
         """
-        raise NotImplementedError
 
 
 def answers(lot: Lot[S, A], subjects: Sequence[S], crew: Crew) -> Iterator[tuple[int, A]]:

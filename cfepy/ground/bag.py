@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import importlib
 import struct
-from collections.abc import Iterator, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import ModuleType, TracebackType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from cfepy.mission import TopicMessage, TopicWatch, described, matches
 from cfepy.status import UsageError
@@ -21,11 +22,12 @@ if TYPE_CHECKING:
 CHUNK_BYTES = 768 * 1024
 
 
-class BagRecorder(TopicWatch):
-    """Records topics into a bag; use as a context manager around the run.
+class RunRecorder(TopicWatch, ABC):
+    """Records a run into a file; use as a context manager around the run.
 
     Args:
-        file: the bag; an older one is written over.
+        take: gets each message.
+        file: where to; an older one is written over.
         patterns: see `TopicWatch`.
 
     Raises:
@@ -35,19 +37,20 @@ class BagRecorder(TopicWatch):
         count: messages so far.
     """
 
-    def __init__(self, file: str, patterns: Sequence[str] = ()) -> None:
-        super().__init__(self._write, patterns)
+    def __init__(self, take: Callable[[TopicMessage], None], file: str, patterns: Sequence[str]) -> None:
+        super().__init__(take, patterns)
         self.count = 0
-        self._connections: dict[tuple[str, str], Connection] = {}
-        self._failed: OSError | None = None  # the run goes on without a bag; its sender is not to blame
+        self._failed: OSError | None = None  # the run goes on without the file; its sender is not to blame
         try:
             self._file = Path(file).open("w+b")  # noqa: SIM115  # closed by `__exit__`
         except OSError as error:
-            raise unwritable(file, error) from None
-        self._bag: BagFile = storage().BagFile(self._file)
-        self._bag.create()
+            raise _unwritable(file, error) from None
 
-    def __enter__(self) -> BagRecorder:
+    @abstractmethod
+    def _finish(self) -> None:
+        """Write the index."""
+
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -60,11 +63,32 @@ class BagRecorder(TopicWatch):
         """
         try:
             with self._file:
-                self._bag.finish()
+                self._finish()
         except OSError as failed:
             self._failed = failed
         if self._failed is not None:
-            raise unwritable(self._file.name, self._failed) from None
+            raise _unwritable(self._file.name, self._failed) from None
+
+
+class BagRecorder(RunRecorder):
+    """Records topics into a bag.
+
+    Args:
+        file: the bag; an older one is written over.
+        patterns: see `TopicWatch`.
+
+    Raises:
+        UsageError: the file cannot be written.
+    """
+
+    def __init__(self, file: str, patterns: Sequence[str] = ()) -> None:
+        super().__init__(self._write, file, patterns)
+        self._connections: dict[tuple[str, str], Connection] = {}
+        self._bag: BagFile = storage().BagFile(self._file)
+        self._bag.create()
+
+    def _finish(self) -> None:
+        self._bag.finish()
 
     def _write(self, message: TopicMessage) -> None:
         if message.stamp_ns is None or self._failed is not None:
@@ -81,7 +105,7 @@ class BagRecorder(TopicWatch):
             self._failed = error
 
 
-def unwritable(file: str, error: OSError) -> UsageError:
+def _unwritable(file: str, error: OSError) -> UsageError:
     """The error of a recording that cannot be written."""
     return UsageError(f"could not be written: {error.strerror}", file=file, field="--bag")
 

@@ -11,16 +11,14 @@ import base64
 import json
 import math
 from collections.abc import Callable, Sequence
-from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from cfepy.evs import CRITICAL, DEBUG, ERROR, INFORMATION
-from cfepy.ground.bag import BagRecorder, storage, unwritable
+from cfepy.ground.bag import BagRecorder, RunRecorder, storage
 from cfepy.ground.dictionary import Decoded, Dictionary, dictionary_of
 from cfepy.ground.events import EVENT_IDS, DecodedEvent
 from cfepy.ground.mcap_writer import McapWriter
-from cfepy.mission import Mission, Seen, TopicMessage, TopicWatch, matches
+from cfepy.mission import Mission, Seen, TopicMessage, matches
 from cfepy.msg import (
     CMD_HEADER_SIZE,
     TLM_HEADER_SIZE,
@@ -71,8 +69,8 @@ _LOG_LEVELS = {DEBUG: 1, INFORMATION: 2, ERROR: 4, CRITICAL: 5}
 """foxglove.Log's level of each type of event."""
 
 
-class McapRecorder(TopicWatch):
-    """Records a run into an MCAP file; use as a context manager around the run.
+class McapRecorder(RunRecorder):
+    """Records a run into an MCAP file.
 
     Args:
         file: the file; an older one is written over.
@@ -87,16 +85,10 @@ class McapRecorder(TopicWatch):
     """
 
     def __init__(self, file: str, patterns: Sequence[str] = (), command: str = "") -> None:
-        super().__init__(self._take_topic, patterns)
-        self.count = 0
+        super().__init__(self._take_topic, file, patterns)
         self._channels: dict[object, int] = {}
         self._dictionary = Dictionary()
         self._flushed_ns = 0
-        self._failed: OSError | None = None  # the run goes on; its sender is not to blame
-        try:
-            self._file = Path(file).open("wb")  # noqa: SIM115  # closed by `__exit__`
-        except OSError as error:
-            raise unwritable(file, error) from None
         try:
             self._writer = McapWriter(self._file)
             if command:
@@ -105,24 +97,8 @@ class McapRecorder(TopicWatch):
             self._file.close()
             raise
 
-    def __enter__(self) -> McapRecorder:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
-    ) -> None:
-        """The run is over: write the index, unless the disk is full.
-
-        Raises:
-            UsageError: it is.
-        """
-        try:
-            with self._file:
-                self._writer.finish()
-        except OSError as failed:
-            self._failed = failed
-        if self._failed is not None:
-            raise unwritable(self._file.name, self._failed) from None
+    def _finish(self) -> None:
+        self._writer.finish()
 
     def begin(self, mission: Mission) -> None:
         """See `Attachment.begin`."""
@@ -210,7 +186,7 @@ def _json_channel(name: str, title: str, schema: bytes, about: dict[str, str]) -
     return channel
 
 
-def recorder_of(file: str, patterns: Sequence[str] = (), command: str = "") -> BagRecorder | McapRecorder:
+def recorder_of(file: str, patterns: Sequence[str] = (), command: str = "") -> RunRecorder:
     """What records a run into a file: into an MCAP file if its name ends with .mcap, else into a bag.
 
     Args:

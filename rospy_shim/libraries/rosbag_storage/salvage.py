@@ -7,6 +7,7 @@ is looked for byte by byte. `BagSalvage` does so for bags. Imports what the pack
 from __future__ import annotations
 
 import struct
+from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass
@@ -43,7 +44,7 @@ class Loss:
     before: int | None = None
 
 
-class Salvage:
+class Salvage(ABC):
     """Goes through a recording, whatever its state.
 
     Args:
@@ -84,8 +85,9 @@ class Salvage:
         for loss in self.losses[told:]:
             loss.after = last
 
+    @abstractmethod
     def _messages(self) -> Iterator[RecordedMessage]:
-        raise NotImplementedError
+        """Those that are left; what is lost, counted and doubtful is noted."""
 
     def _lose(self, at: int, end: int, why: object) -> None:
         """Note that bytes could not be read; those that follow each other are one loss."""
