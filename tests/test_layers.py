@@ -45,6 +45,7 @@ MAY_TOUCH_THE_HOST = {
     "rtos": "task contexts, pacing and the stall watch are made of the host's threads and clock",
     "io": "joins the virtual network of a paced run to real sockets on the loopback interface",
     "ros_host": "speaks ROS's protocols on real sockets, and does in threads of the host what must wait for others",
+    "viewers": "listens for viewers on real sockets, at the pace of the wall clock, and makes tokens",
     "exploration": "spreads trials over processes and computers, sees when one of them ends, tells how far it has come",
     "faults": "draws from random streams that follow from the seed of the run",
     "nodes": "puts virtual modules in the place of these, and takes constants and types from the real ones",
