@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TextIO
+from typing import Any, TextIO
 
 from cfepy.cli.table import Table, show_paragraph, show_tables
 from cfepy.monitors import time_text
@@ -16,7 +16,8 @@ def show(results: Results, stream: TextIO) -> None:
     more = [
         *_resets(results),
         *faults(results),
-        *_ros_peers(results),
+        *_peers("ROS outside", results.ros_peers),
+        *_peers("Viewers", results.viewer_peers),
         *_pipes(results),
         *_deadlines(results),
         *_inversions(results),
@@ -89,15 +90,15 @@ def faults(results: Results) -> list[Table]:
     return [table] if table.rows else []
 
 
-def _ros_peers(results: Results) -> list[Table]:
-    """The ROS nodes outside that the run was joined to, topic by topic, and what was lost on the way."""
+def _peers(title: str, rows: list[dict[str, Any]]) -> list[Table]:
+    """Who outside the run was joined to, topic by topic, and what was lost on the way."""
     table = Table(
-        "ROS outside",
+        title,
         ("name", "peer", "way", "messages", "dropped", "connected", "ended", "refused", "why"),
         right=(3, 4, 5, 6, 7),
         least=(8, 1),
     )
-    for row in results.ros_peers:
+    for row in rows:
         counts = [row[key] for key in ("messages", "dropped", "connections", "ended", "refused")]
         table.add(row["name"], row["peer"], row["direction"], *counts, row["why"])
     return [table] if table.rows else []
