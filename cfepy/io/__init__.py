@@ -1,8 +1,9 @@
 """Real sockets of this computer, through which a run and a ground system reach the world outside.
 
 What belongs here opens a real socket, or waits for somebody outside: the bridge of a paced run to the loopback
-interface (`host_network`), the datagrams that a ground system sends and receives (`udp`), and lines that are typed
-(`typed_lines`). The simulation does not know of this package; the command that runs a mission joins the bridge to it.
+interface (`host_network`), the datagrams that a ground system sends and receives (`udp`), lines that are typed
+(`typed_lines`), and connections with programs that neither side waits for (`peer_socket`), with their counts
+(`peer_counts`). The simulation does not know of this package; the command that runs a mission joins the bridge to it.
 When input from outside comes in is decided in `cfepy.mission`.
 
 The names below are loaded when they are first used.
@@ -16,13 +17,23 @@ from cfepy.faces import face
 
 if TYPE_CHECKING:
     from cfepy.io.host_network import HostNetwork
+    from cfepy.io.peer_counts import INTO, OUT_OF, PeerCount, PeerCounts
+    from cfepy.io.peer_socket import ENDED, Listening, PeerSocket, listening_socket
     from cfepy.io.typed_lines import TypedLines
     from cfepy.io.udp import UdpListener, own_address, send
 
 __all__ = [
+    "ENDED",
+    "INTO",
+    "OUT_OF",
     "HostNetwork",
+    "Listening",
+    "PeerCount",
+    "PeerCounts",
+    "PeerSocket",
     "TypedLines",
     "UdpListener",
+    "listening_socket",
     "own_address",
     "send",
 ]
@@ -32,6 +43,18 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         __name__,
         {
             ".host_network": ("HostNetwork",),
+            ".peer_counts": (
+                "INTO",
+                "OUT_OF",
+                "PeerCount",
+                "PeerCounts",
+            ),
+            ".peer_socket": (
+                "ENDED",
+                "Listening",
+                "PeerSocket",
+                "listening_socket",
+            ),
             ".typed_lines": ("TypedLines",),
             ".udp": (
                 "UdpListener",

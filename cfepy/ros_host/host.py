@@ -15,8 +15,8 @@ from selectors import EVENT_READ, DefaultSelector
 from typing import TYPE_CHECKING, Any, NamedTuple
 from xmlrpc.client import dumps
 
+from cfepy.io import OUT_OF, PeerCounts
 from cfepy.mission import Mission
-from cfepy.ros_host.counts import OUT_OF, PeerCounts
 from cfepy.ros_host.errands import Errands
 from cfepy.ros_host.mission_node import ANY, MissionNode, OutsideClient
 from cfepy.ros_host.peers import OutsideCall, OutsidePublisher
@@ -433,10 +433,10 @@ class RosHost:
             self._todo.append(lambda: self._answered(number, False, why))
         return number
 
-    def end_call(self, service: str, number: int) -> None:
+    def end_call(self, service: str, number: int, caller: str) -> None:
         """The caller is gone."""
         if self._calls.pop(number, None) is not None:
-            self.act("forget call", service, number)
+            self.act("forget call", service, number, caller)
 
     def answer(self, number: int, good: bool, body: bytes) -> None:
         """See `WayOut.answer`."""

@@ -9,8 +9,7 @@ import socket
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from cfepy.ros_host.counts import INTO, OUT_OF
-from cfepy.ros_host.peer_socket import ENDED, Listening, PeerSocket, listening_socket
+from cfepy.io import ENDED, INTO, OUT_OF, Listening, PeerSocket, listening_socket
 from cfepy.ros_host.shown import APPLICATIONS
 from cfepy.ros_host.tcpros import LONGEST_FRAME, TcprosFrames, frame, pack_header, parse_header
 from cfepy.ros_host.xmlrpc_server import XmlRpcServer
@@ -239,5 +238,5 @@ class OutsideClient:
             self._host.remove_client(topic, self._node.name, self.caller, self)
             self._host.unsubscribe(topic, self.caller, self._node.name)
         if self._number:
-            self._host.end_call(self._service, self._number)
+            self._host.end_call(self._service, self._number, self.caller)
             self._number = 0

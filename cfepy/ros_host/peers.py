@@ -6,9 +6,8 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from cfepy.ros_host.counts import INTO
+from cfepy.io import INTO, PeerSocket
 from cfepy.ros_host.errands import ask, connect
-from cfepy.ros_host.peer_socket import PeerSocket
 from cfepy.ros_host.tcpros import LONGEST_FRAME, TcprosFrames, frame, pack_header, parse_header
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from selectors import BaseSelector
 from typing import Any
 from xmlrpc.client import Fault, dumps, loads
 
-from cfepy.ros_host.peer_socket import Listening, PeerSocket, listening_socket
+from cfepy.io import Listening, PeerSocket, listening_socket
 
 LONGEST_HEAD = 1 << 14  # bytes
 LONGEST_BODY = 1 << 26

@@ -187,7 +187,7 @@ class OutsideSubscription(Subscription):
         node: the subscriber.
         topic: the topic, which it has joined.
         declared: type that it wants.
-        outsiders: says whether a message comes from an outside node, which has sent it to this one already.
+        outsiders: says whether a message comes from an outside node that has sent it to this one already.
         out: takes publisher and message.
     """
 
@@ -303,10 +303,13 @@ class OutsideGraph:
     Attributes:
         nodes, links, subscriptions, services: what outside nodes have in the graph.
         way_out: takes what goes out; None drops it.
+        ways_out: takes what goes out to nodes with a way of their own, by their names. Those of one way reach each
+            other without the mission.
     """
 
     def __init__(self, graph: Graph, switchboard: Switchboard, cfe: Cfe, kernel: Kernel) -> None:
         self.way_out: WayOut | None = None
+        self.ways_out: dict[str, WayOut] = {}
         self.nodes: dict[str, OutsideNode] = {}
         self.links: dict[tuple[str, str], OutsideLink] = {}  # by topic and node
         self.subscriptions: dict[tuple[str, str], OutsideSubscription] = {}
@@ -315,9 +318,9 @@ class OutsideGraph:
         self._switchboard = switchboard
         self._cfe = cfe
         self._kernel = kernel
-        self._entering = False
+        self._entering = ""  # the outside node of which a message comes in
         self._pieces: dict[str, Pieces] = {}  # of long requests, by service
-        self._calls: dict[str, dict[int, int]] = {}  # by service: the caller's number of a call by the service's
+        self._calls: dict[str, dict[int, tuple[int, str]]] = {}  # by service and its number: caller's number, caller
         self._outlets: dict[str, Outlet] = {}  # by service
         self._shown: dict[str, Outlet] = {}  # by topic
         self._acts: dict[str, Callable[..., Any]] = {
@@ -386,11 +389,11 @@ class OutsideGraph:
 
     def _message(self, topic: str, name: str, payload: bytes) -> bool:
         """A message from an outside publisher; whether the bus took it."""
-        self._entering = True
+        self._entering = name
         try:
             return self.links[topic, name].enter(payload)
         finally:
-            self._entering = False
+            self._entering = ""
 
     def _subscribe(self, topic: str, name: str, uri: str, kind: str, md5sum: str, publisher: str) -> str:
         """An outside subscriber is connected with a node of the mission, "" for its cFE applications; why not."""
@@ -401,7 +404,7 @@ class OutsideGraph:
             if not entry.join(declared):
                 return f"it is {kind} [{md5sum}] there and {entry.type} [{entry.md5sum}] here"
             subscription = OutsideSubscription(
-                self._node(name, uri), entry, declared, lambda: self._entering, self._out_to(topic, name)
+                self._node(name, uri), entry, declared, lambda: self._reaches(name), self._out_to(topic, name)
             )
             self.subscriptions[topic, name] = subscription
             for each in entry.links:
@@ -415,10 +418,19 @@ class OutsideGraph:
             link.peer_joined(subscription, late=True)
         return ""
 
+    def _way_to(self, name: str) -> WayOut | None:
+        """The way out to an outside node."""
+        return self.ways_out.get(name, self.way_out)
+
+    def _reaches(self, name: str) -> bool:
+        """Whether the publisher of which a message comes in reaches an outside node by itself."""
+        return self._entering != "" and self._way_to(self._entering) is self._way_to(name)
+
     def _out_to(self, topic: str, subscriber: str) -> Callable[[str, bytes], None]:
         def out(publisher: str, payload: bytes) -> None:
-            if self.way_out is not None:
-                self.way_out.message(topic, publisher, subscriber, payload)
+            way = self._way_to(subscriber)
+            if way is not None:
+                way.message(topic, publisher, subscriber, payload)
 
         return out
 
@@ -460,7 +472,7 @@ class OutsideGraph:
         header = {"callerid": caller, "md5sum": entry.service.service_class._md5sum, "service": service}
         self._listen(service, entry)
         inner = entry.begin(ServiceCall(NO_PIPE, header))
-        self._calls[service][inner] = number
+        self._calls[service][inner] = (number, caller)
         packets = list(request_packets(entry.request_id, inner, body, self._cfe.sb.config.sb_max_msg_size))
 
         def send() -> None:
@@ -491,23 +503,25 @@ class OutsideGraph:
 
             def take(packet: bytes) -> None:
                 inner, good = call_of_answer(packet)
-                number = self._calls[service].get(inner)
-                body = None if number is None else pieces.add(inner, packet)
-                if number is not None and body is not None:
+                outer = self._calls[service].get(inner)
+                body = None if outer is None else pieces.add(inner, packet)
+                if outer is not None and body is not None:
                     del self._calls[service][inner]
                     current = self._graph.services.get(service)
                     if current is not None:
                         current.calls.pop(inner, None)
                         current.half_answered.discard(inner)
-                    if self.way_out is not None:
-                        self.way_out.answer(number, good, body)
+                    number, caller = outer
+                    way = self._way_to(caller)
+                    if way is not None:
+                        way.answer(number, good, body)
 
             self._outlets[service] = Outlet(self._cfe.sb, entry.answer_id, f"answers of {service}", take)
 
-    def _forget_call(self, service: str, number: int) -> None:
+    def _forget_call(self, service: str, number: int, caller: str) -> None:
         """The caller does not wait for the answer any more."""
         calls = self._calls.get(service, {})
-        for inner in [each for each, outer in calls.items() if outer == number]:
+        for inner in [each for each, outer in calls.items() if outer == (number, caller)]:
             del calls[inner]
 
     # -- services of outside nodes -----------------------------------------------------------------------------------
@@ -538,8 +552,9 @@ class OutsideGraph:
         def take(packet: bytes) -> None:
             number = call_of_request(packet)
             body = pieces.add(number, packet)
-            if body is not None and self.way_out is not None:
-                self.way_out.request(service, number, entry.calls[number].header, body)
+            way = self._way_to(entry.service.node.names.name)
+            if body is not None and way is not None:
+                way.request(service, number, entry.calls[number].header, body)
 
         return Outlet(self._cfe.sb, entry.request_id, f"requests to {service}", take)
 

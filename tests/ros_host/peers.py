@@ -11,10 +11,10 @@ from typing import Any
 from xmlrpc.client import ServerProxy, Transport
 
 from cfepy.console import Console
+from cfepy.io import Listening, listening_socket
 from cfepy.io.host_network import HostNetwork
 from cfepy.mission import Mission
 from cfepy.ros_host import RosHost, ServedMaster
-from cfepy.ros_host.peer_socket import Listening, listening_socket
 from cfepy.ros_host.tcpros import TcprosFrames, frame, pack_header, parse_header
 from cfepy.ros_host.world import RosWorld
 from cfepy.ros_host.xmlrpc_server import XmlRpcServer

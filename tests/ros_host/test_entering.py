@@ -9,8 +9,8 @@ import msgpack
 import pytest
 
 from cfepy.console import Console
+from cfepy.io import peer_socket
 from cfepy.mission import Arrival, Mission
-from cfepy.ros_host import peer_socket
 from cfepy.ros_host.tcpros import frame
 from tests.ros_host.peers import CALLER, SERVER, SET_BOOL, STRING, TALKER, Joined, OutsideSpeaker, joined, text
 

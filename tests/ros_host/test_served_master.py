@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cfepy.ros_host.peer_socket import Listening, listening_socket
+from cfepy.io import Listening, listening_socket
 from cfepy.ros_host.tcpros import frame, pack_header
 from tests.ros_host.peers import CALLER, SERVER, SET_BOOL, STRING, TALKER, OutsideSpeaker, Wire, joined, text
 
