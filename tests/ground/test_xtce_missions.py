@@ -1,0 +1,73 @@
+"""The XTCE of every mission that cfepy brings along, against the schema of XTCE 1.2 and another reader.
+
+Both are those of space_packet_parser: it has OMG's SpaceSystem.xsd, and decodes by what the document says alone.
+"""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from random import Random
+
+import pytest
+from space_packet_parser.xtce.definitions import XtcePacketDefinition
+from space_packet_parser.xtce.validation import validate_xtce
+
+from cfepy.ground.dictionary import Dictionary, dictionary_of
+from cfepy.ground.xtce import xtce_of
+from cfepy.mission import read_mission
+from cfepy.msg import TLM_HEADER_SIZE, Telemetry
+from tests.ground.random_packets import DECLARED, random_telemetry, xtce_values
+
+MISSIONS = ("capture", "cfs", "lab", "pathfinder", "rx64m_pubsub", "sched")
+ALL_TYPES = "all types"
+
+
+def dictionary_named(name: str) -> Dictionary:
+    """The dictionary of a shipped mission, or one with a field of every type."""
+    if name != ALL_TYPES:
+        return dictionary_of(read_mission(name))
+    found = Dictionary()
+    found.add(DECLARED)
+    return found
+
+
+def read_back(name: str, folder: Path, times: int) -> int:
+    """Let the other reader check the document and decode random packets; how many fields were compared."""
+    dictionary, file = dictionary_named(name), folder / "mission.xml"
+    file.write_text(xtce_of(name, dictionary))
+    result = validate_xtce(file, level="all", raise_on_error=False)
+    assert result.valid, [str(error) for error in result.errors[:5]]
+    definition = XtcePacketDefinition.from_xtce(file)
+    random, compared = Random(name), 0
+    for declared in dictionary.telemetry.values():
+        for sequence in range(times if isinstance(declared, Telemetry) else 0):
+            assert isinstance(declared, Telemetry)
+            packet = random_telemetry(declared, sequence, random)
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")  # bytes that were not read
+                theirs = dict(definition.parse_bytes(packet))
+            ours = xtce_values(declared.name, declared.payload, packet[TLM_HEADER_SIZE:])
+            decoded = dictionary.decode(packet)
+            assert (theirs["SRC_SEQ_CTR"], theirs["TIME"]) == (decoded.sequence, decoded.time_s)
+            assert {key: value for key, value in theirs.items() if key.startswith(f"{declared.name}_")} == ours
+            compared += len(ours)
+    return compared
+
+
+@pytest.mark.parametrize("name", [*MISSIONS, ALL_TYPES])
+def test_random_telemetry_is_read_field_by_field(name: str, tmp_path: Path) -> None:
+    assert read_back(name, tmp_path, times=3) >= 100
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*MISSIONS, ALL_TYPES])
+def test_much_random_telemetry_is_read_field_by_field(name: str, tmp_path: Path) -> None:
+    assert read_back(name, tmp_path, times=500) >= 10_000
+
+
+def test_a_document_with_a_mistake_is_found(tmp_path: Path) -> None:
+    """The schema is at hand, and looked at."""
+    file = tmp_path / "bad.xml"
+    file.write_text(xtce_of("m", dictionary_named(ALL_TYPES)).replace("SequenceContainer", "SequentialContainer"))
+    assert not validate_xtce(file, level="schema", raise_on_error=False).valid
