@@ -10,7 +10,7 @@ from cfepy.ground.values import flat, named_fields
 from cfepy.ground.xtce import xtce_name
 from cfepy.msg import Cell, Command, Layout, Telemetry, ValueNames, telemetry
 
-TEXT = "abcXYZ019 _/.\u00e9\u20ac<&\""
+TEXT = 'abcXYZ019 _/.\u00e9\u20ac<&"'
 FLOATS = (0.0, -0.0, math.inf, -math.inf, 1.0, 1e-40)
 UNSEGMENTED = 0xC000
 SEQUENCES = 0x4000
