@@ -7,6 +7,7 @@ A name that leaves the folder, by `..` or through a symbolic link, is refused.
 from __future__ import annotations
 
 import os
+import posixpath
 from pathlib import Path
 
 from cfepy.status import UsageError
@@ -19,7 +20,7 @@ def is_contained(name: object) -> bool:
     if not isinstance(name, str) or not name.startswith("/") or name.startswith("//") or "\0" in name:
         return False
     try:
-        return os.path.normpath(name) == name and len(os.fsencode(name)) < _LONGEST
+        return posixpath.normpath(name) == name and len(os.fsencode(name)) < _LONGEST
     except UnicodeEncodeError:
         return False
 
@@ -56,7 +57,7 @@ def write_contained(root: Path, name: str, data: bytes, mode: int = 0o666) -> No
         mode: its permissions, from which the process's mask is taken.
     """
     path = _place(root, name)
-    flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW
+    flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
     with open(path, "wb", opener=lambda file, _: os.open(file, flags, mode)) as file:
         file.write(data)
 
@@ -71,4 +72,4 @@ def link_contained(root: Path, name: str) -> None:
 def _place(root: Path, name: str) -> Path:
     if name == "/":
         raise UsageError("names '/', which is no file")
-    return make_folder(root, os.path.dirname(name) if is_contained(name) else name) / os.path.basename(name)
+    return make_folder(root, posixpath.dirname(name) if is_contained(name) else name) / posixpath.basename(name)

@@ -7,8 +7,9 @@ threads: a mission that ends in one thread must not bring the collector back int
 from __future__ import annotations
 
 import gc
-import os
 import threading
+
+from cfepy.host_system import in_forked_process
 
 
 class _NoCollection:
@@ -18,7 +19,7 @@ class _NoCollection:
         self._lock = threading.RLock()  # a finalizer may come here while its thread is in the middle of it
         self._holders: dict[int, int] = {}
         self._resumes = False
-        os.register_at_fork(after_in_child=self._in_child)
+        in_forked_process(self._in_child)
 
     def __enter__(self) -> None:
         with self._lock:

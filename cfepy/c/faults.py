@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-import signal
 from collections.abc import Callable
+
+from cfepy.host_system import signal_number
 
 
 class CFault(Exception):
@@ -24,12 +25,13 @@ class CFault(Exception):
     registers: tuple[bytes, bool] = (b"", False)
 
 
+_BAD_ADDRESSES = frozenset({signal_number("SIGSEGV"), signal_number("SIGBUS")})
 _WORDS = {
-    signal.SIGSEGV: "SIGSEGV (no such memory, or not to be written)",
-    signal.SIGBUS: "SIGBUS (a bad address)",
-    signal.SIGFPE: "SIGFPE (such as a division by zero)",
-    signal.SIGILL: "SIGILL (no such instruction)",
-    signal.SIGTRAP: "SIGTRAP (a trap that the compiler put there)",
+    signal_number("SIGSEGV"): "SIGSEGV (no such memory, or not to be written)",
+    signal_number("SIGBUS"): "SIGBUS (a bad address)",
+    signal_number("SIGFPE"): "SIGFPE (such as a division by zero)",
+    signal_number("SIGILL"): "SIGILL (no such instruction)",
+    signal_number("SIGTRAP"): "SIGTRAP (a trap that the compiler put there)",
 }
 _NEAR_STACK = 1 << 16
 _BAD_ADDRESS = re.compile("bad address (0x[0-9a-f]+)")
@@ -49,14 +51,14 @@ def explained(fault: CFault, place_of: Callable[[int], str], about: Callable[[in
         return _of_call(fault, place_of, about)
     number, pc, caller, address, left = fault.args
     words = _WORDS.get(number, f"signal {number}")
-    if -_NEAR_STACK < left < 512 and number in (signal.SIGSEGV, signal.SIGBUS):
+    if -_NEAR_STACK < left < 512 and number in _BAD_ADDRESSES:
         words = "stack overflow"
     at = caller - 1 if caller else pc  # a return address: the call is before it
     where = place_of(at)
     if caller:
         where = f"a call by {where} of what is no function" if pc == address else f"a function that {where} called"
     used = ""
-    if number in (signal.SIGSEGV, signal.SIGBUS):
+    if number in _BAD_ADDRESSES:
         block = about(address)
         used = f", address 0x{address:x}" + (f", {block}" if block else "")
     made = CFault(f"{words} in {where}{used}")

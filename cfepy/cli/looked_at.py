@@ -5,7 +5,6 @@ flown; for values over time also a bag.
 from __future__ import annotations
 
 import argparse
-import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,6 +13,7 @@ from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import LONGEST_S, plan_of, refuse_run_options
 from cfepy.ground import SeriesRecorder, SeriesSet, bag_series, is_bag
+from cfepy.host_system import command_line
 from cfepy.pilot import DEFAULT_S, Flown, RunPlan, fly
 from cfepy.rtos import Policy
 from cfepy.status import UsageError
@@ -151,5 +151,5 @@ def _replay(
     if not verdict.same:
         warnings = (f"this is not the run of {arguments.source}: the replay differs", *stage.reasons)
     until = [] if arguments.until is None else ["--until", f"{arguments.until:g}"]
-    command = shlex.join(["cfepy", "replay", arguments.source, *until])
+    command = command_line(["cfepy", "replay", arguments.source, *until])
     return LookedAt(flown, command, journal.plan.schedule.text(), stage.notes, warnings)

@@ -11,15 +11,15 @@ import contextlib
 import ctypes
 import os
 import shutil
-import signal
 import subprocess
 import tempfile
 from pathlib import Path
 
+from cfepy.host_system import signal_number
 from cfepy.mission import Mission
 from cfepy.status import UsageError
 
-WATCH_SIGNAL = signal.SIGRTMIN + 6
+WATCH_SIGNAL = signal_number("SIGRTMIN") + 6
 """With which the engine looks after code that computes without a call."""
 PR_SET_PTRACER = 0x59616D61
 ANYBODY = -1
@@ -41,7 +41,7 @@ def gdb_script(mission: Mission, folder: Path, function: str) -> str:
         "set pagination off",
         "set width 0",
         "set confirm off",
-        f"handle SIG{int(WATCH_SIGNAL)} nostop noprint pass",
+        f"handle SIG{WATCH_SIGNAL} nostop noprint pass",
     ]
     for number, image in enumerate(runtime.images() if runtime is not None else ()):
         file = folder / f"{number}-{image.source.name}"

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from cfepy.exploration.verdict import Verdict
+from cfepy.host_system import lock_file
 from cfepy.rtos import Schedule
 from cfepy.status import UsageError
 
@@ -84,16 +85,16 @@ class ResultsFile:
 
     def _open(self) -> Any:
         try:
-            descriptor = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+            descriptor = os.open(
+                self.path, os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0), 0o666
+            )
             return os.fdopen(descriptor, "r+b")
         except OSError as error:
             raise UsageError(f"cannot be written: {error.strerror}", file=self.path, field=OPTION) from None
 
     def _lock(self) -> None:
-        import fcntl
-
         try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock_file(self._file.fileno())
         except OSError:
             text = "another cfepy is writing this file; wait for it, or name another file"
             raise UsageError(text, file=self.path, field=OPTION) from None

@@ -1,6 +1,6 @@
 """A worker process: flies batches of schedules for the process that started it.
 
-`python -m cfepy.exploration.worker DESCRIPTOR FOLDER`, where DESCRIPTOR is its end of a connection and FOLDER the place
+`python -m cfepy.exploration.worker NUMBER FOLDER`, where NUMBER is that of its end of a connection and FOLDER the place
 for all that it needs for a while. First comes the trial,
 then batches; each is answered by its verdicts. A thread reads the connection, so that the worker ends at once, in the
 middle of a schedule too, when the process at the other end does.
@@ -19,8 +19,10 @@ from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from typing import Any
 
+from cfepy.child_pipes import connection_of
 from cfepy.exploration.fork_server import ForkingJudge
 from cfepy.exploration.lot import Lot
+from cfepy.host_system import in_forked_process
 from cfepy.status import UsageError
 
 READY = "ready"
@@ -30,10 +32,8 @@ def main() -> None:
     """Serve until the other end closes the connection."""
     faulthandler.enable()  # a worker that crashes, or is told to abort, says where it was
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started it
-    descriptor, tempfile.tempdir = int(sys.argv[1]), sys.argv[2]
-    os.set_inheritable(descriptor, False)
-    connection: Connection[Any, Any] = Connection(descriptor)
-    os.register_at_fork(after_in_child=connection.close)  # whose end means that of this process alone
+    connection, tempfile.tempdir = connection_of(int(sys.argv[1])), sys.argv[2]
+    in_forked_process(connection.close)  # whose end means that of this process alone
     inbox: SimpleQueue[bytes] = SimpleQueue()
     threading.Thread(target=_read, args=(connection, inbox), daemon=True).start()
     _serve(connection, inbox)

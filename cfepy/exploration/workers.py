@@ -8,23 +8,25 @@ tried again, each alone; one that ends its worker alone twice gets that as its v
 
 from __future__ import annotations
 
-import fcntl
 import os
 import pickle
 import signal
 import subprocess
+import sys
 import tempfile
 from collections import Counter, deque
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from multiprocessing import Pipe
 from multiprocessing.connection import wait
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
+from cfepy.child_pipes import popen_options
 from cfepy.exploration.campaign import Experiment, Job, NumberedVerdict, Take
 from cfepy.exploration.lot import Lot
 from cfepy.exploration.verdict import Failure, Verdict
 from cfepy.exploration.worker import READY
+from cfepy.host_system import signal_number
 from cfepy.resources import import_path, python_command
 from cfepy.rtos import Schedule, Stopwatch, allowed_cpus
 from cfepy.status import UsageError
@@ -40,10 +42,23 @@ LAST_WORDS = 4000  # bytes of what a worker wrote to its standard error
 START_NS = 60 * NS_PER_S  # wall time that a worker may take to come up
 ABORT_S = 5.0  # wall time to write down the stacks
 
+_GROUP: dict[str, Any] = {"process_group": 0}
+"""With what it forks; Ctrl-C on the terminal goes to this process alone."""
+if sys.platform == "win32":
+    _GROUP = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
+
 
 def usable_cpus() -> int:
     """How many CPUs this process may use."""
     return len(allowed_cpus())
+
+
+def _let_append(file: IO[bytes]) -> None:
+    """What any process writes to a file goes to its end; on Windows, after zeros in place of what was emptied."""
+    if os.name == "posix":
+        import fcntl
+
+        fcntl.fcntl(file, fcntl.F_SETFL, os.O_APPEND)
 
 
 class Worker:
@@ -66,12 +81,11 @@ class Worker:
         self._watch = Stopwatch()
         self._said = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115  # as long as the worker
         self._scratch = tempfile.TemporaryDirectory(prefix="cfepy-worker-")  # it may be killed, and cannot tidy up then
-        fcntl.fcntl(self._said, fcntl.F_SETFL, os.O_APPEND)  # so that it can be emptied under the worker's hands
+        _let_append(self._said)  # so that it can be emptied under the worker's hands
         self.connection, theirs = Pipe()
         with theirs:
             self._process = subprocess.Popen(
                 [*python_command(), "-m", __package__ + ".worker", str(theirs.fileno()), self._scratch.name],
-                pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
                 stdout=self._said,
                 stderr=self._said,
@@ -81,7 +95,8 @@ class Worker:
                     **(os.environ if environ is None else environ),
                     "PYTHONPATH": import_path(),
                 },
-                process_group=0,  # with what it forks; Ctrl-C on the terminal goes to this process alone
+                **popen_options(theirs.fileno()),
+                **_GROUP,
             )
         self._send(trial)
 
@@ -129,33 +144,37 @@ class Worker:
         if status >= 0:
             return f"ended with exit status {status}"
         name = signal.Signals(-status).name
-        return f"killed by {name}" + (" (no memory left?)" if status == -signal.SIGKILL else "")
+        return f"killed by {name}" + (" (no memory left?)" if name == "SIGKILL" else "")
 
     def last_words(self) -> str:
         """The end of what it wrote to its standard error."""
         size = self._said.seek(0, os.SEEK_END)
         self._said.seek(max(0, size - LAST_WORDS))
-        return self._said.read().decode("utf-8", "replace").strip()
+        return self._said.read().decode("utf-8", "replace").strip("\0 \t\r\n")
 
     def abort(self) -> None:
         """End it, with its stacks for last words."""
-        self._signal(signal.SIGABRT)
+        self._end_with("SIGABRT")
         try:
             self._process.wait(ABORT_S)
         except subprocess.TimeoutExpired:
-            self._signal(signal.SIGKILL)
+            self._end_with("SIGKILL")
 
     def close(self) -> None:
         """End it, and what it has forked."""
-        self._signal(signal.SIGKILL)
+        self._end_with("SIGKILL")
         self._process.wait()
         self.connection.close()
         self._said.close()
         self._scratch.cleanup()
 
-    def _signal(self, number: int) -> None:
+    def _end_with(self, name: str) -> None:
+        """Give a signal to it and to what it has forked; on Windows, where there is neither, end it."""
+        if os.name == "nt":
+            self._process.kill()
+            return
         try:
-            os.killpg(self.pid, number)
+            os.killpg(self.pid, signal_number(name))
         except ProcessLookupError:
             pass  # all of them have ended
 

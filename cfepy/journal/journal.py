@@ -8,6 +8,7 @@ last one. A frame is `<II` (bytes that follow, their CRC-32) and a msgpack array
 from __future__ import annotations
 
 import json
+import os
 import struct
 import zlib
 from collections.abc import Iterator, Mapping
@@ -218,7 +219,19 @@ def read_journal(path: str | Path) -> Journal:
         raise JournalError(f"is damaged: {type(error).__name__}: {error}", file=path) from error
 
 
+def check_paths(path: str | Path) -> None:
+    """Refuse a journal on a computer whose paths have drives, since journals name files by the paths of POSIX.
+
+    Raises:
+        UsageError: this is such a computer.
+    """
+    if os.name == "nt":
+        text = "journals name files as Linux and macOS do; record and replay there, or in WSL"
+        raise UsageError(text, file=path)
+
+
 def _read(path: str) -> Journal:
+    check_paths(path)
     frames = read_frames(path)
     kind, body = next(frames, ("", {}))
     if kind != HEADER:

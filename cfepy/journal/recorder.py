@@ -27,6 +27,7 @@ from cfepy.journal.journal import (
     PAUSE,
     FrameWriter,
     Header,
+    check_paths,
     digest_of,
     is_journal,
 )
@@ -85,6 +86,7 @@ class JournalRecorder(Attachment):
         self._checked_ns = 0
         self._digest = ""
         self._mission: Mission | None = None
+        check_paths(path)
         try:
             self._writer = FrameWriter(path)
         except OSError as error:

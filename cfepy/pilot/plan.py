@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from shlex import join
 from typing import Any
 
 from cfepy.attachment import Attachment
+from cfepy.host_system import command_line
 from cfepy.mission import (
     CppNodesConfig,
     MissionSpec,
@@ -183,7 +183,7 @@ class RunPlan:
         for each in ("stop_on_failure", "guard", "races"):
             if getattr(plan, each):
                 options.append(f"--{each.replace('_', '-')}")
-        return join(["cfepy", plan.command, *options, *plan.words])
+        return command_line(["cfepy", plan.command, *options, *plan.words])
 
     def to_dict(self) -> dict[str, Any]:
         """Itself as plain values, for a file or another process."""

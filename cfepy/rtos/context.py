@@ -20,6 +20,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any, Protocol
 
+from cfepy.host_system import in_forked_process
 from cfepy.rtos.cpus import Seat, current_cpu, pin, process_seat
 from cfepy.rtos.task import Task, TaskExit
 from cfepy.status import UsageError
@@ -159,8 +160,7 @@ def _in_forked_process() -> None:
     _idle.clear()
 
 
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_in_forked_process)
+in_forked_process(_in_forked_process)
 
 
 def drain() -> None:

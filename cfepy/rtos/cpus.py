@@ -20,6 +20,7 @@ import sys
 import threading
 import weakref
 
+from cfepy.host_system import in_forked_process
 from cfepy.status import UsageError
 
 VARIABLE = "CFEPY_PIN"
@@ -182,5 +183,4 @@ def _in_forked_process() -> None:
         seat.lock = threading.Lock()
 
 
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_in_forked_process)
+in_forked_process(_in_forked_process)

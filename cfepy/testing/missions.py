@@ -7,7 +7,6 @@ adds the state of its missions, and the command that does the same again.
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.util import find_spec
@@ -18,6 +17,7 @@ import pytest
 
 from cfepy.attachment import Attachment
 from cfepy.flight import SEED, ExpectationError, Faults, Flight, fault_attachments, fault_text, schedule_of
+from cfepy.host_system import command_line
 from cfepy.pilot import RunPlan
 from cfepy.rtos import NotingPolicy, Policy, Schedule
 from cfepy.status import UsageError
@@ -357,7 +357,7 @@ def pytest_command(config: pytest.Config, item: pytest.Item, options: Sequence[s
     start = config.invocation_params.dir
     path = os.path.relpath(config.rootpath / file, start)
     kept = [word for name in ("-m", "-c", "--rootdir") for word in _given(config, name)]
-    return shlex.join(["pytest", *kept, f"{path}::{rest}", *options])
+    return command_line(["pytest", *kept, f"{path}::{rest}", *options])
 
 
 def _given(config: pytest.Config, name: str) -> list[str]:

@@ -7,7 +7,6 @@ object, and for its files alone: their names end in .gcda, and a folder is made 
 from __future__ import annotations
 
 import errno
-import fcntl
 import os
 from collections.abc import Callable
 from typing import IO, TYPE_CHECKING
@@ -23,7 +22,6 @@ PREFIX = "GCOV_PREFIX"
 SETTINGS = (PREFIX, "GCOV_PREFIX_STRIP")
 FLOCK = 32
 """Bytes of struct flock."""
-LOCK_COMMANDS = (fcntl.F_SETLK, fcntl.F_SETLKW)
 STREAM = 0x1000
 """The first number that stands for a FILE of libgcov."""
 FAILED = -1
@@ -38,6 +36,8 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
 def _declare_files(api: Declarations, c: CRuntime) -> None:
     """Files by name and number."""
+    import fcntl  # the engine is for Linux, but tools elsewhere read what is declared
+
     memory = c.memory
     opened: set[int] = set()
 
@@ -59,7 +59,7 @@ def _declare_files(api: Declarations, c: CRuntime) -> None:
         return number
 
     def control(number: int, command: int, lock: int) -> int:
-        if number not in opened or command not in LOCK_COMMANDS:
+        if number not in opened or command not in (fcntl.F_SETLK, fcntl.F_SETLKW):
             raise CFault("fcntl() of a file that is none of libgcov's")
         return failing(lambda: fcntl.fcntl(number, command, memory.peek(lock, FLOCK)))
 

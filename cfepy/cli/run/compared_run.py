@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from cfepy.attachment import Recorder
+from cfepy.child_pipes import descriptor_of
 from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL
 from cfepy.cli.trace_text import TraceText
@@ -72,7 +73,7 @@ class ComparedRun:
     Attributes:
         plan: the run; None for that of the journal.
         journal: path of a journal that is replayed; None for none.
-        pipe: descriptor to write to.
+        pipe: number of the pipe to write to.
         look_at: number of the record to look at; None writes all records.
         ordered_sets: all nodes get ordered sets, whatever the mission file says.
         lines: records that are shown before the one that is looked at.
@@ -203,7 +204,7 @@ def _run_again(asked: ComparedRun) -> None:
 
 
 def _recorder(asked: ComparedRun, world: OpenWorld, root: str = "") -> RecordPipe | Lookout:
-    writer = RecordWriter(open(asked.pipe, "wb"))  # noqa: SIM115  # as long as the process
+    writer = RecordWriter(open(descriptor_of(asked.pipe), "wb"))  # noqa: SIM115  # as long as the process
     return RecordPipe(writer, world) if asked.look_at is None else Lookout(writer, asked.look_at, asked.lines, root)
 
 

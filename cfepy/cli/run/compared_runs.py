@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import IO, Any, TextIO
 
+from cfepy.child_pipes import number_of, popen_options
 from cfepy.cli.run.compared_run import ComparedRun
 from cfepy.pilot.determinism import RecordReader, RunEndedError
 from cfepy.pilot.determinism_look import Line, Look, suspects
@@ -44,12 +45,14 @@ def started(asked: ComparedRun, hash_seed: int | None = None) -> Iterator[RunInP
     """
     out, into = os.pipe()
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as said, open(out, "rb") as pipe:
-        there = dataclasses.replace(asked, pipe=into, scratch=folder)  # it is killed in the end, and cannot tidy up
+        there = dataclasses.replace(
+            asked, pipe=number_of(into), scratch=folder
+        )  # it is killed in the end, and cannot tidy up
         command = [*python_command(), "-m", "cfepy.cli.run.compared_run", there.to_json()]
         environment = {**os.environ, "PYTHONPATH": import_path()}
         if hash_seed is not None:
             environment["PYTHONHASHSEED"] = str(hash_seed)
-        process = subprocess.Popen(command, pass_fds=[into], env=environment, stdout=said, stderr=said)
+        process = subprocess.Popen(command, env=environment, stdout=said, stderr=said, **popen_options(number_of(into)))
         os.close(into)
         try:
             yield RunInProcess(process, RecordReader(pipe), said)

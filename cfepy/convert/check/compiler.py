@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import resource
 import subprocess
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -177,7 +176,7 @@ def _call(command: list[str]) -> tuple[int, str]:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             env=environment,
-            preexec_fn=_bound,
+            preexec_fn=_bound if os.name == "posix" else None,  # elsewhere the clock alone bounds it
             timeout=_LAST_RESORT,
             check=False,
         )
@@ -192,6 +191,8 @@ def _call(command: list[str]) -> tuple[int, str]:
 
 
 def _bound() -> None:
+    import resource
+
     resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 

@@ -1,15 +1,16 @@
 """The files of a run: what its programs write stays with the run, over the host's files, which are only ever read.
 
-What belongs here decides what a program finds at a path: the layers and what is copied up (`overlay`), what a file
-says of itself (`stamps`), and Python's functions that take paths or descriptors, `open` (`opened`), those of `os`
-(`calls`) and those of modules that open files in C (`shared`). The files of OSAL are in `cfepy.osal`.
+What belongs here decides what a program finds at a path: the layers and what is copied up (`overlay`), paths and
+where they lie (`paths`), what a file says of itself (`stamps`), and Python's functions that take paths or descriptors,
+`open` (`opened`), those of `os` (`calls`) and those of modules that open files in C (`shared`). The files of OSAL are in `cfepy.osal`.
 """
 
 from __future__ import annotations
 
 from cfepy.nodes.files.calls import Entries, FileCalls
 from cfepy.nodes.files.opened import OpenFiles
-from cfepy.nodes.files.overlay import PREFIX, Overlay, below_root
+from cfepy.nodes.files.overlay import PREFIX, Overlay
+from cfepy.nodes.files.paths import below_root
 from cfepy.nodes.files.stamps import ASKED, LISTED, MADE, NEEDED
 
 __all__ = ["ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Entries", "FileCalls", "OpenFiles", "Overlay", "below_root"]

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 _LOOKS = ("getxattr", "listxattr", "pathconf", "statvfs")
 _CHANGES = ("chflags", "chmod", "chown", "removexattr", "setxattr")
+_ON_DESCRIPTORS = ("fchmod",)
 _LINK_CHANGES = ("lchflags", "lchmod", "lchown")
 _WRITES = ("copy_file_range", "ftruncate", "posix_fallocate", "pwrite", "pwritev", "sendfile", "writev")
 _MKFIFO_MODE, _MKDIR_MODE = 0o666, 0o777
@@ -128,7 +129,6 @@ class FileCalls:
             "access": self._access,
             "close": self._close,
             "closerange": lambda low, high: None,
-            "fchmod": self._on_descriptor(os.fchmod),
             "fstat": overlay.stat_of,
             "link": self._link,
             "listdir": self._listdir,
@@ -149,6 +149,7 @@ class FileCalls:
             "unlink": self._remove,
             "utime": self._utime,
         }
+        found |= {name: self._on_descriptor(getattr(os, name)) for name in _ON_DESCRIPTORS if hasattr(os, name)}
         found |= {name: self._look_at(getattr(os, name)) for name in _LOOKS if hasattr(os, name)}
         found |= {name: self._changing(getattr(os, name)) for name in _CHANGES if hasattr(os, name)}
         found |= {name: self._changing(getattr(os, name), follow=False) for name in _LINK_CHANGES if hasattr(os, name)}

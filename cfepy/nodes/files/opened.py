@@ -122,7 +122,7 @@ class OpenFiles:
 
     def _descriptor(self, overlay: Overlay, path: str | bytes, mode: str, opener: _Opener | None) -> int:
         plain = mode.replace("b", "").replace("t", "")
-        flags = _FLAGS[plain.replace("+", "")] | os.O_CLOEXEC
+        flags = _FLAGS[plain.replace("+", "")] | getattr(os, "O_CLOEXEC", 0)
         flags |= os.O_RDWR if "+" in plain else os.O_RDONLY if "r" in plain else os.O_WRONLY
         if opener is not None:
             return opener(path, flags)

@@ -10,16 +10,27 @@ Paths here are absolute and as programs have them, unless they are called places
 from __future__ import annotations
 
 import errno
-import fcntl
 import os
 import stat
 import sys
 from collections import deque
-from collections.abc import Callable, Container, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
 from weakref import WeakSet, finalize
 
+from cfepy.host_system import in_forked_process
+from cfepy.nodes.files.paths import (
+    HAS_DRIVES,
+    is_root,
+    parent,
+    parted,
+    path_below,
+    place_below,
+    place_of,
+    with_end,
+    with_slashes,
+)
 from cfepy.nodes.files.stamps import ASKED, LISTED, MADE, NEEDED, Stamps, key_of
 
 PREFIX = "cfepy-files-"  # of the folders that runs have in the temporary one
@@ -49,7 +60,7 @@ class Overlay:
         self._top = ""
         self._gone: set[str] = set()  # what of the host does not show through, with all below it
         self._no_links: set[str] = set()  # folders of which this is known
-        self._descriptors: set[int] = set()
+        self._descriptors: dict[int, str] = {}  # places of what was opened last
         self._remove: Callable[[], object] = bool
         _living().add(self)
 
@@ -63,14 +74,15 @@ class Overlay:
         """
         if self.is_system(path):
             return path
-        parts, done, links = deque(path.split("/")), "", 0
+        drive, path = parted(path) if HAS_DRIVES else ("", path)
+        parts, done, links = deque(path.split("/")), drive, 0
         while parts:
             part = parts.popleft()
             if part in ("", "."):
                 continue
             if part == "..":
-                self.check_folder(done or "/")
-                done = done.rpartition("/")[0]
+                self.check_folder(with_end(done))
+                done = done.rpartition("/")[0] or drive
                 continue
             here = f"{done}/{part}"
             target = self._target(here) if parts or follow else None
@@ -82,9 +94,12 @@ class Overlay:
             links += 1
             if links > _MOST_LINKS:
                 raise _error(errno.ELOOP, path)
+            if HAS_DRIVES:
+                other, target = parted(target)
+                drive = other or drive
             parts.extendleft(reversed(target.split("/")))
-            done = "" if target.startswith("/") else done
-        return done or "/"
+            done = drive if target.startswith("/") else done
+        return with_end(done)
 
     def _target(self, path: str) -> str | None:
         if path in self._no_links:
@@ -103,7 +118,7 @@ class Overlay:
     def place(self, path: str) -> str:
         """Where the file at a path without links lies, or would lie if it were there."""
         if self._top:
-            own = self._top + path
+            own = self._own(path)
             if os.path.lexists(own) or self.is_hidden(path):
                 return own
         return self._host(path)
@@ -118,8 +133,14 @@ class Overlay:
 
     def own_place(self, path: str) -> str | None:
         """Where the run's own file at a path without links lies; None when it has none there."""
-        own = self._top + path
-        return own if self._top and os.path.lexists(own) else None
+        if not self._top:
+            return None
+        own = self._own(path)
+        return own if os.path.lexists(own) else None
+
+    def _own(self, path: str) -> str:
+        """Where the run's own file at a path without links would lie."""
+        return place_below(self._top, path) if HAS_DRIVES else self._top + path
 
     def places(self, path: str) -> list[str]:
         """Where what is in a folder at a path without links lies, the run's own first; what was removed shows there."""
@@ -140,7 +161,9 @@ class Overlay:
 
     def shown(self, place: str) -> str:
         """The path of a place."""
-        return place.removeprefix(self._top) if self._top else place
+        if not self._top:
+            return place
+        return path_below(self._top, place) if HAS_DRIVES else place.removeprefix(self._top)
 
     def exists(self, path: str) -> bool:
         """Whether there is something at a path without links, perhaps a link that leads nowhere."""
@@ -166,14 +189,14 @@ class Overlay:
             OSError: it is none.
         """
         self.check_folder(path)
-        below = "" if path == "/" else path
+        below = path.rstrip("/")
         found: set[str] = set()
         if not self.is_hidden(path) and os.path.isdir(place := self._host(path)):
             hosts = sorted(os.listdir(place))
             sys.audit(LISTED, place, hosts)
             found = {name for name in hosts if f"{below}/{name}" not in self._gone}
-        if self._top and os.path.isdir(self._top + path):
-            found.update(os.listdir(self._top + path))
+        if self._top and os.path.isdir(own := self._own(path)):
+            found.update(os.listdir(own))
         return sorted(found)
 
     # -- changes -----------------------------------------------------------------------------------------------------
@@ -184,18 +207,20 @@ class Overlay:
         Raises:
             OSError: the host would not let it be changed, or there is no folder for it.
         """
-        own = self._top + path
-        if self._top and os.path.lexists(own):
+        own = self.own_place(path)
+        if own is not None:
             return own
         if not self.is_hidden(path) and os.path.lexists(place := self._host(path)):
-            if path != "/":
+            if not is_root(path):
                 self._folder_of(path)
-            own = self._home() + path
-            if path != "/":
+            own = self._own_of_home(path)
+            if not is_root(path):
                 self._copy(place, own, with_data)
+            else:
+                os.makedirs(own, exist_ok=True)
         else:
             self._own_folder_of(path)
-            own = self._home() + path
+            own = self._own_of_home(path)
         return own
 
     def _copy(self, place: str, own: str, with_data: bool) -> None:
@@ -219,17 +244,17 @@ class Overlay:
 
     def _folder_of(self, path: str) -> None:
         """Have the folder of a path among the run's own."""
-        folder = os.path.dirname(path)
+        folder = parent(path)
         self.check_folder(folder)
-        if not (self._top and os.path.isdir(self._top + folder)):
-            if folder != "/":
+        if not (self._top and os.path.isdir(self._own(folder))):
+            if not is_root(folder):
                 self._folder_of(folder)
             sys.audit(NEEDED, self._host(folder))
             self.claim(folder)
 
     def _own_folder_of(self, path: str) -> None:
         """The same, for something new in it, or for something to go."""
-        folder = os.path.dirname(path)
+        folder = parent(path)
         self.check_folder(folder)
         place = self.place(folder)
         if not os.access(place, os.W_OK | os.X_OK):
@@ -238,13 +263,18 @@ class Overlay:
 
     def _touch_folder(self, path: str) -> None:
         with suppress(OSError):
-            self.stamps.written(key_of(os.stat(self._home() + os.path.dirname(path))))
+            self.stamps.written(key_of(os.stat(self._own_of_home(parent(path)))))
+
+    def _own_of_home(self, path: str) -> str:
+        self._home()
+        return self._own(path)
 
     def _home(self) -> str:
         if not self._top:
             from tempfile import mkdtemp
 
-            self._top = os.path.realpath(mkdtemp(prefix=PREFIX))
+            top = os.path.realpath(mkdtemp(prefix=PREFIX))
+            self._top = with_slashes(top) if HAS_DRIVES else top
             sys.audit(MADE, self._top)
             self._remove = finalize(self, _remove_tree, self._top, os.getpid())
         return self._top
@@ -263,10 +293,12 @@ class Overlay:
             descriptor = os.open(place, flags, mode)
         elif flags & _TMPFILE == _TMPFILE:
             self._own_folder_of(os.path.join(path, "new"))
-            descriptor = os.open(self._home() + path, flags, mode)
+            place = self._own_of_home(path)
+            descriptor = os.open(place, flags, mode)
         else:
             descriptor = self._open_to_write(path, flags, mode)
-        self._descriptors.add(descriptor)
+            place = self._own(path)
+        self._descriptors[descriptor] = place
         return descriptor
 
     def _open_to_write(self, path: str, flags: int, mode: int) -> int:
@@ -284,7 +316,8 @@ class Overlay:
         own = self.claim(path, with_data=not flags & os.O_TRUNC)
         descriptor = os.open(own, flags, mode)
         if is_new:
-            os.fchmod(descriptor, mode & ~_UMASK)
+            if hasattr(os, "fchmod"):
+                os.fchmod(descriptor, mode & ~_UMASK)
             self.stamps.made(os.fstat(descriptor))
             self._touch_folder(path)
         elif flags & os.O_TRUNC:
@@ -303,7 +336,7 @@ class Overlay:
         if self.exists(path):
             raise _error(errno.EEXIST, path)
         self._own_folder_of(path)
-        own = self._home() + path
+        own = self._own_of_home(path)
         how(own)
         if mode is not None:
             os.chmod(own, mode & ~_UMASK)
@@ -319,19 +352,19 @@ class Overlay:
         target = self.real(target, follow=False)
         if self.exists(target):
             raise _error(errno.EEXIST, target)
-        self.check_folder(os.path.dirname(target))
+        self.check_folder(parent(target))
         if self.is_folder(source):
             raise _error(errno.EPERM, source)
         self._own_folder_of(target)
-        os.link(self.claim(source), self._home() + target, follow_symlinks=False)
-        self.stamps.changed(os.lstat(self._home() + target))
+        os.link(self.claim(source), self._own_of_home(target), follow_symlinks=False)
+        self.stamps.changed(os.lstat(self._own_of_home(target)))
         self._touch_folder(target)
 
     def remove(self, path: str) -> None:
         """`os.unlink`."""
         path = self.real(path, follow=False)
         if not self.exists(path):
-            self.check_folder(os.path.dirname(path))
+            self.check_folder(parent(path))
             raise _error(errno.ENOENT, path)
         if self.is_folder(path):
             raise _error(errno.EISDIR, path)
@@ -361,7 +394,7 @@ class Overlay:
         if not self.exists(source):
             raise _error(errno.ENOENT, source)
         is_folder = self.is_folder(source)
-        self.check_folder(os.path.dirname(target))
+        self.check_folder(parent(target))
         if is_folder and _is_in(target, source) and target != source:
             raise _error(errno.EINVAL, source)
         if _is_in(source, target) and source != target:
@@ -370,7 +403,7 @@ class Overlay:
             return
         own = self._claim_all(source)
         self._own_folder_of(target)
-        os.rename(own, self._home() + target)
+        os.rename(own, self._own_of_home(target))
         if self._shines_through(source):
             self._gone.add(source)
         if self._shines_through(target):
@@ -445,7 +478,8 @@ class Overlay:
 
     def is_own(self, descriptor: int) -> bool:
         """Whether an open file is one of the run's own."""
-        return bool(self._top) and place_of(descriptor).startswith(os.path.join(self._top, ""))
+        place = place_of(descriptor) or self._descriptors.get(descriptor, "")
+        return bool(self._top) and place.startswith(f"{self._top}/")
 
     def written(self) -> Iterator[tuple[str, str]]:
         """Path and place of each file that the run wrote, in order."""
@@ -466,6 +500,8 @@ class Overlay:
 
     def part(self) -> None:
         """This process was forked: its run goes on with files of its own, and its own places in open ones."""
+        import fcntl  # only a system that forks has it
+
         old = self._top
         if old:
             self._top, self._remove = "", bool
@@ -482,26 +518,6 @@ class Overlay:
             os.lseek(again, at, os.SEEK_SET)
             os.dup2(again, descriptor, inheritable=False)
             os.close(again)
-
-
-def below_root(root: str, absent: Container[str] = ()) -> Callable[[str], str]:
-    """The places of the host's files, some of which are below a folder that stands for the computer's root.
-
-    Args:
-        root: the folder; empty for none.
-        absent: paths at which nothing is to be found.
-    """
-    if not root:
-        return lambda path: path
-    return lambda path: root + path if path in absent or os.path.lexists(root + path) else path
-
-
-def place_of(descriptor: int) -> str:
-    """Where an open file lies; empty where the system does not tell."""
-    try:
-        return os.readlink(f"/proc/self/fd/{descriptor}")
-    except OSError:
-        return ""
 
 
 def _copy_tree(old: str, new: str, stamps: Stamps) -> None:
@@ -557,5 +573,5 @@ def _living() -> WeakSet[Overlay]:
         for each in tuple(found):
             each.part()
 
-    os.register_at_fork(after_in_child=part)
+    in_forked_process(part)
     return found

@@ -22,7 +22,8 @@ from cfepy.osal import Stream
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
 
-_READ = select.POLLIN | select.POLLPRI
+POLLIN, POLLPRI, POLLOUT, POLLHUP = 1, 2, 4, 16  # as on Linux and macOS; Windows has no `poll`
+_READ = POLLIN | POLLPRI
 _MS = 1e-3
 
 
@@ -46,11 +47,11 @@ class Waiter:
         """
         if fd == STDIN:
             terminal = self._universe.terminal
-            return mask & select.POLLIN if terminal is not None and terminal.ready else 0
+            return mask & POLLIN if terminal is not None and terminal.ready else 0
         endpoint = self._socket(fd).endpoint
-        found = mask & select.POLLIN * endpoint.readable | mask & select.POLLOUT * endpoint.writable
+        found = mask & POLLIN * endpoint.readable | mask & POLLOUT * endpoint.writable
         gone = isinstance(endpoint, Stream) and endpoint.ended and (endpoint.write_shut or endpoint.other is None)
-        return found | (select.POLLHUP if gone else 0)
+        return found | (POLLHUP if gone else 0)
 
     def wait(self, fds: Sequence[int], ready: Callable[[], bool], seconds: float | None) -> bool:
         """Wait until `ready` says so, which is asked again when something happened to a descriptor.
@@ -87,7 +88,7 @@ class Poll:
         self._waiter = waiter
         self._masks: dict[int, int] = {}
 
-    def register(self, fd: Any, eventmask: int = _READ | select.POLLOUT) -> None:
+    def register(self, fd: Any, eventmask: int = _READ | POLLOUT) -> None:
         """Look at a descriptor from now on."""
         self._masks[descriptor(fd)] = eventmask
 
@@ -164,7 +165,7 @@ def select_module(universe: Universe) -> ModuleType:
 
         fds = list(dict.fromkeys(fd for _, fd, _ in wanted))
         waiter.wait(fds, lambda: any(waiter.events(fd, mask) for _, fd, mask in wanted), timeout)
-        return found(select.POLLIN), found(select.POLLOUT), []
+        return found(POLLIN), found(POLLOUT), []
 
     kqueues = {name: refusal(universe, f"select.{name}", NETWORK) for name in ("kqueue", "devpoll")}
     return proxy(
@@ -177,4 +178,4 @@ def select_module(universe: Universe) -> ModuleType:
 
 
 def _with_masks(rlist: Sequence[Any], wlist: Sequence[Any]) -> list[tuple[Any, int]]:
-    return [*((each, select.POLLIN) for each in rlist), *((each, select.POLLOUT) for each in wlist)]
+    return [*((each, POLLIN) for each in rlist), *((each, POLLOUT) for each in wlist)]

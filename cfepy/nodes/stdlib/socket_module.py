@@ -23,7 +23,9 @@ from cfepy.rtos import FOREVER, TIMEOUT, WaitList
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
 
-_OPTIONS_OF_TYPE = socket.SOCK_NONBLOCK | socket.SOCK_CLOEXEC
+_NONBLOCK = getattr(socket, "SOCK_NONBLOCK", 0)  # Windows and macOS know it and the next one not
+_OPTIONS_OF_TYPE = _NONBLOCK | getattr(socket, "SOCK_CLOEXEC", 0)
+_DONT_WAIT = getattr(socket, "MSG_DONTWAIT", 0)  # Windows does not
 _BUFFER_BYTES = 212_992
 _REFUSED = ("fromfd", "fromshare", "send_fds", "recv_fds", "sethostname")
 _REBOUND = ("create_connection", "create_server", "has_dualstack_ipv6")
@@ -93,7 +95,7 @@ class NodeSocket:
         if self._kind not in (socket.SOCK_STREAM, socket.SOCK_DGRAM):
             raise failure(errno.EPERM)
         self.proto = max(proto, 0)
-        self._timeout = 0.0 if kind & socket.SOCK_NONBLOCK else self.universe.sockets.default_timeout
+        self._timeout = 0.0 if kind & _NONBLOCK else self.universe.sockets.default_timeout
         self._open(Mailbox() if self._kind == socket.SOCK_DGRAM else Endpoint())
 
     def _open(self, endpoint: Endpoint) -> None:
@@ -332,7 +334,7 @@ class NodeSocket:
         endpoint = self.endpoint
         if not isinstance(endpoint, Mailbox):
             endpoint = self._stream()
-        self._wait([endpoint], lambda: endpoint.readable, bool(flags & socket.MSG_DONTWAIT))
+        self._wait([endpoint], lambda: endpoint.readable, bool(flags & _DONT_WAIT))
         if isinstance(endpoint, Mailbox):
             datagram = endpoint.peek() if flags & socket.MSG_PEEK else endpoint.take()
             return datagram.data[:bufsize], address_of(datagram.source)
@@ -370,7 +372,7 @@ class NodeSocket:
                 raise failure(errno.EDESTADDRREQ)
             return self._send_datagram(self.endpoint, raw, self.endpoint.peer)
         stream = self._stream()
-        self._wait([stream], lambda: stream.writable, bool(flags & socket.MSG_DONTWAIT))
+        self._wait([stream], lambda: stream.writable, bool(flags & _DONT_WAIT))
         count = stream.write(raw)
         if count is None:
             raise failure(errno.EPIPE)

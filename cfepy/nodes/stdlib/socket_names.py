@@ -48,7 +48,9 @@ def host_of(name: Any, family: int, host_name: str) -> str:
     except ValueError:
         raise socket.gaierror(socket.EAI_NONAME, "Name or service not known") from None
     if (address.version == 6) != is_ip6:
-        raise socket.gaierror(socket.EAI_ADDRFAMILY, "Address family for hostname not supported")
+        raise socket.gaierror(
+            getattr(socket, "EAI_ADDRFAMILY", socket.EAI_FAMILY), "Address family for hostname not supported"
+        )
     return str(address)
 
 

@@ -1,0 +1,54 @@
+"""What of the computer's system not every system has; without it, cfepy goes on where it can.
+
+Modules that only POSIX has (`fcntl`, `termios`, `resource`) are imported where they are used, and never at the top.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Sequence
+
+_LOCKED_BYTE = 1 << 40
+
+
+def in_forked_process(call: Callable[[], object]) -> None:
+    """Call something in each child that this process forks; where no process is forked, never."""
+    if hasattr(os, "register_at_fork"):
+        os.register_at_fork(after_in_child=call)
+
+
+def signal_number(name: str) -> int:
+    """The number of a signal, such as SIGBUS; 0, which no signal has, where the system does not know it."""
+    return int(getattr(signal, name, 0))
+
+
+def lock_file(descriptor: int) -> None:
+    """Keep other processes from locking an open file too, for as long as it is open.
+
+    Raises:
+        OSError: another one has locked it.
+    """
+    if sys.platform != "win32":
+        import fcntl
+
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return
+    import msvcrt
+
+    at = os.lseek(descriptor, 0, os.SEEK_CUR)
+    os.lseek(descriptor, _LOCKED_BYTE, os.SEEK_SET)  # behind all data: nobody can read what is locked
+    msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+    os.lseek(descriptor, at, os.SEEK_SET)
+
+
+def command_line(words: Sequence[str]) -> str:
+    """A command as it is typed into the shell of this system."""
+    if os.name == "nt":
+        from subprocess import list2cmdline  # starting with it would cost every boot its import
+
+        return list2cmdline(words)
+    from shlex import join
+
+    return join(words)

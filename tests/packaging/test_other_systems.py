@@ -1,0 +1,33 @@
+"""cfepy goes without what other systems lack: every module is imported, and the demonstration is the same run.
+
+What is taken away here is what Windows' or macOS's Python does not have. What those have instead is not there either,
+so this finds code that cannot do without, and nothing more; docs/install.md says what was run on a system's own Python.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.mission import Mission
+from cfepy.resources import import_path
+
+pytestmark = pytest.mark.slow
+WITHOUT = Path(__file__).with_name("without.py")
+
+
+@pytest.mark.parametrize("system", ["windows", "macos"])
+def test_all_is_imported_and_the_demonstration_is_the_same_run(system: str) -> None:
+    environment = {**os.environ, "PYTHONPATH": import_path()}
+    command = [sys.executable, "-P", str(WITHOUT), system, "capture", "1"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    with Mission("capture", console=Console(quiet=True)) as mission:
+        mission.run_for(1)
+        mission.shut_down_nodes()
+        assert done.stdout.splitlines()[-1] == mission.trace.digest()
