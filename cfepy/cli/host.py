@@ -23,7 +23,8 @@ from cfepy.rtos import Pacer, Stopwatch
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
-    from cfepy.io import HostNetwork
+    from cfepy.cli.viewers import Viewers
+    from cfepy.io import Guest, HostNetwork
 
 PATIENCE_NS = 2 * NS_PER_S  # wall time after the second Ctrl-C in which no other has an effect
 STDERR = 2
@@ -51,6 +52,7 @@ class WatchedHost(Host):
         ports: ports of this computer by those of the mission.
         ros_master: a paced run joins the ROS master at this URI, or serves one: "serve" or "serve:PORT"; None for
             neither.
+        viewers: what looks at the run from outside and acts on it; None for nobody. They leave at its end.
         pause: called between the pieces.
         note: gets what the user should know before anything runs.
 
@@ -68,6 +70,7 @@ class WatchedHost(Host):
         realtime: float | None = None,
         ports: Mapping[int, int] | None = None,
         ros_master: str | None = None,
+        viewers: Viewers | None = None,
         pause: Callable[[], object] = lambda: None,
         note: Callable[[str], object] = _to_stderr,
     ) -> None:
@@ -79,6 +82,7 @@ class WatchedHost(Host):
         self._realtime = realtime
         self._ports = ports or {}
         self._ros_master = ros_master
+        self._viewers = viewers
         self._pause = pause
         self._note = note
         self._piece = PieceLength()
@@ -135,7 +139,13 @@ class WatchedHost(Host):
 
     def end(self) -> None:
         """See `Host.end`."""
+        if self._viewers is not None:
+            self._viewers.close()
         self._bridge.close()
+
+    @property
+    def _guests(self) -> list[Guest]:
+        return [] if self._viewers is None else self._viewers.guests
 
     def _line(self, text: str) -> None:
         self._display.line(text)
@@ -165,6 +175,8 @@ class WatchedHost(Host):
 
             ros = RosHost(self._mission, world_at(self._ros_master), tell=self._line)
             self._network.join(self._bridge.enter_context(ros))
+        for each in self._guests:
+            self._network.join(each)
 
     def _run_until(self, until_ns: int) -> None:
         """A piece of the run; its length goes after what takes some 80 to 250 ms of wall time."""
@@ -173,6 +185,9 @@ class WatchedHost(Host):
         self._piece.took(length_ns, watch.elapsed_ns())
         if self._network is not None:
             self._network.exchange()
+            return
+        for each in self._guests:
+            each.exchange()
 
 
 class Interrupts:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from cfepy.ground.graph.drawing import graph_svg
     from cfepy.ground.graph.model import MissionGraph, graph_of
     from cfepy.ground.graph.texts import graph_dot, graph_text
+    from cfepy.ground.json_messages import message_from_json
+    from cfepy.ground.json_packets import EVENTS, PACKETS, event_json, log_schema, packet_json, packet_schema
     from cfepy.ground.link import CI_PORT, TO_PORT, GroundLink
     from cfepy.ground.mcap_recorder import recorder_of
     from cfepy.ground.node import GroundConsole, empty_mission, ground_node_ended, with_ground_node, with_player
@@ -33,9 +35,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CI_PORT",
+    "EVENTS",
     "EVENT_IDS",
     "EVENT_TYPES",
     "LOOK_S",
+    "PACKETS",
     "ROS",
     "TO_PORT",
     "BagReader",
@@ -60,6 +64,7 @@ __all__ = [
     "candidates",
     "dictionary_of",
     "empty_mission",
+    "event_json",
     "flat",
     "graph_dot",
     "graph_of",
@@ -75,10 +80,14 @@ __all__ = [
     "lock_path",
     "lock_text",
     "locked",
+    "log_schema",
+    "message_from_json",
     "names_in",
     "names_of",
     "number_of",
+    "packet_json",
     "packet_of",
+    "packet_schema",
     "packet_series",
     "plain",
     "recorder_of",
@@ -146,6 +155,15 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "ground_node_ended",
                 "with_ground_node",
                 "with_player",
+            ),
+            ".json_messages": ("message_from_json",),
+            ".json_packets": (
+                "EVENTS",
+                "PACKETS",
+                "event_json",
+                "log_schema",
+                "packet_json",
+                "packet_schema",
             ),
             ".recording": (
                 "RecordingSummary",

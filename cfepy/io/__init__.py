@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from cfepy.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.io.host_network import HostNetwork
+    from cfepy.io.host_network import Guest, HostNetwork
     from cfepy.io.peer_counts import INTO, OUT_OF, PeerCount, PeerCounts
     from cfepy.io.peer_socket import ENDED, Listening, PeerSocket, listening_socket
     from cfepy.io.typed_lines import TypedLines
@@ -26,6 +26,7 @@ __all__ = [
     "ENDED",
     "INTO",
     "OUT_OF",
+    "Guest",
     "HostNetwork",
     "Listening",
     "PeerCount",
@@ -42,7 +43,10 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".host_network": ("HostNetwork",),
+            ".host_network": (
+                "Guest",
+                "HostNetwork",
+            ),
             ".peer_counts": (
                 "INTO",
                 "OUT_OF",

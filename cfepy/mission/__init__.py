@@ -7,7 +7,7 @@ anything comes in from outside, and the record of what happened. What the ground
 
 from __future__ import annotations
 
-from cfepy.mission.acts import CALL, FILE, PACKET, PARAM, PUBLISH, HostCall
+from cfepy.mission.acts import CALL, FILE, PACKET, PARAM, PUBLISH, ROS, HostCall
 from cfepy.mission.compiled_code import find_compiled
 from cfepy.mission.cpp_nodes import (
     ARENA_BYTES,
@@ -81,6 +81,7 @@ __all__ = [
     "PARAM",
     "PROFILES",
     "PUBLISH",
+    "ROS",
     "STARTUP_SCRIPT",
     "TEXT",
     "UNIX_AT_CFE_EPOCH",

@@ -89,7 +89,8 @@ def _watched(
             copy = bytearray(packet)
             route = self.routes.get(copy[0] << 8 | copy[1])
             msg.set_size(copy, len(copy))
-            msg.set_sequence_count(copy, 0 if route is None else route.sequence & msg.MAX_SEQUENCE_COUNT)
+            sequence = 0 if route is None else route.sequence + 1
+            msg.set_sequence_count(copy, sequence & msg.MAX_SEQUENCE_COUNT)
             msg.origination_action(copy, self.ports.time.stamp())
             return bytes(copy)
 

@@ -100,7 +100,8 @@ class TopicWatch(PacketWatch):
             return
         data = seen.packet if topic.raw else self._whole(seen)
         if data is not None:
-            header = next((link.header for link in topic.links if link.node.config.app == seen.sender), None)
+            links = [link for link in topic.links if link.node.config.app == seen.sender]
+            header = links[0].header if len(links) == 1 else topic.sender_of(seen.packet) if links else None
             self._show(topic, header or _header_of(topic, seen.sender), data, seen.at_ns)
 
     def _whole(self, seen: Seen) -> bytes | None:

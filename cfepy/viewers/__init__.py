@@ -4,3 +4,29 @@ What belongs here listens on a real socket, shows what the mission's graph has, 
 the door that a journal has. ROS's own protocols between nodes are `cfepy.ros_host`; pictures of a run that is over,
 `cfepy.reports`.
 """
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.viewers.foxglove import FoxgloveViewer
+    from cfepy.viewers.listen import Admission, ListenPlace, admission_to, listen_place_of
+
+__all__ = ["Admission", "FoxgloveViewer", "ListenPlace", "admission_to", "listen_place_of"]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".foxglove": ("FoxgloveViewer",),
+            ".listen": (
+                "Admission",
+                "ListenPlace",
+                "admission_to",
+                "listen_place_of",
+            ),
+        },
+    )

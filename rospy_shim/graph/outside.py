@@ -80,6 +80,7 @@ class OutsideNode:
 
     call_ns = publish_slot_ns = pid = 0
     owner = None
+    config = SimpleNamespace(app="host")  # in whose name its messages are sent, as the watches of the bus see it
 
     def __init__(self, name: str, uri: str, graph: Graph, cfe: Cfe, kernel: Kernel) -> None:
         self.names = SimpleNamespace(name=name)

@@ -18,6 +18,7 @@ from cfepy.ground.mcap_recorder import recorder_of
 from cfepy.mission import Mission, MissionSpec
 from cfepy.nodes.config import RosConfig, TopicConfig
 from cfepy.status import UsageError
+from rospy_shim.msgs import message_class
 from tests.disk import room_for
 
 TALKS = """
@@ -225,3 +226,26 @@ def test_a_broken_bag_is_read_or_named(whole: Path, changes: list[tuple[float, i
     broken.write_bytes(data)
     with contextlib.suppress(UsageError):  # anything else is a fault of ours
         read(broken)
+
+
+def test_what_outside_nodes_publish_is_recorded_with_their_names(tmp_path: Path) -> None:
+    """Two publishers outside of one topic: each message has the header of its own."""
+    (tmp_path / "hears.py").write_text(textwrap.dedent(HEARS))
+    (tmp_path / "startup.scr").write_text("CFE_APP, hears.py, __main__, HEARS, 100, 16384, 0x0, 0;\n!\n")
+    spec = MissionSpec("test", tmp_path, tmp_path / "startup.scr", None, "linux", RosConfig({}, {}, {}))
+    string, bag = message_class("std_msgs/String"), tmp_path / "run.bag"
+    with (
+        recorder_of(str(bag)) as recorder,
+        Mission(spec, console=Console(quiet=True), attachments=[recorder]) as mission,
+    ):
+        mission.run_for(1)
+        act = mission.outside.act
+        for name in ("/one", "/two"):
+            act("ros", "publish", "/late", name, "", string._type, string._md5sum, string._full_text, False)
+        mission.run_for(1)
+        for name in ("/two", "/one"):
+            assert act("ros", "message", "/late", name, string(name)._pack())
+            mission.run_for(0.1)
+    with BagReader(str(bag)) as reader:
+        found = [(each.header["callerid"], each.data[4:].decode()) for each in reader.messages(["/late"])]
+    assert found == [("/two", "/two"), ("/one", "/one")]

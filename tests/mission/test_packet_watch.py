@@ -8,6 +8,7 @@ from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.mission.packet_watch import PacketWatch, Seen
 from cfepy.msg import get_sequence_count, validate_checksum
+from cfepy.sb import Outlet
 from tests.mission.flights import write_mission
 
 APP = """
@@ -41,11 +42,25 @@ def test_packets_look_as_their_subscribers_get_them(tmp_path: Path) -> None:
     seen: list[Seen] = []
     fly(tmp_path, seen)
     own = [each for each in seen if each.sender == "OWN" and each.msg_id == 0x0890]
-    assert [get_sequence_count(each.packet) for each in own] == list(range(len(own)))
+    assert [get_sequence_count(each.packet) for each in own] == list(range(1, len(own) + 1))
     assert len({each.packet[6:12] for each in own}) == len(own)  # every one has its time
     assert [each.at_ns for each in own] == sorted(each.at_ns for each in own)
     command = next(each for each in seen if each.msg_id == 0x1892)
     assert validate_checksum(command.packet)
+
+
+def test_they_are_the_same_bytes(tmp_path: Path) -> None:
+    seen: list[Seen] = []
+    got: list[bytes] = []
+    watch = PacketWatch(seen.append, lambda msg_id: msg_id in (0x0890, 0x1892))
+    with Mission(write_mission(tmp_path, STARTUP, own=APP), console=Console(quiet=True), attachments=[watch]) as flight:
+        flight.run_for(1)
+        seen.clear()
+        for msg_id in (0x0890, 0x1892):
+            Outlet(flight.cfe.sb, msg_id, "ear", got.append)
+        flight.run_for(2)
+    assert len(got) > 10
+    assert [each.packet for each in seen] == got
 
 
 def test_packets_without_a_subscriber_are_seen_too(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ from cfepy.cli.options import (
     add_pace,
     add_recording,
     add_run_options,
+    add_viewers,
     count_of,
     factor_of,
     seconds_of,
@@ -63,6 +64,7 @@ def _add_launch(commands: _Actions[argparse.ArgumentParser]) -> None:
     launch.add_argument("--dump-params", action="store_true", help="only show the parameters, as YAML")
     add_run_options(launch)
     add_pace(launch)
+    add_viewers(launch)
     add_outputs(launch)
     add_recording(launch)
     launch.set_defaults(module="ros.launch")
@@ -79,6 +81,7 @@ def _add_node(commands: _Actions[argparse.ArgumentParser]) -> None:
     node.add_argument("words", metavar="WORD", nargs="+", help=_NODE_WORDS)
     add_run_options(node, without=["launch_args"])
     add_pace(node)
+    add_viewers(node)
     add_outputs(node)
     add_recording(node)
     node.set_defaults(module="ros.node", hint="; what the node itself is to get comes after --")

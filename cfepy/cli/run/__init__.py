@@ -18,6 +18,7 @@ from cfepy.cli.options import (
     add_pace,
     add_recording,
     add_run_options,
+    add_viewers,
     seconds_of,
 )
 
@@ -45,6 +46,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     add_mission_or_node(run)
     add_run_options(run)
     add_pace(run)
+    add_viewers(run)
     add_outputs(run)
     add_recording(run)
     run.add_argument(

@@ -13,6 +13,7 @@ from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import check_pace, plan_of_mission
 from cfepy.cli.run import report
 from cfepy.cli.run.outputs import Outputs, recording
+from cfepy.cli.viewers import Viewers
 from cfepy.pilot import Flown, RunPlan, fly
 from cfepy.trace import TimedRecords, Trace
 
@@ -81,7 +82,7 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
     """Fly a plan as the command line says, and report.
 
     Args:
-        arguments: with the options of `add_outputs`, `add_recording` and `add_pace`.
+        arguments: with the options of `add_outputs`, `add_recording`, `add_pace` and `add_viewers`.
         plan: what to fly.
         view: what is shown of it.
 
@@ -94,18 +95,22 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
     check_pace(arguments)
     with recording(arguments, plan) as journal, Interrupts() as interrupts, Outputs(arguments, plan) as outputs:
         spec = plan.spec()  # a journal has the files that are read for it
-        with WatchedHost(
-            interrupts,
-            view.display,
-            realtime=arguments.realtime,
-            ports=dict(arguments.port),
-            ros_master=arguments.ros_master,
-            pause=_nothing if journal is None else journal.mark,
-        ) as host:
+        with (
+            Viewers(arguments, spec.name) as viewers,
+            WatchedHost(
+                interrupts,
+                view.display,
+                realtime=arguments.realtime,
+                ports=dict(arguments.port),
+                ros_master=arguments.ros_master,
+                viewers=viewers,
+                pause=_nothing if journal is None else journal.mark,
+            ) as host,
+        ):
             flown = fly(
                 plan,
                 spec=spec,
-                attachments=[*outputs.attachments, *([] if journal is None else [journal])],
+                attachments=[*outputs.attachments, *viewers.attachments, *([] if journal is None else [journal])],
                 console=host.console,
                 policy=None if journal is None else journal.policy,
                 trace=outputs.trace,

@@ -1,0 +1,215 @@
+"""`--foxglove`: the mission in Foxglove, live, over its WebSocket protocol (docs.foxglove.dev, "Foxglove WebSocket").
+
+What belongs here says in Foxglove's terms what the mission has, and the other way round. The protocol itself is spoken
+by the library foxglove-sdk, in threads of its own.
+
+`FoxgloveViewer` watches the bus, as a recording does, so a run that is shown has the trace of one that is not. What
+comes in enters while the run stands still, through `cfepy.mission.outside`; so a journal has it, and a replay needs
+none of this.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from cfepy.ground import Dictionary, dictionary_of
+from cfepy.io import INTO, OUT_OF, PeerCounts
+from cfepy.mission import Mission, Seen, TopicWatch
+from cfepy.msg import get_header_version
+from cfepy.viewers.foxglove.client_listener import ClientListener
+from cfepy.viewers.foxglove.client_topics import PEER, ClientTopics
+from cfepy.viewers.foxglove.door import ViewerDoor
+from cfepy.viewers.foxglove.graph_mirror import GraphMirror, ParameterMirror, ServiceMirror
+from cfepy.viewers.foxglove.inbox import (
+    Advertised,
+    Called,
+    Entry,
+    ParametersSet,
+    Published,
+    Subscribed,
+    Unadvertised,
+    ViewerInbox,
+)
+from cfepy.viewers.foxglove.sdk_server import SdkServer
+from cfepy.viewers.foxglove.shown_channels import ShownChannels
+from cfepy.viewers.listen import Admission, ListenPlace
+
+if TYPE_CHECKING:
+    from rospy_shim.runtime import RosRuntime
+
+__all__ = ["FoxgloveViewer"]
+
+LOOK_S = 0.05  # wall time between two looks at what there is
+ALL = "(connections)"
+TABLE = "viewer_peers"
+LOST = "lost on the way to viewers that are too slow, or left"
+
+
+class FoxgloveViewer(TopicWatch):
+    """Attach it to the mission, join it to the host, and close it when the run is over.
+
+    Args:
+        place: where viewers connect.
+        admission: whom it lets in.
+        name: of the mission; viewers show it.
+        counts: of the run's report.
+
+    Raises:
+        UsageError: foxglove-sdk is not installed, or the port is taken.
+
+    Attributes:
+        place: where viewers connect, with the port that was free.
+    """
+
+    def __init__(self, place: ListenPlace, admission: Admission, name: str, counts: PeerCounts) -> None:
+        super().__init__(lambda message: self._channels.show_message(message))
+        self._counts = counts
+        self._inbox = ViewerInbox()
+        self._dictionary = Dictionary()
+        self._ros: RosRuntime | None = None
+        self._look_at_s = 0.0
+        self._is_closed = False
+        listener = ClientListener(self._inbox, self._known_parameters, self._parameter)
+        self._listener = listener
+        self._server = SdkServer(name, listener, self._log)
+        self._parameters = ParameterMirror(self._server)
+        self._services = ServiceMirror(self._server, self._inbox.put)
+        self._graph_shown = GraphMirror(self._server)
+        try:
+            self._door = ViewerDoor(place, admission, (self._server.host, self._server.port))
+        except BaseException:
+            self._server.close()
+            self._inbox.close()
+            raise
+        self.place = self._door.place
+
+    # -- the mission -------------------------------------------------------------------------------------------------
+
+    def begin(self, mission: Mission) -> None:
+        """See `Attachment.begin`."""
+        super().begin(mission)
+        mission.record.tables[TABLE] = self._counts.rows
+        self._dictionary = dictionary_of(mission.spec)
+        self._channels = ShownChannels(self._server.channel, self._dictionary, self._listener.listeners, self._counts)
+        self._incoming = ClientTopics(mission, self._dictionary, self._counts, self, self._server.tell_problem)
+
+    def _is_wanted(self, msg_id: int) -> bool:
+        return True
+
+    def take_packet(self, seen: Seen) -> None:
+        """See `TopicWatch.take_packet`."""
+        super().take_packet(seen)
+        declared = None if get_header_version(seen.packet) else self._dictionary.declared_as(seen.packet)
+        if declared is None and self._topic(seen.msg_id) is not None:
+            return  # the message of a ROS topic, which has been shown
+        self._channels.show_packet(seen, declared, self._stamp(seen.at_ns) or 0)
+
+    def _known_parameters(self) -> Mapping[str, Any]:
+        return self._parameters.values
+
+    def _parameter(self, name: str, value: Any) -> Any:
+        return self._server.parameter(name, value)
+
+    # -- the host ----------------------------------------------------------------------------------------------------
+
+    def fileno(self) -> int:
+        """What can be read when something wants to come in."""
+        return self._inbox.fileno()
+
+    def exchange(self) -> None:
+        """Bring in what arrived, and show what is new; the run stands still."""
+        mission = self._mission
+        assert mission is not None
+        if mission.ros is not self._ros:
+            self._ros = mission.ros
+            self._begin_ros()
+        for entry in self._inbox.take():
+            self._do(mission, entry)
+        self._incoming.enter()
+        self._parameters.look()
+        now_s = time.monotonic()
+        if now_s >= self._look_at_s:
+            self._look_at_s = now_s + LOOK_S
+            self._look(mission)
+
+    def close(self) -> None:
+        """The run is over: let the last messages out, and end all connections."""
+        if self._is_closed:
+            return
+        self._is_closed = True
+        self._services.close()
+        self._door.drain()
+        self._server.close()
+        self._door.close()
+        self._inbox.close()
+        self._count()
+
+    def _begin_ros(self) -> None:
+        ros = self._ros
+        self._services.forget()
+        if ros is not None:
+            self._parameters.watch(ros.graph.params)
+            self._incoming.begin()
+
+    def _do(self, mission: Mission, entry: Entry) -> None:
+        match entry:
+            case Subscribed():
+                self._channels.greet(entry.channel, entry.client)
+            case Advertised():
+                self._incoming.advertise(entry)
+            case Unadvertised():
+                self._incoming.unadvertise(entry)
+            case Published():
+                self._incoming.publish(entry)
+            case ParametersSet():
+                self._parameters.set(mission, entry)
+            case Called():
+                self._services.begin(mission, entry, self)
+
+    def _look(self, mission: Mission) -> None:
+        self._server.tell_time(self._stamp(mission.kernel.now) or 0)
+        ros = self._ros
+        if ros is None:
+            return
+        for topic in list(ros.graph.topics.values()):
+            if topic.md5sum not in ("", "*") and topic.definition and not topic.raw:
+                about = {"type": topic.type, "md5sum": topic.md5sum, "message_definition": topic.definition}
+                self._channels.announce(topic.name, about)
+        self._services.look(ros.graph)
+        self._graph_shown.look(ros.graph)
+
+    # -- the way out of the nodes that viewers are ---------------------------------------------------------------------
+
+    def message(self, topic: str, publisher: str, subscriber: str, payload: bytes) -> None:
+        """See `WayOut.message`: viewers watch the bus, and subscribe to nothing in the graph."""
+
+    def packet(self, topic: str, packet: bytes) -> None:
+        """See `WayOut.packet`: as above."""
+
+    def request(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:
+        """See `WayOut.request`: viewers offer no services."""
+
+    def answer(self, number: int, good: bool, body: bytes) -> None:
+        """See `WayOut.answer`."""
+        self._services.answer(number, good, body)
+
+    # -- counts ------------------------------------------------------------------------------------------------------
+
+    def _log(self, line: str) -> None:
+        """The server says something of a connection or a frame, in a thread of its own."""
+        row = self._counts.of(ALL, PEER, INTO)
+        row.dropped += 1
+        row.why = line
+
+    def _count(self) -> None:
+        door = self._door
+        row = self._counts.of(ALL, PEER, OUT_OF)
+        row.connections, row.ended, row.refused = door.admitted, door.ended, door.refused
+        row.messages, row.size, row.why = door.messages, door.size, door.why
+        row.dropped = self._channels.sent - door.messages
+        if row.dropped and not row.why:
+            row.why = LOST
+        if self._inbox.lost:
+            self._counts.of(ALL, PEER, INTO).dropped += self._inbox.lost

@@ -1,0 +1,104 @@
+"""Runs that Foxglove looks at: the mission goes on when the test says so, and not by the wall clock."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from cfepy.attachment import Attachment
+from cfepy.console import Console
+from cfepy.io import PeerCounts
+from cfepy.mission import Mission, MissionSpec
+from cfepy.nodes.config import RosConfig
+from cfepy.viewers.foxglove import FoxgloveViewer
+from cfepy.viewers.listen import Admission, ListenPlace
+from tests.viewers.foxglove.client import FoxgloveClient
+
+TALKER = """
+    import rospy
+    from std_msgs.msg import String
+    from std_srvs.srv import SetBool
+    rospy.init_node("talker")
+    latched = rospy.Publisher("/latched", String, queue_size=10, latch=True)
+    latched.publish("once")
+    chatter = rospy.Publisher("/chatter", String, queue_size=10)
+    def heard(message):
+        chatter.publish(message.data.upper() + " of " + message._connection_header["callerid"])
+    rospy.Subscriber("/orders", String, heard)
+    def switch(request):
+        if not request.data:
+            raise ValueError("off is not possible")
+        return True, "on"
+    rospy.Service("/switch", SetBool, switch)
+    rospy.loginfo("ready")
+    rospy.sleep(1)
+    late = rospy.Publisher("/late", String, queue_size=10, latch=True)
+    late.publish("now")
+    while not rospy.is_shutdown():
+        rospy.loginfo("late")
+        rospy.sleep(0.5)
+    rospy.spin()
+"""
+PIECE_NS = 10_000_000
+
+
+class ShownRun:
+    """A run with a viewer's server."""
+
+    def __init__(self, mission: Mission, viewer: FoxgloveViewer) -> None:
+        self.mission = mission
+        self.viewer = viewer
+
+    @property
+    def url(self) -> str:
+        """Where viewers connect."""
+        return f"ws://{self.viewer.place}/"
+
+    def go_on(self) -> None:
+        """A piece of the run."""
+        self.mission.run_until(self.mission.kernel.now + PIECE_NS)
+        self.viewer.exchange()
+
+    def until(self, seconds: float) -> None:
+        """The run up to a virtual time."""
+        while self.mission.kernel.now < seconds * 1_000_000_000:
+            self.go_on()
+
+    def client(self, **options: Any) -> FoxgloveClient:
+        """A viewer; the run goes on while it waits."""
+        return FoxgloveClient(self.url, self.go_on, **options)
+
+    def rows(self) -> dict[tuple[str, str], dict[str, Any]]:
+        """The report's rows by name and direction."""
+        return {(row["name"], row["direction"]): row for row in self.mission.record.rows("viewer_peers")}
+
+
+def spec_of(folder: Path, nodes: Mapping[str, str], params: Mapping[str, Any] | None = None) -> MissionSpec:
+    """A mission of ROS nodes."""
+    lines = []
+    for name, code in nodes.items():
+        (folder / f"{name}.py").write_text(textwrap.dedent(code))
+        lines.append(f"CFE_APP, {name}.py, __main__, {name.upper()}, 100, 16384, 0x0, 0;\n")
+    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    ros = RosConfig({}, {}, dict(params or {}))
+    return MissionSpec("shown", folder, folder / "startup.scr", None, "linux", ros)
+
+
+@contextmanager
+def shown(
+    spec: MissionSpec,
+    admission: Admission | None = None,
+    attachments: Sequence[Attachment] = (),
+    before: Callable[[Mission], object] = lambda mission: None,
+) -> Iterator[ShownRun]:
+    """A run that Foxglove may look at."""
+    viewer = FoxgloveViewer(ListenPlace("127.0.0.1", 0), admission or Admission(), "shown", PeerCounts())
+    try:
+        with Mission(spec, console=Console(quiet=True), attachments=[viewer, *attachments]) as mission:
+            before(mission)
+            yield ShownRun(mission, viewer)
+    finally:
+        viewer.close()
