@@ -56,15 +56,26 @@ COUNTED_BY_ID = frozenset(
 """Numbers of things that have resource ids, which tell no more than 65534 of a kind apart."""
 
 
+NOT_LIMITS = frozenset({"cfe_version", "given"})
+"""What no board and no `limits:` of a mission file says."""
+
+IDENTITIES: Mapping[str, str] = {"processor_id": "--cpuid", "spacecraft_id": "--scid"}
+"""What a run can be given in place of what it was built with, and the option of NASA's executable for it."""
+
+MOST_ID = 0xFFFF_FFFF
+
+
 @dataclass(frozen=True, slots=True)
 class PlatformConfig:
     """Limits and identities of one processor; field names are cFE's macro names without CFE_PLATFORM_/CFE_MISSION_.
 
     Attributes:
         cfe_version: the release of cFE that it runs, a key of `RELEASES`; a mission file names it by itself.
+        given: the identities that the command line of the flight software gave, of `IDENTITIES`.
     """
 
     cfe_version: str = DEFAULT_RELEASE
+    given: tuple[str, ...] = ()
 
     spacecraft_id: int = 66
     processor_id: int = 1

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import asdict
 
 from cfepy import versions
-from cfepy.config import ES_MEM_BLOCK_SIZES, SB_LARGEST_BLOCK_MORE, SB_MEM_BLOCK_SIZES, PlatformConfig
+from cfepy.config import ES_MEM_BLOCK_SIZES, NOT_LIMITS, SB_LARGEST_BLOCK_MORE, SB_MEM_BLOCK_SIZES, PlatformConfig
 from cfepy.ids import CONFIGID_BASE, UNDEFINED, get_base, get_serial, make
 
 UNKNOWN = "[unknown]"
@@ -121,6 +121,5 @@ def _arrays(config: PlatformConfig) -> dict[str, Value]:
 
 def _platform(config: PlatformConfig) -> dict[str, Value]:
     """The fields of the platform configuration: PLATFORM_ES_MAX_APPLICATIONS; OSAL's without a prefix: OS_MAX_TASKS."""
-    fields: dict[str, Value] = asdict(config)
-    del fields["cfe_version"]
+    fields: dict[str, Value] = {name: value for name, value in asdict(config).items() if name not in NOT_LIMITS}
     return {name.upper() if name.startswith("os_") else f"PLATFORM_{name.upper()}": fields[name] for name in fields}

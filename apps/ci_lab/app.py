@@ -59,7 +59,8 @@ class CommandIngest:
         except CfeError as error:
             cfe.es.write_to_sys_log(f"CI_LAB: Error registering for Event Services, RC = {error.hex}")
         self._subscribe()
-        self._uplink.open(BASE_UDP_PORT + cfe.psp.get_processor_id() - 1)
+        port = BASE_UDP_PORT + cfe.psp.get_processor_id() - 1
+        self._uplink.open(port & 0xFFFF)  # a uint16 in C
         cfe.os.task_install_delete_handler(self._uplink.close)
         cfe.evs.send_info(ev.INIT_INF_EID, f"CI Lab Initialized.{VERSION}")
 

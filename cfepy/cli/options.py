@@ -167,6 +167,25 @@ def _add_settings(parser: Options) -> None:
     )
 
 
+def _add_spacecraft_id(parser: Options) -> None:
+    parser.add_argument(
+        "--spacecraft-id",
+        type=id_of,
+        metavar="N",
+        help="number of the spacecraft, as --scid of NASA's executable (default: the mission's, or 66)",
+    )
+
+
+def _add_processor_id(parser: Options) -> None:
+    parser.add_argument(
+        "--processor-id",
+        type=id_of,
+        metavar="N",
+        help="number of the processor, as --cpuid of NASA's executable; CI_LAB listens at UDP port 1233 + N (default: "
+        "the mission's, or 1)",
+    )
+
+
 RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "launch_args": _add_launch_args,
     "seconds": _add_seconds,
@@ -184,6 +203,8 @@ RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "races": _add_races,
     "cpp_nodes": _add_cpp_nodes,
     "settings": _add_settings,
+    "spacecraft_id": _add_spacecraft_id,
+    "processor_id": _add_processor_id,
 }
 """What adds the option for each attribute of `RunPlan`, but for the words and the command, which are what is run."""
 
@@ -288,6 +309,8 @@ _USUAL: Mapping[str, tuple[str, object]] = {
     "races": ("--races", False),
     "cpp_nodes": ("--cpp-nodes", None),
     "settings": ("--set", None),
+    "spacecraft_id": ("--spacecraft-id", None),
+    "processor_id": ("--processor-id", None),
 }
 """The option for each attribute, and its value when nothing is said."""
 
@@ -547,6 +570,14 @@ def setting_of(text: str) -> tuple[str, str]:
     if not mark or not name.startswith("/"):
         raise argparse.ArgumentTypeError(f"{text!r} is not like /arm/rate=20")
     return name, value
+
+
+def id_of(text: str) -> int:
+    """A number of a spacecraft or processor, for argparse."""
+    try:
+        return int(text, 0)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number; give one such as 67 or 0x43") from None
 
 
 def factor_of(text: str) -> float:

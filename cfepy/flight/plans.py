@@ -43,6 +43,8 @@ class MissionOptions(TypedDict, total=False):
         cpp_nodes: how nodes in C++ of launch files are built: "host", "pool", "strict", or a mission whose
             file has the section `cpp_nodes:`, or that file.
         settings: ROS parameters by their full names, in place of what the mission says of them.
+        spacecraft_id: number of the spacecraft, in place of the mission's own.
+        processor_id: number of the processor, in place of the mission's own.
     """
 
     seed: int
@@ -58,6 +60,8 @@ class MissionOptions(TypedDict, total=False):
     races: bool
     cpp_nodes: str | os.PathLike[str] | None
     settings: Mapping[str, object] | None
+    spacecraft_id: int | None
+    processor_id: int | None
 
 
 class RunOptions(MissionOptions, total=False):

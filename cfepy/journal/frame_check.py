@@ -142,6 +142,8 @@ PLAN: dict[str, Check] = {
     "races": _flag,
     "cpp_nodes": _perhaps(_text),
     "settings": _list(lambda value: _named(value) and _text(value[0]) and _text(value[1])),
+    "spacecraft_id": _perhaps(_whole),
+    "processor_id": _perhaps(_whole),
 }
 _LATER = {"outcome", "mode", "cpp_nodes", "races", "settings", "play_options"}  # may be missing
 

@@ -108,7 +108,8 @@ class Mission:
         self.tasks = tasks
         self.board = board if isinstance(board, BoardProfile) else load_profile(board or self.spec.board)
         limits = self.spec.limits.config(self.board, self.spec.has_nodes)
-        self.config = replace(limits, cfe_version=self.spec.cfe_version)
+        ids = self.spec.ids
+        self.config = replace(limits, cfe_version=self.spec.cfe_version, given=tuple(ids)).with_limits(ids)
         self.console = console if console is not None else Console()
         self.trace = Trace() if trace is None else trace
         self.console.record = self.trace.note

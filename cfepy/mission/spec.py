@@ -80,6 +80,7 @@ class MissionSpec:
         demands: sections of the mission file that say what must hold of a run, as they stand there;
             `cfepy.monitors.demands` reads them.
         sweep: what a rate means in it, for `cfepy sweep`.
+        ids: what the run gives it of `cfepy.config.IDENTITIES`, in place of its own.
     """
 
     name: str
@@ -97,6 +98,7 @@ class MissionSpec:
     built: Mapping[str, BuiltProgram] = field(default_factory=dict)
     demands: Mapping[str, Marked] = field(default_factory=dict)
     sweep: SweepConfig = field(default_factory=SweepConfig)
+    ids: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def startup_script(self) -> bytes:

@@ -11,9 +11,10 @@ application ends to delete its objects, which NASA does task by task in CFE_ES_C
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import chain
 from typing import Any, NamedTuple
 
-from cfepy.config import PlatformConfig
+from cfepy.config import IDENTITIES, PlatformConfig
 from cfepy.console import Console
 from cfepy.ids import (
     OS_BINSEM_BASE,
@@ -258,8 +259,10 @@ class ApplicationApi(CleanupApi):
         return len(self.bsp_get_argv())
 
     def bsp_get_argv(self) -> tuple[str, ...]:
-        """Its words: the name of NASA's executable for this processor, without options (OS_BSP_GetArgV)."""
-        return (f"core-{self.config.processor_name}",)
+        """Its words: the name of NASA's executable for this processor, and ids that it was given (OS_BSP_GetArgV)."""
+        config = self.config
+        ids = [(option, str(getattr(config, name))) for name, option in IDENTITIES.items() if name in config.given]
+        return (f"core-{self.config.processor_name}", *chain.from_iterable(ids))
 
     def bsp_set_exit_code(self, code: int) -> None:
         """Leave a code for the program that started the run (OS_BSP_SetExitCode)."""

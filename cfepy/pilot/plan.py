@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.attachment import Attachment
+from cfepy.config import IDENTITIES, MOST_ID
 from cfepy.host_system import command_line
 from cfepy.mission import (
     CppNodesConfig,
@@ -85,6 +86,8 @@ class RunPlan:
         cpp_nodes: how nodes in C++ are built: a profile, or a YAML file with a section `cpp_nodes:` in place of the
             mission's own; None leaves it to the mission.
         settings: ROS parameters in place of those that the mission says: full name, and value in YAML.
+        spacecraft_id: number of the spacecraft; None takes the mission's own.
+        processor_id: number of the processor; None takes the mission's own.
     """
 
     words: tuple[str, ...]
@@ -105,6 +108,8 @@ class RunPlan:
     races: bool = False
     cpp_nodes: str | None = None
     settings: tuple[tuple[str, str], ...] = ()
+    spacecraft_id: int | None = None
+    processor_id: int | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.schedule, Schedule):
@@ -121,7 +126,20 @@ class RunPlan:
             spec = replace(spec, compiled=replace(spec.compiled, guard=True))
         if self.settings:
             spec = with_settings(spec, self.settings)
-        return self.with_played_bag(spec)
+        return self.with_played_bag(replace(spec, ids=self._ids()))
+
+    def _ids(self) -> dict[str, int]:
+        """The identities that the run gives the mission.
+
+        Raises:
+            UsageError: one of them has no room in 32 bits.
+        """
+        said = {name: getattr(self, name) for name in IDENTITIES}
+        for name, number in said.items():
+            if number is not None and not (isinstance(number, int) and 0 <= number <= MOST_ID):
+                text = f"is {number!r}; give a number from 0 to {MOST_ID}"
+                raise UsageError(text, field=f"--{name.replace('_', '-')}")
+        return {name: number for name, number in said.items() if number is not None}
 
     def _spec(self) -> MissionSpec:
         build = builder(self.cpp_nodes)
@@ -173,7 +191,7 @@ class RunPlan:
             options += ["--set", f"{name}={value}"]
         if plan.seconds is not None:
             options += ["--for", f"{plan.seconds:.12g}"]
-        for each in ("seed", "board", "tasks", "schedule", "script", "play", "faults", "cpp_nodes"):
+        for each in ("seed", "board", "tasks", "schedule", "script", "play", "faults", "cpp_nodes", *IDENTITIES):
             if getattr(plan, each) != getattr(_USUAL, each):
                 options += [f"--{each.replace('_', '-')}", str(getattr(plan, each))]
         if plan.play_options is not None:

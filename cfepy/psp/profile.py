@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
-from cfepy.config import COUNTED_BY_ID, MAY_BE_ZERO, PlatformConfig
+from cfepy.config import COUNTED_BY_ID, MAY_BE_ZERO, NOT_LIMITS, PlatformConfig
 from cfepy.ids import SERIAL_MAX
 from cfepy.marked_yaml import Marked, load
 from cfepy.resources import shipped
@@ -22,7 +22,7 @@ _UNITS = {"B": 1, "KiB": 1024, "MiB": 1024 * 1024}
 MOST_BYTES = 1 << 32  # a board with more needs none of this
 MOST_LIMIT = (1 << 31) - 1
 MOST_OBJECTS = SERIAL_MAX - 1  # a resource id has 16 bits for them
-LIMIT_NAMES = tuple(known.name for known in fields(PlatformConfig) if known.name != "cfe_version")
+LIMIT_NAMES = tuple(known.name for known in fields(PlatformConfig) if known.name not in NOT_LIMITS)
 Limit = int | str | tuple[int, ...]
 """A value of `PlatformConfig`."""
 

@@ -370,12 +370,18 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
 
     def _announce(self, subtype: int) -> None:
         """Print the name of the computer and the reset's subtype; 0 stands for the default one."""
+        ids = {"processor_id": "CPU ID", "spacecraft_id": "Spacecraft ID"}
+        numbers = {title: getattr(self.config, name) for name, title in ids.items()}
+        given = [ids[name] for name in self.config.given]
+        for title in given:
+            self.console.write(f"CFE_PSP: {title}: {numbers[title]}")
         if subtype:
             self.console.write(f"CFE_PSP: Reset SubType: {subtype}")
         else:
             self.console.write(f"CFE_PSP: Default Reset SubType = {RST_SUBTYPE_POWER_CYCLE}")
-        self.console.write(f"CFE_PSP: Default CPU ID = {self.config.processor_id}")
-        self.console.write(f"CFE_PSP: Default Spacecraft ID = {self.config.spacecraft_id}")
+        for title in numbers:
+            if title not in given:
+                self.console.write(f"CFE_PSP: Default {title} = {numbers[title]}")
         self.console.write(f"CFE_PSP: Default CPU Name: {self.config.processor_name}")
 
     def _start_modules(self) -> None:

@@ -95,6 +95,8 @@ OPTIONS: dict[str, tuple[list[str], Any]] = {
     "races": (["--races"], True),
     "cpp_nodes": (["--cpp-nodes", "pool"], "pool"),
     "settings": (["--set", "/arm/rate=20"], (("/arm/rate", "20"),)),
+    "spacecraft_id": (["--spacecraft-id", "67"], 67),
+    "processor_id": (["--processor-id", "2"], 2),
 }
 SAID_OTHERWISE = {
     ("launch", "launch_args"): "its words have them, as for roslaunch",

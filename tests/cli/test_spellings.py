@@ -48,6 +48,8 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--quiet": (None, "no "),
     "--races": (None, "find accesses of Python code to one attribute, item or variable that nothing orders"),
     "-r --rate": ("HZ", "how often"),
+    "--spacecraft-id": ("N", "number of the spacecraft"),
+    "--processor-id": ("N", "number of the processor"),
     "--realtime": ("FACTOR", "pace virtual time to the wall clock"),
     "--record": ("FILE", "write a journal"),
     "--record-no-files": (None, "leave the mission's files out of the journal"),

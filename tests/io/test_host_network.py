@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -63,6 +64,10 @@ class Session:
             assert self.mission.kernel.now < PATIENCE_NS, "what was expected never came"
             self._pacer.step(PATIENCE_NS)
 
+    def run_until_told(self, text: str) -> None:
+        """Let the run go on until the console has a text."""
+        self.run_while(lambda: not self.console_has(text))
+
     def command(self, packet: bytes) -> None:
         """Send a command to CI_LAB."""
         self.ground.sendto(packet, (LOOPBACK, self.bridge.host_port(1234) or 0))
@@ -115,6 +120,38 @@ def test_a_noop_over_udp_yields_its_event_and_telemetry(tmp_path: Path) -> None:
         lab.run_while(missing)
         assert lab.console_has("66/1/TO_LAB 18: TO: NOOP command")
         assert lab.told == [f"UDP port 1234 is open at {LOOPBACK}:{lab.bridge.host_port(1234)}"]
+
+
+def test_three_spacecraft_side_by_side(tmp_path: Path) -> None:
+    """Each with ports and an id of its own: a command reaches one of them, and its telemetry its own ground."""
+    numbers = (66, 67, 68)
+    with ExitStack() as stack:
+        crafts: list[Session] = []
+        for number in numbers:
+            folder = tmp_path / str(number)
+            folder.mkdir()
+            (folder / "mission.yaml").write_text(f"limits: {{spacecraft_id: {number}}}\n")
+            crafts.append(stack.enter_context(session(folder, LAB)))
+        assert len({craft.ground.getsockname() for craft in crafts}) == len(crafts)
+        for craft in crafts:
+            craft.run_until_told("Awaiting enable command")
+            craft.command(to_lab.OUTPUT_ENABLE.packet(dest_IP=LOOPBACK))
+        for craft in crafts:
+            craft.run_until_told("telemetry output enabled")
+        crafts[1].command(bytes.fromhex("1884c000000100a2"))
+        crafts[1].run_until_told("67/1/CI_LAB 5: CI: NOOP command")
+        for craft, number in zip(crafts, numbers, strict=True):
+            events: list[bytes] = []
+            craft.run_while(partial(has_no_event, craft, events))
+            assert {int.from_bytes(event[40:44], "little") for event in events} == {number}
+            assert craft.console_has("CI: NOOP command") == (number == 67)
+
+
+def has_no_event(craft: Session, events: list[bytes]) -> bool:
+    """Whether no event has come to the ground yet; takes in those that wait."""
+    while packet := craft.packet():
+        events.extend([packet] if packet.startswith(b"\x08\x08") else [])
+    return not events
 
 
 def test_each_arrival_is_noted_with_its_instant(tmp_path: Path) -> None:
