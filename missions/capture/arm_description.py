@@ -48,16 +48,16 @@ class Quaternion(NamedTuple):
     w: float
 
 
-_ROLL = Vector(0.0, 0.0, 1.0)
-_PITCH = Vector(0.0, 1.0, 0.0)
-_CHAIN = (  # axis of each joint, and metres along the arm to the next one
-    (_ROLL, 0.30),
-    (_PITCH, 0.45),
-    (_ROLL, 0.45),
-    (_PITCH, 0.40),
-    (_ROLL, 0.40),
-    (_PITCH, 0.15),
-    (_ROLL, 0.20),
+ROLL = Vector(0.0, 0.0, 1.0)
+PITCH = Vector(0.0, 1.0, 0.0)
+CHAIN = (  # axis of each joint, and metres along the arm to the next one
+    (ROLL, 0.30),
+    (PITCH, 0.45),
+    (ROLL, 0.45),
+    (PITCH, 0.40),
+    (ROLL, 0.40),
+    (PITCH, 0.15),
+    (ROLL, 0.20),
 )
 
 
@@ -82,14 +82,15 @@ def hand_pose(joints: Sequence[float]) -> tuple[Vector, Quaternion]:
     """Forward kinematics: where the hand is (m) and how it is turned, in the frame of the arm's base."""
     place = Vector(0.0, 0.0, 0.0)
     turn = Quaternion(0.0, 0.0, 0.0, 1.0)
-    for angle, (axis, length) in zip(joints, _CHAIN):
-        turn = _multiply(turn, _rotation(axis, angle))
+    for angle, (axis, length) in zip(joints, CHAIN):
+        turn = _multiply(turn, rotation(axis, angle))
         link = _z_axis(turn)
         place = Vector(place.x + length * link.x, place.y + length * link.y, place.z + length * link.z)
     return place, turn
 
 
-def _rotation(axis: Vector, angle: float) -> Quaternion:
+def rotation(axis: Vector, angle: float) -> Quaternion:
+    """A turn by an angle (rad) about an axis."""
     sine = math.sin(0.5 * angle)
     return Quaternion(axis.x * sine, axis.y * sine, axis.z * sine, math.cos(0.5 * angle))
 
