@@ -494,23 +494,6 @@ def add_pace(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_viewers(parser: argparse.ArgumentParser) -> None:
-    """Programs that look at the run while it goes on."""
-    viewers = parser.add_argument_group("programs that look at the run while it goes on")
-    viewers.add_argument(
-        "--foxglove",
-        metavar="[HOST:]PORT",
-        help="serve Foxglove: topics, telemetry, events, parameters and services, both ways; on 127.0.0.1, if no host "
-        "is given, and with --realtime at the pace of the wall clock",
-    )
-    viewers.add_argument(
-        "--viewer-token",
-        metavar="TOKEN",
-        help="what such a program must know to connect (default: that of the variable CFEPY_VIEWER_TOKEN; from "
-        "other computers always one, which is made and shown if nobody gives one)",
-    )
-
-
 def check_pace(arguments: argparse.Namespace) -> None:
     """Check what `add_pace` has added.
 

@@ -1,4 +1,4 @@
-"""`--foxglove` and what goes with it: servers for programs that look at a run, from before it until after its end."""
+"""`--foxglove`, `--rosbridge`: servers for programs that look at a run, from before it until after its end."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ from cfepy.attachment import Attachment
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
-    from cfepy.io import Guest
+    from cfepy.io import Guest, PeerCounts
+    from cfepy.viewers import Admission, ListenPlace
 
-FOXGLOVE = "--foxglove"
+FOXGLOVE, ROSBRIDGE = "--foxglove", "--rosbridge"
 
 
 def _to_stderr(line: str) -> None:
@@ -40,13 +41,21 @@ class Viewers:
         self.guests: list[Guest] = []
         self._arguments = arguments
         self._name = name
+        self._token: str | None = arguments.viewer_token
         self._open = contextlib.ExitStack()
 
     def __enter__(self) -> Viewers:
-        if self._arguments.foxglove is not None:
+        arguments = self._arguments
+        if arguments.foxglove is not None or arguments.rosbridge is not None:
+            from cfepy.io import PeerCounts
+
+            counts = PeerCounts()
             with contextlib.ExitStack() as undone:
                 undone.enter_context(self._open)
-                self._serve_foxglove()
+                if arguments.foxglove is not None:
+                    self._serve_foxglove(counts)
+                if arguments.rosbridge is not None:
+                    self._serve_rosbridge(counts)
                 self._open = undone.pop_all()
         return self
 
@@ -57,17 +66,33 @@ class Viewers:
         """The run is over: all connections end."""
         self._open.close()
 
-    def _serve_foxglove(self) -> None:
-        from cfepy.io import PeerCounts
-        from cfepy.viewers import FoxgloveViewer, admission_to, listen_place_of
+    def _serve_foxglove(self, counts: PeerCounts) -> None:
+        from cfepy.viewers import FoxgloveViewer
 
-        try:
-            place = listen_place_of(self._arguments.foxglove)
-        except ValueError as error:
-            raise UsageError(str(error), field=FOXGLOVE) from None
-        admission = admission_to(place, self._arguments.viewer_token, tell=_to_stderr)
-        viewer = FoxgloveViewer(place, admission, self._name, PeerCounts())
+        place, admission = self._who_and_where(self._arguments.foxglove, FOXGLOVE)
+        viewer = FoxgloveViewer(place, admission, self._name, counts)
         self._open.callback(viewer.close)
         self.attachments.append(viewer)
         self.guests.append(viewer)
         _to_stderr(f"Foxglove connects to ws://{viewer.place}")
+
+    def _serve_rosbridge(self, counts: PeerCounts) -> None:
+        from cfepy.viewers import RosbridgeServer
+
+        server = RosbridgeServer(*self._who_and_where(self._arguments.rosbridge, ROSBRIDGE), counts)
+        self._open.callback(server.close)
+        self.attachments.append(server)
+        self.guests.append(server)
+        _to_stderr(f"rosbridge clients connect to ws://{server.place}")
+
+    def _who_and_where(self, text: str, option: str) -> tuple[ListenPlace, Admission]:
+        """Where a server listens, and whom it lets in."""
+        from cfepy.viewers import admission_to, listen_place_of
+
+        try:
+            place = listen_place_of(text)
+        except ValueError as error:
+            raise UsageError(str(error), field=option) from None
+        admission = admission_to(place, self._token, self._arguments.viewer_origin, tell=_to_stderr)
+        self._token = admission.token or self._token  # one for all servers
+        return place, admission

@@ -50,6 +50,11 @@ class PeerSocket:
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         selector.register(connected, EVENT_READ, self.handle)
 
+    @property
+    def is_full(self) -> bool:
+        """Whether a message would have to wait for the other side to read."""
+        return bool(self._under_way or self._waiting)
+
     def send(self, data: bytes) -> None:
         """Send a message, now or as soon as there is room."""
         if not self.is_open:
@@ -198,13 +203,13 @@ def listening_socket(address: str, port: int = 0) -> socket.socket:
     """A socket that listens.
 
     Args:
-        address: of this computer's interface; "" for all.
+        address: of this computer's interface, of IPv6 if it has colons; "" for all of IPv4.
         port: 0 takes any free one.
 
     Raises:
         OSError: the port is taken.
     """
-    opened = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    opened = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_STREAM)
     try:
         opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         opened.bind((address, port))

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from cfepy.osal import Datagram, Network, Place, Stream
 from cfepy.rtos import Kernel
-from cfepy.status import CfeError
+from cfepy.status import CfeError, UsageError
 from cfepy.trace import Trace
 
 LOOPBACK = "127.0.0.1"
@@ -113,7 +113,7 @@ class Outside:
         elif kind == ACT:
             try:
                 self.act(*values)
-            except CfeError:
+            except (CfeError, UsageError, KeyError):
                 pass  # as it was refused the first time
         else:
             self._repeat_on(self._stream(values[0]), kind, values)

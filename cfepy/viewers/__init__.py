@@ -14,8 +14,9 @@ from cfepy.faces import face
 if TYPE_CHECKING:
     from cfepy.viewers.foxglove import FoxgloveViewer
     from cfepy.viewers.listen import Admission, ListenPlace, admission_to, listen_place_of
+    from cfepy.viewers.rosbridge import RosbridgeServer
 
-__all__ = ["Admission", "FoxgloveViewer", "ListenPlace", "admission_to", "listen_place_of"]
+__all__ = ["Admission", "FoxgloveViewer", "ListenPlace", "RosbridgeServer", "admission_to", "listen_place_of"]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
@@ -28,5 +29,6 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "admission_to",
                 "listen_place_of",
             ),
+            ".rosbridge": ("RosbridgeServer",),
         },
     )

@@ -19,11 +19,11 @@ from cfepy.cli.options import (
     add_pace,
     add_recording,
     add_run_options,
-    add_viewers,
     count_of,
     factor_of,
     seconds_of,
 )
+from cfepy.cli.viewer_options import add_viewers
 
 _LAUNCH_WORDS = "a launch file, or a package and the name of a launch file in it; then its arguments, as NAME:=VALUE"
 _NODE_WORDS = "a script, or a package and the name of a node in it; then what the node gets (options of it after --)"

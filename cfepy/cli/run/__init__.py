@@ -18,9 +18,9 @@ from cfepy.cli.options import (
     add_pace,
     add_recording,
     add_run_options,
-    add_viewers,
     seconds_of,
 )
+from cfepy.cli.viewer_options import add_viewers
 
 DEFAULT_RUNS, MOST_RUNS = 3, 64
 FASTEST_CPU_HZ = 1e11

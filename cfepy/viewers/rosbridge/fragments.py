@@ -1,0 +1,82 @@
+"""Messages of rosbridge in pieces, the op `fragment` (ROSBRIDGE_PROTOCOL.md 3.1): cut up, and put together again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from cfepy.status import UsageError
+
+PATIENCE_S = 600.0  # wall time for the next piece of a message, as rosbridge has it
+MOST_BEGUN = 16  # messages of a client of which a piece is missing
+MOST_PIECES = 100_000
+
+
+def fragments(text: str, size: int, name: object) -> Iterator[dict[str, Any]]:
+    """The pieces of a text.
+
+    Args:
+        text: a message.
+        size: characters of a piece.
+        name: the message's id.
+    """
+    total = -(-len(text) // size)
+    for number in range(total):
+        piece = text[number * size : (number + 1) * size]
+        yield {"op": "fragment", "id": name, "data": piece, "num": number, "total": total}
+
+
+class _Begun:
+    """A message of which pieces have come."""
+
+    def __init__(self, total: int) -> None:
+        self.total = total
+        self.pieces: dict[int, str] = {}
+        self.size = 0
+        self.at_s = 0.0
+
+
+class Assembly:
+    """Puts the pieces together that one client sends.
+
+    Args:
+        longest: characters of a message; more are refused.
+    """
+
+    def __init__(self, longest: int) -> None:
+        self._longest = longest
+        self._begun: dict[str, _Begun] = {}
+
+    def add(self, message: dict[str, Any], now_s: float) -> str | None:
+        """A piece has come; the whole message when it was the last one missing.
+
+        Args:
+            message: the op.
+            now_s: wall time since some instant.
+
+        Raises:
+            UsageError: it is none, or belongs to no message, or there are too many.
+        """
+        name, number, total, data = (message.get(key) for key in ("id", "num", "total", "data"))
+        if name is None or type(number) is not int or type(total) is not int or not isinstance(data, str):
+            raise UsageError("received invalid fragment!")
+        for old in [each for each, begun in self._begun.items() if now_s - begun.at_s > PATIENCE_S]:
+            del self._begun[old]
+        key = repr(name)
+        begun = self._begun.get(key)
+        if begun is None:
+            if not 0 < total <= MOST_PIECES or len(self._begun) >= MOST_BEGUN:
+                raise UsageError(f"a message of {total} fragments, beside {len(self._begun)} others, is too much")
+            begun = self._begun[key] = _Begun(total)
+        if total != begun.total or not 0 <= number < total or number in begun.pieces:
+            raise UsageError(f"error while trying to append fragment {number}")
+        begun.pieces[number] = data
+        begun.size += len(data)
+        begun.at_s = now_s
+        if begun.size > self._longest:
+            del self._begun[key]
+            raise UsageError(f"a message in fragments has more than {self._longest:,} characters")
+        if len(begun.pieces) < total:
+            return None
+        del self._begun[key]
+        return "".join(begun.pieces[each] for each in range(total))

@@ -1,0 +1,96 @@
+"""When a client gets the messages of a topic: its subscriptions, rates and queues (ROSBRIDGE_PROTOCOL.md 3.4.4).
+
+A client may subscribe to a topic more than once, under several ids; it gets each message once, at the highest of the
+rates, with the shortest of the queues and the strongest of the compressions.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+NONE, PNG, CBOR, CBOR_RAW = "none", "png", "cbor", "cbor-raw"
+COMPRESSIONS = (NONE, PNG, CBOR, CBOR_RAW)
+"""From the weakest."""
+LONGEST_QUEUE = 10_000
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """What a client asks for with `subscribe`.
+
+    Attributes:
+        throttle_ms: wall time in ms that is at least between two messages; 0 for none.
+        queue_length: messages that wait for their time; 0 leaves out what comes too early.
+        compression: one of `COMPRESSIONS`; others are none.
+    """
+
+    throttle_ms: int = 0
+    queue_length: int = 0
+    compression: str = NONE
+
+
+class Pacing(Generic[T]):
+    """Decides when a client gets which message of one topic.
+
+    Attributes:
+        compression: how they are sent.
+        dropped: messages that the queue had no room for. What a rate leaves out is as asked for.
+    """
+
+    def __init__(self) -> None:
+        self.compression = NONE
+        self.dropped = 0
+        self._wishes: dict[object, Wish] = {}
+        self._throttle_s = 0.0
+        self._length = 0
+        self._queue: deque[T] = deque()
+        self._last_s = float("-inf")
+
+    def want(self, name: object, wish: Wish) -> None:
+        """A subscription under an id, or another one in its place."""
+        self._wishes[name] = wish
+        self._settle()
+
+    def want_no_more(self, name: object) -> bool:
+        """A subscription ends, all of them for None; whether there is none left."""
+        if name is None:
+            self._wishes.clear()
+        self._wishes.pop(name, None)
+        self._settle()
+        return not self._wishes
+
+    def _settle(self) -> None:
+        wishes = self._wishes.values()
+        self._throttle_s = min((each.throttle_ms for each in wishes), default=0) / 1000
+        self._length = min((each.queue_length for each in wishes), default=0)
+        ranks = [COMPRESSIONS.index(each.compression) for each in wishes if each.compression in COMPRESSIONS]
+        self.compression = COMPRESSIONS[max(ranks, default=0)]
+
+    def add(self, message: T, now_s: float) -> T | None:
+        """A message has come; it, if it is to be sent now.
+
+        Args:
+            message: the message.
+            now_s: wall time since some instant.
+        """
+        is_time = now_s >= self._last_s + self._throttle_s
+        if is_time and not self._queue:
+            self._last_s = now_s
+            return message
+        if self._length:
+            self._queue.append(message)
+            while len(self._queue) > self._length:
+                self._queue.popleft()
+                self.dropped += 1
+        return None
+
+    def due(self, now_s: float) -> T | None:
+        """The next message that has waited for its time; None when there is none."""
+        if not self._queue or now_s < self._last_s + self._throttle_s:
+            return None
+        self._last_s = now_s
+        return self._queue.popleft()

@@ -1,0 +1,185 @@
+"""A WebSocket connection with a client, on a socket that nobody waits for (RFC 6455).
+
+The protocol itself is that of the package websockets, without its servers: bytes go in, frames come out, and all of it
+happens between two pieces of a run.
+"""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+from http import HTTPStatus
+from selectors import BaseSelector
+from typing import TYPE_CHECKING, Any
+
+from cfepy.io import PeerSocket
+from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from websockets.frames import Frame
+    from websockets.http11 import Request, Response
+
+LONGEST_MESSAGE = 1 << 25  # bytes; more ends a connection
+MOST_PARTS = 10_000  # frames of a message
+BAD_TEXT, TOO_BIG = 1007, 1009  # RFC 6455, 7.4.1
+OPEN = "OPEN"
+
+
+def protocols() -> Any:
+    """The module `websockets.server`.
+
+    Raises:
+        UsageError: the package is not installed.
+    """
+    try:
+        from websockets import server
+    except ImportError:
+        raise UsageError("needs the package websockets: pip install 'cfepy[web]'", field="--rosbridge") from None
+    return server
+
+
+class WebSocket:
+    """A connection.
+
+    Args:
+        selector: of the server.
+        connected: the socket.
+        refusal: says why a request is refused, with the HTTP status; None takes it.
+        take: gets each message, a text or bytes.
+        gone: called once, when the connection is over; takes why.
+        longest: bytes of a message.
+    """
+
+    def __init__(
+        self,
+        selector: BaseSelector,
+        connected: socket.socket,
+        refusal: Callable[[Request], tuple[HTTPStatus, str] | None],
+        take: Callable[[str | bytes], object],
+        gone: Callable[[str], object],
+        longest: int = LONGEST_MESSAGE,
+    ) -> None:
+        self._protocol = protocols().ServerProtocol(max_size=longest)
+        self._refusal = refusal
+        self._take = take
+        self._gone = gone
+        self._parts: list[bytes] = []  # of a message that comes in more than one frame
+        self._is_text = True
+        self.is_open = False  # for messages
+        self._is_over = False
+        self._socket = PeerSocket(selector, connected, self._read, self._lost)
+
+    @property
+    def dropped(self) -> int:
+        """Messages that the client was too slow for."""
+        return self._socket.dropped
+
+    @property
+    def is_slow(self) -> bool:
+        """Whether messages wait for the client to read."""
+        return self._socket.is_full
+
+    def send(self, message: str | bytes) -> None:
+        """Send a message, now or as soon as there is room."""
+        if not self.is_open or self._protocol.state.name != OPEN:
+            return
+        if isinstance(message, str):
+            self._protocol.send_text(message.encode(errors="replace"))
+        else:
+            self._protocol.send_binary(message)
+        self._flush()
+
+    def pause(self) -> None:
+        """Leave what comes with the client, for now."""
+        self._socket.pause()
+
+    def resume(self) -> None:
+        """Take it again."""
+        self._socket.resume()
+
+    def close(self, code: int, why: str) -> None:
+        """End the connection, and say why (RFC 6455, 7.4); the client may still read what was sent."""
+        if self.is_open and self._protocol.state.name == OPEN:
+            self._protocol.send_close(code, why)
+            self._flush()
+        self._end(why)
+
+    def abort(self) -> None:
+        """End the connection at once."""
+        self._socket.close()
+        self._end("")
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the socket is closed, too."""
+        return not self._socket.is_open
+
+    def _end(self, why: str) -> None:
+        self.is_open = False
+        self._socket.finish()
+        if not self._is_over:
+            self._is_over = True
+            self._gone(why)
+
+    def _lost(self, why: str) -> None:
+        self._end(why)
+
+    def _read(self, data: bytes) -> None:
+        if self._is_over:
+            return
+        protocol = self._protocol
+        protocol.receive_data(data)
+        for event in protocol.events_received():
+            if self._is_over:
+                return
+            if protocol.handshake_exc is None and not self.is_open:
+                self._begin(event)
+            else:
+                self._frame(event)
+        self._flush()
+        if protocol.parser_exc is not None or protocol.handshake_exc is not None or protocol.close_expected():
+            self._end(_why(protocol))
+
+    def _begin(self, request: Request) -> None:
+        protocol = self._protocol
+        refused = self._refusal(request)
+        response: Response = protocol.accept(request) if refused is None else protocol.reject(*refused)
+        protocol.send_response(response)
+        if response.status_code == HTTPStatus.SWITCHING_PROTOCOLS:
+            self.is_open = True
+        else:
+            self._flush()
+            self._end(response.body.decode(errors="replace").strip() if response.body else response.reason_phrase)
+
+    def _frame(self, frame: Frame) -> None:
+        opcode = frame.opcode.name
+        if opcode in ("TEXT", "BINARY"):
+            self._is_text = opcode == "TEXT"
+            self._parts = [bytes(frame.data)]
+        elif opcode == "CONT":
+            self._parts.append(bytes(frame.data))
+        else:
+            return  # the protocol has answered it
+        if len(self._parts) > MOST_PARTS:
+            self.close(TOO_BIG, "a message has too many frames")
+        elif frame.fin:
+            data, self._parts = b"".join(self._parts), []
+            self._message(data)
+
+    def _message(self, data: bytes) -> None:
+        try:
+            message = data.decode() if self._is_text else data
+        except UnicodeDecodeError:
+            self.close(BAD_TEXT, "a text is not in UTF-8")
+            return
+        self._take(message)
+
+    def _flush(self) -> None:
+        data = b"".join(self._protocol.data_to_send())
+        if data:
+            self._socket.send(data)
+
+
+def _why(protocol: Any) -> str:
+    error = protocol.parser_exc or protocol.handshake_exc
+    return str(error) if error is not None else ""
