@@ -163,8 +163,8 @@ def test_hints_at_what_was_meant(write_launch: Launch, demo: Path, capsys: pytes
     assert main(["launch", write_launch(TALKER.format("", "")), "n=3"]) == 2
     assert "'n=3' is no argument for it; write NAME:=VALUE" in capsys.readouterr().err
     with pytest.raises(SystemExit):
-        main(["node", str(demo / "scripts/talker.py"), "--quux"])
-    assert "unrecognized arguments: --quux; what the node itself is to get comes after --" in capsys.readouterr().err
+        main(["node", str(demo / "scripts/talker.py"), "--xyzzy"])
+    assert "unrecognized arguments: --xyzzy; what the node itself is to get comes after --" in capsys.readouterr().err
 
 
 def test_a_launch_file_where_a_mission_is_meant(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
