@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from cfepy.io import Guest, PeerCounts
     from cfepy.viewers import Admission, ListenPlace
 
-FOXGLOVE, ROSBRIDGE = "--foxglove", "--rosbridge"
+FOXGLOVE, ROSBRIDGE, TOKEN = "--foxglove", "--rosbridge", "--viewer-token"
 
 
 def _to_stderr(line: str) -> None:
@@ -46,7 +46,10 @@ class Viewers:
 
     def __enter__(self) -> Viewers:
         arguments = self._arguments
-        if arguments.foxglove is not None or arguments.rosbridge is not None:
+        if arguments.foxglove is None and arguments.rosbridge is None:
+            if self._token is not None:
+                raise UsageError("nobody can connect; say where, such as --foxglove 8765", field=TOKEN)
+        else:
             from cfepy.io import PeerCounts
 
             counts = PeerCounts()

@@ -15,6 +15,7 @@ from cfepy.cli.run import report
 from cfepy.cli.run.outputs import Outputs, recording
 from cfepy.cli.viewers import Viewers
 from cfepy.pilot import Flown, RunPlan, fly
+from cfepy.status import UsageError
 from cfepy.trace import TimedRecords, Trace
 
 if TYPE_CHECKING:
@@ -72,6 +73,8 @@ def run(arguments: argparse.Namespace) -> int:
     """
     plan = plan_of_mission(arguments)
     if arguments.check_determinism is not None:
+        if arguments.foxglove is not None:
+            raise UsageError("runs that are compared are not shown; leave one of the two out", field="--foxglove")
         from cfepy.cli.run.check_determinism import check
 
         return check(arguments, plan)
