@@ -34,7 +34,7 @@ MOST_TOPICS = 1000  # that a client publishes, and that it hears
 MOST_PATIENCE_S = 1.0  # wall time for which the mission may be full, before a message is lost
 SHORTEST_FRAGMENT = 16  # characters
 POLICY = 1008  # RFC 6455, 7.4.1
-CONNECTION = "(connection)"  # the row of all that is no message
+CONNECTION = "(connections)"  # the row of all that is no message
 
 Op = dict[str, Any]
 _TEXT, _NUMBER, _OBJECT, _FLAG = (str,), (int,), (dict,), (bool,)

@@ -15,7 +15,7 @@ from functools import lru_cache
 from typing import Any
 
 from cfepy.status import UsageError
-from rospy_shim.genpy import Duration, Message, SerializationError, Time
+from rospy_shim.genpy import Duration, Message, Time
 from rospy_shim.msgs import MessageClass
 
 Convert = Callable[[Any], Any]
@@ -135,7 +135,7 @@ class Reading:
             message.header.seq = seq
         try:
             packed: bytes = message._pack()
-        except (SerializationError, TypeError, ValueError) as error:
+        except Exception as error:  # what generated code raises for values that do not fit, OverflowError too
             raise WrongMessage(str(error)) from None
         return packed
 

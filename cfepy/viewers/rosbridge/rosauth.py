@@ -39,7 +39,8 @@ class MacCheck:
         self._seen = {each: at_s for each, at_s in self._seen.items() if now_s - at_s <= 2 * PATIENCE_S}
         text = self._token + "".join(str(message.get(each, "")) for each in FIELDS)
         right = hashlib.sha512(text.encode(errors="replace")).hexdigest()
-        if not hmac.compare_digest(right, mac.encode(errors="replace").decode()) or right in self._seen or end <= now_s:
+        is_right = hmac.compare_digest(right.encode(), mac.encode(errors="replace"))
+        if not is_right or right in self._seen or end <= now_s:
             return False
         self._seen[right] = now_s
         return True

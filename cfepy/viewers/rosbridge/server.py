@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 MOST_CLIENTS = 64
 HANDSHAKE_S = 10.0  # wall time that a client has for asking for the connection
 FAREWELL_S = 2.0  # and for reading what was sent to it last
-GOING_AWAY = 1001  # RFC 6455, 7.4.1
+GOING_AWAY, INTERNAL = 1001, 1011  # RFC 6455, 7.4.1
+LONGEST_REASON = 40  # characters; in UTF-8 there is room for 123 bytes
 OPTION = "--rosbridge"
 TABLE = "viewer_peers"  # of the report
 
@@ -86,8 +87,11 @@ class RosbridgeServer(Attachment):
         self._node.exchange(now_s)
         for key, events in self._selector.select(0):
             key.data(events)
-        for client in list(self._clients.values()):
-            client.go_on(now_s)
+        for made, client in list(self._clients.items()):
+            try:
+                client.go_on(now_s)
+            except Exception as error:  # whatever a stranger's ops lead to ends this connection alone
+                made.close(INTERNAL, f"{type(error).__name__}: {error}"[:LONGEST_REASON])
         for each in [each for each, since_s in self._since.items() if now_s - since_s > HANDSHAKE_S]:
             each.abort()
         for each in [each for each, since_s in self._ending.items() if each.has_ended or now_s - since_s > FAREWELL_S]:

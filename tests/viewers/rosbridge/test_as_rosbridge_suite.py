@@ -7,6 +7,8 @@ from base64 import b64encode
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from cfepy.mission import spec_of_node
 from tests.viewers.rosbridge.bridged import Client, bridged_mission
 from tests.viewers.rosbridge.exchanges import RESPONSE, comparable
@@ -15,6 +17,7 @@ DATA = Path(__file__).parents[2] / "data" / "rosbridge" / "exchanges.json"
 PEER = Path(__file__).parents[2] / "ros_nodes" / "rosbridge_peer.py"
 
 
+@pytest.mark.slow
 def test_the_exchanges_on_record() -> None:
     rows = json.loads(DATA.read_text())
     assert len(rows) > 140

@@ -9,8 +9,8 @@ from typing import Any
 import msgpack
 
 from cfepy.console import Console
-from cfepy.mission import Arrival, Mission, read_mission
-from rospy_shim.graph.msg_ids import MsgIds
+from cfepy.mission import Arrival, Mission
+from rospy_shim.graph.msg_ids import msg_id_of
 from tests.ros_host.peers import SERVER, TALKER
 from tests.viewers.rosbridge.bridged import Bridged, bridged
 
@@ -75,9 +75,8 @@ def test_a_refusal_is_repeated(tmp_path: Path) -> None:
     with bridged(tmp_path, {"TALKER": TALKER}) as run:
         door = run.mission.outside
         door.listener = lambda arrival: arrivals.append((door.until_ns, msgpack.packb(list(arrival))))
-        taken = MsgIds(read_mission(str(tmp_path)).ros).of_topic("/chatter")
         names = (f"/topic{number}" for number in range(10**6))
-        same = next(name for name in names if MsgIds(run.mission.spec.ros).of_topic(name) == taken)
+        same = next(name for name in names if msg_id_of(name) == msg_id_of("/chatter"))
         client = run.client()
         client.send(op="subscribe", topic=same, type="std_msgs/String", id="s")
         problem = client.next()
